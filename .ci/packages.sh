@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: Apache-2.0
+# shellcheck shell=bash
+# The Debian 12 packages that libtex needs, listed once. Sourced by samples/quickstart.sh, tests/run.sh and .ci/run.
+
+# shellcheck disable=SC2034  # used by the scripts that source this file
+build_packages=(
+    g++ cmake ninja-build pkg-config
+    libpng-dev libopenexr-dev libopenimageio-dev libopencolorio-dev libseccomp-dev
+    libtbb-dev libhwy-dev libcli11-dev libfmt-dev nlohmann-json3-dev libtomlplusplus-dev
+)
+# shellcheck disable=SC2034
+test_packages=(
+    libgtest-dev libgmock-dev libsquish-dev libosmesa6-dev libgl-dev
+    imagemagick openimageio-tools mandoc shellcheck dpkg-dev file git strace zsh fish
+)
+# shellcheck disable=SC2034
+gate_packages=(clang-14 ccache libbenchmark-dev)
+
+as_root() {
+    if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi
+}
+
+# Installs those of the named packages that are missing; asks for nothing and downloads nothing where all are there.
+need_packages() {
+    local missing=() package
+    if ! command -v apt-get >/dev/null; then
+        echo "$0: this script installs packages with apt-get, for Debian 12 and its relatives. Elsewhere, install what" \
+             "these Debian packages hold, then: cmake --preset release && cmake --build --preset release" >&2
+        echo "    $*" >&2
+        return 1
+    fi
+    for package in "$@"; do
+        if [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" != installed ]; then missing+=("$package"); fi
+    done
+    [ "${#missing[@]}" -gt 0 ] || return 0
+    if [ "$(id -u)" -ne 0 ] && ! command -v sudo >/dev/null; then
+        echo "$0: not root and no sudo here. As root, run: apt-get install ${missing[*]}" >&2
+        return 1
+    fi
+    echo "installing packages: ${missing[*]}"
+    # A mirror may hiccup: once more before giving up.
+    install_packages "${missing[@]}" || { sleep 10 && install_packages "${missing[@]}"; }
+}
+
+install_packages() {
+    as_root apt-get update -q </dev/null &&
+        as_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "$@" </dev/null
+}
