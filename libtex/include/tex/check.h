@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// check.h: what is wrong with a texture of normals, told from its file and its texels.
+//
+// Every rule has an id that never changes ("N201"), a name, a severity, a sentence, an explanation and, where one exists, a fix in the form of a command. rules()
+// lists them all; the commands, the manual, the reports and the tests read that one table.
+//
+// Rules that count (values, file) look at every texel. Rules that judge (damage, convention, pair) look at up to 2^20 texels, spread over the map, and
+// say how sure they are.
+
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <tex/container.h>
+#include <tex/execution.h>
+#include <tex/format.h>
+#include <tex/height_field.h>
+#include <tex/names.h>
+#include <tex/result.h>
+#include <tex/texture.h>
+
+namespace [[gnu::visibility("default")]] tex {
+
+enum class Severity { note, warning, error };
+
+inline constexpr Named<Severity> kSeverityNames[] = {
+    {Severity::note, "note", "worth knowing"},
+    {Severity::warning, "warning", "looks wrong, and may be meant"},
+    {Severity::error, "error", "is wrong"},
+};
+
+enum class RuleFamily { file, values, damage, convention, mips, pair };
+
+inline constexpr Named<RuleFamily> kRuleFamilyNames[] = {
+    {RuleFamily::file, "file", "the file and its header"},
+    {RuleFamily::values, "values", "the vectors, texel by texel"},
+    {RuleFamily::damage, "damage", "traces of what happened to the map"},
+    {RuleFamily::convention, "convention", "which way green points"},
+    {RuleFamily::mips, "mips", "the smaller levels"},
+    {RuleFamily::pair, "pair", "the map beside its height map"},
+};
+
+struct Rule {
+    std::string_view id;           // "N201": stable for ever
+    std::string_view name;         // "not-unit-length"
+    RuleFamily family;
+    Severity severity;             // unless the options say otherwise
+    bool on;                       // off: only where the options enable it or require what it checks
+    std::string_view sentence;     // what is wrong, as one sentence
+    std::string_view explanation;  // how it is told, why it matters, what causes it
+    std::string_view fix;          // a command in which FILE stands for the file, a sentence, or empty
+    std::string_view explains;     // ids of rules that this fault makes fire too, separated by blanks: their findings are left out
+};
+
+// All rules, by id.
+[[nodiscard]] std::span<const Rule> rules();
+
+// The rule with this id or name; null if there is none.
+[[nodiscard]] const Rule* find_rule(std::string_view id_or_name);
+
+// What a project demands of its files. Nothing is required by default but a side of at most 16384 texels, the limit of Direct3D 12.
+struct Requirements {
+    std::optional<Format> format;
+    std::optional<Encoding> encoding;  // a format and a swizzle
+    std::optional<int> levels;         // 0: a complete chain, down to 1x1
+    std::optional<Extent> extent;
+    std::optional<YAxis> y;
+    int max_extent = 16384;            // texels along a side
+    bool power_of_two = false;
+    bool tiles = false;                // the map repeats without a seam
+};
+
+enum class RequirementKey { format, mips, extent, max_extent, y, pow2, tiles };
+
+inline constexpr Named<RequirementKey> kRequirementKeyNames[] = {
+    {RequirementKey::format, "format", "an encoding (dxt5nm) or a format (bc3-unorm)"},
+    {RequirementKey::mips, "mips", "full, none, or the number of levels"},
+    {RequirementKey::extent, "extent", "WIDTHxHEIGHT in texels"},
+    {RequirementKey::max_extent, "max-extent", "the longest side in texels"},
+    {RequirementKey::y, "y", "up or down: which way green points"},
+    {RequirementKey::pow2, "pow2", "both sides are powers of two; has no value"},
+    {RequirementKey::tiles, "tiles", "no seam where the map repeats; has no value"},
+};
+
+// Adds one requirement, written "KEY=VALUE" ("mips=full") or "KEY" where it has no value ("pow2").
+// Errors: bad_option (the reason says what would be right).
+[[nodiscard]] Result<void> add_requirement(Requirements& requirements, std::string_view text);
+
+struct CheckOptions {
+    Requirements require;
+    std::vector<std::string> enable;    // ids or names
+    std::vector<std::string> disable;   // wins over enable
+    std::vector<std::pair<std::string, Severity>> severity;  // by id or name; the last one wins
+    const HeightField* height = nullptr;  // the map's heights, for the rules of the pair; not owned
+};
+
+// Texels [x, x + width) x [y, y + height) of a level; y counts rows from the top.
+struct Region {
+    int level = 0;
+    int x = 0, y = 0, width = 0, height = 0;
+};
+
+struct Finding {
+    const Rule* rule = nullptr;
+    Severity severity = Severity::warning;
+    std::string message;         // a sentence with its figures: "3.1 % of the texels are not of unit length: 0.71 to 1.02"
+    double figure = 0.0;         // the measured one, in `unit`
+    std::string_view unit;       // "share", "degrees", "texels", "ratio", ... or empty
+    double confidence = 1.0;     // 0.5 to 1; 1 where texels were counted
+    std::vector<Region> regions; // where; empty for the whole file
+    bool has_texel = false;      // (column, row) is the first texel concerned, on regions.front().level
+    int column = 0, row = 0;
+};
+
+// Which way green points, from the curl of the slopes: +1 is up, -1 is down.
+struct YEvidence {
+    double correlation = 0.0;
+    double confidence = 0.5;
+    std::optional<YAxis> y;  // nullopt: cannot be told
+};
+
+// How the normals follow from the height map: slope = strength x difference of heights.
+struct PairEvidence {
+    double correlation = 0.0;  // mean of both axes, of magnitudes
+    double strength = 0.0;     // texel widths for the height of value 1; below 0: white is low
+    YAxis y = YAxis::up;
+    int offset_x = 0, offset_y = 0;  // texels that the normals lie to the right of and below the heights
+};
+
+struct CheckReport {
+    std::string file;
+    std::vector<Finding> findings;  // by rule id, then level
+    int explained = 0;              // findings left out because another one explains them
+    std::optional<Error> error;     // the file could not be read (then findings hold N101) or checked
+
+    // What the file is, where it could be read.
+    Format format = Format::rgba8_unorm;
+    Swizzle swizzle{};  // guess_swizzle(): what the file says or the texels tell
+    Extent extent;
+    int levels = 0;
+    YEvidence y;
+    std::optional<PairEvidence> pair;
+};
+
+// Checks the options themselves: rules that do not exist. Errors: bad_option.
+[[nodiscard]] Result<void> validate(const CheckOptions& options);
+
+// Checks a texture. `file` stands in the report.
+//
+// Precondition (asserted): the texture has at least one level, each with level_bytes() bytes.
+// Errors: bad_option (see validate()), out_of_memory, cancelled.
+// The same report for every number of threads, processor and compiler.
+[[nodiscard]] Result<CheckReport> check(const std::string& file, const Texture& texture, const CheckOptions& options = {},
+                                        const Execution& execution = {});
+
+// Reads a file and checks it. A file that cannot be read is a finding (N101) and its Error is in the report; so is, for memory
+// that ran out and cancellation, CheckReport::error alone. Errors: bad_option.
+[[nodiscard]] Result<CheckReport> check_file(const std::string& path, const CheckOptions& options = {},
+                                             const ReadOptions& read = {}, const Execution& execution = {});
+
+}  // namespace tex

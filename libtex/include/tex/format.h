@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// format.h: how texels are stored: formats, swizzles, and the encodings of normal maps made of both.
+
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+
+#include <tex/image.h>
+#include <tex/names.h>
+
+namespace [[gnu::visibility("default")]] tex {
+
+// The layout of a level's bytes. Channels are in the order R, G, B, A, little-endian, rows from the top
+// without padding; block formats store 4x4 blocks, rows of blocks from the top, edge blocks whole.
+//
+//   bc1   8 bytes a block: RGB, 5:6:5 endpoints (DXT1)             bc4   8 bytes: R, one BC4 block
+//   bc2  16 bytes: 4-bit alpha, then a BC1 block (DXT3)            bc5  16 bytes: R and G, two BC4 blocks
+//   bc3  16 bytes: alpha as a BC4 block, then a BC1 block (DXT5)
+enum class Format {
+    bc1_unorm, bc2_unorm, bc3_unorm, bc4_unorm, bc4_snorm, bc5_unorm, bc5_snorm,
+    r8_unorm, rg8_unorm, rgb8_unorm, rgba8_unorm,
+    r8_snorm, rg8_snorm, rgba8_snorm,
+    r16_unorm, rg16_unorm, rgb16_unorm, rgba16_unorm,
+    r16_snorm, rg16_snorm, rgba16_snorm,
+    r16_float, rg16_float, rgb16_float, rgba16_float,
+    r32_float, rg32_float, rgb32_float, rgba32_float,
+};
+
+inline constexpr Named<Format> kFormatNames[] = {
+    {Format::bc1_unorm, "bc1-unorm", "BC1 (DXT1)"},
+    {Format::bc2_unorm, "bc2-unorm", "BC2 (DXT3)"},
+    {Format::bc3_unorm, "bc3-unorm", "BC3 (DXT5)"},
+    {Format::bc4_unorm, "bc4-unorm", "BC4 (ATI1)"},
+    {Format::bc4_snorm, "bc4-snorm", "BC4, signed"},
+    {Format::bc5_unorm, "bc5-unorm", "BC5 (ATI2)"},
+    {Format::bc5_snorm, "bc5-snorm", "BC5, signed"},
+    {Format::r8_unorm, "r8-unorm", "8 bits"},
+    {Format::rg8_unorm, "rg8-unorm", "2 x 8 bits"},
+    {Format::rgb8_unorm, "rgb8-unorm", "3 x 8 bits"},
+    {Format::rgba8_unorm, "rgba8-unorm", "4 x 8 bits"},
+    {Format::r8_snorm, "r8-snorm", "8 bits, signed"},
+    {Format::rg8_snorm, "rg8-snorm", "2 x 8 bits, signed"},
+    {Format::rgba8_snorm, "rgba8-snorm", "4 x 8 bits, signed"},
+    {Format::r16_unorm, "r16-unorm", "16 bits"},
+    {Format::rg16_unorm, "rg16-unorm", "2 x 16 bits"},
+    {Format::rgb16_unorm, "rgb16-unorm", "3 x 16 bits"},
+    {Format::rgba16_unorm, "rgba16-unorm", "4 x 16 bits"},
+    {Format::r16_snorm, "r16-snorm", "16 bits, signed"},
+    {Format::rg16_snorm, "rg16-snorm", "2 x 16 bits, signed"},
+    {Format::rgba16_snorm, "rgba16-snorm", "4 x 16 bits, signed"},
+    {Format::r16_float, "r16-float", "half"},
+    {Format::rg16_float, "rg16-float", "2 x half"},
+    {Format::rgb16_float, "rgb16-float", "3 x half"},
+    {Format::rgba16_float, "rgba16-float", "4 x half"},
+    {Format::r32_float, "r32-float", "float"},
+    {Format::rg32_float, "rg32-float", "2 x float"},
+    {Format::rgb32_float, "rgb32-float", "3 x float"},
+    {Format::rgba32_float, "rgba32-float", "4 x float"},
+};
+
+// What a Format consists of.
+struct FormatInfo {
+    SampleKind sample;        // unorm, snorm or floating
+    int channels;             // 1 to 4, always the first of R, G, B, A
+    int bits;                 // of a decoded sample: 8, 16 or 32
+    int block;                // texels along a block's edge: 4 for block formats, else 1
+    std::size_t block_bytes;  // bytes of a block (of a texel where block is 1)
+};
+
+[[nodiscard]] FormatInfo format_info(Format format);
+
+// Bytes of a level: blocks across times blocks down times bytes of a block, blocks rounded up. Does not
+// overflow for extents up to kMaxExtent.
+[[nodiscard]] std::size_t level_bytes(Format format, Extent extent);
+
+// What one stored channel holds.
+enum class Component {
+    zero,   // constant 0
+    one,    // constant 1
+    x, y, z,  // a component of the normal
+    other,  // anything else (height, gloss, unused): not read, and written as 0
+};
+
+inline constexpr Named<Component> kComponentNames[] = {
+    {Component::zero, "0", "constant 0"}, {Component::one, "1", "constant 1"},
+    {Component::x, "x", "x of the normal"}, {Component::y, "y", "y of the normal"},
+    {Component::z, "z", "z of the normal"}, {Component::other, "_", "something else"},
+};
+
+// What the stored channels R, G, B and A hold, in this order: DXT5nm is {one, y, one, x}. A format with fewer
+// channels reads 0 for the missing colours and 1 for the missing alpha, as GPUs do: BC5 is {x, y, zero, one}.
+using Swizzle = std::array<Component, 4>;
+
+// Four letters in the order R, G, B, A of kComponentNames: "1y1x".
+[[nodiscard]] std::string to_string(const Swizzle& swizzle);
+
+// The encodings of normal maps that pack() makes: a format and a swizzle.
+//
+//   unorm    code = floor((n + 1) / 2 * (2^k - 1) + 0.5), clamped     flat is (127.5, 127.5, 255) of 255: 128, 128, 255
+//   snorm    code = round(n (2^(k-1) - 1)), halves away from zero     the lowest code is never written
+//   float    n itself
+enum class Encoding { dxt5nm, bc5, bc5_snorm, rgb8, rgba8, rgb16, ag8, rg8, rg16, half, float_ };
+
+inline constexpr Named<Encoding> kEncodingNames[] = {
+    {Encoding::dxt5nm, "dxt5nm", "BC3, R = 1, G = y, B = 1, A = x"},
+    {Encoding::bc5, "bc5", "BC5, x and y"},
+    {Encoding::bc5_snorm, "bc5-snorm", "signed BC5, x and y"},
+    {Encoding::rgb8, "rgb8", "x, y, z with 8 bits each"},
+    {Encoding::rgba8, "rgba8", "x, y, z and A = 1 with 8 bits each"},
+    {Encoding::rgb16, "rgb16", "x, y, z with 16 bits each"},
+    {Encoding::ag8, "ag8", "the layout of dxt5nm, uncompressed with 8 bits each"},
+    {Encoding::rg8, "rg8", "x and y with 8 bits each"},
+    {Encoding::rg16, "rg16", "x and y with 16 bits each"},
+    {Encoding::half, "half", "x, y, z as 16-bit floats"},
+    {Encoding::float_, "float", "x, y, z as 32-bit floats"},
+};
+
+struct EncodingInfo {
+    Format format;
+    Swizzle swizzle;
+};
+
+[[nodiscard]] EncodingInfo encoding_info(Encoding encoding);
+
+}  // namespace tex

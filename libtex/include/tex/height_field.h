@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// height_field.h: heights, what lies beyond their border, and how steep they are.
+//
+// A HeightField is what bake() reads. height_field() makes one from an Image: it picks the channel, replaces
+// what cannot be used, inverts and blurs, in that order.
+
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include <tex/execution.h>
+#include <tex/image.h>
+#include <tex/names.h>
+#include <tex/result.h>
+
+namespace [[gnu::visibility("default")]] tex {
+
+// What lies beyond the border of an axis of n texels.
+//
+//             heights                                        vectors and colours (mip filters)
+//   repeat    h[i + n] = h[i]                                the same
+//   clamp     h[-k] = 2 h[0] - h[k]: a ramp keeps its slope  the border texel again
+//   mirror    h[-1 - k] = h[k] (GL_MIRRORED_REPEAT)          the same; vectors are not flipped
+//
+// The rules apply again and again where a filter is wider than the axis. An axis of one texel has slope 0.
+enum class Wrap { repeat, clamp, mirror };
+
+inline constexpr Named<Wrap> kWrapNames[] = {
+    {Wrap::repeat, "repeat", "the texture tiles"},
+    {Wrap::clamp, "clamp", "heights continue their slope, filters repeat the border texel"},
+    {Wrap::mirror, "mirror", "the texture is mirrored at its border"},
+};
+
+// Heights, white (greater) is high. bumpiness_x and bumpiness_y are the height of value 1.0 in texel widths along each axis: 0
+// is flat, negative values turn bumps into dents; finite.
+struct HeightField {
+    Plane<float> height;
+    float bumpiness_x = 1.0f;
+    float bumpiness_y = 1.0f;
+    Wrap wrap_x = Wrap::repeat;
+    Wrap wrap_y = Wrap::repeat;
+};
+
+// Strength from units, as texel widths for the height of value 1.0 (Strength::x, Strength::y).
+struct Strength {
+    float x = 1.0f;
+    float y = 1.0f;
+};
+
+// World units: value 1.0 is `range` high, the whole texture is `width` wide and `height` high, all in one unit (metres,
+// say). height = 0 means square texels. x = range * columns / width, y = range * rows / height: the same
+// surface at 512 and at 2048 texels gives the same normals. Precondition: width > 0, height >= 0, all finite.
+[[nodiscard]] Strength strength_from_world(Extent extent, double range, double width, double height = 0.0);
+
+// Value 1.0 is `r` texture widths high, texels are square: x = y = r * columns.
+[[nodiscard]] Strength strength_from_uv(Extent extent, double r);
+
+// Which value of a texel is its height.
+enum class HeightChannel {
+    automatic,  // the only colour channel; else per texel R where R = G = B, and luma elsewhere
+    r,
+    g,
+    b,
+    a,
+    y,        // the channel called Y
+    luma,     // 0.2126 R + 0.7152 G + 0.0722 B (ITU-R BT.709), on the values as they are
+    average,  // (R + G + B) / 3
+    max,      // the largest of R, G, B
+};
+
+inline constexpr Named<HeightChannel> kHeightChannelNames[] = {
+    {HeightChannel::automatic, "auto", "the only channel; else R where R = G = B, and luma elsewhere"},
+    {HeightChannel::r, "r", "red (of a grey picture: grey)"},
+    {HeightChannel::g, "g", "green (of a grey picture: grey)"},
+    {HeightChannel::b, "b", "blue (of a grey picture: grey)"},
+    {HeightChannel::a, "a", "alpha"},
+    {HeightChannel::y, "y", "the channel Y, or grey"},
+    {HeightChannel::luma, "luma", "0.2126 R + 0.7152 G + 0.0722 B"},
+    {HeightChannel::average, "average", "(R + G + B) / 3"},
+    {HeightChannel::max, "max", "the largest of R, G and B"},
+};
+
+struct HeightOptions {
+    HeightChannel channel = HeightChannel::automatic;
+    std::optional<float> no_data;  // texels of exactly this value (after rounding to float) are invalid
+    bool fill_invalid = false;     // invalid texels take the value of the nearest valid one
+    bool invert = false;           // h becomes 1 - h: for maps in which white is low
+    float blur_sigma = 0.0f;       // standard deviation of a Gaussian blur in texels; 0 is none; at most 256
+    Wrap wrap_x = Wrap::repeat;
+    Wrap wrap_y = Wrap::repeat;
+};
+
+// What height_field() met on its way, for warnings and reports.
+struct HeightReport {
+    std::int64_t luma_texels = 0;     // texels where `automatic` fell back to luma because R, G, B differ
+    std::int64_t invalid_texels = 0;  // NaN, infinite or no-data texels, all of them filled
+};
+
+// Makes a height field of strength 1 from a picture.
+//
+// Channel: see HeightChannel. A picture has colour where it has planes R, G and B; a picture of any other
+// single plane, or of one plane and A, is grey. Of an EXR file with other names the only non-alpha plane is taken, or the one called "Y",
+// "height", "displacement", "Z" or "depth" (any case) where there are several.
+// Invalid texels (NaN, infinite, equal to no_data): replaced where fill_invalid is set, by the value of the
+// nearest valid texel (Euclidean distance, wrap respected, ties by the smallest row, then column).
+// Blur: a Gaussian of radius ceil(3 sigma), weights normalised to 1, with the field's wrap.
+//
+// Errors: bad_option  the channel is not in the picture (the reason lists those that are); blur_sigma out of range
+//         bad_data    invalid texels and no fill_invalid: the reason names the first texel (column, row)
+//                     and the count; or no valid texel at all
+//         out_of_memory, cancelled
+// `report` may be null. The result is the same for every number of threads.
+[[nodiscard]] Result<HeightField> height_field(const Image& image, const HeightOptions& options,
+                                               const Execution& execution = {},
+                                               HeightReport* report = nullptr);
+
+}  // namespace tex

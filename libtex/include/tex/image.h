@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// image.h: extents, planes of values, and images made of named planes.
+//
+// Memory layout. The value of texel (i, j), i to the right, j down from the top row, is at
+//
+//     data[j * stride + i]          0 <= i < extent.width,  0 <= j < extent.height
+//
+// with the stride in elements, not bytes. Rows of a Plane start on kRowAlignment bytes and are padded to a
+// multiple of it, so that a kernel may load and store whole vectors past the last texel of a row; what
+// it stores there means nothing. Rows of a PlaneView that a caller makes need no padding: whole-image verbs
+// accept any stride >= width.
+
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <string>
+#include <vector>
+
+#include <tex/names.h>
+
+namespace [[gnu::visibility("default")]] tex {
+
+// Width and height in texels; a valid extent has both at least 1.
+struct Extent {
+    int width = 0;
+    int height = 0;
+
+    [[nodiscard]] constexpr std::int64_t texels() const {
+        return static_cast<std::int64_t>(width) * height;
+    }
+    friend constexpr bool operator==(Extent a, Extent b) {
+        return a.width == b.width && a.height == b.height;
+    }
+    friend constexpr bool operator!=(Extent a, Extent b) { return !(a == b); }
+};
+
+// The largest width or height that libtex handles, in texels.
+inline constexpr int kMaxExtent = 1 << 20;
+
+// Rows of a Plane start at multiples of this many bytes: the widest vector of any kernel.
+inline constexpr std::size_t kRowAlignment = 64;
+
+// A view of a plane that somebody else owns. `stride` is in elements, at least extent.width.
+template <class T>
+struct PlaneView {
+    T* data = nullptr;
+    Extent extent;
+    std::ptrdiff_t stride = 0;
+
+    [[nodiscard]] T* row(int j) const { return data + j * stride; }
+    [[nodiscard]] T& at(int i, int j) const { return data[j * stride + i]; }
+    operator PlaneView<const T>() const { return {data, extent, stride}; }
+};
+
+// Owns one plane. Movable, not copyable by accident: clone() copies. The constructor leaves the texels
+// unset and the padding zero, and throws std::bad_alloc like any container of the standard library.
+template <class T>
+class Plane {
+public:
+    Plane() = default;
+    explicit Plane(Extent extent) : extent_(extent), stride_(padded(extent.width)) {
+        const std::size_t count = static_cast<std::size_t>(stride_) * static_cast<std::size_t>(extent.height);
+        data_.reset(static_cast<T*>(::operator new(count * sizeof(T), std::align_val_t(kRowAlignment))));
+        for (int j = 0; j < extent.height; ++j) {
+            std::memset(row(j) + extent.width, 0, static_cast<std::size_t>(stride_ - extent.width) * sizeof(T));
+        }
+    }
+    Plane(Extent extent, T value) : Plane(extent) {
+        for (int j = 0; j < extent.height; ++j) {
+            for (int i = 0; i < extent.width; ++i) row(j)[i] = value;
+        }
+    }
+
+    [[nodiscard]] Extent extent() const { return extent_; }
+    [[nodiscard]] std::ptrdiff_t stride() const { return stride_; }  // in elements
+    [[nodiscard]] bool empty() const { return data_ == nullptr; }
+    [[nodiscard]] T* row(int j) { return data_.get() + j * stride_; }
+    [[nodiscard]] const T* row(int j) const { return data_.get() + j * stride_; }
+    [[nodiscard]] T& at(int i, int j) { return row(j)[i]; }
+    [[nodiscard]] const T& at(int i, int j) const { return row(j)[i]; }
+    [[nodiscard]] PlaneView<T> view() { return {data_.get(), extent_, stride_}; }
+    [[nodiscard]] PlaneView<const T> view() const { return {data_.get(), extent_, stride_}; }
+
+    [[nodiscard]] Plane clone() const {
+        if (empty()) return {};
+        Plane copy(extent_);
+        std::memcpy(copy.row(0), row(0),
+                    static_cast<std::size_t>(stride_) * static_cast<std::size_t>(extent_.height) * sizeof(T));
+        return copy;
+    }
+
+private:
+    struct Free {
+        void operator()(T* p) const { ::operator delete(p, std::align_val_t(kRowAlignment)); }
+    };
+    static std::ptrdiff_t padded(int width) {
+        constexpr std::ptrdiff_t kStep = static_cast<std::ptrdiff_t>(kRowAlignment / sizeof(T));
+        return (width + kStep - 1) / kStep * kStep;
+    }
+
+    Extent extent_;
+    std::ptrdiff_t stride_ = 0;
+    std::unique_ptr<T, Free> data_;
+};
+
+// How the values of a file were stored, before they became float.
+enum class SampleKind { unorm, snorm, floating };
+
+// A picture as read from a file: planes of one extent, in the order of the file, each with its channel's
+// name ("R", "G", "B", "A" for colour and alpha, "Y" for grey; EXR channels keep theirs). The values are the raw
+// data of the file: no colour conversion, no multiplication by alpha. Unsigned integers of n bits are
+// divided by 2^n - 1 and so lie in [0, 1], signed ones by 2^(n-1) - 1 and lie in [-1, 1], floats are as stored and may
+// be infinite or NaN.
+struct Image {
+    std::vector<Plane<float>> planes;
+    std::vector<std::string> names;
+
+    SampleKind sample = SampleKind::unorm;
+    int bits = 8;  // significant bits of a sample in the file: 1 to 16, or 32; 16 or 32 for half and float
+
+    // The EXR attribute normalEncoding, or empty: "signed" where values are components of normals themselves.
+    std::string normal_encoding;
+
+    [[nodiscard]] Extent extent() const { return planes.empty() ? Extent{} : planes.front().extent(); }
+    // The index of the plane called `name` (exact), or -1.
+    [[nodiscard]] int find(const std::string& name) const {
+        for (std::size_t k = 0; k < names.size(); ++k) {
+            if (names[k] == name) return static_cast<int>(k);
+        }
+        return -1;
+    }
+};
+
+}  // namespace tex

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// normal_map.h: tangent-space normals in memory.
+//
+// x points right, y points *up* (towards the top row: OpenGL and Unity; "+Y"), z points out of the surface.
+// Components are in [-1, 1], vectors have unit length, z >= 0. Files may hold y down (DirectX, "-Y"): only
+// pack() and unpack() flip it.
+
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include <tex/image.h>
+#include <tex/names.h>
+
+namespace [[gnu::visibility("default")]] tex {
+
+// Which way green points in a file.
+enum class YAxis { up, down };
+
+inline constexpr Named<YAxis> kYAxisNames[] = {
+    {YAxis::up, "up", "+Y: OpenGL, Unity, Blender, glTF"},
+    {YAxis::down, "down", "-Y: DirectX, Unreal"},
+};
+
+// Three planes of one extent.
+struct NormalMap {
+    Plane<float> x;
+    Plane<float> y;
+    Plane<float> z;
+
+    NormalMap() = default;
+    explicit NormalMap(Extent extent) : x(extent), y(extent), z(extent) {}
+    [[nodiscard]] Extent extent() const { return x.extent(); }
+};
+
+// What a bump scale s does to a normal.
+//
+//   slope    normalize(s x, s y, z): what scaling the height by s does; glTF, Unity's SRP
+//   xy       (s x, s y, reconstruct_z(s x, s y)): Catlike Coding, Rendering 6, 2.3 (UnpackScaleNormal); where s x and s y
+//            leave the unit circle, they are divided by their length and z is 0
+//
+// A normal tilted by 32 degrees differs by 2 degrees between them at s = 0.5, and by 39 at s = 2.
+enum class ScaleMode { slope, xy };
+
+inline constexpr Named<ScaleMode> kScaleModeNames[] = {
+    {ScaleMode::slope, "slope", "multiply the slopes, as scaling the height does"},
+    {ScaleMode::xy, "xy", "multiply x and y, then reconstruct z, as UnpackScaleNormal does"},
+};
+
+// z of the unit vector with the given x and y: sqrt(1 - saturate(x^2 + y^2)). The clamp keeps it real where
+// quantisation made x^2 + y^2 greater than 1: the result is then 0, never NaN. (Catlike Coding, Rendering 6,
+// 2.2.)
+[[nodiscard]] inline float reconstruct_z(float x, float y) {
+    return std::sqrt(1.0f - std::min(std::max(x * x + y * y, 0.0f), 1.0f));
+}
+
+// The cheap approximation 1 - (x^2 + y^2) / 2 (GLSL/Cg Programming in Unity, Lighting of Bumpy Surfaces), for comparison: it
+// is 0.5 where the true z is 0.
+[[nodiscard]] inline float reconstruct_z_approximate(float x, float y) {
+    return 1.0f - (x * x + y * y) / 2.0f;
+}
+
+}  // namespace tex

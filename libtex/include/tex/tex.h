@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// tex.h: libtex, a toolkit for tangent-space normal maps. Includes all of it; read this first.
+//
+// The way of the data
+// -------------------
+//
+//     file --read_image--> Image --height_field--> HeightField --bake--> NormalMap --build_mip_chain--> MipChain
+//                                                                                                   |      ^
+//                                                                                                 pack   unpack
+//                                                                                                   v      |
+//                                                                        file <--write_texture--   Texture   <--read_texture-- file
+//
+//     #include <tex/tex.h>
+//
+//     auto image = tex::read_image("bricks.png");
+//     if (!image) return fail(image.error().message());
+//     auto field = tex::height_field(*image, {});
+//     ...
+//     field->bumpiness_x = field->bumpiness_y = 8.0f;
+//     auto normals = tex::bake(*field);
+//     auto chain = tex::build_mip_chain(std::move(*normals));
+//     auto texture = tex::pack(*chain, {tex::Encoding::dxt5nm});
+//     auto written = tex::write_texture("bricks.dds", *texture);
+//
+// Five conventions
+// ----------------
+//
+// 1. One convention in memory, conversions at the border. Planar float; x right, y up (OpenGL, Unity), z out of the surface;
+//    components in [-1, 1]; unit length; rows from the top; linear. Only pack and unpack flip, swizzle and quantise.
+// 2. The border can fail; kernels cannot. Reading, parsing and writing return Result<T>; verbs on whole images do
+//    so for out_of_memory and cancelled (and bad_option where they say so), and assert their preconditions. No
+//    exception leaves libtex.
+// 3. The same bytes everywhere: for every number of threads, instruction set and compiler. (Heights that OpenColorIO converted
+//    are exempt.)
+// 4. The library is silent: no stdout, stderr, exit, environment or locale. Progress and cancellation are callbacks
+//    (Execution).
+// 5. Units are in the name or in the comment: texels, degrees, bytes. Strides are in elements, pitches in bytes.
+//
+// Threads: every function may be called from any number of threads at once, on different objects or on the same const object.
+
+#pragma once
+
+#include <tex/names.h>
+#include <tex/result.h>
+#include <tex/execution.h>
+#include <tex/image.h>
+#include <tex/height_field.h>
+#include <tex/normal_map.h>
+#include <tex/mip_chain.h>
+#include <tex/format.h>
+#include <tex/texture.h>
+
+#include <tex/bake.h>
+#include <tex/blend.h>
+#include <tex/check.h>
+#include <tex/compare.h>
+#include <tex/heat_map.h>
+#include <tex/mip.h>
+#include <tex/pack.h>
+#include <tex/preview.h>
+#include <tex/scale.h>
+#include <tex/sheet.h>
+#include <tex/swizzle.h>
+#include <tex/unpack.h>
+
+#include <tex/color.h>
+#include <tex/container.h>
+#include <tex/image_io.h>
+
+namespace [[gnu::visibility("default")]] tex {
+
+// "0.1.0": the version of the library that runs, not of the header.
+[[nodiscard]] const char* version();
+
+}  // namespace tex

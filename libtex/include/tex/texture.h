@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// texture.h: a packed texture: the bytes of its levels, and what they mean.
+
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <tex/format.h>
+#include <tex/normal_map.h>
+
+namespace [[gnu::visibility("default")]] tex {
+
+// One level: exactly level_bytes(format, extent) bytes in the layout of the format.
+struct Level {
+    Extent extent;
+    std::vector<std::byte> bytes;
+};
+
+// A texture between pack() and a file, or between a file and unpack(). levels[0] is the base level; the others have the
+// extents of level_extent().
+struct Texture {
+    Format format = Format::rgba8_unorm;
+    std::vector<Level> levels;
+
+    // What the channels hold and which way y points. Where a file does not say, the reader leaves
+    // `swizzle_known` or `y_known` false, and the values beside them are the likeliest for its format.
+    Swizzle swizzle = {Component::x, Component::y, Component::z, Component::other};
+    bool swizzle_known = false;
+    YAxis y_axis = YAxis::up;
+    bool y_known = false;
+
+    // As Image::normal_encoding: "signed" where floats are components of normals themselves, or empty.
+    std::string normal_encoding;
+
+    // The file declares its colours as sRGB. That is a mistake for normals; the bytes are used as they are.
+    bool srgb = false;
+
+    // What a reader had to overlook ("mip count says 3, the data end after 2"), a sentence each.
+    std::vector<std::string> remarks;
+
+    [[nodiscard]] Extent extent() const { return levels.empty() ? Extent{} : levels.front().extent; }
+};
+
+}  // namespace tex

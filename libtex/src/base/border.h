@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// border.h: what lies beyond the border of an axis (see Wrap in height_field.h), and rows of heights with it.
+
+#pragma once
+
+#include <tex/height_field.h>
+#include <tex/image.h>
+
+namespace tex {
+
+// The texel that a filter of vectors or colours reads at index i, any integer, of an axis of n texels:
+// clamp repeats the border texel.
+int border_index(Wrap wrap, int i, int n);
+
+// The height at index i, any integer, of an axis of n texels:
+//
+//     (reflected ? 2 h[edge] - h[index] : h[index]) + drift (h[edge] - h[other])
+//
+// Repeat and mirror need h[index] alone. Clamp turns the heights about a border texel by half a turn, again
+// and again: every two turns add the rise from one border to the other twice. On an axis of one texel all
+// heights are that texel's.
+struct HeightIndex {
+    int index = 0;
+    int edge = 0;
+    int other = 0;
+    int drift = 0;
+    bool reflected = false;
+
+    [[nodiscard]] bool plain() const { return !reflected && drift == 0; }
+};
+HeightIndex height_index(Wrap wrap, int i, int n);
+
+// Rows of a height field with `apron` more heights to the left and the right, for filters of that radius;
+// rows beyond the top and the bottom exist as well. The last `kept` rows are held: a filter moves down the
+// field row by row.
+//
+// Heights are cut to +-kMaxHeight (kernels/bake.h) on the way. Rows are aligned for whole vectors; a row
+// may be read and written from -lead() to a whole vector past width + apron.
+class HeightRows {
+public:
+    HeightRows(PlaneView<const float> heights, Wrap wrap_x, Wrap wrap_y, int apron, int kept);
+
+    // Computes row j, which replaces the row `kept` rows above it. Rows must be fetched from top to bottom.
+    const float* fetch(int j);
+    // Row j, one of the last `kept` that were fetched. The texels are at [-apron, width + apron).
+    [[nodiscard]] const float* row(int j) const;
+
+    [[nodiscard]] int lead() const { return lead_; }
+
+private:
+    PlaneView<const float> heights_;
+    Wrap wrap_x_;
+    Wrap wrap_y_;
+    int apron_;
+    int kept_;
+    int lead_;
+    Plane<float> rows_;
+};
+
+// A number of floats rounded up to whole vectors.
+int aligned_count(int count);
+
+// i modulo n, in [0, n).
+constexpr int wrap_around(int i, int n) {
+    const int r = i % n;
+    return r < 0 ? r + n : r;
+}
+
+}  // namespace tex

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// guard.h: no exception leaves libtex. Every public function whose body may allocate runs it in here.
+
+#pragma once
+
+#include <new>
+#include <stdexcept>
+#include <utility>
+
+#include <tex/result.h>
+
+namespace tex {
+
+inline Error out_of_memory_error() { return {ErrorCode::out_of_memory, {}, "out of memory"}; }
+
+// Returns what `body` returns (a Result), or out_of_memory where the standard library could not allocate.
+template <class Body>
+auto guarded(Body&& body) -> decltype(body()) {
+    try {
+        return std::forward<Body>(body)();
+    } catch (const std::bad_alloc&) {
+        return out_of_memory_error();
+    } catch (const std::length_error&) {  // a container asked for more than any memory could hold
+        return out_of_memory_error();
+    }
+}
+
+}  // namespace tex

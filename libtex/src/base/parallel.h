@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// parallel.h: loops over strips, on as many threads as an Execution allows.
+
+#pragma once
+
+#include <functional>
+
+#include <tex/execution.h>
+#include <tex/result.h>
+
+namespace tex {
+
+// The part of a verb's progress that one loop covers: a verb that runs several loops gives each its share.
+struct ProgressSpan {
+    double from = 0.0;
+    double to = 1.0;
+};
+
+// Calls body(begin, end) for consecutive pieces [begin, end) of [0, count), each of `grain` indices (the last may be
+// shorter), on up to execution.threads threads. Pieces are the same for every number of threads, so a body
+// whose result depends on its piece alone gives the same bytes everywhere. The body may throw std::bad_alloc.
+//
+// Errors: cancelled, out_of_memory.
+Result<void> parallel_for(const Execution& execution, int count, int grain,
+                          const std::function<void(int begin, int end)>& body, ProgressSpan span = {});
+
+// The number of threads that `execution` means: at least 1.
+int thread_count(const Execution& execution);
+
+}  // namespace tex

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <tex/check.h>
+
+#include <algorithm>
+#include <cassert>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include <tex/swizzle.h>
+#include <tex/unpack.h>
+
+#include "base/guard.h"
+#include "checks/convention_rules.h"
+#include "checks/damage_rules.h"
+#include "checks/file_rules.h"
+#include "checks/findings.h"
+#include "checks/mip_rules.h"
+#include "checks/pair_rules.h"
+#include "checks/rules.h"
+#include "checks/value_rules.h"
+
+namespace tex {
+namespace {
+
+constexpr int kLeastSide = 32;  // texels, for statistics
+constexpr double kLeastCorrelation = 0.2;
+constexpr double kLeastConfidence = 0.99;
+constexpr double kLeastUsable = 0.5;  // of the texels hold a normal
+
+Error bad_option(std::string reason) { return {ErrorCode::bad_option, {}, std::move(reason)}; }
+
+// A whole number from 1 to kMaxExtent that is all of `text`.
+std::optional<int> parse_count(std::string_view text) {
+    int value = 0;
+    const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (end.ec != std::errc() || end.ptr != text.data() + text.size() || value < 1 || value > kMaxExtent) return std::nullopt;
+    return value;
+}
+
+Result<void> require_format(Requirements& requirements, std::string_view value) {
+    requirements.encoding = find_by_name(kEncodingNames, value);
+    requirements.format.reset();
+    if (!requirements.encoding) requirements.format = find_by_name(kFormatNames, value);
+    if (!requirements.encoding && !requirements.format) {
+        return bad_option("format=" + std::string(value) + ": no such encoding or format");
+    }
+    return {};
+}
+
+Result<void> require_extent(Requirements& requirements, std::string_view value) {
+    const auto cross = value.find('x');
+    const auto width = parse_count(value.substr(0, cross));
+    const auto height = cross == std::string_view::npos ? std::nullopt : parse_count(value.substr(cross + 1));
+    if (!width || !height) return bad_option("extent=" + std::string(value) + ": not WIDTHxHEIGHT");
+    requirements.extent = Extent{*width, *height};
+    return {};
+}
+
+Result<void> require_mips(Requirements& requirements, std::string_view value) {
+    const auto count = parse_count(value);
+    if (value == "full") {
+        requirements.levels = 0;
+    } else if (value == "none") {
+        requirements.levels = 1;
+    } else if (count) {
+        requirements.levels = *count;
+    } else {
+        return bad_option("mips=" + std::string(value) + ": not full, none or a number");
+    }
+    return {};
+}
+
+bool same_everywhere(const TexelCounts& counts, int channels) {
+    for (std::size_t c = 0; c < static_cast<std::size_t>(channels); ++c) {
+        if (!(counts.high[c] == counts.low[c])) return false;
+    }
+    return true;
+}
+
+bool holds_negative(const Image& image) {
+    for (const Plane<float>& plane : image.planes) {
+        for (int j = 0; j < plane.extent().height; ++j) {
+            const float* row = plane.row(j);
+            if (std::any_of(row, row + plane.extent().width, [](float v) { return v < 0.0f; })) return true;
+        }
+    }
+    return false;
+}
+
+// As unpack() reads floats: signed where the file says so or a value lies below 0.
+bool is_signed(const Texture& texture, const Image& image) {
+    if (image.sample != SampleKind::floating) return image.sample == SampleKind::snorm;
+    return texture.normal_encoding == "signed" || holds_negative(image);
+}
+
+Result<void> measure(Subject& subject) {
+    auto image = decode(subject.texture, 0, subject.execution);
+    if (!image) return image.error();
+    subject.base = std::move(*image);
+    const auto swizzle = guess_swizzle(subject.texture, subject.execution);
+    if (!swizzle) return swizzle.error();
+    subject.stored = {&subject.base, *swizzle, is_signed(subject.texture, subject.base)};
+    const Stored& stored = subject.stored;
+    subject.has_vectors = stored.channel(Component::x) >= 0 && stored.channel(Component::y) >= 0;
+    if (!subject.has_vectors) return {};
+    auto counts = count_texels(stored, subject.execution);
+    if (!counts) return counts.error();
+    subject.counts = *counts;
+    subject.constant = same_everywhere(subject.counts, static_cast<int>(subject.base.planes.size()));
+    const Extent extent = stored.extent();
+    subject.sampled_ok = !subject.constant && extent.width >= kLeastSide && extent.height >= kLeastSide;
+    if (!subject.sampled_ok) return {};
+    subject.curl = measure_curl(stored);
+    subject.y.correlation = subject.curl.correlation;
+    subject.y.confidence = subject.curl.confidence;
+    const bool decided = std::abs(subject.curl.correlation) >= kLeastCorrelation && subject.curl.confidence >= kLeastConfidence &&
+                         subject.curl.usable >= kLeastUsable;
+    if (decided) subject.y.y = subject.curl.correlation > 0.0 ? YAxis::up : YAxis::down;
+    return {};
+}
+
+}  // namespace
+
+Result<void> add_requirement(Requirements& requirements, std::string_view text) {
+    const auto equals = text.find('=');
+    const std::string_view name = text.substr(0, equals);
+    const std::string_view value = equals == std::string_view::npos ? std::string_view() : text.substr(equals + 1);
+    const auto key = find_by_name(kRequirementKeyNames, name);
+    if (!key) {
+        std::string names;
+        for (const auto& row : kRequirementKeyNames) names.append(names.empty() ? "" : ", ").append(row.name);
+        return bad_option(std::string("'").append(name).append("' cannot be required; there are ").append(names));
+    }
+    const bool has_no_value = *key == RequirementKey::pow2 || *key == RequirementKey::tiles;
+    if (has_no_value != (equals == std::string_view::npos)) {
+        return bad_option(std::string(name) + (has_no_value ? " takes no value" : " needs a value: " + std::string(name) + "=..."));
+    }
+    switch (*key) {
+        case RequirementKey::format: return require_format(requirements, value);
+        case RequirementKey::mips: return require_mips(requirements, value);
+        case RequirementKey::extent: return require_extent(requirements, value);
+        case RequirementKey::max_extent:
+            if (const auto side = parse_count(value)) {
+                requirements.max_extent = *side;
+                return {};
+            }
+            return bad_option("max-extent=" + std::string(value) + ": not a number of texels");
+        case RequirementKey::y:
+            requirements.y = find_by_name(kYAxisNames, value);
+            if (!requirements.y) return bad_option("y=" + std::string(value) + ": not up or down");
+            return {};
+        case RequirementKey::pow2: requirements.power_of_two = true; return {};
+        case RequirementKey::tiles: requirements.tiles = true; return {};
+    }
+    return {};
+}
+
+Result<void> validate(const CheckOptions& options) {
+    const auto known = [](const std::string& name) -> Result<void> {
+        if (find_rule(name) != nullptr) return {};
+        return bad_option(std::string("there is no rule '").append(name).append("'"));
+    };
+    for (const auto* names : {&options.enable, &options.disable}) {
+        for (const std::string& name : *names) {
+            if (auto found = known(name); !found) return found;
+        }
+    }
+    for (const auto& [name, severity] : options.severity) {
+        if (auto found = known(name); !found) return found;
+    }
+    return {};
+}
+
+Result<CheckReport> check(const std::string& file, const Texture& texture, const CheckOptions& options,
+                          const Execution& execution) {
+    assert(!texture.levels.empty());
+    return guarded([&]() -> Result<CheckReport> {
+        if (auto valid = validate(options); !valid) return valid.error();
+        Subject subject{texture, options, execution, {}, {}, false, false, false, {}, {}, {}};
+        if (auto done = measure(subject); !done) return done.error();
+        Findings findings(options);
+        check_file_rules(subject, findings);
+        check_value_rules(subject, findings);
+        check_damage_rules(subject, findings);
+        check_convention_rules(subject, findings);
+        if (auto done = check_mip_rules(subject, findings); !done) return done.error();
+        CheckReport report;
+        report.pair = check_pair_rules(subject, findings);
+        report.file = file;
+        report.findings = findings.take(report.explained);
+        report.format = texture.format;
+        report.swizzle = subject.stored.swizzle;
+        report.extent = texture.extent();
+        report.levels = static_cast<int>(texture.levels.size());
+        report.y = subject.y;
+        return report;
+    });
+}
+
+Result<CheckReport> check_file(const std::string& path, const CheckOptions& options, const ReadOptions& read,
+                               const Execution& execution) {
+    return guarded([&]() -> Result<CheckReport> {
+        if (auto valid = validate(options); !valid) return valid.error();
+        CheckReport report;
+        report.file = path;
+        const auto texture = read_texture(path, read);
+        if (texture) {
+            auto checked = check(path, *texture, options, execution);
+            if (checked) return checked;
+            report.error = checked.error();
+            return report;
+        }
+        report.error = texture.error();
+        if (report.error->code == ErrorCode::bad_data || report.error->code == ErrorCode::unsupported) {
+            Findings findings(options);
+            findings.add("N101", report.error->reason);
+            report.findings = findings.take(report.explained);
+        }
+        return report;
+    });
+}
+
+}  // namespace tex

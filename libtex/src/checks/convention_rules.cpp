@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "checks/convention_rules.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace tex {
+namespace {
+
+// A neighbourhood of 3x3 regions says something where its correlation is at least this, and this share of its evidence agrees.
+constexpr double kLeastCorrelation = 0.2;
+constexpr double kLeastAgreement = 0.8;
+constexpr std::size_t kLeastNeighbours = 4;
+constexpr double kLeastEnergy = 0.25;  // of the median neighbourhood's
+constexpr double kMixedShare = 0.08;   // of the neighbourhoods that say something
+constexpr std::size_t kMixedRegions = 3;
+
+struct Neighbourhood {
+    const CurlRegion* centre = nullptr;
+    std::size_t regions = 0;
+    CurlSums sums;
+    double agreeing = 0.0, evidence = 0.0;  // of the regions: sums of cross and of |cross|
+};
+
+// Those of the scale at which regions speak most clearly, each for itself.
+std::vector<Neighbourhood> neighbourhoods_of(const Curl& curl) {
+    int scale = 0;
+    double most = -1.0;
+    for (int k = 0; k < kCurlScales; ++k) {
+        double evidence = 0.0, energy = 0.0;
+        for (const CurlRegion& region : curl.regions) {
+            evidence += std::abs(region.scale[k].cross);
+            energy += std::sqrt(region.scale[k].p_square * region.scale[k].q_square);
+        }
+        if (energy > 0.0 && evidence / energy > most) {
+            most = evidence / energy;
+            scale = k;
+        }
+    }
+    std::vector<Neighbourhood> all;
+    for (const CurlRegion& centre : curl.regions) {
+        Neighbourhood n;
+        n.centre = &centre;
+        for (const CurlRegion& other : curl.regions) {
+            const bool near = std::abs(other.rect.x - centre.rect.x) <= centre.rect.width &&
+                              std::abs(other.rect.y - centre.rect.y) <= centre.rect.height;
+            if (!near) continue;
+            ++n.regions;
+            n.sums.add(other.scale[scale]);
+            n.agreeing += other.scale[scale].cross;
+            n.evidence += std::abs(other.scale[scale].cross);
+        }
+        all.push_back(n);
+    }
+    return all;
+}
+
+// Regions whose neighbourhood says clearly which way green points.
+struct Votes {
+    std::vector<Region> up, down;
+};
+
+Votes votes_of(const Subject& subject) {
+    const std::vector<Neighbourhood> all = neighbourhoods_of(subject.curl);
+    if (all.empty()) return {};
+    const auto energy = [](const Neighbourhood& n) { return std::sqrt(n.sums.p_square * n.sums.q_square); };
+    std::vector<double> energies;
+    for (const Neighbourhood& n : all) energies.push_back(energy(n));
+    const auto middle = energies.begin() + static_cast<std::ptrdiff_t>(energies.size() / 2);
+    std::nth_element(energies.begin(), middle, energies.end());
+    const double least = kLeastEnergy * *middle;
+    Votes votes;
+    for (const Neighbourhood& n : all) {
+        const double correlation = n.sums.correlation();
+        if (n.regions < kLeastNeighbours || energy(n) <= least || std::abs(correlation) < kLeastCorrelation) continue;
+        // 0.8 of the evidence on one side: |sum| / sum of magnitudes is 2 * 0.8 - 1.
+        if (std::abs(n.agreeing) < (2.0 * kLeastAgreement - 1.0) * n.evidence) continue;
+        const Rect& rect = n.centre->rect;
+        (correlation > 0.0 ? votes.up : votes.down).push_back({0, rect.x, rect.y, rect.width, rect.height});
+    }
+    return votes;
+}
+
+void check_mixed(const Subject& subject, Findings& findings) {
+    const Votes votes = votes_of(subject);
+    const bool up_is_less = votes.up.size() < votes.down.size();
+    const std::vector<Region>& less = up_is_less ? votes.up : votes.down;
+    const double all = static_cast<double>(votes.up.size() + votes.down.size());
+    if (less.size() < kMixedRegions || static_cast<double>(less.size()) < kMixedShare * all) return;
+    const YAxis y = up_is_less ? YAxis::up : YAxis::down;
+    Finding& finding = findings.add(
+        "N402", std::to_string(less.size()) + " of " + decimal(all, 0) + " regions point " + direction(y) + ", the others " +
+                    direction(y == YAxis::up ? YAxis::down : YAxis::up));
+    finding.figure = static_cast<double>(less.size()) / all;
+    finding.unit = "share";
+    finding.confidence = subject.y.confidence;
+    finding.regions = less;
+}
+
+}  // namespace
+
+void check_convention_rules(const Subject& subject, Findings& findings) {
+    if (!subject.sampled_ok) return;
+    check_mixed(subject, findings);
+    const auto add = [&](std::string_view id, std::string message) {
+        Finding& finding = findings.add(id, std::move(message) + " (correlation " + decimal(subject.y.correlation, 2) +
+                                                ", confidence " + decimal(subject.y.confidence, 3) + ")");
+        finding.figure = subject.y.correlation;
+        finding.unit = "correlation";
+        finding.confidence = subject.y.confidence;
+    };
+    const auto& require = subject.options.require;
+    if (require.y && !subject.y.y) add("N403", "the texels do not tell");
+    if (!subject.y.y) return;
+    if (require.y && *subject.y.y != *require.y) {
+        add("N401", "green points " + direction(*subject.y.y) + " instead of " + direction(*require.y));
+    }
+    if (subject.texture.y_known && *subject.y.y != subject.texture.y_axis) {
+        add("N404", "green points " + direction(*subject.y.y) + ", the file says " + direction(subject.texture.y_axis));
+    }
+}
+
+}  // namespace tex

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// convention_rules.h: the rules of the family "convention", see rules.cpp.
+
+#pragma once
+
+#include "checks/findings.h"
+
+namespace tex {
+
+void check_convention_rules(const Subject& subject, Findings& findings);
+
+}  // namespace tex

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "checks/curl.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/math.h"
+
+namespace tex {
+namespace {
+
+constexpr float kJump = 0.5f;  // a change of slope over two texels that is a jump
+constexpr int kWideMap = 512;
+
+// Texels along a region's edge: 16 regions or more in maps of 128 texels and above.
+int region_size(Extent extent) { return std::min(extent.width, extent.height) >= kWideMap ? 64 : 32; }
+
+// Sums over the inner texels of [x0, x1) x [y0, y1).
+CurlSums sum_region(const Slopes& s, int x0, int y0, int x1, int y1) {
+    CurlSums sums;
+    const Extent extent = s.extent();
+    for (int j = std::max(y0, 1); j < std::min(y1, extent.height - 1); ++j) {
+        const float *pu = s.p.row(j - 1), *pd = s.p.row(j + 1), *p = s.p.row(j);
+        const float *qu = s.q.row(j - 1), *qd = s.q.row(j + 1), *q = s.q.row(j);
+        for (int i = std::max(x0, 1); i < std::min(x1, extent.width - 1); ++i) {
+            const float py = pu[i] - pd[i], qx = q[i + 1] - q[i - 1];
+            const float px = p[i + 1] - p[i - 1], qy = qu[i] - qd[i];
+            const float all = py + qx + px + qy;
+            if (!(all == all)) continue;  // a neighbour holds no normal
+            // Jumps (the borders of UV islands, scratches) count as much as moderate changes, not by their square.
+            const float w = 1.0f / (kJump * kJump + py * py + qx * qx);
+            const float v = 1.0f / (kJump * kJump + px * px + qy * qy);
+            sums.cross += static_cast<double>(w * py) * qx;
+            sums.p_square += static_cast<double>(w * py) * py;
+            sums.q_square += static_cast<double>(w * qx) * qx;
+            sums.exchanged += static_cast<double>(v * px) * qy;
+            sums.px_square += static_cast<double>(v * px) * px;
+            sums.qy_square += static_cast<double>(v * qy) * qy;
+        }
+    }
+    return sums;
+}
+
+double count_usable(const Plane<float>& slopes) {
+    double count = 0.0;
+    for (int j = 0; j < slopes.extent().height; ++j) {
+        for (int i = 0; i < slopes.extent().width; ++i) count += std::isnan(slopes.at(i, j)) ? 0.0 : 1.0;
+    }
+    return count;
+}
+
+double ratio(double cross, double a, double b) {
+    const double square = a * b;
+    return square > 0.0 ? cross / std::sqrt(square) : 0.0;
+}
+
+// sum of evidence over the root of the sum of its squares: the z-score of "both signs are equally likely".
+double z_score(const std::vector<CurlRegion>& regions, int scale, bool exchanged) {
+    double sum = 0.0, squares = 0.0;
+    for (const CurlRegion& region : regions) {
+        // A region's vote is bounded by its own energy, so that a few deep scratches do not outvote the rest.
+        const CurlSums& sums = region.scale[scale];
+        const double correlation = exchanged ? sums.exchanged_correlation() : sums.correlation();
+        const double energy = exchanged ? sums.px_square * sums.qy_square : sums.p_square * sums.q_square;
+        const double vote = correlation * std::sqrt(std::sqrt(energy));
+        sum += vote;
+        squares += vote * vote;
+    }
+    return squares > 0.0 ? sum / std::sqrt(squares) : 0.0;
+}
+
+// The logistic approximation of the normal distribution (error below 0.01).
+double confidence_of(double z) { return 1.0 / (1.0 + math::exp(-1.702 * std::abs(z))); }
+
+}  // namespace
+
+void CurlSums::add(const CurlSums& other) {
+    cross += other.cross;
+    p_square += other.p_square;
+    q_square += other.q_square;
+    exchanged += other.exchanged;
+    px_square += other.px_square;
+    qy_square += other.qy_square;
+}
+
+double CurlSums::correlation() const { return ratio(cross, p_square, q_square); }
+double CurlSums::exchanged_correlation() const { return ratio(exchanged, px_square, qy_square); }
+
+Curl measure_curl(const Stored& stored) {
+    Curl curl;
+    const int size = region_size(stored.extent());
+    double all = 0.0, usable = 0.0;
+    for (const Rect& window : sample_windows(stored.extent())) {
+        const std::size_t first = curl.regions.size();
+        for (int y = 0; y < window.height; y += size) {
+            for (int x = 0; x < window.width; x += size) {
+                CurlRegion region;
+                region.rect = {window.x + x, window.y + y, std::min(size, window.width - x),
+                               std::min(size, window.height - y)};
+                curl.regions.push_back(region);
+            }
+        }
+        Slopes slopes = slopes_of(stored, window);
+        all += static_cast<double>(slopes.extent().texels());
+        usable += count_usable(slopes.p);
+        for (int k = 0; k < kCurlScales; ++k) {
+            for (std::size_t r = first; r < curl.regions.size(); ++r) {
+                CurlRegion& region = curl.regions[r];
+                const int x = (region.rect.x - window.x) >> k, y = (region.rect.y - window.y) >> k;
+                region.scale[k] = sum_region(slopes, x, y, x + (region.rect.width >> k), y + (region.rect.height >> k));
+                curl.scale[k].add(region.scale[k]);
+            }
+            if (k + 1 < kCurlScales) slopes = halved(slopes);
+        }
+    }
+    int best = 0;
+    const auto strength = [&](int k) {
+        return std::max(std::abs(curl.scale[k].correlation()), std::abs(curl.scale[k].exchanged_correlation()));
+    };
+    for (int k = 1; k < kCurlScales; ++k) {
+        if (strength(k) > strength(best)) best = k;
+    }
+    curl.best_scale = best;
+    curl.correlation = curl.scale[best].correlation();
+    curl.exchanged = curl.scale[best].exchanged_correlation();
+    curl.confidence = confidence_of(z_score(curl.regions, best, false));
+    curl.exchanged_confidence = confidence_of(z_score(curl.regions, best, true));
+    curl.usable = all > 0.0 ? usable / all : 0.0;
+    return curl;
+}
+
+}  // namespace tex

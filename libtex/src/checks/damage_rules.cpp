@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "checks/damage_rules.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "base/math.h"
+#include "checks/grid.h"
+#include "checks/lattice.h"
+#include "checks/seam.h"
+
+namespace tex {
+namespace {
+
+// Thresholds; tests/bench/check_bench.cpp prints what they detect and miss.
+constexpr double kJpegRatio = 1.55;
+constexpr double kMissingFrequencies = 30.0;
+constexpr double kBlockRatio = 2.0;
+constexpr double kPaletteShare = 0.6;
+constexpr double kLatticeStrength = 0.68;
+constexpr int kLatticeTeeth = 6;
+constexpr double kSeamRatio = 1.6;
+constexpr double kCurveCentre = 0.09;
+constexpr int kCentreBins = 1024;
+constexpr double kAboveAlphaShare = 0.002;
+constexpr double kAlphaCorrelation = 0.9;
+constexpr double kHalfAlphaShare = 0.01;
+constexpr double kExchangedMean = 0.4;
+constexpr double kExchangedZ = 0.2;
+constexpr double kExchangedLead = 0.1;
+constexpr double kExchangedLeast = 0.2;
+constexpr double kExchangedConfidence = 0.99;
+
+// IEC 61966-2-1:1999.
+double srgb_encoded(double c) { return c <= 0.0031308 ? 12.92 * c : 1.055 * math::pow(c, 1.0 / 2.4) - 0.055; }
+double srgb_decoded(double c) { return c <= 0.04045 ? c / 12.92 : math::pow((c + 0.055) / 1.055, 2.4); }
+
+// The mean of |length - 1| over every 7th sampled texel, after `restore` was applied to the stored values of x, y and z.
+template <class Restore>
+double length_error(const Stored& stored, Restore&& restore) {
+    constexpr int kStep = 7;
+    const int channels[3] = {stored.channel(Component::x), stored.channel(Component::y), stored.channel(Component::z)};
+    double sum = 0.0, count = 0.0;
+    for (const Rect& window : sample_windows(stored.extent())) {
+        for (int k = 0; k < window.width * window.height; k += kStep) {
+            const int i = window.x + k % window.width, j = window.y + k / window.width;
+            double square = 0.0;
+            for (const int channel : channels) {
+                const double c = stored.image->planes[static_cast<std::size_t>(channel)].at(i, j);
+                const double n = 2.0 * restore(c, i, j) - 1.0;
+                square += n * n;
+            }
+            if (!(square < 100.0)) continue;
+            sum += std::abs(std::sqrt(square) - 1.0);
+            count += 1.0;
+        }
+    }
+    return count > 0.0 ? sum / count : 0.0;
+}
+
+// The median of a channel over the sampled texels in which x or y is not black: what fills the space outside of UV islands does
+// not count. Half, where all are black.
+double centre_of(const Stored& stored, Component component) {
+    const Plane<float>& x = stored.image->planes[static_cast<std::size_t>(stored.channel(Component::x))];
+    const Plane<float>& y = stored.image->planes[static_cast<std::size_t>(stored.channel(Component::y))];
+    const Plane<float>& plane = component == Component::x ? x : y;
+    std::vector<std::int64_t> bins(kCentreBins);
+    std::int64_t count = 0;
+    for (const Rect& window : sample_windows(stored.extent())) {
+        for (int j = window.y; j < window.y + window.height; ++j) {
+            for (int i = window.x; i < window.x + window.width; ++i) {
+                const float value = plane.at(i, j);
+                if (!(std::max(x.at(i, j), y.at(i, j)) > 0.01f) || !(value >= 0.0f && value <= 1.0f)) continue;
+                ++bins[static_cast<std::size_t>(value * static_cast<float>(kCentreBins - 1))];
+                ++count;
+            }
+        }
+    }
+    if (count == 0) return 0.5;
+    std::size_t bin = 0;
+    for (std::int64_t below = bins[0]; 2 * below < count; below += bins[bin]) ++bin;
+    return static_cast<double>(bin) / (kCentreBins - 1);
+}
+
+void check_curve(const Subject& subject, Findings& findings) {
+    if (subject.stored.is_signed) return;
+    const double x = centre_of(subject.stored, Component::x), y = centre_of(subject.stored, Component::y);
+    const auto centred_on = [&](double c) { return std::abs(x - c) < kCurveCentre && std::abs(y - c) < kCurveCentre; };
+    const bool dark = centred_on(srgb_decoded(0.5)), light = centred_on(srgb_encoded(0.5));
+    if (!dark && !light) return;
+    if (subject.stored.has_z()) {
+        const double as_stored = length_error(subject.stored, [](double c, int, int) { return c; });
+        const double restored = length_error(subject.stored, [&](double c, int, int) {
+            return dark ? srgb_encoded(std::clamp(c, 0.0, 1.0)) : srgb_decoded(std::clamp(c, 0.0, 1.0));
+        });
+        if (restored >= as_stored) return;
+    }
+    Finding& finding = findings.add(dark ? "N301" : "N302", "x and y centre on " + decimal(255.0 * x, 0) + " and " +
+                                                                decimal(255.0 * y, 0) + " of 255 instead of 128");
+    finding.figure = (x + y) / 2.0;
+    finding.unit = "of full scale";
+    finding.confidence = 0.99;
+}
+
+void check_alpha(const Subject& subject, Findings& findings) {
+    const TexelCounts& counts = subject.counts;
+    const Stored& stored = subject.stored;
+    const bool straight_possible = stored.has_z() && !stored.is_signed && stored.image->planes.size() == 4 &&
+                                   stored.channel(Component::x) != 3;
+    if (!straight_possible || counts.high[3] - counts.low[3] < 0.1f) return;
+    if (counts.share(Property::above_alpha) > kAboveAlphaShare || counts.alpha_correlation < kAlphaCorrelation) return;
+    // A mask with black outside is no proof: half-transparent texels are.
+    const Plane<float>& alpha = stored.image->planes[3];
+    double half = 0.0;
+    for (int j = 0; j < alpha.extent().height; ++j) {
+        for (int i = 0; i < alpha.extent().width; ++i) half += alpha.at(i, j) > 0.1f && alpha.at(i, j) < 0.9f ? 1.0 : 0.0;
+    }
+    if (half < kHalfAlphaShare * static_cast<double>(counts.texels)) return;
+    const double as_stored = length_error(stored, [](double c, int, int) { return c; });
+    const double restored = length_error(stored, [&](double c, int i, int j) {
+        const double a = alpha.at(i, j);
+        return a < 0.1 ? 0.85 : c / a;  // a vector of length 1.2: as good as unknown
+    });
+    if (restored >= as_stored) return;
+    Finding& finding = findings.add("N303", "R, G and B never exceed alpha and follow it (correlation " +
+                                                decimal(counts.alpha_correlation, 2) + ")");
+    finding.figure = counts.alpha_correlation;
+    finding.unit = "correlation";
+    finding.confidence = 0.99;
+}
+
+void check_exchanged(const Subject& subject, Findings& findings) {
+    const TexelCounts& counts = subject.counts;
+    if (subject.stored.has_z() && std::max(counts.mean_x, counts.mean_y) > kExchangedMean && std::abs(counts.mean_z) < kExchangedZ) {
+        Finding& finding = findings.add("N308", counts.mean_x > counts.mean_y ? "the channel of x holds z" : "the channel of y holds z");
+        finding.figure = std::max(counts.mean_x, counts.mean_y);
+        finding.unit = "component";
+        finding.confidence = 0.99;
+        return;
+    }
+    const double as_stored = std::abs(subject.curl.correlation), exchanged = std::abs(subject.curl.exchanged);
+    const bool behind = counts.share(Property::z_behind) > 0.05;
+    if (behind || exchanged < as_stored + kExchangedLead || exchanged < kExchangedLeast) return;
+    if (subject.curl.exchanged_confidence < kExchangedConfidence) return;
+    Finding& finding = findings.add("N308", "x and y agree better when exchanged (correlation " + decimal(exchanged, 2) + " against " +
+                                                decimal(as_stored, 2) + ")");
+    finding.figure = exchanged;
+    finding.unit = "correlation";
+    finding.confidence = subject.curl.exchanged_confidence;
+}
+
+void check_blocks(const Subject& subject, Findings& findings) {
+    const auto add = [&](std::string_view id, std::string message, double figure, std::string_view unit) {
+        Finding& finding = findings.add(id, std::move(message));
+        finding.figure = figure;
+        finding.unit = unit;
+        finding.confidence = 0.95;
+    };
+    if (format_info(subject.texture.format).block == 4) {
+        const double ratio = grid_ratio(subject.stored, 4);
+        if (ratio > kBlockRatio) {
+            add("N306", "steps between 4x4 blocks are " + decimal(ratio, 2) + " times those inside", ratio, "ratio");
+        }
+        return;
+    }
+    const double palette = palette_share(subject.stored);
+    if (palette > kPaletteShare) {
+        add("N306", percent(palette) + " of the 4x4 blocks have at most four colours", palette, "share");
+    }
+    const double ratio = grid_ratio(subject.stored, 8), missing = missing_frequencies(subject.stored);
+    if (ratio > kJpegRatio) {
+        add("N304", "steps between 8x8 blocks are " + decimal(ratio, 2) + " times those inside", ratio, "ratio");
+    } else if (missing > kMissingFrequencies) {
+        add("N304", "8x8 blocks lack high frequencies: a " + decimal(missing, 0) + "th of the energy between them", missing, "ratio");
+    }
+}
+
+void check_banding(const Subject& subject, Findings& findings) {
+    const Lattice lattice = measure_lattice(subject.stored);
+    if (lattice.strength < kLatticeStrength || lattice.teeth < kLatticeTeeth) return;
+    Finding& finding = findings.add("N305", "slopes are multiples of " + decimal(lattice.step, 4) + " (strength " +
+                                                decimal(std::min(1.0, lattice.strength), 2) + ")");
+    finding.figure = lattice.step;
+    finding.unit = "slope";
+    finding.confidence = 0.95;
+}
+
+void check_seam(const Subject& subject, Findings& findings) {
+    if (!findings.wants("N307")) return;
+    const Seam seam = measure_seam(subject.stored);
+    if (seam.worst() < kSeamRatio) return;
+    const Extent extent = subject.stored.extent();
+    const bool right = seam.ratio_x > seam.ratio_y;
+    Finding& finding = findings.add("N307", "the step across the " + std::string(right ? "left and right" : "top and bottom") +
+                                                " border is " + decimal(seam.worst(), 1) + " times nearly all steps inside");
+    finding.figure = seam.worst();
+    finding.unit = "ratio";
+    finding.confidence = 0.95;
+    finding.regions = {right ? Region{0, extent.width - 1, 0, 1, extent.height} : Region{0, 0, extent.height - 1, extent.width, 1}};
+}
+
+}  // namespace
+
+void check_damage_rules(const Subject& subject, Findings& findings) {
+    if (!subject.has_vectors || subject.constant) return;
+    check_curve(subject, findings);
+    check_alpha(subject, findings);
+    check_seam(subject, findings);
+    if (!subject.sampled_ok) return;
+    check_exchanged(subject, findings);
+    check_blocks(subject, findings);
+    check_banding(subject, findings);
+}
+
+}  // namespace tex

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// damage_rules.h: the rules of the family "damage", see rules.cpp.
+
+#pragma once
+
+#include "checks/findings.h"
+
+namespace tex {
+
+void check_damage_rules(const Subject& subject, Findings& findings);
+
+}  // namespace tex

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "checks/lattice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "base/math.h"
+
+namespace tex {
+namespace {
+
+constexpr int kBins = 2048;         // of slopes from -1/2 to 1/2
+constexpr double kRange = 0.5;
+constexpr double kLeastRate = 16.0;  // teeth per unit of slope
+constexpr double kMostRate = 51.0;
+constexpr double kRateStep = 0.25;
+
+void add_slopes(const Plane<float>& slopes, std::vector<double>& bins) {
+    for (int j = 0; j < slopes.extent().height; ++j) {
+        for (int i = 0; i < slopes.extent().width; ++i) {
+            const float s = slopes.at(i, j);
+            if (!(std::abs(s) < static_cast<float>(kRange))) continue;
+            const auto bin = static_cast<int>((s + static_cast<float>(kRange)) * static_cast<float>(kBins));
+            bins[static_cast<std::size_t>(std::clamp(bin, 0, kBins - 1))] += 1.0;
+        }
+    }
+}
+
+// Less its own average over one period of the slowest comb, and without slopes near 0: a flat map is no comb.
+std::vector<double> detail_of(const std::vector<double>& bins) {
+    constexpr int kRadius = static_cast<int>(kBins / kLeastRate / 2.0);
+    std::vector<double> weighted(bins.size()), detail(bins.size());
+    double total = 0.0;
+    for (int k = 0; k < kBins; ++k) {
+        const double s = (k + 0.5) / kBins - kRange;
+        weighted[static_cast<std::size_t>(k)] = bins[static_cast<std::size_t>(k)] * (math::exp(-s * s / (0.2 * 0.2)) - math::exp(-s * s / (0.03 * 0.03)));
+        total += weighted[static_cast<std::size_t>(k)];
+    }
+    for (int k = 0; k < kBins; ++k) {
+        double sum = 0.0;
+        int count = 0;
+        for (int n = std::max(0, k - kRadius); n <= std::min(kBins - 1, k + kRadius); ++n, ++count) {
+            sum += weighted[static_cast<std::size_t>(n)];
+        }
+        detail[static_cast<std::size_t>(k)] =
+            total > 0.0 ? (weighted[static_cast<std::size_t>(k)] - sum / count) / total : 0.0;
+    }
+    return detail;
+}
+
+// Teeth at multiples of `step` other than 0 that hold at least 1 % of what all of them hold.
+int count_teeth(const std::vector<double>& bins, double step) {
+    std::vector<double> teeth(static_cast<std::size_t>(2.0 * kRange / step) + 3);
+    double sum = 0.0;
+    for (int k = 0; k < kBins; ++k) {
+        const double s = (k + 0.5) / kBins - kRange;
+        const double tooth = std::floor(s / step + 0.5);
+        if (tooth == 0.0) continue;
+        teeth[static_cast<std::size_t>(tooth + std::floor(kRange / step) + 1.0)] += bins[static_cast<std::size_t>(k)];
+        sum += bins[static_cast<std::size_t>(k)];
+    }
+    return static_cast<int>(std::count_if(teeth.begin(), teeth.end(), [&](double t) { return sum > 0.0 && t >= 0.01 * sum; }));
+}
+
+}  // namespace
+
+Lattice measure_lattice(const Stored& stored) {
+    std::vector<double> bins_p(kBins), bins_q(kBins);
+    for (const Rect& window : sample_windows(stored.extent())) {
+        const Slopes slopes = slopes_of(stored, window);
+        add_slopes(slopes.p, bins_p);
+        add_slopes(slopes.q, bins_q);
+    }
+    Lattice lattice;
+    const std::vector<double> detail_p = detail_of(bins_p), detail_q = detail_of(bins_q);
+    for (double rate = kLeastRate; rate <= kMostRate; rate += kRateStep) {
+        // Combs stand with a tooth at 0: the cosine alone.
+        double p = 0.0, q = 0.0;
+        for (int k = 0; k < kBins; ++k) {
+            const double wave = math::cos(2.0 * math::kPi * rate * ((k + 0.5) / kBins - kRange));
+            p += detail_p[static_cast<std::size_t>(k)] * wave;
+            q += detail_q[static_cast<std::size_t>(k)] * wave;
+        }
+        const double strength = std::min(p, q);
+        if (strength > lattice.strength) lattice = {1.0 / rate, strength, 0};
+    }
+    if (lattice.step > 0.0) lattice.teeth = std::min(count_teeth(bins_p, lattice.step), count_teeth(bins_q, lattice.step));
+    return lattice;
+}
+
+}  // namespace tex

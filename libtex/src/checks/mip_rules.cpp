@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "checks/mip_rules.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <tex/unpack.h>
+
+#include "checks/levels.h"
+
+namespace tex {
+namespace {
+
+constexpr int kLeastSide = 16;         // of a level that is judged: smaller ones have too few texels
+constexpr double kLeastSignal = 0.02;   // of components, 2.5 codes of 8 bits
+constexpr double kShortBy = 0.01;       // mean length below the base level's
+constexpr double kRelated = 0.7;
+constexpr double kShift = 0.35;         // texels of the level
+constexpr double kShiftRelated = 0.5;   // less is no evidence of a shift
+constexpr double kFaded = 0.7;
+constexpr double kFadeRelated = 0.95;
+constexpr double kFlatGain = 0.15;
+
+Region whole(const LevelMeasure& m) { return {m.level, 0, 0, m.extent.width, m.extent.height}; }
+
+std::string name_level(const LevelMeasure& m) {
+    return "level " + std::to_string(m.level) + " (" + extent_text(m.extent) + ")";
+}
+
+// Mean length falls, as that of averages does; or, where z is not stored, x and y are those of the averages and not of unit vectors.
+bool is_not_normalised(const LevelMeasure& m, double base_length, bool has_z) {
+    const double due = base_length - m.average_length;
+    if (has_z) return base_length - m.length > kShortBy && base_length - m.length > 0.5 * due;
+    return due > kShortBy && m.error_normalised > kShortBy && m.error_average < 0.5 * m.error_normalised;
+}
+
+void check_lengths(const std::vector<LevelMeasure>& levels, double base_length, bool has_z, Findings& findings) {
+    std::vector<Region> regions;
+    const LevelMeasure* worst = nullptr;
+    for (const LevelMeasure& m : levels) {
+        if (!is_not_normalised(m, base_length, has_z)) continue;
+        regions.push_back(whole(m));
+        const auto shortness = [&](const LevelMeasure& l) { return has_z ? l.length : l.average_length; };
+        if (worst == nullptr || shortness(m) < shortness(*worst)) worst = &m;
+    }
+    if (worst == nullptr) return;
+    const double length = has_z ? worst->length : worst->average_length;
+    Finding& finding = findings.add("N501", std::to_string(regions.size()) + (regions.size() == 1 ? " level is" : " levels are") +
+                                                " not renormalised; in " + name_level(*worst) + " the mean length is " +
+                                                decimal(length, 3));
+    finding.figure = length;
+    finding.unit = "length";
+    finding.regions = std::move(regions);
+}
+
+void check_relations(const std::vector<LevelMeasure>& levels, Findings& findings) {
+    for (const LevelMeasure& m : levels) {
+        const double shift = std::max(std::abs(m.shift_x), std::abs(m.shift_y));
+        if (m.correlation > kShiftRelated && shift > kShift && shift < 2.0) {
+            Finding& finding = findings.add("N503", name_level(m) + " lies " + decimal(m.shift_x, 2) + " texels to the right of and " +
+                                                        decimal(m.shift_y, 2) + " below its place");
+            finding.figure = shift;
+            finding.unit = "texels";
+            finding.confidence = 0.95;
+            finding.regions = {whole(m)};
+        } else if (m.correlation < kRelated) {
+            Finding& finding = findings.add("N502", name_level(m) + " correlates by " + decimal(m.correlation, 2) +
+                                                        " with the filtered base level");
+            finding.figure = m.correlation;
+            finding.unit = "correlation";
+            finding.confidence = 0.95;
+            finding.regions = {whole(m)};
+        }
+    }
+}
+
+// Levels that are the base level's with less and less detail, but whose last one still has some.
+void check_fade(const std::vector<LevelMeasure>& levels, Findings& findings) {
+    const auto fades = [](const LevelMeasure& m) {
+        return m.correlation > kFadeRelated && m.gain < kFaded && m.length > 1.0 - kShortBy;
+    };
+    if (levels.empty() || std::none_of(levels.begin(), levels.end(), fades)) return;
+    const LevelMeasure& last = levels.back();
+    if (!fades(last) || last.gain < kFlatGain) return;
+    Finding& finding = findings.add("N504", name_level(last) + " keeps " + percent(last.gain) + " of the detail");
+    finding.figure = last.gain;
+    finding.unit = "share";
+    finding.confidence = 0.9;
+    finding.regions = {whole(last)};
+}
+
+}  // namespace
+
+Result<void> check_mip_rules(const Subject& subject, Findings& findings) {
+    const Texture& texture = subject.texture;
+    if (!subject.has_vectors || subject.constant || texture.levels.size() < 2) return {};
+    auto averages = base_averages(subject.stored, subject.execution);
+    if (!averages) return averages.error();
+    std::vector<LevelMeasure> levels;
+    for (int k = 1; k < static_cast<int>(texture.levels.size()); ++k) {
+        if (k > 1) *averages = averages_of(*averages);
+        const Extent extent = averages->extent();
+        if (extent.width < kLeastSide || extent.height < kLeastSide) break;
+        const auto image = decode(texture, k, subject.execution);
+        if (!image) return image.error();
+        Stored stored = subject.stored;
+        stored.image = &*image;
+        LevelMeasure measure;
+        if (auto done = measure_level(stored, *averages, k, subject.execution, measure); !done) return done.error();
+        if (measure.signal > kLeastSignal) levels.push_back(measure);
+    }
+    check_lengths(levels, subject.counts.mean_length, subject.stored.has_z(), findings);
+    check_relations(levels, findings);
+    check_fade(levels, findings);
+    return {};
+}
+
+}  // namespace tex

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// mip_rules.h: the rules of the family "mips", see rules.cpp.
+
+#pragma once
+
+#include "checks/findings.h"
+
+namespace tex {
+
+// Errors: cancelled, out_of_memory.
+Result<void> check_mip_rules(const Subject& subject, Findings& findings);
+
+}  // namespace tex

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// pair_rules.h: the rules of the family "pair", see rules.cpp.
+
+#pragma once
+
+#include "checks/findings.h"
+
+namespace tex {
+
+// How the normals follow from subject.options.height, and what is wrong with that; nullopt without heights or without slopes to compare.
+std::optional<PairEvidence> check_pair_rules(const Subject& subject, Findings& findings);
+
+}  // namespace tex

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// rules.h: the table of rules, see check.h.
+
+#pragma once
+
+#include <tex/check.h>
+
+namespace tex {
+
+// The rule `id`, which is in the table.
+const Rule& rule(std::string_view id);
+
+// Whether `ids`, separated by blanks, has `id`.
+bool has_id(std::string_view ids, std::string_view id);
+
+}  // namespace tex

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "checks/stored.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include <tex/normal_map.h>
+
+namespace tex {
+namespace {
+
+constexpr std::int64_t kWholeTexels = std::int64_t{1} << 20;
+constexpr int kWindowSize = 256;
+constexpr int kWindowsAcross = 4;
+constexpr int kPhase = 16;
+constexpr float kLeastZ = 0.05f;
+constexpr int kHoleBorder = 4;
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+// The begin of window k of kWindowsAcross along an axis of n texels.
+int window_begin(int n, int k) {
+    const std::int64_t room = n - std::min(n, kWindowSize);
+    return static_cast<int>(room * k / (kWindowsAcross - 1)) / kPhase * kPhase;
+}
+
+// Texels beside one without a normal become unusable too, up to kHoleBorder away: there filters and block codecs have mixed the
+// normals with whatever fills the hole.
+void widen_holes(Slopes& slopes) {
+    const Extent extent = slopes.extent();
+    const auto pass = [&](int length, int lines, auto at) {
+        for (int l = 0; l < lines; ++l) {
+            int since = kHoleBorder + 1;  // texels since the last hole
+            for (int k = 0; k < length; ++k) {
+                const bool hole = std::isnan(at(k, l));
+                if (!hole && since <= kHoleBorder) at(k, l) = kNan;
+                since = hole ? 1 : since + 1;
+            }
+        }
+    };
+    auto& p = slopes.p;
+    pass(extent.width, extent.height, [&](int k, int l) -> float& { return p.at(k, l); });
+    pass(extent.width, extent.height, [&](int k, int l) -> float& { return p.at(extent.width - 1 - k, l); });
+    pass(extent.height, extent.width, [&](int k, int l) -> float& { return p.at(l, k); });
+    pass(extent.height, extent.width, [&](int k, int l) -> float& { return p.at(l, extent.height - 1 - k); });
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) {
+            if (std::isnan(p.at(i, j))) slopes.q.at(i, j) = kNan;
+        }
+    }
+}
+
+}  // namespace
+
+int Stored::channel(Component component) const {
+    const auto count = std::min(image->planes.size(), swizzle.size());
+    for (std::size_t c = 0; c < count; ++c) {
+        if (swizzle[c] == component) return static_cast<int>(c);
+    }
+    return -1;
+}
+
+std::vector<Rect> sample_windows(Extent extent) {
+    if (extent.texels() <= kWholeTexels) return {{0, 0, extent.width, extent.height}};
+    std::vector<Rect> windows;
+    for (int j = 0; j < kWindowsAcross; ++j) {
+        for (int i = 0; i < kWindowsAcross; ++i) {
+            windows.push_back({window_begin(extent.width, i), window_begin(extent.height, j),
+                               std::min(extent.width, kWindowSize), std::min(extent.height, kWindowSize)});
+        }
+    }
+    return windows;
+}
+
+Slopes slopes_of(const Stored& stored, Rect window) {
+    const Extent extent{window.width, window.height};
+    Slopes slopes{Plane<float>(extent), Plane<float>(extent)};
+    const int cx = stored.channel(Component::x), cy = stored.channel(Component::y), cz = stored.channel(Component::z);
+    bool unusable = false;
+    for (int j = 0; j < window.height; ++j) {
+        for (int i = 0; i < window.width; ++i) {
+            const float x = stored.component(cx, window.x + i, window.y + j);
+            const float y = stored.component(cy, window.x + i, window.y + j);
+            const float flat = x * x + y * y;
+            const float z = cz >= 0 ? stored.component(cz, window.x + i, window.y + j) : reconstruct_z(x, y);
+            const float square = flat + z * z;
+            // Written so that NaN fails.
+            const bool usable = square >= 0.25f && square <= 4.0f && z >= kLeastZ && (cz >= 0 || flat <= 1.04f);
+            unusable |= !usable;
+            slopes.p.at(i, j) = usable ? -x / z : kNan;
+            slopes.q.at(i, j) = usable ? -y / z : kNan;
+        }
+    }
+    if (unusable) widen_holes(slopes);
+    return slopes;
+}
+
+Slopes halved(const Slopes& slopes) {
+    const Extent extent{slopes.extent().width / 2, slopes.extent().height / 2};
+    Slopes half{Plane<float>(extent), Plane<float>(extent)};
+    const auto reduce = [&](const Plane<float>& from, Plane<float>& to) {
+        for (int j = 0; j < extent.height; ++j) {
+            const float *upper = from.row(2 * j), *lower = from.row(2 * j + 1);
+            for (int i = 0; i < extent.width; ++i) {
+                to.at(i, j) = (upper[2 * i] + upper[2 * i + 1] + lower[2 * i] + lower[2 * i + 1]) * 0.25f;
+            }
+        }
+    };
+    reduce(slopes.p, half.p);
+    reduce(slopes.q, half.q);
+    return half;
+}
+
+}  // namespace tex

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// texel_counts.h: every texel of the base level, counted.
+
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include <tex/execution.h>
+#include <tex/result.h>
+
+#include "checks/stored.h"
+
+namespace tex {
+
+// Two codes of 8 bits, as a component.
+inline constexpr float kTwoCodes = 4.0f / 255.0f;
+// A vector shorter than this points nowhere.
+inline constexpr float kNullLength = 0.1f;
+
+// How many texels have a property, and the first of them in rows from the top.
+struct Tally {
+    std::int64_t count = 0;
+    int column = -1, row = -1;
+    void add_row(std::int64_t in_row, int first_column, int at_row) {
+        if (in_row > 0 && count == 0) {
+            column = first_column;
+            row = at_row;
+        }
+        count += in_row;
+    }
+};
+
+enum class Property {
+    not_finite,      // a component is NaN or infinite; such a texel counts nowhere else
+    null_vector,     // shorter than kNullLength (z stored)
+    off_length,      // the length is off 1 by more than kTwoCodes (z stored)
+    z_below,         // z below -kTwoCodes (z stored)
+    z_behind,        // z below -0.1 (z stored)
+    beyond_unit,     // x^2 + y^2 above (1 + kTwoCodes)^2
+    red_not_one,     // R below 1, for the layout (R, y, _, x)
+    alpha_not_one,   // A below 1, where A is not x
+    above_alpha,     // R, G or B above A by more than a code and a half
+    grey,            // R, G and B are equal within a code and a half
+    flat_low,        // x and y are code 127 of 255
+    flat_high,       // x and y are code 128
+};
+inline constexpr int kPropertyCount = 12;
+
+struct TexelCounts {
+    std::int64_t texels = 0;
+    std::array<Tally, kPropertyCount> tally{};
+    // Over finite texels; z and length are of the stored z, or reconstructed.
+    std::int64_t finite = 0;
+    double mean_x = 0.0, mean_y = 0.0, mean_z = 0.0, mean_length = 0.0;
+    float min_length = 0.0f, max_length = 0.0f;
+    std::array<float, 4> low{}, high{};  // of channels, as decoded
+    double alpha_correlation = 0.0;      // of A with the largest of R, G and B
+
+    [[nodiscard]] const Tally& operator[](Property p) const { return tally[static_cast<std::size_t>(p)]; }
+    [[nodiscard]] double share(Property p) const {
+        return texels > 0 ? static_cast<double>((*this)[p].count) / static_cast<double>(texels) : 0.0;
+    }
+};
+
+// Errors: cancelled, out_of_memory.
+Result<TexelCounts> count_texels(const Stored& stored, const Execution& execution);
+
+}  // namespace tex

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "checks/value_rules.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "base/math.h"
+
+namespace tex {
+namespace {
+
+constexpr double kOffLengthShare = 0.05;
+constexpr double kBelowShare = 0.0005;
+constexpr double kBeyondShare = 0.001;
+constexpr double kNullShare = 0.0001;
+constexpr double kBehindShare = 0.05;
+constexpr double kGreyShare = 0.999;
+constexpr double kFlatShare = 0.25;
+constexpr std::int64_t kFlatLeast = 256;  // texels
+constexpr double kLeanDegrees = 10.0;
+constexpr float kVaries = 0.05f;  // of a stored channel: more than its rounding
+
+Finding& add_counted(const Subject& subject, Findings& findings, std::string_view id, Property property, const std::string& what) {
+    const Tally& tally = subject.counts[property];
+    const double share = subject.counts.share(property);
+    Finding& finding = findings.add(id, percent(share) + " of the texels" + what + ", the first at " + texel_text(tally.column, tally.row));
+    finding.figure = share;
+    finding.unit = "share";
+    finding.regions = {{0, tally.column, tally.row, 1, 1}};
+    finding.has_texel = true;
+    finding.column = tally.column;
+    finding.row = tally.row;
+    return finding;
+}
+
+void check_lengths(const Subject& subject, Findings& findings) {
+    const TexelCounts& counts = subject.counts;
+    if (counts[Property::not_finite].count > 0) add_counted(subject, findings, "N204", Property::not_finite, " are NaN or infinite");
+    if (counts.share(Property::null_vector) > kNullShare) {
+        add_counted(subject, findings, "N205", Property::null_vector, " are shorter than 0.1");
+    }
+    if (counts.share(Property::off_length) > kOffLengthShare) {
+        add_counted(subject, findings, "N201", Property::off_length,
+                    " are off unit length by more than two codes (mean length " + decimal(counts.mean_length, 3) + ", " +
+                        decimal(static_cast<double>(counts.min_length), 2) + " to " +
+                        decimal(static_cast<double>(counts.max_length), 2) + ")");
+    }
+    if (counts.share(Property::z_below) > kBelowShare) add_counted(subject, findings, "N202", Property::z_below, " have z below zero");
+    if (!subject.stored.has_z() && counts.share(Property::beyond_unit) > kBeyondShare) {
+        add_counted(subject, findings, "N203", Property::beyond_unit, " have x^2 + y^2 above 1");
+    }
+}
+
+void check_means(const Subject& subject, Findings& findings) {
+    const TexelCounts& counts = subject.counts;
+    const double lean = std::sqrt(counts.mean_x * counts.mean_x + counts.mean_y * counts.mean_y);
+    const double angle = math::atan(lean / std::max(counts.mean_z, 1e-6)) * 180.0 / math::kPi;
+    if (angle > kLeanDegrees) {
+        Finding& finding = findings.add("N207", "the mean normal leans by " + decimal(angle, 1) + " degrees, towards x " +
+                                                    decimal(counts.mean_x, 3) + ", y " + decimal(counts.mean_y, 3));
+        finding.figure = angle;
+        finding.unit = "degrees";
+    }
+    const Tally &low = counts[Property::flat_low], &high = counts[Property::flat_high];
+    const bool is_low = low.count > high.count;
+    const Tally &most = is_low ? low : high, &least = is_low ? high : low;
+    const double share = static_cast<double>(most.count) / static_cast<double>(counts.texels);
+    if (counts.texels >= kFlatLeast && share > kFlatShare && least.count * 20 < most.count) {
+        Finding& finding = findings.add("N208", percent(share) + " of the texels are flat as (" + (is_low ? "127, 127" : "128, 128") +
+                                                    "), which leans by 0.32 degrees");
+        finding.figure = share;
+        finding.unit = "share";
+    }
+}
+
+void check_channels(const Subject& subject, Findings& findings) {
+    const TexelCounts& counts = subject.counts;
+    const Stored& stored = subject.stored;
+    const auto range = [&](int channel) {
+        return counts.high[static_cast<std::size_t>(channel)] - counts.low[static_cast<std::size_t>(channel)];
+    };
+    const int cx = stored.channel(Component::x), cy = stored.channel(Component::y), cz = stored.channel(Component::z);
+    if (cz >= 0 && counts.share(Property::grey) > kGreyShare && range(cx) > 0.0f) {
+        Finding& finding = findings.add("N210", "R, G and B are equal in " + percent(counts.share(Property::grey)) + " of the texels");
+        finding.figure = counts.share(Property::grey);
+        finding.unit = "share";
+    }
+    if (cz >= 0 && range(cz) == 0.0f && std::max(range(cx), range(cy)) > 2.0f * kVaries) {
+        findings.add("N209", "blue is " + decimal(static_cast<double>(counts.low[static_cast<std::size_t>(cz)]), 3) + " everywhere");
+    }
+    if (counts[Property::red_not_one].count > 0) {
+        add_counted(subject, findings, "N211", Property::red_not_one, " have R below 255");
+    }
+    if (counts[Property::alpha_not_one].count > 0) {
+        add_counted(subject, findings, "N212", Property::alpha_not_one, " have A below 255");
+    }
+    if (counts.share(Property::z_behind) > kBehindShare) {
+        add_counted(subject, findings, "N213", Property::z_behind, " point away from the surface");
+    }
+}
+
+}  // namespace
+
+void check_value_rules(const Subject& subject, Findings& findings) {
+    if (!subject.has_vectors) return;
+    if (subject.constant && subject.counts.texels > 1) {
+        findings.add("N206", "every texel is the same as the first").unit = "";
+    }
+    check_lengths(subject, findings);
+    check_means(subject, findings);
+    check_channels(subject, findings);
+}
+
+}  // namespace tex

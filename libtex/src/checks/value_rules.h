@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// value_rules.h: the rules of the family "values", see rules.cpp.
+
+#pragma once
+
+#include "checks/findings.h"
+
+namespace tex {
+
+void check_value_rules(const Subject& subject, Findings& findings);
+
+}  // namespace tex

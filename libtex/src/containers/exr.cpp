@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "containers/exr.h"
+
+#include <bit>
+#include <cstring>
+#include <optional>
+#include <string>
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
+#include <ImfTiledOutputFile.h>
+
+#include <tex/mip_chain.h>
+
+#include "base/guard.h"
+#include "containers/exr_part.h"
+
+namespace tex {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "levels hold little-endian values, OpenEXR wants native ones");
+
+constexpr int kTileSize = 64;
+
+// -- reading -----------------------------------------------------------------------------------------------
+
+// Opens the first part, checks it, and returns body(file), a Result. Nothing that OpenEXR throws gets past here.
+template <class Body>
+auto with_exr(InputFile& file, const ReadOptions& options, const Body& body)
+    -> decltype(body(std::declval<Imf::MultiPartInputFile&>())) {
+    return guarded([&]() -> decltype(body(std::declval<Imf::MultiPartInputFile&>())) {
+        if (const Result<void> settled = file.settle(largest_file(options)); !settled) return settled.error();
+        ExrStream stream(file);
+        try {
+            check_attributes(stream);
+            constexpr int kNoThreads = 0;
+            constexpr bool kKeepTable = false;  // a table that has to be guessed is damage
+            Imf::MultiPartInputFile exr(stream, kNoThreads, kKeepTable);
+            const Result<Extent> extent = check_header(file.path(), exr.header(0), *file.size(), options);
+            if (!extent) return extent.error();
+            return body(exr);
+        } catch (const std::bad_alloc&) {
+            throw;
+        } catch (const std::exception& thrown) {
+            if (stream.failure()) return *stream.failure();
+            return exr_error(file.path(), thrown);
+        }
+    });
+}
+
+// The channels of a texture: colour where there is colour, else everything.
+Result<std::vector<ExrChannel>> texture_channels(const std::string& path, const Imf::Header& header) {
+    std::vector<ExrChannel> channels = channels_of(header);
+    const Imf::ChannelList& list = header.channels();
+    if (list.findChannel("R") && list.findChannel("G") && list.findChannel("B")) {
+        channels.resize(list.findChannel("A") ? 4 : 3);
+    } else if (channels.size() > 4) {
+        return Error{ErrorCode::unsupported, path,
+                     std::to_string(channels.size()) + " channels, and not R, G and B among them"};
+    }
+    return channels;
+}
+
+Format float_format(std::size_t channels, bool half) {
+    constexpr Format kHalf[] = {Format::r16_float, Format::rg16_float, Format::rgb16_float, Format::rgba16_float};
+    constexpr Format kFloat[] = {Format::r32_float, Format::rg32_float, Format::rgb32_float, Format::rgba32_float};
+    return (half ? kHalf : kFloat)[channels - 1];
+}
+
+// Planes to interleaved texels. Values that came from half go back to the same half.
+Level interleave(const Image& image, Format format) {
+    Level level{image.extent(), std::vector<std::byte>(level_bytes(format, image.extent()))};
+    std::byte* to = level.bytes.data();
+    const bool half = format_info(format).bits == 16;
+    for (int j = 0; j < level.extent.height; ++j) {
+        for (int i = 0; i < level.extent.width; ++i) {
+            for (const Plane<float>& plane : image.planes) {
+                if (half) {
+                    const std::uint16_t bits = Imath::half(plane.at(i, j)).bits();
+                    std::memcpy(to, &bits, sizeof bits);
+                    to += sizeof bits;
+                } else {
+                    std::memcpy(to, &plane.at(i, j), sizeof(float));
+                    to += sizeof(float);
+                }
+            }
+        }
+    }
+    return level;
+}
+
+void describe_normals(const Imf::Header& header, std::size_t channels, Texture& texture) {
+    constexpr Component kX = Component::x, kY = Component::y, kZ = Component::z, kOther = Component::other;
+    if (channels == 1) texture.swizzle = {kOther, Component::zero, Component::zero, Component::one};
+    if (channels == 2) texture.swizzle = {kX, kY, Component::zero, Component::one};
+    if (channels == 3) texture.swizzle = {kX, kY, kZ, Component::one};
+    if (channels == 4) texture.swizzle = {kX, kY, kZ, kOther};
+    if (const auto* text = header.findTypedAttribute<Imf::StringAttribute>(kNormalEncoding)) {
+        texture.normal_encoding = text->value();
+        texture.swizzle_known = channels >= 2;
+    }
+    if (const auto* text = header.findTypedAttribute<Imf::StringAttribute>(kNormalYAxis)) {
+        if (const std::optional<YAxis> axis = find_by_name(kYAxisNames, text->value())) {
+            texture.y_axis = *axis;
+            texture.y_known = true;
+        }
+    }
+}
+
+// How many levels of a part follow our rule.
+int usable_levels(const Imf::Header& header, Extent base, std::vector<std::string>& remarks) {
+    if (!header.hasTileDescription()) return 1;
+    const Imf::TileDescription& tiles = header.tileDescription();
+    if (tiles.mode == Imf::ONE_LEVEL) return 1;
+    if (tiles.mode == Imf::MIPMAP_LEVELS) {
+        const auto power = [](int n) { return (n & (n - 1)) == 0; };
+        if (tiles.roundingMode == Imf::ROUND_DOWN || (power(base.width) && power(base.height))) return level_count(base);
+        remarks.emplace_back("mip levels with extents rounded up are left out");
+    } else {
+        remarks.emplace_back("ripmap levels are left out");
+    }
+    return 1;
+}
+
+}  // namespace
+
+bool is_exr(std::span<const std::byte> head) {
+    constexpr unsigned char kMagic[4] = {0x76, 0x2f, 0x31, 0x01};
+    return head.size() >= sizeof kMagic && std::memcmp(head.data(), kMagic, sizeof kMagic) == 0;
+}
+
+Result<Image> read_exr(InputFile& file, const ReadOptions& options) {
+    return with_exr(file, options, [](Imf::MultiPartInputFile& exr) -> Result<Image> {
+        return PartReader(exr, channels_of(exr.header(0))).read(0);
+    });
+}
+
+Result<Texture> read_exr_texture(InputFile& file, const ReadOptions& options) {
+    return with_exr(file, options, [&](Imf::MultiPartInputFile& exr) -> Result<Texture> {
+        const Imf::Header& header = exr.header(0);
+        Result<std::vector<ExrChannel>> channels = texture_channels(file.path(), header);
+        if (!channels) return std::move(channels).error();
+        PartReader part(exr, std::move(*channels));
+        Texture texture;
+        int levels = 1;
+        for (int level = 0; level < levels; ++level) {
+            const Image image = part.read(level);
+            if (level == 0) {
+                texture.format = float_format(image.planes.size(), image.bits == 16);
+                describe_normals(header, image.planes.size(), texture);
+                levels = usable_levels(header, image.extent(), texture.remarks);
+            }
+            texture.levels.push_back(interleave(image, texture.format));
+        }
+        return texture;
+    });
+}
+
+// -- writing -----------------------------------------------------------------------------------------------
+
+namespace {
+
+class MemoryStream final : public Imf::OStream {
+public:
+    MemoryStream() : Imf::OStream("") {}
+    void write(const char data[], int count) override {
+        const auto n = static_cast<std::size_t>(count);
+        if (bytes.size() < at_ + n) bytes.resize(at_ + n);
+        std::memcpy(bytes.data() + at_, data, n);
+        at_ += n;
+    }
+    std::uint64_t tellp() override { return at_; }
+    void seekp(std::uint64_t at) override { at_ = static_cast<std::size_t>(at); }
+
+    std::vector<std::byte> bytes;
+
+private:
+    std::size_t at_ = 0;
+};
+
+// The interleaved texels of a level. OpenEXR's slices point to mutable bytes even where it only reads.
+Imf::FrameBuffer frame_buffer(const Level& level, const FormatInfo& format, const std::vector<std::string>& names) {
+    Imf::FrameBuffer buffer;
+    const auto channel_bytes = static_cast<std::size_t>(format.bits / 8);
+    char* base = const_cast<char*>(reinterpret_cast<const char*>(level.bytes.data()));
+    for (std::size_t c = 0; c < names.size(); ++c) {
+        buffer.insert(names[c].c_str(), Imf::Slice(format.bits == 16 ? Imf::HALF : Imf::FLOAT, base + c * channel_bytes,
+                                                   format.block_bytes,
+                                                   format.block_bytes * static_cast<std::size_t>(level.extent.width)));
+    }
+    return buffer;
+}
+
+void write_exr(Imf::OStream& stream, Imf::Header& header, const Texture& texture, const std::vector<std::string>& names) {
+    const FormatInfo format = format_info(texture.format);
+    constexpr int kNoThreads = 0;
+    if (texture.levels.size() == 1) {
+        Imf::OutputFile file(stream, header, kNoThreads);
+        file.setFrameBuffer(frame_buffer(texture.levels.front(), format, names));
+        file.writePixels(texture.extent().height);
+        return;
+    }
+    header.setTileDescription(Imf::TileDescription(kTileSize, kTileSize, Imf::MIPMAP_LEVELS, Imf::ROUND_DOWN));
+    Imf::TiledOutputFile file(stream, header, kNoThreads);
+    for (int level = 0; level < file.numLevels(); ++level) {
+        file.setFrameBuffer(frame_buffer(texture.levels[static_cast<std::size_t>(level)], format, names));
+        file.writeTiles(0, file.numXTiles(level) - 1, 0, file.numYTiles(level) - 1, level);
+    }
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> encode_exr(const Texture& texture) {
+    return guarded([&]() -> Result<std::vector<std::byte>> {
+        const FormatInfo format = format_info(texture.format);
+        if (format.sample != SampleKind::floating || texture.levels.empty()) {
+            return Error{ErrorCode::unsupported, {},
+                         "EXR holds half and float, not " + std::string(name_of(kFormatNames, texture.format))};
+        }
+        const auto levels = static_cast<int>(texture.levels.size());
+        if (levels > 1 && levels != level_count(texture.extent())) {
+            return Error{ErrorCode::unsupported, {},
+                         "EXR holds the base level or all " + std::to_string(level_count(texture.extent())) +
+                             " mip levels, not " + std::to_string(levels)};
+        }
+        std::vector<std::string> names = {"R", "G", "B", "A"};
+        names.resize(static_cast<std::size_t>(format.channels));
+        if (format.channels == 1) names = {"Y"};
+
+        Imf::Header header(texture.extent().width, texture.extent().height);
+        header.compression() = Imf::ZIP_COMPRESSION;
+        const Imf::PixelType type = format.bits == 16 ? Imf::HALF : Imf::FLOAT;
+        for (const std::string& name : names) header.channels().insert(name, Imf::Channel(type));
+        header.insert(kNormalEncoding, Imf::StringAttribute("signed"));
+        header.insert(kNormalYAxis, Imf::StringAttribute(std::string(name_of(kYAxisNames, texture.y_axis))));
+        MemoryStream stream;
+        try {
+            write_exr(stream, header, texture, names);
+        } catch (const std::bad_alloc&) {
+            throw;
+        } catch (const std::exception& thrown) {
+            return Error{ErrorCode::unsupported, {}, std::string("EXR cannot be written: ") + thrown.what()};
+        }
+        return std::move(stream.bytes);
+    });
+}
+
+}  // namespace tex

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// file_layout.h: where everything stands in a DDS or KTX2 file that is about to be written.
+//
+// The layout follows from the head of a texture alone, before there are any texels: a writer may hold the
+// whole texture, or place the levels' bytes one strip at a time.
+
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <tex/texture.h>
+
+namespace tex {
+
+// All of a texture but its bytes.
+struct TextureHead {
+    Format format = Format::rgba8_unorm;
+    Extent extent;
+    int levels = 1;
+    Swizzle swizzle = {Component::x, Component::y, Component::z, Component::other};
+    bool swizzle_known = false;
+    YAxis y_axis = YAxis::up;
+    bool y_known = false;
+};
+
+[[nodiscard]] TextureHead head_of(const Texture& texture);
+
+// How texels change on their way into a file.
+enum class Rearrange {
+    none,   // the bytes of the format as they are
+    widen,  // three channels become four, A = 1
+    bgr,    // red and blue of 8-bit texels change places, as Direct3D 9 stores them
+};
+
+struct FileLayout {
+    struct Place {
+        std::size_t offset = 0;  // from the start of the file
+        std::size_t bytes = 0;
+    };
+    std::vector<std::byte> head;  // the file's first bytes
+    Rearrange rearrange = Rearrange::none;
+    std::vector<Place> levels;  // [0] is the base level; bytes between head and levels are 0
+    std::size_t size = 0;       // of the whole file
+};
+
+// Bytes of a texel (of a block) of `format` after `rearrange`.
+[[nodiscard]] std::size_t stored_block_bytes(Format format, Rearrange rearrange);
+
+// Bytes of a level after `rearrange`.
+[[nodiscard]] std::size_t stored_level_bytes(Format format, Extent extent, Rearrange rearrange);
+
+// Copies `texels` texels of `format` (blocks, where it is a block format) from `source` to `target`.
+void rearrange_texels(Format format, Rearrange rearrange, const std::byte* source, std::size_t texels,
+                      std::byte* target);
+
+// The whole file.
+[[nodiscard]] std::vector<std::byte> assemble(const Texture& texture, const FileLayout& layout);
+
+}  // namespace tex

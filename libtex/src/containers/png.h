@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// png.h: PNG, both directions, through libpng.
+
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <tex/image.h>
+#include <tex/image_io.h>
+#include <tex/result.h>
+#include <tex/texture.h>
+
+#include "base/input_file.h"
+
+namespace tex {
+
+// Whether a file that begins with `head` is a PNG, sound or damaged in transfer.
+bool is_png(std::span<const std::byte> head);
+
+// Reads a PNG as read_image() promises: grey as Y, colour and palette as R, G, B, alpha or tRNS as A; values are code / (2^bits - 1); gAMA, sRGB, iCCP and
+// sBIT change nothing. Damaged ancillary chunks count as damage too.
+//
+// Errors: bad_data (with libpng's reason), unsupported (too large), io, out_of_memory.
+Result<Image> read_png(InputFile& file, const ReadOptions& options);
+
+// Encodes the base level of a texture in an 8- or 16-bit unorm format: one channel as grey, three as RGB, four as RGBA. Equal
+// textures give equal bytes (with one version of zlib).
+//
+// Errors: unsupported (another format), out_of_memory.
+Result<std::vector<std::byte>> encode_png(const Texture& texture);
+
+}  // namespace tex

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "containers/reader_process.h"
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <link.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <climits>
+#include <cstring>
+#include <vector>
+
+#include "base/guard.h"
+#include "base/system_error.h"
+#include "containers/reader.h"
+
+namespace tex {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// The folder of the object that this code is in: of libtex, or of the program that it is linked into.
+std::string own_folder() {
+    Dl_info info{};
+    link_map* map = nullptr;
+    static const char anchor = 0;
+    std::string object = "/proc/self/exe";
+    if (dladdr1(&anchor, &info, reinterpret_cast<void**>(&map), RTLD_DL_LINKMAP) != 0 && map != nullptr &&
+        map->l_name != nullptr && map->l_name[0] != '\0') {
+        object = map->l_name;
+    }
+    char resolved[PATH_MAX];
+    if (realpath(object.c_str(), resolved) == nullptr) return {};
+    std::string folder = resolved;
+    return folder.erase(folder.rfind('/'));
+}
+
+// Attributes and file actions of a spawned process, freed with it.
+class SpawnPlan {
+public:
+    SpawnPlan() {
+        posix_spawnattr_init(&attributes);
+        posix_spawn_file_actions_init(&actions);
+    }
+    ~SpawnPlan() {
+        posix_spawn_file_actions_destroy(&actions);
+        posix_spawnattr_destroy(&attributes);
+    }
+    SpawnPlan(const SpawnPlan&) = delete;
+    SpawnPlan& operator=(const SpawnPlan&) = delete;
+
+    posix_spawnattr_t attributes{};
+    posix_spawn_file_actions_t actions{};
+};
+
+// Starts the program with exactly the descriptors of the protocol, no environment, default signals, and as the leader of its own process
+// group: a Ctrl-C at the terminal is the caller's to handle, and what the reader might have started ends with it. 0 or an errno.
+int spawn(const std::string& program, std::vector<std::string> arguments, int result, int input, int progress,
+          pid_t& child) {
+    // Out of the way of the numbers that they are to have.
+    const Descriptor from[] = {Descriptor(fcntl(result, F_DUPFD_CLOEXEC, 16)), Descriptor(fcntl(input, F_DUPFD_CLOEXEC, 16)),
+                               Descriptor(fcntl(progress, F_DUPFD_CLOEXEC, 16))};
+    if (!from[0] || !from[1] || !from[2]) return errno;
+    SpawnPlan plan;
+    int failed = 0;
+    const auto check = [&failed](int status) { failed = failed != 0 ? failed : status; };
+    for (int fd = 0; fd < 3; ++fd) {
+        check(posix_spawn_file_actions_addopen(&plan.actions, fd, "/dev/null", fd == 0 ? O_RDONLY : O_WRONLY, 0));
+    }
+    check(posix_spawn_file_actions_adddup2(&plan.actions, from[0].get(), kResultDescriptor));
+    check(posix_spawn_file_actions_adddup2(&plan.actions, from[1].get(), kInputDescriptor));
+    check(posix_spawn_file_actions_adddup2(&plan.actions, from[2].get(), kProgressDescriptor));
+    check(posix_spawn_file_actions_addclosefrom_np(&plan.actions, kProgressDescriptor + 1));
+
+    sigset_t none;
+    sigset_t all;
+    sigemptyset(&none);
+    sigfillset(&all);
+    check(posix_spawnattr_setsigmask(&plan.attributes, &none));
+    check(posix_spawnattr_setsigdefault(&plan.attributes, &all));
+    check(posix_spawnattr_setpgroup(&plan.attributes, 0));
+    check(posix_spawnattr_setflags(&plan.attributes,
+                                   POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP));
+    if (failed != 0) return failed;
+
+    std::vector<char*> argv = {const_cast<char*>(program.c_str())};
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    char* const no_environment[] = {nullptr};
+    return posix_spawn(&child, program.c_str(), &plan.actions, &plan.attributes, argv.data(), no_environment);
+}
+
+// Waits until the pipe ends, that is until every process that holds it is gone; false where time runs out first.
+bool wait_for_end(int progress, Clock::time_point deadline) {
+    for (;;) {
+        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+        if (left <= 0) return false;
+        pollfd poll_for{progress, POLLIN, 0};
+        const int ready = poll(&poll_for, 1, static_cast<int>(std::min<long long>(left + 1, 60'000)));
+        if (ready < 0 && errno != EINTR) return false;
+        if (ready <= 0) continue;
+        char strips[256];
+        const ssize_t n = read(progress, strips, sizeof strips);
+        if (n == 0) return true;
+        if (n < 0 && errno != EINTR) return false;
+    }
+}
+
+// How a process ended; nothing where somebody else in this program collected it.
+struct Ending {
+    int signal = 0;
+    int status = 0;
+};
+
+Ending collect(pid_t child) {
+    kill(-child, SIGKILL);  // nothing to a process that has ended; the end of one that only closed its pipe
+    int status = 0;
+    pid_t got = -1;
+    do {
+        got = waitpid(child, &status, 0);
+    } while (got < 0 && errno == EINTR);
+    if (got != child) return {};
+    return {WIFSIGNALED(status) ? WTERMSIG(status) : 0, WIFEXITED(status) ? WEXITSTATUS(status) : 0};
+}
+
+std::string does(const ReaderJob& job) { return job.verb == "encode" ? "the encoder" : "the decoder"; }
+
+Error abnormal_end(const ReaderJob& job, const std::string& program, Ending ending) {
+    constexpr int kNotLoaded = 127;  // of the dynamic loader, and of shells
+    if (ending.signal == SIGKILL) {
+        return {ErrorCode::out_of_memory, job.path, does(job) + " was killed by the system: out of memory?"};
+    }
+    if (ending.signal != 0) {
+        return {ErrorCode::bad_data, job.path,
+                does(job) + " crashed on this file (signal " + std::to_string(ending.signal) + ")"};
+    }
+    if (ending.status == kNotLoaded) {
+        return {ErrorCode::io, job.path, "the reader program " + program + " cannot be loaded"};
+    }
+    return {ErrorCode::bad_data, job.path, does(job) + " ended without a result (exit status " + std::to_string(ending.status) + ")"};
+}
+
+// The reader's own words, which may be anything: one line, printable, without the name under which it knew the file.
+std::string clean_reason(const ReaderHeader& header) {
+    std::string reason(header.reason, strnlen(header.reason, sizeof header.reason));
+    if (const std::size_t line = reason.find('\n'); line != std::string::npos) reason.erase(line);
+    for (const char* name : {"\"/proc/self/fd/4\"", "/proc/self/fd/4", "\"\""}) {
+        for (std::size_t at; (at = reason.find(name)) != std::string::npos;) reason.replace(at, std::strlen(name), "the file");
+    }
+    std::erase_if(reason, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
+    while (!reason.empty() && (reason.back() == '.' || reason.back() == ' ')) reason.pop_back();
+    return reason.empty() ? "the decoder gave no reason" : reason;
+}
+
+Error reported_error(const ReaderJob& job, const ReaderHeader& header) {
+    ErrorCode code = ErrorCode::bad_data;
+    for (const ErrorCode known : {ErrorCode::io, ErrorCode::unsupported, ErrorCode::out_of_memory}) {
+        if (header.error == static_cast<std::uint32_t>(known)) code = known;
+    }
+    return {code, job.path, clean_reason(header)};
+}
+
+}  // namespace
+
+Result<std::string> find_reader(const ReadOptions& options) {
+    if (!options.reader.empty()) return options.reader;
+    const std::string folder = own_folder();
+    for (const char* place : {"/../libexec/libtex/tex-reader", "/../../libexec/libtex/tex-reader", "/tex-reader"}) {
+        const std::string program = folder + place;
+        if (!folder.empty() && access(program.c_str(), X_OK) == 0) return program;
+    }
+    return Error{ErrorCode::io, {}, "the reader program tex-reader was not found beside libtex"};
+}
+
+Result<Descriptor> memory_file(const std::string& path) {
+    Descriptor file(memfd_create("libtex", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+    if (!file || fcntl(file.get(), F_ADD_SEALS, F_SEAL_SHRINK) != 0) return system_error(path, errno, "a file in memory");
+    return file;
+}
+
+Result<ReaderHeader> run_reader(const ReaderJob& job, const ReadOptions& options) {
+    return guarded([&]() -> Result<ReaderHeader> {
+        const Result<std::string> program = find_reader(options);
+        if (!program) return Error{program.error().code, job.path, program.error().reason};
+        const int seconds = std::max(1, options.reader_timeout);
+        const auto deadline = Clock::now() + std::chrono::seconds(seconds);
+
+        int ends[2];
+        if (pipe2(ends, O_CLOEXEC) != 0) return system_error(job.path, errno, "a pipe");
+        const Descriptor progress(ends[0]);
+        Descriptor childs_end(ends[1]);
+        pid_t child = -1;
+        const int failed = spawn(*program,
+                                 {job.verb, job.format, std::to_string(options.max_texels),
+                                  std::to_string(options.reader_memory), std::to_string(seconds), std::to_string(getpid())},
+                                 job.result, job.input, childs_end.get(), child);
+        if (failed != 0) {
+            return system_error(job.path, failed, ("the reader program " + *program + " cannot be started").c_str());
+        }
+        childs_end.reset();
+        const bool in_time = wait_for_end(progress.get(), deadline);
+        const Ending ending = collect(child);
+        if (!in_time || ending.signal == SIGXCPU) {
+            return Error{ErrorCode::bad_data, job.path,
+                         does(job) + " did not end within " + std::to_string(seconds) + " s"};
+        }
+        ReaderHeader header;
+        const ssize_t got = pread(job.result, &header, sizeof header, 0);
+        const bool whole = got == static_cast<ssize_t>(sizeof header) && header.magic == kReaderMagic;
+        if (whole && header.state == ReaderState::refused) return reported_error(job, header);
+        if (!whole || header.state != ReaderState::done || ending.signal != 0) {
+            return abnormal_end(job, *program, ending);
+        }
+        return header;
+    });
+}
+
+}  // namespace tex

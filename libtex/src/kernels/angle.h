@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// angle.h: rows of normals to the angles between them.
+
+#pragma once
+
+namespace tex {
+
+// Three rows of a normal map.
+struct VectorRow {
+    const float* x;
+    const float* y;
+    const float* z;
+};
+
+// degrees[i] = 2 asin(min(1, |a[i] - b[i]| / 2)), in degrees, for `count` texels. Rows are those of a Plane: whole vectors past
+// the last texel are read and written.
+void angle_row(const VectorRow& a, const VectorRow& b, int count, float* degrees);
+
+}  // namespace tex

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "kernels/bake.h"
+
+#include <cstddef>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/bake.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace tex {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using D = hn::CappedTag<float, 16>;
+using V = hn::Vec<D>;
+constexpr D kD;
+constexpr int kLanes = static_cast<int>(hn::MaxLanes(kD));
+
+HWY_INLINE V clamped(V v, V limit) { return hn::Min(hn::Max(v, hn::Neg(limit)), limit); }
+
+void LimitHeights(const float* in, int count, float* out) {
+    const V limit = hn::Set(kD, kMaxHeight);
+    for (int i = 0; i < count; i += kLanes) hn::StoreU(clamped(hn::LoadU(kD, in + i), limit), kD, out + i);
+}
+
+void ContinueHeights(const float* inner, const float* edge, const float* other, bool reflected, float drift,
+                     int count, float* out) {
+    const V limit = hn::Set(kD, kMaxHeight);
+    const V two = hn::Set(kD, 2.0f);
+    const V periods = hn::Set(kD, drift);
+    for (int i = 0; i < count; i += kLanes) {
+        const V h = clamped(hn::LoadU(kD, inner + i), limit);
+        const V e = clamped(hn::LoadU(kD, edge + i), limit);
+        const V o = clamped(hn::LoadU(kD, other + i), limit);
+        const V base = reflected ? hn::Sub(hn::Mul(two, e), h) : h;
+        hn::StoreU(hn::Add(base, hn::Mul(periods, hn::Sub(e, o))), kD, out + i);
+    }
+}
+
+// Stores normalize(-slope_x, -slope_y, 1). The subtraction from zero makes x and y of a flat normal +0,
+// never -0.
+HWY_INLINE void store_normals(V slope_x, V slope_y, int i, NormalRow out) {
+    const V zero = hn::Zero(kD);
+    const V one = hn::Set(kD, 1.0f);
+    const V limit = hn::Set(kD, kMaxSlope);
+    const V x = hn::Sub(zero, clamped(slope_x, limit));
+    const V y = hn::Sub(zero, clamped(slope_y, limit));
+    const V square = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), one);
+    const V scale = hn::Div(one, hn::Sqrt(square));
+    hn::StoreU(hn::Mul(x, scale), kD, out.x + i);
+    hn::StoreU(hn::Mul(y, scale), kD, out.y + i);
+    hn::StoreU(scale, kD, out.z + i);
+}
+
+void NormalsByDifference(const float* left, const float* right, const float* down, const float* up,
+                         float scale_x, float scale_y, int count, NormalRow out) {
+    const V sx = hn::Set(kD, scale_x);
+    const V sy = hn::Set(kD, scale_y);
+    for (int i = 0; i < count; i += kLanes) {
+        const V du = hn::Sub(hn::LoadU(kD, right + i), hn::LoadU(kD, left + i));
+        const V dv = hn::Sub(hn::LoadU(kD, up + i), hn::LoadU(kD, down + i));
+        store_normals(hn::Mul(du, sx), hn::Mul(dv, sy), i, out);
+    }
+}
+
+void DeriveRow(const float* row, const float* derivative, int radius, int count, float* out) {
+    for (int i = 0; i < count; i += kLanes) {
+        V sum = hn::Zero(kD);
+        for (int k = 1; k <= radius; ++k) {
+            const V difference = hn::Sub(hn::LoadU(kD, row + i + k), hn::LoadU(kD, row + i - k));
+            sum = hn::Add(sum, hn::Mul(hn::Set(kD, derivative[k - 1]), difference));
+        }
+        hn::StoreU(sum, kD, out + i);
+    }
+}
+
+void DeriveColumn(const float* const* rows, const float* derivative, int radius, int count, float* out) {
+    for (int i = 0; i < count; i += kLanes) {
+        V sum = hn::Zero(kD);
+        for (int k = 1; k <= radius; ++k) {
+            const V difference =
+                hn::Sub(hn::LoadU(kD, rows[radius - k] + i), hn::LoadU(kD, rows[radius + k] + i));
+            sum = hn::Add(sum, hn::Mul(hn::Set(kD, derivative[k - 1]), difference));
+        }
+        hn::StoreU(sum, kD, out + i);
+    }
+}
+
+void NormalsBySmoothing(const float* const* du, const float* dv, const float* smoothing, int radius,
+                        float scale_x, float scale_y, int count, NormalRow out) {
+    const V sx = hn::Set(kD, scale_x);
+    const V sy = hn::Set(kD, scale_y);
+    for (int i = 0; i < count; i += kLanes) {
+        const V centre = hn::Set(kD, smoothing[0]);
+        V slope_x = hn::Mul(centre, hn::LoadU(kD, du[radius] + i));
+        V slope_y = hn::Mul(centre, hn::LoadU(kD, dv + i));
+        for (int k = 1; k <= radius; ++k) {
+            const V weight = hn::Set(kD, smoothing[k]);
+            const V both_x = hn::Add(hn::LoadU(kD, du[radius - k] + i), hn::LoadU(kD, du[radius + k] + i));
+            const V both_y = hn::Add(hn::LoadU(kD, dv + i - k), hn::LoadU(kD, dv + i + k));
+            slope_x = hn::Add(slope_x, hn::Mul(weight, both_x));
+            slope_y = hn::Add(slope_y, hn::Mul(weight, both_y));
+        }
+        store_normals(hn::Mul(slope_x, sx), hn::Mul(slope_y, sy), i, out);
+    }
+}
+
+void WidenSlopeBounds(const float* x, const float* y, const float* z, int count, SlopeBounds& bounds) {
+    const V least_z = hn::Set(kD, 1.0f / 256.0f);
+    const V zero = hn::Zero(kD);
+    V min_x = hn::Set(kD, bounds.min_x), max_x = hn::Set(kD, bounds.max_x);
+    V min_y = hn::Set(kD, bounds.min_y), max_y = hn::Set(kD, bounds.max_y);
+    for (int i = 0; i < count; i += kLanes) {
+        const V depth = hn::Max(hn::LoadU(kD, z + i), least_z);
+        // 0 - x / z: a flat texel has slope +0, never -0, whose order with +0 depends on the processor.
+        const V p = hn::Sub(zero, hn::Div(hn::LoadU(kD, x + i), depth));
+        const V q = hn::Sub(zero, hn::Div(hn::LoadU(kD, y + i), depth));
+        const auto inside = hn::FirstN(kD, static_cast<std::size_t>(count - i));
+        min_x = hn::Min(min_x, hn::IfThenElse(inside, p, min_x));
+        max_x = hn::Max(max_x, hn::IfThenElse(inside, p, max_x));
+        min_y = hn::Min(min_y, hn::IfThenElse(inside, q, min_y));
+        max_y = hn::Max(max_y, hn::IfThenElse(inside, q, max_y));
+    }
+    bounds = {hn::GetLane(hn::MinOfLanes(kD, min_x)), hn::GetLane(hn::MaxOfLanes(kD, max_x)),
+              hn::GetLane(hn::MinOfLanes(kD, min_y)), hn::GetLane(hn::MaxOfLanes(kD, max_y))};
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tex
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tex {
+
+HWY_EXPORT(LimitHeights);
+HWY_EXPORT(ContinueHeights);
+HWY_EXPORT(NormalsByDifference);
+HWY_EXPORT(DeriveRow);
+HWY_EXPORT(DeriveColumn);
+HWY_EXPORT(NormalsBySmoothing);
+HWY_EXPORT(WidenSlopeBounds);
+
+void limit_heights(const float* in, int count, float* out) {
+    HWY_DYNAMIC_DISPATCH(LimitHeights)(in, count, out);
+}
+
+void continue_heights(const float* inner, const float* edge, const float* other, bool reflected, float drift,
+                      int count, float* out) {
+    HWY_DYNAMIC_DISPATCH(ContinueHeights)(inner, edge, other, reflected, drift, count, out);
+}
+
+void normals_by_difference(const float* left, const float* right, const float* down, const float* up,
+                           float scale_x, float scale_y, int count, NormalRow out) {
+    HWY_DYNAMIC_DISPATCH(NormalsByDifference)(left, right, down, up, scale_x, scale_y, count, out);
+}
+
+void derive_row(const float* row, const float* derivative, int radius, int count, float* out) {
+    HWY_DYNAMIC_DISPATCH(DeriveRow)(row, derivative, radius, count, out);
+}
+
+void derive_column(const float* const* rows, const float* derivative, int radius, int count, float* out) {
+    HWY_DYNAMIC_DISPATCH(DeriveColumn)(rows, derivative, radius, count, out);
+}
+
+void normals_by_smoothing(const float* const* du, const float* dv, const float* smoothing, int radius,
+                          float scale_x, float scale_y, int count, NormalRow out) {
+    HWY_DYNAMIC_DISPATCH(NormalsBySmoothing)(du, dv, smoothing, radius, scale_x, scale_y, count, out);
+}
+
+void widen_slope_bounds(const float* x, const float* y, const float* z, int count, SlopeBounds& bounds) {
+    HWY_DYNAMIC_DISPATCH(WidenSlopeBounds)(x, y, z, count, bounds);
+}
+
+}  // namespace tex
+#endif  // HWY_ONCE

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// kernels/blend.h: rows of normals, blended. Rows are padded to whole vectors.
+
+#pragma once
+
+#include <tex/blend.h>
+
+namespace tex {
+
+// A row of normals.
+struct NormalRow {
+    float* x;
+    float* y;
+    float* z;
+};
+
+// Blends `detail` on `base`, in place: see BlendMode. With `weight`, a value for each texel, the result is
+// normalize(lerp(base, blended, weight)); a null pointer means 1.
+void blend_row(BlendMode mode, NormalRow base, NormalRow detail, const float* weight, int count);
+
+// Turns vectors counter-clockwise about z by the angle with this cosine and sine.
+void rotate_row(NormalRow row, float cosine, float sine, int count);
+
+// a = a (1 - t) + b t for one component.
+void mix_row(float* a, const float* b, float t, int count);
+
+}  // namespace tex

@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Blocks. A palette is a row of fractions with whole numerators and denominators, computed in one vector; where vectors
+// hold eight floats, texels are looked up in it eight at a time. Elsewhere the blocks' own decoders do the
+// same with the same bytes.
+
+#include "kernels/decode.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+
+#include <half.h>
+
+#include "blocks/bc1.h"
+#include "blocks/bc4.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/decode.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace tex {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+#if HWY_TARGET != HWY_SCALAR && HWY_MAX_BYTES >= 32
+
+using D8 = hn::CappedTag<float, 8>;
+using V8 = hn::Vec<D8>;
+using U8 = hn::RebindToUnsigned<D8>;
+
+// Entry k of a palette is (first[k] e0 + second[k] e1 + plus[k]) / over[k].
+struct Fractions {
+    alignas(32) float first[8];
+    alignas(32) float second[8];
+    alignas(32) float plus[8];
+    alignas(32) float over[8];
+};
+
+// Sevenths, and fifths with the lowest and the greatest value, of codes of which `one` is 1.
+constexpr Fractions Sevenths(float one) {
+    return {{1, 0, 6, 5, 4, 3, 2, 1}, {0, 1, 1, 2, 3, 4, 5, 6}, {},
+            {one, one, 7 * one, 7 * one, 7 * one, 7 * one, 7 * one, 7 * one}};
+}
+constexpr Fractions Fifths(float one, float lowest) {
+    return {{1, 0, 4, 3, 2, 1, 0, 0}, {0, 1, 1, 2, 3, 4, 0, 0}, {0, 0, 0, 0, 0, 0, lowest * one, one},
+            {one, one, 5 * one, 5 * one, 5 * one, 5 * one, one, one}};
+}
+// Thirds, and halves with black, of 8-bit codes; twice, as there are eight lanes.
+constexpr Fractions kThirds = {{1, 0, 2, 1, 1, 0, 2, 1}, {0, 1, 1, 2, 0, 1, 1, 2}, {},
+                               {255, 255, 765, 765, 255, 255, 765, 765}};
+constexpr Fractions kHalves = {{1, 0, 1, 0, 1, 0, 1, 0}, {0, 1, 1, 0, 0, 1, 1, 0}, {},
+                               {255, 255, 510, 255, 255, 255, 510, 255}};
+constexpr Fractions kUnorm[2] = {Fifths(255, 0), Sevenths(255)};
+constexpr Fractions kSnorm[2] = {Fifths(127, -1), Sevenths(127)};
+
+HWY_INLINE V8 Palette(const Fractions& fractions, int e0, int e1) {
+    const D8 d;
+    const V8 first = hn::Mul(hn::Load(d, fractions.first), hn::Set(d, static_cast<float>(e0)));
+    const V8 second = hn::Mul(hn::Load(d, fractions.second), hn::Set(d, static_cast<float>(e1)));
+    const V8 sum = hn::Add(hn::Add(first, second), hn::Load(d, fractions.plus));
+    return hn::Div(sum, hn::Load(d, fractions.over));
+}
+
+// Two rows of four texels; the index of texel k stands in bits from shifts[k].
+HWY_INLINE void LookUpTwoRows(V8 palette, std::uint32_t bits, const std::uint32_t* shifts, std::uint32_t mask, float* out,
+                              std::ptrdiff_t stride) {
+    const D8 d;
+    const U8 du;
+    const hn::CappedTag<float, 4> d4;
+    const auto index = hn::And(hn::Shr(hn::Set(du, bits), hn::Load(du, shifts)), hn::Set(du, mask));
+    const V8 values = hn::TableLookupLanes(palette, hn::IndicesFromVec(d, index));
+    hn::StoreU(hn::LowerHalf(d4, values), d4, out);
+    hn::StoreU(hn::UpperHalf(d4, values), d4, out + stride);
+}
+
+template <class T>
+HWY_INLINE T Load(const std::byte* p) {
+    T value;
+    std::memcpy(&value, p, sizeof value);
+    return value;
+}
+
+template <bool kSigned>
+HWY_INLINE void DecodeBc4(const std::byte* block, float* out, std::ptrdiff_t stride) {
+    alignas(32) static constexpr std::uint32_t kShifts[8] = {0, 3, 6, 9, 12, 15, 18, 21};
+    const auto all = Load<std::uint64_t>(block);
+    int e0 = static_cast<int>(all & 0xff);
+    int e1 = static_cast<int>(all >> 8 & 0xff);
+    if (kSigned) {
+        e0 = static_cast<std::int8_t>(e0);
+        e1 = static_cast<std::int8_t>(e1);
+    }
+    const Fractions& fractions = (kSigned ? kSnorm : kUnorm)[e0 > e1 ? 1 : 0];
+    const V8 palette = kSigned ? Palette(fractions, std::max(e0, -127), std::max(e1, -127)) : Palette(fractions, e0, e1);
+    LookUpTwoRows(palette, static_cast<std::uint32_t>(all >> 16 & 0xffffff), kShifts, 7, out, stride);
+    LookUpTwoRows(palette, static_cast<std::uint32_t>(all >> 40), kShifts, 7, out + 2 * stride, stride);
+}
+
+// The colours of a BC1 block; a null pointer for those that nobody wants.
+HWY_INLINE void DecodeBc1(const std::byte* block, Bc1Mode mode, const ChannelRows& rows, std::ptrdiff_t at,
+                          std::ptrdiff_t stride) {
+    alignas(32) static constexpr std::uint32_t kShifts[8] = {0, 2, 4, 6, 8, 10, 12, 14};
+    const int c0 = Load<std::uint16_t>(block);
+    const int c1 = Load<std::uint16_t>(block + 2);
+    const auto indices = Load<std::uint32_t>(block + 4);
+    const bool four = mode == Bc1Mode::four_colors || c0 > c1;
+    const Fractions& fractions = four ? kThirds : kHalves;
+    const auto channel = [&](float* out, V8 palette) {
+        LookUpTwoRows(palette, indices & 0xffff, kShifts, 3, out + at, stride);
+        LookUpTwoRows(palette, indices >> 16, kShifts, 3, out + at + 2 * stride, stride);
+    };
+    const auto five = [](int code) { return code << 3 | code >> 2; };
+    const auto six = [](int code) { return code << 2 | code >> 4; };
+    if (rows.channel[0] != nullptr) channel(rows.channel[0], Palette(fractions, five(c0 >> 11), five(c1 >> 11)));
+    if (rows.channel[1] != nullptr) channel(rows.channel[1], Palette(fractions, six(c0 >> 5 & 63), six(c1 >> 5 & 63)));
+    if (rows.channel[2] != nullptr) channel(rows.channel[2], Palette(fractions, five(c0 & 31), five(c1 & 31)));
+    if (rows.channel[3] != nullptr && mode == Bc1Mode::standard) {
+        alignas(32) static constexpr float kOpaque[8] = {1, 1, 1, 1, 1, 1, 1, 1};
+        alignas(32) static constexpr float kPunched[8] = {1, 1, 1, 0, 1, 1, 1, 0};
+        channel(rows.channel[3], hn::Load(D8(), four ? kOpaque : kPunched));
+    }
+}
+
+HWY_INLINE void DecodeBc2Alpha(const std::byte* block, float* out, std::ptrdiff_t stride) {
+    float a[16];
+    decode_bc2_alpha(block, a);
+    for (int k = 0; k < 4; ++k) std::memcpy(out + k * stride, a + 4 * k, 4 * sizeof(float));
+}
+
+void DecodeBlocks(Format format, const std::byte* blocks, int count, const ChannelRows& rows, std::ptrdiff_t stride) {
+    float* const r = rows.channel[0];
+    float* const g = rows.channel[1];
+    float* const a = rows.channel[3];
+    const bool color = r != nullptr || g != nullptr || rows.channel[2] != nullptr;
+    const std::ptrdiff_t end = std::ptrdiff_t{4} * count;
+    switch (format) {
+        case Format::bc1_unorm:
+            for (std::ptrdiff_t at = 0; at < end; at += 4, blocks += 8) DecodeBc1(blocks, Bc1Mode::standard, rows, at, stride);
+            break;
+        case Format::bc2_unorm:
+            for (std::ptrdiff_t at = 0; at < end; at += 4, blocks += 16) {
+                if (a != nullptr) DecodeBc2Alpha(blocks, a + at, stride);
+                if (color) DecodeBc1(blocks + 8, Bc1Mode::four_colors, rows, at, stride);
+            }
+            break;
+        case Format::bc3_unorm:
+            for (std::ptrdiff_t at = 0; at < end; at += 4, blocks += 16) {
+                if (a != nullptr) DecodeBc4<false>(blocks, a + at, stride);
+                if (color) DecodeBc1(blocks + 8, Bc1Mode::four_colors, rows, at, stride);
+            }
+            break;
+        case Format::bc4_unorm:
+        case Format::bc5_unorm: {
+            const std::ptrdiff_t step = format == Format::bc4_unorm ? 8 : 16;
+            for (std::ptrdiff_t at = 0; at < end; at += 4, blocks += step) {
+                if (r != nullptr) DecodeBc4<false>(blocks, r + at, stride);
+                if (g != nullptr) DecodeBc4<false>(blocks + 8, g + at, stride);
+            }
+            break;
+        }
+        default: {
+            const std::ptrdiff_t step = format == Format::bc4_snorm ? 8 : 16;
+            for (std::ptrdiff_t at = 0; at < end; at += 4, blocks += step) {
+                if (r != nullptr) DecodeBc4<true>(blocks, r + at, stride);
+                if (g != nullptr) DecodeBc4<true>(blocks + 8, g + at, stride);
+            }
+            break;
+        }
+    }
+}
+
+#else  // fewer than eight lanes
+
+void StoreBlock(const float* values, float* out, std::ptrdiff_t stride) {
+    if (out == nullptr) return;
+    for (int k = 0; k < 4; ++k) std::memcpy(out + k * stride, values + 4 * k, 4 * sizeof(float));
+}
+
+void DecodeBlock(Format format, const std::byte* block, float channels[4][16]) {
+    float(&r)[16] = channels[0];
+    float(&g)[16] = channels[1];
+    float(&b)[16] = channels[2];
+    float(&a)[16] = channels[3];
+    switch (format) {
+        case Format::bc1_unorm: return decode_bc1(block, Bc1Mode::standard, r, g, b, a);
+        case Format::bc2_unorm:
+            decode_bc1(block + 8, Bc1Mode::four_colors, r, g, b, a);
+            return decode_bc2_alpha(block, a);
+        case Format::bc3_unorm:
+            decode_bc1(block + 8, Bc1Mode::four_colors, r, g, b, a);
+            return decode_bc4_unorm(block, a);
+        case Format::bc4_unorm: return decode_bc4_unorm(block, r);
+        case Format::bc4_snorm: return decode_bc4_snorm(block, r);
+        case Format::bc5_unorm:
+            decode_bc4_unorm(block, r);
+            return decode_bc4_unorm(block + 8, g);
+        default:
+            decode_bc4_snorm(block, r);
+            return decode_bc4_snorm(block + 8, g);
+    }
+}
+
+void DecodeBlocks(Format format, const std::byte* blocks, int count, const ChannelRows& rows, std::ptrdiff_t stride) {
+    const FormatInfo info = format_info(format);
+    for (std::ptrdiff_t at = 0; at < std::ptrdiff_t{4} * count; at += 4, blocks += info.block_bytes) {
+        float channels[4][16];
+        DecodeBlock(format, blocks, channels);
+        for (int c = 0; c < info.channels; ++c) {
+            if (rows.channel[c] != nullptr) StoreBlock(channels[c], rows.channel[c] + at, stride);
+        }
+    }
+}
+
+#endif
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tex
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tex {
+
+HWY_EXPORT(DecodeBlocks);
+
+namespace {
+
+template <class T>
+T load(const std::byte* p) {
+    T value;
+    std::memcpy(&value, p, sizeof value);
+    return value;
+}
+
+constexpr std::array<float, 256> kUnorm8 = [] {
+    std::array<float, 256> values{};
+    for (int code = 0; code < 256; ++code) values[static_cast<std::size_t>(code)] = static_cast<float>(code) / 255.0f;
+    return values;
+}();
+
+float from_unorm8(const std::byte* p) { return kUnorm8[std::to_integer<std::size_t>(*p)]; }
+float from_unorm16(const std::byte* p) { return static_cast<float>(load<std::uint16_t>(p)) / 65535.0f; }
+float from_snorm8(const std::byte* p) { return std::max(static_cast<float>(load<std::int8_t>(p)) / 127.0f, -1.0f); }
+float from_snorm16(const std::byte* p) { return std::max(static_cast<float>(load<std::int16_t>(p)) / 32767.0f, -1.0f); }
+
+float from_half(const std::byte* p) {
+    Imath::half value;
+    value.setBits(load<std::uint16_t>(p));
+    return value;
+}
+
+template <float (*kDecode)(const std::byte*)>
+void decode_samples(const std::byte* first, std::size_t step, int count, float* out) {
+    for (int i = 0; i < count; ++i, first += step) out[i] = kDecode(first);
+}
+
+}  // namespace
+
+void decode_texels(Format format, const std::byte* texels, int count, const ChannelRows& rows) {
+    const FormatInfo info = format_info(format);
+    const std::size_t sample_bytes = static_cast<std::size_t>(info.bits) / 8;
+    const bool wide = info.bits == 16;
+    for (int c = 0; c < info.channels; ++c) {
+        float* out = rows.channel[c];
+        if (out == nullptr) continue;
+        const std::byte* first = texels + static_cast<std::size_t>(c) * sample_bytes;
+        const std::size_t step = info.block_bytes;
+        switch (info.sample) {
+            case SampleKind::unorm:
+                wide ? decode_samples<from_unorm16>(first, step, count, out)
+                     : decode_samples<from_unorm8>(first, step, count, out);
+                break;
+            case SampleKind::snorm:
+                wide ? decode_samples<from_snorm16>(first, step, count, out)
+                     : decode_samples<from_snorm8>(first, step, count, out);
+                break;
+            case SampleKind::floating:
+                wide ? decode_samples<from_half>(first, step, count, out)
+                     : decode_samples<load<float>>(first, step, count, out);
+                break;
+        }
+    }
+}
+
+void decode_blocks(Format format, const std::byte* blocks, int count, const ChannelRows& rows,
+                   std::ptrdiff_t stride) {
+    HWY_DYNAMIC_DISPATCH(DecodeBlocks)(format, blocks, count, rows, stride);
+}
+
+}  // namespace tex
+#endif

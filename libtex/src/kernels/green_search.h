@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// green_search.h: the endpoints of DXT5nm's green with the least squared error of all that there are.
+//
+// The search is that of bc4_search.h, with 4 entries and endpoints of 6 bits. These, widened to 8 bits, are 4 or 5
+// codes apart, so that thresholds, on a grid of 1/6 code, are looked up one by one.
+
+#pragma once
+
+#include "blocks/bc1.h"
+#include "kernels/clusters.h"
+
+namespace tex {
+
+void search_green_blocks(const BlockTexels* blocks, const ClusterBounds* bounds, int count, GreenEndpoints* endpoints);
+
+}  // namespace tex

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "kernels/scale.h"
+
+#include <cstddef>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/scale.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "kernels/vectors-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tex {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+void ScaleRow(float* x, float* y, float* z, float scale, ScaleMode mode, int count) {
+    const FloatTag d;
+    const FloatVec s = hn::Set(d, scale);
+    const FloatVec one = hn::Set(d, 1.0f);
+    const auto end = static_cast<std::size_t>(count);
+    for (std::size_t i = 0; i < end; i += hn::Lanes(d)) {
+        Vec3 n = {hn::Mul(s, hn::LoadU(d, x + i)), hn::Mul(s, hn::LoadU(d, y + i)), hn::LoadU(d, z + i)};
+        if (mode == ScaleMode::xy) {
+            const FloatVec squared = hn::Add(hn::Mul(n.x, n.x), hn::Mul(n.y, n.y));
+            n.z = hn::Sqrt(hn::Sub(one, hn::Min(squared, one)));
+        }
+        StoreVec3(d, NormaliseUpper(d, n), x + i, y + i, z + i);
+    }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tex
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tex {
+
+HWY_EXPORT(ScaleRow);
+
+void scale_row(float* x, float* y, float* z, float scale, ScaleMode mode, int count) {
+    HWY_DYNAMIC_DISPATCH(ScaleRow)(x, y, z, scale, mode, count);
+}
+
+}  // namespace tex
+#endif

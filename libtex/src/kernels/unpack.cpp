@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "kernels/unpack.h"
+
+#include <cstddef>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/unpack.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "kernels/vectors-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tex {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = FloatTag;
+using V = FloatVec;
+using M = FloatMask;
+
+// n of a stored value.
+V Component(D d, V value, const UnpackRule& rule) {
+    if (!rule.is_unsigned) return value;
+    const V n = hn::Sub(hn::Add(value, value), hn::Set(d, 1.0f));
+    if (!rule.snap_flat) return n;
+    // 1/255 and a little more, as 127/255 and 128/255 are rounded.
+    const M flat = hn::Le(hn::Abs(n), hn::Set(d, 0.003922f));
+    return hn::IfThenZeroElse(flat, n);
+}
+
+// False for NaN and infinity.
+M IsFinite(D d, V value) {
+    return hn::Lt(value, hn::Set(d, std::numeric_limits<float>::infinity()));
+}
+
+Vec3 Reconstruct(D d, V x, V y, bool keep_length) {
+    const V one = hn::Set(d, 1.0f);
+    const V squared = hn::Add(hn::Mul(x, x), hn::Mul(y, y));
+    const V z = hn::Sqrt(hn::Sub(one, hn::Min(squared, one)));
+    const M finite = IsFinite(d, squared);
+    if (keep_length) return FlatUnless(d, finite, {x, y, z});
+    // Dividing by 1 leaves a short vector as it is.
+    const V length = hn::Max(one, hn::Sqrt(squared));
+    return FlatUnless(d, finite, {hn::Div(x, length), hn::Div(y, length), z});
+}
+
+Vec3 Finish(D d, Vec3 n, bool keep_length) {
+    const M finite = IsFinite(d, SquaredLength(n));
+    return FlatUnless(d, finite, keep_length ? n : Normalise(d, n));
+}
+
+void UnpackRow(const float* x, const float* y, const float* z, const UnpackRule& rule, int count, float* out_x,
+               float* out_y, float* out_z) {
+    const D d;
+    const auto end = static_cast<std::size_t>(count);
+    for (std::size_t i = 0; i < end; i += hn::Lanes(d)) {
+        const V nx = Component(d, hn::LoadU(d, x + i), rule);
+        V ny = Component(d, hn::LoadU(d, y + i), rule);
+        if (rule.flip_y) ny = hn::Neg(ny);
+        const Vec3 n = z == nullptr
+                           ? Reconstruct(d, nx, ny, rule.keep_length)
+                           : Finish(d, {nx, ny, Component(d, hn::LoadU(d, z + i), rule)}, rule.keep_length);
+        StoreVec3(d, n, out_x + i, out_y + i, out_z + i);
+    }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tex
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tex {
+
+HWY_EXPORT(UnpackRow);
+
+void unpack_row(const float* x, const float* y, const float* z, const UnpackRule& rule, int count, float* out_x,
+                float* out_y, float* out_z) {
+    HWY_DYNAMIC_DISPATCH(UnpackRow)(x, y, z, rule, count, out_x, out_y, out_z);
+}
+
+}  // namespace tex
+#endif

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// canvas.h: 8-bit pictures to draw on.
+
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include <tex/texture.h>
+
+#include "preview/colormap.h"
+#include "preview/font.h"
+
+namespace tex::render {
+
+inline constexpr Code kGround{38, 40, 44};
+inline constexpr Code kInk{226, 228, 232};
+
+// Places are in pixels from the top left corner; what lies outside is cut off.
+class Canvas {
+public:
+    explicit Canvas(Extent extent, Code ground = kGround);
+    explicit Canvas(Texture picture);  // rgb8, one level
+
+    [[nodiscard]] Extent extent() const { return level_.extent; }
+    void set(int x, int y, Code color);
+    void fill(int x, int y, Extent size, Code color);
+    void draw(int x, int y, const Level& picture);
+    // Only the columns [from, to) of the picture.
+    void draw_columns(int x, int y, const Level& picture, int from, int to);
+    // Letters are kGlyphHeight times `scale` pixels high.
+    void text(int x, int y, int scale, std::string_view words, Code color = kInk);
+
+    [[nodiscard]] Texture take() &&;
+
+private:
+    Level level_;
+};
+
+// Pixels that a line of text is wide.
+[[nodiscard]] constexpr int text_width(std::string_view words, int scale) {
+    return words.empty() ? 0 : (static_cast<int>(words.size()) * kGlyphAdvance - 1) * scale;
+}
+
+// The words, or as many of their letters as fit into `width` pixels, with ".." at the end where some are cut.
+[[nodiscard]] std::string fitted(std::string_view words, int scale, int width);
+
+// The size of letters that suits a picture: 1, or 2 where it is 1024 pixels or wider.
+[[nodiscard]] constexpr int text_scale(int picture_width) {
+    return picture_width >= 1024 ? 2 : 1;
+}
+
+}  // namespace tex::render

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "preview/legend.h"
+
+#include <algorithm>
+#include <charconv>
+#include <utility>
+
+#include "preview/canvas.h"
+
+namespace tex::render {
+namespace {
+
+// In pixels, times text_scale().
+constexpr int kHeight = 36;
+constexpr int kMargin = 8;
+constexpr int kBarTop = 6;
+constexpr int kBarHeight = 10;
+constexpr int kTextTop = 21;
+
+}  // namespace
+
+Vec3 ColorScale::color(double value) const {
+    const double range = greatest - least;
+    const double t = (value - least) / (range > 0.0 ? range : 1.0);
+    switch (palette) {
+        case Palette::viridis:
+            return viridis(t);
+        case Palette::diverging:
+            return diverging(2.0 * t - 1.0);
+        case Palette::grey:
+            return Vec3{1.0, 1.0, 1.0} * t;
+    }
+    return {};
+}
+
+std::string number(double value) {
+    char text[32];
+    const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 3);
+    return {text, end.ptr};
+}
+
+Texture with_legend(Texture picture, const ColorScale& scale) {
+    const Level& level = picture.levels.front();
+    const int width = level.extent.width, top = level.extent.height, unit = text_scale(width);
+    Canvas canvas({width, top + kHeight * unit});
+    canvas.draw(0, 0, level);
+
+    const int bar = std::max(1, width - 2 * kMargin * unit);
+    for (int i = 0; i < bar; ++i) {
+        const Vec3 color =
+            scale.color(scale.least + (scale.greatest - scale.least) *
+                                          (bar > 1 ? static_cast<double>(i) / (bar - 1) : 0.0));
+        canvas.fill((width - bar) / 2 + i, top + kBarTop * unit, {1, kBarHeight * unit},
+                    {display_code(color.x), display_code(color.y), display_code(color.z)});
+    }
+    const std::string left = number(scale.least), right = number(scale.greatest);
+    const int y = top + kTextTop * unit;
+    canvas.text(kMargin * unit, y, unit, left);
+    canvas.text(width - kMargin * unit - text_width(right, unit), y, unit, right);
+    const int side = std::max(text_width(left, unit), text_width(right, unit)) + 2 * kMargin * unit;
+    const std::string title = fitted(scale.title, unit, width - 2 * side);
+    canvas.text((width - text_width(title, unit)) / 2, y, unit, title);
+    return std::move(canvas).take();
+}
+
+}  // namespace tex::render

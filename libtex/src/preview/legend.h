@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// legend.h: what the colours of a picture mean.
+
+#pragma once
+
+#include <string>
+
+#include <tex/texture.h>
+
+#include "preview/vector.h"
+
+namespace tex::render {
+
+// Values from `least` to `greatest`, in viridis, in the diverging colours (then least = -greatest), or in grey.
+enum class Palette { viridis, diverging, grey };
+struct ColorScale {
+    std::string title;
+    double least = 0.0, greatest = 1.0;
+    Palette palette = Palette::viridis;
+
+    // Display colour of a value.
+    [[nodiscard]] Vec3 color(double value) const;
+};
+
+// Three significant digits, the shortest form, the same in every locale.
+[[nodiscard]] std::string number(double value);
+
+// The picture with a legend below: a bar of the colours, the values at its ends, the title between them.
+[[nodiscard]] Texture with_legend(Texture picture, const ColorScale& scale);
+
+}  // namespace tex::render

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "preview/measures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/parallel.h"
+#include "checks/curl.h"
+#include "preview/progress.h"
+#include "preview/vector.h"
+
+namespace tex::render {
+namespace {
+
+constexpr int kRowsPerPiece = 16;
+
+Vec3 normal_at(const NormalMap& map, int i, int j) {
+    return {static_cast<double>(map.x.at(i, j)), static_cast<double>(map.y.at(i, j)),
+            static_cast<double>(map.z.at(i, j))};
+}
+
+// p and q of preview.h.
+Vec2 slopes_at(const NormalMap& map, int i, int j) {
+    const Vec3 n = normal_at(map, i, j);
+    const double z = std::max(n.z, 1.0 / 256.0);
+    return {-n.x / z, -n.y / z};
+}
+
+double value_at(Show show, const NormalMap& map, int i, int j) {
+    const Vec3 n = normal_at(map, i, j);
+    switch (show) {
+        case Show::slope:
+            return length(slopes_at(map, i, j));
+        case Show::tilt:
+            return degrees(angle_of(length(Vec2{n.x, n.y}), n.z));
+        case Show::length:
+            return length(n) - 1.0;
+        case Show::z_error: {
+            const double square = std::min(n.x * n.x + n.y * n.y, 1.0);
+            return n.z - std::sqrt(1.0 - square);
+        }
+        default:
+            return 0.0;
+    }
+}
+
+Result<Plane<float>> fill(Extent extent, const Execution& execution,
+                          const std::function<double(int i, int j)>& value) {
+    Plane<float> plane(extent);
+    const auto done = parallel_for(execution, extent.height, kRowsPerPiece, [&](int begin, int end) {
+        for (int j = begin; j < end; ++j) {
+            for (int i = 0; i < extent.width; ++i) plane.at(i, j) = static_cast<float>(value(i, j));
+        }
+    });
+    if (!done) return done.error();
+    return plane;
+}
+
+// The map as check-normals sees it.
+struct CurlView {
+    Image image;
+    Curl curl;
+    Slopes slopes;
+};
+CurlView curl_view(const NormalMap& map) {
+    CurlView view;
+    for (const Plane<float>* plane : {&map.x, &map.y, &map.z}) view.image.planes.push_back(plane->clone());
+    view.image.names = {"R", "G", "B"};
+    view.image.sample = SampleKind::floating;
+    const Stored stored{&view.image, {Component::x, Component::y, Component::z, Component::other}, true};
+    view.curl = measure_curl(stored);
+    view.slopes = slopes_of(stored, {0, 0, map.extent().width, map.extent().height});
+    return view;
+}
+
+// The two derivatives that are equal in a height field, by central differences, one-sided at the border; y grows upwards. NaN
+// beside texels that hold no normal.
+struct Mixed {
+    double dq_dx, dp_dy;
+};
+Mixed mixed_at(const Slopes& slopes, int i, int j) {
+    const Extent extent = slopes.extent();
+    const int left = std::max(i - 1, 0), right = std::min(i + 1, extent.width - 1);
+    const int above = std::max(j - 1, 0), below = std::min(j + 1, extent.height - 1);
+    const float across = static_cast<float>(std::max(right - left, 1)),
+                up = static_cast<float>(std::max(below - above, 1));
+    return {static_cast<double>((slopes.q.at(right, j) - slopes.q.at(left, j)) / across),
+            static_cast<double>((slopes.p.at(i, above) - slopes.p.at(i, below)) / up)};
+}
+
+std::string curl_title(const Curl& curl) {
+    const std::string figure = ", r = " + number(curl.correlation);
+    constexpr double kSure = 0.95;
+    if (curl.confidence < kSure) return "curl: y unclear" + figure;
+    return (curl.correlation > 0.0 ? "curl: y up" : "curl: y DOWN") + figure;
+}
+
+Result<Measure> measure_curl_of(const NormalMap& map, float maximum, const Execution& execution) {
+    const CurlView view = curl_view(map);
+    auto values = fill(map.extent(), part(execution, 0.0, 0.5), [&](int i, int j) {
+        const Mixed mixed = mixed_at(view.slopes, i, j);
+        const double curl = mixed.dq_dx - mixed.dp_dy;
+        return curl == curl ? curl : 0.0;
+    });
+    if (!values) return values.error();
+    // The scale is that of the most that the map could do wrong, not of what it does: a sound map is white.
+    const auto most = fill(map.extent(), part(execution, 0.5, 1.0), [&](int i, int j) {
+        const Mixed mixed = mixed_at(view.slopes, i, j);
+        return std::abs(mixed.dq_dx) + std::abs(mixed.dp_dy);
+    });
+    if (!most) return most.error();
+    Measure result;
+    result.values = std::move(*values);
+    const double greatest = maximum > 0.0f ? static_cast<double>(maximum) : round_maximum(*most, 0.01);
+    result.scale = {curl_title(view.curl), -greatest, greatest, Palette::diverging};
+    return result;
+}
+
+double nice(double value) {
+    double power = 1e-6;
+    while (power * 10.0 <= value && power < 1e15) power *= 10.0;
+    for (const double factor : {1.0, 2.0, 5.0}) {
+        if (power * factor >= value) return power * factor;
+    }
+    return power * 10.0;
+}
+
+}  // namespace
+
+bool is_measure(Show show) {
+    return show == Show::slope || show == Show::tilt || show == Show::length || show == Show::z_error ||
+           show == Show::curl;
+}
+
+double round_maximum(const Plane<float>& values, double least) {
+    std::vector<float> sizes;
+    sizes.reserve(static_cast<std::size_t>(values.extent().texels()));
+    for (int j = 0; j < values.extent().height; ++j) {
+        for (int i = 0; i < values.extent().width; ++i) {
+            const float size = std::abs(values.at(i, j));
+            if (size <= 3e38f) sizes.push_back(size);  // neither infinite nor NaN
+        }
+    }
+    if (sizes.empty()) return nice(least);
+    const std::size_t rank = std::min(sizes.size() - 1, sizes.size() * 995 / 1000);
+    std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(rank), sizes.end());
+    return nice(std::max(static_cast<double>(sizes[rank]), least));
+}
+
+Result<Measure> measure(Show show, const NormalMap& map, float maximum, const Execution& execution) {
+    if (show == Show::curl) return measure_curl_of(map, maximum, execution);
+    Measure result;
+    auto values = fill(map.extent(), execution, [&](int i, int j) { return value_at(show, map, i, j); });
+    if (!values) return values.error();
+    result.values = std::move(*values);
+    ColorScale& scale = result.scale;
+    scale.greatest = static_cast<double>(maximum);
+    const bool choose = !(maximum > 0.0f);
+    switch (show) {
+        case Show::slope:
+            scale.title = "slope, rise per texel";
+            if (choose) scale.greatest = round_maximum(result.values, 0.01);
+            break;
+        case Show::tilt:
+            scale.title = "tilt, degrees";
+            if (choose) scale.greatest = 90.0;
+            break;
+        case Show::length:
+        case Show::z_error:
+            scale.title = show == Show::length ? "length - 1" : "z - sqrt(1 - x^2 - y^2)";
+            if (choose) scale.greatest = round_maximum(result.values, 0.01);
+            scale.palette = Palette::diverging;
+            break;
+        default:
+            break;
+    }
+    if (scale.palette == Palette::diverging) scale.least = -scale.greatest;
+    return result;
+}
+
+}  // namespace tex::render

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// parallax.h: where the view ray meets the height map.
+
+#pragma once
+
+#include <tex/preview.h>
+
+#include "preview/sampling.h"
+
+namespace tex::render {
+
+// The offset of Parallax (preview.h) for a view direction in the tangent frame, view.z > 0.
+[[nodiscard]] Vec2 parallax_offset(const Parallax& parallax, const Sampler& height, Vec2 uv,
+                                   const Footprint& footprint, Vec3 view, int anisotropy);
+
+}  // namespace tex::render

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// progress.h: several steps that count as one.
+
+#pragma once
+
+#include <tex/execution.h>
+
+namespace tex::render {
+
+// How a step runs whose progress counts as that of the whole from `from` to `to`. `whole` must outlive the result.
+inline Execution part(const Execution& whole, double from, double to) {
+    Execution step;
+    step.threads = whole.threads;
+    if (whole.progress)
+        step.progress = [&whole, from, to](double done) { return whole.progress(from + (to - from) * done); };
+    return step;
+}
+
+}  // namespace tex::render

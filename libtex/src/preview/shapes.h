@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// shapes.h: where a view ray meets a shape, and the tangent frame there.
+
+#pragma once
+
+#include <optional>
+
+#include <tex/preview.h>
+
+#include "preview/camera.h"
+#include "preview/vector.h"
+
+namespace tex::render {
+
+// A point of a shape. Moving along tangent and binormal by a and b changes (u, v) by (a u_per_length, b v_per_length).
+struct Hit {
+    Vec3 point;
+    Vec3 tangent, binormal, normal;  // unit; tangent towards growing u, binormal towards growing v
+    Vec2 uv;
+    double u_per_length = 0.0, v_per_length = 0.0;  // above 0
+    int face = 0;                                   // from 1; differs where the surface has an edge
+};
+
+// A shape of preview.h, ready to be met by rays.
+class Body {
+public:
+    Body(const PreviewOptions& options, Extent map);
+
+    // The greatest dot(direction, point) of the points that the shape takes while it spins, with a margin round solids.
+    [[nodiscard]] double support(Vec3 direction) const;
+
+    [[nodiscard]] std::optional<Hit> meet(const Ray& ray) const;
+    // The face that the ray meets, 0 for none: cheaper.
+    [[nodiscard]] int face(const Ray& ray) const;
+
+private:
+    [[nodiscard]] double distance(const Ray& ray, int& face) const;
+    [[nodiscard]] Hit on_plane(Vec3 point) const;
+    [[nodiscard]] Hit on_sphere(Vec3 point) const;
+    [[nodiscard]] Hit on_cube(Vec3 point, int face) const;
+
+    Shape shape_;
+    double half_width_ = 1.0;  // of the plane; its half height is 1
+    double u_turns_ = 1.0, v_turns_ = 1.0;
+    bool mirror_;
+};
+
+// The change of (u, v) from `hit` to where `ray` meets the plane that touches the shape there; 0 where it meets it nowhere.
+[[nodiscard]] Vec2 uv_step(const Hit& hit, const Ray& ray);
+
+}  // namespace tex::render

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// surfaces.h: what each kind of picture shows at a point of the shape.
+
+#pragma once
+
+#include <optional>
+
+#include <tex/preview.h>
+
+#include "preview/measures.h"
+#include "preview/renderer.h"
+#include "preview/sampling.h"
+#include "preview/shading.h"
+
+namespace tex::render {
+
+// The textures of a scene, ready to be sampled.
+class Textures {
+public:
+    // Errors: bad_option (the albedo has no usable planes), cancelled, out_of_memory.
+    static Result<Textures> prepare(const PreviewScene& scene, const PreviewOptions& options,
+                                    const Execution& execution);
+
+    Sampler map, detail, albedo, detail_albedo, height;  // empty where there is none
+
+private:
+    std::optional<Pyramid> albedo_, detail_albedo_, height_;
+};
+
+// The whole material, lit.
+class LitSurface {
+public:
+    LitSurface(const Textures& textures, const PreviewScene& scene, const PreviewOptions& options,
+               const Stage& stage);
+
+    [[nodiscard]] Vec3 linear_light(const Hit& hit, const Footprint& footprint) const;
+    // The perturbed normal in the space of the shape.
+    [[nodiscard]] Vec3 normal(const Hit& hit, const Footprint& footprint) const;
+
+private:
+    [[nodiscard]] Hit displaced(const Hit& hit, const Footprint& footprint) const;
+    [[nodiscard]] Vec3 tangent_normal(Vec2 uv, const Footprint& footprint) const;
+    [[nodiscard]] Vec3 albedo(Vec2 uv, const Footprint& footprint) const;
+    [[nodiscard]] Vec2 detail_place(Vec2 uv) const;
+    [[nodiscard]] Footprint detail_area(const Footprint& footprint) const;
+
+    const Textures& textures_;
+    const PreviewScene& scene_;
+    const PreviewOptions& options_;
+    const Stage& stage_;
+    Illumination with_;
+};
+
+}  // namespace tex::render

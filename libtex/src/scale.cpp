@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <tex/scale.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "base/guard.h"
+#include "base/parallel.h"
+#include "kernels/scale.h"
+
+namespace tex {
+namespace {
+
+Result<void> scale_rows(NormalMap& map, float scale, ScaleMode mode, const Execution& execution, ProgressSpan span) {
+    const Extent extent = map.extent();
+    const int grain = std::max(1, (1 << 16) / extent.width);
+    return parallel_for(execution, extent.height, grain, [&](int begin, int end) {
+        for (int j = begin; j < end; ++j) scale_row(map.x.row(j), map.y.row(j), map.z.row(j), scale, mode, extent.width);
+    }, span);
+}
+
+[[maybe_unused]] bool is_scale(float scale) { return std::abs(scale) <= kMaxScale; }  // NaN is none
+
+}  // namespace
+
+Result<NormalMap> scale(NormalMap map, float scale, ScaleMode mode, const Execution& execution) {
+    assert(is_scale(scale));
+    return guarded([&]() -> Result<NormalMap> {
+        if (const auto scaled = scale_rows(map, scale, mode, execution, {}); !scaled) return scaled.error();
+        return std::move(map);
+    });
+}
+
+Result<MipChain> scale(MipChain chain, float scale, ScaleMode mode, const Execution& execution) {
+    assert(is_scale(scale));
+    return guarded([&]() -> Result<MipChain> {
+        double texels = 0.0;
+        for (const NormalMap& level : chain.levels) texels += static_cast<double>(level.extent().texels());
+        double done = 0.0;
+        for (NormalMap& level : chain.levels) {
+            const double next = std::min(1.0, done + static_cast<double>(level.extent().texels()) / texels);
+            if (const auto scaled = scale_rows(level, scale, mode, execution, {done, next}); !scaled) return scaled.error();
+            done = next;
+        }
+        return std::move(chain);
+    });
+}
+
+}  // namespace tex

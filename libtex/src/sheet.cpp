@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <tex/sheet.h>
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "base/guard.h"
+#include "containers/apng.h"
+#include "containers/png.h"
+#include "preview/canvas.h"
+
+namespace tex {
+namespace {
+
+using render::Canvas;
+
+constexpr int kGap = 8;
+constexpr int kCaption = 14;  // height of a caption's line, times the letters' scale
+
+int columns_for(std::size_t count) {
+    int columns = 1;
+    while (static_cast<std::size_t>(columns) * static_cast<std::size_t>(columns) < count) ++columns;
+    return columns;
+}
+
+bool without_captions(const std::vector<Panel>& panels) {
+    return std::all_of(panels.begin(), panels.end(),
+                       [](const Panel& panel) { return panel.caption.empty(); });
+}
+
+}  // namespace
+
+Result<Texture> picture_of(const Image& image) {
+    return guarded([&]() -> Result<Texture> {
+        const Plane<float>* planes[3] = {};
+        for (int c = 0; c < 3; ++c) {
+            const int index = image.find(std::string(1, "RGB"[c]));
+            if (index < 0) return Error{ErrorCode::bad_option, {}, "the picture has no channels R, G and B"};
+            planes[c] = &image.planes[static_cast<std::size_t>(index)];
+        }
+        Canvas canvas(image.extent());
+        for (int j = 0; j < image.extent().height; ++j) {
+            for (int i = 0; i < image.extent().width; ++i) {
+                const auto code = [&](int c) {
+                    return render::display_code(static_cast<double>(planes[c]->at(i, j)));
+                };
+                canvas.set(i, j, {code(0), code(1), code(2)});
+            }
+        }
+        return std::move(canvas).take();
+    });
+}
+
+Result<Texture> contact_sheet(const std::vector<Panel>& panels, int columns) {
+    return guarded([&]() -> Result<Texture> {
+        if (panels.empty()) return Error{ErrorCode::bad_option, {}, "a sheet needs at least one picture"};
+        if (columns <= 0) columns = columns_for(panels.size());
+        columns = std::min(columns, static_cast<int>(panels.size()));
+        const int rows = (static_cast<int>(panels.size()) + columns - 1) / columns;
+        std::vector<int> widths(static_cast<std::size_t>(columns)), heights(static_cast<std::size_t>(rows));
+        for (std::size_t k = 0; k < panels.size(); ++k) {
+            const Extent extent = panels[k].picture.extent();
+            int& width = widths[k % static_cast<std::size_t>(columns)];
+            int& height = heights[k / static_cast<std::size_t>(columns)];
+            width = std::max(width, extent.width);
+            height = std::max(height, extent.height);
+        }
+        const int scale = render::text_scale(*std::max_element(widths.begin(), widths.end()));
+        const int caption = without_captions(panels) ? 0 : kCaption * scale;
+        Canvas canvas({std::accumulate(widths.begin(), widths.end(), kGap * (columns + 1)),
+                       std::accumulate(heights.begin(), heights.end(), (kGap + caption) * rows + kGap)});
+        int y = kGap;
+        for (int row = 0; row < rows; ++row) {
+            int x = kGap;
+            for (int column = 0; column < columns; ++column) {
+                const std::size_t k = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+                                      static_cast<std::size_t>(column);
+                if (k >= panels.size()) break;
+                const Panel& panel = panels[k];
+                const int width = widths[static_cast<std::size_t>(column)];
+                canvas.draw(x, y, panel.picture.levels.front());
+                canvas.text(x, y + panel.picture.extent().height + 4 * scale, scale,
+                            render::fitted(panel.caption, scale, width));
+                x += width + kGap;
+            }
+            y += heights[static_cast<std::size_t>(row)] + caption + kGap;
+        }
+        return std::move(canvas).take();
+    });
+}
+
+Result<Texture> split_view(const Panel& left, const Panel& right) {
+    return guarded([&]() -> Result<Texture> {
+        const Extent extent = left.picture.extent();
+        if (extent != right.picture.extent())
+            return Error{ErrorCode::bad_option, {}, "the two pictures differ in size"};
+        const int scale = render::text_scale(extent.width), middle = extent.width / 2;
+        Canvas canvas({extent.width, extent.height + kCaption * scale + 4 * scale});
+        canvas.draw_columns(0, 0, left.picture.levels.front(), 0, middle);
+        canvas.draw_columns(0, 0, right.picture.levels.front(), middle, extent.width);
+        canvas.fill(middle - scale, 0, {2 * scale, extent.height}, render::kInk);
+        const int y = extent.height + 5 * scale, margin = 4 * scale;
+        const std::string a = render::fitted(left.caption, scale, middle - 2 * margin);
+        const std::string b = render::fitted(right.caption, scale, extent.width - middle - 2 * margin);
+        canvas.text(margin, y, scale, a);
+        canvas.text(extent.width - margin - render::text_width(b, scale), y, scale, b);
+        return std::move(canvas).take();
+    });
+}
+
+Result<std::vector<std::byte>> encode_animation(const std::vector<Texture>& pictures, int frames_per_second) {
+    return guarded([&]() -> Result<std::vector<std::byte>> {
+        if (pictures.empty())
+            return Error{ErrorCode::bad_option, {}, "an animation needs at least one picture"};
+        std::vector<std::vector<std::byte>> frames;
+        for (const Texture& picture : pictures) {
+            auto frame = encode_png(picture);
+            if (!frame) return frame.error();
+            frames.push_back(std::move(*frame));
+        }
+        return join_png_frames(frames, std::clamp(frames_per_second, 1, 1000));
+    });
+}
+
+}  // namespace tex

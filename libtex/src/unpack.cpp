@@ -1,0 +1,347 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <tex/unpack.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+
+#include "base/guard.h"
+#include "base/parallel.h"
+#include "kernels/decode.h"
+#include "kernels/unpack.h"
+
+namespace tex {
+namespace {
+
+constexpr const char* kChannelNames[] = {"R", "G", "B", "A"};
+constexpr int kStripRows = 4;  // of a block format: one row of blocks
+
+int strips_of(Extent extent) { return (extent.height + kStripRows - 1) / kStripRows; }
+
+// Decodes the rows of strip `strip` to `rows`, whose rows lie `stride` apart and must have room for kStripRows rows of the width
+// rounded up to 4.
+void decode_strip(Format format, const Level& level, int strip, const ChannelRows& rows, std::ptrdiff_t stride) {
+    const int width = level.extent.width;
+    const std::size_t pitch = level_bytes(format, {width, 1});  // of a row of blocks, where there are blocks
+    if (format_info(format).block > 1) {
+        decode_blocks(format, level.bytes.data() + static_cast<std::size_t>(strip) * pitch, (width + 3) / 4, rows, stride);
+        return;
+    }
+    const int first = strip * kStripRows;
+    const int end = std::min(level.extent.height, first + kStripRows);
+    for (int j = first; j < end; ++j) {
+        ChannelRows row;
+        for (int c = 0; c < 4; ++c) {
+            float* const channel = rows.channel[c];
+            row.channel[c] = channel == nullptr ? nullptr : channel + (j - first) * stride;
+        }
+        decode_texels(format, level.bytes.data() + static_cast<std::size_t>(j) * pitch, width, row);
+    }
+}
+
+// Which of four channels hold x, y and z; -1 for none.
+struct Sources {
+    int x = -1;
+    int y = -1;
+    int z = -1;
+};
+
+int channel_of(const Swizzle& swizzle, Component component) {
+    const auto found = std::find(swizzle.begin(), swizzle.end(), component);
+    return found == swizzle.end() ? -1 : static_cast<int>(found - swizzle.begin());
+}
+
+// `available` channels can be read: bit c for channel c.
+Result<Sources> sources_of(const Swizzle& swizzle, unsigned available) {
+    const Sources sources = {channel_of(swizzle, Component::x), channel_of(swizzle, Component::y),
+                             channel_of(swizzle, Component::z)};
+    const std::string name = to_string(swizzle);
+    if (sources.x < 0) return Error{ErrorCode::bad_option, {}, "the swizzle " + name + " has no x"};
+    if (sources.y < 0) return Error{ErrorCode::bad_option, {}, "the swizzle " + name + " has no y"};
+    for (const int c : {sources.x, sources.y, sources.z}) {
+        if (c >= 0 && (available >> c & 1) == 0) {
+            return Error{ErrorCode::bad_option, {},
+                         "the swizzle " + name + " reads " + kChannelNames[c] + ", which is not there"};
+        }
+    }
+    return sources;
+}
+
+// What the values of some rows say about ValueRange.
+struct RangeEvidence {
+    bool negative = false;
+    double off_signed = 0.0;    // how far the vectors are from unit length, read as signed
+    double off_unsigned = 0.0;  // and as unsigned
+};
+
+double length_error(double x, double y, double z, bool has_z) {
+    const double excess = x * x + y * y + z * z - 1.0;
+    return has_z ? std::abs(excess) : std::max(0.0, excess);
+}
+
+RangeEvidence weigh_row(const float* x, const float* y, const float* z, int count) {
+    RangeEvidence evidence;
+    for (int i = 0; i < count; ++i) {
+        const double nx = x[i];
+        const double ny = y[i];
+        const double nz = z != nullptr ? z[i] : 0.0;
+        if (nx < 0.0 || ny < 0.0 || nz < 0.0) evidence.negative = true;
+        const double mz = z != nullptr ? 2.0 * nz - 1.0 : 0.0;
+        const double off_signed = length_error(nx, ny, nz, z != nullptr);
+        const double off_unsigned = length_error(2.0 * nx - 1.0, 2.0 * ny - 1.0, mz, z != nullptr);
+        if (!std::isfinite(off_signed) || !std::isfinite(off_unsigned)) continue;
+        evidence.off_signed += off_signed;
+        evidence.off_unsigned += off_unsigned;
+    }
+    return evidence;
+}
+
+// The rows of one strip, for x, y and z; those of z are null where there is none. Padded to whole vectors.
+struct StripRows {
+    const float* component[3][kStripRows] = {};
+};
+
+// Gives the rows of a texture's level, decoded to scratch memory.
+struct LevelReader {
+    Format format;
+    const Level& level;
+    Sources sources;
+
+    [[nodiscard]] Extent extent() const { return level.extent; }
+
+    StripRows read(int strip, Plane<float>& scratch) const {
+        const int channels[3] = {sources.x, sources.y, sources.z};
+        ChannelRows rows;
+        StripRows out;
+        for (int k = 0; k < 3; ++k) {
+            if (channels[k] < 0) continue;
+            rows.channel[channels[k]] = scratch.row(k * kStripRows);
+            for (int r = 0; r < kStripRows; ++r) out.component[k][r] = scratch.row(k * kStripRows + r);
+        }
+        decode_strip(format, level, strip, rows, scratch.stride());
+        return out;
+    }
+};
+
+// Gives the rows of three planes as they are.
+struct ImageReader {
+    const Plane<float>* planes[3];  // z may be null
+
+    [[nodiscard]] Extent extent() const { return planes[0]->extent(); }
+
+    StripRows read(int strip, Plane<float>&) const {
+        const int first = strip * kStripRows;
+        StripRows out;
+        for (int k = 0; k < 3; ++k) {
+            for (int r = 0; planes[k] != nullptr && r < kStripRows && first + r < extent().height; ++r) {
+                out.component[k][r] = planes[k]->row(first + r);
+            }
+        }
+        return out;
+    }
+};
+
+Plane<float> make_scratch(Extent extent) { return Plane<float>({(extent.width + 3) / 4 * 4, 3 * kStripRows}); }
+
+// Strips that one thread takes at once: enough texels to be worth it.
+int grain_of(Extent extent) { return std::max(1, (1 << 16) / (kStripRows * extent.width)); }
+
+// Whether floats are (n + 1) / 2: see unpack().
+template <class Reader>
+Result<bool> weigh_range(const Reader& reader, const Execution& execution) {
+    const Extent extent = reader.extent();
+    std::vector<RangeEvidence> rows(static_cast<std::size_t>(extent.height));
+    Execution silent;
+    silent.threads = execution.threads;
+    const auto weighed = parallel_for(silent, strips_of(extent), grain_of(extent), [&](int begin, int end) {
+        Plane<float> scratch = make_scratch(extent);
+        for (int strip = begin; strip < end; ++strip) {
+            const StripRows strip_rows = reader.read(strip, scratch);
+            for (int r = 0; r < kStripRows && strip * kStripRows + r < extent.height; ++r) {
+                rows[static_cast<std::size_t>(strip * kStripRows + r)] =
+                    weigh_row(strip_rows.component[0][r], strip_rows.component[1][r], strip_rows.component[2][r],
+                              extent.width);
+            }
+        }
+    });
+    if (!weighed) return weighed.error();
+    RangeEvidence sum;
+    for (const RangeEvidence& row : rows) {
+        if (row.negative) return false;
+        sum.off_signed += row.off_signed;
+        sum.off_unsigned += row.off_unsigned;
+    }
+    return sum.off_unsigned <= sum.off_signed;
+}
+
+template <class Reader>
+Result<bool> is_unsigned(const Reader& reader, SampleKind sample, ValueRange range, const Execution& execution) {
+    if (sample == SampleKind::unorm) return true;
+    if (sample == SampleKind::snorm || range == ValueRange::signed_) return false;
+    if (range == ValueRange::unsigned_) return true;
+    return weigh_range(reader, execution);
+}
+
+template <class Reader>
+Result<void> unpack_rows(const Reader& reader, const UnpackRule& rule, NormalMap& map, const Execution& execution,
+                         ProgressSpan span) {
+    const Extent extent = reader.extent();
+    map = NormalMap(extent);
+    return parallel_for(execution, strips_of(extent), grain_of(extent), [&](int begin, int end) {
+        Plane<float> scratch = make_scratch(extent);
+        for (int strip = begin; strip < end; ++strip) {
+            const StripRows rows = reader.read(strip, scratch);
+            for (int r = 0; r < kStripRows && strip * kStripRows + r < extent.height; ++r) {
+                const int j = strip * kStripRows + r;
+                unpack_row(rows.component[0][r], rows.component[1][r], rows.component[2][r], rule, extent.width,
+                           map.x.row(j), map.y.row(j), map.z.row(j));
+            }
+        }
+    }, span);
+}
+
+UnpackRule rule_of(const UnpackOptions& options, SampleKind sample, int bits, YAxis y_axis) {
+    UnpackRule rule;
+    rule.snap_flat = options.snap_flat && sample == SampleKind::unorm && bits == 8;
+    rule.flip_y = y_axis == YAxis::down;
+    rule.keep_length = options.keep_length;
+    return rule;
+}
+
+// The planes that stand for R, G, B and A; null for those that are not there.
+std::array<const Plane<float>*, 4> planes_of(const Image& image) {
+    std::array<const Plane<float>*, 4> planes = {};
+    const auto plane = [&](const char* name) {
+        const int k = image.find(name);
+        return k < 0 ? nullptr : &image.planes[static_cast<std::size_t>(k)];
+    };
+    if (image.find("R") >= 0) {
+        for (std::size_t c = 0; c < 4; ++c) planes[c] = plane(kChannelNames[c]);
+    } else if (image.find("Y") >= 0) {
+        planes = {plane("Y"), plane("Y"), plane("Y"), plane("A")};
+    } else {
+        for (std::size_t c = 0; c < std::min<std::size_t>(4, image.planes.size()); ++c) planes[c] = &image.planes[c];
+    }
+    return planes;
+}
+
+ValueRange range_of(const std::string& normal_encoding, const UnpackOptions& options) {
+    if (options.range != ValueRange::automatic) return options.range;
+    if (normal_encoding == "signed") return ValueRange::signed_;
+    if (normal_encoding == "unsigned") return ValueRange::unsigned_;
+    return ValueRange::automatic;
+}
+
+#ifndef NDEBUG
+bool is_whole(const Texture& texture) {
+    for (std::size_t k = 0; k < texture.levels.size(); ++k) {
+        const Level& level = texture.levels[k];
+        if (level.extent != level_extent(texture.extent(), static_cast<int>(k))) return false;
+        if (level.bytes.size() != level_bytes(texture.format, level.extent)) return false;
+    }
+    return !texture.levels.empty();
+}
+#endif
+
+Result<Image> decode_level(const Texture& texture, const Level& level, const Execution& execution) {
+    const Format format = texture.format;
+    const FormatInfo info = format_info(format);
+    Image image;
+    image.sample = info.sample;
+    image.bits = info.bits;
+    image.normal_encoding = texture.normal_encoding;
+    for (int c = 0; c < info.channels; ++c) {
+        image.planes.emplace_back(level.extent);
+        image.names.emplace_back(kChannelNames[c]);
+    }
+    const Extent extent = level.extent;
+    const auto decoded = parallel_for(execution, strips_of(extent), grain_of(extent), [&](int begin, int end) {
+        Plane<float> scratch({(extent.width + 3) / 4 * 4, 4 * kStripRows});
+        ChannelRows rows;
+        for (int c = 0; c < info.channels; ++c) rows.channel[c] = scratch.row(c * kStripRows);
+        for (int strip = begin; strip < end; ++strip) {
+            decode_strip(format, level, strip, rows, scratch.stride());
+            for (int c = 0; c < info.channels; ++c) {
+                for (int r = 0; r < kStripRows && strip * kStripRows + r < extent.height; ++r) {
+                    std::memcpy(image.planes[static_cast<std::size_t>(c)].row(strip * kStripRows + r),
+                                scratch.row(c * kStripRows + r), static_cast<std::size_t>(extent.width) * sizeof(float));
+                }
+            }
+        }
+    });
+    if (!decoded) return decoded.error();
+    return image;
+}
+
+Result<MipChain> unpack_levels(const Texture& texture, const UnpackOptions& options, const Execution& execution) {
+    const FormatInfo info = format_info(texture.format);
+    const Result<Sources> sources =
+        sources_of(options.swizzle.value_or(texture.swizzle), (1u << info.channels) - 1);
+    if (!sources) return sources.error();
+    UnpackRule rule = rule_of(options, info.sample, info.bits, options.y_axis.value_or(texture.y_axis));
+    const ValueRange range = range_of(texture.normal_encoding, options);
+    const Result<bool> biased =
+        is_unsigned(LevelReader{texture.format, texture.levels.front(), *sources}, info.sample, range, execution);
+    if (!biased) return biased.error();
+    rule.is_unsigned = *biased;
+
+    double texels = 0.0;
+    for (const Level& level : texture.levels) texels += static_cast<double>(level.extent.texels());
+    MipChain chain;
+    chain.levels.resize(texture.levels.size());
+    double done = 0.0;
+    for (std::size_t k = 0; k < texture.levels.size(); ++k) {
+        const Level& level = texture.levels[k];
+        const double next = done + static_cast<double>(level.extent.texels()) / texels;
+        const auto unpacked = unpack_rows(LevelReader{texture.format, level, *sources}, rule, chain.levels[k],
+                                          execution, {done, std::min(1.0, next)});
+        if (!unpacked) return unpacked.error();
+        done = next;
+    }
+    return chain;
+}
+
+Result<NormalMap> unpack_image(const Image& image, const UnpackOptions& options, const Execution& execution) {
+    constexpr Swizzle kXyz = {Component::x, Component::y, Component::z, Component::other};
+    constexpr Swizzle kXy = {Component::x, Component::y, Component::zero, Component::one};
+    const std::array<const Plane<float>*, 4> planes = planes_of(image);
+    unsigned available = 0;
+    for (unsigned c = 0; c < 4; ++c) available |= (planes[c] != nullptr ? 1u : 0u) << c;
+    const Result<Sources> sources =
+        sources_of(options.swizzle.value_or(image.planes.size() == 2 ? kXy : kXyz), available);
+    if (!sources) return sources.error();
+    const auto plane = [&](int c) { return c < 0 ? nullptr : planes[static_cast<std::size_t>(c)]; };
+    const ImageReader reader{{plane(sources->x), plane(sources->y), plane(sources->z)}};
+
+    UnpackRule rule = rule_of(options, image.sample, image.bits, options.y_axis.value_or(YAxis::up));
+    const Result<bool> biased = is_unsigned(reader, image.sample, range_of(image.normal_encoding, options), execution);
+    if (!biased) return biased.error();
+    rule.is_unsigned = *biased;
+    NormalMap map;
+    if (const auto unpacked = unpack_rows(reader, rule, map, execution, {}); !unpacked) return unpacked.error();
+    return map;
+}
+
+}  // namespace
+
+Result<Image> decode(const Texture& texture, int level, const Execution& execution) {
+    assert(level >= 0 && static_cast<std::size_t>(level) < texture.levels.size());
+    const Level& chosen = texture.levels[static_cast<std::size_t>(level)];
+    assert(chosen.bytes.size() == level_bytes(texture.format, chosen.extent));
+    return guarded([&] { return decode_level(texture, chosen, execution); });
+}
+
+Result<MipChain> unpack(const Texture& texture, const UnpackOptions& options, const Execution& execution) {
+    assert(is_whole(texture));
+    return guarded([&] { return unpack_levels(texture, options, execution); });
+}
+
+Result<NormalMap> unpack(const Image& image, const UnpackOptions& options, const Execution& execution) {
+    assert(!image.planes.empty());
+    return guarded([&] { return unpack_image(image, options, execution); });
+}
+
+}  // namespace tex
