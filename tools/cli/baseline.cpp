@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cli/baseline.h"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "cli/json.h"
+
+namespace tex::cli {
+
+Baseline::Key Baseline::key_of(const CheckReport& report, const Finding& finding) {
+    const int level = finding.regions.empty() ? 0 : finding.regions.front().level;
+    return {std::filesystem::path(report.file).lexically_normal().generic_string(), std::string(finding.rule->id), level};
+}
+
+Result<Baseline> Baseline::read(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) return Error{ErrorCode::io, path, std::strerror(errno)};
+    const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+    const Json json = Json::parse(text, nullptr, false);
+    const auto bad = [&](const char* reason) { return Error{ErrorCode::bad_data, path, reason}; };
+    if (!json.is_object() || json.value("version", 0) != 1 || !json.contains("findings") || !json["findings"].is_array()) {
+        return bad("not a baseline that check-normals wrote");
+    }
+    Baseline baseline;
+    for (const Json& item : json["findings"]) {
+        const bool whole = item.is_object() && item.contains("file") && item["file"].is_string() && item.contains("id") &&
+                           item["id"].is_string();
+        if (!whole) return bad("a finding without file or id");
+        const bool has_level = item.contains("level") && item["level"].is_number_integer();
+        baseline.known_.emplace(item["file"].get<std::string>(), item["id"].get<std::string>(), has_level ? item["level"].get<int>() : 0);
+    }
+    return baseline;
+}
+
+Baseline Baseline::of(const std::vector<CheckReport>& reports) {
+    Baseline baseline;
+    for (const CheckReport& report : reports) {
+        for (const Finding& finding : report.findings) baseline.known_.insert(key_of(report, finding));
+    }
+    return baseline;
+}
+
+int Baseline::accept(CheckReport& report) const {
+    return static_cast<int>(std::erase_if(report.findings, [&](const Finding& finding) {
+        return finding.rule->id != "N101" && known_.count(key_of(report, finding)) > 0;
+    }));
+}
+
+std::string Baseline::text() const {
+    std::string lines;
+    for (const auto& [file, id, level] : known_) {
+        Json item;
+        item["file"] = file;
+        item["id"] = id;
+        item["level"] = level;
+        lines += (lines.empty() ? "\n    " : ",\n    ") + item.dump(-1, ' ', false, Json::error_handler_t::replace);
+    }
+    return "{\n  \"version\": 1,\n  \"findings\": [" + lines + (lines.empty() ? "" : "\n  ") + "]\n}\n";
+}
+
+}  // namespace tex::cli

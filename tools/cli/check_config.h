@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// check_config.h: what a project wants of its textures, in a TOML file.
+//
+//     require = ["format=dxt5nm", "mips=full", "y=up"]
+//     enable  = ["not-power-of-two"]
+//     disable = ["N208"]
+//     fail-on = "warning"
+//
+//     [severity]
+//     not-unit-length = "error"
+//
+// Options of the command line are added to it and win over it.
+
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <tex/check.h>
+
+namespace tex::cli {
+
+struct CheckConfig {
+    CheckOptions options;
+    std::optional<Severity> fail_on;
+};
+
+// Throws UsageError where the file says what does not exist (with its line where that is known). Errors: io.
+[[nodiscard]] Result<CheckConfig> read_check_config(const std::string& path);
+
+}  // namespace tex::cli

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cli/collisions.h"
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <tex/mip_chain.h>
+
+#include "cli/files.h"
+#include "cli/name_pattern.h"
+#include "cli/text.h"
+#include "cli/usage_error.h"
+
+namespace tex::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Identity = std::pair<dev_t, ino_t>;
+
+// Which file an existing path is; nothing for streams, devices and paths that do not exist.
+std::optional<Identity> identity(const std::string& path) {
+    struct stat status {};
+    if (path == "-" || stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
+    return Identity{status.st_dev, status.st_ino};
+}
+
+bool is_special(const std::string& path) {
+    struct stat status {};
+    return path == "-" ||
+           (stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode));
+}
+
+// One spelling for all the names of a path that need not exist.
+std::string canonical(const std::string& path) {
+    std::error_code error;
+    const fs::path folder = fs::weakly_canonical(fs::absolute(path, error).parent_path(), error);
+    return (folder / fs::path(path).filename()).string();
+}
+
+// The files that a task writes: more than one where each level has its own. As many as the largest extent
+// could have.
+std::vector<std::string> files_of(const std::string& output) {
+    if (!has_level(output)) return {output};
+    std::vector<std::string> files;
+    for (int level = 0; level < level_count({kMaxExtent, 1}); ++level)
+        files.push_back(with_level(output, level));
+    return files;
+}
+
+}  // namespace
+
+void check_collisions(const std::vector<Task>& tasks, const std::string& depfile) {
+    std::map<Identity, std::string> inputs;
+    for (const Task& task : tasks) {
+        if (const auto file = identity(task.input)) inputs.emplace(*file, task.input);
+        for (const std::string& input : task.also) {
+            if (const auto file = identity(input)) inputs.emplace(*file, input);
+        }
+    }
+    const auto check_not_an_input = [&](const std::string& path) {
+        const auto file = identity(path);
+        if (!file) return;
+        const auto input = inputs.find(*file);
+        if (input == inputs.end()) return;
+        throw UsageError(
+            fmt::format("the output {} is the input {}", printable(path), printable(input->second)));
+    };
+
+    std::map<std::string, const Task*> by_name;
+    std::map<Identity, const Task*> by_identity;
+    for (const Task& task : tasks) {
+        for (const std::string& path : files_of(task.output)) {
+            if (is_special(path)) continue;
+            check_not_an_input(path);
+            const auto [same, is_new] = by_name.emplace(canonical(path), &task);
+            const Task* other = is_new ? nullptr : same->second;
+            if (const auto file = identity(path); file && other == nullptr) {
+                const auto [linked, is_new_file] = by_identity.emplace(*file, &task);
+                if (!is_new_file) other = linked->second;
+            }
+            if (other != nullptr) {
+                throw UsageError(fmt::format("{} and {} have the same output {}", printable(other->input),
+                                             printable(task.input), printable(path)));
+            }
+        }
+    }
+    if (depfile.empty()) return;
+    check_not_an_input(depfile);
+    if (by_name.contains(canonical(depfile)))
+        throw UsageError(fmt::format("--depfile: {} is an output", printable(depfile)));
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// command.h: the table of a command's options, and the command line read by it.
+//
+// One row says everything about an option: its names, its value, what it means, its default and the words
+// that it takes. The parser (CLI11), --help, the shell completions, --list-options and with it the test of
+// the man pages all read these rows. Defaults are what the target holds when its row is added: the
+// library's own.
+
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tex/names.h>
+
+#include "cli/exit_code.h"
+#include "cli/value.h"
+
+namespace CLI {
+class App;
+}
+
+namespace tex::cli {
+
+// A word that an option takes, and what it means.
+struct Word {
+    std::string name;
+    std::string meaning;
+};
+
+template <class E, std::size_t N>
+[[nodiscard]] std::vector<Word> words_of(const Named<E> (&table)[N]) {
+    std::vector<Word> words;
+    for (const Named<E>& row : table) words.push_back({std::string(row.name), std::string(row.meaning)});
+    return words;
+}
+[[nodiscard]] std::vector<std::string> names_of(const std::vector<Word>& words);
+
+enum class Completes { nothing, words, files, directories };
+
+struct Row {
+    std::string group;               // heading in the help
+    std::vector<std::string> names;  // "-o", "--output"
+    std::string value;               // what stands for the value: "FILE"; empty for a flag
+    std::string help;         // a clause without a final full stop; `words` and `preset` are added to it
+    std::string preset;       // the default as a user would type it, or empty
+    std::vector<Word> words;  // the words that the option takes
+    Completes completes = Completes::nothing;
+    bool hidden = false;                                                    // not in the help
+    bool repeatable = false;                                                // may be given more than once
+    [[nodiscard]] const std::string& name() const { return names.back(); }  // the long one
+};
+
+// The group of --help and its like, which the help lists last.
+inline constexpr const char* kHelpGroup = "Help";
+
+struct Example {
+    std::string line;
+    std::string meaning;
+};
+
+class Command {
+public:
+    // `summary` is a sentence: "Turns height maps into normal maps."
+    Command(std::string name, std::string summary);
+    ~Command();
+    Command(const Command&) = delete;
+    Command& operator=(const Command&) = delete;
+
+    void usage(std::string line) { usages_.push_back(std::move(line)); }
+    // What the positional arguments are: "HEIGHT...", "height maps; - is standard input".
+    void input(std::string value, std::string help) { input_ = {std::move(value), std::move(help)}; }
+    void example(std::string line, std::string meaning) {
+        examples_.push_back({std::move(line), std::move(meaning)});
+    }
+    void finds_things() { finds_ = true; }  // ExitCode::findings is one of the command's
+    void group(std::string title) { group_ = std::move(title); }
+
+    // The row of an option with a value; `take` gets the text and throws UsageError. References to rows
+    // stay valid.
+    Row& option(const std::string& names, std::string value, std::string help,
+                std::function<void(const std::string& text)> take);
+    Row& flag(bool& target, const std::string& names, std::string help);
+    Row& text(std::string& target, const std::string& names, std::string value, std::string help);
+    Row& number(float& target, const std::string& names, std::string value, Range range, std::string help);
+    Row& number(int& target, const std::string& names, std::string value, int least, int greatest,
+                std::string help);
+    template <class E, std::size_t N>
+    Row& choice(E& target, const std::string& names, std::string value, const Named<E> (&table)[N],
+                std::string help) {
+        Row& row =
+            choice_row(names, std::move(value), std::move(help), words_of(table),
+                       [&target, &table](const std::string& name) { target = *find_by_name(table, name); });
+        row.preset = name_of(table, target);
+        return row;
+    }
+    template <class E, std::size_t N>
+    Row& choice(std::optional<E>& target, const std::string& names, std::string value,
+                const Named<E> (&table)[N], std::string help) {
+        return choice_row(
+            names, std::move(value), std::move(help), words_of(table),
+            [&target, &table](const std::string& name) { target = *find_by_name(table, name); });
+    }
+
+    // Called after all options were read: throws UsageError where they contradict each other.
+    void check(std::function<void()> body) { checks_.push_back(std::move(body)); }
+
+    // Reads the command line. An exit code where the command has done what was asked: --help, --version,
+    // ...; throws UsageError.
+    [[nodiscard]] std::optional<ExitCode> parse(int argc, const char* const* argv);
+
+    [[nodiscard]] bool given(std::string_view name) const;
+    // Those of `names` that were given.
+    [[nodiscard]] std::vector<std::string> given_of(const std::vector<std::string>& names) const;
+    [[nodiscard]] const std::vector<std::string>& inputs() const { return inputs_; }
+
+    [[nodiscard]] const std::string& name() const { return name_; }
+    [[nodiscard]] const std::string& summary() const { return summary_; }
+    [[nodiscard]] const std::vector<std::string>& usages() const { return usages_; }
+    [[nodiscard]] const std::vector<Example>& examples() const { return examples_; }
+    [[nodiscard]] const Word& input() const { return input_; }
+    [[nodiscard]] bool finds() const { return finds_; }
+    [[nodiscard]] const std::deque<Row>& rows() const { return rows_; }
+
+private:
+    Row& choice_row(const std::string& names, std::string value, std::string help, std::vector<Word> words,
+                    std::function<void(const std::string& name)> take);
+    void check_equals_signs(int argc, const char* const* argv) const;
+    void take_inputs();
+    [[nodiscard]] const Row* find(std::string_view name) const;
+
+    std::string name_;
+    std::string summary_;
+    std::string group_;
+    std::vector<std::string> usages_;
+    std::vector<Example> examples_;
+    Word input_;
+    std::vector<std::string> inputs_;
+    std::deque<Row> rows_;
+    std::vector<std::function<void()>> checks_;
+    std::unique_ptr<CLI::App> app_;
+    bool finds_ = false;
+    bool help_ = false;
+    bool version_ = false;
+    bool list_options_ = false;
+    std::string completion_;
+};
+
+// The choice of a word by name, for options whose value is made of several: throws UsageError with the
+// names and a suggestion.
+void check_word(const std::string& name, const std::vector<std::string>& names);
+template <class E, std::size_t N>
+[[nodiscard]] E parse_word(const std::string& name, const Named<E> (&table)[N]) {
+    check_word(name, names_of(words_of(table)));
+    return *find_by_name(table, name);
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// exit_code.h: what a command's exit status means. The help and the man pages show this table.
+
+#pragma once
+
+#include <tex/names.h>
+#include <tex/result.h>
+
+namespace tex::cli {
+
+enum class ExitCode { done = 0, findings = 1, usage = 2, io = 3, data = 4, bug = 5 };
+
+inline constexpr Named<ExitCode> kExitCodeNames[] = {
+    {ExitCode::done, "0", "done"},
+    {ExitCode::findings, "1",
+     "check-normals found problems, compare-normals found a difference over the limits"},
+    {ExitCode::usage, "2", "the command line is wrong; nothing was read or written"},
+    {ExitCode::io, "3", "a file cannot be opened, read or written; out of memory, disk or threads"},
+    {ExitCode::data, "4", "a file is damaged, of an unsupported kind, or does not fit the options"},
+    {ExitCode::bug, "5", "a bug of ours"},
+};
+
+// The exit code of a failure that happened while files were processed. (bad_option is then a matter of the
+// file: it lacks the channel that was asked for, say.) Cancelled runs end by their signal, see interrupt.h.
+constexpr ExitCode exit_code(ErrorCode code) {
+    switch (code) {
+        case ErrorCode::io:
+        case ErrorCode::out_of_memory:
+        case ErrorCode::cancelled:
+            return ExitCode::io;
+        case ErrorCode::bad_data:
+        case ErrorCode::unsupported:
+        case ErrorCode::bad_option:
+            return ExitCode::data;
+    }
+    return ExitCode::bug;
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// heights.h: the option groups of commands that read height maps, and the step that reads them.
+
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <tex/color.h>
+#include <tex/height_field.h>
+
+#include "cli/command.h"
+#include "cli/job.h"
+
+namespace tex::cli {
+
+// --color-space, --ocio-config and the variable OCIO.
+struct ColorGroup {
+    ColorOptions color;
+
+    void add(Command& command);
+    [[nodiscard]] bool is_given() const { return !color.space.empty(); }
+
+    // Tries the conversion, so that a name that the configuration does not know is found before any file is
+    // read: throws UsageError; errors of Result: the configuration cannot be read.
+    [[nodiscard]] Result<void> check() const;
+
+    // The configuration as a file that outputs depend on, or empty.
+    [[nodiscard]] std::string config_file() const;
+};
+
+// Strength: --bumpiness, --height-range with --size, --uv-height. At most one of the three.
+struct StrengthOptions {
+    float bumpiness = HeightField{}.bumpiness_x;
+    std::optional<double> height_range;
+    double width = 0.0;
+    double height = 0.0;
+    std::optional<double> uv_height;
+
+    void add(Command& command);
+    [[nodiscard]] Strength strength(Extent extent) const;
+};
+
+// --channel, --invert, --blur, --fill-invalid, --no-data.
+struct HeightGroup {
+    HeightOptions options;
+
+    void add(Command& command);
+};
+
+// Reads the heights of jobs, as all of the groups above say.
+class HeightReader {
+public:
+    StrengthOptions strength;
+    ColorGroup color;
+    HeightGroup heights;
+
+    // The job's input as a height field; the job depends on the colour configuration too.
+    [[nodiscard]] Result<HeightField> read(Job& job, Execution execution);
+
+    // One warning for all files whose height had to be guessed from colours.
+    void warn_of_luma() const;
+
+private:
+    std::atomic<std::int64_t> luma_files_{0};
+    std::atomic<std::int64_t> luma_texels_{0};
+};
+
+}  // namespace tex::cli

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// help.h: what a command tells about itself, from its table.
+
+#pragma once
+
+#include <string>
+
+#include "cli/command.h"
+
+namespace tex::cli {
+
+// --help: usage, options by group with their defaults, examples, exit status; 80 columns.
+[[nodiscard]] std::string help_text(const Command& command);
+
+// --list-options: a line for each option that the help shows: names, value, default and words, separated by
+// tabs. The test that keeps the man pages in step reads it.
+[[nodiscard]] std::string option_list(const Command& command);
+
+}  // namespace tex::cli

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cli/output.h"
+
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "cli/job.h"
+#include "cli/name_pattern.h"
+#include "cli/stream.h"
+#include "cli/text.h"
+#include "cli/usage_error.h"
+#include "cli/value.h"
+
+namespace tex::cli {
+namespace {
+
+std::string known_extensions() {
+    std::vector<std::string> names;
+    for (const Named<Container>& row : kContainerNames) names.emplace_back(row.meaning);
+    return join(names);
+}
+
+std::string encodings_in(Container container) {
+    std::vector<std::string> names;
+    for (const Named<Encoding>& row : kEncodingNames) {
+        if (can_hold(container, row.value)) names.emplace_back(row.name);
+    }
+    return join(names);
+}
+
+std::string containers_for(Encoding encoding) {
+    std::vector<std::string> names;
+    for (const Named<Container>& row : kContainerNames) {
+        if (can_hold(row.value, encoding)) names.emplace_back(row.meaning);
+    }
+    return join(names);
+}
+
+// One file of the job's output: the texture itself, or one of its levels.
+Result<std::size_t> write_file_of(Job& job, const Texture& texture, const std::string& path,
+                                  const WriteOptions& options) {
+    auto bytes = encode_file(texture, job.task.container, options);
+    if (!bytes) {
+        Error error = bytes.error();
+        if (error.file.empty()) error.file = path;
+        return error;
+    }
+    if (auto written = write_file(path, *bytes, options); !written) return written.error();
+    job.wrote(path);
+    return bytes->size();
+}
+
+}  // namespace
+
+std::string default_encodings() {
+    std::string text;
+    for (const Named<Encoding>& encoding : kEncodingNames) {
+        std::vector<std::string> containers;
+        for (const Named<Container>& container : kContainerNames) {
+            if (default_encoding(container.value) == encoding.value) containers.emplace_back(container.name);
+        }
+        if (!containers.empty())
+            text += fmt::format("{}{} in {}", text.empty() ? "" : "; ", encoding.name, join(containers));
+    }
+    return text;
+}
+
+std::string extension_of(Container container) {
+    for (const Named<Container>& row : kContainerNames) {
+        if (row.value == container) return cut(row.meaning, ',').first;
+    }
+    return {};
+}
+
+void OutputOptions::add(Command& command, std::string format_default, std::string y_default) {
+    command.group("Output");
+    command.choice(format, "--format", "F", kEncodingNames, "how normals are stored").preset =
+        std::move(format_default);
+    command
+        .choice(container, "--container", "KIND", kContainerNames,
+                "the kind of file, where the output's name does not tell (a pipe)")
+        .preset = "by extension; dds for -";
+    command.choice(y, "--y", "AXIS", kYAxisNames, "where green points in the output").preset =
+        std::move(y_default);
+    command.choice(effort, "--effort", "E", kEffortNames,
+                   "how hard block encoders look for the smallest error");
+    command.choice(dds_header, "--dds-header", "H", kDdsHeaderNames, "the header of DDS files");
+    command.flag(dds_mark, "--dds-mark", "mark DDS files as normal maps, as NVIDIA's tools do");
+}
+
+Container OutputOptions::container_for(const std::string& output, Container standard_output) const {
+    const std::optional<Container> told = container_of(output);
+    if (container) {
+        if (told && *told != *container) {
+            throw UsageError(fmt::format("{} says {}, --container says {}", printable(output),
+                                         name_of(kContainerNames, *told),
+                                         name_of(kContainerNames, *container)));
+        }
+        return *container;
+    }
+    if (told) return *told;
+    if (output == "-") return standard_output;
+    const std::string extension = std::filesystem::path(output).extension().string();
+    throw UsageError(fmt::format(
+        "{}: {} is no kind of file that can be written ({}); --container names one", printable(output),
+        extension.empty() ? "a name without an extension" : "'" + printable(extension) + "'",
+        known_extensions()));
+}
+
+void OutputOptions::check_holds(const std::string& output, Container container, Encoding encoding) {
+    if (can_hold(container, encoding)) return;
+    throw UsageError(fmt::format("{}: a {} file cannot hold {}, it holds {}; {} goes into {}",
+                                 printable(output), name_of(kContainerNames, container),
+                                 name_of(kEncodingNames, encoding), encodings_in(container),
+                                 name_of(kEncodingNames, encoding), containers_for(encoding)));
+}
+
+Result<void> write_chain(Job& job, MipChain chain, const OutputOptions& options, Encoding encoding, YAxis y) {
+    if (!can_hold_levels(job.task.container) && !has_level(job.task.output)) chain.levels.resize(1);
+    auto texture = pack(chain, {encoding, y, options.effort}, job.until(0.95));
+    if (!texture) return texture.error();
+    chain.levels.clear();
+
+    WriteOptions write = job.write_options;
+    write.dds_header = options.dds_header;
+    write.dds_mark = options.dds_mark;
+    Json& report = job.report;
+    report["extent"] = {texture->extent().width, texture->extent().height};
+    report["levels"] = texture->levels.size();
+    report["format"] = name_of(kEncodingNames, encoding);
+    report["y"] = name_of(kYAxisNames, y);
+
+    std::size_t bytes = 0;
+    if (!has_level(job.task.output)) {
+        auto size = write_file_of(job, *texture, job.task.output, write);
+        if (!size) return size.error();
+        bytes = *size;
+    } else {
+        std::vector<Level> levels = std::move(texture->levels);
+        for (std::size_t k = 0; k < levels.size(); ++k) {
+            texture->levels.clear();
+            texture->levels.push_back(std::move(levels[k]));
+            auto size = write_file_of(job, *texture, with_level(job.task.output, static_cast<int>(k)), write);
+            if (!size) return size.error();
+            bytes += *size;
+        }
+    }
+    report["bytes"] = bytes;
+    return {};
+}
+
+}  // namespace tex::cli

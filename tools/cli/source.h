@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// source.h: the option group of commands that read normal maps, and the step that reads them.
+
+#pragma once
+
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include <tex/container.h>
+#include <tex/mip_chain.h>
+#include <tex/unpack.h>
+
+#include "cli/command.h"
+#include "cli/job.h"
+
+namespace tex::cli {
+
+// A normal map as it was read: y up in memory, whatever `y` says of the file.
+struct Source {
+    MipChain chain;
+    YAxis y = YAxis::up;
+    Format format = Format::rgba8_unorm;
+    Swizzle swizzle{};
+};
+
+// The encoding for an output that is to stay what the source was, where the user names none: that of the
+// source where both are textures or both are pictures and the output can hold it, else the container's own.
+[[nodiscard]] Encoding encoding_of(const Source& source, const Task& task);
+
+enum class Bc5Order { xy, yx };
+
+inline constexpr Named<Bc5Order> kBc5OrderNames[] = {
+    {Bc5Order::xy, "xy", "x first, as Direct3D's BC5"},
+    {Bc5Order::yx, "yx", "y first, as ATI2 files"},
+};
+
+struct SourceOptions {
+    std::optional<Swizzle> swizzle;  // none: as the file says, else as its texels look
+    bool rg_or_ag = false;           // x in R or A, whichever is not constant
+    std::optional<Bc5Order> bc5_order;
+    UnpackOptions unpack;
+
+    void add(Command& command);
+
+    // Reads and unpacks `path`, all its levels or the base level alone. Tells the job what a reader
+    // overlooked. `y` goes before what the options and the file say of y. Any thread may call.
+    [[nodiscard]] Result<Source> read(Job& job, const std::string& path, const Execution& execution,
+                                      bool base_only, std::optional<YAxis> y = std::nullopt);
+
+    // The same for the job's input; tells the job's report the format and swizzle of the source.
+    [[nodiscard]] Result<Source> read(Job& job, double until, bool base_only);
+
+    // A warning for each layout that files were taken for which do not say what their channels hold.
+    void warn_of_guesses() const;
+
+private:
+    struct Guesses {
+        std::string first;  // file
+        int count = 0;
+    };
+
+    [[nodiscard]] Result<Swizzle> swizzle_of(const std::string& path, const Texture& texture);
+
+    std::mutex mutex_;
+    std::map<std::string, Guesses> guesses_;  // by the name of the swizzle
+};
+
+}  // namespace tex::cli

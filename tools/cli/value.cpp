@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cli/value.h"
+
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "cli/text.h"
+#include "cli/usage_error.h"
+
+namespace tex::cli {
+namespace {
+
+void check_range(std::string_view text, double value, Range range) {
+    const bool too_small = range.least_too ? value < range.least : value <= range.least;
+    if (!too_small && value <= range.greatest) return;
+    if (std::isinf(range.greatest)) {
+        throw UsageError(fmt::format("{} is not {} {}", printable(text),
+                                     range.least_too ? "at least" : "greater than", range.least));
+    }
+    throw UsageError(fmt::format("{} is not {} {} and at most {}", printable(text),
+                                 range.least_too ? "at least" : "greater than", range.least, range.greatest));
+}
+
+template <class T>
+T parse_number(std::string_view text, const char* what) {
+    std::string_view digits = text;
+    if (digits.starts_with('+') && !digits.starts_with("+-")) digits.remove_prefix(1);
+    T value{};
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error == std::errc::result_out_of_range && end == digits.data() + digits.size()) {
+        throw UsageError(fmt::format("{} is too large or too small a number", printable(text)));
+    }
+    if (error != std::errc() || end != digits.data() + digits.size()) {
+        throw UsageError(fmt::format("'{}' is not {}", printable(text), what));
+    }
+    return value;
+}
+
+template <class T>
+T parse_real(std::string_view text, Range range) {
+    const T value = parse_number<T>(text, "a number");
+    if (!std::isfinite(value)) throw UsageError(fmt::format("{} is not a finite number", printable(text)));
+    check_range(text, static_cast<double>(value), range);
+    return value;
+}
+
+}  // namespace
+
+float parse_float(std::string_view text, Range range) {
+    return parse_real<float>(text, range);
+}
+double parse_double(std::string_view text, Range range) {
+    return parse_real<double>(text, range);
+}
+
+int parse_int(std::string_view text, int least, int greatest) {
+    const int value = parse_number<int>(text, "a whole number");
+    check_range(text, value, {static_cast<double>(least), static_cast<double>(greatest)});
+    return value;
+}
+
+std::int64_t parse_count(std::string_view text) {
+    std::string_view digits = text;
+    int shift = 0;
+    if (!digits.empty()) {
+        const std::size_t place = std::string_view("KMGTkmgt").find(digits.back());
+        if (place != std::string_view::npos) {
+            shift = 10 * (static_cast<int>(place % 4) + 1);
+            digits.remove_suffix(1);
+        }
+    }
+    std::int64_t value = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error != std::errc() || end != digits.data() + digits.size() || value < 1 ||
+        value > (std::numeric_limits<std::int64_t>::max() >> shift)) {
+        throw UsageError(fmt::format("'{}' is not a count such as 65536, 512M or 4G", printable(text)));
+    }
+    return value << shift;
+}
+
+std::string count_text(std::int64_t count) {
+    int power = 0;
+    for (; power < 4 && count % 1024 == 0 && count > 0; ++power) count /= 1024;
+    return fmt::format("{}{}", count, power == 0 ? "" : std::string(1, "KMGT"[power - 1]));
+}
+
+std::pair<std::string, std::string> cut(std::string_view text, char separator) {
+    const std::size_t place = text.find(separator);
+    if (place == std::string_view::npos) return {std::string(text), std::string()};
+    return {std::string(text.substr(0, place)), std::string(text.substr(place + 1))};
+}
+
+}  // namespace tex::cli

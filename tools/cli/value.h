@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// value.h: numbers from the command line, strictly: the whole text must be the number, in C's notation
+// whatever the locale, finite and in range. Anything else throws a UsageError that quotes the text.
+
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace tex::cli {
+
+// The numbers that an option takes: from least to greatest, least itself only where `least_too`.
+struct Range {
+    double least = -std::numeric_limits<double>::infinity();
+    double greatest = std::numeric_limits<double>::infinity();
+    bool least_too = true;
+};
+inline constexpr Range kPositive{0.0, std::numeric_limits<double>::infinity(), false};
+
+[[nodiscard]] float parse_float(std::string_view text, Range range = {});
+[[nodiscard]] double parse_double(std::string_view text, Range range = {});
+[[nodiscard]] int parse_int(std::string_view text, int least, int greatest);
+
+// A count of bytes or texels, at least 1, with an optional suffix K, M, G or T (powers of 1024, either case).
+[[nodiscard]] std::int64_t parse_count(std::string_view text);
+[[nodiscard]] std::string count_text(std::int64_t count);  // "4G": the shortest such form
+
+// `text` cut at the first `separator`; the second part is empty where there is none.
+[[nodiscard]] std::pair<std::string, std::string> cut(std::string_view text, char separator);
+
+}  // namespace tex::cli

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cli/version.h"
+
+#include <CLI/Version.hpp>
+#include <fmt/format.h>
+#include <tbb/version.h>
+#include <tex/tex.h>
+
+#include "cli/json.h"
+
+namespace tex::cli {
+namespace {
+
+constexpr const char* compiler() {
+#if defined(__clang__)
+    return "clang " __clang_version__;
+#else
+    return "gcc " __VERSION__;
+#endif
+}
+
+}  // namespace
+
+std::string version_text(const Command& command) {
+    return fmt::format("{} {}\n", command.name(), TEX_VERSION);
+}
+
+std::string version_json(const Command& command) {
+    Json json;
+    json["program"] = command.name();
+    json["version"] = TEX_VERSION;
+    json["libtex"] = version();
+    json["compiler"] = compiler();
+#if defined(NDEBUG)
+    json["assertions"] = false;
+#else
+    json["assertions"] = true;
+#endif
+    json["dependencies"]["cli11"] = CLI11_VERSION;
+    json["dependencies"]["fmt"] =
+        fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100);
+    json["dependencies"]["nlohmann-json"] = fmt::format(
+        "{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH);
+    json["dependencies"]["onetbb"] = TBB_runtime_version();
+    return to_line(json);
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+// compare-normals: how far two normal maps lie apart.
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <tex/tex.h>
+
+#include "cli/batch.h"
+#include "cli/console.h"
+#include "cli/interrupt.h"
+#include "cli/json.h"
+#include "cli/stream.h"
+#include "cli/usage_error.h"
+
+namespace {
+
+using namespace tex;
+
+struct CompareNormals {
+    cli::Command command{"compare-normals", "Compares two normal maps, in any two encodings: the angle between their normals in degrees."};
+    std::optional<YAxis> y_a, y_b;
+    int level = 0;
+    bool all_levels = false;
+    std::optional<double> max_mean, max_p999, max;
+    std::string heat_map_path;
+    std::optional<double> heat_map_scale;
+    cli::RunOptions run;
+
+    CompareNormals();
+    void add_limit(std::optional<double>& limit, const std::string& name, const std::string& what);
+    Result<std::vector<NormalMap>> read(const std::string& path, std::optional<YAxis> y) const;
+    Result<cli::ExitCode> compare_files();
+    void tell(int number, Extent extent, const AngularError& error) const;
+    cli::ExitCode judge(int number, const AngularError& error) const;
+    Result<void> write_heat_map(const Comparison& comparison) const;
+};
+
+CompareNormals::CompareNormals() {
+    command.usage("A B");
+    command.input("A B", "two textures or pictures; - is standard input");
+    command.finds_things();
+    command.group("What is compared");
+    command.choice(y_a, "--y-a", "Y", kYAxisNames, "which way green points in A, instead of what the file says");
+    command.choice(y_b, "--y-b", "Y", kYAxisNames, "which way green points in B");
+    command.option("--level", "N", "the level, 0 being the base level, or all that both have", [this](const std::string& text) {
+        all_levels = text == "all";
+        if (!all_levels) level = cli::parse_int(text, 0, 31);
+    }).preset = std::to_string(level);
+    command.group("Limits");
+    add_limit(max_mean, "--max-mean", "mean");
+    add_limit(max_p999, "--max-p999", "99.9th percentile");
+    add_limit(max, "--max", "largest angle");
+    command.group("Heat map");
+    command.text(heat_map_path, "--heatmap", "FILE", "write a picture of the angles with a legend (of the first level compared)").completes =
+        cli::Completes::files;
+    command.option("--heatmap-scale", "DEGREES", "the angle at the end of the legend", [this](const std::string& text) {
+        heat_map_scale = cli::parse_double(text, {0.0, 180.0, false});
+    }).preset = "the largest angle";
+    run.add(command);
+    command.check([this] {
+        if (command.inputs().size() != 2) throw cli::UsageError("two files are compared: A and B");
+        if (heat_map_scale && heat_map_path.empty()) throw cli::UsageError("--heatmap-scale needs --heatmap");
+        if (command.inputs()[0] == "-" && command.inputs()[1] == "-") throw cli::UsageError("standard input can only be read once");
+    });
+    command.example("compare-normals bricks.exr bricks.dds", "What the compression of bricks.dds cost.");
+    command.example("compare-normals old.dds new.dds --level all --max-p999 2 --heatmap diff.png",
+                    "Fails where more than 1 texel in 1000 moved by over 2 degrees, and shows where.");
+    command.example("compare-normals gl.png dx.png --y-b down", "Two conventions of one map.");
+}
+
+void CompareNormals::add_limit(std::optional<double>& limit, const std::string& name, const std::string& what) {
+    command.option(name, "DEGREES", fmt::format("fail (exit 1) where the {} is greater", what),
+                   [&limit](const std::string& text) { limit = cli::parse_double(text, {0.0, 180.0}); });
+}
+
+Result<std::vector<NormalMap>> CompareNormals::read(const std::string& path, std::optional<YAxis> y) const {
+    auto texture = read_texture(path, run.read);
+    if (!texture) return texture.error();
+    UnpackOptions options;
+    options.y_axis = y;
+    auto chain = unpack(*texture, options, {run.threads, [](double) { return cli::caught_signal() == 0; }});
+    if (chain) return std::move(chain->levels);
+    Error error = chain.error();
+    error.file = path;
+    return error;
+}
+
+void CompareNormals::tell(int number, Extent extent, const AngularError& e) const {
+    if (run.json) {
+        const auto degrees = [](double angle) { return static_cast<float>(angle); };
+        cli::Json line;
+        line["a"] = command.inputs()[0];
+        line["b"] = command.inputs()[1];
+        line["level"] = number;
+        line["extent"] = {extent.width, extent.height};
+        line["texels"] = e.texels;
+        line["degrees"] = {{"mean", degrees(e.mean)}, {"rms", degrees(e.rms)}, {"p50", degrees(e.p50)}, {"p99", degrees(e.p99)},
+                           {"p99.9", degrees(e.p999)}, {"max", degrees(e.max)}};
+        line["max_at"] = {e.max_column, e.max_row};
+        (void)cli::print(cli::to_line(line));
+        return;
+    }
+    (void)cli::print(fmt::format("{:>5} {:>11} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f}  column {}, row {}\n", number,
+                                 fmt::format("{}x{}", extent.width, extent.height), e.mean, e.rms, e.p50, e.p99, e.p999, e.max,
+                                 e.max_column, e.max_row));
+}
+
+cli::ExitCode CompareNormals::judge(int number, const AngularError& error) const {
+    cli::ExitCode code = cli::ExitCode::done;
+    const auto hold = [&](const char* name, double figure, std::optional<double> limit) {
+        if (!limit || figure <= *limit) return;
+        cli::print_error(fmt::format("level {}: {} {:.4f} degrees is over the limit of {}", number, name, figure, *limit));
+        code = cli::ExitCode::findings;
+    };
+    hold("mean", error.mean, max_mean);
+    hold("p99.9", error.p999, max_p999);
+    hold("max", error.max, max);
+    return code;
+}
+
+Result<void> CompareNormals::write_heat_map(const Comparison& comparison) const {
+    const double scale = heat_map_scale.value_or(std::clamp(comparison.error.max, 0.01, 180.0));
+    const auto image = heat_map(comparison.degrees, scale);
+    if (!image) return image.error();
+    Texture texture;
+    texture.format = Format::rgb8_unorm;
+    Level picture{image->extent(), {}};
+    for (int j = 0; j < picture.extent.height; ++j) {
+        for (int i = 0; i < picture.extent.width; ++i) {
+            for (const auto& plane : image->planes) picture.bytes.push_back(static_cast<std::byte>(std::floor(plane.at(i, j) * 255.0f + 0.5f)));
+        }
+    }
+    texture.levels.push_back(std::move(picture));
+    return write_texture(heat_map_path, texture);
+}
+
+Result<cli::ExitCode> CompareNormals::compare_files() {
+    const std::string &name_a = command.inputs()[0], &name_b = command.inputs()[1];
+    const auto a = read(name_a, y_a);
+    if (!a) return a.error();
+    const auto b = read(name_b, y_b);
+    if (!b) return b.error();
+    const std::size_t first = all_levels ? 0 : static_cast<std::size_t>(level);
+    const std::size_t end = all_levels ? std::min(a->size(), b->size()) : first + 1;
+    cli::ExitCode code = cli::ExitCode::done;
+    for (std::size_t k = first; k < end; ++k) {
+        const auto lacks = [&](const std::string& name, std::size_t count) {
+            return Error{ErrorCode::bad_option, name, fmt::format("has {} levels, so none of number {}", count, k)};
+        };
+        if (k >= a->size()) return lacks(name_a, a->size());
+        if (k >= b->size()) return lacks(name_b, b->size());
+        const NormalMap &map_a = (*a)[k], &map_b = (*b)[k];
+        if (map_a.extent() != map_b.extent()) {
+            return Error{ErrorCode::bad_option, name_b,
+                         fmt::format("is {}x{} texels, {} is {}x{}", map_b.extent().width, map_b.extent().height, name_a,
+                                     map_a.extent().width, map_a.extent().height)};
+        }
+        const auto comparison = compare(map_a, map_b, {run.threads, [](double) { return cli::caught_signal() == 0; }});
+        if (!comparison) return comparison.error();
+        if (k == first && !run.json) {
+            (void)cli::print(fmt::format("{:>5} {:>11} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}  in degrees; largest at\n", "level", "texels",
+                                         "mean", "rms", "p50", "p99", "p99.9", "max"));
+        }
+        tell(static_cast<int>(k), map_a.extent(), comparison->error);
+        code = std::max(code, judge(static_cast<int>(k), comparison->error));
+        if (k > first || heat_map_path.empty()) continue;
+        if (auto written = write_heat_map(*comparison); !written) return written.error();
+    }
+    return code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return cli::run_main("compare-normals", [&] {
+        CompareNormals self;
+        if (const auto ended = self.command.parse(argc, argv)) return *ended;
+        cli::catch_signals();
+        const auto code = self.compare_files();
+        if (const int signal = cli::caught_signal(); signal != 0) cli::end_by_signal(signal);
+        if (code) return *code;
+        cli::print_error(code.error().message());
+        return cli::exit_code(code.error().code);
+    });
+}

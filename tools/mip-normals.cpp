@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// mip-normals: normal maps to renormalised mip chains.
+
+#include <fmt/format.h>
+#include <tex/tex.h>
+
+#include "cli/batch.h"
+#include "cli/groups.h"
+#include "cli/name_pattern.h"
+#include "cli/source.h"
+#include "cli/text.h"
+#include "cli/usage_error.h"
+
+namespace {
+
+using namespace tex;
+
+struct MipNormals {
+    cli::Command command{
+        "mip-normals",
+        "Builds the mip chain of normal maps: every level is filtered from the true average of the "
+        "one before and renormalised."};
+    cli::FileOptions files;
+    cli::SourceOptions source;
+    cli::WrapOptions wrap;
+    cli::OutputOptions output;
+    cli::MipChainOptions mips;
+    cli::RunOptions run;
+
+    MipNormals();
+    void check(const std::vector<cli::Task>& tasks) const;
+    Result<void> process(cli::Job& job);
+};
+
+MipNormals::MipNormals() {
+    command.usage("NORMALS... -o FILE");
+    command.usage("NORMALS... --out-dir DIR [--name PATTERN]");
+    command.input("NORMALS...", "normal maps; - is standard input");
+    files.add(command);
+    source.add(command);
+    output.add(command, cli::default_encodings(), "as in the input");
+    mips.add(command, false, "all");
+    wrap.add(command, "what lies beyond the border, or for x and y apart");
+    run.add(command);
+    command.example("mip-normals bricks_n.png -o bricks.dds", "A DXT5nm texture with all its levels.");
+    command.example("mip-normals bricks_n.png -o bricks.ktx2 --format bc5 --mip-filter kaiser --fade 2,6",
+                    "Sharper levels that fade to flat.");
+    command.example("mip-normals rock.png --out-dir levels --name '{stem}_mip{level}{ext}'",
+                    "A picture for each level, for tools that put chains together themselves.");
+}
+
+// A file that holds one level is not what anybody wants of this command.
+void MipNormals::check(const std::vector<cli::Task>& tasks) const {
+    mips.check(tasks);
+    for (const cli::Task& task : tasks) {
+        if (mips.levels || can_hold_levels(task.container) || cli::has_level(task.output)) continue;
+        throw cli::UsageError(
+            fmt::format("{}: a {} file holds one level; give .dds, .ktx2 or .exr, or --name with {{level}}",
+                        cli::printable(task.output), name_of(kContainerNames, task.container)));
+    }
+}
+
+Result<void> MipNormals::process(cli::Job& job) {
+    auto read = source.read(job, 0.4, true);
+    if (!read) return read.error();
+    MipOptions options = mips.mip;
+    options.levels = mips.levels.value_or(0);
+    auto chain = build_mip_chain(std::move(read->chain.levels.front()), options, job.until(0.6));
+    if (!chain) return chain.error();
+    const Encoding encoding = output.format.value_or(default_encoding(job.task.container));
+    return cli::write_chain(job, std::move(*chain), output, encoding, output.y.value_or(read->y));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return cli::run_main("mip-normals", [&] {
+        MipNormals self;
+        if (const auto ended = self.command.parse(argc, argv)) return *ended;
+        self.mips.mip.wrap_x = self.wrap.x;
+        self.mips.mip.wrap_y = self.wrap.y;
+        cli::Steps steps;
+        steps.defaults.batch = Container::dds;
+        steps.check = [&](const std::vector<cli::Task>& tasks) {
+            self.check(tasks);
+            return Result<void>();
+        };
+        steps.process = [&](cli::Job& job) { return self.process(job); };
+        steps.finish = [&] { self.source.warn_of_guesses(); };
+        return cli::run_batch(self.command, self.files, self.run, self.output, steps);
+    });
+}

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "reader.h"
+
+namespace tex::reader {
+namespace {
+
+using OIIO::TypeDesc;
+
+struct NativeType {
+    TypeDesc::BASETYPE native;
+    TypeDesc::BASETYPE read_as;
+    ReaderType type;
+};
+
+constexpr NativeType kTypes[] = {
+    {TypeDesc::UINT8, TypeDesc::UINT8, ReaderType::u8},     {TypeDesc::INT8, TypeDesc::INT8, ReaderType::s8},
+    {TypeDesc::UINT16, TypeDesc::UINT16, ReaderType::u16},  {TypeDesc::INT16, TypeDesc::INT16, ReaderType::s16},
+    {TypeDesc::UINT32, TypeDesc::UINT32, ReaderType::u32},  {TypeDesc::INT32, TypeDesc::INT32, ReaderType::s32},
+    {TypeDesc::HALF, TypeDesc::HALF, ReaderType::f16},      {TypeDesc::FLOAT, TypeDesc::FLOAT, ReaderType::f32},
+};
+
+// Values as they are stored; types that no plane distinguishes (64 bits, or another type for each channel) as float.
+NativeType native_type(const OIIO::ImageSpec& spec) {
+    if (spec.channelformats.empty()) {
+        for (const NativeType& type : kTypes) {
+            if (spec.format.basetype == type.native) return type;
+        }
+    }
+    return {TypeDesc::FLOAT, TypeDesc::FLOAT, ReaderType::f32};
+}
+
+// Why a picture is refused, or an empty view.
+std::string_view unsupported_reason(const std::string& format, const OIIO::ImageSpec& spec) {
+    const std::string jpeg = spec.get_string_attribute("jpeg:ColorSpace");
+    const bool has_black = std::find(spec.channelnames.begin(), spec.channelnames.end(), "K") != spec.channelnames.end();
+    if (has_black || jpeg.find('K') != std::string::npos || spec.get_string_attribute("oiio:ColorSpace") == "CMYK") {
+        return "CMYK pictures are not read";
+    }
+    if (spec.deep) return "deep data have no single value for a texel";
+    if (spec.depth > 1) return "volumes are not read";
+    // This decoder has no unassociated alpha: it multiplies colour by alpha, whatever it is asked.
+    if (format == "webp" && spec.alpha_channel >= 0) return "WebP pictures with alpha are not read";
+    return {};
+}
+
+void describe(const OIIO::ImageSpec& spec, const NativeType& type, ReaderHeader& header) {
+    header.width = spec.width;
+    header.height = spec.height;
+    header.channels = spec.nchannels;
+    header.type = type.type;
+    const int container = static_cast<int>(8 * reader_type_bytes(type.type));
+    const int bits = spec.get_int_attribute("oiio:BitsPerSample", container);
+    header.bits = static_cast<std::uint32_t>(bits >= 1 && bits <= container ? bits : container);
+    for (int c = 0; c < spec.nchannels; ++c) {
+        const std::string& name = spec.channelnames[static_cast<std::size_t>(c)];
+        std::strncpy(header.names[c], name.c_str(), sizeof header.names[c] - 1);
+    }
+}
+
+// Rows that are read at a time: those of a tile, or about 1 MiB.
+int strip_rows(const OIIO::ImageSpec& spec, std::uint64_t bytes_of_row) {
+    if (spec.tile_width > 0) return spec.tile_height;
+    constexpr std::uint64_t kStrip = std::uint64_t{1} << 20;
+    return static_cast<int>(std::clamp<std::uint64_t>(kStrip / bytes_of_row, 1, static_cast<std::uint64_t>(spec.height)));
+}
+
+bool read_strip(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, TypeDesc type, int begin, int end, void* to) {
+    const int y = spec.y + begin;
+    const int y_end = spec.y + end;
+    if (spec.tile_width > 0) {
+        return input.read_tiles(0, 0, spec.x, spec.x + spec.width, y, y_end, spec.z, spec.z + 1, 0, spec.nchannels, type, to);
+    }
+    return input.read_scanlines(0, 0, y, y_end, spec.z, 0, spec.nchannels, type, to);
+}
+
+}  // namespace
+
+bool decode(const Task& task, ReaderHeader& header) {
+    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(task.format);
+    if (!input) return refuse(header, ErrorCode::unsupported, "OpenImageIO has no decoder for " + task.format);
+    OIIO::ImageSpec config;
+    config.attribute("oiio:UnassociatedAlpha", 1);
+    config.attribute("oiio:RawColor", 1);
+    OIIO::ImageSpec spec;
+    const std::string path = "/proc/self/fd/" + std::to_string(kInputDescriptor);
+    if (!input->open(path, spec, config)) return refuse(header, ErrorCode::bad_data, "damaged: " + input->geterror());
+
+    if (const std::string_view reason = unsupported_reason(task.format, spec); !reason.empty()) {
+        return refuse(header, ErrorCode::unsupported, std::string(reason));
+    }
+    if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1) return refuse(header, ErrorCode::bad_data, "holds no texels");
+    if (spec.nchannels > kMaxReaderChannels) {
+        return refuse(header, ErrorCode::unsupported, std::to_string(spec.nchannels) + " channels");
+    }
+    if (std::int64_t{spec.width} * spec.height > task.max_texels) {
+        return refuse(header, ErrorCode::unsupported,
+                      std::to_string(spec.width) + "x" + std::to_string(spec.height) +
+                          " texels are more than the limit of " + std::to_string(task.max_texels));
+    }
+    const NativeType type = native_type(spec);
+    describe(spec, type, header);
+    put_header(header);
+
+    const std::uint64_t bytes_of_row = row_bytes(header);
+    const int rows = strip_rows(spec, bytes_of_row);
+    std::vector<std::byte> strip(bytes_of_row * static_cast<std::uint64_t>(std::min(rows, spec.height)));
+    for (int begin = 0; begin < spec.height; begin += rows) {
+        const int end = std::min(begin + rows, spec.height);
+        // Some decoders report success and leave their error behind.
+        if (!read_strip(*input, spec, type.read_as, begin, end, strip.data()) || input->has_error()) {
+            return refuse(header, ErrorCode::bad_data, "damaged: " + input->geterror());
+        }
+        put_bytes(kReaderDataOffset + static_cast<std::uint64_t>(begin) * bytes_of_row, strip.data(),
+                  static_cast<std::uint64_t>(end - begin) * bytes_of_row);
+        header.rows_done = static_cast<std::uint64_t>(end);
+        put_header(header);
+        put_progress();
+    }
+    return true;
+}
+
+}  // namespace tex::reader

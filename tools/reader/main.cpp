@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// tex-reader: decodes and encodes pictures with OpenImageIO for libtex, which starts it. Not meant to be run by hand, except
+//
+//     tex-reader --version      OpenImageIO's version, and whether the kernel takes the filter of system calls
+
+#include <unistd.h>
+
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <string_view>
+
+#include "reader.h"
+
+namespace tex::reader {
+
+void put_bytes(std::uint64_t offset, const void* data, std::uint64_t count) {
+    const auto* from = static_cast<const char*>(data);
+    while (count > 0) {
+        const ssize_t n = pwrite(kResultDescriptor, from, count, static_cast<off_t>(offset));
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) _exit(1);
+        from += n;
+        offset += static_cast<std::uint64_t>(n);
+        count -= static_cast<std::uint64_t>(n);
+    }
+}
+
+void put_header(const ReaderHeader& header) { put_bytes(0, &header, sizeof header); }
+
+void put_progress() {
+    const char strip = 0;
+    if (write(kProgressDescriptor, &strip, 1) != 1) _exit(1);  // nobody listens any more
+}
+
+bool refuse(ReaderHeader& header, ErrorCode code, const std::string& reason) {
+    header.state = ReaderState::refused;
+    header.error = static_cast<std::uint32_t>(code);
+    std::strncpy(header.reason, reason.c_str(), sizeof header.reason - 1);
+    put_header(header);
+    return false;
+}
+
+namespace {
+
+template <class T>
+bool parse(const char* text, T& value) {
+    const char* end = text + std::strlen(text);
+    const auto [last, error] = std::from_chars(text, end, value);
+    return error == std::errc() && last == end;
+}
+
+int version() {
+    const bool sandboxed = enter_sandbox();
+    std::printf("OpenImageIO %s, system calls %s\n", OIIO_VERSION_STRING, sandboxed ? "filtered" : "not filtered");
+    return std::fflush(stdout) == 0 ? 0 : 1;
+}
+
+// Everything that a decoder could take from outside this file: threads, plug-ins, and (having no environment) nothing else.
+void calm_openimageio() {
+    OIIO::attribute("threads", 1);
+    OIIO::attribute("plugin_searchpath", "");
+    OIIO::attribute("tiff:half", 1);
+    OIIO::attribute("limits:channels", kMaxReaderChannels);
+}
+
+int run(const std::string_view verb, const Task& task) {
+    ReaderHeader header;
+    try {
+        limit_process(task);
+        calm_openimageio();
+        header.sandboxed = enter_sandbox() ? 1 : 0;
+        const bool done = verb == "decode" ? decode(task, header) : encode(task, header);
+        if (!done) return 0;
+        header.state = ReaderState::done;
+        put_header(header);
+    } catch (const std::bad_alloc&) {
+        refuse(header, ErrorCode::unsupported,
+               "needs more memory than the " + std::to_string(task.memory >> 20) + " MiB that a decoder may have");
+    } catch (const std::exception& thrown) {
+        refuse(header, ErrorCode::bad_data, thrown.what());
+    }
+    return 0;
+}
+
+}  // namespace
+}  // namespace tex::reader
+
+int main(int argc, char** argv) {
+    using namespace tex::reader;
+    const std::string_view verb = argc > 1 ? argv[1] : "";
+    // It always leaves without destructors: OpenImageIO's libraries take a tenth of a second to go, and the sandbox has no room for that.
+    if (argc == 2 && verb == "--version") _exit(version());
+    Task task;
+    if (argc != 7 || (verb != "decode" && verb != "encode") || !parse(argv[3], task.max_texels) ||
+        !parse(argv[4], task.memory) || !parse(argv[5], task.seconds) || !parse(argv[6], task.parent)) {
+        std::fputs("tex-reader: started by libtex, not by hand\n", stderr);
+        return 2;
+    }
+    task.format = argv[2];
+    _exit(run(verb, task));
+}

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// reader.h: the parts of tex-reader, the one program that links OpenImageIO.
+//
+// reader_protocol.h says what it is asked and what it answers. It reads one file, or encodes one picture, and ends.
+
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include <tex/result.h>
+
+#include "containers/reader_protocol.h"
+
+namespace tex::reader {
+
+struct Task {
+    std::string format;           // as OpenImageIO names it
+    std::int64_t max_texels = 0;  // more are refused
+    std::int64_t memory = 0;      // bytes of address space, and of the result
+    int seconds = 1;              // of processor time
+    int parent = 0;               // ends with it
+};
+
+// Limits of memory, time and descriptors; no core file; ends when the parent does.
+void limit_process(const Task& task);
+
+// Takes away the system calls that a decoder needs no more: the network, opening files for writing, other programs, other processes. False where the kernel
+// refuses the filter: the other limits stay.
+bool enter_sandbox();
+
+// Both answer in kResultDescriptor and return false after they have refused.
+bool decode(const Task& task, ReaderHeader& header);
+bool encode(const Task& task, ReaderHeader& header);
+
+// Writes the header. A result that cannot be written ends the process with status 1.
+void put_header(const ReaderHeader& header);
+void put_bytes(std::uint64_t offset, const void* data, std::uint64_t count);
+// Tells the parent that rows have arrived.
+void put_progress();
+// Reports failure; returns false.
+bool refuse(ReaderHeader& header, ErrorCode code, const std::string& reason);
+
+}  // namespace tex::reader
