@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+// make_broken: writes samples/broken, one file for each rule of check-normals that makes this rule alone fire.
+//
+//     make_broken samples/waves.png FOLDER
+//
+// All come from the sample height map; FOLDER/options.txt says with which options a file is to be checked.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <tex/tex.h>
+
+#include "reference/damage.h"
+
+namespace {
+
+using namespace tex;
+using namespace tex::reference;
+
+struct Maker {
+    std::string folder;
+    NormalMap base;  // 128x128, y up, tiles
+    bool failed = false;
+
+    void write(const std::string& name, std::vector<std::byte> bytes) {
+        WriteOptions options;
+        options.sync = false;
+        if (const auto written = write_file(folder + "/" + name, bytes, options); !written) fail(written.error());
+    }
+    void fail(const Error& error) {
+        std::fprintf(stderr, "make_broken: error: %s\n", error.message().c_str());
+        failed = true;
+    }
+    std::vector<std::byte> encoded(const Texture& texture, Container container, WriteOptions options = {}) {
+        auto bytes = encode_file(texture, container, options);
+        if (bytes) return std::move(*bytes);
+        fail(bytes.error());
+        return std::vector<std::byte>(256);
+    }
+    void png(const std::string& name, const Codes& codes) { write(name + ".png", encoded(texture_of(codes), Container::png)); }
+    void dds(const std::string& name, const Texture& texture) { write(name + ".dds", encoded(texture, Container::dds)); }
+
+    [[nodiscard]] Codes codes() const { return codes_of(base); }
+    [[nodiscard]] NormalMap part(int width, int height) const { return crop(base, 0, 0, {width, height}); }
+    Texture packed(NormalMap map, Encoding encoding, YAxis y = YAxis::up) {
+        MipChain chain;
+        chain.levels.push_back(std::move(map));
+        auto texture = pack(chain, {encoding, y, Effort::fast});
+        if (!texture) fail(texture.error());
+        return texture ? std::move(*texture) : Texture{};
+    }
+
+    void files();
+    void values();
+    void damages();
+    void conventions();
+    void levels();
+};
+
+// Every `step`-th texel becomes (r, g, b).
+Codes dotted(Codes codes, int step, int r, int g, int b) {
+    const int texels = static_cast<int>(codes.extent.texels());
+    for (int k = 0; k < texels; k += step) {
+        const int color[3] = {r, g, b};
+        for (int c = 0; c < 3; ++c) codes.at(k % codes.extent.width, k / codes.extent.width, c) = static_cast<unsigned char>(color[c]);
+    }
+    return codes;
+}
+
+void set_slopes(NormalMap& map, int i, int j, double p, double q) {
+    const double length = std::sqrt(p * p + q * q + 1.0);
+    map.x.at(i, j) = static_cast<float>(-p / length);
+    map.y.at(i, j) = static_cast<float>(-q / length);
+    map.z.at(i, j) = static_cast<float>(1.0 / length);
+}
+
+// The map with its slopes turned into others.
+template <class Change>
+NormalMap changed(const NormalMap& map, Change&& change) {
+    NormalMap result(map.extent());
+    for (int j = 0; j < map.extent().height; ++j) {
+        for (int i = 0; i < map.extent().width; ++i) {
+            double p = -map.x.at(i, j) / map.z.at(i, j), q = -map.y.at(i, j) / map.z.at(i, j);
+            change(i, j, p, q);
+            set_slopes(result, i, j, p, q);
+        }
+    }
+    return result;
+}
+
+void Maker::files() {
+    std::vector<std::byte> whole = encoded(packed(part(64, 64), Encoding::bc5), Container::dds);
+    auto bytes = whole;
+    bytes.resize(bytes.size() / 2);
+    write("N101-unreadable.dds", bytes);
+    bytes = whole;
+    bytes[4] = std::byte{24};  // the header's own size
+    write("N102-header-disagrees.dds", bytes);
+    auto chain = chain_of(part(64, 64), ChainFault::none);
+    chain.resize(3);
+    dds("N103-mips-incomplete", texture_of(chain));
+    bytes = whole;
+    bytes.resize(bytes.size() + 16);
+    write("N104-trailing-bytes.dds", bytes);
+    png("N105-not-power-of-two", codes_of(part(96, 64)));
+    dds("N106-not-multiple-of-4", packed(part(66, 64), Encoding::bc5));
+    for (const char* name : {"N107-too-large", "N108-wrong-format", "N109-wrong-levels", "N110-wrong-extent"}) png(name, codes_of(part(64, 64)));
+    WriteOptions dx10;
+    dx10.dds_header = DdsHeader::dx10;
+    bytes = encoded(packed(part(64, 64), Encoding::rgba8), Container::dds, dx10);
+    bytes[128] = std::byte{29};  // DXGI_FORMAT_R8G8B8A8_UNORM_SRGB
+    write("N111-srgb-format.dds", bytes);
+    write("N112-wrong-declared-y.ktx2", encoded(packed(part(16, 16), Encoding::rgba8, YAxis::down), Container::ktx2));
+}
+
+void Maker::values() {
+    NormalMap shorter = part(128, 128);
+    for (Plane<float>* plane : {&shorter.x, &shorter.y, &shorter.z}) {
+        for (int k = 0; k < 128 * 128; ++k) plane->at(k % 128, k / 128) *= 0.9f;
+    }
+    png("N201-not-unit-length", codes_of(shorter));
+    png("N202-z-below-zero", dotted(codes(), 101, 248, 128, 89));
+    Texture texture = packed(part(128, 128), Encoding::rg8);
+    for (std::size_t k = 0; k < texture.levels[0].bytes.size(); k += 202) texture.levels[0].bytes[k] = texture.levels[0].bytes[k + 1] = std::byte{250};
+    dds("N203-beyond-unit", texture);
+    texture = packed(part(64, 64), Encoding::float_);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    std::memcpy(texture.levels[0].bytes.data() + 12000, &nan, sizeof nan);
+    dds("N204-not-finite", texture);
+    png("N205-null-vector", dotted(codes(), 101, 128, 128, 128));
+    png("N206-constant", dotted(codes_of(part(32, 32)), 1, 140, 120, 254));
+    png("N207-leaning", codes_of(changed(base, [](int, int, double& p, double&) { p += 0.4; })));
+    png("N208-biased-flat", codes_of(changed(base, [](int i, int, double& p, double& q) { if (i < 64) p = q = 0.0; })));
+    Codes filled = codes(), grey = codes();
+    for (int k = 0; k < 128 * 128; ++k) {
+        filled.at(k % 128, k / 128, 2) = 255;
+        grey.at(k % 128, k / 128, 1) = grey.at(k % 128, k / 128, 2) = grey.at(k % 128, k / 128, 0);
+    }
+    png("N209-blue-not-z", filled);
+    png("N210-grey-picture", grey);
+    texture = packed(part(64, 64), Encoding::ag8);
+    for (std::size_t k = 0; k < texture.levels[0].bytes.size(); k += 4) texture.levels[0].bytes[k] = std::byte{0};
+    dds("N211-dxt5nm-red", texture);
+    texture = packed(part(64, 64), Encoding::rgba8);
+    for (std::size_t k = 3; k < texture.levels[0].bytes.size(); k += 4) texture.levels[0].bytes[k] = std::byte{200};
+    dds("N212-alpha-not-one", texture);
+    NormalMap object = part(128, 128);  // the same bumps on surfaces that face up, and backwards
+    for (int k = 0; k < 128 * 64; ++k) {
+        const int i = k % 128, j = k / 128;
+        std::swap(object.y.at(i, j), object.z.at(i, j));
+        object.z.at(i, j + 64) = -object.z.at(i, j + 64);
+    }
+    png("N213-object-space", codes_of(object));
+}
+
+void Maker::damages() {
+    png("N301-srgb-decoded", srgb_decode(codes()));
+    png("N302-srgb-encoded", srgb_encode(codes()));
+    png("N303-premultiplied", with_alpha(codes(), true));
+    png("N304-jpeg-blocks", jpeg(codes(), 30));
+    png("N305-banding", codes_of(from_heights(base, 64)));
+    const Codes whole = codes();
+    Codes blocks = whole;  // four colours in each block of 4x4: those of its first row
+    for (int j = 0; j < 128; ++j) {
+        for (int i = 0; i < 128; ++i) {
+            for (int c = 0; c < 3; ++c) blocks.at(i, j, c) = whole.at(i, j / 4 * 4, c);
+        }
+    }
+    png("N306-bc-blocks", blocks);
+    png("N307-seam", codes_of(part(96, 96)));
+    png("N308-channels-exchanged", exchange(codes(), 0, 2));
+}
+
+void Maker::conventions() {
+    png("N401-wrong-y", flip_green(codes()));
+    Codes half = codes();
+    const Codes flipped = flip_green(half);
+    for (int k = 0; k < 128 * 64; ++k) half.at(k % 128, k / 128, 1) = flipped.at(k % 128, k / 128, 1);
+    png("N402-mixed-y", half);
+    unsigned state = 1;
+    png("N403-y-undecidable", codes_of(changed(base, [&](int, int, double& p, double& q) {
+            for (double* slope : {&p, &q}) *slope = ((state = state * 1664525u + 1013904223u) >> 16) / 65536.0 - 0.5;
+        })));
+    Texture texture = packed(part(128, 128), Encoding::bc5);
+    texture.y_axis = YAxis::down;
+    write("N404-y-contradicts-file.ktx2", encoded(texture, Container::ktx2));
+}
+
+void Maker::levels() {
+    const NormalMap steep = changed(base, [](int, int, double& p, double& q) { p *= 2.0, q *= 2.0; });
+    dds("N501-level-not-unit", texture_of(chain_of(steep, ChainFault::not_normalised)));
+    auto chain = chain_of(base, ChainFault::none);
+    const auto other = chain_of(changed(base, [](int, int, double& p, double& q) { std::swap(p, q), p = -p; }), ChainFault::none);
+    for (std::size_t k = 1; k < chain.size(); ++k) chain[k] = other[k];
+    dds("N502-level-unrelated", texture_of(chain));
+    dds("N503-level-shifted", texture_of(chain_of(base, ChainFault::shifted)));
+    chain = chain_of(base, ChainFault::none);
+    const auto faded = chain_of(changed(base, [](int, int, double& p, double& q) { p *= 0.4, q *= 0.4; }), ChainFault::none);
+    for (std::size_t k = 2; k < chain.size(); ++k) chain[k] = faded[k];
+    dds("N504-fade-unfinished", texture_of(chain));
+    const Codes right = codes();
+    Codes mirrored = right;  // left and right exchanged: sound normals of other heights
+    for (int k = 0; k < 128 * 128; ++k) {
+        for (int c = 0; c < 3; ++c) {
+            const int code = right.at(127 - k % 128, k / 128, c);
+            mirrored.at(k % 128, k / 128, c) = static_cast<unsigned char>(c == 0 ? 255 - code : code);
+        }
+    }
+    png("N601-height-mismatch", mirrored);
+    png("N602-height-inverted", codes_of(changed(base, [](int, int, double& p, double& q) { p = -p, q = -q; })));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc != 3) {
+        std::fprintf(stderr, "usage: make_broken samples/waves.png FOLDER\n");
+        return 2;
+    }
+    Maker maker{argv[2], {}};
+    const auto image = read_image(argv[1]);
+    auto field = image ? height_field(*image, {}) : Result<HeightField>(image.error());
+    if (!field) {
+        maker.fail(field.error());
+        return 3;
+    }
+    field->bumpiness_x = field->bumpiness_y = 8.0f;
+    auto base = bake(*field);
+    if (!base) return 3;
+    maker.base = std::move(*base);
+    maker.files();
+    maker.values();
+    maker.damages();
+    maker.conventions();
+    maker.levels();
+    return maker.failed ? 3 : 0;
+}
