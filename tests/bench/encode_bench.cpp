@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+// encode_bench: speed and quality of the DXT5nm encoders, ours and others', map by map.
+//
+//     encode_bench [MAP ... | DIRECTORY ... | ENCODER.so ...]
+//
+// Without maps: ../shared/data/normal and pairs beside the source tree. An ENCODER.so has the function
+//
+//     extern "C" void encode(const uint8_t* rgba, int width, int height, size_t pitch, uint8_t* blocks)
+//
+// and gets R = 255, G = y, B = 0, A = x in 8 bits. libsquish is always beside ours. One thread, processor time, the median of several runs;
+// our encoders read strips of float rows that stay in the second-level cache. Errors are those of our decode, divided by those of
+// `best`, which is the optimum of the squared error in both channels. Maps are cut to whole blocks. "pooled" is the sum over the maps divided by the
+// sum over the optima.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <dlfcn.h>
+#include <hwy/highway.h>
+#include <squish.h>
+
+#include <tex/tex.h>
+
+#include "blocks/bc1.h"
+#include "blocks/bc4.h"
+#include "kernels/encode.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+double processor_seconds() {
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+struct Map {
+    std::string name;
+    tex::NormalMap normals;
+    int width, height;                // whole blocks
+    std::vector<std::uint8_t> rgba8;  // for the others
+    [[nodiscard]] int blocks() const { return width / 4 * (height / 4); }
+};
+
+struct Quality {
+    double green = 0, alpha = 0;          // mean squared errors, in codes squared
+    double mean = 0, most_999 = 0, largest = 0;  // angles in degrees
+};
+
+struct Encoder {
+    std::string name;
+    std::function<double(const Map&, std::vector<std::byte>&)> run;  // returns seconds
+    Quality sum;
+    double seconds = 0;
+};
+
+Quality measure(const Map& map, const std::vector<std::byte>& blocks) {
+    Quality q;
+    std::vector<float> angles;
+    angles.reserve(static_cast<std::size_t>(map.blocks()) * 16);
+    for (int block = 0; block < map.blocks(); ++block) {
+        const std::byte* bytes = blocks.data() + 16 * block;
+        float x[16], y[16], r[16], b[16], a[16];
+        tex::decode_bc4_unorm(bytes, x);
+        tex::decode_bc1(bytes + 8, tex::Bc1Mode::four_colors, r, y, b, a);
+        for (int k = 0; k < 16; ++k) {
+            const int i = block % (map.width / 4) * 4 + k % 4;
+            const int j = block / (map.width / 4) * 4 + k / 4;
+            const double p[2] = {map.normals.x.at(i, j), map.normals.y.at(i, j)};
+            const double e[2] = {2.0 * x[k] - 1.0, 2.0 * y[k] - 1.0};
+            q.alpha += (p[0] - e[0]) * (p[0] - e[0]) * 127.5 * 127.5;
+            q.green += (p[1] - e[1]) * (p[1] - e[1]) * 127.5 * 127.5;
+            const double pz = std::sqrt(1.0 - std::min(1.0, p[0] * p[0] + p[1] * p[1]));
+            const double ez = std::sqrt(1.0 - std::min(1.0, e[0] * e[0] + e[1] * e[1]));
+            const double cross = std::hypot(p[1] * ez - pz * e[1], pz * e[0] - p[0] * ez, p[0] * e[1] - p[1] * e[0]);
+            angles.push_back(static_cast<float>(std::atan2(cross, p[0] * e[0] + p[1] * e[1] + pz * ez) * 57.29577951308232));
+            q.mean += angles.back();
+        }
+    }
+    const auto count = static_cast<double>(angles.size());
+    q.green /= count, q.alpha /= count, q.mean /= count;
+    const auto at = static_cast<std::ptrdiff_t>(0.999 * (count - 1));
+    std::nth_element(angles.begin(), angles.begin() + at, angles.end());
+    q.most_999 = angles[static_cast<std::size_t>(at)];
+    q.largest = *std::max_element(angles.begin(), angles.end());
+    return q;
+}
+
+double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return values[values.size() / 2];
+}
+
+// Ours: rows of blocks, each several times in a row, so that its texels are in the cache.
+double encode_ours(const Map& map, tex::Effort effort, std::vector<std::byte>& blocks) {
+    const int repeats = effort == tex::Effort::best ? 1 : 8;
+    std::vector<double> seconds;
+    for (int run = 0; run < (effort == tex::Effort::best ? 1 : 5); ++run) {
+        const double start = processor_seconds();
+        for (int j = 0; j < map.height; j += 4) {
+            tex::BlockRow row;
+            for (int k = 0; k < 4; ++k) {
+                row.x[k] = map.normals.x.row(j + k);
+                row.y[k] = map.normals.y.row(j + k);
+            }
+            row.width = map.width;
+            std::byte* out = blocks.data() + 16 * static_cast<std::ptrdiff_t>(j / 4) * (map.width / 4);
+            for (int repeat = 0; repeat < repeats; ++repeat) tex::encode_dxt5nm(row, effort, out);
+        }
+        seconds.push_back((processor_seconds() - start) / repeats);
+    }
+    return median(seconds);
+}
+
+double encode_others(const Map& map, std::vector<std::byte>& blocks,
+                     const std::function<void(const Map&, std::uint8_t*)>& encode, int runs) {
+    std::vector<double> seconds;
+    for (int run = 0; run < runs; ++run) {
+        const double start = processor_seconds();
+        encode(map, reinterpret_cast<std::uint8_t*>(blocks.data()));
+        seconds.push_back(processor_seconds() - start);
+    }
+    return median(seconds);
+}
+
+void add_map(const fs::path& path, std::vector<Map>& maps) {
+    const tex::Result<tex::Image> image = tex::read_image(path.string());
+    if (!image) {
+        std::fprintf(stderr, "encode_bench: %s\n", image.error().message().c_str());
+        return;
+    }
+    tex::Result<tex::NormalMap> normals = tex::unpack(*image, {});
+    if (!normals || normals->extent().width < 4 || normals->extent().height < 4) return;
+    Map map{path.filename().string(), std::move(*normals), 0, 0, {}};
+    map.width = map.normals.extent().width / 4 * 4;
+    map.height = map.normals.extent().height / 4 * 4;
+    if (!map.name.starts_with("normal")) map.name = path.stem().string();
+    else map.name = path.parent_path().filename().string() + "/" + path.stem().string();
+    // x and y as stored: unpack() normalises, so they are taken from the picture.
+    for (int j = 0; j < map.height; ++j) {
+        for (int i = 0; i < map.width; ++i) {
+            map.normals.x.at(i, j) = 2.0f * image->planes[0].at(i, j) - 1.0f;
+            map.normals.y.at(i, j) = 2.0f * image->planes[1].at(i, j) - 1.0f;
+            const auto code = [](float n) { return static_cast<std::uint8_t>(n * 127.5f + 128.0f); };
+            map.rgba8.insert(map.rgba8.end(), {255, code(map.normals.y.at(i, j)), 0, code(map.normals.x.at(i, j))});
+        }
+    }
+    maps.push_back(std::move(map));
+}
+
+void add_directory(const fs::path& directory, std::vector<Map>& maps) {
+    std::vector<fs::path> paths;
+    for (const auto& entry : fs::recursive_directory_iterator(directory)) {
+        const fs::path& path = entry.path();
+        const bool pair = path.string().find("/pairs/") != std::string::npos;
+        const bool eight_bits = path.extension() != ".exr";
+        const bool copy = path.parent_path().filename() == "derived";
+        if (entry.is_regular_file() && eight_bits && !copy && (!pair || path.filename().string().starts_with("normal"))) paths.push_back(path);
+    }
+    std::sort(paths.begin(), paths.end());
+    for (const fs::path& path : paths) add_map(path, maps);
+}
+
+void print(const std::string& map, const Encoder& encoder, double speed, const Quality& q, const Quality& best) {
+    const auto ratio = [](double value, double least) { return least > 0 ? value / least : value > 0 ? HUGE_VAL : 1.0; };
+    std::printf("%-28s %-22s %9.2f %8.3f %8.3f %8.3f %8.3f %8.3f\n", map.c_str(), encoder.name.c_str(), speed, ratio(q.mean, best.mean),
+                ratio(q.green, best.green), ratio(q.alpha, best.alpha), ratio(q.most_999, best.most_999), ratio(q.largest, best.largest));
+    std::fflush(stdout);
+}
+
+std::vector<Encoder> our_encoders() {
+    std::vector<Encoder> encoders;
+    encoders.push_back({"best", [](const Map& map, auto& blocks) { return encode_ours(map, tex::Effort::best, blocks); }, {}, 0});
+    for (const tex::Effort effort : {tex::Effort::normal, tex::Effort::fast}) {
+        for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+            const std::string name = std::string(tex::name_of(tex::kEffortNames, effort)) + " " + hwy::TargetName(target);
+            encoders.push_back({name, [effort, target](const Map& map, auto& blocks) {
+                                    hwy::SetSupportedTargetsForTest(target);
+                                    const double seconds = encode_ours(map, effort, blocks);
+                                    hwy::SetSupportedTargetsForTest(0);
+                                    return seconds;
+                                }, {}, 0});
+        }
+    }
+    for (const int flag : {squish::kColourRangeFit, squish::kColourClusterFit}) {
+        encoders.push_back({flag == squish::kColourRangeFit ? "libsquish range" : "libsquish cluster",
+                            [flag](const Map& map, auto& blocks) {
+                                return encode_others(map, blocks, [flag](const Map& m, std::uint8_t* out) {
+                                    squish::CompressImage(m.rgba8.data(), m.width, m.height, out, squish::kDxt5 | flag);
+                                }, 1);
+                            }, {}, 0});
+    }
+    return encoders;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    std::vector<Map> maps;
+    std::vector<Encoder> encoders = our_encoders();
+    for (int k = 1; k < argc; ++k) {
+        const fs::path path = argv[k];
+        if (path.extension() == ".so") {
+            void* library = dlopen(argv[k], RTLD_NOW);
+            using Encode = void (*)(const std::uint8_t*, int, int, std::size_t, std::uint8_t*);
+            const auto encode = library == nullptr ? nullptr : reinterpret_cast<Encode>(dlsym(library, "encode"));
+            if (encode == nullptr) {
+                std::fprintf(stderr, "encode_bench: %s\n", dlerror());
+                return 3;
+            }
+            encoders.push_back({path.stem().string(), [encode](const Map& map, auto& blocks) {
+                                    return encode_others(map, blocks, [encode](const Map& m, std::uint8_t* out) {
+                                        encode(m.rgba8.data(), m.width, m.height, static_cast<std::size_t>(4 * m.width), out);
+                                    }, 3);
+                                }, {}, 0});
+        } else if (fs::is_directory(path)) {
+            add_directory(path, maps);
+        } else {
+            add_map(path, maps);
+        }
+    }
+    if (maps.empty()) {
+        for (const char* folder : {"/../shared/data/normal", "/../shared/data/pairs"}) {
+            if (fs::is_directory(std::string(TEX_SOURCE_DIR) + folder)) add_directory(std::string(TEX_SOURCE_DIR) + folder, maps);
+        }
+    }
+    std::printf("%-28s %-22s %9s %8s %8s %8s %8s %8s\n", "map", "encoder", "Mtexel/s", "mean", "green", "alpha", "p99.9", "largest");
+    double texels = 0;
+    for (const Map& map : maps) {
+        std::vector<std::byte> blocks(static_cast<std::size_t>(map.blocks()) * 16);
+        texels += 16.0 * map.blocks();
+        Quality best;
+        for (Encoder& encoder : encoders) {
+            const double seconds = encoder.run(map, blocks);
+            const Quality q = measure(map, blocks);
+            if (&encoder == encoders.data()) best = q;
+            print(map.name, encoder, 16.0 * map.blocks() / seconds * 1e-6, q, best);
+            encoder.seconds += seconds;
+            for (double Quality::*field : {&Quality::green, &Quality::alpha, &Quality::mean, &Quality::most_999, &Quality::largest}) {
+                encoder.sum.*field += q.*field;
+            }
+        }
+    }
+    for (const Encoder& encoder : encoders) print("pooled", encoder, texels / encoder.seconds * 1e-6, encoder.sum, encoders.front().sum);
+    return 0;
+}

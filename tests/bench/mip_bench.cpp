@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Texels of the base level per second to a complete chain, on one thread. MipCopy moves as many bytes: the
+// base level is read, 12 bytes for each texel, and a third as many are written. See keep_memory.cpp.
+
+#include <cstring>
+
+#include <benchmark/benchmark.h>
+
+#include <tex/mip.h>
+
+#include "kernels/mip.h"
+#include "unit/fields.h"
+
+namespace {
+
+using tex::Extent;
+using tex::MipDomain;
+using tex::MipFilter;
+using tex::NormalMap;
+
+void count(benchmark::State& state, int size) {
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(size) * size);
+}
+
+void MipCopy(benchmark::State& state) {
+    const int size = static_cast<int>(state.range(0));
+    const NormalMap base = tex::fields::noise_normals({size, size});
+    NormalMap third(Extent{size, size / 3});
+    for (auto _ : state) {
+        for (int j = 0; j < size / 3 * 3; ++j) {
+            std::memcpy(third.x.row(j / 3), base.x.row(j), static_cast<std::size_t>(size) * sizeof(float));
+            std::memcpy(third.y.row(j / 3), base.y.row(j), static_cast<std::size_t>(size) * sizeof(float));
+            std::memcpy(third.z.row(j / 3), base.z.row(j), static_cast<std::size_t>(size) * sizeof(float));
+        }
+        benchmark::ClobberMemory();
+    }
+    count(state, size);
+}
+BENCHMARK(MipCopy)->Arg(512)->Arg(4096);
+
+// The kernel of the box filter alone: one level.
+void MipRows(benchmark::State& state) {
+    const int size = static_cast<int>(state.range(0));
+    const NormalMap base = tex::fields::noise_normals({size, size});
+    NormalMap half(Extent{size / 2, size / 2});
+    for (auto _ : state) {
+        for (int j = 0; j < size / 2; ++j) {
+            tex::halve_rows(base.x.row(2 * j), base.x.row(2 * j + 1), size / 2, half.x.row(j));
+            tex::halve_rows(base.y.row(2 * j), base.y.row(2 * j + 1), size / 2, half.y.row(j));
+            tex::halve_rows(base.z.row(2 * j), base.z.row(2 * j + 1), size / 2, half.z.row(j));
+        }
+        benchmark::ClobberMemory();
+    }
+    count(state, size);
+}
+BENCHMARK(MipRows)->Arg(512)->Arg(4096);
+
+void Mip(benchmark::State& state) {
+    tex::MipOptions options;
+    options.filter = static_cast<MipFilter>(state.range(0));
+    options.domain = static_cast<MipDomain>(state.range(1));
+    const int size = static_cast<int>(state.range(2));
+    NormalMap base = tex::fields::noise_normals({size, size});
+    state.SetLabel(std::string(name_of(tex::kMipFilterNames, options.filter)) + " " +
+                   std::string(name_of(tex::kMipDomainNames, options.domain)));
+    for (auto _ : state) {
+        auto chain = tex::build_mip_chain(std::move(base), options, {1, {}});
+        base = std::move(chain.value().levels[0]);
+    }
+    count(state, size);
+}
+BENCHMARK(Mip)->ArgsProduct({{0, 1, 2, 3, 4, 5}, {0, 1}, {512, 4095, 4096}});
+
+}  // namespace

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <tex/tex.h>
+
+#include "cli/program.h"
+
+namespace tex::cli {
+
+class BakeNormals : public testing::Test {
+protected:
+    BakeNormals() {
+        scratch_.add_sample("bricks.png", "bricks.png");
+        scratch_.add_sample("ramp.png", "ramp.png");
+    }
+    Ran bake(std::vector<std::string> arguments, const Setting& setting = {}) {
+        arguments.push_back("--no-sync");
+        return run(scratch_, "bake-normals", arguments, setting);
+    }
+    std::string bytes_of(std::vector<std::string> arguments, const std::string& output = "bytes.dds") {
+        arguments.insert(arguments.end(), {"-o", output, "--effort", "fast"});
+        const Ran ran = bake(arguments);
+        EXPECT_EQ(ran.code, 0) << ran.err;
+        return scratch_.read(output);
+    }
+    void refuses(std::vector<std::string> arguments, const std::string& part) {
+        arguments.insert(arguments.begin(), "bricks.png");
+        arguments.insert(arguments.end(), {"-o", "x.dds"});
+        const Ran ran = bake(arguments);
+        EXPECT_EQ(ran.code, 2) << part;
+        EXPECT_EQ(lines_of(ran.err).size(), 1u) << ran.err;
+        EXPECT_NE(ran.err.find(part), std::string::npos) << ran.err;
+        EXPECT_FALSE(scratch_.has("x.dds"));
+    }
+    Scratch scratch_;
+};
+
+TEST_F(BakeNormals, MakesTheMipMappedDxt5nmOfTheReadme) {
+    const Ran ran = bake({"bricks.png", "-o", "bricks.dds", "--bumpiness", "12", "--json"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    auto report = nlohmann::json::parse(ran.out);
+    EXPECT_EQ(report["input"], "bricks.png");
+    EXPECT_EQ(report["output"], "bricks.dds");
+    EXPECT_EQ(report["extent"], (std::vector<int>{512, 512}));
+    EXPECT_EQ(report["levels"], 10);
+    EXPECT_EQ(report["format"], "dxt5nm");
+    EXPECT_EQ(report["y"], "up");
+    EXPECT_EQ(report["bytes"], scratch_.read("bricks.dds").size());
+    EXPECT_LT(report["slopes"]["x"][0], report["slopes"]["x"][1]);
+    const auto texture = read_texture(scratch_.path("bricks.dds"));
+    ASSERT_TRUE(texture);
+    EXPECT_EQ(texture->format, Format::bc3_unorm);
+    EXPECT_EQ(texture->levels.size(), 10u);
+    EXPECT_EQ(texture->levels.back().extent, (Extent{1, 1}));
+}
+
+TEST_F(BakeNormals, MakesThePictureOfTheReadme) {
+    ASSERT_EQ(bake({"bricks.png", "-o", "normals.png", "--bumpiness", "12"}).code, 0);
+    const auto picture = read_image(scratch_.path("normals.png"));
+    ASSERT_TRUE(picture);
+    EXPECT_EQ(picture->planes.size(), 3u);
+    EXPECT_EQ(picture->bits, 8);
+}
+
+TEST_F(BakeNormals, TheExtensionDecidesTheEncoding) {
+    const std::pair<const char*, const char*> expected[] = {
+        {"ktx2", "dxt5nm"}, {"png", "rgb8"}, {"exr", "half"}, {"tif", "rgb16"},
+        {"tga", "rgb8"},    {"bmp", "rgb8"}, {"jpg", "rgb8"}, {"PNG", "rgb8"}};
+    for (const auto& [extension, encoding] : expected) {
+        const Ran ran = bake({"ramp.png", "-o", std::string("x.") + extension, "--json"});
+        ASSERT_EQ(ran.code, 0) << extension << ": " << ran.err;
+        auto report = nlohmann::json::parse(ran.out);
+        EXPECT_EQ(report["format"], encoding);
+        EXPECT_EQ(report["levels"], report["format"] == "dxt5nm" ? 7 : 1) << extension;
+        EXPECT_TRUE(read_texture(scratch_.path(std::string("x.") + extension))) << extension;
+    }
+}
+
+TEST_F(BakeNormals, EveryEncodingGoesIntoDdsAndKtx2) {
+    for (const Named<Encoding>& row : kEncodingNames) {
+        for (const std::string name : {"x.dds", "x.ktx2"}) {
+            const Ran ran =
+                bake({"ramp.png", "-o", name, "--format", std::string(row.name), "--effort", "fast"});
+            EXPECT_EQ(ran.code, 0) << row.name << ": " << ran.err;
+            EXPECT_TRUE(read_texture(scratch_.path(name))) << row.name;
+        }
+    }
+}
+
+TEST_F(BakeNormals, StrengthsAreOneOfThree) {
+    refuses({"--bumpiness", "1", "--uv-height", "2"}, "--bumpiness and --uv-height contradict each other");
+    refuses({"--bumpiness", "1", "--height-range", "2", "--size", "1"},
+            "--bumpiness and --height-range contradict");
+    refuses({"--size", "2"}, "--size does nothing without --height-range");
+    refuses({"--height-range", "2"}, "--height-range needs --size");
+    refuses({"--height-range", "2", "--size", "0"}, "--size: 0 is not greater than 0");
+    refuses({"--height-range", "2", "--size", "2x"}, "--size: '' is not a number");
+    // 512 texels that are 64 wide: 8 texels for each unit.
+    const std::string direct = bytes_of({"bricks.png", "--bumpiness", "8"});
+    EXPECT_TRUE(bytes_of({"bricks.png", "--height-range", "1", "--size", "64"}) == direct);
+    EXPECT_TRUE(bytes_of({"bricks.png", "--height-range", "1", "--size", "64x64"}) == direct);
+    EXPECT_TRUE(bytes_of({"bricks.png", "--uv-height", "0.015625"}) == direct);
+    EXPECT_TRUE(bytes_of({"bricks.png", "--bumpiness", "-8"}) != direct);
+}
+
+TEST_F(BakeNormals, NumbersAreChecked) {
+    for (const std::string value : {"nan", "inf", "-inf", "1e99", "eight", "8,5", ""}) {
+        refuses({"--bumpiness", value}, "--bumpiness: ");
+    }
+    refuses({"--blur", "-1"}, "--blur: -1 is not at least 0 and at most 256");
+    refuses({"--kernel", "sobbel"}, "did you mean sobel?");
+    refuses({"--kernel", "gaussian:0"}, "--kernel: 0 is not greater than 0 and at most 64");
+    refuses({"--kernel", "sobel:2"}, "sobel takes no sigma");
+    refuses({"--wrap", "clamp,mirrro"}, "did you mean mirror?");
+    refuses({"--wrap", "clamp,"}, "--wrap: ''");
+    refuses({"--mips", "0"}, "neither all nor none nor a number");
+    refuses({"--mips", "keep"}, "neither all nor none nor a number");
+    refuses({"--fade", "3,3"}, "--fade: 3 is not less than 3");
+    refuses({"--fade", "-1,3"}, "--fade: -1 is not at least 0");
+    refuses({"--no-data", "none"}, "--no-data: 'none' is not a number");
+    EXPECT_EQ(bake({"bricks.png", "-o", "y.dds", "--no-data", "-9999", "--kernel", "gaussian:1.5"}).code, 0);
+}
+
+TEST_F(BakeNormals, LevelsGoOnlyWhereTheyFit) {
+    const Ran png = bake({"ramp.png", "-o", "x.png", "--mips", "all"});
+    EXPECT_EQ(png.code, 2);
+    EXPECT_NE(png.err.find("a png file holds one level"), std::string::npos) << png.err;
+    EXPECT_EQ(bake({"ramp.png", "-o", "x.png", "--mips", "none"}).code, 0);
+    EXPECT_EQ(bake({"ramp.png", "-o", "x.png", "--mips", "1"}).code, 0);
+    EXPECT_EQ(
+        nlohmann::json::parse(bake({"ramp.png", "-o", "x.exr", "--mips", "all", "--json"}).out)["levels"], 7);
+    EXPECT_EQ(
+        nlohmann::json::parse(bake({"ramp.png", "-o", "x.dds", "--mips", "99", "--json"}).out)["levels"], 7);
+}
+
+TEST_F(BakeNormals, OptionsChangeTheResult) {
+    const std::string plain = bytes_of({"bricks.png"});
+    const std::vector<std::vector<std::string>> changes = {{"--kernel", "scharr"},
+                                                           {"--kernel", "gaussian:2"},
+                                                           {"--wrap", "clamp"},
+                                                           {"--invert"},
+                                                           {"--blur", "2"},
+                                                           {"--y", "down"},
+                                                           {"--mip-filter", "kaiser"},
+                                                           {"--mip-domain", "slope"},
+                                                           {"--fade", "1,3"},
+                                                           {"--dds-header", "dx10"},
+                                                           {"--dds-mark"},
+                                                           {"--color-space", "sRGB"},
+                                                           {"--mips", "2"},
+                                                           {"--format", "bc5"}};
+    const std::string base = bytes_of({"bricks.png", "--bumpiness", "4"});
+    for (std::vector<std::string> change : changes) {
+        const std::string name = change[0];
+        change.insert(change.end(), {"bricks.png", "--bumpiness", "4"});
+        EXPECT_TRUE(bytes_of(change) != base) << name;
+    }
+    EXPECT_TRUE(bytes_of({"bricks.png", "--wrap", "repeat,repeat"}) == plain);
+}
+
+TEST_F(BakeNormals, ThreadsDoNotChangeTheBytes) {
+    const std::string one = bytes_of({"bricks.png", "--threads", "1"});
+    for (const std::string count : {"2", "3", "16"})
+        EXPECT_TRUE(bytes_of({"bricks.png", "--threads", count}) == one);
+}
+
+TEST_F(BakeNormals, OneThreadMeansNoOther) {
+    if (!is_installed("strace")) GTEST_SKIP() << "no strace";
+    const Ran ran =
+        shell(scratch_,
+              "strace -f -qq -e trace=clone,clone3,fork,vfork bake-normals bricks.png -o x.dds --threads 1");
+    EXPECT_EQ(ran.code, 0);
+    EXPECT_EQ(ran.err, "");
+}
+
+TEST_F(BakeNormals, OpenImageIOIsNotLoadedWhereItIsNotNeeded) {
+    const Ran linked = shell(scratch_, "ldd $(command -v bake-normals)");
+    EXPECT_EQ(linked.out.find("OpenImageIO"), std::string::npos) << linked.out;
+    for (const std::string line : {"bake-normals --version", "bake-normals ramp.png -o ramp.dds"}) {
+        const Ran traced =
+            shell(scratch_, "LD_DEBUG=files LD_DEBUG_OUTPUT=loaded " + line + " && cat loaded.*");
+        EXPECT_EQ(traced.code, 0);
+        EXPECT_NE(traced.out.find("libtbb"), std::string::npos);
+        EXPECT_EQ(traced.out.find("OpenImageIO"), std::string::npos) << line;
+        EXPECT_EQ(traced.out.find("tex-reader"), std::string::npos) << line;
+    }
+}
+
+TEST_F(BakeNormals, ColourSpacesAreCheckedBeforeAnyWork) {
+    refuses({"--color-space", "chartreuse"}, "--color-space: ");
+    refuses({"--ocio-config", "x.ocio"}, "--ocio-config does nothing without --color-space");
+    EXPECT_EQ(
+        bake({"ramp.png", "-o", "x.dds", "--color-space", "sRGB", "--ocio-config", "missing.ocio"}).code, 3);
+    EXPECT_FALSE(scratch_.has("x.dds"));
+    Setting configured;
+    configured.environment = {"OCIO=" + scratch_.path("missing.ocio")};
+    EXPECT_EQ(bake({"ramp.png", "-o", "x.dds", "--color-space", "sRGB"}, configured).code, 3);
+    EXPECT_EQ(bake({"ramp.png", "-o", "x.dds"}, configured).code, 0);  // $OCIO means nothing to raw data
+}
+
+TEST_F(BakeNormals, TheColourConfigurationIsADependency) {
+    scratch_.write(
+        "c.ocio",
+        "ocio_profile_version: 2\nroles: {scene_linear: lin, default: lin}\n"
+        "displays: {d: [!<View> {name: v, colorspace: lin}]}\nactive_displays: []\nactive_views: []\n"
+        "colorspaces:\n  - !<ColorSpace> {name: lin}\n  - !<ColorSpace> {name: enc, to_scene_reference: "
+        "!<ExponentTransform> {value: [2.2, 2.2, 2.2, 1]}}\n");
+    const Ran ran = bake(
+        {"ramp.png", "-o", "x.dds", "--color-space", "enc", "--ocio-config", "c.ocio", "--depfile", "d"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(scratch_.read("d"), "x.dds: \\\n  ramp.png \\\n  c.ocio\n");
+}
+
+TEST_F(BakeNormals, GuessedHeightsAreToldOnceWithCounts) {
+    ASSERT_EQ(bake({"bricks.png", "-o", "colour.png", "--bumpiness", "12"}).code,
+              0);  // a picture whose channels differ
+    std::filesystem::copy_file(scratch_.path("colour.png"), scratch_.path("more.png"));
+    const Ran ran = bake({"colour.png", "bricks.png", "more.png", "--out-dir", "out"});
+    EXPECT_EQ(ran.code, 0);
+    ASSERT_EQ(lines_of(ran.err).size(), 1u) << ran.err;
+    EXPECT_NE(ran.err.find("warning: R, G and B differ in "), std::string::npos) << ran.err;
+    EXPECT_NE(ran.err.find("of 2 files"), std::string::npos) << ran.err;
+    EXPECT_EQ(bake({"colour.png", "-o", "x.dds", "--quiet"}).err, "");
+    EXPECT_EQ(bake({"colour.png", "-o", "x.dds", "--channel", "luma"}).err, "");
+    const Ran missing = bake({"bricks.png", "-o", "z.dds", "--channel", "a"});  // a matter of the file
+    EXPECT_EQ(missing.code, 4);
+    EXPECT_EQ(lines_of(missing.err).size(), 1u) << missing.err;
+    EXPECT_FALSE(scratch_.has("z.dds"));
+}
+
+TEST_F(BakeNormals, FilesThatClaimTooMuchAreRefused) {
+    const Ran ran = bake({"bricks.png", "-o", "x.dds", "--max-texels", "1K"});
+    EXPECT_EQ(ran.code, 4);
+    EXPECT_EQ(lines_of(ran.err).size(), 1u) << ran.err;
+    EXPECT_EQ(bake({"bricks.png", "-o", "x.dds", "--max-texels", "256K"}).code, 0);
+}
+
+}  // namespace tex::cli

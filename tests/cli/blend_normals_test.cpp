@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <tex/tex.h>
+
+#include "cli/program.h"
+
+namespace tex::cli {
+
+class BlendNormals : public testing::Test {
+protected:
+    BlendNormals() {
+        scratch_.add_sample("bricks.png", "bricks.png");
+        scratch_.add_sample("waves.png", "waves.png");
+        does("bake-normals", {"bricks.png", "-o", "base.exr", "--bumpiness", "8", "--format", "float"});
+        does("bake-normals", {"waves.png", "-o", "detail.exr", "--bumpiness", "4", "--format", "float"});
+        does("scale-normals", {"detail.exr", "-o", "flat.exr", "--scale", "0"});
+    }
+    Ran go(const std::string& command, std::vector<std::string> arguments) {
+        arguments.push_back("--no-sync");
+        return run(scratch_, command, arguments);
+    }
+    void does(const std::string& command, const std::vector<std::string>& arguments) {
+        const Ran ran = go(command, arguments);
+        EXPECT_EQ(ran.code, 0) << ran.err;
+        EXPECT_EQ(ran.err, "");
+    }
+    void refuses(const std::vector<std::string>& arguments, const std::string& part) {
+        const Ran ran = go("blend-normals", arguments);
+        EXPECT_EQ(ran.code, 2) << part;
+        EXPECT_EQ(lines_of(ran.err).size(), 1u) << ran.err;
+        EXPECT_NE(ran.err.find(part), std::string::npos) << ran.err;
+    }
+    double angle(const std::string& a, const std::string& b) {
+        const auto map = [&](const std::string& name) {
+            auto chain = unpack(*read_texture(scratch_.path(name)));
+            EXPECT_TRUE(chain);
+            return std::move(chain->levels.front());
+        };
+        const auto compared = compare(map(a), map(b));
+        EXPECT_TRUE(compared);
+        return compared->error.max;
+    }
+    Scratch scratch_;
+};
+
+TEST_F(BlendNormals, AFlatDetailLeavesTheBase) {
+    for (const std::string mode : {"whiteout", "partial-derivative", "rnm", "udn"}) {
+        does("blend-normals", {"base.exr", "flat.exr", "-o", "x.exr", "--mode", mode});
+        EXPECT_LT(angle("x.exr", "base.exr"), 1e-4) << mode;
+    }
+    does("blend-normals", {"base.exr", "detail.exr", "-o", "x.exr", "--strength", "0"});
+    EXPECT_LT(angle("x.exr", "base.exr"), 1e-4);
+    does("blend-normals", {"base.exr", "detail.exr", "-o", "x.exr"});
+    EXPECT_GT(angle("x.exr", "base.exr"), 5.0);
+}
+
+TEST_F(BlendNormals, LayersTakeTheirOwnOptionsOrShareOne) {
+    does("blend-normals", {"base.exr", "detail.exr", "flat.exr", "-o", "one.exr", "--tiling", "4"});
+    does("blend-normals",
+         {"base.exr", "detail.exr", "flat.exr", "-o", "each.exr", "--tiling", "4", "--tiling", "2,3"});
+    EXPECT_LT(angle("one.exr", "each.exr"), 1e-4);
+    does("blend-normals",
+         {"base.exr", "detail.exr", "detail.exr", "-o", "none.exr", "--strength", "0", "--strength", "0"});
+    EXPECT_LT(angle("none.exr", "base.exr"), 1e-4);
+    refuses(
+        {"base.exr", "detail.exr", "flat.exr", "flat.exr", "-o", "x.exr", "--tiling", "4", "--tiling", "2"},
+        "--tiling is given 2 times for 3 details");
+    for (const std::string option :
+         {"--tiling", "--detail-scale", "--rotate", "--strength", "--detail-wrap", "--offset"}) {
+        const std::string value = option == "--detail-wrap" ? "clamp"
+                                  : option == "--offset"    ? "0.25,0.5"
+                                                            : "0.5";
+        does("blend-normals", {"base.exr", "detail.exr", "-o", "x.exr", "--tiling", "2"});
+        std::vector<std::string> arguments = {"base.exr", "detail.exr", "-o", "changed.exr", option, value};
+        if (option != "--tiling") arguments.insert(arguments.end(), {"--tiling", "2"});
+        does("blend-normals", arguments);
+        EXPECT_GT(angle("x.exr", "changed.exr"), 0.1) << option;
+    }
+}
+
+TEST_F(BlendNormals, MasksChooseWhereDetailShows) {
+    does("blend-normals", {"base.exr", "detail.exr", "-o", "masked.exr", "--mask", "bricks.png:r"});
+    EXPECT_GT(angle("masked.exr", "base.exr"), 1.0);
+    scratch_.write("not:a:picture", "");
+    EXPECT_EQ(go("blend-normals", {"base.exr", "detail.exr", "-o", "x.exr", "--mask", "not:a:picture"}).code,
+              4);
+    EXPECT_EQ(go("blend-normals", {"base.exr", "detail.exr", "-o", "x.exr", "--mask", "missing.png:a"}).code,
+              3);
+}
+
+TEST_F(BlendNormals, OneDetailGoesOnManyBases) {
+    does("blend-normals",
+         {"base.exr", "detail.exr", "-o", "single.dds", "--tiling", "4", "--effort", "fast"});
+    does("bake-normals", {"bricks.png", "-o", "other.exr", "--bumpiness", "2", "--format", "float"});
+    const Ran ran =
+        go("blend-normals", {"base.exr", "other.exr", "--detail", "detail.exr", "--tiling", "4", "--out-dir",
+                             "out", "--name", "{stem}.dds", "--effort", "fast", "--json", "--depfile", "d"});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(lines_of(ran.out).size(), 2u);
+    EXPECT_TRUE(scratch_.read("out/base.dds") == scratch_.read("single.dds"));
+    EXPECT_EQ(
+        scratch_.read("d"),
+        "out/base.dds: \\\n  base.exr \\\n  detail.exr\nout/other.dds: \\\n  other.exr \\\n  detail.exr\n");
+}
+
+TEST_F(BlendNormals, ResultsHaveTheBaseSizeAndTheirOwnLevels) {
+    const auto report = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), {"--json", "--effort", "fast"});
+        const Ran ran = go("blend-normals", arguments);
+        EXPECT_EQ(ran.code, 0) << ran.err;
+        return nlohmann::json::parse(ran.out);
+    };
+    const auto whole = report({"base.exr", "detail.exr", "-o", "x.dds"});
+    EXPECT_EQ(whole["extent"], (std::vector<int>{512, 512}));
+    EXPECT_EQ(whole["levels"], 10);
+    EXPECT_EQ(whole["format"], "dxt5nm");
+    const auto small = report({"base.exr", "detail.exr", "-o", "x.exr", "--extent", "100x60"});
+    EXPECT_EQ(small["extent"], (std::vector<int>{100, 60}));
+    EXPECT_EQ(small["format"], "float");
+}
+
+TEST_F(BlendNormals, MisuseIsRefused) {
+    refuses({"base.exr", "-o", "x.dds"}, "no detail: give BASE DETAIL... -o FILE");
+    refuses({"base.exr", "detail.exr", "--out-dir", "out"}, "no detail");
+    refuses({"base.exr", "detail.exr", "-o", "detail.exr"}, "the output detail.exr is the input detail.exr");
+    refuses({"base.exr", "--detail", "detail.exr", "-o", "detail.exr"},
+            "the output detail.exr is the input detail.exr");
+    refuses({"base.exr", "detail.exr", "-o", "x.dds", "--mask", "bricks.png", "--depfile", "bricks.png"},
+            "is the input bricks.png");
+    refuses({"base.exr", "detail.exr", "-o", "x.dds", "--tiling", "0"}, "--tiling: 0 is not greater than 0");
+    refuses({"base.exr", "detail.exr", "-o", "x.dds", "--offset", "1"}, "--offset: '' is not a number");
+    refuses({"base.exr", "detail.exr", "-o", "x.dds", "--strength", "1.5"},
+            "--strength: 1.5 is not at least 0 and at most 1");
+    refuses({"base.exr", "detail.exr", "-o", "x.dds", "--mode", "whitout"}, "did you mean whiteout?");
+    refuses({"base.exr", "detail.exr", "-o", "x.dds", "--extent", "0x5"}, "--extent: 0 is not at least 1");
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <fstream>
+#include <iterator>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <tex/tex.h>
+
+#include "cli/program.h"
+
+namespace tex::cli {
+
+class CheckNormals : public testing::Test {
+protected:
+    CheckNormals() {
+        scratch_.add_sample("bricks.png", "bricks.png");
+        bake("good.dds", {});
+        bake("down.dds", {"--y", "down"});
+    }
+    void bake(const std::string& output, std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), {"bricks.png", "-o", output, "--bumpiness", "12", "--effort", "fast", "--no-sync"});
+        const Ran ran = run(scratch_, "bake-normals", arguments);
+        EXPECT_EQ(ran.code, 0) << ran.err;
+    }
+    Ran check(const std::vector<std::string>& arguments) { return run(scratch_, "check-normals", arguments); }
+    Scratch scratch_;
+};
+
+TEST_F(CheckNormals, OurOwnTexturesAreClean) {
+    const Ran ran = check({"good.dds", "--require", "format=dxt5nm", "--require", "mips=full", "--require", "y=up", "--require", "tiles",
+                           "--require", "pow2", "--fail-on", "warning"});
+    EXPECT_EQ(ran.code, 0) << ran.out;
+    EXPECT_NE(ran.out.find("1 file: 0 errors, 0 warnings"), std::string::npos) << ran.out;
+    EXPECT_EQ(ran.err, "");
+}
+
+TEST_F(CheckNormals, FindingsNameFileRuleFigureAndFix) {
+    const Ran ran = check({"good.dds", "down.dds", "--require", "y=up"});
+    EXPECT_EQ(ran.code, 1);
+    const auto lines = lines_of(ran.out);
+    ASSERT_GE(lines.size(), 3u) << ran.out;
+    EXPECT_TRUE(lines[0].starts_with("down.dds: error N401 wrong-y: ")) << lines[0];
+    EXPECT_NE(lines[0].find("correlation -"), std::string::npos);
+    EXPECT_EQ(lines[1], "    fix: unpack-normals down.dds --y-in down --y up -o FIXED.png");
+    EXPECT_TRUE(lines.back().starts_with("2 files: 1 error, ")) << lines.back();
+}
+
+TEST_F(CheckNormals, SeverityDecidesWhetherItFails) {
+    const std::vector<std::string> base = {"down.dds", "--require", "y=up"};
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), base.begin(), base.end());
+        return check(more).code;
+    };
+    EXPECT_EQ(with({}), 1);
+    EXPECT_EQ(with({"--disable", "N401"}), 0);
+    EXPECT_EQ(with({"--severity", "wrong-y=warning"}), 0);
+    EXPECT_EQ(with({"--severity", "wrong-y=warning", "--fail-on", "warning"}), 1);
+}
+
+TEST_F(CheckNormals, ConfigurationIsReadAndTheCommandLineWins) {
+    scratch_.write("normals.toml", "require = [\"y=up\", \"mips=full\"]\nfail-on = \"error\"\n[severity]\nwrong-y = \"warning\"\n");
+    EXPECT_EQ(check({"down.dds", "--config", "normals.toml"}).code, 0);
+    EXPECT_EQ(check({"down.dds", "--config", "normals.toml", "--fail-on", "warning"}).code, 1);
+    EXPECT_EQ(check({"down.dds", "--config", "normals.toml", "--severity", "N401=error"}).code, 1);
+    EXPECT_EQ(check({"good.dds", "--config", "normals.toml", "--require", "y=down", "--severity", "N401=error"}).code, 1);
+    for (const char* text : {"require = 3", "require = [\"y=left\"]", "requires = []", "[severity]\nN999 = \"error\"", "fail-on = \"fatal\"", "x = ["}) {
+        scratch_.write("bad.toml", text);
+        const Ran ran = check({"good.dds", "--config", "bad.toml"});
+        EXPECT_EQ(ran.code, 2) << text;
+        EXPECT_NE(ran.err.find("bad.toml: line "), std::string::npos) << ran.err;
+    }
+    EXPECT_EQ(check({"good.dds", "--config", "gone.toml"}).code, 3);
+}
+
+TEST_F(CheckNormals, BaselineAcceptsWhatIsKnown) {
+    EXPECT_EQ(check({"down.dds", "--require", "y=up", "--baseline-write", "known.json"}).code, 0);
+    const Ran known = check({"down.dds", "--require", "y=up", "--baseline", "known.json"});
+    EXPECT_EQ(known.code, 0);
+    EXPECT_NE(known.out.find("known and accepted"), std::string::npos);
+    EXPECT_EQ(check({"./down.dds", "--require", "y=up", "--baseline", "known.json"}).code, 0) << "the same file";
+    EXPECT_EQ(check({"good.dds", "--require", "y=down", "--baseline", "known.json"}).code, 1);
+    scratch_.write("known.json", "[]");
+    EXPECT_EQ(check({"good.dds", "--baseline", "known.json"}).code, 4);
+}
+
+TEST_F(CheckNormals, UnreadableFilesAreFindingsAndExit4) {
+    scratch_.write("torn.dds", "DDS |");
+    const Ran ran = check({"torn.dds", "good.dds", "gone.dds"});
+    EXPECT_EQ(ran.code, 4);
+    EXPECT_NE(ran.out.find("torn.dds: error N101 unreadable: "), std::string::npos);
+    EXPECT_NE(ran.err.find("gone.dds"), std::string::npos);
+    EXPECT_EQ(check({"gone.dds"}).code, 3);
+}
+
+TEST_F(CheckNormals, SarifHasItsRulesAndResults) {
+    ASSERT_EQ(check({"good.dds", "down.dds", "--require", "y=up", "--sarif", "out.sarif"}).code, 1);
+    const auto log = nlohmann::json::parse(scratch_.read("out.sarif"));
+    EXPECT_EQ(log["version"], "2.1.0");
+    const auto& driver = log["runs"][0]["tool"]["driver"];
+    ASSERT_EQ(driver["rules"].size(), rules().size());
+    bool found = false;
+    for (const auto& result : log["runs"][0]["results"]) {
+        EXPECT_EQ(driver["rules"][result["ruleIndex"].get<std::size_t>()]["id"], result["ruleId"]);
+        EXPECT_TRUE(result["message"]["text"].is_string());
+        const auto& place = result["locations"][0]["physicalLocation"];
+        if (result["ruleId"] == "N401") {
+            found = true;
+            EXPECT_EQ(place["artifactLocation"]["uri"], "down.dds");
+            EXPECT_EQ(result["level"], "error");
+        }
+    }
+    EXPECT_TRUE(found);
+}
+
+TEST_F(CheckNormals, JUnitCountsAndEscapes) {
+    bake("a<&\"b.dds", {"--y", "down"});
+    scratch_.write("torn.dds", "DDS |");
+    EXPECT_EQ(check({"good.dds", "a<&\"b.dds", "torn.dds", "--require", "y=up", "--junit", "out.xml"}).code, 4);
+    const std::string xml = scratch_.read("out.xml");
+    EXPECT_NE(xml.find("tests=\"3\" failures=\"1\" errors=\"1\""), std::string::npos) << xml;
+    EXPECT_NE(xml.find("name=\"a&lt;&amp;&quot;b.dds\""), std::string::npos);
+    if (is_installed("xmllint")) {
+        EXPECT_EQ(shell(scratch_, "xmllint --noout out.xml").code, 0);
+    }
+}
+
+TEST_F(CheckNormals, DocumentsDoNotDependOnThreads) {
+    const std::vector<std::string> files = {"good.dds", "down.dds", "bricks.png", "--require", "y=up", "--sarif", "out.sarif", "--junit", "out.xml"};
+    const auto documents = [&](const std::string& threads) {
+        auto arguments = files;
+        arguments.insert(arguments.end(), {"--threads", threads});
+        const Ran ran = check(arguments);
+        return ran.out + scratch_.read("out.sarif") + scratch_.read("out.xml");
+    };
+    EXPECT_EQ(documents("1"), documents("4"));
+}
+
+TEST_F(CheckNormals, HeightMapsAreComparedWithTheirNormals) {
+    const auto report = [&](const std::string& height) {
+        return nlohmann::json::parse(check({"good.dds", "--height", height, "--json"}).out);
+    };
+    const auto own = report("bricks.png");
+    EXPECT_GT(own["pair"]["correlation"], 0.9);
+    EXPECT_NEAR(own["pair"]["strength"].get<double>(), 12.0, 1.0);
+    EXPECT_EQ(own["pair"]["y"], "up");
+    EXPECT_EQ(own["findings"].size(), 0u);
+    scratch_.add_sample("waves.png", "waves.png");
+    EXPECT_EQ(report("waves.png")["findings"][0]["id"], "N601");
+    EXPECT_EQ(check({"good.dds", "down.dds", "--height", "bricks.png"}).code, 2);
+}
+
+TEST_F(CheckNormals, ListsAndExplainsEveryRule) {
+    const Ran list = check({"--list"});
+    EXPECT_EQ(list.code, 0);
+    std::ifstream page(TEX_SOURCE_DIR "/man/check-normals.1");
+    const std::string manual{std::istreambuf_iterator<char>(page), {}};
+    for (const Rule& rule : rules()) {
+        EXPECT_NE(list.out.find(std::string(rule.sentence)), std::string::npos) << rule.id;
+        const Ran explained = check({"--explain", std::string(rule.id)});
+        EXPECT_EQ(explained.code, 0);
+        EXPECT_TRUE(explained.out.starts_with(fmt::format("{} {}", rule.id, rule.name)));
+        const std::string heading =
+            fmt::format(".It Sy {} Li {} Pq {}", rule.id, rule.name, name_of(kSeverityNames, rule.severity));
+        const std::size_t at = manual.find(heading);
+        ASSERT_NE(at, std::string::npos) << rule.id << " is not in the manual";
+        EXPECT_EQ(manual.find(fmt::format("\n{}\n", rule.sentence), at), manual.find('\n', at)) << rule.id;
+    }
+    EXPECT_EQ(check({"--explain", "N999"}).code, 2);
+    EXPECT_EQ(check({"--list", "good.dds"}).code, 2);
+    EXPECT_EQ(check({}).code, 2);
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <tex/tex.h>
+
+#include "cli/program.h"
+
+namespace tex::cli {
+
+class CompareNormals : public testing::Test {
+protected:
+    CompareNormals() {
+        scratch_.add_sample("waves.png", "waves.png");
+        make("up.exr", {});
+        make("down.exr", {"--y", "down"});
+        make("waves.dds", {});
+    }
+    void make(const std::string& output, std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), {"waves.png", "-o", output, "--bumpiness", "8", "--no-sync"});
+        const Ran ran = run(scratch_, "bake-normals", arguments);
+        EXPECT_EQ(ran.code, 0) << ran.err;
+    }
+    Ran compare(const std::vector<std::string>& arguments) { return run(scratch_, "compare-normals", arguments); }
+    Scratch scratch_;
+};
+
+TEST_F(CompareNormals, OneMapInTwoConventionsIsZeroDegreesApart) {
+    const Ran ran = compare({"up.exr", "down.exr", "--json"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(nlohmann::json::parse(ran.out)["degrees"]["max"], 0.0);
+    const Ran mistaken = compare({"up.exr", "down.exr", "--y-b", "up", "--json"});
+    EXPECT_GT(nlohmann::json::parse(mistaken.out)["degrees"]["mean"], 5.0);
+}
+
+TEST_F(CompareNormals, LimitsFailWithTheReason) {
+    EXPECT_EQ(compare({"up.exr", "waves.dds", "--max", "90", "--max-mean", "3", "--max-p999", "20"}).code, 0);
+    const Ran over = compare({"up.exr", "waves.dds", "--max-mean", "0.001"});
+    EXPECT_EQ(over.code, 1);
+    EXPECT_NE(over.err.find("mean"), std::string::npos);
+    EXPECT_NE(over.err.find("limit of 0.001"), std::string::npos);
+    EXPECT_EQ(lines_of(over.err).size(), 1u);
+}
+
+TEST_F(CompareNormals, EveryLevelHasALine) {
+    const Ran ran = compare({"waves.dds", "waves.dds", "--level", "all", "--json"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    const auto lines = lines_of(ran.out);
+    ASSERT_EQ(lines.size(), 8u);
+    for (std::size_t k = 0; k < lines.size(); ++k) {
+        const auto line = nlohmann::json::parse(lines[k]);
+        EXPECT_EQ(line["level"], k);
+        EXPECT_EQ(line["extent"][0], 128 >> k);
+        EXPECT_EQ(line["degrees"]["max"], 0.0);
+    }
+    EXPECT_EQ(compare({"waves.dds", "waves.dds", "--level", "3"}).code, 0);
+    const Ran missing = compare({"waves.dds", "waves.dds", "--level", "8"});
+    EXPECT_EQ(missing.code, 4);
+    EXPECT_NE(missing.err.find("8 levels"), std::string::npos);
+}
+
+TEST_F(CompareNormals, HeatMapHasTheMapAndALegend) {
+    const Ran ran = compare({"up.exr", "waves.dds", "--heatmap", "heat.png", "--heatmap-scale", "10"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    const auto image = read_image(scratch_.path("heat.png"));
+    ASSERT_TRUE(image);
+    EXPECT_EQ(image->extent(), (Extent{128, 128 + kHeatMapLegendRows}));
+}
+
+TEST_F(CompareNormals, RefusesWhatCannotBeCompared) {
+    EXPECT_EQ(compare({"up.exr"}).code, 2);
+    EXPECT_EQ(compare({"up.exr", "up.exr", "up.exr"}).code, 2);
+    EXPECT_EQ(compare({"up.exr", "up.exr", "--max", "-1"}).code, 2);
+    EXPECT_EQ(compare({"up.exr", "up.exr", "--heatmap-scale", "3"}).code, 2);
+    EXPECT_EQ(compare({"up.exr", "gone.exr"}).code, 3);
+    scratch_.write("text.png", "no picture");
+    EXPECT_EQ(compare({"up.exr", "text.png"}).code, 4);
+    scratch_.add_sample("ramp.png", "ramp.png");
+    ASSERT_EQ(run(scratch_, "bake-normals", {"ramp.png", "-o", "small.dds"}).code, 0);
+    const Ran sizes = compare({"up.exr", "small.dds"});
+    EXPECT_EQ(sizes.code, 4);
+    EXPECT_NE(sizes.err.find("64x64"), std::string::npos);
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <tex/tex.h>
+
+#include "cli/program.h"
+
+namespace tex::cli {
+
+class PackNormals : public testing::Test {
+protected:
+    PackNormals() {
+        scratch_.add_sample("waves.png", "waves.png");
+        does("bake-normals", {"waves.png", "-o", "n.dds", "--bumpiness", "12", "--format", "float"});
+    }
+    Ran go(const std::string& command, std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), {"--no-sync"});
+        return run(scratch_, command, arguments);
+    }
+    void does(const std::string& command, const std::vector<std::string>& arguments,
+              const std::string& said = {}) {
+        const Ran ran = go(command, arguments);
+        EXPECT_EQ(ran.code, 0) << command << " " << arguments[0] << ": " << ran.err;
+        if (said.empty()) {
+            EXPECT_EQ(ran.err, "");
+        }
+        EXPECT_NE(ran.err.find(said), std::string::npos) << ran.err;
+    }
+    // The largest and the mean angle between the base levels of two files, in degrees.
+    AngularError distance(const std::string& a, const std::string& b) {
+        const auto map = [&](const std::string& name) {
+            auto texture = read_texture(scratch_.path(name));
+            EXPECT_TRUE(texture) << name;
+            auto swizzle = guess_swizzle(*texture);
+            EXPECT_TRUE(swizzle) << name;
+            UnpackOptions options;
+            options.swizzle = *swizzle;
+            auto chain = unpack(*texture, options);
+            EXPECT_TRUE(chain) << name;
+            return std::move(chain->levels.front());
+        };
+        const NormalMap first = map(a), second = map(b);
+        const auto compared = compare(first, second);
+        EXPECT_TRUE(compared);
+        return compared->error;
+    }
+    Scratch scratch_;
+};
+
+TEST_F(PackNormals, EveryEncodingComesBackWithinItsQuantisation) {
+    // Degrees: the largest of 128x128 texels whose tilt goes up to about 50 degrees.
+    const std::pair<const char*, double> bounds[] = {
+        {"dxt5nm", 12.0}, {"bc5", 4.0}, {"bc5-snorm", 4.0}, {"rgb8", 0.6}, {"rgba8", 0.6},   {"rgb16", 0.01},
+        {"ag8", 1.0},     {"rg8", 1.0}, {"rg16", 0.01},     {"half", 0.1}, {"float", 0.0001}};
+    for (const auto& [encoding, bound] : bounds) {
+        for (const std::string name : {"x.dds", "x.ktx2"}) {
+            does("pack-normals", {"n.dds", "-o", name, "--format", encoding});
+            const AngularError error = distance("n.dds", name);
+            EXPECT_LE(error.max, bound) << encoding;
+        }
+    }
+}
+
+TEST_F(PackNormals, LevelsAreKeptUnlessOthersAreAskedFor) {
+    const auto levels = [&](std::vector<std::string> arguments) {
+        arguments.push_back("--json");
+        return nlohmann::json::parse(go("pack-normals", arguments).out)["levels"].get<int>();
+    };
+    EXPECT_EQ(levels({"n.dds", "-o", "x.ktx2"}), 8);
+    EXPECT_EQ(levels({"n.dds", "-o", "x.png"}), 1);
+    EXPECT_EQ(levels({"n.dds", "-o", "x.ktx2", "--mips", "none"}), 1);
+    EXPECT_EQ(levels({"n.dds", "-o", "x.ktx2", "--mips", "3"}), 3);
+    EXPECT_EQ(levels({"x.png", "-o", "y.dds"}), 1);
+    EXPECT_EQ(levels({"x.png", "-o", "y.dds", "--mips", "all"}), 8);
+    // Kept levels are those of the file, not new ones.
+    does("mip-normals", {"n.dds", "-o", "faded.dds", "--format", "float", "--fade", "0,1"});
+    does("pack-normals", {"faded.dds", "-o", "faded.ktx2", "--format", "float", "--keep-length"});
+    does("pack-normals", {"faded.ktx2", "-o", "again.dds", "--format", "float", "--keep-length"});
+    EXPECT_TRUE(scratch_.read("again.dds") == scratch_.read("faded.dds"));
+    const Ran idle = go("pack-normals", {"n.dds", "-o", "z.dds", "--fade", "1,3"});
+    EXPECT_EQ(idle.code, 2);
+    EXPECT_NE(idle.err.find("--fade does nothing where levels are kept"), std::string::npos) << idle.err;
+}
+
+TEST_F(PackNormals, FlippingTwiceGivesTheSameWhereLengthsAreKept) {
+    does("pack-normals", {"n.dds", "-o", "up.png"});
+    does("pack-normals", {"up.png", "-o", "down.png", "--y", "down", "--keep-length"});
+    does("pack-normals", {"down.png", "-o", "again.png", "--y-in", "down", "--y", "up", "--keep-length"});
+    EXPECT_FALSE(scratch_.read("down.png") == scratch_.read("up.png"));
+    EXPECT_TRUE(scratch_.read("up.png") == scratch_.read("again.png"));
+}
+
+TEST_F(PackNormals, LayoutsWithoutAMarkAreToldFromTheirTexels) {
+    does("pack-normals", {"n.dds", "-o", "ag.png", "--format", "ag8"});
+    does("pack-normals", {"ag.png", "-o", "guessed.dds", "--format", "float"}, "ag.png: taken for dxt5nm");
+    does("pack-normals", {"ag.png", "-o", "told.dds", "--format", "float", "--swizzle", "dxt5nm"});
+    does("pack-normals", {"ag.png", "-o", "either.dds", "--format", "float", "--swizzle", "rgorag"});
+    EXPECT_TRUE(scratch_.read("guessed.dds") == scratch_.read("told.dds"));
+    EXPECT_TRUE(scratch_.read("either.dds") == scratch_.read("told.dds"));
+    EXPECT_LT(distance("n.dds", "told.dds").max, 1.0);
+    does("pack-normals", {"n.dds", "-o", "rgb.png", "--format", "rgba8"});
+    does("pack-normals", {"rgb.png", "-o", "rgb.dds", "--format", "float"});
+    EXPECT_LT(distance("n.dds", "rgb.dds").max, 0.6);
+    std::filesystem::copy_file(scratch_.path("ag.png"), scratch_.path("more.png"));
+    const Ran many = go("pack-normals", {"rgb.png", "ag.png", "more.png", "--out-dir", "out", "--json"});
+    EXPECT_EQ(many.err,
+              "pack-normals: warning: ag.png and 1 more: taken for dxt5nm, as the texels look; "
+              "--swizzle says otherwise\n");
+    EXPECT_EQ(nlohmann::json::parse(lines_of(many.out).at(1))["source"]["swizzle"], "dxt5nm");
+    const Ran wrong = go("pack-normals", {"n.dds", "-o", "z.dds", "--swizzle", "dxt5n"});
+    EXPECT_EQ(wrong.code, 2);
+    EXPECT_NE(wrong.err.find("did you mean dxt5nm?"), std::string::npos) << wrong.err;
+}
+
+TEST_F(PackNormals, ASwizzleThatTheFileLacksIsAMatterOfTheFile) {
+    does("pack-normals", {"n.dds", "-o", "rgb.png"});
+    const Ran ran = go("pack-normals", {"rgb.png", "-o", "z.dds", "--swizzle", "dxt5nm"});
+    EXPECT_EQ(ran.code, 4);
+    EXPECT_EQ(lines_of(ran.err).size(), 1u) << ran.err;
+}
+
+}  // namespace tex::cli

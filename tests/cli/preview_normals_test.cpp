@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <tex/tex.h>
+
+#include "cli/program.h"
+
+namespace tex::cli {
+
+class PreviewNormals : public testing::Test {
+protected:
+    PreviewNormals() {
+        scratch_.add_sample("bricks.png", "height.png");
+        scratch_.add_sample("hemisphere.png", "small.png");
+        bake("height.png", "bricks.dds");
+        bake("small.png", "small.png.dds");
+    }
+    void bake(const std::string& from, const std::string& to, const std::string& y = "up") {
+        EXPECT_EQ(run(scratch_, "bake-normals",
+                      {from, "-o", to, "--bumpiness", "12", "--y", y, "--effort", "fast", "--no-sync"})
+                      .code,
+                  0);
+    }
+    Ran preview(std::vector<std::string> arguments) {
+        arguments.push_back("--no-sync");
+        return run(scratch_, "preview-normals", arguments);
+    }
+    Extent extent_of(const std::string& name) {
+        const auto image = read_image(scratch_.path(name));
+        EXPECT_TRUE(image) << name;
+        return image ? image->extent() : Extent{};
+    }
+    // Refused with a sentence that holds `part`, and nothing is written.
+    void refuses(const std::vector<std::string>& arguments, const std::string& part, int code = 2) {
+        const auto before = scratch_.list();
+        const Ran ran = preview(arguments);
+        EXPECT_EQ(ran.code, code) << part;
+        EXPECT_EQ(lines_of(ran.err).size(), 1u) << ran.err;
+        EXPECT_NE(ran.err.find(part), std::string::npos) << ran.err;
+        EXPECT_EQ(scratch_.list(), before) << part;
+    }
+    Scratch scratch_;
+};
+
+TEST_F(PreviewNormals, LightsAMapInItsOwnSize) {
+    const Ran ran = preview({"bricks.dds", "-o", "lit.png", "--json"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    const auto report = nlohmann::json::parse(ran.out);
+    EXPECT_EQ(report["input"], "bricks.dds");
+    EXPECT_EQ(report["output"], "lit.png");
+    EXPECT_EQ(report["extent"], (std::vector<int>{512, 512}));
+    EXPECT_EQ(report["frames"], 1);
+    EXPECT_EQ(report["bytes"], scratch_.read("lit.png").size());
+    EXPECT_EQ(extent_of("lit.png"), (Extent{512, 512}));
+}
+
+TEST_F(PreviewNormals, ShowsEverythingThatHasAName) {
+    for (const auto& row : kShowNames) {
+        const std::string name = "show_" + std::string(row.name) + ".png";
+        const Ran ran = preview({"bricks.dds", "-o", name, "--show", std::string(row.name), "--height",
+                                 "height.png", "--size", "64"});
+        ASSERT_EQ(ran.code, 0) << row.name << ": " << ran.err;
+        EXPECT_GE(extent_of(name).width, 64) << row.name;
+    }
+}
+
+TEST_F(PreviewNormals, PutsMapsInRowsOfASheet) {
+    ASSERT_EQ(preview({"bricks.dds", "small.png.dds", "-o", "sheet.png", "--show", "lit,normals,plain",
+                       "--size", "50"})
+                  .code,
+              0);
+    EXPECT_EQ(extent_of("sheet.png"), (Extent{3 * 50 + 4 * 8, 2 * (50 + 14) + 3 * 8}));
+    ASSERT_EQ(preview({"bricks.dds", "small.png.dds", "-o", "bare.png", "--size", "50", "--columns", "1",
+                       "--no-captions"})
+                  .code,
+              0);
+    EXPECT_EQ(extent_of("bare.png"), (Extent{50 + 16, 2 * 50 + 24}));
+}
+
+TEST_F(PreviewNormals, MakesAPictureOfEachMapInAFolder) {
+    const Ran ran =
+        preview({"bricks.dds", "small.png.dds", "--out-dir", "out", "--size", "40", "--depfile", "d"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(extent_of("out/bricks.png"), (Extent{40, 40}));
+    EXPECT_TRUE(scratch_.has("out/small.png.png"));
+    EXPECT_EQ(scratch_.read("d"),
+              "out/bricks.png: \\\n  bricks.dds\nout/small.png.png: \\\n  small.png.dds\n");
+}
+
+TEST_F(PreviewNormals, GreenThatIsUpsideDownChangesThePictureUntilItIsTold) {
+    bake("height.png", "down.png", "down");
+    bake("height.png", "up.png");
+    const auto bytes = [&](const std::string& map, std::vector<std::string> more) {
+        more.insert(more.begin(), {map, "-o", "x.png", "--size", "96", "--shape", "sphere"});
+        EXPECT_EQ(preview(more).code, 0);
+        return scratch_.read("x.png");
+    };
+    const std::string right = bytes("up.png", {});
+    EXPECT_NE(bytes("down.png", {}), right);
+    // Told, it is the same but for the codes 127 and 128, which are no mirror images of each other.
+    bytes("down.png", {"--y-in", "down"});
+    const auto told = read_image(scratch_.path("x.png"));
+    bytes("up.png", {});
+    const auto up = read_image(scratch_.path("x.png"));
+    ASSERT_TRUE(told && up);
+    float largest = 0.0f;
+    for (int j = 0; j < 96; ++j) {
+        for (int i = 0; i < 96; ++i)
+            largest = std::max(largest, std::abs(told->planes[0].at(i, j) - up->planes[0].at(i, j)));
+    }
+    EXPECT_LE(largest, 4.5f / 255.0f);
+}
+
+TEST_F(PreviewNormals, SplitsAndComparesTwoMaps) {
+    bake("height.png", "soft.png");
+    ASSERT_EQ(preview({"bricks.dds", "soft.png", "-o", "split.png", "--split", "--size", "100"}).code, 0);
+    EXPECT_EQ(extent_of("split.png"), (Extent{100, 118}));
+    ASSERT_EQ(preview({"bricks.dds", "soft.png", "-o", "both.png", "--difference", "--size", "100"}).code, 0);
+    EXPECT_GE(extent_of("both.png").width, 512);
+    refuses({"bricks.dds", "-o", "x.png", "--split"}, "--split takes two maps and -o, one is given");
+    refuses({"bricks.dds", "soft.png", "--out-dir", "out", "--difference"}, "--difference takes two maps");
+    refuses({"bricks.dds", "small.png.dds", "-o", "x.png", "--difference"},
+            "small.png.dds: is not as large as the other map", 4);
+}
+
+TEST_F(PreviewNormals, TurnsATurntable) {
+    const Ran ran = preview(
+        {"bricks.dds", "-o", "turn.png", "--shape", "cube", "--turntable", "3", "--size", "48", "--json"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(nlohmann::json::parse(ran.out)["frames"], 3);
+    const std::string file = scratch_.read("turn.png");
+    EXPECT_NE(file.find("acTL"), std::string::npos);
+    EXPECT_EQ(extent_of("turn.png"), (Extent{48, 48}));
+    refuses({"bricks.dds", "-o", "turn.tga", "--turntable", "3"}, "turn.tga: --turntable writes PNG");
+}
+
+TEST_F(PreviewNormals, TakesTheWholeMaterial) {
+    scratch_.add_sample("waves.png", "albedo.png");
+    const Ran ran = preview({"bricks.dds",
+                             "-o",
+                             "all.png",
+                             "--size",
+                             "80x60",
+                             "--shape",
+                             "tiled:2x1",
+                             "--albedo",
+                             "albedo.png",
+                             "--detail",
+                             "small.png.dds",
+                             "--detail-albedo",
+                             "albedo.png",
+                             "--detail-tiling",
+                             "4,2",
+                             "--detail-offset",
+                             "0.5",
+                             "--detail-scale",
+                             "0.5",
+                             "--height",
+                             "height.png",
+                             "--parallax",
+                             "0.05",
+                             "--parallax-steps",
+                             "8",
+                             "--parallax-limit",
+                             "0.2",
+                             "--camera",
+                             "-30,20,40",
+                             "--light",
+                             "-1,1,2",
+                             "--light-kind",
+                             "point",
+                             "--light-color",
+                             "2,1.8,1.5",
+                             "--ambient",
+                             "0.1",
+                             "--tint",
+                             "1",
+                             "--specular",
+                             "0.1,0.2,0.3",
+                             "--shininess",
+                             "50",
+                             "--specular-model",
+                             "blinn",
+                             "--bump-scale",
+                             "0.8",
+                             "--scale-mode",
+                             "xy",
+                             "--wrap",
+                             "clamp,repeat",
+                             "--anisotropy",
+                             "16",
+                             "--mirror"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(extent_of("all.png"), (Extent{80, 60}));
+}
+
+TEST_F(PreviewNormals, RefusesMisuse) {
+    const auto with = [](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), {"bricks.dds", "-o", "x.png"});
+        return arguments;
+    };
+    refuses(with({"--show", "lti"}), "'lti' is none of lit, plain");
+    refuses(with({"--show", "height"}), "--show height needs --height");
+    refuses(with({"--shape", "spere"}), "did you mean sphere?");
+    refuses(with({"--shape", "tiled:0x2"}), "--shape: 0 is not at least 1");
+    refuses(with({"--shape", "tiled"}), "'tiled' is none of");
+    refuses(with({"--size", "0"}), "--size: 0 is not at least 1");
+    refuses(with({"--size", "10x"}), "--size");
+    refuses(with({"--light", "0,0,0"}), "0,0,0 is no direction");
+    refuses(with({"--light", "1,2"}), "'1,2' is not 3 numbers");
+    refuses(with({"--light", "nan,0,1"}), "--light");
+    refuses(with({"--tint", "1,2"}), "neither one value nor R,G,B");
+    refuses(with({"--tint", "-1"}), "--tint: -1 is not at least 0");
+    refuses(with({"--camera", "0,90"}), "the pitch is -89 to 89 degrees");
+    refuses(with({"--camera", "0,0,150"}), "FOV is 0 to 120 degrees");
+    refuses(with({"--shininess", "0"}), "--shininess");
+    refuses(with({"--parallax", "0.1"}), "--parallax needs --height");
+    refuses(with({"--height", "height.png", "--parallax-steps", "4"}), "--parallax-steps needs --parallax");
+    refuses(with({"--detail-scale", "2"}), "--detail-scale needs --detail");
+    refuses(with({"--anisotropy", "17"}), "--anisotropy");
+    refuses({"bricks.dds", "-o", "x.exr"}, "a exr file cannot hold rgb8");
+    refuses({"bricks.dds", "--name", "{stem}_{level}.png"}, "{level} has no meaning");
+    refuses({"bricks.dds", "-o", "height.png", "--height", "height.png"},
+            "the output height.png is the input height.png");
+    refuses({"bricks.dds", "small.png.dds", "-o", "small.png.dds"}, "is the input");
+    refuses({"missing.dds", "-o", "x.png"}, "missing.dds: no such file", 3);
+    refuses({"bricks.dds", "missing.dds", "-o", "x.png"}, "missing.dds: no such file", 3);
+    refuses({"height.png", "-o", "x.png"}, "height.png: ", 4);
+}
+
+}  // namespace tex::cli

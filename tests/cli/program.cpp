@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cli/program.h"
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char** environ;
+
+namespace tex::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string slurp(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void spill(const fs::path& path, const std::string& text) {
+    std::ofstream file(path, std::ios::binary);
+    file << text;
+    if (!file.flush()) throw std::runtime_error("cannot write " + path.string());
+}
+
+std::vector<char*> pointers(std::vector<std::string>& words) {
+    std::vector<char*> result;
+    for (std::string& word : words) result.push_back(word.data());
+    result.push_back(nullptr);
+    return result;
+}
+
+}  // namespace
+
+Scratch::Scratch() {
+    std::string pattern = (fs::temp_directory_path() / "cli_tests.XXXXXX").string();
+    if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("cannot create a scratch folder");
+    folder_ = pattern;
+}
+
+Scratch::~Scratch() {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+}
+
+std::string Scratch::path(const std::string& name) const {
+    return (name.empty() ? folder_ : folder_ / name).string();
+}
+
+void Scratch::add_sample(const std::string& sample, const std::string& name) const {
+    fs::copy_file(fs::path(TEX_SOURCE_DIR) / "samples" / sample, folder_ / name);
+}
+
+void Scratch::write(const std::string& name, const std::string& text) const {
+    spill(folder_ / name, text);
+}
+std::string Scratch::read(const std::string& name) const {
+    return slurp(folder_ / name);
+}
+
+std::vector<std::string> Scratch::list() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
+        names.push_back(entry.path().lexically_relative(folder_).string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+Ran run(const Scratch& scratch, const std::string& program, const std::vector<std::string>& arguments,
+        const Setting& setting) {
+    const Scratch streams;
+    streams.write("in", setting.input);
+    const std::string out = setting.stdout_path.empty() ? streams.path("out") : setting.stdout_path;
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, 0, streams.path("in").c_str(), O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), O_WRONLY | O_CREAT, 0600);
+    posix_spawn_file_actions_addopen(&actions, 2, streams.path("err").c_str(), O_WRONLY | O_CREAT, 0600);
+    posix_spawn_file_actions_addchdir_np(&actions, scratch.path().c_str());
+
+    std::vector<std::string> words = {program.find('/') == std::string::npos ? TEX_BINARY_DIR "/" + program
+                                                                             : program};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<std::string> environment = setting.environment;
+    for (char** variable = environ; *variable != nullptr; ++variable) {
+        const std::string name = std::string(*variable).substr(0, std::string_view(*variable).find('=') + 1);
+        const auto is_set = [&](const std::string& other) { return other.starts_with(name); };
+        if (name == "OCIO=" || std::any_of(setting.environment.begin(), setting.environment.end(), is_set))
+            continue;
+        environment.emplace_back(*variable);
+    }
+    pid_t child = 0;
+    const int failed = posix_spawn(&child, words[0].c_str(), &actions, nullptr, pointers(words).data(),
+                                   pointers(environment).data());
+    posix_spawn_file_actions_destroy(&actions);
+    if (failed != 0) throw std::runtime_error("cannot start " + words[0]);
+    if (setting.signal != 0) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(setting.interrupt_after_ms));
+        kill(child, setting.signal);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    Ran ran;
+    ran.code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+    if (setting.stdout_path.empty()) ran.out = streams.read("out");
+    ran.err = streams.read("err");
+    return ran;
+}
+
+Ran shell(const Scratch& scratch, const std::string& script) {
+    const char* path = std::getenv("PATH");
+    Setting setting;
+    setting.environment = {std::string("PATH=" TEX_BINARY_DIR ":") +
+                           (path == nullptr ? "/usr/bin:/bin" : path)};
+    return run(scratch, "/bin/bash", {"-c", script}, setting);
+}
+
+bool is_installed(const std::string& program) {
+    const Scratch scratch;
+    return shell(scratch, "command -v " + program).code == 0;
+}
+
+std::vector<std::string> commands() {
+    std::istringstream names(TEX_COMMAND_NAMES);
+    return {std::istream_iterator<std::string>(names), {}};
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);) lines.push_back(line);
+    return lines;
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// program.h: runs the real commands in scratch folders and keeps what they said.
+
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace tex::cli {
+
+// A folder that goes away with its object.
+class Scratch {
+public:
+    Scratch();
+    ~Scratch();
+    Scratch(const Scratch&) = delete;
+    Scratch& operator=(const Scratch&) = delete;
+
+    [[nodiscard]] std::string path(const std::string& name = {}) const;
+    // Copies a file of samples/ into the folder.
+    void add_sample(const std::string& sample, const std::string& name) const;
+    void write(const std::string& name, const std::string& text) const;
+    [[nodiscard]] std::string read(const std::string& name) const;
+    [[nodiscard]] bool has(const std::string& name) const { return std::filesystem::exists(path(name)); }
+    // Names of all files and folders below, sorted.
+    [[nodiscard]] std::vector<std::string> list() const;
+
+private:
+    std::filesystem::path folder_;
+};
+
+struct Ran {
+    int code = -1;  // as a shell sees it: 128 + n after signal n
+    std::string out;
+    std::string err;
+};
+
+struct Setting {
+    std::string input;                     // standard input
+    std::vector<std::string> environment;  // "NAME=value", beside the test's own
+    std::string stdout_path;               // standard output goes there instead of into Ran::out
+    int interrupt_after_ms = 0;            // send `signal` after so long
+    int signal = 0;
+};
+
+// Runs `program` (a command of the build, or a path) with these arguments, in the scratch folder.
+Ran run(const Scratch& scratch, const std::string& program, const std::vector<std::string>& arguments,
+        const Setting& setting = {});
+
+// The same through a shell; the commands of the build are in its PATH.
+Ran shell(const Scratch& scratch, const std::string& script);
+
+[[nodiscard]] bool is_installed(const std::string& program);
+
+// The commands that were built.
+[[nodiscard]] std::vector<std::string> commands();
+
+[[nodiscard]] std::vector<std::string> lines_of(const std::string& text);
+
+}  // namespace tex::cli

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <tex/tex.h>
+
+#include "cli/program.h"
+
+namespace tex::cli {
+
+class ScaleNormals : public testing::Test {
+protected:
+    ScaleNormals() { scratch_.add_sample("waves.png", "waves.png"); }
+    Ran go(const std::string& command, std::vector<std::string> arguments) {
+        arguments.push_back("--no-sync");
+        return run(scratch_, command, arguments);
+    }
+    NormalMap map_of(const std::string& name) {
+        auto texture = read_texture(scratch_.path(name));
+        EXPECT_TRUE(texture);
+        auto chain = unpack(*texture);
+        EXPECT_TRUE(chain);
+        return std::move(chain->levels.front());
+    }
+    Scratch scratch_;
+};
+
+TEST_F(ScaleNormals, ScalingABakeIsBakingWithScaledBumpiness) {
+    ASSERT_EQ(go("bake-normals", {"waves.png", "-o", "n.exr", "--bumpiness", "4", "--format", "float"}).code,
+              0);
+    ASSERT_EQ(
+        go("bake-normals", {"waves.png", "-o", "strong.exr", "--bumpiness", "10", "--format", "float"}).code,
+        0);
+    ASSERT_EQ(go("scale-normals", {"n.exr", "-o", "scaled.exr", "--scale", "2.5"}).code, 0);
+    const auto error = compare(map_of("strong.exr"), map_of("scaled.exr"));
+    ASSERT_TRUE(error);
+    EXPECT_LT(error->error.max, 1e-4);
+}
+
+TEST_F(ScaleNormals, KindEncodingAndLevelsStay) {
+    const auto report = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), {"--scale", "-1", "--json"});
+        const Ran ran = go("scale-normals", arguments);
+        EXPECT_EQ(ran.code, 0) << ran.err;
+        return nlohmann::json::parse(ran.out);
+    };
+    for (const std::string encoding :
+         {"dxt5nm", "bc5", "bc5-snorm", "rgb8", "rg8", "rg16", "half", "float"}) {
+        ASSERT_EQ(
+            go("bake-normals", {"waves.png", "-o", "n.dds", "--bumpiness", "4", "--format", encoding}).code,
+            0);
+        EXPECT_EQ(report({"n.dds", "-o", "x.dds"})["format"], encoding);
+        EXPECT_EQ(report({"n.dds", "-o", "x.dds"})["levels"], 8);
+    }
+    ASSERT_EQ(go("bake-normals", {"waves.png", "-o", "n.png", "--bumpiness", "4", "--format", "rgb16"}).code,
+              0);
+    EXPECT_EQ(report({"n.png", "--out-dir", "out"})["output"], "out/n.png");
+    EXPECT_EQ(report({"n.png", "-o", "x.png"})["format"], "rgb16");
+    EXPECT_EQ(report({"n.png", "-o", "x.dds"})["format"], "dxt5nm");  // a picture becomes a texture
+}
+
+TEST_F(ScaleNormals, TheScaleIsNeededAndFinite) {
+    EXPECT_EQ(go("scale-normals", {"waves.png", "-o", "x.dds"}).err,
+              "scale-normals: error: no scale: give --scale S\n");
+    EXPECT_EQ(go("scale-normals", {"waves.png", "-o", "x.dds", "--scale", "inf"}).code, 2);
+    EXPECT_EQ(go("scale-normals", {"waves.png", "-o", "x.dds", "--scale", "1e7"}).code, 2);
+}
+
+}  // namespace tex::cli

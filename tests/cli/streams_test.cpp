@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// Standard streams, full disks, signals.
+
+#include <csignal>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "cli/program.h"
+
+namespace tex::cli {
+
+class Streams : public testing::Test {
+protected:
+    Streams() { scratch_.add_sample("ramp.png", "a.png"); }
+    Scratch scratch_;
+};
+
+TEST_F(Streams, CommandsAreFilters) {
+    ASSERT_EQ(run(scratch_, "bake-normals", {"a.png", "-o", "a.dds"}).code, 0);
+    Setting input;
+    input.input = scratch_.read("a.png");
+    const Ran ran = run(scratch_, "bake-normals", {"-", "-o", "-"}, input);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(ran.out, scratch_.read("a.dds"));
+    const Ran png = run(scratch_, "bake-normals", {"-", "-o", "-", "--container", "png"}, input);
+    EXPECT_TRUE(png.out.starts_with("\x89PNG"));
+    EXPECT_EQ(shell(scratch_, "bake-normals a.png -o >(cat > pipe.dds) --container dds").code, 0);
+}
+
+TEST_F(Streams, NothingIsSaidWhereNothingIsAsked) {
+    const Ran ran = run(scratch_, "bake-normals", {"a.png", "-o", "a.dds"});
+    EXPECT_EQ(ran.out, "");
+    EXPECT_EQ(ran.err, "");
+}
+
+TEST_F(Streams, ProgressIsForTerminalsUnlessAskedFor) {
+    EXPECT_NE(run(scratch_, "bake-normals", {"a.png", "-o", "a.dds", "--progress", "always"}).err.find('%'),
+              std::string::npos);
+    EXPECT_EQ(run(scratch_, "bake-normals", {"a.png", "-o", "a.dds", "--progress", "always", "--quiet"}).err,
+              "");
+}
+
+TEST_F(Streams, AFullDiskLeavesTheOldFile) {
+    Setting full;
+    full.stdout_path = "/dev/full";
+    const Ran json = run(scratch_, "bake-normals", {"a.png", "-o", "a.dds", "--json"}, full);
+    EXPECT_EQ(json.code, 3);
+    EXPECT_EQ(json.err, "bake-normals: error: standard output: No space left on device\n");
+    const Ran data = run(scratch_, "bake-normals", {"a.png", "-o", "-"}, full);
+    EXPECT_EQ(data.code, 3);
+    EXPECT_EQ(lines_of(data.err).size(), 1u) << data.err;
+    // A limit on the size of files is the nearest to a full disk that needs no mount.
+    scratch_.write("a.dds", "old");
+    const Ran limited =
+        shell(scratch_, "ulimit -f 1; trap '' XFSZ; bake-normals a.png -o a.dds --format float");
+    EXPECT_EQ(limited.code, 3);
+    EXPECT_EQ(lines_of(limited.err).size(), 1u) << limited.err;
+    EXPECT_EQ(scratch_.read("a.dds"), "old");
+    EXPECT_EQ(scratch_.list(), (std::vector<std::string>{"a.dds", "a.png"}));
+}
+
+TEST_F(Streams, AReaderThatWentAwayEndsTheRunQuietly) {
+    const Ran json = shell(scratch_, "bake-normals a.png -o a.dds --json | true; exit ${PIPESTATUS[0]}");
+    EXPECT_TRUE(json.code == 3 || json.code == 0) << json.code;  // `true` may end after the line was written
+    EXPECT_EQ(json.err, "");
+    const Ran data = shell(scratch_, "{ sleep 0.2; bake-normals a.png -o -; echo $? >&2; } | true");
+    EXPECT_EQ(data.err, "3\n");
+}
+
+TEST_F(Streams, ClosedStreamsAreNotTakenForFiles) {
+    const Ran ran = shell(scratch_, "bake-normals a.png -o a.dds --json >&-");
+    EXPECT_EQ(ran.code, 3);
+    EXPECT_TRUE(scratch_.read("a.dds").starts_with("DDS "));
+    EXPECT_EQ(shell(scratch_, "bake-normals a.png -o b.dds <&- >&- 2>&-").code, 0);
+    EXPECT_EQ(scratch_.read("a.dds"), scratch_.read("b.dds"));
+    EXPECT_EQ(shell(scratch_, "bake-normals - -o c.dds <&-").code, 3);
+}
+
+TEST_F(Streams, SignalsEndTheRunAndLeaveNothing) {
+    scratch_.add_sample("bricks.png", "bricks.png");
+    for (const int signal : {SIGINT, SIGTERM}) {
+        std::vector<std::string> arguments = {"--out-dir", "out", "--effort", "best", "--blur", "64"};
+        for (int k = 0; k < 200; ++k) {
+            std::string name = fmt::format("l{}.png", k);
+            if (!scratch_.has(name)) std::filesystem::create_symlink("bricks.png", scratch_.path(name));
+            arguments.push_back(std::move(name));
+        }
+        Setting interrupted;
+        interrupted.signal = signal;
+        interrupted.interrupt_after_ms = 400;
+        const Ran ran = run(scratch_, "bake-normals", arguments, interrupted);
+        EXPECT_EQ(ran.code, 128 + signal);
+        EXPECT_NE(ran.err.find(signal == SIGINT ? "interrupted by SIGINT" : "interrupted by SIGTERM"),
+                  std::string::npos)
+            << ran.err;
+        for (const auto& entry : std::filesystem::directory_iterator(scratch_.path("out"))) {
+            EXPECT_EQ(entry.path().extension(), ".dds") << entry.path();
+            EXPECT_GT(entry.file_size(), 300000u) << entry.path();  // whole: 512x512 with its levels
+        }
+    }
+}
+
+TEST_F(Streams, ABlockedReadCanBeInterrupted) {
+    const Ran ran =
+        shell(scratch_, "sleep 5 | timeout -s TERM 0.2 bake-normals - -o a.dds & wait $!; echo done");
+    EXPECT_EQ(ran.out, "done\n");
+    EXPECT_FALSE(scratch_.has("a.dds"));
+}
+
+}  // namespace tex::cli

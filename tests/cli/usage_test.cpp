@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// Misuse that every command must refuse: exit 2, one clear sentence, nothing written.
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "cli/program.h"
+
+namespace tex::cli {
+
+class EveryUsage : public testing::TestWithParam<std::string> {
+protected:
+    EveryUsage() {
+        scratch_.add_sample("hemisphere.png", "a.png");
+        scratch_.add_sample("ramp.png", "b.png");
+        std::filesystem::create_directory(scratch_.path("folder"));
+        std::filesystem::create_symlink("a.png", scratch_.path("soft.png"));
+        std::filesystem::create_hard_link(scratch_.path("a.png"), scratch_.path("hard.png"));
+        before_ = scratch_.list();
+    }
+
+    // The command refuses these arguments with a sentence that holds `part`.
+    void refuses(const std::vector<std::string>& arguments, const std::string& part) {
+        std::vector<std::string> all = arguments;
+        if (GetParam() == "scale-normals") all.insert(all.begin(), {"--scale", "2"});
+        const Ran ran = run(scratch_, GetParam(), all);
+        std::string line;
+        for (const std::string& argument : arguments) line += " " + argument;
+        EXPECT_EQ(ran.code, 2) << line;
+        EXPECT_EQ(ran.out, "") << line;
+        EXPECT_TRUE(ran.err.starts_with(GetParam() + ": error: ")) << line << "\n" << ran.err;
+        EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << line << "\n" << ran.err;
+        EXPECT_NE(ran.err.find(part), std::string::npos) << line << "\n" << ran.err;
+        EXPECT_EQ(scratch_.list(), before_) << line;
+    }
+
+    [[nodiscard]] bool has_option(const std::string& name) const {
+        return run(scratch_, GetParam(), {"--list-options"}).out.find("\n" + name + "\t") !=
+               std::string::npos;
+    }
+    // Whether -o takes many inputs, which become one output.
+    [[nodiscard]] bool joins() const {
+        return run(scratch_, GetParam(), {"--help"}).out.find("of all inputs together") != std::string::npos;
+    }
+
+    Scratch scratch_;
+    std::vector<std::string> before_;
+};
+
+// A test's name may hold no "-".
+std::string test_name(const testing::TestParamInfo<std::string>& instance) {
+    std::string name = instance.param;
+    std::replace(name.begin(), name.end(), '-', '_');
+    return name;
+}
+
+// Checks and comparisons write no output.
+bool only_reads(const std::string& command) { return command == "check-normals" || command == "compare-normals"; }
+
+std::vector<std::string> commands_that(bool read) {
+    std::vector<std::string> names;
+    for (const std::string& name : commands()) {
+        if (only_reads(name) == read) names.push_back(name);
+    }
+    return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Cli, EveryUsage, testing::ValuesIn(commands_that(false)), test_name);
+
+class EveryReaderUsage : public EveryUsage {};
+INSTANTIATE_TEST_SUITE_P(Cli, EveryReaderUsage, testing::ValuesIn(commands_that(true)), test_name);
+
+TEST_P(EveryReaderUsage, OptionsAndValuesAreChecked) {
+    refuses({"a.png", "b.png", "--theads", "2"}, "unknown option --theads; did you mean --threads?");
+    refuses({"a.png", "b.png", "-o", "a.dds"}, "unknown option -o");
+    refuses({"a.png", "b.png", "--threads", "1", "--threads=2"}, "--threads is given more than once");
+    refuses({"a.png", "b.png", "--threads", "two"}, "--threads: 'two' is not a whole number");
+    refuses({"a.png", "b.png", "--json=yes"}, "--json takes no value");
+}
+
+TEST_P(EveryReaderUsage, InputsAreNeeded) { refuses({}, ""); }
+
+TEST_P(EveryUsage, UnknownOptionsComeWithASuggestion) {
+    refuses({"a.png", "-o", "a.dds", "--theads", "2"}, "unknown option --theads; did you mean --threads?");
+    refuses({"a.png", "-o", "a.dds", "--teapot=3"}, "unknown option --teapot");
+    refuses({"a.png", "-o", "a.dds", "-x"}, "unknown option -x");
+}
+
+TEST_P(EveryUsage, OptionsAreGivenOnce) {
+    refuses({"a.png", "-o", "a.dds", "-o", "b.dds"}, "--output is given more than once");
+    refuses({"a.png", "-o", "a.dds", "--threads", "1", "--threads=2"}, "--threads is given more than once");
+}
+
+TEST_P(EveryUsage, ValuesAreChecked) {
+    refuses({"a.png", "-o", "a.dds", "--threads", "-1"}, "--threads: -1 is not at least 0");
+    refuses({"a.png", "-o", "a.dds", "--threads", "two"}, "--threads: 'two' is not a whole number");
+    refuses({"a.png", "-o", "a.dds", "--progress", "allways"},
+            "'allways' is none of auto, always, never; did you mean always?");
+    refuses({"a.png", "-o", "a.dds", "--max-texels", "1.5M"}, "--max-texels: '1.5M' is not a count");
+    refuses({"a.png", "-o", "a.dds", "--json=yes"}, "--json takes no value");
+    refuses({"a.png", "-o", "a.dds", "--threads="}, "--threads needs a value");
+    refuses({"a.png", "-o"}, "-o needs a value");
+    refuses({"a.png", "--out-dir", ""}, "--out-dir: needs a value");
+}
+
+TEST_P(EveryUsage, InputsAndOutputsMustFit) {
+    refuses({}, "no input");
+    refuses({"-o", "a.dds"}, "no input");
+    refuses({"", "-o", "a.dds"}, "an input name is empty");
+    refuses({"a.png"}, "no output");
+    if (!joins()) refuses({"a.png", "b.png", "-o", "a.dds"}, "--out-dir takes many");
+    refuses({"a.png", "-o", "a.dds", "--out-dir", "out"}, "--output and --out-dir contradict each other");
+    refuses({"a.png", "-o", "folder"}, "is a folder");
+    refuses({"a.png", "-o", "new/"}, "is a folder");
+    refuses({"-", "-", "--out-dir", "out"}, "standard input can only be read once");
+    refuses({"-", "--files-from", "-", "--out-dir", "out"}, "standard input can only be read once");
+    refuses({"a.png", "-o", "-", "--json"}, "both want standard output");
+}
+
+TEST_P(EveryUsage, OutputsNeedAKnownKind) {
+    refuses({"a.png", "-o", "a.foo"}, ".dds, .ktx2, .png, .exr, .tif, .tiff, .tga, .bmp, .jpg, .jpeg");
+    refuses({"a.png", "-o", "noextension"}, "a name without an extension");
+    refuses({"a.png", "-o", "a.dds", "--container", "ktx2"}, "a.dds says dds, --container says ktx2");
+    if (has_option("--format"))
+        refuses({"a.png", "-o", "n.png", "--format", "bc5"}, "bc5 goes into .dds, .ktx2");
+}
+
+TEST_P(EveryUsage, NamePatternsAreChecked) {
+    refuses({"a.png", "--out-dir", "out", "--name", "{stm}.dds"}, "did you mean stem?");
+    refuses({"a.png", "--out-dir", "out", "--name", "{stem.dds"}, "has a { without its }");
+    refuses({"../a.png", "--out-dir", "out", "--name", "{dir}/{stem}.dds"}, "leads out of --out-dir");
+}
+
+TEST_P(EveryUsage, OutputsMustNotBeInputs) {
+    refuses({"a.png", "-o", "a.png"}, "the output a.png is the input a.png");
+    refuses({"a.png", "-o", "./folder/../a.png"}, "is the input a.png");
+    refuses({"a.png", "-o", "soft.png"}, "the output soft.png is the input a.png");
+    refuses({"a.png", "-o", "hard.png"}, "the output hard.png is the input a.png");
+    refuses({"soft.png", "-o", "a.png"}, "is the input soft.png");
+    refuses({"a.png", "b.png", "--name", "{stem}.png"}, "is the input");
+    refuses({"a.png", "-o", "x.dds", "--depfile", "a.png"}, "is the input");
+    refuses({"a.png", "-o", "x.dds", "--depfile", "./x.dds"}, "--depfile: ./x.dds is an output");
+}
+
+TEST_P(EveryUsage, OutputsMustDiffer) {
+    refuses({"a.png", "a.png", "--out-dir", "out", "--name", "{stem}.dds"}, "the same output out/a.dds");
+    refuses({"a.png", "b.png", "--out-dir", "out", "--name", "all.dds"},
+            "a.png and b.png have the same output out/all.dds");
+    refuses({"a.png", "folder/../a.png", "--out-dir", "out", "--name", "{stem}.dds"}, "the same output");
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,126 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# lint.sh: the rules of the house that a compiler does not check. Prints every breach and exits 1 if there is one.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+breaches=0
+complain() { echo "lint: $*" >&2; breaches=$((breaches + 1)); }
+# need FILE WHY: FILE must exist.
+need() { [ -e "$1" ] || complain "$1 is missing: $2"; }
+# ban PATTERN WHY FILE...: no line of the files may match.
+ban() {
+    local pattern=$1 why=$2 hits
+    shift 2
+    hits=$(grep -nHE -e "$pattern" -- "$@" /dev/null || true)
+    [ -z "$hits" ] || complain "$why"$'\n'"$hits"
+}
+
+# Files of the tree; in a clone those that git knows or would add, so that build folders do not count.
+if git rev-parse --is-inside-work-tree >/dev/null 2>&1; then
+    mapfile -t files < <(git ls-files --cached --others --exclude-standard | while read -r f; do [ ! -e "$f" ] || echo "$f"; done)
+else
+    mapfile -t files < <(find . -path ./build -prune -o -type f -print | sed 's|^\./||')
+fi
+select_files() { printf '%s\n' "${files[@]}" | grep -E "$1" || true; }
+stem() { basename "$1" | sed 's/\.[a-z0-9]*$//'; }
+
+# -- the tree -----------------------------------------------------------------------------------------------
+allowed=' CMakeLists.txt CMakePresets.json README.md LICENSE CHANGELOG.md CONTRIBUTING.md .clang-format .clang-tidy .gitignore .ci libtex tools tests samples man '
+for name in $(printf '%s\n' "${files[@]}" | cut -d/ -f1 | sort -u); do
+    case $allowed in *" $name "*) ;; *) complain "$name does not belong at the top level" ;; esac
+done
+
+# -- one word, one stem, everywhere ---------------------------------------------------------------------------
+header_only=' execution image mip_chain names normal_map result texture '
+for header in libtex/include/tex/*.h; do
+    name=$(stem "$header")
+    grep -q "<tex/$name.h>" libtex/include/tex/tex.h || [ "$name" = tex ] || complain "tex.h does not include $name.h"
+    case $header_only in *" $name "*) continue ;; esac
+    need "libtex/src/$name.cpp" "$header promises functions"
+done
+for source in libtex/src/*.cpp; do
+    name=$(stem "$source")
+    need "libtex/include/tex/$name.h" "$source has no public header"
+    need "tests/unit/${name}_test.cpp" "$source has no unit test"
+done
+for source in $(select_files '^libtex/src/[a-z]+/[a-z0-9_]+\.cpp$'); do
+    [ -e "${source%.cpp}.h" ] || [ -e "${source%_*}.h" ] || complain "$source has no header"
+done
+# A kernel, a block codec or a container is tested under its own name, by a test that includes its header, or through a
+# stem that it serves, at most three steps away.
+tested() {
+    local source=$1 depth=$2 header=${1#libtex/src/} user users
+    header=${header%.*}.h
+    [ ! -e "tests/unit/$(stem "$source")_test.cpp" ] || return 0
+    ! grep -rqF "\"$header\"" tests/unit || return 0
+    [ "$depth" -gt 0 ] || return 1
+    [ -e "libtex/src/$header" ] || header=${header%_*}.h
+    mapfile -t users < <(grep -rlF "\"$header\"" libtex/src | grep -v "^${source%.*}\.")
+    for user in "${users[@]}"; do
+        ! tested "$user" $((depth - 1)) || return 0
+    done
+    return 1
+}
+for source in $(select_files '^libtex/src/(blocks|containers|kernels)/[a-z0-9_]+\.cpp$'); do
+    tested "$source" 3 || complain "$source has no unit test"
+done
+for source in $(select_files '^tools/[a-z]+-normals\.cpp$'); do
+    name=$(stem "$source")
+    need "man/$name.1" "$source has no man page"
+    [ -n "$(select_files "^tests/cli/${name//-/_}[a-z_]*\.")" ] || complain "$source has no tests/cli/${name//-/_}*"
+    grep -q "\`$name\`\|\*\*$name\*\*\|\[$name\]" README.md || complain "README.md does not name $name"
+done
+for source in $(select_files '^tests/fuzz/[a-z0-9_]+_fuzz\.cpp$'); do
+    name=$(stem "$source")
+    need "tests/fuzz/corpus/${name%_fuzz}" "$source has no corpus"
+done
+
+# -- every file -----------------------------------------------------------------------------------------------
+mapfile -t sources < <(select_files '\.(cpp|h)$')
+mapfile -t scripts < <({ select_files '\.sh$'; select_files '^\.ci/run$'; })
+for file in "${sources[@]}" "${scripts[@]}" $(select_files 'CMakeLists\.txt$'); do
+    head -n 2 "$file" | grep -q 'SPDX-License-Identifier: Apache-2.0' || complain "$file does not begin with its licence"
+done
+for file in $(select_files '\.(cpp|h|sh|txt|md|1|7)$|^\.ci/run$'); do
+    lines=$(wc -l <"$file")
+    case $file in libtex/src/kernels/*) most=600 ;; libtex/* | tools/*) most=400 ;; *) most=500 ;; esac
+    [ "$lines" -le "$most" ] || complain "$file has $lines lines: more than $most"
+done
+mapfile -t written < <(select_files '\.(cpp|h|sh|md|1|7|txt|json)$|^\.ci/run$' | grep -v '^tests/lint\.sh$')
+ban '\b(TODO|FIXME|XXX)\b' 'unfinished work' "${written[@]}"
+ban '[[:blank:]]+$' 'trailing blanks' "${written[@]}"
+ban $'\t' 'tabs' "${written[@]}"
+
+# -- who may know what ------------------------------------------------------------------------------------------
+mapfile -t library < <(select_files '^libtex/src/.*\.(cpp|h)$')
+mapfile -t public < <(select_files '^libtex/include/')
+mapfile -t outside_kernels < <(printf '%s\n' "${library[@]}" | grep -v '/kernels/' || true)
+mapfile -t outside_color < <(printf '%s\n' "${library[@]}" | grep -v '/color\.' || true)
+mapfile -t outside_containers < <(printf '%s\n' "${library[@]}" | grep -v '/containers/\|/image_io\.' || true)
+mapfile -t outside_reader < <(select_files '^(libtex|tools)/.*\.(cpp|h)$' | grep -v '^tools/reader/' || true)
+ban '#include [<"]hwy/' 'only kernels/ knows Highway' "${outside_kernels[@]}"
+ban '#include <OpenColorIO' 'only color knows OpenColorIO' "${outside_color[@]}"
+ban '#include <(png\.h|OpenEXR/|Imf)' 'only containers/ knows libpng and OpenEXR' "${outside_containers[@]}"
+ban '#include <OpenImageIO' 'only the reader knows OpenImageIO' "${outside_reader[@]}"
+ban '#include ("|<(hwy|png|OpenEXR|Imath|Imf|OpenColorIO|OpenImageIO|tbb|fmt))' 'a public header shows a private name' "${public[@]}"
+ban 'std::(cout|cerr|clog|exit|abort|getenv)|[^a-z_](fprintf|puts|perror|getenv|setlocale) ?\(' 'libtex is silent' "${library[@]}"
+ban 'MulAdd|NegMulAdd|MulSub|ApproximateReciprocal|std::fma\b|std::thread' 'results would depend on the machine' "${library[@]}"
+
+# -- documents and scripts ------------------------------------------------------------------------------------
+if [ -e README.md ]; then
+    # shellcheck disable=SC2016  # the backquotes are Markdown's
+    example=$(sed -n '/^```cpp$/,/^```$/p' README.md | sed '1d;$d')
+    [ "$example" = "$(sed 1,2d samples/bake_and_pack.cpp)" ] || complain "README.md's C++ example is not samples/bake_and_pack.cpp"
+    # shellcheck source=.ci/packages.sh
+    . .ci/packages.sh
+    for package in "${build_packages[@]}"; do
+        grep -qw -- "$package" README.md || complain "README.md does not name the package $package"
+    done
+fi
+pages=$(select_files '^man/')
+# shellcheck disable=SC2086  # a list of names without blanks
+if [ -n "$pages" ] && ! mandoc -T lint -W warning $pages; then complain "mandoc has something to say about a man page"; fi
+shellcheck -x "${scripts[@]}" || complain "shellcheck has something to say about a script"
+
+[ "$breaches" -eq 0 ] || { echo "lint: $breaches breaches" >&2; exit 1; }

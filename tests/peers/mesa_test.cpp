@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a GPU's driver makes of our files: Mesa's software OpenGL samples every level.
+
+#include <cstddef>
+#include <cstring>
+
+#include <gtest/gtest.h>
+
+#include "peer_texture.h"
+#include "software_gl.h"
+
+namespace {
+
+// Mesa decodes to 8 bits with rules of its own: up to two codes, of 255 or of 127, from the exact value.
+float two_codes(tex::Format format) {
+    return tex::format_info(format).sample == tex::SampleKind::snorm ? 2.0f / 127.0f : 2.0f / 255.0f;
+}
+
+// The levels of a DDS file, found by its header's fixed layout (not by our own reader).
+std::vector<peers::GlLevel> levels_of_dds(const std::vector<std::byte>& file, tex::Format format) {
+    const auto word = [&](std::size_t offset) {
+        std::uint32_t value = 0;
+        std::memcpy(&value, file.data() + offset, 4);
+        return value;
+    };
+    constexpr std::uint32_t kDx10 = 0x30315844;  // "DX10"
+    const tex::Extent base{static_cast<int>(word(16)), static_cast<int>(word(12))};
+    std::size_t offset = word(84) == kDx10 ? 148 : 128;
+    std::vector<peers::GlLevel> levels;
+    for (std::uint32_t k = 0; k < word(28); ++k) {
+        const tex::Extent extent{std::max(1, base.width >> k), std::max(1, base.height >> k)};
+        const auto blocks = static_cast<std::size_t>((extent.width + 3) / 4) * static_cast<std::size_t>((extent.height + 3) / 4);
+        const std::size_t size = blocks * tex::format_info(format).block_bytes;
+        if (offset + size > file.size()) return {};
+        levels.push_back({extent, {file.begin() + static_cast<std::ptrdiff_t>(offset),
+                                   file.begin() + static_cast<std::ptrdiff_t>(offset + size)}});
+        offset += size;
+    }
+    EXPECT_EQ(offset, file.size()) << "bytes behind the last level";
+    return levels;
+}
+
+// GL reads (r, g, b, a) of formats with fewer channels as 0, 0, 1 for what is missing: only stored channels are compared.
+void expect_same_texels(tex::Extent extent, tex::Encoding encoding, tex::DdsHeader header) {
+    const tex::Texture texture = peers::bumpy_texture(extent, encoding);
+    tex::WriteOptions options;
+    options.dds_header = header;
+    const auto file = tex::encode_file(texture, tex::Container::dds, options);
+    ASSERT_TRUE(file) << file.error().message();
+    const auto levels = levels_of_dds(*file, texture.format);
+    ASSERT_EQ(static_cast<int>(levels.size()), tex::level_count(extent));
+    const auto sampled = peers::sample_levels(texture.format, levels);
+    ASSERT_EQ(sampled.size(), levels.size()) << "OpenGL refused the texture";
+    for (std::size_t k = 0; k < levels.size(); ++k) {
+        const auto ours = tex::decode(texture, static_cast<int>(k));
+        ASSERT_TRUE(ours);
+        for (int channel = 0; channel < tex::format_info(texture.format).channels; ++channel) {
+            EXPECT_LE(peers::largest_difference(*ours, channel, sampled[k].rgba, 4), two_codes(texture.format))
+                << extent.width << "x" << extent.height << " level " << k << " channel " << channel;
+        }
+    }
+}
+
+TEST(Mesa, SamplesEveryLevelOfDxt5nmAsWeDecodeIt) {
+    ASSERT_TRUE(peers::software_gl_works()) << "Mesa's off-screen OpenGL gave no context";
+    for (const tex::Extent extent : peers::kExtents) {
+        expect_same_texels(extent, tex::Encoding::dxt5nm, tex::DdsHeader::legacy);
+        expect_same_texels(extent, tex::Encoding::dxt5nm, tex::DdsHeader::dx10);
+    }
+}
+
+TEST(Mesa, SamplesEveryLevelOfBc5AsWeDecodeIt) {
+    ASSERT_TRUE(peers::software_gl_works());
+    for (const tex::Extent extent : peers::kExtents) {
+        expect_same_texels(extent, tex::Encoding::bc5, tex::DdsHeader::dx10);
+        expect_same_texels(extent, tex::Encoding::bc5_snorm, tex::DdsHeader::dx10);
+    }
+}
+
+TEST(Mesa, ReadsRedOfDxt5nmAsExactlyOne) {
+    ASSERT_TRUE(peers::software_gl_works());
+    const tex::Texture texture = peers::bumpy_texture({128, 64}, tex::Encoding::dxt5nm);
+    std::vector<peers::GlLevel> levels;
+    for (const tex::Level& level : texture.levels) levels.push_back({level.extent, level.bytes});
+    for (const auto& level : peers::sample_levels(texture.format, levels)) {
+        for (std::size_t k = 0; k < level.rgba.size(); k += 4) {
+            ASSERT_EQ(level.rgba[k], 1.0f);
+            ASSERT_EQ(level.rgba[k + 2], 1.0f);
+        }
+    }
+}
+
+}  // namespace

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// blur.h: the Gaussian blur of heights, see HeightOptions::blur_sigma in tex/height_field.h.
+
+#pragma once
+
+#include <tex/height_field.h>
+
+#include "reference/grid.h"
+
+namespace tex::reference {
+
+Grid<double> blur(const Grid<double>& heights, double sigma, Wrap wrap_x, Wrap wrap_y);
+
+}  // namespace tex::reference

@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "reference/damage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstring>
+#include <utility>
+
+namespace tex::reference {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+unsigned char rounded(double v) { return static_cast<unsigned char>(std::clamp(std::floor(v + 0.5), 0.0, 255.0)); }
+
+template <class Curve>
+Codes map_codes(const Codes& codes, Curve&& curve) {
+    Codes result = codes;
+    for (unsigned char& value : result.values) value = rounded(255.0 * curve(value / 255.0));
+    return result;
+}
+
+using Complex = std::complex<double>;
+
+// The discrete Fourier transform along both axes, by its definition; sign -1 forward, +1 back (and divided by the count).
+std::vector<Complex> transform(std::vector<Complex> data, Extent extent, double sign) {
+    const auto pass = [&](int count, int lines, auto index) {
+        std::vector<Complex> roots(static_cast<std::size_t>(count)), line(static_cast<std::size_t>(count));
+        for (int k = 0; k < count; ++k) roots[static_cast<std::size_t>(k)] = std::polar(1.0, sign * 2.0 * kPi * k / count);
+        for (int l = 0; l < lines; ++l) {
+            for (int k = 0; k < count; ++k) {
+                Complex sum = 0.0;
+                for (int n = 0; n < count; ++n) {
+                    sum += data[index(n, l)] * roots[static_cast<std::size_t>(static_cast<long>(k) * n % count)];
+                }
+                line[static_cast<std::size_t>(k)] = sum;
+            }
+            for (int k = 0; k < count; ++k) data[index(k, l)] = line[static_cast<std::size_t>(k)];
+        }
+    };
+    const auto at = [&](int i, int j) {
+        return static_cast<std::size_t>(j) * static_cast<std::size_t>(extent.width) + static_cast<std::size_t>(i);
+    };
+    pass(extent.width, extent.height, [&](int n, int l) { return at(n, l); });
+    pass(extent.height, extent.width, [&](int n, int l) { return at(l, n); });
+    if (sign > 0.0) {
+        for (Complex& value : data) value /= static_cast<double>(extent.texels());
+    }
+    return data;
+}
+
+// The 8x8 cosine transform of T.81 A.3.3, forward (in place of samples) and back.
+void cosine_transform(double (&block)[8][8], bool back) {
+    static const auto basis = [] {
+        std::vector<double> table(64);
+        for (int u = 0; u < 8; ++u) {
+            for (int x = 0; x < 8; ++x) {
+                table[static_cast<std::size_t>(u * 8 + x)] =
+                    (u == 0 ? std::sqrt(0.125) : 0.5) * std::cos((2 * x + 1) * u * kPi / 16.0);
+            }
+        }
+        return table;
+    }();
+    double half[8][8] = {};
+    for (int j = 0; j < 8; ++j) {
+        for (int u = 0; u < 8; ++u) {
+            for (int x = 0; x < 8; ++x) half[j][u] += block[j][x] * basis[static_cast<std::size_t>(back ? x * 8 + u : u * 8 + x)];
+        }
+    }
+    for (int v = 0; v < 8; ++v) {
+        for (int u = 0; u < 8; ++u) {
+            block[v][u] = 0.0;
+            for (int y = 0; y < 8; ++y) block[v][u] += half[y][u] * basis[static_cast<std::size_t>(back ? y * 8 + v : v * 8 + y)];
+        }
+    }
+}
+
+constexpr int kLuminance[64] = {16, 11, 10, 16, 24, 40, 51, 61, 12, 12, 14, 19, 26, 58, 60, 55, 14, 13, 16, 24, 40, 57,
+                                69, 56, 14, 17, 22, 29, 51, 87, 80, 62, 18, 22, 37, 56, 68, 109, 103, 77, 24, 35, 55, 64,
+                                81, 104, 113, 92, 49, 64, 78, 87, 103, 121, 120, 101, 72, 92, 95, 98, 112, 100, 103, 99};
+constexpr int kChrominance[64] = {17, 18, 24, 47, 99, 99, 99, 99, 18, 21, 26, 66, 99, 99, 99, 99, 24, 26, 56, 99, 99, 99,
+                                  99, 99, 47, 66, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99,
+                                  99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99};
+
+// Quantises a plane of samples (0 to 255) in place, block by block; blocks over the border repeat the last sample.
+void quantise(std::vector<double>& plane, Extent extent, const int (&table)[64], int quality) {
+    const int scale = quality < 50 ? 5000 / quality : 200 - 2 * quality;
+    const auto at = [&](int i, int j) -> double& {
+        return plane[static_cast<std::size_t>(std::min(j, extent.height - 1)) * static_cast<std::size_t>(extent.width) +
+                     static_cast<std::size_t>(std::min(i, extent.width - 1))];
+    };
+    for (int y = 0; y < extent.height; y += 8) {
+        for (int x = 0; x < extent.width; x += 8) {
+            double block[8][8];
+            for (int j = 0; j < 8; ++j) {
+                for (int i = 0; i < 8; ++i) block[j][i] = at(x + i, y + j) - 128.0;
+            }
+            cosine_transform(block, false);
+            for (int k = 0; k < 64; ++k) {
+                const double step = std::clamp((table[k] * scale + 50) / 100, 1, 255);
+                block[k / 8][k % 8] = std::floor(block[k / 8][k % 8] / step + 0.5) * step;
+            }
+            cosine_transform(block, true);
+            for (int j = 0; j < 8 && y + j < extent.height; ++j) {
+                for (int i = 0; i < 8 && x + i < extent.width; ++i) at(x + i, y + j) = std::clamp(block[j][i] + 128.0, 0.0, 255.0);
+            }
+        }
+    }
+}
+
+void set_slopes(NormalMap& map, int i, int j, double p, double q) {
+    const double length = std::sqrt(p * p + q * q + 1.0);
+    map.x.at(i, j) = static_cast<float>(-p / length);
+    map.y.at(i, j) = static_cast<float>(-q / length);
+    map.z.at(i, j) = static_cast<float>(1.0 / length);
+}
+
+double slope_x(const NormalMap& map, int i, int j) { return -map.x.at(i, j) / std::max(map.z.at(i, j), 0.1f); }
+double slope_y(const NormalMap& map, int i, int j) { return -map.y.at(i, j) / std::max(map.z.at(i, j), 0.1f); }
+
+}  // namespace
+
+Codes codes_of(const NormalMap& map) {
+    Codes codes{map.extent(), 3, {}};
+    codes.values.resize(static_cast<std::size_t>(map.extent().texels()) * 3);
+    for (int j = 0; j < map.extent().height; ++j) {
+        for (int i = 0; i < map.extent().width; ++i) {
+            codes.at(i, j, 0) = rounded((map.x.at(i, j) + 1.0) / 2.0 * 255.0);
+            codes.at(i, j, 1) = rounded((map.y.at(i, j) + 1.0) / 2.0 * 255.0);
+            codes.at(i, j, 2) = rounded((map.z.at(i, j) + 1.0) / 2.0 * 255.0);
+        }
+    }
+    return codes;
+}
+
+Texture texture_of(const std::vector<Codes>& levels) {
+    Texture texture;
+    texture.format = levels.front().channels == 3 ? Format::rgb8_unorm : Format::rgba8_unorm;
+    texture.swizzle = {Component::x, Component::y, Component::z, Component::other};
+    for (const Codes& codes : levels) {
+        Level level{codes.extent, {}};
+        level.bytes.resize(codes.values.size());
+        std::memcpy(level.bytes.data(), codes.values.data(), codes.values.size());
+        texture.levels.push_back(std::move(level));
+    }
+    return texture;
+}
+
+Texture texture_of(const Codes& codes) { return texture_of(std::vector<Codes>{codes}); }
+
+Codes flip_green(const Codes& codes) {
+    Codes result = codes;
+    for (std::size_t k = 1; k < result.values.size(); k += static_cast<std::size_t>(codes.channels)) {
+        result.values[k] = static_cast<unsigned char>(255 - result.values[k]);
+    }
+    return result;
+}
+
+Codes exchange(const Codes& codes, int a, int b) {
+    Codes result = codes;
+    for (int j = 0; j < codes.extent.height; ++j) {
+        for (int i = 0; i < codes.extent.width; ++i) std::swap(result.at(i, j, a), result.at(i, j, b));
+    }
+    return result;
+}
+
+Codes srgb_encode(const Codes& codes) {
+    return map_codes(codes, [](double v) { return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1.0 / 2.4) - 0.055; });
+}
+
+Codes srgb_decode(const Codes& codes) {
+    return map_codes(codes, [](double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); });
+}
+
+Codes with_alpha(const Codes& codes, bool premultiplied) {
+    Codes result{codes.extent, 4, {}};
+    result.values.resize(static_cast<std::size_t>(codes.extent.texels()) * 4);
+    for (int j = 0; j < codes.extent.height; ++j) {
+        for (int i = 0; i < codes.extent.width; ++i) {
+            const double alpha = std::clamp(0.6 + 0.6 * std::sin(0.07 * i + 1.0) * std::sin(0.05 * j), 0.0, 1.0);
+            result.at(i, j, 3) = rounded(255.0 * alpha);
+            for (int c = 0; c < 3; ++c) {
+                const double factor = premultiplied ? result.at(i, j, 3) / 255.0 : 1.0;
+                result.at(i, j, c) = rounded(codes.at(i, j, c) * factor);
+            }
+        }
+    }
+    return result;
+}
+
+Codes jpeg(const Codes& codes, int quality) {
+    const Extent full = codes.extent;
+    const Extent half{(full.width + 1) / 2, (full.height + 1) / 2};
+    std::vector<double> luma, blue(static_cast<std::size_t>(half.texels())), red(blue.size()), weight(blue.size());
+    for (int j = 0; j < full.height; ++j) {
+        for (int i = 0; i < full.width; ++i) {
+            const double r = codes.at(i, j, 0), g = codes.at(i, j, 1), b = codes.at(i, j, 2);
+            luma.push_back(0.299 * r + 0.587 * g + 0.114 * b);
+            const auto k = static_cast<std::size_t>(j / 2) * static_cast<std::size_t>(half.width) + static_cast<std::size_t>(i / 2);
+            blue[k] += 128.0 - 0.168736 * r - 0.331264 * g + 0.5 * b;
+            red[k] += 128.0 + 0.5 * r - 0.418688 * g - 0.081312 * b;
+            weight[k] += 1.0;
+        }
+    }
+    for (std::size_t k = 0; k < blue.size(); ++k) {
+        blue[k] /= weight[k];
+        red[k] /= weight[k];
+    }
+    quantise(luma, full, kLuminance, quality);
+    quantise(blue, half, kChrominance, quality);
+    quantise(red, half, kChrominance, quality);
+    Codes result = codes;
+    for (int j = 0; j < full.height; ++j) {
+        for (int i = 0; i < full.width; ++i) {
+            const double y = luma[static_cast<std::size_t>(j) * static_cast<std::size_t>(full.width) + static_cast<std::size_t>(i)];
+            const auto k = static_cast<std::size_t>(j / 2) * static_cast<std::size_t>(half.width) + static_cast<std::size_t>(i / 2);
+            const double cb = blue[k] - 128.0, cr = red[k] - 128.0;
+            result.at(i, j, 0) = rounded(y + 1.402 * cr);
+            result.at(i, j, 1) = rounded(y - 0.344136 * cb - 0.714136 * cr);
+            result.at(i, j, 2) = rounded(y + 1.772 * cb);
+        }
+    }
+    return result;
+}
+
+NormalMap from_heights(const NormalMap& map, int levels, double* slope_step) {
+    const Extent extent = map.extent();
+    const auto count = static_cast<std::size_t>(extent.texels());
+    std::vector<Complex> p(count), q(count), h(count);
+    std::size_t k = 0;
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i, ++k) {
+            p[k] = slope_x(map, i, j);
+            q[k] = -slope_y(map, i, j);  // downwards, as rows go
+        }
+    }
+    p = transform(std::move(p), extent, -1.0);
+    q = transform(std::move(q), extent, -1.0);
+    k = 0;
+    for (int v = 0; v < extent.height; ++v) {
+        for (int u = 0; u < extent.width; ++u, ++k) {
+            // The central difference multiplies a wave by i sin(w).
+            const double su = std::sin(2.0 * kPi * u / extent.width), sv = std::sin(2.0 * kPi * v / extent.height);
+            const double square = su * su + sv * sv;
+            h[k] = square < 1e-3 ? Complex(0.0) : Complex(0.0, -1.0) * (su * p[k] + sv * q[k]) / square;
+        }
+    }
+    h = transform(std::move(h), extent, 1.0);
+    double low = h[0].real(), high = low;
+    for (const Complex& value : h) {
+        low = std::min(low, value.real());
+        high = std::max(high, value.real());
+    }
+    if (levels > 1 && high > low) {
+        const double step = (high - low) / (levels - 1);
+        if (slope_step != nullptr) *slope_step = step / 2.0;
+        for (Complex& value : h) value = std::floor((value.real() - low) / step + 0.5) * step;
+    }
+    const auto at = [&](int i, int j) {
+        const int x = (i + extent.width) % extent.width, y = (j + extent.height) % extent.height;
+        return h[static_cast<std::size_t>(y) * static_cast<std::size_t>(extent.width) + static_cast<std::size_t>(x)].real();
+    };
+    NormalMap result(extent);
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) {
+            set_slopes(result, i, j, (at(i + 1, j) - at(i - 1, j)) / 2.0, (at(i, j - 1) - at(i, j + 1)) / 2.0);
+        }
+    }
+    return result;
+}
+
+NormalMap crop(const NormalMap& map, int x, int y, Extent extent) {
+    NormalMap result(extent);
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) {
+            result.x.at(i, j) = map.x.at(x + i, y + j);
+            result.y.at(i, j) = map.y.at(x + i, y + j);
+            result.z.at(i, j) = map.z.at(x + i, y + j);
+        }
+    }
+    return result;
+}
+
+std::vector<Codes> chain_of(const NormalMap& map, ChainFault fault) {
+    std::vector<Codes> levels{codes_of(map)};
+    NormalMap average = crop(map, 0, 0, map.extent());  // not normalised
+    for (int level = 1; level < level_count(map.extent()); ++level) {
+        const Extent from = average.extent(), to = level_extent(map.extent(), level);
+        const int shift = fault == ChainFault::shifted ? 1 : 0;
+        NormalMap next(to);
+        const auto mean = [&](const Plane<float>& plane, int i, int j) {
+            double sum = 0.0;
+            for (int k = 0; k < 4; ++k) {
+                sum += plane.at((2 * i + k % 2 - shift + from.width) % from.width, (2 * j + k / 2 - shift + from.height) % from.height);
+            }
+            return static_cast<float>(sum / 4.0);
+        };
+        for (int j = 0; j < to.height; ++j) {
+            for (int i = 0; i < to.width; ++i) {
+                next.x.at(i, j) = mean(average.x, i, j);
+                next.y.at(i, j) = mean(average.y, i, j);
+                next.z.at(i, j) = mean(average.z, i, j);
+            }
+        }
+        NormalMap stored(to);
+        for (int j = 0; j < to.height; ++j) {
+            for (int i = 0; i < to.width; ++i) {
+                const bool turned = fault == ChainFault::other_image;
+                const int si = turned ? to.width - 1 - i : i, sj = turned ? to.height - 1 - j : j;
+                const double x = next.x.at(si, sj), y = next.y.at(si, sj), z = next.z.at(si, sj);
+                const double length = fault == ChainFault::not_normalised ? 1.0 : std::max(1e-6, std::sqrt(x * x + y * y + z * z));
+                stored.x.at(i, j) = static_cast<float>(x / length);
+                stored.y.at(i, j) = static_cast<float>(y / length);
+                stored.z.at(i, j) = static_cast<float>(z / length);
+            }
+        }
+        levels.push_back(codes_of(stored));
+        average = std::move(next);
+    }
+    return levels;
+}
+
+}  // namespace tex::reference

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// scale.h: normals made steeper or flatter, see tex/scale.h.
+
+#pragma once
+
+#include <tex/scale.h>
+
+#include "reference/grid.h"
+
+namespace tex::reference {
+
+Vector scaled(Vector n, double scale, ScaleMode mode);
+
+}  // namespace tex::reference

@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# run.sh: installs what the tests need (Debian 12), builds a release and runs every test of it. Arguments go to
+# ctest: `tests/run.sh -L unit -R Dds` runs the unit tests whose name has "Dds".
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+# shellcheck source=.ci/packages.sh
+. .ci/packages.sh
+
+need_packages "${build_packages[@]}" "${test_packages[@]}"
+cmake --preset release
+cmake --build --preset release
+ctest --preset release -j "$(nproc)" "$@"

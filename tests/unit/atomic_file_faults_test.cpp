@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every system call of a write fails once, and is once the last thing that its process does. The calls that write_file() makes are defined here,
+// in the program, and so come before those of the C library.
+
+#include <gtest/gtest.h>
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdarg>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include <tex/container.h>
+
+namespace {
+
+// What happens to the calls of this thread.
+struct Faults {
+    bool active = false;
+    bool no_nameless = false;  // a file system without O_TMPFILE
+    bool dribble = false;      // writes are interrupted and short
+    bool kill = false;         // instead of failing
+    int fail_at = 0;           // the call that fails, counted from 1; 0: none
+    int error = EIO;
+    int calls = 0;
+};
+thread_local Faults faults;
+
+// Whether this call fails.
+bool fails() {
+    if (!faults.active || ++faults.calls != faults.fail_at) return false;
+    if (faults.kill) {
+        kill(getpid(), SIGKILL);
+        pause();
+    }
+    errno = faults.error;
+    return true;
+}
+
+}  // namespace
+
+extern "C" {
+
+ssize_t write(int fd, const void* data, std::size_t count) {
+    if (faults.active && faults.dribble) {
+        if (++faults.calls % 2 == 1) {
+            errno = EINTR;
+            return -1;
+        }
+        return syscall(SYS_write, fd, data, count > 7 ? 7 : count);
+    }
+    return fails() ? -1 : syscall(SYS_write, fd, data, count);
+}
+
+int openat(int folder, const char* path, int flags, ...) {
+    va_list list;
+    va_start(list, flags);
+    const mode_t mode = (flags & (O_CREAT | __O_TMPFILE)) != 0 ? va_arg(list, mode_t) : 0;
+    va_end(list);
+    if (faults.active && faults.no_nameless && (flags & __O_TMPFILE) != 0) {
+        errno = EOPNOTSUPP;
+        return -1;
+    }
+    return fails() ? -1 : static_cast<int>(syscall(SYS_openat, folder, path, flags, mode));
+}
+
+int fdatasync(int fd) { return fails() ? -1 : static_cast<int>(syscall(SYS_fdatasync, fd)); }
+
+// Under another name here: <fcntl.h> has a struct flock.
+int flock_call(int fd, int operation) noexcept __asm__("flock");
+int flock_call(int fd, int operation) noexcept { return fails() ? -1 : static_cast<int>(syscall(SYS_flock, fd, operation)); }
+
+int fchmod(int fd, mode_t mode) noexcept { return fails() ? -1 : static_cast<int>(syscall(SYS_fchmod, fd, mode)); }
+
+int linkat(int from_folder, const char* from, int to_folder, const char* to, int flags) noexcept {
+    return fails() ? -1 : static_cast<int>(syscall(SYS_linkat, from_folder, from, to_folder, to, flags));
+}
+
+int renameat(int from_folder, const char* from, int to_folder, const char* to) noexcept {
+    return fails() ? -1 : static_cast<int>(syscall(SYS_renameat2, from_folder, from, to_folder, to, 0u));
+}
+
+int renameat2(int from_folder, const char* from, int to_folder, const char* to, unsigned flags) noexcept {
+    return fails() ? -1 : static_cast<int>(syscall(SYS_renameat2, from_folder, from, to_folder, to, flags));
+}
+
+}  // extern "C"
+
+namespace tex {
+namespace {
+
+std::vector<std::byte> bytes_of(const std::string& text) {
+    const auto* data = reinterpret_cast<const std::byte*>(text.data());
+    return {data, data + text.size()};
+}
+
+std::string content(const std::string& path) {
+    std::stringstream text;
+    text << std::ifstream(path, std::ios::binary).rdbuf();
+    return text.str();
+}
+
+const std::string kOld = "old";
+const std::string kNew(100'000, 'n');
+
+class AtomicFileFaults : public testing::TestWithParam<std::tuple<bool, bool, bool>> {
+protected:
+    void SetUp() override {
+        std::string pattern = testing::TempDir() + "faults_XXXXXX";
+        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+        folder_ = pattern;
+        path_ = folder_ + "/a";
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+    [[nodiscard]] bool no_nameless() const { return std::get<0>(GetParam()); }
+    [[nodiscard]] bool exists() const { return std::get<1>(GetParam()) && !std::get<2>(GetParam()); }
+    [[nodiscard]] bool no_clobber() const { return std::get<2>(GetParam()); }
+    void prepare() const {
+        std::filesystem::remove(path_);
+        if (exists()) std::ofstream(path_) << kOld;
+    }
+    // The old file, or none where there was none.
+    [[nodiscard]] bool is_old() const { return exists() ? content(path_) == kOld : !std::filesystem::exists(path_); }
+    [[nodiscard]] std::size_t strangers() const {
+        std::size_t count = 0;
+        for (const auto& entry : std::filesystem::directory_iterator(folder_)) count += entry.path() != path_;
+        return count;
+    }
+    [[nodiscard]] Result<void> write_with(Faults plan) const {
+        WriteOptions options;
+        options.no_clobber = no_clobber();
+        plan.active = true;
+        plan.no_nameless = no_nameless();
+        faults = plan;
+        Result<void> written = write_file(path_, bytes_of(kNew), options);
+        faults.active = false;
+        return written;
+    }
+    std::string folder_;
+    std::string path_;
+};
+
+TEST_P(AtomicFileFaults, AFailureAtAnyCallLeavesTheOldFileAndNothingElse) {
+    for (const int error : {EIO, ENOSPC, EACCES}) {
+        for (int n = 1;; ++n) {
+            ASSERT_LT(n, 50);
+            SCOPED_TRACE(testing::Message() << "call " << n << ", errno " << error);
+            prepare();
+            Faults plan;
+            plan.fail_at = n;
+            plan.error = error;
+            const Result<void> written = write_with(plan);
+            EXPECT_EQ(strangers(), 0u);
+            if (written) {
+                EXPECT_EQ(content(path_), kNew);
+            } else {
+                EXPECT_TRUE(is_old());
+                EXPECT_EQ(written.error().code, ErrorCode::io);
+                EXPECT_EQ(written.error().file, path_);
+            }
+            if (faults.calls < n) break;  // the write has no n-th call
+        }
+    }
+}
+
+TEST_P(AtomicFileFaults, DeathAtAnyCallLeavesTheOldFileOrTheNewOne) {
+    for (int n = 1;; ++n) {
+        ASSERT_LT(n, 50);
+        SCOPED_TRACE(n);
+        prepare();
+        const pid_t child = fork();
+        if (child == 0) {
+            Faults plan;
+            plan.fail_at = n;
+            plan.kill = true;
+            _exit(write_with(plan) ? 0 : 1);
+        }
+        int status = 0;
+        waitpid(child, &status, 0);
+        EXPECT_TRUE(is_old() || content(path_) == kNew);
+        EXPECT_LE(strangers(), 1u);
+        if (exists()) {  // the next write sweeps
+            EXPECT_TRUE(write_with({}));
+            EXPECT_EQ(strangers(), 0u);
+        } else if (is_old()) {
+            EXPECT_TRUE(write_with({}));
+            EXPECT_TRUE(write_file(path_, bytes_of(kNew)));
+            EXPECT_EQ(strangers(), 0u);
+        }
+        EXPECT_EQ(content(path_), kNew);
+        if (!WIFSIGNALED(status)) break;
+    }
+}
+
+TEST_P(AtomicFileFaults, InterruptedAndShortWritesAreFinished) {
+    prepare();
+    Faults plan;
+    plan.dribble = true;
+    const Result<void> written = write_with(plan);
+    ASSERT_TRUE(written) << written.error().message();
+    EXPECT_EQ(content(path_), kNew);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, AtomicFileFaults, testing::Combine(testing::Bool(), testing::Bool(), testing::Bool()));
+
+}  // namespace
+}  // namespace tex

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <tex/check.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <tex/bake.h>
+
+#include "reference/damage.h"
+
+namespace tex {
+namespace {
+
+// Bumps of several sizes that tile: a height field's normals, y up.
+NormalMap bumps(Extent extent, float strength = 12.0f) {
+    HeightField field{Plane<float>(extent), strength, strength, Wrap::repeat, Wrap::repeat};
+    const double tau = 2.0 * 3.14159265358979;
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) {
+            const double u = tau * i / extent.width, v = tau * j / extent.height;
+            field.height.at(i, j) = static_cast<float>(std::sin(3 * u + std::cos(2 * v)) * std::cos(4 * v) + 0.5 * std::sin(7 * u + 5 * v) +
+                                                       0.3 * std::cos(11 * v - 4 * u) + 0.2 * std::sin(13 * u - 9 * v));
+        }
+    }
+    return std::move(*bake(field));
+}
+
+Texture map_texture() { return reference::texture_of(reference::codes_of(bumps({128, 128}))); }
+
+std::set<std::string> ids(const Texture& texture, const CheckOptions& options = {}) {
+    const auto report = check("map", texture, options);
+    EXPECT_TRUE(report);
+    std::set<std::string> found;
+    for (const Finding& finding : report->findings) found.emplace(finding.rule->id);
+    return found;
+}
+
+using Ids = std::set<std::string>;
+
+void set_code(Texture& texture, std::size_t texel, int channel, int code) {
+    texture.levels[0].bytes[texel * static_cast<std::size_t>(format_info(texture.format).channels) + static_cast<std::size_t>(channel)] =
+        static_cast<std::byte>(code);
+}
+
+CheckOptions requiring(std::initializer_list<const char*> requirements) {
+    CheckOptions options;
+    for (const char* text : requirements) EXPECT_TRUE(add_requirement(options.require, text)) << text;
+    return options;
+}
+
+TEST(Rules, AreOrderedNamedAndExplained) {
+    std::set<std::string_view> names;
+    std::string_view last;
+    for (const Rule& rule : rules()) {
+        EXPECT_LT(last, rule.id);
+        last = rule.id;
+        EXPECT_EQ(rule.id.size(), 4u);
+        EXPECT_TRUE(names.insert(rule.name).second) << rule.name;
+        EXPECT_EQ(rule.sentence.back(), '.') << rule.id;
+        EXPECT_GT(rule.explanation.size(), 30u) << rule.id;
+        EXPECT_EQ(find_rule(rule.id), &rule);
+        EXPECT_EQ(find_rule(rule.name), &rule);
+    }
+    EXPECT_EQ(find_rule("N999"), nullptr);
+    EXPECT_EQ(find_rule(""), nullptr);
+}
+
+// Otherwise two findings could hide each other.
+TEST(Rules, NoRuleExplainsItselfThroughOthers) {
+    const auto explains = [](const Rule& a, const Rule& b) { return a.explains.find(b.id) != std::string_view::npos; };
+    for (const Rule& rule : rules()) {
+        std::set<std::string_view> reached{};
+        std::vector<const Rule*> open{&rule};
+        while (!open.empty()) {
+            const Rule* next = open.back();
+            open.pop_back();
+            for (const Rule& other : rules()) {
+                if (explains(*next, other) && reached.insert(other.id).second) open.push_back(&other);
+            }
+        }
+        EXPECT_EQ(reached.count(rule.id), 0u) << rule.id;
+    }
+}
+
+TEST(Check, SoundMapsHaveNoFindings) {
+    EXPECT_EQ(ids(map_texture()), Ids{});
+    EXPECT_EQ(ids(map_texture(), requiring({"y=up", "tiles", "pow2", "mips=none", "format=rgb8", "extent=128x128", "max-extent=128"})), Ids{});
+    EXPECT_EQ(ids(reference::texture_of(reference::chain_of(bumps({128, 128}), reference::ChainFault::none)), requiring({"mips=full"})), Ids{});
+}
+
+TEST(Check, RequirementsAreWhatTheySay) {
+    const Texture texture = map_texture();
+    EXPECT_EQ(ids(texture, requiring({"y=down"})), Ids{"N401"});
+    EXPECT_EQ(ids(texture, requiring({"mips=full"})), Ids{"N109"});
+    EXPECT_EQ(ids(texture, requiring({"mips=3"})), Ids{"N109"});
+    EXPECT_EQ(ids(texture, requiring({"format=dxt5nm"})), Ids{"N108"});
+    EXPECT_EQ(ids(texture, requiring({"format=bc3-unorm"})), Ids{"N108"});
+    EXPECT_EQ(ids(texture, requiring({"extent=128x64"})), Ids{"N110"});
+    EXPECT_EQ(ids(texture, requiring({"max-extent=127"})), Ids{"N107"});
+    const Texture odd = reference::texture_of(reference::codes_of(bumps({96, 64})));
+    EXPECT_EQ(ids(odd), Ids{});
+    EXPECT_EQ(ids(odd, requiring({"pow2"})), Ids{"N105"});
+    const Texture cut = reference::texture_of(reference::codes_of(reference::crop(bumps({160, 160}), 0, 0, {128, 128})));
+    EXPECT_EQ(ids(cut), Ids{});
+    EXPECT_EQ(ids(cut, requiring({"tiles"})), Ids{"N307"});
+}
+
+TEST(Check, RefusesRequirementsThatMeanNothing) {
+    Requirements requirements;
+    for (const char* text : {"", "=", "y", "y=", "y=left", "mips", "mips=0", "mips=-1", "mips=two", "mips=4x", "extent=12", "extent=x12", "extent=0x4",
+                             "extent=4x4x4", "max-extent=99999999999", "format=dxt9", "pow2=yes", "tiles=", "colour=blue"}) {
+        const auto result = add_requirement(requirements, text);
+        ASSERT_FALSE(result) << text;
+        EXPECT_EQ(result.error().code, ErrorCode::bad_option);
+    }
+}
+
+TEST(Check, UnknownRulesAreAnError) {
+    CheckOptions options;
+    options.disable = {"N999"};
+    const auto report = check("map", map_texture(), options);
+    ASSERT_FALSE(report);
+    EXPECT_EQ(report.error().code, ErrorCode::bad_option);
+}
+
+TEST(Check, SeverityAndChoiceOfRulesFollowTheOptions) {
+    CheckOptions options = requiring({"y=down"});
+    options.severity = {{"wrong-y", Severity::note}};
+    const auto report = check("map", map_texture(), options);
+    ASSERT_TRUE(report);
+    ASSERT_EQ(report->findings.size(), 1u);
+    EXPECT_EQ(report->findings[0].severity, Severity::note);
+    options.disable = {"N401"};
+    EXPECT_EQ(ids(map_texture(), options), Ids{});
+}
+
+TEST(Check, CountsTexelsAndNamesTheFirst) {
+    Texture texture = map_texture();
+    for (const std::size_t texel : {300u, 301u, 9000u}) {
+        for (int c = 0; c < 3; ++c) set_code(texture, texel, c, 128);
+    }
+    const auto report = check("map", texture);
+    ASSERT_TRUE(report);
+    ASSERT_EQ(report->findings.size(), 1u) << "off-length texels are explained";
+    const Finding& finding = report->findings[0];
+    EXPECT_EQ(finding.rule->id, "N205");
+    EXPECT_DOUBLE_EQ(finding.figure, 3.0 / (128 * 128));
+    EXPECT_EQ(finding.column, 300 % 128);
+    EXPECT_EQ(finding.row, 300 / 128);
+}
+
+TEST(Check, FindsOneTexelThatIsNotANumber) {
+    Texture texture;
+    texture.format = Format::rgb32_float;
+    Level level{{64, 64}, {}};
+    const NormalMap map = bumps({64, 64});
+    for (int j = 0; j < 64; ++j) {
+        for (int i = 0; i < 64; ++i) {
+            const float texel[3] = {i == 5 && j == 6 ? std::nanf("") : map.x.at(i, j), map.y.at(i, j), map.z.at(i, j)};
+            const auto* bytes = reinterpret_cast<const std::byte*>(texel);
+            level.bytes.insert(level.bytes.end(), bytes, bytes + sizeof texel);
+        }
+    }
+    texture.levels.push_back(level);
+    const auto report = check("map", texture);
+    ASSERT_TRUE(report);
+    ASSERT_EQ(report->findings.size(), 1u);
+    EXPECT_EQ(report->findings[0].rule->id, "N204");
+    EXPECT_EQ(report->findings[0].column, 5);
+    EXPECT_EQ(report->findings[0].row, 6);
+}
+
+TEST(Check, ChangesNothingAndGivesTheSameReportForEveryNumberOfThreads) {
+    const Texture texture = reference::texture_of(reference::chain_of(bumps({256, 256}), reference::ChainFault::shifted));
+    Execution one;
+    one.threads = 1;
+    const auto expected = check("map", texture, requiring({"y=down"}), one);
+    Execution four;
+    four.threads = 4;
+    const auto report = check("map", texture, requiring({"y=down"}), four);
+    ASSERT_TRUE(expected && report);
+    ASSERT_EQ(report->findings.size(), expected->findings.size());
+    EXPECT_GE(report->findings.size(), 2u);
+    for (std::size_t k = 0; k < report->findings.size(); ++k) {
+        EXPECT_EQ(report->findings[k].message, expected->findings[k].message);
+        EXPECT_EQ(report->findings[k].figure, expected->findings[k].figure);
+    }
+    EXPECT_EQ(report->y.correlation, expected->y.correlation);
+}
+
+TEST(Check, StopsWhenAsked) {
+    Execution execution;
+    execution.progress = [](double) { return false; };
+    const auto report = check("map", map_texture(), {}, execution);
+    ASSERT_FALSE(report);
+    EXPECT_EQ(report.error().code, ErrorCode::cancelled);
+}
+
+TEST(Check, TexturesOfOneTexelAreChecked) {
+    EXPECT_EQ(ids(reference::texture_of(reference::codes_of(bumps({1, 1})))), Ids{});
+    EXPECT_EQ(ids(reference::texture_of(reference::codes_of(bumps({3, 2})))), Ids{});
+}
+
+TEST(CheckFile, UnreadableFilesAreFindings) {
+    const std::string path = testing::TempDir() + "/check_test_not_a_picture.dds";
+    std::ofstream(path) << "DDS nothing";
+    const auto report = check_file(path);
+    ASSERT_TRUE(report);
+    ASSERT_TRUE(report->error);
+    EXPECT_EQ(report->error->code, ErrorCode::bad_data);
+    ASSERT_EQ(report->findings.size(), 1u);
+    EXPECT_EQ(report->findings[0].rule->id, "N101");
+    std::filesystem::remove(path);
+    const auto missing = check_file(path);
+    ASSERT_TRUE(missing);
+    EXPECT_EQ(missing->error->code, ErrorCode::io);
+    EXPECT_TRUE(missing->findings.empty()) << "a missing file is no finding";
+}
+
+TEST(CheckPair, ReportsStrengthSignAndOffset) {
+    const Extent extent{128, 128};
+    HeightField field{Plane<float>(extent), 6.0f, 6.0f, Wrap::clamp, Wrap::clamp};
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) {
+            field.height.at(i, j) = static_cast<float>(std::sin(0.2 * i) * std::cos(0.17 * j) + 0.3 * std::sin(0.31 * i + 0.4 * j));
+        }
+    }
+    const auto normals = bake(field);
+    ASSERT_TRUE(normals);
+    CheckOptions options;
+    options.height = &field;
+    const auto report = check("map", reference::texture_of(reference::codes_of(*normals)), options);
+    ASSERT_TRUE(report && report->pair);
+    EXPECT_TRUE(report->findings.empty());
+    EXPECT_GT(report->pair->correlation, 0.99);
+    EXPECT_NEAR(report->pair->strength, 6.0, 0.3);
+    EXPECT_EQ(report->pair->y, YAxis::up);
+
+    const NormalMap shifted = reference::crop(*normals, 2, 0, {120, 128});
+    HeightField narrow{Plane<float>(Extent{120, 128}), 1.0f, 1.0f, Wrap::clamp, Wrap::clamp};
+    for (int j = 0; j < 128; ++j) std::memcpy(narrow.height.row(j), field.height.row(j), 120 * sizeof(float));
+    options.height = &narrow;
+    const auto moved = check("map", reference::texture_of(reference::codes_of(shifted)), options);
+    ASSERT_TRUE(moved && moved->pair);
+    EXPECT_EQ(moved->pair->offset_x, -2);
+    ASSERT_EQ(moved->findings.size(), 1u);
+    EXPECT_EQ(moved->findings[0].rule->id, "N601");
+}
+
+}  // namespace
+}  // namespace tex

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <tex/container.h>
+
+#include <cstdlib>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <tex/unpack.h>
+
+#include "unit/textures.h"
+
+namespace tex {
+namespace {
+
+TEST(Container, IsNamedByTheExtension) {
+    EXPECT_EQ(container_of("a.dds"), Container::dds);
+    EXPECT_EQ(container_of("a.KTX2"), Container::ktx2);
+    EXPECT_EQ(container_of("dir.png/a.Tiff"), Container::tiff);
+    EXPECT_EQ(container_of("a.b.tif"), Container::tiff);
+    EXPECT_EQ(container_of("a.jpeg"), Container::jpeg);
+    EXPECT_EQ(container_of("a.jpg"), Container::jpeg);
+    EXPECT_EQ(container_of("a.ktx"), std::nullopt);
+    EXPECT_EQ(container_of("dir.png/a"), std::nullopt);
+    EXPECT_EQ(container_of("png"), std::nullopt);
+    EXPECT_EQ(container_of(""), std::nullopt);
+}
+
+TEST(Container, ListsEveryExtensionOfItsNames) {
+    for (const auto& row : kContainerNames) {
+        EXPECT_EQ(container_of("x." + std::string(row.name)), row.value);
+        std::istringstream extensions{std::string(row.meaning)};  // ".tif, .tiff"
+        for (std::string extension; std::getline(extensions >> std::ws, extension, ',');) {
+            EXPECT_EQ(container_of("x" + extension), row.value) << extension;
+        }
+    }
+}
+
+TEST(Container, HoldsItsDefaultEncoding) {
+    for (const auto& row : kContainerNames) EXPECT_TRUE(can_hold(row.value, default_encoding(row.value))) << row.name;
+    EXPECT_EQ(default_encoding(Container::dds), Encoding::dxt5nm);
+    EXPECT_EQ(default_encoding(Container::exr), Encoding::half);
+    EXPECT_EQ(default_encoding(Container::tiff), Encoding::rgb16);
+    EXPECT_EQ(default_encoding(Container::tga), Encoding::rgb8);
+}
+
+TEST(Container, HoldsEveryEncodingInDdsAndKtx2) {
+    for (const auto& row : kEncodingNames) {
+        EXPECT_TRUE(can_hold(Container::dds, row.value) && can_hold(Container::ktx2, row.value)) << row.name;
+        EXPECT_FALSE(can_hold(Container::jpeg, row.value) && row.value != Encoding::rgb8) << row.name;
+    }
+    EXPECT_FALSE(can_hold(Container::png, Encoding::bc5));
+    EXPECT_FALSE(can_hold(Container::tga, Encoding::rgb16));
+    EXPECT_TRUE(can_hold_levels(Container::exr));
+    EXPECT_FALSE(can_hold_levels(Container::png));
+}
+
+TEST(Container, GivesEqualBytesForEqualTextures) {
+    for (const auto& row : kEncodingNames) {
+        for (const Container container : {Container::dds, Container::ktx2}) {
+            const auto once = encode_file(encoded_texture(row.value, {13, 7}, 4), container);
+            const auto twice = encode_file(encoded_texture(row.value, {13, 7}, 4), container);
+            ASSERT_TRUE(once && twice);
+            EXPECT_EQ(*once, *twice);
+        }
+    }
+}
+
+TEST(Container, RefusesOtherFilesFromMemory) {
+    const std::vector<std::byte> other(200, std::byte{'x'});
+    const auto texture = decode_file(other.data(), other.size(), "other.dds");
+    ASSERT_FALSE(texture);
+    EXPECT_EQ(texture.error().code, ErrorCode::bad_data);
+    EXPECT_EQ(texture.error().file, "other.dds");
+    EXPECT_EQ(decode_file(nullptr, 0, "empty").error().reason, "the file is empty");
+}
+
+class ContainerFiles : public testing::Test {
+protected:
+    ContainerFiles() {
+        std::string pattern = testing::TempDir() + "container_XXXXXX";
+        folder_ = mkdtemp(pattern.data());
+    }
+    ~ContainerFiles() override { std::filesystem::remove_all(folder_); }
+    [[nodiscard]] std::string file(const std::string& name) const { return folder_ + "/" + name; }
+    std::string folder_;
+};
+
+// Reads what was written, by the content: the name says nothing.
+TEST_F(ContainerFiles, ReadsWhatItWroteWhateverItsName) {
+    struct Case {
+        const char* name;
+        Encoding encoding;
+        int levels;
+    };
+    const Case cases[] = {{"a.dds", Encoding::dxt5nm, 4},  {"a.ktx2", Encoding::bc5, 4},  {"a.png", Encoding::rgb8, 1},
+                          {"a.png", Encoding::rgba8, 1},   {"a.png", Encoding::rgb16, 1}, {"a.exr", Encoding::half, 1},
+                          {"a.exr", Encoding::float_, 1}, {"a.tif", Encoding::rgb16, 1},  {"a.tiff", Encoding::half, 1},
+                          {"a.tga", Encoding::rgba8, 1},  {"a.bmp", Encoding::rgb8, 1}};
+    for (const Case& c : cases) {
+        const Texture texture = encoded_texture(c.encoding, {13, 7}, c.levels);
+        const auto written = write_texture(file(c.name), texture);
+        ASSERT_TRUE(written) << written.error().message();
+        std::filesystem::rename(file(c.name), file("nameless"));
+        const auto read = read_texture(file("nameless"));
+        ASSERT_TRUE(read) << read.error().message();
+        ASSERT_EQ(read->levels.size(), texture.levels.size()) << c.name;
+        const auto before = decode(texture, 0);
+        const auto after = decode(*read, 0);
+        ASSERT_EQ(after->planes.size(), before->planes.size());
+        for (std::size_t k = 0; k < before->planes.size(); ++k) {
+            for (int i = 0; i < 13; ++i) EXPECT_EQ(after->planes[k].at(i, 6), before->planes[k].at(i, 6)) << c.name;
+        }
+    }
+}
+
+TEST_F(ContainerFiles, SaysWhatAContainerCanHold) {
+    const auto refused = write_texture(file("a.png"), encoded_texture(Encoding::bc5, {4, 4}, 1));
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::unsupported);
+    EXPECT_EQ(refused.error().file, file("a.png"));
+    EXPECT_FALSE(std::filesystem::exists(file("a.png")));
+    const auto nameless = write_texture(file("a"), encoded_texture(Encoding::rgb8, {4, 4}, 1));
+    EXPECT_EQ(nameless.error().code, ErrorCode::bad_option);
+}
+
+TEST_F(ContainerFiles, TellMissingFilesFromDamagedOnes) {
+    EXPECT_EQ(read_texture(file("missing.dds")).error().code, ErrorCode::io);
+    EXPECT_EQ(read_texture(folder_).error().code, ErrorCode::io);
+    std::ofstream(file("empty.dds")).close();
+    EXPECT_EQ(read_texture(file("empty.dds")).error().code, ErrorCode::bad_data);
+}
+
+}  // namespace
+}  // namespace tex

@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "containers/exr.h"
+#include "containers/exr_part.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include <ImfChannelList.h>
+#include <ImfDeepFrameBuffer.h>
+#include <ImfDeepScanLineOutputFile.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfMultiPartOutputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
+#include <ImfStringAttribute.h>
+#include <ImfTiledOutputFile.h>
+
+#include <tex/mip_chain.h>
+
+namespace tex {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+class Sink final : public Imf::OStream {
+public:
+    explicit Sink(Bytes& bytes) : Imf::OStream(""), bytes_(bytes) {}
+    void write(const char data[], int n) override {
+        bytes_.resize(std::max(bytes_.size(), at_ + static_cast<std::size_t>(n)));
+        std::memcpy(bytes_.data() + at_, data, static_cast<std::size_t>(n));
+        at_ += static_cast<std::size_t>(n);
+    }
+    std::uint64_t tellp() override { return at_; }
+    void seekp(std::uint64_t at) override { at_ = at; }
+
+private:
+    Bytes& bytes_;
+    std::size_t at_ = 0;
+};
+
+Result<InputFile> open(const Bytes& bytes) { return InputFile::from_memory("test.exr", bytes); }
+
+Result<Image> read(const Bytes& bytes, const ReadOptions& options = {}) {
+    Result<InputFile> file = open(bytes);
+    if (!file) return file.error();
+    return read_exr(*file, options);
+}
+
+float value(int i, int j, int c) { return static_cast<float>(i * 3 - j * 5 + c * 7) / 16.0f; }  // exact as half
+
+// A file as OpenEXR writes it: channels of one type, a data window that begins at (-3, 5).
+Bytes make_exr(Extent extent, const std::vector<std::string>& names, Imf::PixelType type, Imf::Compression compression,
+               bool tiled = false) {
+    const Imath::Box2i window({-3, 5}, {-3 + extent.width - 1, 5 + extent.height - 1});
+    Imf::Header header(window, window, 1.0f, {0, 0}, 1.0f, Imf::DECREASING_Y, compression);
+    Imf::FrameBuffer buffer;
+    std::vector<std::vector<float>> floats(names.size());
+    std::vector<std::vector<std::uint32_t>> integers(names.size());
+    std::vector<std::vector<Imath::half>> halves(names.size());
+    for (std::size_t c = 0; c < names.size(); ++c) {
+        for (int j = 0; j < extent.height; ++j) {
+            for (int i = 0; i < extent.width; ++i) {
+                floats[c].push_back(value(i, j, static_cast<int>(c)));
+                halves[c].push_back(Imath::half(floats[c].back()));
+                integers[c].push_back(static_cast<std::uint32_t>(i) * 123456789u + static_cast<std::uint32_t>(j));
+            }
+        }
+        const std::size_t size = type == Imf::HALF ? 2 : 4;
+        void* base = floats[c].data();
+        if (type == Imf::HALF) base = halves[c].data();
+        if (type == Imf::UINT) base = integers[c].data();
+        header.channels().insert(names[c], Imf::Channel(type));
+        buffer.insert(names[c], Imf::Slice::Make(type, base, window, size, size * static_cast<std::size_t>(extent.width)));
+    }
+    Bytes bytes;
+    Sink sink(bytes);
+    if (tiled) {
+        header.lineOrder() = Imf::INCREASING_Y;
+        header.setTileDescription(Imf::TileDescription(16, 8, Imf::ONE_LEVEL));
+        Imf::TiledOutputFile file(sink, header);
+        file.setFrameBuffer(buffer);
+        file.writeTiles(0, file.numXTiles() - 1, 0, file.numYTiles() - 1);
+    } else {
+        Imf::OutputFile file(sink, header);
+        file.setFrameBuffer(buffer);
+        file.writePixels(extent.height);
+    }
+    return bytes;
+}
+
+TEST(Exr, ReadsEveryTypeCompressionAndLayoutExactly) {
+    const Extent extent{37, 21};
+    for (const Imf::PixelType type : {Imf::HALF, Imf::FLOAT, Imf::UINT}) {
+        for (const Imf::Compression compression : {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION,
+                                                   Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION}) {
+            for (const bool tiled : {false, true}) {
+                SCOPED_TRACE(testing::Message() << type << ", " << compression << ", " << tiled);
+                const Result<Image> image = read(make_exr(extent, {"G", "R", "B"}, type, compression, tiled));
+                ASSERT_TRUE(image) << image.error().message();
+                ASSERT_EQ(image->extent(), extent);
+                ASSERT_EQ(image->names, (std::vector<std::string>{"R", "G", "B"}));
+                EXPECT_EQ(image->bits, type == Imf::HALF ? 16 : 32);
+                EXPECT_EQ(image->sample, type == Imf::UINT ? SampleKind::unorm : SampleKind::floating);
+                for (int j = 0; j < extent.height; ++j) {
+                    for (int i = 0; i < extent.width; ++i) {
+                        if (type == Imf::UINT) {
+                            const std::uint32_t code = static_cast<std::uint32_t>(i) * 123456789u + static_cast<std::uint32_t>(j);
+                            ASSERT_EQ(image->planes[0].at(i, j), static_cast<float>(code / 4294967295.0));
+                        } else {
+                            ASSERT_EQ(image->planes[0].at(i, j), value(i, j, 1));
+                            ASSERT_EQ(image->planes[1].at(i, j), value(i, j, 0));
+                            ASSERT_EQ(image->planes[2].at(i, j), value(i, j, 2));
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST(Exr, KeepsOtherChannelNames) {
+    const Result<Image> image =
+        read(make_exr({5, 4}, {"height", "A", "diffuse.R", "Z"}, Imf::FLOAT, Imf::ZIP_COMPRESSION));
+    ASSERT_TRUE(image);
+    EXPECT_EQ(image->names, (std::vector<std::string>{"A", "Z", "diffuse.R", "height"}));
+    EXPECT_EQ(image->planes[3].at(2, 1), value(2, 1, 0));
+}
+
+TEST(Exr, RefusesDeepData) {
+    Imf::Header header(4, 4);
+    header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
+    header.setType(Imf::DEEPSCANLINE);
+    header.compression() = Imf::ZIPS_COMPRESSION;
+    Bytes bytes;
+    Sink sink(bytes);
+    {
+        Imf::DeepScanLineOutputFile file(sink, header);
+        unsigned counts[16] = {};
+        const float* pointers[16] = {};
+        Imf::DeepFrameBuffer buffer;
+        buffer.insertSampleCountSlice(Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts), 4, 16));
+        buffer.insert("Z", Imf::DeepSlice(Imf::FLOAT, reinterpret_cast<char*>(pointers), 8, 32, 4));
+        file.setFrameBuffer(buffer);
+        file.writePixels(4);
+    }
+    const Result<Image> image = read(bytes);
+    ASSERT_FALSE(image);
+    EXPECT_EQ(image.error().code, ErrorCode::unsupported) << image.error().reason;
+}
+
+TEST(Exr, RefusesSubsampledChannels) {
+    Imf::Header header(4, 4);
+    header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
+    header.channels().insert("RY", Imf::Channel(Imf::FLOAT, 2, 2));
+    Bytes bytes;
+    Sink sink(bytes);
+    std::vector<float> values(16);
+    {
+        Imf::OutputFile file(sink, header);
+        Imf::FrameBuffer buffer;
+        buffer.insert("Y", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()), 4, 16));
+        buffer.insert("RY", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()), 4, 8, 2, 2));
+        file.setFrameBuffer(buffer);
+        file.writePixels(4);
+    }
+    const Result<Image> image = read(bytes);
+    ASSERT_FALSE(image);
+    EXPECT_EQ(image.error().code, ErrorCode::unsupported);
+    EXPECT_EQ(image.error().reason, "the channel RY is subsampled");
+}
+
+TEST(Exr, OfSeveralPartsReadsTheFirst) {
+    std::vector<Imf::Header> headers(2, Imf::Header(4, 3));
+    headers[1].dataWindow() = Imath::Box2i({0, 0}, {7, 7});
+    for (std::size_t k = 0; k < 2; ++k) {
+        headers[k].setName(k == 0 ? "first" : "second");
+        headers[k].setType(Imf::SCANLINEIMAGE);
+        headers[k].channels().insert("Y", Imf::Channel(Imf::FLOAT));
+    }
+    Bytes bytes;
+    Sink sink(bytes);
+    std::vector<float> values(64, 0.75f);
+    {
+        Imf::MultiPartOutputFile file(sink, headers.data(), 2);
+        for (int k = 0; k < 2; ++k) {
+            Imf::OutputPart part(file, k);
+            Imf::FrameBuffer buffer;
+            buffer.insert("Y", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()), 4, 32));
+            part.setFrameBuffer(buffer);
+            part.writePixels(k == 0 ? 3 : 8);
+        }
+    }
+    const Result<Image> image = read(bytes);
+    ASSERT_TRUE(image) << image.error().message();
+    EXPECT_EQ(image->extent(), (Extent{4, 3}));
+    EXPECT_EQ(image->planes[0].at(3, 2), 0.75f);
+}
+
+TEST(Exr, EveryTruncationIsDamage) {
+    for (const bool tiled : {false, true}) {
+        const Bytes whole = make_exr({37, 21}, {"R", "G", "B"}, Imf::HALF, Imf::ZIP_COMPRESSION, tiled);
+        for (std::size_t n = 1; n < whole.size(); ++n) {
+            const Result<Image> image = read(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(n)));
+            ASSERT_FALSE(image) << n << " of " << whole.size();
+            ASSERT_EQ(image.error().code, ErrorCode::bad_data) << n << ": " << image.error().reason;
+        }
+    }
+}
+
+TEST(Exr, RefusesClaimsBeforeTakingMemory) {
+    for (const Imf::Compression compression : {Imf::NO_COMPRESSION, Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION}) {
+        Bytes bytes = make_exr({4, 4}, {"Y"}, Imf::HALF, compression);
+        const std::string name = "dataWindow";
+        auto at = std::search(bytes.begin(), bytes.end(), name.begin(), name.end(),
+                              [](std::byte a, char b) { return static_cast<char>(a) == b; });
+        ASSERT_NE(at, bytes.end());
+        at += 11 + 6 + 4;  // the name, the type "box2i", the size
+        const std::int32_t window[4] = {0, 0, 999'999, 3};  // as many chunks as before, but wider
+        std::memcpy(&*at, window, sizeof window);
+        const Result<Image> image = read(bytes);
+        ASSERT_FALSE(image);
+        EXPECT_EQ(image.error().code, ErrorCode::bad_data) << image.error().reason;
+    }
+}
+
+TEST(Exr, RefusesAttributesThatClaimMoreThanTheFileHolds) {
+    Bytes bytes = make_exr({4, 4}, {"Y"}, Imf::HALF, Imf::ZIP_COMPRESSION);
+    const std::string name = "screenWindowWidth";
+    auto at = std::search(bytes.begin(), bytes.end(), name.begin(), name.end(),
+                          [](std::byte a, char b) { return static_cast<char>(a) == b; });
+    ASSERT_NE(at, bytes.end());
+    at += 18 + 6;  // the name, the type "float"
+    for (const std::int32_t claim : {0x7fffffff, 0x40000000, -1}) {
+        std::memcpy(&*at, &claim, sizeof claim);
+        const Result<Image> image = read(bytes);
+        ASSERT_FALSE(image);
+        EXPECT_EQ(image.error().code, ErrorCode::bad_data);
+        EXPECT_NE(image.error().reason.find("an attribute claims"), std::string::npos) << image.error().reason;
+    }
+}
+
+// The bytes behind `name` and its type (both with their final 0) in a header: an attribute's size, then its value.
+std::byte* attribute(Bytes& bytes, const std::string& name, const std::string& type) {
+    const std::string start = name + '\0' + type + '\0';
+    const auto at = std::search(bytes.begin(), bytes.end(), start.begin(), start.end(),
+                                [](std::byte a, char b) { return static_cast<char>(a) == b; });
+    return at == bytes.end() ? nullptr : &*at + start.size();
+}
+
+TEST(Exr, RefusesTilesWhoseAreaOverflows) {
+    Bytes bytes = make_exr({37, 21}, {"Y"}, Imf::HALF, Imf::ZIP_COMPRESSION, true);
+    std::byte* tiles = attribute(bytes, "tiles", "tiledesc");
+    ASSERT_NE(tiles, nullptr);
+    // The first pair overflows 64 signed bits, the others 32 bits.
+    for (const auto& [x, y] : {std::pair{0xffffffffu, 0xffffffffu}, {0x80000000u, 2u}, {0x10000u, 0x10000u}}) {
+        std::memcpy(tiles + 4, &x, 4);
+        std::memcpy(tiles + 8, &y, 4);
+        const Result<Image> image = read(bytes);
+        ASSERT_FALSE(image) << x << " x " << y;
+        EXPECT_EQ(image.error().code, ErrorCode::bad_data) << image.error().reason;
+    }
+}
+
+TEST(Exr, RefusesAttributesWhoseSizeIsNotTheirValuesOwn) {
+    for (const std::int32_t size : {0, 3, 5, 8}) {
+        Bytes bytes = make_exr({4, 4}, {"Y"}, Imf::HALF, Imf::ZIP_COMPRESSION);
+        std::byte* width = attribute(bytes, "screenWindowWidth", "float");
+        ASSERT_NE(width, nullptr);
+        std::memcpy(width, &size, sizeof size);
+        const Result<Image> image = read(bytes);
+        ASSERT_FALSE(image) << size;
+        EXPECT_NE(image.error().reason.find("has a wrong size"), std::string::npos) << image.error().reason;
+    }
+}
+
+TEST(Exr, RefusesMoreTexelsThanTheLimit) {
+    ReadOptions options;
+    options.max_texels = 15;
+    EXPECT_EQ(read(make_exr({4, 4}, {"Y"}, Imf::HALF, Imf::ZIP_COMPRESSION), options).error().code,
+              ErrorCode::unsupported);
+}
+
+Texture texture_of(Format format, Extent extent, int levels) {
+    const FormatInfo info = format_info(format);
+    Texture texture;
+    texture.format = format;
+    texture.y_axis = YAxis::down;
+    for (int k = 0; k < levels; ++k) {
+        Image image;
+        Level level{level_extent(extent, k), {}};
+        for (int j = 0; j < level.extent.height; ++j) {
+            for (int i = 0; i < level.extent.width; ++i) {
+                for (int c = 0; c < info.channels; ++c) {
+                    const float v = value(i, j, c + 5 * k);
+                    const std::uint16_t h = Imath::half(v).bits();
+                    const auto* from = info.bits == 16 ? reinterpret_cast<const std::byte*>(&h)
+                                                       : reinterpret_cast<const std::byte*>(&v);
+                    level.bytes.insert(level.bytes.end(), from, from + info.bits / 8);
+                }
+            }
+        }
+        texture.levels.push_back(std::move(level));
+    }
+    return texture;
+}
+
+TEST(Exr, TexturesComeBackWithTheirLevels) {
+    for (const Format format : {Format::r16_float, Format::rg32_float, Format::rgb16_float, Format::rgb32_float,
+                                Format::rgba16_float}) {
+        for (const int levels : {1, level_count({131, 70})}) {
+            SCOPED_TRACE(name_of(kFormatNames, format));
+            const Texture texture = texture_of(format, {131, 70}, levels);
+            const Result<Bytes> bytes = encode_exr(texture);
+            ASSERT_TRUE(bytes) << bytes.error().message();
+            Result<InputFile> file = open(*bytes);
+            const Result<Texture> back = read_exr_texture(*file, {});
+            ASSERT_TRUE(back) << back.error().message();
+            EXPECT_EQ(back->format, format);
+            EXPECT_EQ(back->y_axis, YAxis::down);
+            EXPECT_TRUE(back->y_known);
+            EXPECT_EQ(back->normal_encoding, "signed");
+            ASSERT_EQ(back->levels.size(), static_cast<std::size_t>(levels));
+            for (std::size_t k = 0; k < texture.levels.size(); ++k) {
+                EXPECT_EQ(back->levels[k].extent, texture.levels[k].extent);
+                EXPECT_EQ(back->levels[k].bytes, texture.levels[k].bytes) << k;
+            }
+            EXPECT_EQ(*encode_exr(texture), *bytes);
+        }
+    }
+}
+
+TEST(Exr, RefusesWhatItCannotHold) {
+    EXPECT_EQ(encode_exr(texture_of(Format::rgb8_unorm, {4, 4}, 1)).error().code, ErrorCode::unsupported);
+    EXPECT_EQ(encode_exr(texture_of(Format::rgb16_float, {16, 16}, 2)).error().code, ErrorCode::unsupported);
+}
+
+TEST(Exr, NanAndInfiniteValuesAreAsStored) {
+    Result<InputFile> file = InputFile::open(TEX_SOURCE_DIR "/../shared/data/height/reader_nan_inf_800x800.exr");
+    if (!file) GTEST_SKIP() << "no shared data";
+    const Result<Image> image = read_exr(*file, {});
+    ASSERT_TRUE(image) << image.error().message();
+    int nan = 0, infinite = 0;
+    for (const Plane<float>& plane : image->planes) {
+        for (int j = 0; j < 800; ++j) {
+            for (int i = 0; i < 800; ++i) {
+                nan += std::isnan(plane.at(i, j));
+                infinite += std::isinf(plane.at(i, j));
+            }
+        }
+    }
+    EXPECT_GT(nan + infinite, 0);
+}
+
+}  // namespace
+}  // namespace tex

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <gtest/gtest.h>
+#include <tex/format.h>
+
+#include <set>
+#include <string_view>
+
+namespace tex {
+namespace {
+
+TEST(Format, HasOneNameAndSoundFactsForEachFormat) {
+    std::set<std::string_view> names;
+    for (const auto& row : kFormatNames) {
+        EXPECT_TRUE(names.insert(row.name).second) << row.name;
+        const FormatInfo info = format_info(row.value);
+        EXPECT_TRUE(info.channels >= 1 && info.channels <= 4) << row.name;
+        EXPECT_TRUE(info.block == 1 || info.block == 4) << row.name;
+        if (info.block == 1) {
+            EXPECT_EQ(info.block_bytes * 8, static_cast<std::size_t>(info.channels * info.bits)) << row.name;
+        }
+    }
+    EXPECT_EQ(format_info(Format::rgba32_float).block_bytes, 16u);  // the last one of the enum is in the table
+    EXPECT_EQ(name_of(kFormatNames, Format::rgba32_float), "rgba32-float");
+}
+
+TEST(Format, RoundsBlocksUpAndDoesNotOverflow) {
+    EXPECT_EQ(level_bytes(Format::bc3_unorm, {1, 1}), 16u);
+    EXPECT_EQ(level_bytes(Format::bc3_unorm, {5, 7}), 4u * 16u);
+    EXPECT_EQ(level_bytes(Format::bc1_unorm, {8, 4}), 16u);
+    EXPECT_EQ(level_bytes(Format::rgb8_unorm, {5, 7}), 105u);
+    EXPECT_EQ(level_bytes(Format::rgba32_float, {kMaxExtent, kMaxExtent}), std::size_t{1} << 44);
+}
+
+TEST(Format, EncodingsStoreXAndYAndFillTheRestAsPromised) {
+    for (const auto& row : kEncodingNames) {
+        const EncodingInfo info = encoding_info(row.value);
+        const std::string swizzle = to_string(info.swizzle);
+        EXPECT_NE(swizzle.find('x'), std::string::npos) << row.name;
+        EXPECT_NE(swizzle.find('y'), std::string::npos) << row.name;
+    }
+    EXPECT_EQ(to_string(encoding_info(Encoding::dxt5nm).swizzle), "1y1x");
+    EXPECT_EQ(to_string(encoding_info(Encoding::ag8).swizzle), "1y1x");
+    EXPECT_EQ(to_string(encoding_info(Encoding::bc5).swizzle), "xy01");
+    EXPECT_EQ(to_string(encoding_info(Encoding::rgb8).swizzle), "xyz1");
+    EXPECT_EQ(encoding_info(Encoding::dxt5nm).format, Format::bc3_unorm);
+}
+
+}  // namespace
+}  // namespace tex

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// tests/golden holds files as text: bytes in hexadecimal, and behind '#' what they are and why they are right. They were
+// written from the specifications of the containers, by a program that shares nothing with libtex.
+//
+// All hold one texture: 6x5 texels and a level of 3x2, the k-th byte of level l being 7 k + 64 l + 1.
+
+#include <tex/container.h>
+
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "unit/textures.h"
+
+namespace tex {
+namespace {
+
+std::vector<std::byte> golden_bytes(const std::filesystem::path& path) {
+    std::vector<std::byte> bytes;
+    std::ifstream file(path);
+    for (std::string line; std::getline(file, line);) {
+        std::istringstream numbers(line.substr(0, line.find('#')));
+        for (unsigned byte = 0; numbers >> std::hex >> byte;) bytes.push_back(static_cast<std::byte>(byte));
+    }
+    return bytes;
+}
+
+Texture golden_texture(Encoding encoding) {
+    Texture texture = encoded_texture(encoding, {6, 5}, 2);
+    for (std::size_t l = 0; l < 2; ++l) {
+        std::vector<std::byte>& bytes = texture.levels[l].bytes;
+        for (std::size_t k = 0; k < bytes.size(); ++k) bytes[k] = static_cast<std::byte>((7 * k + 64 * l + 1) & 0xff);
+    }
+    return texture;
+}
+
+void expect_golden(const std::string& file, Encoding encoding, Container container, const WriteOptions& options) {
+    const std::filesystem::path path = std::filesystem::path(TEX_SOURCE_DIR "/tests/golden") / (file + ".txt");
+    ASSERT_TRUE(std::filesystem::exists(path)) << path;
+    const std::vector<std::byte> expected = golden_bytes(path);
+    const auto bytes = encode_file(golden_texture(encoding), container, options);
+    ASSERT_TRUE(bytes);
+    ASSERT_EQ(bytes->size(), expected.size()) << file;
+    for (std::size_t k = 0; k < expected.size(); ++k) {
+        ASSERT_EQ(std::to_integer<int>((*bytes)[k]), std::to_integer<int>(expected[k])) << file << " at byte " << k;
+    }
+}
+
+TEST(Golden, EveryEncodingInKtx2) {
+    for (const auto& row : kEncodingNames) {
+        expect_golden(std::string(row.name) + ".ktx2", row.value, Container::ktx2, {});
+    }
+}
+
+TEST(Golden, EveryEncodingInLegacyDds) {
+    for (const auto& row : kEncodingNames) {
+        expect_golden(std::string(row.name) + ".dds", row.value, Container::dds, {});
+    }
+}
+
+TEST(Golden, EveryEncodingInDx10Dds) {
+    WriteOptions options;
+    options.dds_header = DdsHeader::dx10;
+    // These are the same with either header: DXGI has no rgb8, Direct3D 9 no rg8, rg16; ag8 is rgba8 but for its alpha mode.
+    for (const auto& row : kEncodingNames) {
+        const std::string name(row.name);
+        if (name == "ag8") continue;
+        const bool only_one = name == "rgb8" || name == "rg8" || name == "rg16";
+        expect_golden(name + (only_one ? ".dds" : "-dx10.dds"), row.value, Container::dds, options);
+    }
+}
+
+TEST(Golden, MarkedDxt5nm) {
+    WriteOptions options;
+    options.dds_mark = true;
+    expect_golden("dxt5nm-marked.dds", Encoding::dxt5nm, Container::dds, options);
+}
+
+}  // namespace
+}  // namespace tex

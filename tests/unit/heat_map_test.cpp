@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <tex/heat_map.h>
+
+#include <gtest/gtest.h>
+
+namespace tex {
+namespace {
+
+TEST(HeatMap, RunsFromBlackToPaleYellow) {
+    Plane<float> degrees(Extent{200, 2}, 0.0f);
+    degrees.at(1, 0) = 10.0f;
+    degrees.at(2, 0) = 90.0f;
+    const auto image = heat_map(degrees, 10.0);
+    ASSERT_TRUE(image);
+    ASSERT_EQ(image->extent(), (Extent{200, 2 + kHeatMapLegendRows}));
+    EXPECT_EQ(image->planes[0].at(0, 0), 0.0f);
+    EXPECT_EQ(image->planes[2].at(0, 0), 4.0f / 255.0f);
+    EXPECT_EQ(image->planes[0].at(1, 0), 252.0f / 255.0f);
+    EXPECT_EQ(image->planes[1].at(1, 0), 1.0f);
+    EXPECT_EQ(image->planes[1].at(2, 0), 1.0f) << "beyond the scale";
+}
+
+TEST(HeatMap, LightnessGrowsAlongTheScale) {
+    Plane<float> degrees(Extent{256, 1});
+    for (int i = 0; i < 256; ++i) degrees.at(i, 0) = static_cast<float>(i);
+    const auto image = heat_map(degrees, 180.0);
+    ASSERT_TRUE(image);
+    float last = -1.0f;
+    for (int i = 0; i <= 180; ++i) {
+        const float lightness = 0.2126f * image->planes[0].at(i, 0) + 0.7152f * image->planes[1].at(i, 0) +
+                                0.0722f * image->planes[2].at(i, 0);
+        EXPECT_GT(lightness, last);
+        last = lightness;
+    }
+}
+
+TEST(HeatMap, NarrowMapsHaveRoomForTheLegend) {
+    const auto image = heat_map(Plane<float>(Extent{1, 1}, 3.0f), 180.0);
+    ASSERT_TRUE(image);
+    EXPECT_EQ(image->extent(), (Extent{kHeatMapLeastWidth, 1 + kHeatMapLegendRows}));
+}
+
+// The label "0" at the left: a box of dots two texels wide.
+TEST(HeatMap, LegendNamesItsEnds) {
+    const auto image = heat_map(Plane<float>(Extent{160, 4}, 0.0f), 7.5);
+    ASSERT_TRUE(image);
+    const auto white = [&](int i, int j) { return image->planes[1].at(i, 4 + 14 + j) == 1.0f; };
+    EXPECT_TRUE(white(0, 0) && white(5, 0) && white(0, 9) && white(5, 9));
+    EXPECT_FALSE(white(2, 4) || white(6, 0));
+}
+
+}  // namespace
+}  // namespace tex

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "containers/ktx2.h"
+
+#include <cstring>
+#include <numeric>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <tex/container.h>
+#include <tex/unpack.h>
+
+#include "containers/bytes.h"
+#include "unit/textures.h"
+
+namespace tex {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+using testing::HasSubstr;
+
+Result<Texture> decode_bytes(const Bytes& bytes) { return decode_file(bytes.data(), bytes.size(), "test.ktx2"); }
+
+Bytes encode(const Texture& texture) {
+    Result<Bytes> bytes = encode_file(texture, Container::ktx2);
+    return bytes ? *bytes : Bytes{};
+}
+
+std::uint32_t field(const Bytes& bytes, std::size_t offset) { return load_u32(bytes.data() + offset); }
+
+void set_field(Bytes& bytes, std::size_t offset, std::uint32_t value) {
+    for (std::size_t k = 0; k < 4; ++k) bytes[offset + k] = static_cast<std::byte>(value >> (8 * k) & 0xff);
+}
+
+constexpr std::size_t kVkFormatAt = 12, kWidthAt = 20, kHeightAt = 24, kDepthAt = 28, kLayersAt = 32, kFacesAt = 36,
+                      kLevelsAt = 40, kSchemeAt = 44, kEntriesAt = 56, kLevel0At = 80;
+
+// Puts `value` (padded to the length of the old one) behind `key`.
+void set_value(Bytes& file, const std::string& key, const std::string& value) {
+    for (std::size_t at = field(file, kEntriesAt); at + key.size() < file.size(); ++at) {
+        if (std::memcmp(file.data() + at, key.data(), key.size()) != 0) continue;
+        std::memcpy(file.data() + at + key.size() + 1, value.data(), value.size());
+        return;
+    }
+    FAIL() << "no key " << key;
+}
+
+TEST(Ktx2, ReadsBackEveryFormatThatItWrites) {
+    for (const auto& row : kFormatNames) {
+        const Texture texture = patterned_texture(row.value, {13, 7}, 4);
+        const auto read = decode_bytes(encode(texture));
+        ASSERT_TRUE(read) << row.name << ": " << read.error().message();
+        ASSERT_EQ(read->levels.size(), 4u);
+        EXPECT_THAT(read->remarks, testing::IsEmpty());
+        EXPECT_FALSE(read->swizzle_known);
+        for (std::size_t k = 0; k < 4; ++k) {
+            EXPECT_EQ(read->levels[k].extent, texture.levels[k].extent);
+            if (read->format == texture.format) {
+                EXPECT_EQ(read->levels[k].bytes, texture.levels[k].bytes) << row.name;
+                continue;
+            }
+            // Widened: every fourth channel is 1.
+            const auto image = decode(*read, static_cast<int>(k));
+            EXPECT_EQ(format_info(texture.format).channels, 3) << row.name;
+            for (int i = 0; i < image->extent().width; ++i) EXPECT_EQ(image->planes[3].at(i, 0), 1.0f);
+        }
+    }
+}
+
+TEST(Ktx2, CarriesTheSwizzleAndY) {
+    for (const auto& row : kEncodingNames) {
+        for (const YAxis y : {YAxis::up, YAxis::down}) {
+            Texture texture = encoded_texture(row.value, {8, 4}, 1);
+            texture.y_axis = y;
+            const auto read = decode_bytes(encode(texture));
+            ASSERT_TRUE(read);
+            EXPECT_TRUE(read->swizzle_known && read->y_known);
+            EXPECT_EQ(read->swizzle, texture.swizzle) << row.name;
+            EXPECT_EQ(read->y_axis, y);
+            EXPECT_EQ(read->normal_encoding, "signed");
+        }
+    }
+}
+
+TEST(Ktx2, AlignsLevelsAndStoresTheSmallestFirst) {
+    for (const Format format : {Format::rgb8_unorm, Format::r8_unorm, Format::bc3_unorm, Format::rgba16_unorm}) {
+        const Bytes file = encode(patterned_texture(format, {13, 7}, 4));
+        const std::size_t alignment = std::lcm(format_info(format).block_bytes, std::size_t{4});
+        std::size_t last_end = file.size();
+        for (std::size_t k = 0; k < 4; ++k) {
+            const std::uint64_t offset = load_u64(file.data() + kLevel0At + 24 * k);
+            const std::uint64_t bytes = load_u64(file.data() + kLevel0At + 24 * k + 8);
+            EXPECT_EQ(offset % alignment, 0u);
+            EXPECT_LE(last_end - (offset + bytes), alignment - 1);  // only padding in between
+            EXPECT_EQ(bytes, load_u64(file.data() + kLevel0At + 24 * k + 16));
+            last_end = offset;
+        }
+    }
+}
+
+TEST(Ktx2, ReadsRowsThatRunUpwards) {
+    Bytes file = encode(patterned_texture(Format::rg8_unorm, {3, 5}, 1));
+    const auto down = decode_bytes(file);
+    set_value(file, "KTXorientation", "ru");
+    const auto up = decode_bytes(file);
+    ASSERT_TRUE(down && up);
+    for (std::size_t j = 0; j < 5; ++j) {
+        EXPECT_EQ(std::memcmp(&up->levels[0].bytes[6 * j], &down->levels[0].bytes[6 * (4 - j)], 6), 0);
+    }
+    Bytes blocks = encode(patterned_texture(Format::bc3_unorm, {4, 4}, 1));
+    set_value(blocks, "KTXorientation", "ru");
+    EXPECT_EQ(decode_bytes(blocks).error().code, ErrorCode::unsupported);
+}
+
+TEST(Ktx2, UnderstandsKtxSwizzle) {
+    Texture texture = encoded_texture(Encoding::dxt5nm, {4, 4}, 1);
+    Bytes file = encode(texture);
+    // The key libtex.normal has 13 letters, KTXswizzle 10: a file with other keys is made from one with ours.
+    const std::string ours = "libtex.normal";
+    const std::string theirs = std::string("KTXswizzle\0ag01\0", 16);
+    for (std::size_t at = field(file, kEntriesAt); at < file.size() - ours.size(); ++at) {
+        if (std::memcmp(file.data() + at, ours.data(), ours.size()) != 0) continue;
+        set_field(file, at - 4, 16);
+        std::memcpy(file.data() + at, theirs.data(), theirs.size());
+        set_field(file, kEntriesAt + 4, field(file, kEntriesAt + 4) - 8);
+        break;
+    }
+    const auto read = decode_bytes(file);
+    ASSERT_TRUE(read);
+    EXPECT_TRUE(read->swizzle_known);
+    EXPECT_EQ(to_string(read->swizzle), "_y_x");
+}
+
+TEST(Ktx2, RemarksOnDamagedKeysAndReadsTheRest) {
+    Bytes file = encode(encoded_texture(Encoding::dxt5nm, {4, 4}, 1));
+    Bytes wrong = file;
+    set_value(wrong, "libtex.normal", "dxt5mn");
+    EXPECT_THAT(decode_bytes(wrong)->remarks, testing::ElementsAre(HasSubstr("libtex.normal was not understood")));
+    set_field(file, field(file, kEntriesAt), 0xfffffff0);
+    const auto read = decode_bytes(file);
+    ASSERT_TRUE(read);
+    EXPECT_FALSE(read->swizzle_known);
+    EXPECT_THAT(read->remarks, testing::ElementsAre(HasSubstr("key/value data are damaged")));
+}
+
+TEST(Ktx2, TellsUnsupportedFromDamaged) {
+    const auto code_with = [](std::size_t offset, std::uint32_t value) {
+        Bytes file = encode(patterned_texture(Format::bc3_unorm, {8, 8}, 2));
+        set_field(file, offset, value);
+        const auto texture = decode_bytes(file);
+        return texture ? std::string("read") : std::string(name_of(kErrorCodeNames, texture.error().code));
+    };
+    EXPECT_EQ(code_with(kWidthAt, 8), "read");
+    EXPECT_EQ(code_with(kVkFormatAt, 0), "unsupported");    // Basis
+    EXPECT_EQ(code_with(kVkFormatAt, 145), "unsupported");  // BC7
+    EXPECT_EQ(code_with(kSchemeAt, 2), "unsupported");      // Zstandard
+    EXPECT_EQ(code_with(kFacesAt, 6), "unsupported");
+    EXPECT_EQ(code_with(kFacesAt, 0), "bad-data");
+    EXPECT_EQ(code_with(kDepthAt, 2), "unsupported");
+    EXPECT_EQ(code_with(kLayersAt, 2), "unsupported");
+    EXPECT_EQ(code_with(kHeightAt, 0), "unsupported");  // one-dimensional
+    EXPECT_EQ(code_with(kWidthAt, 0), "bad-data");
+    EXPECT_EQ(code_with(kWidthAt, 16), "bad-data");
+    EXPECT_EQ(code_with(kWidthAt, 0x80000000u), "unsupported");
+    EXPECT_EQ(code_with(kLevelsAt, 5), "bad-data");
+    EXPECT_EQ(code_with(kLevelsAt, 0xffffffffu), "bad-data");
+    EXPECT_EQ(code_with(kLevel0At + 4, 0xffffffffu), "bad-data");  // the offset overflows
+    EXPECT_EQ(code_with(kLevel0At + 8, 63), "bad-data");
+}
+
+TEST(Ktx2, RejectsEveryTruncation) {
+    const Bytes file = encode(encoded_texture(Encoding::rgb8, {9, 5}, 4));
+    for (std::size_t size = 0; size < file.size(); ++size) {
+        const Bytes cut(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(size));
+        const auto texture = decode_bytes(cut);
+        ASSERT_FALSE(texture) << size;
+        EXPECT_EQ(texture.error().code, ErrorCode::bad_data) << size;
+    }
+}
+
+TEST(Ktx2, IsMemorySafeForEveryByteOfItsHeadChanged) {
+    const Bytes file = encode(encoded_texture(Encoding::dxt5nm, {9, 5}, 4));
+    const std::size_t head = ktx2_layout(head_of(encoded_texture(Encoding::dxt5nm, {9, 5}, 4))).head.size();
+    for (std::size_t at = 12; at < head; ++at) {
+        for (unsigned value = 0; value < 256; ++value) {
+            Bytes changed = file;
+            changed[at] = static_cast<std::byte>(value);
+            const auto texture = decode_bytes(changed);
+            if (!texture) continue;
+            for (const Level& level : texture->levels) {
+                ASSERT_EQ(level.bytes.size(), level_bytes(texture->format, level.extent));
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace tex

@@ -1,0 +1,377 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <tex/mip.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "reference/mip.h"
+#include "unit/fields.h"
+#include "unit/targets.h"
+
+namespace {
+
+using tex::Extent;
+using tex::Fade;
+using tex::MipChain;
+using tex::MipDomain;
+using tex::MipFilter;
+using tex::MipOptions;
+using tex::NormalMap;
+using tex::Wrap;
+using tex::fields::noise;
+using tex::fields::noise_normals;
+using tex::fields::same_bytes;
+
+constexpr Wrap kWraps[] = {Wrap::repeat, Wrap::clamp, Wrap::mirror};
+constexpr MipDomain kDomains[] = {MipDomain::vector, MipDomain::slope};
+constexpr Extent kExtents[] = {{1, 1}, {1, 300}, {300, 1}, {5, 7}, {253, 253}, {1025, 1025}};
+
+NormalMap copy_of(const NormalMap& map) {
+    NormalMap copy;
+    copy.x = map.x.clone();
+    copy.y = map.y.clone();
+    copy.z = map.z.clone();
+    return copy;
+}
+
+MipChain chain_of(const NormalMap& base, const MipOptions& options = {}, int threads = 1) {
+    return std::move(tex::build_mip_chain(copy_of(base), options, {threads, {}}).value());
+}
+
+NormalMap constant_normals(Extent extent, float x, float y, float z) {
+    NormalMap map;
+    map.x = tex::Plane<float>(extent, x);
+    map.y = tex::Plane<float>(extent, y);
+    map.z = tex::Plane<float>(extent, z);
+    return map;
+}
+
+MipOptions options_of(MipFilter filter, MipDomain domain, Wrap wrap) {
+    MipOptions options;
+    options.filter = filter;
+    options.domain = domain;
+    options.wrap_x = options.wrap_y = wrap;
+    return options;
+}
+
+double length_at(const NormalMap& map, int i, int j) {
+    return std::sqrt(static_cast<double>(map.x.at(i, j)) * static_cast<double>(map.x.at(i, j)) +
+                     static_cast<double>(map.y.at(i, j)) * static_cast<double>(map.y.at(i, j)) +
+                     static_cast<double>(map.z.at(i, j)) * static_cast<double>(map.z.at(i, j)));
+}
+
+double tilt_in_degrees(const NormalMap& map, int i, int j) {
+    return std::atan2(std::hypot(static_cast<double>(map.x.at(i, j)), static_cast<double>(map.y.at(i, j))),
+                      static_cast<double>(map.z.at(i, j))) *
+           180.0 / 3.14159265358979323846;
+}
+
+// -- levels ------------------------------------------------------------------------------------------------
+
+TEST(Mip, LevelsHaveTheSizesOfTheGraphicsInterfaces) {
+    for (const Extent extent : kExtents) {
+        const MipChain chain = chain_of(noise_normals(extent));
+        ASSERT_EQ(static_cast<int>(chain.levels.size()), tex::level_count(extent));
+        for (std::size_t k = 0; k < chain.levels.size(); ++k) {
+            const Extent level = chain.levels[k].extent();
+            EXPECT_EQ(level.width, std::max(1, extent.width >> k));
+            EXPECT_EQ(level.height, std::max(1, extent.height >> k));
+        }
+    }
+}
+
+TEST(Mip, EveryTexelOfEveryLevelHasUnitLengthAndLooksOutwards) {
+    for (const Extent extent : kExtents) {
+        for (const auto& filter : tex::kMipFilterNames) {
+            for (const MipDomain domain : kDomains) {
+                const MipChain chain =
+                    chain_of(noise_normals(extent), options_of(filter.value, domain, Wrap::repeat));
+                for (const NormalMap& level : chain.levels) {
+                    for (int j = 0; j < level.extent().height; ++j) {
+                        for (int i = 0; i < level.extent().width; ++i) {
+                            ASSERT_NEAR(length_at(level, i, j), 1.0, 3e-7);
+                            ASSERT_GE(level.z.at(i, j), 0.0f);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST(Mip, ALargeMapHasAllItsLevelsAtUnitLength) {
+    const MipChain chain = chain_of(noise_normals({4096, 4096}), MipOptions{});
+    ASSERT_EQ(chain.levels.size(), 13u);
+    for (std::size_t k = 1; k < chain.levels.size(); ++k) {
+        const NormalMap& level = chain.levels[k];
+        ASSERT_EQ(level.extent(), (Extent{4096 >> k, 4096 >> k}));
+        for (int j = 0; j < level.extent().height; ++j) {
+            for (int i = 0; i < level.extent().width; ++i) ASSERT_NEAR(length_at(level, i, j), 1.0, 3e-7);
+        }
+    }
+}
+
+TEST(Mip, AsManyLevelsAsWantedAndNoMoreThanThereAre) {
+    const NormalMap base = noise_normals({16, 4});
+    MipOptions options;
+    for (const auto& [wanted, got] :
+         std::vector<std::pair<int, std::size_t>>{{0, 5}, {1, 1}, {3, 3}, {5, 5}, {6, 5}, {99, 5}}) {
+        options.levels = wanted;
+        EXPECT_EQ(chain_of(base, options).levels.size(), got);
+    }
+    // Fewer levels are the first ones of the complete chain.
+    options.levels = 3;
+    EXPECT_TRUE(same_bytes(chain_of(base, options).levels[2], chain_of(base).levels[2]));
+}
+
+TEST(Mip, TheBaseLevelIsStoredAsGiven) {
+    const NormalMap base = noise_normals({33, 20});
+    for (const MipDomain domain : kDomains) {
+        MipOptions options = options_of(MipFilter::kaiser, domain, Wrap::clamp);
+        options.fade = Fade{0, 3};
+        EXPECT_TRUE(same_bytes(chain_of(base, options).levels[0], base));
+    }
+}
+
+// -- averages ----------------------------------------------------------------------------------------------
+
+TEST(Mip, AConstantVectorStays) {
+    for (const Extent extent : {Extent{64, 64}, Extent{253, 100}, Extent{5, 7}}) {
+        for (const auto& filter : tex::kMipFilterNames) {
+            for (const MipDomain domain : kDomains) {
+                for (const Wrap wrap : kWraps) {
+                    const MipChain chain = chain_of(constant_normals(extent, 0.36f, -0.48f, 0.8f),
+                                                    options_of(filter.value, domain, wrap));
+                    const NormalMap& last = chain.levels.back();
+                    EXPECT_NEAR(last.x.at(0, 0), 0.36f, 1e-6f);
+                    EXPECT_NEAR(last.y.at(0, 0), -0.48f, 1e-6f);
+                    EXPECT_NEAR(last.z.at(0, 0), 0.8f, 1e-6f);
+                }
+            }
+        }
+    }
+}
+
+TEST(Mip, HalfFlatAndHalfSteepDiffersByDomain) {
+    // tan 53.13 degrees = 4/3. The mean vector of it and flat leans by half the angle, 26.57 degrees; the
+    // mean slope is 2/3, 33.69 degrees: what the averaged heights have.
+    NormalMap base = constant_normals({2, 1}, 0.0f, 0.0f, 1.0f);
+    base.x.at(0, 0) = 0.8f;
+    base.z.at(0, 0) = 0.6f;
+    EXPECT_NEAR(
+        tilt_in_degrees(chain_of(base, options_of(MipFilter::box, MipDomain::vector, Wrap::repeat)).levels[1],
+                        0, 0),
+        26.5651, 1e-4);
+    EXPECT_NEAR(
+        tilt_in_degrees(chain_of(base, options_of(MipFilter::box, MipDomain::slope, Wrap::repeat)).levels[1],
+                        0, 0),
+        33.6901, 1e-4);
+}
+
+TEST(Mip, EveryLevelIsTheAverageOfTheBaseNotOfNormalisedLevels) {
+    // Two opposite steep vectors cancel to a short one, which must not count as much as the two that agree.
+    NormalMap base = constant_normals({4, 1}, 0.0f, 0.0f, 1.0f);
+    base.x.at(0, 0) = 0.96f;
+    base.z.at(0, 0) = 0.28f;
+    base.x.at(1, 0) = -0.96f;
+    base.z.at(1, 0) = 0.28f;
+    base.x.at(2, 0) = base.x.at(3, 0) = 0.6f;
+    base.z.at(2, 0) = base.z.at(3, 0) = 0.8f;
+    const MipChain chain = chain_of(base);
+    // mean x = 1.2 / 4, mean z = (0.56 + 1.6) / 4
+    EXPECT_NEAR(tilt_in_degrees(chain.levels[2], 0, 0),
+                std::atan2(1.2, 2.16) * 180.0 / 3.14159265358979323846, 1e-4);
+}
+
+TEST(Mip, TheBoxIsTheExactAverageOfOddSizes) {
+    // In the slope domain the averages can be read from what is stored. Their mean by area is that of the
+    // base level, at every level.
+    for (const Extent extent :
+         {Extent{5, 7}, Extent{253, 253}, Extent{1, 300}, Extent{300, 1}, Extent{1025, 33}}) {
+        const NormalMap base = noise_normals(extent);
+        const MipChain chain = chain_of(base, options_of(MipFilter::box, MipDomain::slope, Wrap::repeat));
+        const auto mean_slope = [](const NormalMap& map) {
+            double sum = 0.0;
+            for (int j = 0; j < map.extent().height; ++j) {
+                for (int i = 0; i < map.extent().width; ++i) {
+                    sum += static_cast<double>(map.x.at(i, j)) / static_cast<double>(map.z.at(i, j));
+                }
+            }
+            return sum / static_cast<double>(map.extent().texels());
+        };
+        const double whole = mean_slope(base);
+        for (const NormalMap& level : chain.levels) EXPECT_NEAR(mean_slope(level), whole, 2e-6);
+    }
+}
+
+TEST(Mip, ASymmetricBumpStaysCentred) {
+    for (const Extent extent : {Extent{64, 64}, Extent{65, 63}, Extent{37, 101}}) {
+        NormalMap base(extent);
+        for (int j = 0; j < extent.height; ++j) {
+            for (int i = 0; i < extent.width; ++i) {
+                const double p = (2.0 * i - (extent.width - 1)) / extent.width;
+                const double q = ((extent.height - 1) - 2.0 * j) / extent.height;
+                const double length = std::sqrt(p * p + q * q + 1.0);
+                base.x.at(i, j) = static_cast<float>(p / length);
+                base.y.at(i, j) = static_cast<float>(q / length);
+                base.z.at(i, j) = static_cast<float>(1.0 / length);
+            }
+        }
+        for (const auto& filter : tex::kMipFilterNames) {
+            for (const Wrap wrap : kWraps) {
+                for (const NormalMap& level :
+                     chain_of(base, options_of(filter.value, MipDomain::vector, wrap)).levels) {
+                    const auto [width, height] = level.extent();
+                    for (int j = 0; j < height; ++j) {
+                        for (int i = 0; i < width; ++i) {
+                            ASSERT_NEAR(level.x.at(i, j), -level.x.at(width - 1 - i, j), 2e-6f);
+                            ASSERT_NEAR(level.y.at(i, j), -level.y.at(i, height - 1 - j), 2e-6f);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST(Mip, VectorsThatCancelBecomeFlat) {
+    NormalMap base = constant_normals({2, 1}, 1.0f, 0.0f, 0.0f);
+    base.x.at(1, 0) = -1.0f;
+    const MipChain chain = chain_of(base);
+    EXPECT_EQ(chain.levels[1].x.at(0, 0), 0.0f);
+    EXPECT_EQ(chain.levels[1].y.at(0, 0), 0.0f);
+    EXPECT_EQ(chain.levels[1].z.at(0, 0), 1.0f);
+}
+
+TEST(Mip, VectorsThatLookInwardsAreLaidFlat) {
+    const MipChain chain = chain_of(constant_normals({2, 2}, 0.6f, 0.0f, -0.8f));
+    EXPECT_EQ(chain.levels[1].x.at(0, 0), 1.0f);
+    EXPECT_EQ(chain.levels[1].z.at(0, 0), 0.0f);
+}
+
+// -- fading ------------------------------------------------------------------------------------------------
+
+TEST(Mip, FadingMovesLevelsToFlat) {
+    MipOptions options;
+    options.fade = Fade{1, 3};
+    const NormalMap base = constant_normals({32, 32}, 0.8f, 0.0f, 0.6f);
+    const MipChain chain = chain_of(base, options);
+    EXPECT_NEAR(chain.levels[1].x.at(0, 0), 0.8f, 1e-6f);
+    // Half way in vector space: (0.4, 0, 0.8), normalised.
+    EXPECT_NEAR(chain.levels[2].x.at(0, 0), 0.4f / std::sqrt(0.8f), 1e-6f);
+    EXPECT_NEAR(chain.levels[2].z.at(0, 0), 0.8f / std::sqrt(0.8f), 1e-6f);
+    for (std::size_t k = 3; k < chain.levels.size(); ++k) {
+        EXPECT_EQ(chain.levels[k].x.at(0, 0), 0.0f);
+        EXPECT_EQ(chain.levels[k].z.at(0, 0), 1.0f);
+    }
+}
+
+// -- against the reference ---------------------------------------------------------------------------------
+
+TEST(Mip, AgreesWithTheReferenceForEveryFilterDomainWrapAndSize) {
+    for (const auto& filter : tex::kMipFilterNames) {
+        for (const MipDomain domain : kDomains) {
+            for (const Wrap wrap : kWraps) {
+                for (const Extent extent : {Extent{1, 1}, Extent{2, 2}, Extent{3, 5}, Extent{15, 16},
+                                            Extent{17, 33}, Extent{1, 30}, Extent{64, 36}}) {
+                    const NormalMap base = noise_normals(extent);
+                    MipOptions options = options_of(filter.value, domain, wrap);
+                    options.fade = Fade{2, 9};
+                    const MipChain chain = chain_of(base, options);
+                    const auto truth =
+                        tex::reference::build_mip_chain(tex::reference::grid_of(base), options);
+                    ASSERT_EQ(chain.levels.size(), truth.size());
+                    for (std::size_t k = 0; k < truth.size(); ++k) {
+                        ASSERT_LT(largest_angle(chain.levels[k], truth[k]), 0.01)
+                            << filter.name << " " << name_of(tex::kMipDomainNames, domain) << " "
+                            << name_of(tex::kWrapNames, wrap) << " " << extent.width << "x" << extent.height
+                            << " level " << k;
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST(Mip, AxesMayWrapDifferently) {
+    const NormalMap base = noise_normals({20, 27});
+    for (const Wrap wrap_x : kWraps) {
+        for (const Wrap wrap_y : kWraps) {
+            MipOptions options = options_of(MipFilter::lanczos3, MipDomain::vector, wrap_x);
+            options.wrap_y = wrap_y;
+            const auto truth = tex::reference::build_mip_chain(tex::reference::grid_of(base), options);
+            EXPECT_LT(largest_angle(chain_of(base, options).levels[1], truth[1]), 0.01);
+        }
+    }
+}
+
+// -- the same bytes ----------------------------------------------------------------------------------------
+
+// The chain is the same on every target and for each number of threads.
+void expect_same_bytes(const NormalMap& base, const MipOptions& options, const std::vector<int>& threads) {
+    std::optional<MipChain> first;
+    tex::on_every_target([&] {
+        for (const int count : threads) {
+            MipChain chain = chain_of(base, options, count);
+            if (!first) first = std::move(chain);
+            else
+                for (std::size_t k = 0; k < chain.levels.size(); ++k) {
+                    EXPECT_TRUE(same_bytes(first->levels[k], chain.levels[k]))
+                        << "level " << k << ", " << count << " threads";
+                }
+        }
+    });
+}
+
+TEST(Mip, GivesTheSameBytesOnEveryTarget) {
+    for (const Extent extent : {Extent{64, 96}, Extent{53, 123}, Extent{140, 33}}) {
+        for (const auto& filter : tex::kMipFilterNames) {
+            for (const MipDomain domain : kDomains) {
+                MipOptions options = options_of(filter.value, domain, Wrap::mirror);
+                options.fade = Fade{1, 20};
+                expect_same_bytes(noise_normals(extent), options, {1});
+            }
+        }
+    }
+}
+
+TEST(Mip, GivesTheSameBytesForEveryNumberOfThreads) {
+    // Several strips of rows in the first levels.
+    for (const Extent extent : {Extent{512, 512}, Extent{513, 411}}) {
+        for (const MipFilter filter : {MipFilter::box, MipFilter::mitchell}) {
+            for (const MipDomain domain : kDomains) {
+                expect_same_bytes(noise_normals(extent), options_of(filter, domain, Wrap::repeat),
+                                  {1, 2, 3, 8});
+            }
+        }
+    }
+}
+
+TEST(Mip, ReportsProgressUpwardsThroughAllLevels) {
+    std::vector<double> seen = {0.0};
+    const auto chain = tex::build_mip_chain(noise_normals({301, 300}),
+                                            options_of(MipFilter::mitchell, MipDomain::slope, Wrap::clamp),
+                                            {1, [&](double fraction) {
+                                                 seen.push_back(fraction);
+                                                 return true;
+                                             }});
+    ASSERT_TRUE(chain);
+    EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
+    EXPECT_GT(seen.size(), 4u);
+    EXPECT_EQ(seen.back(), 1.0);
+}
+
+TEST(Mip, CanBeCancelled) {
+    const auto result =
+        tex::build_mip_chain(noise_normals({512, 512}), {}, {1, [](double) { return false; }});
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.error().code, tex::ErrorCode::cancelled);
+}
+
+}  // namespace

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// False colours, legends and letters.
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "preview/canvas.h"
+#include "preview/colormap.h"
+#include "preview/legend.h"
+#include "preview/measures.h"
+#include "reference/wikibook_shader.h"
+
+namespace tex::render {
+namespace {
+
+NormalMap constant(Extent extent, float x, float y, float z) {
+    NormalMap map;
+    map.x = Plane<float>(extent, x);
+    map.y = Plane<float>(extent, y);
+    map.z = Plane<float>(extent, z);
+    return map;
+}
+
+// The normals of smooth heights that repeat, green up or upside down.
+NormalMap waves(Extent extent, bool upside_down) {
+    NormalMap map(extent);
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) {
+            const double p = std::cos(0.4 * i) * std::sin(0.3 * j),
+                         q = -0.75 * std::sin(0.4 * i) * std::cos(0.3 * j);
+            const double n = std::sqrt(p * p + q * q + 1.0);
+            map.x.at(i, j) = static_cast<float>(-p / n);
+            map.y.at(i, j) = static_cast<float>((upside_down ? q : -q) / n);
+            map.z.at(i, j) = static_cast<float>(1.0 / n);
+        }
+    }
+    return map;
+}
+
+Texture plain_picture(Extent extent, Code color) {
+    return Canvas(extent, color).take();
+}
+
+Code code_at(const Texture& picture, int i, int j) {
+    const Level& level = picture.levels.front();
+    const std::byte* p =
+        &level.bytes[(static_cast<std::size_t>(j) * static_cast<std::size_t>(level.extent.width) +
+                      static_cast<std::size_t>(i)) *
+                     3];
+    return {std::to_integer<std::uint8_t>(p[0]), std::to_integer<std::uint8_t>(p[1]),
+            std::to_integer<std::uint8_t>(p[2])};
+}
+
+bool operator==(Code a, Code b) {
+    return a.r == b.r && a.g == b.g && a.b == b.b;
+}
+
+TEST(PreviewColors, SrgbCodesAreTheNearestOnes) {
+    for (int k = 0; k <= 10000; ++k) {
+        const double linear = k / 10000.0;
+        const double value = reference::encode_srgb(linear) * 255.0;
+        EXPECT_LE(std::abs(srgb_code(linear) - value), 0.5 + 1e-9) << linear;
+    }
+    EXPECT_EQ(srgb_code(-1.0), 0);
+    EXPECT_EQ(srgb_code(7.0), 255);
+    EXPECT_EQ(srgb_code(std::nan("")), 0);
+    for (int k = 0; k < 256; ++k) EXPECT_EQ(srgb_code(srgb_to_linear(k / 255.0)), k);
+}
+
+double lightness(Vec3 c) {
+    return 0.2126 * srgb_to_linear(c.x) + 0.7152 * srgb_to_linear(c.y) + 0.0722 * srgb_to_linear(c.z);
+}
+
+TEST(PreviewColors, ViridisRunsFromDarkVioletToYellowAndGrowsInLightness) {
+    // matplotlib's table at 0, 1/2 and 1.
+    const Vec3 want[] = {
+        {0.267004, 0.004874, 0.329415}, {0.127568, 0.566949, 0.550556}, {0.993248, 0.906157, 0.143936}};
+    for (int k = 0; k < 3; ++k) {
+        const Vec3 got = viridis(k / 2.0);
+        EXPECT_NEAR(got.x, want[k].x, 0.02);
+        EXPECT_NEAR(got.y, want[k].y, 0.02);
+        EXPECT_NEAR(got.z, want[k].z, 0.02);
+    }
+    for (int k = 1; k <= 100; ++k)
+        EXPECT_GT(lightness(viridis(k / 100.0)), lightness(viridis((k - 1) / 100.0)));
+}
+
+TEST(PreviewColors, DivergingIsLightestAtZeroAndDarkensToBothSides) {
+    for (int k = 1; k <= 50; ++k) {
+        EXPECT_LT(lightness(diverging(k / 50.0)), lightness(diverging((k - 1) / 50.0)));
+        EXPECT_LT(lightness(diverging(-k / 50.0)), lightness(diverging(-(k - 1) / 50.0)));
+        EXPECT_GT(diverging(-k / 50.0).z, diverging(-k / 50.0).x) << "blue below 0";
+        EXPECT_LT(diverging(k / 50.0).z, diverging(k / 50.0).x) << "orange above 0";
+    }
+    EXPECT_EQ(diverging(std::nan("")).y, 0.0);
+}
+
+TEST(PreviewMeasures, AreWhatTheirNamesSay) {
+    const NormalMap map = constant({4, 4}, 0.6f, 0.0f, 0.9f);
+    const auto value = [&](Show show) { return measure(show, map, 0.0f, {})->values.at(1, 2); };
+    EXPECT_NEAR(value(Show::slope), 0.6 / 0.9, 1e-6);
+    EXPECT_NEAR(value(Show::tilt), std::atan2(0.6, 0.9) * 180.0 / 3.14159265358979, 1e-4);
+    EXPECT_NEAR(value(Show::length), std::sqrt(0.36 + 0.81) - 1.0, 1e-6);
+    EXPECT_NEAR(value(Show::z_error), 0.1, 1e-6);
+    EXPECT_EQ(value(Show::curl), 0.0f);
+    EXPECT_DOUBLE_EQ(measure(Show::z_error, map, 0.0f, {})->scale.greatest, 0.1);
+    EXPECT_DOUBLE_EQ(measure(Show::slope, map, 3.0f, {})->scale.greatest, 3.0);
+}
+
+TEST(PreviewMeasures, CurlTellsGreenThatIsUpsideDown) {
+    const auto sound = measure(Show::curl, waves({96, 96}, false), 0.0f, {});
+    const auto wrong = measure(Show::curl, waves({96, 96}, true), 0.0f, {});
+    ASSERT_TRUE(sound);
+    ASSERT_TRUE(wrong);
+    EXPECT_EQ(sound->scale.title.find("curl: y up, r = "), 0u) << sound->scale.title;
+    EXPECT_EQ(wrong->scale.title.find("curl: y DOWN, r = -"), 0u) << wrong->scale.title;
+    double small = 0.0, large = 0.0;
+    for (int j = 1; j < 95; ++j) {
+        for (int i = 1; i < 95; ++i) {
+            small += std::abs(static_cast<double>(sound->values.at(i, j)));
+            large += std::abs(static_cast<double>(wrong->values.at(i, j)));
+        }
+    }
+    EXPECT_LT(small * 20.0, large);
+}
+
+TEST(PreviewMeasures, ScalesEndAtRoundNumbers) {
+    Plane<float> values(Extent{100, 10}, 0.3f);
+    EXPECT_DOUBLE_EQ(round_maximum(values, 0.01), 0.5);
+    values.at(3, 3) = 1000.0f;  // a single texel does not stretch the scale
+    values.at(4, 3) = std::nanf("");
+    EXPECT_DOUBLE_EQ(round_maximum(values, 0.01), 0.5);
+    EXPECT_DOUBLE_EQ(round_maximum(Plane<float>(Extent{2, 2}, 0.0f), 0.01), 0.01);
+}
+
+TEST(PreviewLegend, NamesTheEndsInTheSameWayInEveryLocale) {
+    EXPECT_EQ(number(0.5), "0.5");
+    EXPECT_EQ(number(-0.01), "-0.01");
+    EXPECT_EQ(number(90.0), "90");
+    EXPECT_EQ(number(-0.71234), "-0.712");
+    const Texture picture =
+        with_legend(plain_picture({200, 50}, {1, 2, 3}), {"title", 0.0, 1.0, Palette::viridis});
+    EXPECT_EQ(picture.extent(), (Extent{200, 86}));
+    EXPECT_TRUE(code_at(picture, 10, 10) == (Code{1, 2, 3}));
+    const Vec3 first = viridis(0.0);
+    EXPECT_TRUE(code_at(picture, 8, 60) ==
+                (Code{display_code(first.x), display_code(first.y), display_code(first.z)}));
+    EXPECT_EQ(with_legend(plain_picture({3, 2}, {}), {"title", 0.0, 1.0, Palette::viridis}).extent(),
+              (Extent{3, 38}));
+}
+
+TEST(PreviewCanvas, DrawsLettersAndCutsWhatDoesNotFit) {
+    Canvas canvas({8, 9}, {0, 0, 0});
+    canvas.text(0, 0, 1, "I~");
+    canvas.text(5, -4, 3, "W");
+    canvas.set(-1, 0, kInk);
+    canvas.set(8, 8, kInk);
+    const Texture picture = std::move(canvas).take();
+    EXPECT_TRUE(code_at(picture, 2, 3) == kInk);  // the stem of the I
+    EXPECT_TRUE(code_at(picture, 0, 3) == (Code{}));
+    EXPECT_EQ(fitted("normal", 1, 100), "normal");
+    EXPECT_EQ(fitted("normal", 1, 30), "nor..");
+    EXPECT_EQ(fitted("normal", 2, 10), "");
+    EXPECT_EQ(text_width("normal", 1), 35);
+}
+
+}  // namespace
+}  // namespace tex::render

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// The other direction of containers/reader.h: pictures that only OpenImageIO writes.
+
+#include "containers/reader.h"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <cmath>
+#include <cstring>
+
+namespace tex {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+ReadOptions quick() {
+    ReadOptions options;
+    options.reader_timeout = 20;
+    return options;
+}
+
+void put(Bytes& bytes, std::uint32_t value, int count) {
+    for (int k = 0; k < count; ++k) bytes.push_back(static_cast<std::byte>(value >> (8 * k)));
+}
+
+Result<Image> read(const Bytes& bytes) {
+    Result<InputFile> file = InputFile::from_memory("test", bytes);
+    if (!file) return file.error();
+    return read_with_reader(*file, quick());
+}
+
+Texture texture_of(Format format, Extent extent) {
+    const FormatInfo info = format_info(format);
+    Texture texture;
+    texture.format = format;
+    Level level{extent, {}};
+    for (std::int64_t k = 0; k < extent.texels() * info.channels; ++k) {
+        const float v = static_cast<float>(k % 97) / 96.0f;
+        if (info.sample == SampleKind::unorm) {
+            put(level.bytes, static_cast<std::uint32_t>(v * (info.bits == 8 ? 255.0f : 65535.0f)), info.bits / 8);
+        } else if (info.bits == 16) {
+            put(level.bytes, static_cast<std::uint32_t>(k % 97) + 0x3800, 2);  // halves from 0.5 on
+        } else {
+            std::uint32_t bits = 0;
+            std::memcpy(&bits, &v, 4);
+            put(level.bytes, bits, 4);
+        }
+    }
+    texture.levels.push_back(std::move(level));
+    return texture;
+}
+
+// What a reader of `bytes` gets, packed again in `format`.
+Bytes repack(const Image& image, Format format) {
+    const FormatInfo info = format_info(format);
+    Bytes bytes;
+    for (int j = 0; j < image.extent().height; ++j) {
+        for (int i = 0; i < image.extent().width; ++i) {
+            for (const Plane<float>& plane : image.planes) {
+                const float v = plane.at(i, j);
+                if (info.sample == SampleKind::unorm) {
+                    put(bytes, static_cast<std::uint32_t>(std::lround(v * (info.bits == 8 ? 255.0f : 65535.0f))), info.bits / 8);
+                } else if (info.bits == 16) {
+                    put(bytes, static_cast<std::uint32_t>(std::lround((v - 0.5f) * 2048.0f)) + 0x3800, 2);
+                } else {
+                    std::uint32_t bits = 0;
+                    std::memcpy(&bits, &v, 4);
+                    put(bytes, bits, 4);
+                }
+            }
+        }
+    }
+    return bytes;
+}
+
+TEST(ReaderEncode, WritesExactlyWhatItReads) {
+    const std::pair<Container, Format> pairs[] = {
+        {Container::tiff, Format::rgb8_unorm},   {Container::tiff, Format::rgba8_unorm}, {Container::tiff, Format::rgb16_unorm},
+        {Container::tiff, Format::rgb16_float},  {Container::tiff, Format::rgb32_float}, {Container::tiff, Format::r16_unorm},
+        {Container::tga, Format::rgb8_unorm},    {Container::tga, Format::rgba8_unorm},  {Container::bmp, Format::rgb8_unorm},
+    };
+    for (const auto& [container, format] : pairs) {
+        SCOPED_TRACE(testing::Message() << name_of(kContainerNames, container) << " " << name_of(kFormatNames, format));
+        const Texture texture = texture_of(format, {131, 67});
+        const Result<Bytes> bytes = encode_with_reader(texture, container, quick());
+        ASSERT_TRUE(bytes) << bytes.error().message();
+        const Result<Image> image = read(*bytes);
+        ASSERT_TRUE(image) << image.error().message();
+        EXPECT_EQ(image->bits, format_info(format).bits);
+        EXPECT_EQ(repack(*image, format), texture.levels.front().bytes);
+    }
+}
+
+TEST(ReaderEncode, JpegStaysClose) {
+    Texture texture;
+    texture.format = Format::rgb8_unorm;
+    Level level{{64, 64}, {}};
+    for (int j = 0; j < 64; ++j) {
+        for (int i = 0; i < 64; ++i) {
+            put(level.bytes, static_cast<std::uint32_t>(2 * i + 64), 1);
+            put(level.bytes, static_cast<std::uint32_t>(2 * j + 64), 1);
+            put(level.bytes, 240, 1);
+        }
+    }
+    texture.levels.push_back(level);
+    const Result<Bytes> bytes = encode_with_reader(texture, Container::jpeg, quick());
+    ASSERT_TRUE(bytes) << bytes.error().message();
+    const Result<Image> image = read(*bytes);
+    ASSERT_TRUE(image) << image.error().message();
+    for (int j = 0; j < 64; ++j) {
+        for (int i = 0; i < 64; ++i) {
+            EXPECT_NEAR(image->planes[0].at(i, j) * 255.0f, 2 * i + 64, 6);
+            EXPECT_NEAR(image->planes[1].at(i, j) * 255.0f, 2 * j + 64, 6);
+        }
+    }
+}
+
+TEST(ReaderEncode, EqualTexturesGiveEqualBytesWithoutDates) {
+    const Texture texture = texture_of(Format::rgb8_unorm, {16, 16});
+    const Container containers[] = {Container::tiff, Container::tga, Container::bmp, Container::jpeg};
+    std::vector<Bytes> first;
+    for (const Container container : containers) first.push_back(encode_with_reader(texture, container, quick()).value());
+    usleep(1'100'000);  // so that a clock would tell another second
+    for (std::size_t k = 0; k < first.size(); ++k) {
+        EXPECT_EQ(encode_with_reader(texture, containers[k], quick()).value(), first[k]);
+        const std::string text(reinterpret_cast<const char*>(first[k].data()), first[k].size());
+        for (const char* trace : {"OpenImageIO", "oiio", "tex-reader", "/proc"}) {
+            EXPECT_EQ(text.find(trace), std::string::npos) << trace;
+        }
+    }
+}
+
+TEST(ReaderEncode, RefusesWhatTheContainerCannotHold) {
+    const std::pair<Container, Format> pairs[] = {{Container::jpeg, Format::rgba8_unorm}, {Container::tga, Format::rgb16_unorm},
+                                                  {Container::bmp, Format::rgb32_float},  {Container::tiff, Format::bc3_unorm},
+                                                  {Container::tiff, Format::rg8_unorm},   {Container::png, Format::rgb8_unorm}};
+    for (const auto& [container, format] : pairs) {
+        const Result<Bytes> bytes = encode_with_reader(texture_of(format, {4, 4}), container, quick());
+        ASSERT_FALSE(bytes);
+        EXPECT_EQ(bytes.error().code, ErrorCode::unsupported) << bytes.error().reason;
+    }
+}
+
+}  // namespace
+}  // namespace tex

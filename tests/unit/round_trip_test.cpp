@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// pack() and unpack() against each other: how far normals move in each encoding.
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <tex/compare.h>
+#include <tex/container.h>
+#include <tex/pack.h>
+#include <tex/unpack.h>
+
+#include "unit/textures.h"
+
+namespace tex {
+namespace {
+
+// Normals that lean in all directions, by up to about 60 degrees, with features of a few texels.
+NormalMap waves(Extent extent) {
+    NormalMap map(extent);
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) {
+            const double x = std::sin(0.31 * i + 0.07 * j) + 0.3 * std::sin(1.7 * i);
+            const double y = std::cos(0.23 * j - 0.11 * i) + 0.3 * std::cos(1.3 * j + 0.5 * i);
+            const double length = std::sqrt(x * x + y * y + 1);
+            map.x.at(i, j) = static_cast<float>(x / length);
+            map.y.at(i, j) = static_cast<float>(y / length);
+            map.z.at(i, j) = static_cast<float>(1 / length);
+        }
+    }
+    return map;
+}
+
+MipChain chain_of(Extent extent, int levels) {
+    MipChain chain;
+    for (int k = 0; k < levels; ++k) chain.levels.push_back(waves(level_extent(extent, k)));
+    return chain;
+}
+
+Result<MipChain> through(const MipChain& chain, Encoding encoding, YAxis y_axis = YAxis::up,
+                         Effort effort = Effort::normal) {
+    PackOptions options;
+    options.encoding = encoding;
+    options.y_axis = y_axis;
+    options.effort = effort;
+    const auto texture = pack(chain, options);
+    if (!texture) return texture.error();
+    return unpack(*texture);
+}
+
+// Component by component before z is rebuilt: a code of k bits is at most half a step, 1 / (2^k - 1), from n; snorm 1 / (2^k - 2); half
+// 2^-12 below 1/2 and 2^-11 ... of the value; float rounds lengths alone. Where z is stored, renormalising moves a vector by no
+// more than its error: the angle is at most asin(sqrt(3) bound). Where it is rebuilt the error grows by 1 / z.
+struct Bound {
+    Encoding encoding;
+    double component;  // of x and y as stored
+    bool has_z;
+};
+
+TEST(RoundTrip, StaysWithinTheQuantisationOfEachEncoding) {
+    const Bound bounds[] = {
+        {Encoding::rgb8, 1.0 / 255, true},     {Encoding::rgba8, 1.0 / 255, true}, {Encoding::rgb16, 1.0 / 65535, true},
+        {Encoding::half, 1.0 / 4096, true},    {Encoding::float_, 1e-7, true},     {Encoding::ag8, 1.0 / 255, false},
+        {Encoding::rg8, 1.0 / 255, false},     {Encoding::rg16, 1.0 / 65535, false},
+    };
+    const MipChain chain = chain_of({61, 43}, 6);
+    for (const Bound& bound : bounds) {
+        for (const YAxis y_axis : {YAxis::up, YAxis::down}) {
+            const auto back = through(chain, bound.encoding, y_axis);
+            ASSERT_TRUE(back);
+            ASSERT_EQ(back->levels.size(), chain.levels.size());
+            for (std::size_t k = 0; k < chain.levels.size(); ++k) {
+                const NormalMap& before = chain.levels[k];
+                const NormalMap& after = back->levels[k];
+                const auto angles = compare(before, after);
+                ASSERT_TRUE(angles);
+                for (int j = 0; j < before.extent().height; ++j) {
+                    for (int i = 0; i < before.extent().width; ++i) {
+                        const double z = static_cast<double>(before.z.at(i, j));
+                        const double limit = bound.has_z ? std::sqrt(3.0) * bound.component
+                                                         : std::sqrt(2.0) * bound.component / (z - 2 * bound.component);
+                        // A millionth of a radian for the roundings of float itself.
+                        const double degrees = (std::asin(limit) + 1e-6) * 180 / 3.14159265358979;
+                        ASSERT_LE(static_cast<double>(angles->degrees.at(i, j)), degrees)
+                            << name_of(kEncodingNames, bound.encoding) << " level " << k << " " << i << "," << j;
+                    }
+                }
+            }
+        }
+    }
+}
+
+// Blocks: no encoder can do worse than endpoints at the extremes of a block, rounded to their codes. With n values between them a
+// texel is then at most (max - min) / (2 (n - 1)) + half a step of the endpoints away; the encoder minimises squares, so this holds for
+// the root mean square of each block.
+TEST(RoundTrip, StaysWithinTheFitOfTheExtremesInEachBlock) {
+    struct BlockBound {
+        Encoding encoding;
+        double x_values, x_step, y_values, y_step;
+    };
+    const BlockBound bounds[] = {
+        {Encoding::dxt5nm, 8, 2.0 / 255, 4, 2.0 / 63},
+        {Encoding::bc5, 8, 2.0 / 255, 8, 2.0 / 255},
+        {Encoding::bc5_snorm, 8, 1.0 / 127, 8, 1.0 / 127},
+    };
+    const MipChain chain = chain_of({61, 43}, 1);
+    const NormalMap& before = chain.levels[0];
+    for (const BlockBound& bound : bounds) {
+        const auto back = through(chain, bound.encoding);
+        ASSERT_TRUE(back);
+        const NormalMap& after = back->levels[0];
+        const auto check = [&](const Plane<float>& from, const Plane<float>& to, double values, double step, int left, int top) {
+            double least = 1, most = -1, squares = 0;
+            int count = 0;
+            for (int j = top; j < std::min(top + 4, 43); ++j) {
+                for (int i = left; i < std::min(left + 4, 61); ++i, ++count) {
+                    const double n = static_cast<double>(from.at(i, j));
+                    least = std::min(least, n);
+                    most = std::max(most, n);
+                    squares += (static_cast<double>(to.at(i, j)) - n) * (static_cast<double>(to.at(i, j)) - n);
+                }
+            }
+            EXPECT_LE(std::sqrt(squares / count), (most - least) / (2 * (values - 1)) + step / 2 + 1e-6)
+                << name_of(kEncodingNames, bound.encoding) << " " << left << "," << top;
+        };
+        for (int top = 0; top < 43; top += 4) {
+            for (int left = 0; left < 61; left += 4) {
+                check(before.x, after.x, bound.x_values, bound.x_step, left, top);
+                check(before.y, after.y, bound.y_values, bound.y_step, left, top);
+            }
+        }
+    }
+}
+
+// A texture that is unpacked (vectors kept as they are) and packed again stays what it was: the blocks' own values are found again.
+TEST(RoundTrip, RepacksRealTexturesWithoutFurtherLoss) {
+    TEX_NEEDS_SHARED_DATA();
+    struct Case {
+        const char* file;
+        Encoding encoding;
+    };
+    const Case cases[] = {
+        {"urho_Stone_DXT5_xGxR_1024_mips11.dds", Encoding::dxt5nm},
+        {"torque_TP_Ryder_DXT5nm_256_mips9_nvtt.dds", Encoding::dxt5nm},
+        {"torque_Grenade2_DXT5nm_GGGR_512_mips10.dds", Encoding::dxt5nm},
+        {"torque_rock_DXT5nm_GGGR_256_mips9.dds", Encoding::dxt5nm},
+        {"amd_wood_ATI2_A2XY_512_mips10.dds", Encoding::bc5},
+        {"amd_RedLetters_1k_normal_ATI2_A2XY.dds", Encoding::bc5},
+        {"fieldstone_ATI2_512_mips10.dds", Encoding::bc5},
+        {"gz_waves_RGB24_256_mips9_gimp.dds", Encoding::rgb8},
+        {"d3d_dwarf_armor_RGBA8_512_mips10.dds", Encoding::rgba8},
+    };
+    for (const Case& c : cases) {
+        const auto texture = read_texture(shared_data() / "dds" / c.file);
+        ASSERT_TRUE(texture) << texture.error().message();
+        UnpackOptions keep;
+        keep.keep_length = true;
+        const auto kept = unpack(*texture, keep);
+        ASSERT_TRUE(kept);
+        const auto once = unpack(*texture);
+        const auto twice = through(*kept, c.encoding, YAxis::up, Effort::best);
+        ASSERT_TRUE(once && twice);
+        for (std::size_t k = 0; k < once->levels.size(); ++k) {
+            const auto angles = compare(once->levels[k], twice->levels[k]);
+            ASSERT_TRUE(angles);
+            EXPECT_LE(angles->error.mean, 0.05) << c.file << " level " << k << " max " << angles->error.max;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace tex

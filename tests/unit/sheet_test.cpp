@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <tex/sheet.h>
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "preview/canvas.h"
+
+namespace tex::render {
+namespace {
+
+Texture plain_picture(Extent extent, Code color) {
+    return Canvas(extent, color).take();
+}
+
+Code code_at(const Texture& picture, int i, int j) {
+    const Level& level = picture.levels.front();
+    const std::byte* p =
+        &level.bytes[(static_cast<std::size_t>(j) * static_cast<std::size_t>(level.extent.width) +
+                      static_cast<std::size_t>(i)) *
+                     3];
+    return {std::to_integer<std::uint8_t>(p[0]), std::to_integer<std::uint8_t>(p[1]),
+            std::to_integer<std::uint8_t>(p[2])};
+}
+
+bool operator==(Code a, Code b) {
+    return a.r == b.r && a.g == b.g && a.b == b.b;
+}
+
+TEST(ContactSheet, PutsPanelsInRowsOfEqualColumns) {
+    std::vector<Panel> panels;
+    for (std::uint8_t k = 1; k <= 3; ++k) panels.push_back({plain_picture({20 * k, 10}, {k, k, k}), "panel"});
+    const auto sheet = contact_sheet(panels, 2);
+    ASSERT_TRUE(sheet);
+    // Columns of 60 and 40, rows of 10 and 14 for the caption, gaps of 8.
+    EXPECT_EQ(sheet->extent(), (Extent{60 + 40 + 24, 2 * (10 + 14) + 24}));
+    EXPECT_TRUE(code_at(*sheet, 8, 8) == (Code{1, 1, 1}));
+    EXPECT_TRUE(code_at(*sheet, 76, 8) == (Code{2, 2, 2}));
+    EXPECT_TRUE(code_at(*sheet, 8, 40) == (Code{3, 3, 3}));
+    EXPECT_EQ(contact_sheet(panels)->extent().width, 124) << "three pictures stand in two columns";
+    const auto none = contact_sheet({});
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.error().code, ErrorCode::bad_option);
+}
+
+TEST(SplitView, ShowsTheLeftHalfOfOneAndTheRightHalfOfTheOther) {
+    const auto split =
+        split_view({plain_picture({40, 20}, {9, 9, 9}), "a"}, {plain_picture({40, 20}, {7, 7, 7}), "b"});
+    ASSERT_TRUE(split);
+    EXPECT_TRUE(code_at(*split, 17, 10) == (Code{9, 9, 9}));
+    EXPECT_TRUE(code_at(*split, 20, 10) == kInk);
+    EXPECT_TRUE(code_at(*split, 22, 10) == (Code{7, 7, 7}));
+    const auto refused = split_view({plain_picture({40, 20}, {}), ""}, {plain_picture({40, 21}, {}), ""});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::bad_option);
+}
+
+TEST(PictureOf, RoundsToTheNearestCode) {
+    Image image;
+    for (const char* name : {"R", "G", "B"}) {
+        image.names.emplace_back(name);
+        image.planes.emplace_back(Extent{2, 1}, 0.5f);
+    }
+    image.planes[1].at(1, 0) = 2.0f;
+    image.planes[2].at(1, 0) = std::nanf("");
+    const auto picture = picture_of(image);
+    ASSERT_TRUE(picture);
+    EXPECT_TRUE(code_at(*picture, 0, 0) == (Code{128, 128, 128}));
+    EXPECT_TRUE(code_at(*picture, 1, 0) == (Code{128, 255, 0}));
+    image.names = {"Y", "G", "B"};
+    EXPECT_FALSE(picture_of(image));
+}
+
+}  // namespace
+}  // namespace tex::render

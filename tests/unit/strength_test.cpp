@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Strength from units, see tex/height_field.h.
+
+#include <tex/height_field.h>
+
+#include <gtest/gtest.h>
+
+namespace {
+
+using tex::Extent;
+
+TEST(Strength, OfTheSameSurfaceGrowsWithTheResolution) {
+    // 0.1 m of height over 2 m by 1 m.
+    const tex::Strength coarse = tex::strength_from_world({512, 256}, 0.1, 2.0, 1.0);
+    EXPECT_FLOAT_EQ(coarse.x, 25.6f);
+    EXPECT_FLOAT_EQ(coarse.y, 25.6f);
+    EXPECT_FLOAT_EQ(tex::strength_from_world({2048, 1024}, 0.1, 2.0, 1.0).x, 4 * 25.6f);
+    // Texels twice as high as wide.
+    EXPECT_FLOAT_EQ(tex::strength_from_world({512, 256}, 0.1, 2.0, 2.0).y, 12.8f);
+}
+
+TEST(Strength, WithoutAHeightTexelsAreSquare) {
+    const tex::Strength strength = tex::strength_from_world({512, 100}, 0.1, 2.0);
+    EXPECT_EQ(strength.x, strength.y);
+    EXPECT_FLOAT_EQ(strength.x, 25.6f);
+}
+
+TEST(Strength, FromTextureWidthsIsColumns) {
+    EXPECT_FLOAT_EQ(tex::strength_from_uv({512, 64}, 0.05).x, 25.6f);
+    EXPECT_FLOAT_EQ(tex::strength_from_uv({512, 64}, 0.05).y, 25.6f);
+}
+
+}  // namespace

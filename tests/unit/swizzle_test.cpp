@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <tex/swizzle.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+#include <tex/container.h>
+#include <tex/pack.h>
+
+#include "unit/textures.h"
+
+namespace tex {
+namespace {
+
+MipChain bumps(Extent extent, float height) {
+    MipChain chain;
+    NormalMap map(extent);
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) {
+            const float x = height * std::sin(static_cast<float>(i) * 0.4f),
+                        y = height * std::cos(static_cast<float>(j) * 0.3f);
+            map.x.at(i, j) = x;
+            map.y.at(i, j) = y;
+            map.z.at(i, j) = std::sqrt(1.0f - x * x - y * y);
+        }
+    }
+    chain.levels.push_back(std::move(map));
+    return chain;
+}
+
+// Packed, and with the mark torn off.
+Texture unmarked(const MipChain& chain, Encoding encoding) {
+    auto texture = pack(chain, {encoding, YAxis::up, Effort::fast});
+    EXPECT_TRUE(texture);
+    texture->swizzle_known = false;
+    texture->swizzle = {Component::x, Component::y, Component::z, Component::other};
+    return std::move(*texture);
+}
+
+std::string guess(const Texture& texture) {
+    const auto swizzle = guess_swizzle(texture);
+    EXPECT_TRUE(swizzle);
+    return std::string(name_of(kSwizzleNames, *swizzle));
+}
+
+}  // namespace
+
+TEST(Swizzle, IsToldFromTheTexels) {
+    for (const Extent extent : {Extent{64, 64}, Extent{5, 7}}) {
+        EXPECT_EQ(guess(unmarked(bumps(extent, 0.5f), Encoding::dxt5nm)), "dxt5nm");
+        EXPECT_EQ(guess(unmarked(bumps(extent, 0.5f), Encoding::ag8)), "dxt5nm");
+        EXPECT_EQ(guess(unmarked(bumps(extent, 0.5f), Encoding::rgba8)), "rgb");
+        EXPECT_EQ(guess(unmarked(bumps(extent, 0.02f), Encoding::dxt5nm)), "dxt5nm");
+        EXPECT_EQ(guess(unmarked(bumps(extent, 0.02f), Encoding::rgba8)), "rgb");
+    }
+}
+
+TEST(Swizzle, OfFlatMapsIsToldFromTheirLength) {
+    EXPECT_EQ(guess(unmarked(bumps({16, 16}, 0.0f), Encoding::dxt5nm)), "dxt5nm");
+    EXPECT_EQ(guess(unmarked(bumps({16, 16}, 0.0f), Encoding::rgba8)), "rgb");
+}
+
+TEST(Swizzle, OfRxgbIsToldFromTheUnitVectors) {
+    Texture texture = unmarked(bumps({32, 32}, 0.5f), Encoding::rgba8);
+    for (std::size_t k = 0; k < texture.levels[0].bytes.size(); k += 4) {
+        std::swap(texture.levels[0].bytes[k], texture.levels[0].bytes[k + 3]);
+        texture.levels[0].bytes[k] = std::byte{0};
+    }
+    EXPECT_EQ(guess(texture), "rxgb");
+}
+
+TEST(Swizzle, OfTheFileIsTrusted) {
+    Texture texture = unmarked(bumps({16, 16}, 0.5f), Encoding::rgba8);
+    texture.swizzle = {Component::z, Component::y, Component::x, Component::other};
+    texture.swizzle_known = true;
+    EXPECT_EQ(guess(texture), "bgr");
+    Texture two = unmarked(bumps({16, 16}, 0.5f), Encoding::rg8);
+    two.swizzle = {Component::y, Component::x, Component::zero, Component::one};
+    EXPECT_EQ(guess(two), "gr");
+}
+
+TEST(Swizzle, OfRealFilesIsToldFromTheirTexels) {
+    TEX_NEEDS_SHARED_DATA();
+    const std::pair<const char*, const char*> expected[] = {
+        {"torque_TP_Ryder_DXT5nm_256_mips9_nvtt.dds", "dxt5nm"},
+        {"torque_Grenade2_DXT5nm_GGGR_512_mips10.dds", "dxt5nm"},
+        {"torque_rock_DXT5nm_GGGR_256_mips9.dds", "dxt5nm"},
+        {"urho_Stone_DXT5_xGxR_1024_mips11.dds", "dxt5nm"},
+        {"reference/run_DXT5nm_dx9.dds", "dxt5nm"},
+        {"d3d_RifleStock_DXT1_747x600_mips10_nvtt.dds", "rgb"},
+        {"d3d_dwarf_armor_RGBA8_512_mips10.dds", "rgb"},
+    };
+    for (const auto& [file, name] : expected) {
+        auto texture = read_texture(shared_data() / "dds" / file);
+        ASSERT_TRUE(texture) << texture.error().message();
+        texture->swizzle_known = false;  // whatever the file says
+        EXPECT_EQ(guess(*texture), name) << file;
+    }
+}
+
+}  // namespace tex
