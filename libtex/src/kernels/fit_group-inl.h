@@ -30,7 +30,8 @@ using F = hn::Vec<Floats>;
 constexpr int kLanes = 32;  // at most
 constexpr float kUnit = 256.0f;  // of texels before they are made local, for each code
 
-int lanes() { return static_cast<int>(hn::Lanes(Words())); }
+// Always inlined: loops over it must see a constant.
+HWY_INLINE constexpr int lanes() { return static_cast<int>(hn::MaxLanes(Words())); }
 
 HWY_INLINE F constant(float value) { return hn::Set(Floats(), value); }
 
