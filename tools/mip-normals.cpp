@@ -7,6 +7,7 @@
 #include "cli/batch.h"
 #include "cli/groups.h"
 #include "cli/name_pattern.h"
+#include "cli/roughness.h"
 #include "cli/source.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
@@ -25,6 +26,7 @@ struct MipNormals {
     cli::WrapOptions wrap;
     cli::OutputOptions output;
     cli::MipChainOptions mips;
+    cli::RoughnessOptions roughness;
     cli::RunOptions run;
 
     MipNormals();
@@ -41,17 +43,21 @@ MipNormals::MipNormals() {
     output.add(command, cli::default_encodings(), "as in the input");
     mips.add(command, false, "all");
     wrap.add(command, "what lies beyond the border, or for x and y apart");
+    roughness.add(command, files);
     run.add(command);
     command.example("mip-normals bricks_n.png -o bricks.dds", "A DXT5nm texture with all its levels.");
     command.example("mip-normals bricks_n.png -o bricks.ktx2 --format bc5 --mip-filter kaiser --fade 2,6",
                     "Sharper levels that fade to flat.");
     command.example("mip-normals rock.png --out-dir levels --name '{stem}_mip{level}{ext}'",
                     "A picture for each level, for tools that put chains together themselves.");
+    command.example("mip-normals rock_n.png -o rock_n.dds --roughness-in rock_orm.png:g --roughness-out rock_r.dds",
+                    "The roughness map that keeps highlights steady from afar.");
 }
 
 // A file that holds one level is not what anybody wants of this command.
 void MipNormals::check(const std::vector<cli::Task>& tasks) const {
     mips.check(tasks);
+    roughness.check(tasks, mips.levels.value_or(0));
     for (const cli::Task& task : tasks) {
         if (mips.levels || can_hold_levels(task.container) || cli::has_level(task.output)) continue;
         throw cli::UsageError(
@@ -65,10 +71,19 @@ Result<void> MipNormals::process(cli::Job& job) {
     if (!read) return read.error();
     MipOptions options = mips.mip;
     options.levels = mips.levels.value_or(0);
-    auto chain = build_mip_chain(std::move(read->chain.levels.front()), options, job.until(0.6));
+    NormalMap& base = read->chain.levels.front();
+    RoughnessChain rougher;
+    if (roughness.is_given()) {
+        auto built = roughness.build(job, base, options, job.until(0.5));
+        if (!built) return built.error();
+        rougher = std::move(*built);
+    }
+    auto chain = build_mip_chain(std::move(base), options, job.until(0.6));
     if (!chain) return chain.error();
     const Encoding encoding = output.format.value_or(default_encoding(job.task.container));
-    return cli::write_chain(job, std::move(*chain), output, encoding, output.y.value_or(read->y));
+    auto written = cli::write_chain(job, std::move(*chain), output, encoding, output.y.value_or(read->y));
+    if (!written || !roughness.is_given()) return written;
+    return roughness.write(job, rougher, output, job.until(0.99));
 }
 
 }  // namespace

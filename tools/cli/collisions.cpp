@@ -43,13 +43,16 @@ std::string canonical(const std::string& path) {
     return (folder / fs::path(path).filename()).string();
 }
 
-// The files that a task writes: more than one where each level has its own. As many as the largest extent
+// The files that a task writes: many where each level has its own. As many as the largest extent
 // could have.
-std::vector<std::string> files_of(const std::string& output) {
-    if (!has_level(output)) return {output};
+std::vector<std::string> files_of(const Task& task) {
+    std::vector<std::string> outputs = task.beside;
+    outputs.push_back(task.output);
     std::vector<std::string> files;
-    for (int level = 0; level < level_count({kMaxExtent, 1}); ++level)
-        files.push_back(with_level(output, level));
+    for (const std::string& output : outputs) {
+        const int levels = has_level(output) ? level_count({kMaxExtent, 1}) : 1;
+        for (int level = 0; level < levels; ++level) files.push_back(with_level(output, level));
+    }
     return files;
 }
 
@@ -75,7 +78,7 @@ void check_collisions(const std::vector<Task>& tasks, const std::string& depfile
     std::map<std::string, const Task*> by_name;
     std::map<Identity, const Task*> by_identity;
     for (const Task& task : tasks) {
-        for (const std::string& path : files_of(task.output)) {
+        for (const std::string& path : files_of(task)) {
             if (is_special(path)) continue;
             check_not_an_input(path);
             const auto [same, is_new] = by_name.emplace(canonical(path), &task);
@@ -83,6 +86,10 @@ void check_collisions(const std::vector<Task>& tasks, const std::string& depfile
             if (const auto file = identity(path); file && other == nullptr) {
                 const auto [linked, is_new_file] = by_identity.emplace(*file, &task);
                 if (!is_new_file) other = linked->second;
+            }
+            if (other == &task) {
+                throw UsageError(
+                    fmt::format("two outputs of {} are one file, {}", printable(task.input), printable(path)));
             }
             if (other != nullptr) {
                 throw UsageError(fmt::format("{} and {} have the same output {}", printable(other->input),

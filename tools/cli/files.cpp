@@ -137,21 +137,25 @@ std::string FileOptions::batch_name(const std::string& input, const OutputOption
         }
         pattern = "{stem}" + (container ? extension_of(*container) : "{ext}");
     }
-    const NamePattern parsed(pattern);
-    if (!out_dir.empty() && parsed.uses("dir")) {
-        const fs::path dir = fs::path(fields.dir).lexically_normal();
-        if (dir.is_absolute() || *dir.begin() == "..") {
-            throw UsageError(fmt::format("{}: its {{dir}} leads out of --out-dir", printable(input)));
-        }
-    }
     if (options.format) {
         fields.format = name_of(kEncodingNames, *options.format);
-    } else if (parsed.uses("format")) {
+    } else if (const NamePattern parsed(pattern); parsed.uses("format")) {
         const Container container = options.container_for(parsed.expand(fields), defaults.standard_output);
         fields.format = name_of(kEncodingNames, default_encoding(container));
     }
+    return place(pattern, fields);
+}
+
+std::string FileOptions::place(const std::string& pattern, const NameFields& fields) const {
+    const NamePattern parsed(pattern);
     const std::string file = parsed.expand(fields);
-    return out_dir.empty() ? file : (fs::path(out_dir) / fs::path(file).relative_path()).string();
+    if (out_dir.empty()) return file;
+    const fs::path dir = fs::path(fields.dir).lexically_normal();
+    if (parsed.uses("dir") && (dir.is_absolute() || *dir.begin() == "..")) {
+        throw UsageError(fmt::format("{}: its {{dir}} leads out of --out-dir",
+                                     printable(fields.dir + "/" + fields.stem + fields.ext)));
+    }
+    return (fs::path(out_dir) / fs::path(file).relative_path()).string();
 }
 
 Result<std::vector<Task>> FileOptions::plan(const Command& command, const OutputOptions& output_options,
@@ -174,6 +178,7 @@ Result<std::vector<Task>> FileOptions::plan(const Command& command, const Output
         task.container = output_options.container_for(with_level(task.output, 0), defaults.standard_output);
         if (output_options.format)
             OutputOptions::check_holds(with_level(task.output, 0), task.container, *output_options.format);
+        if (amend) amend(task);
         tasks.push_back(std::move(task));
     }
     check_collisions(tasks, depfile);
@@ -189,9 +194,13 @@ Result<void> FileOptions::create_folders(const std::vector<Task>& tasks) const {
     fs::create_directory(fs::path(out_dir) / "", error);
     if (error && !fs::is_directory(out_dir)) return failed(out_dir, error);
     for (const Task& task : tasks) {
-        const fs::path folder = fs::path(task.output).parent_path();
-        fs::create_directories(folder, error);
-        if (error) return failed(folder, error);
+        std::vector<std::string> outputs = task.beside;
+        outputs.push_back(task.output);
+        for (const std::string& output_file : outputs) {
+            const fs::path folder = fs::path(output_file).parent_path();
+            fs::create_directories(folder, error);
+            if (error) return failed(folder, error);
+        }
     }
     return {};
 }

@@ -11,6 +11,7 @@
 #include <tex/container.h>
 
 #include "cli/command.h"
+#include "cli/name_pattern.h"
 #include "cli/output.h"
 
 namespace tex::cli {
@@ -20,7 +21,8 @@ struct Task {
     std::string input;
     std::string output;
     Container container = Container::dds;
-    std::vector<std::string> also = {};  // further inputs of the same output
+    std::vector<std::string> also = {};    // further inputs of the same output
+    std::vector<std::string> beside = {};  // further outputs, as `output`
 };
 
 // Where outputs go whose name the user left to the command.
@@ -40,6 +42,7 @@ struct FileOptions {
     bool no_sync = false;
     bool joins = false;               // -o takes many inputs and makes one output of them
     std::vector<std::string> shared;  // files that every output is made of, named by other options
+    std::function<void(Task& task)> amend;  // adds the files that other options name for this task; may be empty
 
     void add(Command& command);
     // --files-from alone, for commands that only read; `needless` tells that this run reads nothing.
@@ -53,6 +56,9 @@ struct FileOptions {
     // Result: the list cannot be read. Nothing is created.
     [[nodiscard]] Result<std::vector<Task>> plan(const Command& command, const OutputOptions& output_options,
                                                  const OutputDefaults& defaults) const;
+
+    // The output that `pattern` names: below --out-dir where it is given.
+    [[nodiscard]] std::string place(const std::string& pattern, const NameFields& fields) const;
 
     // Creates --out-dir (not its parents), and below it the folders that {dir} asks for.
     [[nodiscard]] Result<void> create_folders(const std::vector<Task>& tasks) const;

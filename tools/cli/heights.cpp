@@ -85,6 +85,28 @@ void HeightGroup::add(Command& command) {
                    [this](const std::string& text) { options.no_data = parse_float(text); });
 }
 
+ChannelFile parse_channel_file(const std::string& text) {
+    if (text.empty()) throw UsageError("needs a value that is not empty");
+    ChannelFile source{text};
+    if (const std::size_t colon = text.rfind(':'); colon != std::string::npos) {
+        const auto channel = find_by_name(kHeightChannelNames, std::string_view(text).substr(colon + 1));
+        if (!channel) return source;  // a colon of the file's name
+        source.channel = *channel;
+        source.file.resize(colon);
+    }
+    return source;
+}
+
+Result<Plane<float>> read_channel(Job& job, const ChannelFile& source, const Execution& execution) {
+    auto image = read_image(source.file, job.read_options);
+    if (!image) return image.error();
+    HeightOptions channel;
+    channel.channel = source.channel;
+    auto values = height_field(*image, channel, execution);
+    if (!values) return Error{values.error().code, source.file, values.error().reason};
+    return std::move(values->height);
+}
+
 Result<HeightField> HeightReader::read(Job& job, Execution execution) {
     auto image = read_image(job.task.input, job.read_options);
     if (!image) return image.error();

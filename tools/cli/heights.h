@@ -50,6 +50,14 @@ struct HeightGroup {
     void add(Command& command);
 };
 
+// FILE[:CHANNEL]: a picture of which one channel is read, a mask or a roughness map.
+struct ChannelFile {
+    std::string file;
+    HeightChannel channel = HeightChannel::automatic;
+};
+[[nodiscard]] ChannelFile parse_channel_file(const std::string& text);
+[[nodiscard]] Result<Plane<float>> read_channel(Job& job, const ChannelFile& source, const Execution& execution);
+
 // Reads the heights of jobs, as all of the groups above say.
 class HeightReader {
 public:

@@ -5,7 +5,6 @@
 #include <tuple>
 
 #include <fmt/format.h>
-#include <tex/image_io.h>
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
@@ -43,7 +42,7 @@ void LayerOptions::add(Command& command) {
         .repeatable = true;
     add_placement(command);
     Row& mask = command.option("--mask", "FILE[:CHANNEL]", "where the detail shows: white is all of it",
-                               [this](const std::string& text) { mask_.values.push_back(parse_mask(text)); });
+                               [this](const std::string& text) { mask_.values.push_back(parse_channel_file(text)); });
     mask.completes = Completes::files;
     mask.repeatable = true;
     command
@@ -57,7 +56,7 @@ void LayerOptions::add(Command& command) {
         [this](const std::string& text) { y_in_.values.emplace_back(parse_word(text, kYAxisNames)); });
     y.words = words_of(kYAxisNames);
     y.completes = Completes::words;
-    y.preset = "as the file says, else as --y-in";
+    y.preset = "as --y-in, else as the file says";
     y.repeatable = true;
 }
 
@@ -89,18 +88,6 @@ void LayerOptions::add_placement(Command& command) {
     wrap.repeatable = true;
 }
 
-LayerOptions::Mask LayerOptions::parse_mask(const std::string& text) {
-    if (text.empty()) throw UsageError("needs a value that is not empty");
-    Mask mask{text};
-    if (const std::size_t colon = text.rfind(':'); colon != std::string::npos) {
-        const auto channel = find_by_name(kHeightChannelNames, std::string_view(text).substr(colon + 1));
-        if (!channel) return mask;  // a colon of the file's name
-        mask.channel = *channel;
-        mask.file.resize(colon);
-    }
-    return mask;
-}
-
 void LayerOptions::check(std::size_t count) const {
     const auto fits = [count](const char* name, std::size_t given) {
         if (given <= 1 || given == count) return;
@@ -119,7 +106,7 @@ void LayerOptions::check(std::size_t count) const {
 
 std::vector<std::string> LayerOptions::mask_files() const {
     std::vector<std::string> files;
-    for (const Mask& mask : mask_.values) files.push_back(mask.file);
+    for (const ChannelFile& mask : mask_.values) files.push_back(mask.file);
     return files;
 }
 
@@ -135,15 +122,11 @@ Result<Layer> LayerOptions::read_layer(Job& job, std::size_t k, const std::strin
     layer.rotation = rotation_.of(k, layer.rotation);
     std::tie(layer.wrap_x, layer.wrap_y) = wrap_.of(k, {layer.wrap_x, layer.wrap_y});
     layer.strength = strength_.of(k, layer.strength);
-    const Mask mask = mask_.of(k, {});
+    const ChannelFile mask = mask_.of(k, {});
     if (mask.file.empty()) return layer;
-    auto image = read_image(mask.file, job.read_options);
-    if (!image) return image.error();
-    HeightOptions channel;
-    channel.channel = mask.channel;
-    auto values = height_field(*image, channel, execution);
-    if (!values) return Error{values.error().code, mask.file, values.error().reason};
-    layer.mask = std::move(values->height);
+    auto values = read_channel(job, mask, execution);
+    if (!values) return values.error();
+    layer.mask = std::move(*values);
     return layer;
 }
 

@@ -11,6 +11,7 @@
 #include <tex/blend.h>
 
 #include "cli/command.h"
+#include "cli/heights.h"
 #include "cli/job.h"
 #include "cli/source.h"
 
@@ -44,21 +45,16 @@ public:
                                                   SourceOptions& source, double from, double until) const;
 
 private:
-    struct Mask {
-        std::string file;
-        HeightChannel channel = HeightChannel::automatic;
-    };
     using Pair = std::pair<float, float>;
 
     void add_placement(Command& command);
     [[nodiscard]] Result<Layer> read_layer(Job& job, std::size_t layer, const std::string& name,
                                            SourceOptions& source, const Execution& execution) const;
-    [[nodiscard]] static Mask parse_mask(const std::string& text);
 
     std::vector<std::string> details_;
     PerLayer<float> scale_, rotation_, strength_;
     PerLayer<Pair> tiling_, offset_;
-    PerLayer<Mask> mask_;
+    PerLayer<ChannelFile> mask_;
     PerLayer<std::pair<Wrap, Wrap>> wrap_;
     PerLayer<std::optional<YAxis>> y_in_;
 };

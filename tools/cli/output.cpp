@@ -3,6 +3,7 @@
 #include "cli/output.h"
 
 #include <filesystem>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -39,9 +40,9 @@ std::string containers_for(Encoding encoding) {
 }
 
 // One file of the job's output: the texture itself, or one of its levels.
-Result<std::size_t> write_file_of(Job& job, const Texture& texture, const std::string& path,
+Result<std::size_t> write_file_of(Job& job, const Texture& texture, const std::string& path, Container container,
                                   const WriteOptions& options) {
-    auto bytes = encode_file(texture, job.task.container, options);
+    auto bytes = encode_file(texture, container, options);
     if (!bytes) {
         Error error = bytes.error();
         if (error.file.empty()) error.file = path;
@@ -117,37 +118,39 @@ void OutputOptions::check_holds(const std::string& output, Container container, 
                                  name_of(kEncodingNames, encoding), containers_for(encoding)));
 }
 
+Result<std::size_t> write_levels(Job& job, Texture texture, const std::string& name, Container container,
+                                 const OutputOptions& options) {
+    WriteOptions write = job.write_options;
+    write.dds_header = options.dds_header;
+    write.dds_mark = options.dds_mark;
+    if (!has_level(name)) return write_file_of(job, texture, name, container, write);
+    std::size_t bytes = 0;
+    std::vector<Level> levels = std::exchange(texture.levels, {});
+    for (std::size_t k = 0; k < levels.size(); ++k) {
+        texture.levels.clear();
+        texture.levels.push_back(std::move(levels[k]));
+        auto size = write_file_of(job, texture, with_level(name, static_cast<int>(k)), container, write);
+        if (!size) return size.error();
+        bytes += *size;
+    }
+    return bytes;
+}
+
 Result<void> write_chain(Job& job, MipChain chain, const OutputOptions& options, Encoding encoding, YAxis y) {
     if (!can_hold_levels(job.task.container) && !has_level(job.task.output)) chain.levels.resize(1);
     auto texture = pack(chain, {encoding, y, options.effort}, job.until(0.95));
     if (!texture) return texture.error();
     chain.levels.clear();
 
-    WriteOptions write = job.write_options;
-    write.dds_header = options.dds_header;
-    write.dds_mark = options.dds_mark;
     Json& report = job.report;
     report["extent"] = {texture->extent().width, texture->extent().height};
     report["levels"] = texture->levels.size();
     report["format"] = name_of(kEncodingNames, encoding);
     report["y"] = name_of(kYAxisNames, y);
 
-    std::size_t bytes = 0;
-    if (!has_level(job.task.output)) {
-        auto size = write_file_of(job, *texture, job.task.output, write);
-        if (!size) return size.error();
-        bytes = *size;
-    } else {
-        std::vector<Level> levels = std::move(texture->levels);
-        for (std::size_t k = 0; k < levels.size(); ++k) {
-            texture->levels.clear();
-            texture->levels.push_back(std::move(levels[k]));
-            auto size = write_file_of(job, *texture, with_level(job.task.output, static_cast<int>(k)), write);
-            if (!size) return size.error();
-            bytes += *size;
-        }
-    }
-    report["bytes"] = bytes;
+    auto bytes = write_levels(job, std::move(*texture), job.task.output, job.task.container, options);
+    if (!bytes) return bytes.error();
+    report["bytes"] = *bytes;
     return {};
 }
 

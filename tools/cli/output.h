@@ -40,6 +40,10 @@ struct OutputOptions {
 // ".dds" for Container::dds: the first of its extensions.
 [[nodiscard]] std::string extension_of(Container container);
 
+// Writes `texture` to `name` as a `container`: one file, or one for each level where the name has {level}. Returns the bytes of all.
+[[nodiscard]] Result<std::size_t> write_levels(Job& job, Texture texture, const std::string& name,
+                                               Container container, const OutputOptions& options);
+
 // Packs `chain` as `encoding` and writes it where the job says: one file, or one for each level where the
 // name has {level}; a picture gets the base level. Tells the job's report extent, levels, format, y and bytes.
 [[nodiscard]] Result<void> write_chain(Job& job, MipChain chain, const OutputOptions& options,

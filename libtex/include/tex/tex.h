@@ -58,6 +58,7 @@
 #include <tex/mip.h>
 #include <tex/pack.h>
 #include <tex/preview.h>
+#include <tex/roughness.h>
 #include <tex/scale.h>
 #include <tex/sheet.h>
 #include <tex/swizzle.h>

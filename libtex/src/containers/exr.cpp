@@ -2,6 +2,7 @@
 
 #include "containers/exr.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <optional>
@@ -234,8 +235,12 @@ Result<std::vector<std::byte>> encode_exr(const Texture& texture) {
         header.compression() = Imf::ZIP_COMPRESSION;
         const Imf::PixelType type = format.bits == 16 ? Imf::HALF : Imf::FLOAT;
         for (const std::string& name : names) header.channels().insert(name, Imf::Channel(type));
-        header.insert(kNormalEncoding, Imf::StringAttribute("signed"));
-        header.insert(kNormalYAxis, Imf::StringAttribute(std::string(name_of(kYAxisNames, texture.y_axis))));
+        const bool holds_normals =
+            std::find(texture.swizzle.begin(), texture.swizzle.end(), Component::x) != texture.swizzle.end();
+        if (holds_normals) {
+            header.insert(kNormalEncoding, Imf::StringAttribute("signed"));
+            header.insert(kNormalYAxis, Imf::StringAttribute(std::string(name_of(kYAxisNames, texture.y_axis))));
+        }
         MemoryStream stream;
         try {
             write_exr(stream, header, texture, names);

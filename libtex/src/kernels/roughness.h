@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// kernels/roughness.h: roughness, alpha^2 and the lengths of averaged vectors (see tex/roughness.h).
+//
+// Rows may be read and written up to a whole vector (64 bytes) past their last texel.
+
+#pragma once
+
+#include <tex/roughness.h>
+
+namespace tex {
+
+// `clean` becomes the roughness cut to [0, 1], NaN 0; alpha2 its fourth power.
+void clean_roughness(const float* roughness, int count, float* clean, float* alpha2);
+
+// The roughness of a row of a smaller level: of averaged vectors and of averaged alpha^2.
+void roughness_of_averages(RoughnessModel model, const float* x, const float* y, const float* z,
+                           const float* alpha2, int count, float* roughness);
+
+}  // namespace tex

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+// Memory and threads; kernels/roughness.cpp computes, and the filters are those of mip.cpp. Beside its result the chain keeps the averages of two levels.
+
+#include <tex/roughness.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <half.h>
+
+#include "base/axis_filter.h"
+#include "base/border.h"
+#include "base/guard.h"
+#include "base/parallel.h"
+#include "kernels/encode.h"
+#include "kernels/mip.h"
+#include "kernels/roughness.h"
+
+namespace tex {
+namespace {
+
+constexpr int kPieceTexels = 1 << 15;
+constexpr std::size_t kAlpha2 = 3;  // after x, y and z
+
+// x, y, z and alpha^2 of a level, not normalised.
+using Averages = std::array<Plane<float>, 4>;
+using AverageViews = std::array<PlaneView<const float>, 4>;
+
+AverageViews views_of(const Averages& averages) {
+    return {averages[0].view(), averages[1].view(), averages[2].view(), averages[3].view()};
+}
+
+int strip_rows(Extent extent) { return std::max(1, kPieceTexels / extent.width); }
+
+// A level and the next.
+struct Step {
+    const AverageViews& from;
+    Averages& to;
+    Plane<float>& roughness;  // of `to`
+    RoughnessModel model;
+    const MipOptions& options;
+    AxisFilter x, y;
+};
+
+// Rows [begin, end) of step.to: down the columns, then across.
+void filter_strip(const Step& step, int begin, int end) {
+    const Extent extent = step.from[0].extent;
+    const int taps = step.y.taps;
+    RowFilter across(step.x, step.options.wrap_x, extent.width);
+    std::vector<const float*> rows(static_cast<std::size_t>(taps));
+    std::vector<float> weights(static_cast<std::size_t>(taps));
+    for (int j = begin; j < end; ++j) {
+        for (int k = 0; k < taps; ++k) weights[static_cast<std::size_t>(k)] = step.y.weight(k, j);
+        for (std::size_t plane = 0; plane < step.to.size(); ++plane) {
+            for (int k = 0; k < taps; ++k) {
+                const int row = border_index(step.options.wrap_y, 2 * j + step.y.first + k, extent.height);
+                rows[static_cast<std::size_t>(k)] = step.from[plane].row(row);
+            }
+            filter_rows(rows.data(), weights.data(), taps, extent.width, across.row());
+            across.run(step.to[plane].row(j));
+        }
+        roughness_of_averages(step.model, step.to[0].row(j), step.to[1].row(j), step.to[2].row(j),
+                              step.to[kAlpha2].row(j), step.to[0].extent().width, step.roughness.row(j));
+    }
+}
+
+Result<RoughnessChain> build_chain(const NormalMap& base, const Plane<float>& roughness, RoughnessModel model,
+                                   const MipOptions& options, const Execution& execution) {
+    const Extent extent = base.extent();
+    const int complete = level_count(extent);
+    const int count = options.levels > 0 ? std::min(options.levels, complete) : complete;
+    RoughnessChain chain;
+    chain.levels.emplace_back(extent);
+    Plane<float> alpha2(extent);
+    const auto clean = [&](int begin, int end) {
+        for (int j = begin; j < end; ++j)
+            clean_roughness(roughness.row(j), extent.width, chain.levels[0].row(j), alpha2.row(j));
+    };
+    double done = count > 1 ? 0.1 : 1.0;
+    if (auto cleaned = parallel_for(execution, extent.height, strip_rows(extent), clean, {0.0, done}); !cleaned)
+        return cleaned.error();
+
+    AverageViews from = {base.x.view(), base.y.view(), base.z.view(), alpha2.view()};
+    Averages held;  // what `from` shows, below the base level
+    for (int level = 1; level < count; ++level) {
+        const Extent smaller = level_extent(extent, level);
+        Averages to;
+        for (Plane<float>& plane : to) plane = Plane<float>(smaller);
+        chain.levels.emplace_back(smaller);
+        const Step step{from, to, chain.levels.back(), model, options,
+                        make_axis_filter(options.filter, from[0].extent.width),
+                        make_axis_filter(options.filter, from[0].extent.height)};
+        const double next = level + 1 < count ? done + (1.0 - done) * 0.75 : 1.0;
+        const auto made = parallel_for(
+            execution, smaller.height, strip_rows(smaller),
+            [&](int begin, int end) { filter_strip(step, begin, end); }, {done, next});
+        if (!made) return made.error();
+        held = std::move(to);
+        from = views_of(held);
+        done = next;
+    }
+    return chain;
+}
+
+// -- packing -----------------------------------------------------------------------------------------------
+
+// Rows of a row of blocks as 2 roughness - 1: encoders take components of vectors.
+class Components {
+public:
+    explicit Components(const Plane<float>& level) : level_(level), rows_(Extent{level.extent().width, 4}) {}
+
+    const float* row(int k, int j) {
+        const float* from = level_.row(j);
+        float* to = rows_.row(k);
+        for (int i = 0; i < level_.extent().width; ++i) to[i] = 2.0f * from[i] - 1.0f;
+        return to;
+    }
+
+private:
+    const Plane<float>& level_;
+    Plane<float> rows_;
+};
+
+// BC4 is the first block of BC5.
+void pack_blocks(const Plane<float>& level, Effort effort, int begin, int end, std::byte* out) {
+    constexpr std::size_t kBc4 = 8, kBc5 = 16;
+    const Extent extent = level.extent();
+    const std::size_t count = (static_cast<std::size_t>(extent.width) + 3) / 4;
+    std::vector<std::byte> pairs(count * kBc5);
+    Components components(level);
+    for (int j = begin; j < end; j += 4) {
+        BlockRow row;
+        row.width = extent.width;
+        row.height = std::min(4, extent.height - j);
+        for (int k = 0; k < 4; ++k) {
+            row.x[k] = k < row.height ? components.row(k, j + k) : row.x[k - 1];
+            row.y[k] = row.x[k];
+        }
+        encode_bc5_unorm(row, effort, pairs.data());
+        std::byte* block = out + static_cast<std::size_t>(j / 4) * count * kBc4;
+        for (std::size_t k = 0; k < count; ++k) std::memcpy(block + k * kBc4, pairs.data() + k * kBc5, kBc4);
+    }
+}
+
+template <class Code>
+void pack_codes(const Plane<float>& level, int begin, int end, std::byte* out) {
+    constexpr auto kTop = static_cast<float>(std::numeric_limits<Code>::max());
+    const auto width = static_cast<std::size_t>(level.extent().width);
+    std::vector<Code> codes(width);
+    for (int j = begin; j < end; ++j) {
+        std::transform(level.row(j), level.row(j) + width, codes.begin(), [](float v) {
+            return static_cast<Code>(std::clamp(v, 0.0f, 1.0f) * kTop + 0.5f);
+        });
+        std::memcpy(out + static_cast<std::size_t>(j) * width * sizeof(Code), codes.data(), width * sizeof(Code));
+    }
+}
+
+template <class Value>
+void pack_values(const Plane<float>& level, int begin, int end, std::byte* out) {
+    const auto width = static_cast<std::size_t>(level.extent().width);
+    std::vector<Value> values(width);
+    for (int j = begin; j < end; ++j) {
+        std::transform(level.row(j), level.row(j) + width, values.begin(), [](float v) { return Value(v); });
+        std::memcpy(out + static_cast<std::size_t>(j) * width * sizeof(Value), values.data(),
+                    width * sizeof(Value));
+    }
+}
+
+void pack_rows(const Plane<float>& level, Format format, Effort effort, int begin, int end, std::byte* out) {
+    switch (format) {
+        case Format::bc4_unorm: pack_blocks(level, effort, begin, end, out); break;
+        case Format::r8_unorm: pack_codes<std::uint8_t>(level, begin, end, out); break;
+        case Format::r16_unorm: pack_codes<std::uint16_t>(level, begin, end, out); break;
+        case Format::r16_float: pack_values<Imath::half>(level, begin, end, out); break;
+        default: pack_values<float>(level, begin, end, out); break;
+    }
+}
+
+Result<Texture> pack_chain(const RoughnessChain& chain, Format format, Effort effort, const Execution& execution) {
+    Texture texture;
+    texture.format = format;
+    texture.swizzle = {Component::other, Component::zero, Component::zero, Component::one};
+    double done = 0.0;
+    for (const Plane<float>& plane : chain.levels) {
+        Level level{plane.extent(), std::vector<std::byte>(level_bytes(format, plane.extent()))};
+        const bool last = &plane == &chain.levels.back();
+        const double next = last ? 1.0 : done + (1.0 - done) * 0.75;
+        const int grain = (strip_rows(plane.extent()) + 3) / 4 * 4;  // whole rows of blocks
+        const auto packed = parallel_for(
+            execution, plane.extent().height, grain,
+            [&](int begin, int end) { pack_rows(plane, format, effort, begin, end, level.bytes.data()); },
+            {done, next});
+        if (!packed) return packed.error();
+        texture.levels.push_back(std::move(level));
+        done = next;
+    }
+    return texture;
+}
+
+}  // namespace
+
+Result<RoughnessChain> build_roughness_chain(const NormalMap& base, const Plane<float>& roughness, RoughnessModel model,
+                                             const MipOptions& options, const Execution& execution) {
+    assert(!base.x.empty() && roughness.extent() == base.extent() && options.levels >= 0);
+    return guarded([&] { return build_chain(base, roughness, model, options, execution); });
+}
+
+Result<Texture> pack_roughness(const RoughnessChain& chain, Format format, Effort effort, const Execution& execution) {
+    constexpr Format kFormats[] = {Format::bc4_unorm, Format::r8_unorm, Format::r16_unorm, Format::r16_float,
+                                   Format::r32_float};
+    assert(!chain.levels.empty());
+    return guarded([&]() -> Result<Texture> {
+        if (std::find(std::begin(kFormats), std::end(kFormats), format) == std::end(kFormats)) {
+            return Error{ErrorCode::bad_option, {},
+                         "roughness goes into formats of one channel, not " + std::string(name_of(kFormatNames, format))};
+        }
+        return pack_chain(chain, format, effort, execution);
+    });
+}
+
+}  // namespace tex

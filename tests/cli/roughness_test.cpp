@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+// Roughness maps beside mip chains: mip-normals --roughness-out.
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <tex/tex.h>
+
+#include "cli/program.h"
+
+namespace tex::cli {
+
+class RoughnessOut : public testing::Test {
+protected:
+    RoughnessOut() {
+        scratch_.add_sample("bricks.png", "h.png");
+        scratch_.add_sample("waves.png", "waves.png");
+        does("bake-normals", {"h.png", "-o", "n.png", "--bumpiness", "12"});
+        before_ = scratch_.list();
+    }
+    Ran go(const std::string& command, std::vector<std::string> arguments) {
+        arguments.push_back("--no-sync");
+        return run(scratch_, command, arguments);
+    }
+    std::string does(const std::string& command, const std::vector<std::string>& arguments) {
+        const Ran ran = go(command, arguments);
+        EXPECT_EQ(ran.code, 0) << command << " " << arguments[0] << ": " << ran.err;
+        EXPECT_EQ(ran.err, "");
+        return ran.out;
+    }
+    void refuses(std::vector<std::string> arguments, int code, const std::string& part) {
+        arguments.insert(arguments.begin(), {"n.png", "-o", "x.dds"});
+        const Ran ran = go("mip-normals", arguments);
+        EXPECT_EQ(ran.code, code) << part;
+        EXPECT_NE(ran.err.find(part), std::string::npos) << ran.err;
+        EXPECT_EQ(scratch_.list(), before_) << part;
+    }
+    Texture texture(const std::string& name) {
+        auto read = read_texture(scratch_.path(name));
+        EXPECT_TRUE(read) << name;
+        return std::move(*read);
+    }
+    // The mean of one level.
+    double mean(const std::string& name, int level) {
+        const auto image = decode(texture(name), level);
+        double sum = 0.0;
+        for (int j = 0; j < image->extent().height; ++j) {
+            for (int i = 0; i < image->extent().width; ++i) sum += static_cast<double>(image->planes[0].at(i, j));
+        }
+        return sum / static_cast<double>(image->extent().texels());
+    }
+
+    bool same_red(const std::string& a, const std::string& b) {
+        const auto first = read_image(scratch_.path(a)), second = read_image(scratch_.path(b));
+        if (!first || !second || first->extent() != second->extent()) return false;
+        for (int j = 0; j < first->extent().height; ++j) {
+            for (int i = 0; i < first->extent().width; ++i)
+                if (std::abs(first->planes[0].at(i, j) - second->planes[0].at(i, j)) > 0.5f / 255.0f) return false;
+        }
+        return true;
+    }
+
+    Scratch scratch_;
+    std::vector<std::string> before_;
+};
+
+TEST_F(RoughnessOut, HasTheLevelsOfTheNormalsAndGetsRougher) {
+    does("mip-normals", {"n.png", "-o", "n.dds", "--roughness-in", "0.25", "--roughness-out", "r.dds"});
+    const Texture normals = texture("n.dds"), roughness = texture("r.dds");
+    EXPECT_EQ(roughness.format, Format::bc4_unorm);
+    ASSERT_EQ(roughness.levels.size(), normals.levels.size());
+    for (std::size_t k = 0; k < roughness.levels.size(); ++k)
+        EXPECT_EQ(roughness.levels[k].extent, normals.levels[k].extent);
+    EXPECT_NEAR(mean("r.dds", 0), 0.25, 0.5 / 255);
+    for (int level = 1; level < 4; ++level) EXPECT_GT(mean("r.dds", level), mean("r.dds", level - 1)) << level;
+    // The normals are those of a run without roughness.
+    does("mip-normals", {"n.png", "-o", "alone.dds"});
+    EXPECT_TRUE(scratch_.read("alone.dds") == scratch_.read("n.dds"));
+}
+
+TEST_F(RoughnessOut, ModelsDifferAsTheyPromise) {
+    // alpha^2 of the last level, on a mirror; exactly, from floats.
+    const auto last = [&](const std::string& model) {
+        does("mip-normals", {"n.png", "-o", "n.dds", "--effort", "fast", "--roughness-model", model,
+                             "--roughness-out", "r.exr", "--roughness-format", "float"});
+        return std::pow(mean("r.exr", static_cast<int>(texture("r.exr").levels.size()) - 1), 4.0);
+    };
+    const double toksvig = last("toksvig"), vmf = last("vmf");
+    const double q = toksvig / (1.0 - toksvig);  // q / (m + q) = toksvig with q = 2 (1 - m)
+    const double m = 2.0 / (2.0 + q);
+    EXPECT_NEAR(vmf, (1.0 - m * m) / (2.0 * (3.0 * m - m * m * m)), 1e-5);
+    does("mip-normals", {"n.png", "-o", "n.dds", "--effort", "fast", "--roughness-out", "default.exr",
+                         "--roughness-format", "float"});
+    EXPECT_NEAR(std::pow(mean("default.exr", 9), 4.0), toksvig, 1e-6);
+}
+
+TEST_F(RoughnessOut, FollowsTheExtensionAndTheFormat) {
+    const std::pair<std::string, Format> kinds[] = {{"r.ktx2", Format::bc4_unorm}, {"r.exr", Format::r16_float}};
+    for (const auto& [name, format] : kinds) {
+        does("mip-normals", {"n.png", "-o", "n.dds", "--effort", "fast", "--roughness-out", name});
+        EXPECT_EQ(texture(name).format, format) << name;
+        EXPECT_EQ(texture(name).levels.size(), texture("n.dds").levels.size()) << name;
+        EXPECT_FALSE(texture(name).swizzle_known) << name;
+    }
+    for (const auto& [word, format] : {std::pair{"r8", Format::r8_unorm}, {"r16", Format::r16_unorm},
+                                       {"half", Format::r16_float}, {"float", Format::r32_float}}) {
+        does("mip-normals", {"n.png", "-o", "n.dds", "--effort", "fast", "--roughness-out", "r.dds",
+                             "--roughness-format", word});
+        EXPECT_EQ(texture("r.dds").format, format) << word;
+    }
+    does("mip-normals", {"n.png", "-o", "n.dds", "--mips", "none", "--roughness-in", "1", "--roughness-out", "r.png"});
+    const auto picture = read_image(scratch_.path("r.png"));
+    ASSERT_TRUE(picture);
+    EXPECT_EQ(picture->names, std::vector<std::string>{"Y"});
+    EXPECT_EQ(picture->planes[0].at(3, 3), 1.0f);
+}
+
+TEST_F(RoughnessOut, GoesWithEachInputOfMany) {
+    does("bake-normals", {"waves.png", "-o", "w.png", "--bumpiness", "6"});
+    std::filesystem::create_directory(scratch_.path("rough"));
+    std::filesystem::copy_file(scratch_.path("h.png"), scratch_.path("rough/n.png"));
+    std::filesystem::copy_file(scratch_.path("waves.png"), scratch_.path("rough/w.png"));
+    const auto out = does("mip-normals", {"n.png", "w.png", "--out-dir", "out", "--effort", "fast", "--json", "--depfile", "d",
+                                          "--roughness-in", "{dir}/rough/{stem}.png:r",
+                                          "--roughness-out", "{stem}_{format}_{level}{ext}"});
+    EXPECT_TRUE(scratch_.has("out/n.dds"));
+    EXPECT_TRUE(scratch_.has("out/w_r8_0.png"));
+    const auto report = nlohmann::json::parse(lines_of(out)[0]);
+    EXPECT_EQ(report["output"], "out/n.dds");
+    EXPECT_EQ(report["roughness"]["output"].size(), report["levels"].get<std::size_t>());
+    EXPECT_EQ(report["roughness"]["output"][1], "out/n_r8_1.png");
+    EXPECT_EQ(report["roughness"]["model"], "toksvig");
+    const std::string depfile = scratch_.read("d");
+    EXPECT_NE(depfile.find("./rough/n.png"), std::string::npos) << depfile;
+    EXPECT_NE(depfile.find("out/n_r8_0.png"), std::string::npos) << depfile;
+    // The base level is what was read.
+    EXPECT_TRUE(same_red("h.png", "out/n_r8_0.png"));
+}
+
+TEST_F(RoughnessOut, MisuseIsRefused) {
+    refuses({"--roughness-in", "0.5"}, 2, "--roughness-in does nothing without --roughness-out");
+    refuses({"--roughness-out", ""}, 2, "--roughness-out");
+    refuses({"--roughness-out", "-"}, 2, "needs a file, not standard output");
+    refuses({"--roughness-out", "r.foo"}, 2, "r.foo is no kind of file that can be written");
+    refuses({"--roughness-out", "r.png"}, 2, "r.png: a png file holds one level");
+    refuses({"--roughness-out", "r_{level}.png", "--roughness-format", "bc4"}, 2, "cannot hold roughness as bc4");
+    refuses({"--roughness-out", "r_{stm}.png"}, 2, "did you mean stem?");
+    refuses({"--roughness-out", "x.dds"}, 2, "two outputs of n.png are one file, x.dds");
+    refuses({"--roughness-out", "h.png", "--mips", "none", "--roughness-in", "h.png"}, 2, "the output h.png is the input h.png");
+    refuses({"--roughness-out", "r.dds", "--depfile", "r.dds"}, 2, "r.dds is an output");
+    refuses({"--roughness-out", "r.dds", "--roughness-in", "1.5"}, 2, "1.5");
+    refuses({"--roughness-out", "r.dds", "--roughness-in", "nan.png"}, 3, "nan.png: ");
+    refuses({"--roughness-out", "r.dds", "--roughness-in", "waves.png:a"}, 4, "waves.png: ");
+    refuses({"--roughness-out", "r.dds", "--roughness-model", "vfm"}, 2, "did you mean vmf?");
+    does("bake-normals", {"waves.png", "-o", "small.png"});
+    before_ = scratch_.list();
+    refuses({"--roughness-out", "r.dds", "--roughness-in", "small.png"}, 4, "roughness wants the same");
+}
+
+}  // namespace tex::cli

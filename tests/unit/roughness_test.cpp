@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <tex/roughness.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <tex/unpack.h>
+
+#include "reference/roughness.h"
+#include "unit/fields.h"
+#include "unit/targets.h"
+
+namespace {
+
+using tex::Extent;
+using tex::Format;
+using tex::MipOptions;
+using tex::NormalMap;
+using tex::Plane;
+using tex::RoughnessChain;
+using tex::RoughnessModel;
+using tex::Wrap;
+using tex::fields::noise_normals;
+using tex::fields::same_bytes;
+
+constexpr RoughnessModel kModels[] = {RoughnessModel::toksvig, RoughnessModel::vmf};
+
+RoughnessChain chain_of(const NormalMap& base, const Plane<float>& roughness, RoughnessModel model,
+                        const MipOptions& options = {}, int threads = 1) {
+    return std::move(tex::build_roughness_chain(base, roughness, model, options, {threads, {}}).value());
+}
+
+RoughnessChain chain_of(const NormalMap& base, float roughness, RoughnessModel model) {
+    return chain_of(base, Plane<float>(base.extent(), roughness), model);
+}
+
+Plane<float> noise_roughness(Extent extent) {
+    return tex::fields::plane_of(extent, [](int i, int j) { return tex::fields::noise(i, j, 7); });
+}
+
+NormalMap normals_of(Extent extent, const std::function<tex::reference::Vector()>& next) {
+    NormalMap map(extent);
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) {
+            const tex::reference::Vector v = next();
+            map.x.at(i, j) = static_cast<float>(v.x);
+            map.y.at(i, j) = static_cast<float>(v.y);
+            map.z.at(i, j) = static_cast<float>(v.z);
+        }
+    }
+    return map;
+}
+
+double alpha2_of(const RoughnessChain& chain) {
+    return std::pow(static_cast<double>(chain.levels.back().at(0, 0)), 4.0);
+}
+
+// Reproducible in every standard library: mt19937 is, its distributions are not.
+class Random {
+public:
+    double uniform() { return (static_cast<double>(engine_()) + 0.5) / 4294967296.0; }
+    double gaussian() {
+        return std::sqrt(-2.0 * std::log(uniform())) * std::cos(2.0 * std::numbers::pi * uniform());
+    }
+
+private:
+    std::mt19937 engine_{20051};
+};
+
+// -- what the numbers mean ---------------------------------------------------------------------------------
+
+TEST(Roughness, VonMisesFisherSamplesGiveBackTheirConcentration) {
+    for (const double kappa : {3.0, 10.0, 50.0, 400.0}) {
+        Random random;
+        const NormalMap map = normals_of({256, 256}, [&] {
+            const double u = random.uniform(), turn = 2.0 * std::numbers::pi * random.uniform();
+            const double z = 1.0 + std::log(u + (1.0 - u) * std::exp(-2.0 * kappa)) / kappa;  // Ulrich 1984
+            const double side = std::sqrt(std::max(0.0, 1.0 - z * z));
+            return tex::reference::Vector{side * std::cos(turn), side * std::sin(turn), z};
+        });
+        EXPECT_NEAR(alpha2_of(chain_of(map, 0.0f, RoughnessModel::vmf)) * 2.0 * kappa, 1.0, 0.05) << kappa;
+        const double own = std::pow(0.4, 4.0);
+        EXPECT_NEAR((alpha2_of(chain_of(map, 0.4f, RoughnessModel::vmf)) - own) * 2.0 * kappa, 1.0, 0.05) << kappa;
+    }
+}
+
+TEST(Roughness, ToksvigTurnsAMirrorOfRandomSlopesIntoTheirBeckmannDistribution) {
+    // Beckmann: slopes are Gaussian, with the variance alpha^2 / 2 on either axis.
+    for (const double alpha : {0.03, 0.06, 0.1}) {
+        Random random;
+        const NormalMap map = normals_of({256, 256}, [&] {
+            return tex::reference::normalised({alpha * std::sqrt(0.5) * random.gaussian(),
+                                               alpha * std::sqrt(0.5) * random.gaussian(), 1.0});
+        });
+        const RoughnessChain chain = chain_of(map, 0.0f, RoughnessModel::toksvig);
+        EXPECT_NEAR(std::sqrt(alpha2_of(chain)) / alpha, 1.0, 0.02) << alpha;
+        // On a rough surface both variances add up.
+        const double rough = alpha2_of(chain_of(map, 0.3f, RoughnessModel::toksvig));
+        EXPECT_NEAR(rough / (std::pow(0.3, 4.0) + alpha * alpha), 1.0, 0.06) << alpha;
+        // What the header says of the other model: a quarter.
+        EXPECT_NEAR(alpha2_of(chain_of(map, 0.0f, RoughnessModel::vmf)) / alpha2_of(chain), 0.25, 0.01) << alpha;
+    }
+}
+
+TEST(Roughness, VectorsThatAgreeKeepTheRoughness) {
+    for (const RoughnessModel model : kModels) {
+        for (const Extent extent : {Extent{64, 64}, Extent{53, 7}}) {
+            const NormalMap tilted = normals_of(extent, [] { return tex::reference::Vector{0.36, -0.48, 0.8}; });
+            for (const Plane<float>& level : chain_of(tilted, 0.0f, model).levels) EXPECT_EQ(level.at(0, 0), 0.0f);
+            for (const Plane<float>& level : chain_of(tilted, 0.5f, model).levels)
+                EXPECT_NEAR(level.at(0, 0), 0.5f, 1e-6f);
+        }
+    }
+}
+
+TEST(Roughness, SquaresOfAlphaAreAveraged) {
+    const NormalMap flat = normals_of({2, 1}, [] { return tex::reference::Vector{0.0, 0.0, 1.0}; });
+    Plane<float> roughness(Extent{2, 1}, 0.0f);
+    roughness.at(1, 0) = 1.0f;
+    for (const RoughnessModel model : kModels)
+        EXPECT_NEAR(chain_of(flat, roughness, model).levels[1].at(0, 0), std::pow(0.5, 0.25), 1e-6);
+}
+
+TEST(Roughness, NothingIsRougherThanVectorsThatCancel) {
+    NormalMap opposite(Extent{2, 1});
+    for (int i = 0; i < 2; ++i) {
+        opposite.x.at(i, 0) = i == 0 ? 1.0f : -1.0f;
+        opposite.y.at(i, 0) = opposite.z.at(i, 0) = 0.0f;
+    }
+    for (const RoughnessModel model : kModels) {
+        for (const float roughness : {0.0f, 0.5f, 1.0f})
+            EXPECT_NEAR(chain_of(opposite, roughness, model).levels[1].at(0, 0), 1.0f, 1e-6f);
+    }
+}
+
+TEST(Roughness, TheBaseLevelIsWhatWasGivenCutToItsRange) {
+    const NormalMap base = noise_normals({4, 1});
+    Plane<float> roughness(Extent{4, 1}, 0.25f);
+    roughness.at(1, 0) = -3.0f;
+    roughness.at(2, 0) = 7.0f;
+    roughness.at(3, 0) = std::numeric_limits<float>::quiet_NaN();
+    tex::on_every_target([&] {
+        const RoughnessChain chain = chain_of(base, roughness, RoughnessModel::vmf);
+        EXPECT_EQ(chain.levels[0].at(0, 0), 0.25f);
+        EXPECT_EQ(chain.levels[0].at(1, 0), 0.0f);
+        EXPECT_EQ(chain.levels[0].at(2, 0), 1.0f);
+        EXPECT_EQ(chain.levels[0].at(3, 0), 0.0f);
+        EXPECT_TRUE(chain.levels[2].at(0, 0) > 0.0f);
+    });
+}
+
+TEST(Roughness, NeitherDomainNorFadeMatters) {
+    const NormalMap base = noise_normals({31, 16});
+    const Plane<float> roughness = noise_roughness({31, 16});
+    MipOptions other;
+    other.domain = tex::MipDomain::slope;
+    other.fade = tex::Fade{0, 2};
+    const RoughnessChain a = chain_of(base, roughness, RoughnessModel::vmf);
+    const RoughnessChain b = chain_of(base, roughness, RoughnessModel::vmf, other);
+    for (std::size_t k = 0; k < a.levels.size(); ++k) EXPECT_TRUE(same_bytes(a.levels[k], b.levels[k]));
+}
+
+// -- against the reference ---------------------------------------------------------------------------------
+
+TEST(Roughness, AgreesWithTheReferenceForEveryModelFilterWrapAndSize) {
+    for (const Extent extent : {Extent{1, 1}, Extent{2, 2}, Extent{3, 5}, Extent{17, 33}, Extent{1, 30}, Extent{40, 20}}) {
+        const NormalMap base = noise_normals(extent);
+        const Plane<float> roughness = noise_roughness(extent);
+        for (const RoughnessModel model : kModels) {
+            for (const auto& filter : tex::kMipFilterNames) {
+                for (const Wrap wrap : {Wrap::repeat, Wrap::clamp, Wrap::mirror}) {
+                    MipOptions options;
+                    options.filter = filter.value;
+                    options.wrap_x = wrap;
+                    const RoughnessChain chain = chain_of(base, roughness, model, options);
+                    const auto truth = tex::reference::build_roughness_chain(
+                        tex::reference::grid_of(base), tex::reference::grid_of(roughness), model, options);
+                    ASSERT_EQ(chain.levels.size(), truth.size());
+                    for (std::size_t k = 0; k < truth.size(); ++k) {
+                        const Extent level = chain.levels[k].extent();
+                        ASSERT_EQ(level, truth[k].extent);
+                        for (int j = 0; j < level.height; ++j) {
+                            for (int i = 0; i < level.width; ++i)
+                                ASSERT_NEAR(chain.levels[k].at(i, j), truth[k].at(i, j), 1e-5) << filter.name << k;
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST(Roughness, AsManyLevelsAsTheNormalsHave) {
+    MipOptions options;
+    options.levels = 3;
+    EXPECT_EQ(chain_of(noise_normals({16, 4}), noise_roughness({16, 4}), RoughnessModel::vmf, options).levels.size(), 3u);
+}
+
+// -- the same bytes, progress ------------------------------------------------------------------------------
+
+TEST(Roughness, GivesTheSameBytesOnEveryTargetAndForEveryNumberOfThreads) {
+    for (const Extent extent : {Extent{512, 300}, Extent{53, 123}}) {
+        const NormalMap base = noise_normals(extent);
+        const Plane<float> roughness = noise_roughness(extent);
+        for (const RoughnessModel model : kModels) {
+            std::optional<RoughnessChain> first;
+            tex::on_every_target([&] {
+                for (const int threads : {1, 3}) {
+                    RoughnessChain chain = chain_of(base, roughness, model, {}, threads);
+                    if (!first) first = std::move(chain);
+                    else
+                        for (std::size_t k = 0; k < chain.levels.size(); ++k)
+                            EXPECT_TRUE(same_bytes(first->levels[k], chain.levels[k])) << k;
+                }
+            });
+        }
+    }
+}
+
+TEST(Roughness, ReportsProgressAndCanBeCancelled) {
+    const NormalMap base = noise_normals({300, 301});
+    const Plane<float> roughness = noise_roughness({300, 301});
+    std::vector<double> seen = {0.0};
+    const auto chain = tex::build_roughness_chain(base, roughness, RoughnessModel::vmf, {}, {1, [&](double done) {
+                                                      seen.push_back(done);
+                                                      return true;
+                                                  }});
+    ASSERT_TRUE(chain);
+    EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
+    EXPECT_EQ(seen.back(), 1.0);
+    const auto none = tex::build_roughness_chain(base, roughness, RoughnessModel::vmf, {},
+                                                 {1, [](double) { return false; }});
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.error().code, tex::ErrorCode::cancelled);
+}
+
+// -- packing -----------------------------------------------------------------------------------------------
+
+TEST(Roughness, PacksIntoEveryFormatOfOneChannel) {
+    RoughnessChain chain;
+    chain.levels.push_back(noise_roughness({13, 6}));
+    chain.levels.push_back(noise_roughness({6, 3}));
+    const std::pair<Format, double> bounds[] = {{Format::r8_unorm, 0.5 / 255 + 1e-7},
+                                                {Format::r16_unorm, 0.5 / 65535 + 1e-7},
+                                                {Format::r16_float, 1.0 / 4096},
+                                                {Format::r32_float, 0.0},
+                                                {Format::bc4_unorm, 1.0 / 10}};  // noise from 0 to 1: steps of sevenths
+    for (const auto& [format, bound] : bounds) {
+        const auto texture = tex::pack_roughness(chain, format);
+        ASSERT_TRUE(texture);
+        EXPECT_FALSE(texture->swizzle_known);
+        ASSERT_EQ(texture->levels.size(), 2u);
+        for (int k = 0; k < 2; ++k) {
+            const auto image = tex::decode(*texture, k);
+            ASSERT_TRUE(image);
+            const Plane<float>& level = chain.levels[static_cast<std::size_t>(k)];
+            ASSERT_EQ(image->extent(), level.extent());
+            for (int j = 0; j < level.extent().height; ++j) {
+                for (int i = 0; i < level.extent().width; ++i)
+                    ASSERT_NEAR(image->planes[0].at(i, j), level.at(i, j), bound) << name_of(tex::kFormatNames, format);
+            }
+        }
+    }
+    EXPECT_EQ(tex::pack_roughness(chain, Format::rg8_unorm).error().code, tex::ErrorCode::bad_option);
+}
+
+}  // namespace
