@@ -10,6 +10,7 @@
 #include "cli/batch.h"
 #include "cli/name_pattern.h"
 #include "cli/scene.h"
+#include "cli/source.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
 
@@ -24,6 +25,7 @@ struct PreviewNormals {
         "preview-normals",
         "Renders normal maps: lit as a GPU would, or in false colours that show what is wrong with them."};
     cli::FileOptions files;
+    cli::SourceOptions source;
     cli::SceneOptions scene;
     std::vector<Show> shows = {Show::lit};
     int columns = 0;
@@ -38,7 +40,7 @@ struct PreviewNormals {
     PreviewNormals();
     void add_picture();
     void check(const std::vector<cli::Task>& tasks) const;
-    Result<void> process(cli::Job& job) const;
+    Result<void> process(cli::Job& job);
     Result<Texture> draw(const std::vector<std::string>& names, const std::vector<cli::SampledMap>& maps,
                          const cli::SceneFiles& with, const PreviewOptions& options,
                          const Execution& execution) const;
@@ -70,6 +72,7 @@ PreviewNormals::PreviewNormals() {
                 "the kind of file, where the output's name does not tell (a pipe)")
         .preset = "by extension; png for -";
     add_picture();
+    source.add(command, false);
     scene.add(command);
     run.add(command);
     command.example("preview-normals bricks.dds -o bricks.png", "The map under a light from the upper left.");
@@ -207,7 +210,7 @@ Result<Texture> PreviewNormals::draw(const std::vector<std::string>& names,
     return contact_sheet(panels, row);
 }
 
-Result<void> PreviewNormals::process(cli::Job& job) const {
+Result<void> PreviewNormals::process(cli::Job& job) {
     std::vector<std::string> names = {job.task.input};
     names.insert(names.end(), job.task.also.begin(),
                  job.task.also.end() - static_cast<std::ptrdiff_t>(files.shared.size()));
@@ -216,12 +219,12 @@ Result<void> PreviewNormals::process(cli::Job& job) const {
     std::vector<cli::SampledMap> maps;
     for (std::size_t k = 0; k < names.size(); ++k) {
         auto map = cli::read_sampled_map(
-            job, names[k], scene.y_in, scene.preview, !difference,
+            job, names[k], source, std::nullopt, scene.preview, !difference,
             job.until(0.4 * static_cast<double>(k + 1) / static_cast<double>(names.size())));
         if (!map) return map.error();
         maps.push_back(std::move(*map));
     }
-    const auto with = scene.read(job, job.until(0.5));
+    const auto with = scene.read(job, source, job.until(0.5));
     if (!with) return with.error();
 
     std::vector<Texture> frames;
@@ -261,6 +264,7 @@ int main(int argc, char** argv) {
             return {};
         };
         steps.process = [&](cli::Job& job) { return self.process(job); };
+        steps.finish = [&] { self.source.warn_of_guesses(); };
         return cli::run_batch(self.command, self.files, self.run, self.output, steps);
     });
 }

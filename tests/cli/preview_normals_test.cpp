@@ -37,7 +37,9 @@ protected:
     // Refused with a sentence that holds `part`, and nothing is written.
     void refuses(const std::vector<std::string>& arguments, const std::string& part, int code = 2) {
         const auto before = scratch_.list();
-        const Ran ran = preview(arguments);
+        std::vector<std::string> quiet = arguments;
+        quiet.push_back("--quiet");  // guesses of layouts are warnings
+        const Ran ran = preview(quiet);
         EXPECT_EQ(ran.code, code) << part;
         EXPECT_EQ(lines_of(ran.err).size(), 1u) << ran.err;
         EXPECT_NE(ran.err.find(part), std::string::npos) << ran.err;
@@ -113,6 +115,36 @@ TEST_F(PreviewNormals, GreenThatIsUpsideDownChangesThePictureUntilItIsTold) {
             largest = std::max(largest, std::abs(told->planes[0].at(i, j) - up->planes[0].at(i, j)));
     }
     EXPECT_LE(largest, 4.5f / 255.0f);
+}
+
+TEST_F(PreviewNormals, ReadsMapsAsTheOtherCommandsDo) {
+    const auto bake_as = [&](const std::string& to, const std::string& format) {
+        EXPECT_EQ(run(scratch_, "bake-normals", {"small.png", "-o", to, "--format", format, "--bumpiness", "60", "--no-sync"}).code, 0);
+    };
+    const auto bytes = [&](std::vector<std::string> arguments, const std::string& warning = "") {
+        arguments.insert(arguments.end(), {"-o", "x.png", "--size", "48"});
+        const Ran ran = preview(arguments);
+        EXPECT_EQ(ran.code, 0) << ran.err;
+        EXPECT_NE(ran.err.find(warning), std::string::npos) << ran.err;
+        EXPECT_EQ(ran.err.empty(), warning.empty()) << ran.err;
+        return scratch_.read("x.png");
+    };
+    bake_as("ag.png", "ag8");
+    const std::string told = bytes({"ag.png", "--swizzle", "dxt5nm"});
+    EXPECT_EQ(bytes({"ag.png"}, "ag.png: taken for dxt5nm"), told);
+    EXPECT_NE(bytes({"ag.png", "--swizzle", "rgb"}), told);
+    bake_as("xy.dds", "bc5");
+    const std::string xy = bytes({"xy.dds"});
+    EXPECT_EQ(bytes({"xy.dds", "--bc5-order", "xy"}), xy);
+    EXPECT_NE(bytes({"xy.dds", "--bc5-order", "yx"}), xy);
+    bake_as("n.exr", "half");
+    EXPECT_NE(bytes({"n.exr", "--range", "unsigned"}), bytes({"n.exr"}));
+    bake_as("rgb.png", "rgb8");
+    EXPECT_NE(bytes({"rgb.png", "--snap-flat", "--show", "tilt"}), bytes({"rgb.png", "--show", "tilt"}));
+    // A detail is read alike.
+    const std::string detailed = bytes({"rgb.png", "--detail", "ag.png"}, "ag.png: taken for dxt5nm");
+    EXPECT_NE(bytes({"rgb.png", "--swizzle", "rgb", "--detail", "ag.png"}), detailed);
+    EXPECT_EQ(preview({"ag.png", "-o", "x.png", "--swizzle", "rg_"}).code, 2);
 }
 
 TEST_F(PreviewNormals, SplitsAndComparesTwoMaps) {

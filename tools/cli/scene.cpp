@@ -7,9 +7,8 @@
 
 #include <fmt/format.h>
 #include <tex/color.h>
-#include <tex/container.h>
+#include <tex/image_io.h>
 #include <tex/mip.h>
-#include <tex/unpack.h>
 
 #include "cli/groups.h"
 #include "cli/text.h"
@@ -169,7 +168,7 @@ void SceneOptions::add_detail(Command& command) {
     add_pair(command, fine.offset_x, fine.offset_y, "--detail-offset", "its offset in its own widths");
     command.number(fine.scale, "--detail-scale", "S", {}, "its strength");
     command.choice(detail_y_in, "--detail-y-in", "AXIS", kYAxisNames, "where green points in it").preset =
-        "what the file says, else up";
+        "as --y-in, else as the file says";
     check_needs(command, "--detail", {"--detail-scale", "--detail-y-in"});
     command.check([&command] {
         if (command.given("--detail") || command.given("--detail-albedo")) return;
@@ -194,8 +193,6 @@ void SceneOptions::add_parallax(Command& command) {
 
 void SceneOptions::add_sampling(Command& command) {
     command.group("Sampling");
-    command.choice(y_in, "--y-in", "AXIS", kYAxisNames, "where green points in the maps").preset =
-        "what the file says, else up";
     Row& row = command.option(
         "--wrap", "W[,W]", "what lies beyond the border of all maps, or for x and y apart",
         [this](const std::string& text) {
@@ -221,39 +218,30 @@ std::vector<std::string> SceneOptions::files() const {
     return names;
 }
 
-Result<SampledMap> read_sampled_map(Job& job, const std::string& path, std::optional<YAxis> y,
-                                    const PreviewOptions& preview, bool keep_length,
+Result<SampledMap> read_sampled_map(Job& job, const std::string& path, SourceOptions& source,
+                                    std::optional<YAxis> y, const PreviewOptions& preview, bool keep_length,
                                     const Execution& execution) {
-    auto texture = read_texture(path, job.read_options);
-    if (!texture) return texture.error();
-    const auto named = [&](Error error) {
-        if (error.file.empty()) error.file = path;
-        return error;
-    };
-    UnpackOptions options;
-    options.y_axis = y;
-    options.keep_length = keep_length;
+    auto read = source.read(job, path, execution, false, y, keep_length);
+    if (!read) return read.error();
     SampledMap map;
     map.without_z =
-        std::find(texture->swizzle.begin(), texture->swizzle.end(), Component::z) == texture->swizzle.end();
-    auto chain = unpack(*texture, options, execution);
-    if (!chain) return named(chain.error());
-    map.chain = std::move(*chain);
+        std::find(read->swizzle.begin(), read->swizzle.end(), Component::z) == read->swizzle.end();
+    map.chain = std::move(read->chain);
     if (map.chain.levels.size() == 1) {
         MipOptions mip;
         mip.wrap_x = preview.wrap_x;
         mip.wrap_y = preview.wrap_y;
         auto built = build_mip_chain(std::move(map.chain.levels.front()), mip, execution);
-        if (!built) return named(built.error());
+        if (!built) return Error{built.error().code, path, built.error().reason};
         map.chain = std::move(*built);
     }
     return map;
 }
 
-Result<SceneFiles> SceneOptions::read(Job& job, const Execution& execution) const {
+Result<SceneFiles> SceneOptions::read(Job& job, SourceOptions& source, const Execution& execution) const {
     SceneFiles files;
     if (!detail.empty()) {
-        auto map = read_sampled_map(job, detail, detail_y_in, preview, false, execution);
+        auto map = read_sampled_map(job, detail, source, detail_y_in, preview, false, execution);
         if (!map) return map.error();
         files.detail = std::move(*map);
     }

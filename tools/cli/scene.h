@@ -11,6 +11,7 @@
 
 #include "cli/command.h"
 #include "cli/job.h"
+#include "cli/source.h"
 
 namespace tex::cli {
 
@@ -21,9 +22,9 @@ struct SampledMap {
 };
 
 // `keep_length` leaves vectors as long as they are stored, for pictures that show what is wrong with a map.
-[[nodiscard]] Result<SampledMap> read_sampled_map(Job& job, const std::string& path, std::optional<YAxis> y,
-                                                  const PreviewOptions& preview, bool keep_length,
-                                                  const Execution& execution);
+[[nodiscard]] Result<SampledMap> read_sampled_map(Job& job, const std::string& path, SourceOptions& source,
+                                                  std::optional<YAxis> y, const PreviewOptions& preview,
+                                                  bool keep_length, const Execution& execution);
 
 // The files of a scene beside its map.
 struct SceneFiles {
@@ -37,12 +38,13 @@ struct SceneFiles {
 struct SceneOptions {
     PreviewOptions preview;
     std::string albedo, detail, detail_albedo, height;  // paths, or empty
-    std::optional<YAxis> y_in, detail_y_in;
+    std::optional<YAxis> detail_y_in;
 
     void add(Command& command);
 
     [[nodiscard]] std::vector<std::string> files() const;
-    [[nodiscard]] Result<SceneFiles> read(Job& job, const Execution& execution) const;
+    // The detail is read as `source` says, but for its y.
+    [[nodiscard]] Result<SceneFiles> read(Job& job, SourceOptions& source, const Execution& execution) const;
 
 private:
     void add_shape(Command& command);

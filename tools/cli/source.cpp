@@ -66,7 +66,7 @@ Encoding encoding_of(const Source& source, const Task& task) {
     return default_encoding(task.container);
 }
 
-void SourceOptions::add(Command& command) {
+void SourceOptions::add(Command& command, bool with_keep_length) {
     command.group("Input");
     command.choice(unpack.y_axis, "--y-in", "AXIS", kYAxisNames, "where green points in the input").preset =
         "as the file says, else up";
@@ -88,7 +88,7 @@ void SourceOptions::add(Command& command) {
         .preset = "yx in ATI2, else xy";
     command.choice(unpack.range, "--range", "R", kValueRangeNames, "how stored floats are to be read");
     command.flag(unpack.snap_flat, "--snap-flat", "read 127 and 128 of 8-bit files as 0");
-    command.flag(unpack.keep_length, "--keep-length", "do not normalise what is read");
+    if (with_keep_length) command.flag(unpack.keep_length, "--keep-length", "do not normalise what is read");
 }
 
 Result<Swizzle> SourceOptions::swizzle_of(const std::string& path, const Texture& texture) {
@@ -119,7 +119,8 @@ void SourceOptions::warn_of_guesses() const {
 }
 
 Result<Source> SourceOptions::read(Job& job, const std::string& path, const Execution& execution,
-                                   bool base_only, std::optional<YAxis> y) {
+                                   bool base_only, std::optional<YAxis> y,
+                                   std::optional<bool> keep_length) {
     const auto named = [&](Error error) {
         if (error.file.empty()) error.file = path;
         return error;
@@ -147,6 +148,7 @@ Result<Source> SourceOptions::read(Job& job, const std::string& path, const Exec
     UnpackOptions options = unpack;
     options.swizzle = source.swizzle;
     options.y_axis = source.y;
+    options.keep_length = keep_length.value_or(unpack.keep_length);
     // Floats that say that they are normals are taken at their word: a chain of commands then gives the bytes of one.
     const FormatInfo info = format_info(texture->format);
     if (info.sample == SampleKind::floating && info.bits == 32 && texture->normal_encoding == "signed") {

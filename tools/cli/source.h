@@ -42,12 +42,14 @@ struct SourceOptions {
     std::optional<Bc5Order> bc5_order;
     UnpackOptions unpack;
 
-    void add(Command& command);
+    // Without --keep-length for commands that choose themselves.
+    void add(Command& command, bool with_keep_length = true);
 
     // Reads and unpacks `path`, all its levels or the base level alone. Tells the job what a reader
-    // overlooked. `y` goes before what the options and the file say of y. Any thread may call.
+    // overlooked. `y` goes before what the options and the file say of y, `keep_length` before the option. Any thread may call.
     [[nodiscard]] Result<Source> read(Job& job, const std::string& path, const Execution& execution,
-                                      bool base_only, std::optional<YAxis> y = std::nullopt);
+                                      bool base_only, std::optional<YAxis> y = std::nullopt,
+                                      std::optional<bool> keep_length = std::nullopt);
 
     // The same for the job's input; tells the job's report the format and swizzle of the source.
     [[nodiscard]] Result<Source> read(Job& job, double until, bool base_only);
