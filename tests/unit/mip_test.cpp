@@ -240,6 +240,46 @@ TEST(Mip, ASymmetricBumpStaysCentred) {
     }
 }
 
+TEST(Mip, ABumpStaysWhereItIs) {
+    // The centre of mass of a round bump, weighed by the squares of its slopes; half a texel of drift in the step to a level would
+    // move it by half a texel of that level.
+    for (const Extent extent : {Extent{256, 192}, Extent{253, 187}, Extent{131, 255}}) {
+        const double u = 0.37 * extent.width, v = 0.58 * extent.height, sigma = 14.0;
+        NormalMap base(extent);
+        for (int j = 0; j < extent.height; ++j) {
+            for (int i = 0; i < extent.width; ++i) {
+                const double x = i + 0.5 - u, y = v - j - 0.5;
+                const double rise = 12.0 * std::exp(-(x * x + y * y) / (2.0 * sigma * sigma)) / (sigma * sigma);
+                const double length = std::sqrt(rise * rise * (x * x + y * y) + 1.0);
+                base.x.at(i, j) = static_cast<float>(rise * x / length);
+                base.y.at(i, j) = static_cast<float>(rise * y / length);
+                base.z.at(i, j) = static_cast<float>(1.0 / length);
+            }
+        }
+        for (const auto& filter : tex::kMipFilterNames) {
+            for (const MipDomain domain : kDomains) {
+                const MipChain chain = chain_of(base, options_of(filter.value, domain, Wrap::repeat));
+                for (std::size_t k = 0; k < 4; ++k) {
+                    const NormalMap& level = chain.levels[k];
+                    const double wide = static_cast<double>(extent.width) / level.extent().width;
+                    const double high = static_cast<double>(extent.height) / level.extent().height;
+                    double mass = 0.0, sum_x = 0.0, sum_y = 0.0;
+                    for (int j = 0; j < level.extent().height; ++j) {
+                        for (int i = 0; i < level.extent().width; ++i) {
+                            const double weight = std::pow(tilt_in_degrees(level, i, j), 2.0);
+                            mass += weight;
+                            sum_x += weight * (i + 0.5) * wide;
+                            sum_y += weight * (j + 0.5) * high;
+                        }
+                    }
+                    ASSERT_NEAR(sum_x / mass, u, 0.02 * wide) << filter.name << " level " << k;
+                    ASSERT_NEAR(sum_y / mass, v, 0.02 * high) << filter.name << " level " << k;
+                }
+            }
+        }
+    }
+}
+
 TEST(Mip, VectorsThatCancelBecomeFlat) {
     NormalMap base = constant_normals({2, 1}, 1.0f, 0.0f, 0.0f);
     base.x.at(1, 0) = -1.0f;
