@@ -7,6 +7,7 @@
 #include "cli/batch.h"
 #include "cli/groups.h"
 #include "cli/heights.h"
+#include "cli/name_pattern.h"
 #include "cli/usage_error.h"
 
 namespace {
@@ -29,6 +30,9 @@ struct BakeNormals {
     BakeNormals();
     void add_kernel();
     Result<void> process(cli::Job& job);
+    Result<void> process_levels(cli::Job& job);
+    [[nodiscard]] Encoding encoding(const cli::Job& job) const;
+    static void report_way(cli::Job& job, const SlopeRange& slopes, Path path);
 };
 
 BakeNormals::BakeNormals() {
@@ -71,6 +75,29 @@ void BakeNormals::add_kernel() {
 }
 
 Result<void> BakeNormals::process(cli::Job& job) {
+    if (cli::has_level(job.task.output)) return process_levels(job);
+    BakeFileOptions options;
+    options.read = job.read_options;
+    options.heights = reader.heights.options;
+    options.color = reader.color.color;
+    options.strength = [this](Extent extent) { return reader.strength.strength(extent); };
+    options.bake = bake;
+    options.mip = mips.mip;
+    options.mip.levels = mips.levels_for(job.task);
+    options.pack = output.pack_options(encoding(job), output.y.value_or(YAxis::up));
+    options.write = output.write_options(job);
+    options.slopes = run.json;
+    const auto baked = bake_file(job.task.input, job.task.output, job.task.container, options, job.until(1.0));
+    if (!baked) return baked.error();
+    reader.note(job, baked->heights);
+    job.wrote(job.task.output);
+    cli::report_texture(job, baked->extent, baked->levels, options.pack, baked->bytes);
+    report_way(job, baked->slopes, baked->path);
+    return {};
+}
+
+// A file for each level: the chain is held as a whole.
+Result<void> BakeNormals::process_levels(cli::Job& job) {
     auto field = reader.read(job, job.until(0.3));
     if (!field) return field.error();
     auto normals = tex::bake(*field, bake, job.until(0.4));
@@ -82,11 +109,19 @@ Result<void> BakeNormals::process(cli::Job& job) {
     mip.levels = mips.levels_for(job.task);
     auto chain = build_mip_chain(std::move(*normals), mip, job.until(0.6));
     if (!chain) return chain.error();
-    const Encoding encoding = output.format.value_or(default_encoding(job.task.container));
-    auto written = cli::write_chain(job, std::move(*chain), output, encoding, output.y.value_or(YAxis::up));
+    auto written = cli::write_chain(job, std::move(*chain), output, encoding(job), output.y.value_or(YAxis::up));
     if (!written) return written.error();
-    job.report["slopes"] = {{"x", {slopes.min_x, slopes.max_x}}, {"y", {slopes.min_y, slopes.max_y}}};
+    report_way(job, slopes, Path::whole);
     return {};
+}
+
+Encoding BakeNormals::encoding(const cli::Job& job) const {
+    return output.format.value_or(default_encoding(job.task.container));
+}
+
+void BakeNormals::report_way(cli::Job& job, const SlopeRange& slopes, Path path) {
+    job.report["slopes"] = {{"x", {slopes.min_x, slopes.max_x}}, {"y", {slopes.min_y, slopes.max_y}}};
+    job.report["path"] = name_of(kPathNames, path);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "containers/exr.h"
 #include "containers/png.h"
 #include "containers/reader.h"
+#include "containers/row_source.h"
 
 namespace tex {
 namespace {
@@ -35,18 +36,24 @@ Result<Image> read_base_level(InputFile& file, const ReadOptions& options) {
 
 }  // namespace
 
+Result<Image> read_image(InputFile& file, const ReadOptions& options) {
+    return guarded([&]() -> Result<Image> {
+        Result<Image> image = is_png(file.head())       ? read_png(file, options)
+                              : is_exr(file.head())     ? read_exr(file, options)
+                              : is_texture(file.head()) ? read_base_level(file, options)
+                                                        : read_with_reader(file, options);
+        if (image || !image.error().file.empty()) return image;
+        Error error = image.error();
+        error.file = file.path();
+        return error;
+    });
+}
+
 Result<Image> read_image(const std::string& path, const ReadOptions& options) {
     return guarded([&]() -> Result<Image> {
         Result<InputFile> file = InputFile::open(path);
         if (!file) return std::move(file).error();
-        Result<Image> image = is_png(file->head())       ? read_png(*file, options)
-                              : is_exr(file->head())     ? read_exr(*file, options)
-                              : is_texture(file->head()) ? read_base_level(*file, options)
-                                                         : read_with_reader(*file, options);
-        if (image || !image.error().file.empty()) return image;
-        Error error = image.error();
-        error.file = path;
-        return error;
+        return read_image(*file, options);
     });
 }
 

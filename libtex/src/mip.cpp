@@ -16,22 +16,17 @@
 #include "base/axis_filter.h"
 #include "base/border.h"
 #include "base/guard.h"
+#include "base/mip_rows.h"
 #include "base/parallel.h"
 #include "kernels/mip.h"
 
 namespace tex {
 namespace {
 
-float fade_at(const std::optional<Fade>& fade, int level) {
-    if (!fade) return 0.0f;
-    const float t = static_cast<float>(level - fade->first) / static_cast<float>(fade->last - fade->first);
-    return std::clamp(t, 0.0f, 1.0f);
-}
-
 void finish_rows(NormalMap& level, MipDomain domain, float fade, int begin, int end) {
-    const auto finish = domain == MipDomain::vector ? finish_vectors : finish_slopes;
-    for (int j = begin; j < end; ++j)
-        finish(level.x.row(j), level.y.row(j), level.z.row(j), level.extent().width, fade);
+    for (int j = begin; j < end; ++j) {
+        finish_row({level.x.row(j), level.y.row(j), level.z.row(j)}, level.extent().width, domain, fade);
+    }
 }
 
 // One level and the next.
@@ -93,22 +88,19 @@ private:
     std::vector<int> held_;  // the row of the level that each slot holds
 };
 
-// Rows [begin, end) of step.to by any filter: down the columns first, whole rows at a time, then across.
+// Rows [begin, end) of step.to by any filter.
 void filter_strip(const Step& step, int begin, int end) {
     const int width = step.from.extent().width;
     const int taps = step.y.taps;
     SourceRows source(step);
-    RowFilter across(step.x, step.options.wrap_x, width);
+    MipRows filtered(step.x, step.y, step.options.wrap_x, width);
     std::vector<const float*> rows(static_cast<std::size_t>(taps));
-    std::vector<float> weights(static_cast<std::size_t>(taps));
     for (int j = begin; j < end; ++j) {
         const int first = 2 * j + step.y.first;
         source.prepare(first);
-        for (int k = 0; k < taps; ++k) weights[static_cast<std::size_t>(k)] = step.y.weight(k, j);
         for (int plane = 0; plane < step.planes(); ++plane) {
             for (int k = 0; k < taps; ++k) rows[static_cast<std::size_t>(k)] = source.row(plane, first + k);
-            filter_rows(rows.data(), weights.data(), taps, width, across.row());
-            across.run(plane_of(step.to, plane).row(j));
+            filtered.make(rows.data(), j, plane_of(step.to, plane).row(j));
         }
     }
 }

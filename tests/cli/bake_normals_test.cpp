@@ -161,6 +161,23 @@ TEST_F(BakeNormals, OptionsChangeTheResult) {
     EXPECT_TRUE(bytes_of({"bricks.png", "--wrap", "repeat,repeat"}) == plain);
 }
 
+TEST_F(BakeNormals, TellsWhichWayAFileWent) {
+    const auto path_of = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), {"--json", "--effort", "fast"});
+        const Ran ran = bake(arguments);
+        EXPECT_EQ(ran.code, 0) << ran.err;
+        return nlohmann::json::parse(ran.out)["path"].get<std::string>();
+    };
+    EXPECT_EQ(path_of({"bricks.png", "-o", "x.dds"}), "streamed");
+    EXPECT_EQ(path_of({"bricks.png", "-o", "x.ktx2", "--blur", "2", "--kernel", "scharr", "--mip-filter", "kaiser"}), "streamed");
+    EXPECT_EQ(path_of({"bricks.png", "-o", "x.png"}), "whole");
+    EXPECT_EQ(path_of({"bricks.png", "-o", "x.dds", "--color-space", "sRGB"}), "whole");
+    EXPECT_EQ(path_of({"bricks.png", "--name", "x{level}.dds"}), "whole");
+    EXPECT_EQ(path_of({"bricks.png", "-o", "y.dds", "--fill-invalid"}), "whole");
+    EXPECT_EQ(path_of({"bricks.png", "-o", "x.dds"}), "streamed");
+    EXPECT_TRUE(scratch_.read("x.dds") == scratch_.read("y.dds"));
+}
+
 TEST_F(BakeNormals, ThreadsDoNotChangeTheBytes) {
     const std::string one = bytes_of({"bricks.png", "--threads", "1"});
     for (const std::string count : {"2", "3", "16"})

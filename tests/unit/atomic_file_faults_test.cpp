@@ -49,15 +49,15 @@ bool fails() {
 
 extern "C" {
 
-ssize_t write(int fd, const void* data, std::size_t count) {
+ssize_t pwrite(int fd, const void* data, std::size_t count, off_t offset) {
     if (faults.active && faults.dribble) {
         if (++faults.calls % 2 == 1) {
             errno = EINTR;
             return -1;
         }
-        return syscall(SYS_write, fd, data, count > 7 ? 7 : count);
+        return syscall(SYS_pwrite64, fd, data, count > 7 ? 7 : count, offset);
     }
-    return fails() ? -1 : syscall(SYS_write, fd, data, count);
+    return fails() ? -1 : syscall(SYS_pwrite64, fd, data, count, offset);
 }
 
 int openat(int folder, const char* path, int flags, ...) {

@@ -112,17 +112,21 @@ Result<HeightField> HeightReader::read(Job& job, Execution execution) {
     if (!image) return image.error();
     if (color.is_given()) {
         if (auto converted = to_linear(*image, color.color); !converted) return converted.error();
-        if (const std::string config = color.config_file(); !config.empty()) job.depends_on(config);
     }
     HeightReport report;
     auto field = height_field(*image, heights.options, execution, &report);
     if (!field) return field.error();
-    if (report.luma_texels > 0) ++luma_files_;
-    luma_texels_ += report.luma_texels;
+    note(job, report);
     const Strength value = strength.strength(field->height.extent());
     field->bumpiness_x = value.x;
     field->bumpiness_y = value.y;
     return field;
+}
+
+void HeightReader::note(Job& job, const HeightReport& report) {
+    if (const std::string config = color.config_file(); !config.empty()) job.depends_on(config);
+    if (report.luma_texels > 0) ++luma_files_;
+    luma_texels_ += report.luma_texels;
 }
 
 void HeightReader::warn_of_luma() const {

@@ -68,6 +68,9 @@ public:
     // The job's input as a height field; the job depends on the colour configuration too.
     [[nodiscard]] Result<HeightField> read(Job& job, Execution execution);
 
+    // What the reading of a job's heights met, where somebody else has read them; the job depends on the colour configuration.
+    void note(Job& job, const HeightReport& report);
+
     // One warning for all files whose height had to be guessed from colours.
     void warn_of_luma() const;
 

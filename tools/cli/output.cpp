@@ -118,11 +118,16 @@ void OutputOptions::check_holds(const std::string& output, Container container, 
                                  name_of(kEncodingNames, encoding), containers_for(encoding)));
 }
 
+WriteOptions OutputOptions::write_options(const Job& job) const {
+    WriteOptions write = job.write_options;
+    write.dds_header = dds_header;
+    write.dds_mark = dds_mark;
+    return write;
+}
+
 Result<std::size_t> write_levels(Job& job, Texture texture, const std::string& name, Container container,
                                  const OutputOptions& options) {
-    WriteOptions write = job.write_options;
-    write.dds_header = options.dds_header;
-    write.dds_mark = options.dds_mark;
+    const WriteOptions write = options.write_options(job);
     if (!has_level(name)) return write_file_of(job, texture, name, container, write);
     std::size_t bytes = 0;
     std::vector<Level> levels = std::exchange(texture.levels, {});
@@ -136,21 +141,26 @@ Result<std::size_t> write_levels(Job& job, Texture texture, const std::string& n
     return bytes;
 }
 
+void report_texture(Job& job, Extent extent, int levels, const PackOptions& pack, std::size_t bytes) {
+    job.report["extent"] = {extent.width, extent.height};
+    job.report["levels"] = levels;
+    job.report["format"] = name_of(kEncodingNames, pack.encoding);
+    job.report["y"] = name_of(kYAxisNames, pack.y_axis);
+    job.report["bytes"] = bytes;
+}
+
 Result<void> write_chain(Job& job, MipChain chain, const OutputOptions& options, Encoding encoding, YAxis y) {
     if (!can_hold_levels(job.task.container) && !has_level(job.task.output)) chain.levels.resize(1);
-    auto texture = pack(chain, {encoding, y, options.effort}, job.until(0.95));
+    const PackOptions pack_options = options.pack_options(encoding, y);
+    auto texture = pack(chain, pack_options, job.until(0.95));
     if (!texture) return texture.error();
     chain.levels.clear();
 
-    Json& report = job.report;
-    report["extent"] = {texture->extent().width, texture->extent().height};
-    report["levels"] = texture->levels.size();
-    report["format"] = name_of(kEncodingNames, encoding);
-    report["y"] = name_of(kYAxisNames, y);
-
-    auto bytes = write_levels(job, std::move(*texture), job.task.output, job.task.container, options);
+    const Extent extent = texture->extent();
+    const int count = static_cast<int>(texture->levels.size());
+    const auto bytes = write_levels(job, std::move(*texture), job.task.output, job.task.container, options);
     if (!bytes) return bytes.error();
-    report["bytes"] = *bytes;
+    report_texture(job, extent, count, pack_options, *bytes);
     return {};
 }
 

@@ -30,6 +30,10 @@ struct OutputOptions {
     // The container of `output` ("-" is `standard_output`'s); throws UsageError where its name does not tell.
     [[nodiscard]] Container container_for(const std::string& output, Container standard_output) const;
 
+    [[nodiscard]] PackOptions pack_options(Encoding encoding, YAxis y_axis) const { return {encoding, y_axis, effort}; }
+    // Those of the job, with what is asked for here.
+    [[nodiscard]] WriteOptions write_options(const Job& job) const;
+
     // Throws UsageError where `encoding` does not fit into the container.
     static void check_holds(const std::string& output, Container container, Encoding encoding);
 };
@@ -44,8 +48,11 @@ struct OutputOptions {
 [[nodiscard]] Result<std::size_t> write_levels(Job& job, Texture texture, const std::string& name,
                                                Container container, const OutputOptions& options);
 
+// Tells the job's report extent, levels, format, y and bytes.
+void report_texture(Job& job, Extent extent, int levels, const PackOptions& pack, std::size_t bytes);
+
 // Packs `chain` as `encoding` and writes it where the job says: one file, or one for each level where the
-// name has {level}; a picture gets the base level. Tells the job's report extent, levels, format, y and bytes.
+// name has {level}; a picture gets the base level. See report_texture().
 [[nodiscard]] Result<void> write_chain(Job& job, MipChain chain, const OutputOptions& options,
                                        Encoding encoding, YAxis y);
 

@@ -67,6 +67,7 @@
 #include <tex/color.h>
 #include <tex/container.h>
 #include <tex/image_io.h>
+#include <tex/pipeline.h>
 
 namespace [[gnu::visibility("default")]] tex {
 

@@ -4,92 +4,39 @@
 
 #include <fcntl.h>
 #include <linux/fs.h>
-#include <pthread.h>
-#include <signal.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <climits>
 #include <cstdio>
 #include <optional>
-#include <string_view>
+#include <utility>
 
 #include <tex/container.h>
 
 #include "base/guard.h"
 #include "base/input_file.h"
 #include "base/system_error.h"
+#include "base/through_file.h"
 
 namespace tex {
 namespace {
 
 // 0, or the errno of what failed.
-int write_fully(int fd, std::span<const std::byte> bytes) {
+int write_fully(int fd, std::uint64_t offset, std::span<const std::byte> bytes) {
     constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;
     while (!bytes.empty()) {
-        const ssize_t n = ::write(fd, bytes.data(), std::min(bytes.size(), kMostAtOnce));
+        const ssize_t n = ::pwrite(fd, bytes.data(), std::min(bytes.size(), kMostAtOnce), static_cast<off_t>(offset));
         if (n < 0 && errno == EINTR) continue;
         if (n < 0) return errno;
         bytes = bytes.subspan(static_cast<std::size_t>(n));
+        offset += static_cast<std::uint64_t>(n);
     }
     return 0;
 }
-
-// -- written through: standard output, FIFOs, devices --------------------------------------------------------
-
-// While it lives, a pipe without a reader is an error (EPIPE) for this thread, not a signal that ends the process.
-class NoPipeSignal {
-public:
-    NoPipeSignal() {
-        sigemptyset(&pipe_);
-        sigaddset(&pipe_, SIGPIPE);
-        sigset_t pending;
-        sigpending(&pending);
-        was_pending_ = sigismember(&pending, SIGPIPE) == 1;
-        pthread_sigmask(SIG_BLOCK, &pipe_, &before_);
-    }
-    ~NoPipeSignal() {
-        const timespec at_once{};
-        while (!was_pending_ && sigtimedwait(&pipe_, nullptr, &at_once) == -1 && errno == EINTR) {
-        }
-        pthread_sigmask(SIG_SETMASK, &before_, nullptr);
-    }
-    NoPipeSignal(const NoPipeSignal&) = delete;
-    NoPipeSignal& operator=(const NoPipeSignal&) = delete;
-
-private:
-    sigset_t pipe_{};
-    sigset_t before_{};
-    bool was_pending_ = false;
-};
-
-// The descriptor that "-", /dev/stdout, /dev/fd/N and /proc/self/fd/N stand for. They are written through even where a
-// file is behind them: the shell that opened it holds on to that file.
-std::optional<int> named_descriptor(std::string_view path) {
-    if (path == "-" || path == "/dev/stdout") return STDOUT_FILENO;
-    for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
-        if (!path.starts_with(folder)) continue;
-        path.remove_prefix(folder.size());
-        int fd = -1;
-        const auto [end, error] = std::from_chars(path.data(), path.data() + path.size(), fd);
-        if (error == std::errc() && end == path.data() + path.size()) return fd;
-        return std::nullopt;
-    }
-    return std::nullopt;
-}
-
-Result<void> write_through(const std::string& path, int fd, std::span<const std::byte> bytes) {
-    const NoPipeSignal no_signal;
-    const int failed = write_fully(fd, bytes);
-    if (failed != 0) return system_error(path, failed, "cannot be written");
-    return {};
-}
-
-// -- replaced at once ----------------------------------------------------------------------------------------
 
 // Where the file shall be, as seen from its open directory.
 struct Target {
@@ -155,9 +102,8 @@ void keep_rights(int fd, const struct stat& old) {
     if (fchmod(fd, mode) != 0) return;  // the file stays readable by its writer alone
 }
 
-// Fills and locks a new file. 0, or the errno of what failed.
-int fill(int fd, const Target& target, std::span<const std::byte> bytes, bool sync) {
-    if (const int failed = write_fully(fd, bytes); failed != 0) return failed;
+// The last steps before a file gets its name. 0, or the errno of what failed.
+int settle(int fd, const Target& target, bool sync) {
     if (target.existing) keep_rights(fd, *target.existing);
     while (sync && fdatasync(fd) != 0) {
         if (errno == EINVAL) break;  // this kind of file cannot be synchronised
@@ -241,80 +187,127 @@ bool link_nameless(int fd, const Target& target, const std::string& name) {
 // The mode of a new file: the umask decides; a replacement is private until keep_rights().
 mode_t first_mode(const Target& target) { return target.existing ? 0600 : 0666; }
 
-// Nullopt where there are no nameless files here.
-std::optional<Result<void>> write_nameless(const Target& target, std::span<const std::byte> bytes,
-                                           const AtomicFileOptions& options) {
-    const Descriptor file(
-        ::openat(target.folder.get(), ".", O_TMPFILE | O_WRONLY | O_CLOEXEC, first_mode(target)));
-    if (!file) {
-        const bool unsupported = errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL || errno == ENOENT;
-        if (unsupported) return std::nullopt;
-        return system_error(target.path, errno, "the directory cannot be written");
+// A file without a name; an empty one where there are no nameless files here. Errors: io.
+Result<Descriptor> open_nameless(const Target& target) {
+    Descriptor file(::openat(target.folder.get(), ".", O_TMPFILE | O_WRONLY | O_CLOEXEC, first_mode(target)));
+    if (file) {
+        // Its name will come through /proc.
+        const std::string path = "/proc/self/fd/" + std::to_string(file.get());
+        if (faccessat(AT_FDCWD, path.c_str(), F_OK, 0) != 0) return Descriptor();
+        lock(file.get());
+        return file;
     }
-    lock(file.get());
-    if (const int failed = fill(file.get(), target, bytes, options.sync); failed != 0) {
-        return system_error(target.path, failed, "cannot be written");
-    }
-    if (!target.existing || options.no_clobber) {
-        if (link_nameless(file.get(), target, target.name)) return Result<void>();
-        if (errno == ENOENT) return std::nullopt;  // no /proc
-        if (errno != EEXIST) return system_error(target.path, errno, "cannot be put into place");
-        if (options.no_clobber) return exists_error(target);
-    }
-    const std::string temporary = temporary_name(
-        target, [&](const std::string& name) { return link_nameless(file.get(), target, name); });
-    if (temporary.empty()) {
-        if (errno == ENOENT) return std::nullopt;
-        return system_error(target.path, errno, "the directory cannot be written");
-    }
-    return move_into_place(target, temporary, options.no_clobber);
+    const bool unsupported = errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL || errno == ENOENT;
+    if (unsupported) return Descriptor();
+    return system_error(target.path, errno, "the directory cannot be written");
 }
 
-Result<void> write_named(const Target& target, std::span<const std::byte> bytes, const AtomicFileOptions& options) {
+// A file with a temporary name, which goes to `name`. Errors: io.
+Result<Descriptor> open_named(const Target& target, std::string& name) {
     Descriptor file;
-    const std::string temporary = temporary_name(target, [&](const std::string& name) {
-        file = Descriptor(::openat(target.folder.get(), name.c_str(),
+    name = temporary_name(target, [&](const std::string& temporary) {
+        file = Descriptor(::openat(target.folder.get(), temporary.c_str(),
                                    O_CREAT | O_EXCL | O_WRONLY | O_NOFOLLOW | O_CLOEXEC, first_mode(target)));
         if (!file) return false;
         lock(file.get());
-        if (same_file(target, name, file.get())) return true;
+        if (same_file(target, temporary, file.get())) return true;
         errno = EEXIST;  // somebody took it for a dead writer's before it was locked
         return false;
     });
-    if (temporary.empty()) return system_error(target.path, errno, "the directory cannot be written");
-    if (const int failed = fill(file.get(), target, bytes, options.sync); failed != 0) {
-        unlinkat(target.folder.get(), temporary.c_str(), 0);
-        return system_error(target.path, failed, "cannot be written");
+    if (name.empty()) return system_error(target.path, errno, "the directory cannot be written");
+    return file;
+}
+
+Result<void> name_nameless(int fd, const Target& target, bool no_clobber) {
+    if (!target.existing || no_clobber) {
+        if (link_nameless(fd, target, target.name)) return {};
+        if (errno != EEXIST) return system_error(target.path, errno, "cannot be put into place");
+        if (no_clobber) return exists_error(target);
     }
-    return move_into_place(target, temporary, options.no_clobber);
+    const std::string temporary =
+        temporary_name(target, [&](const std::string& name) { return link_nameless(fd, target, name); });
+    if (temporary.empty()) return system_error(target.path, errno, "the directory cannot be written");
+    return move_into_place(target, temporary, no_clobber);
 }
 
 }  // namespace
 
-Result<void> write_atomically(const std::string& path, std::span<const std::byte> bytes,
-                              const AtomicFileOptions& options) {
-    return guarded([&]() -> Result<void> {
+struct AtomicFile::State {
+    Target target;
+    AtomicFileOptions options;
+    Descriptor file;
+    std::string temporary;                  // the name of a file that has one
+    std::optional<ThroughFile> through;     // instead of all of the above
+
+    ~State() {
+        if (!temporary.empty()) unlinkat(target.folder.get(), temporary.c_str(), 0);
+    }
+};
+
+AtomicFile::AtomicFile(std::unique_ptr<State> state) : state_(std::move(state)) {}
+AtomicFile::AtomicFile(AtomicFile&&) noexcept = default;
+AtomicFile::~AtomicFile() = default;
+
+Result<AtomicFile> AtomicFile::open(const std::string& path, const AtomicFileOptions& options) {
+    return guarded([&]() -> Result<AtomicFile> {
         if (path.find('\0') != std::string::npos) return Error{ErrorCode::io, path, "the name holds a zero byte"};
-        if (const std::optional<int> fd = named_descriptor(path)) return write_through(path, *fd, bytes);
-        struct stat status {};
-        if (stat(path.c_str(), &status) == 0) {
-            if (S_ISDIR(status.st_mode)) return system_error(path, EISDIR);
-            if (!S_ISREG(status.st_mode)) {
-                const Descriptor device(::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY));
-                if (!device) return system_error(path, errno);
-                return write_through(path, device.get(), bytes);
-            }
+        auto state = std::make_unique<State>();
+        state->options = options;
+        Result<std::optional<ThroughFile>> through = ThroughFile::open(path);
+        if (!through) return through.error();
+        if (*through) {
+            state->through = std::move(*through);
+            return AtomicFile(std::move(state));
         }
-        const Result<Target> target = find_target(path);
+        Result<Target> target = find_target(path);
         if (!target) return target.error();
         if (target->existing && options.no_clobber) return exists_error(*target);
         // A rename would replace a file that its owner has protected; who may not write it shall not.
         if (target->existing && faccessat(target->folder.get(), target->name.c_str(), W_OK, AT_EACCESS) != 0) {
             return system_error(path, errno);
         }
-        if (std::optional<Result<void>> done = write_nameless(*target, bytes, options)) return std::move(*done);
-        return write_named(*target, bytes, options);
+        state->target = std::move(*target);
+        Result<Descriptor> file = open_nameless(state->target);
+        if (file && !*file) file = open_named(state->target, state->temporary);
+        if (!file) return file.error();
+        state->file = std::move(*file);
+        return AtomicFile(std::move(state));
     });
+}
+
+Result<void> AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
+    return guarded([&]() -> Result<void> {
+        if (state_->through) {
+            state_->through->hold(offset, bytes);
+            return {};
+        }
+        const int failed = write_fully(state_->file.get(), offset, bytes);
+        if (failed != 0) return system_error(state_->target.path, failed, "cannot be written");
+        return {};
+    });
+}
+
+Result<void> AtomicFile::commit() {
+    return guarded([&]() -> Result<void> {
+        if (state_->through) return state_->through->write_held();
+        const Target& target = state_->target;
+        const int fd = state_->file.get();
+        if (const int failed = settle(fd, target, state_->options.sync); failed != 0) {
+            return system_error(target.path, failed, "cannot be written");
+        }
+        if (state_->temporary.empty()) return name_nameless(fd, target, state_->options.no_clobber);
+        const std::string temporary = std::exchange(state_->temporary, {});
+        return move_into_place(target, temporary, state_->options.no_clobber);
+    });
+}
+
+Result<void> write_atomically(const std::string& path, std::span<const std::byte> bytes,
+                              const AtomicFileOptions& options) {
+    Result<AtomicFile> file = AtomicFile::open(path, options);
+    if (!file) return file.error();
+    if (file->state_->through) return file->state_->through->write(bytes);
+    if (Result<void> written = file->write_at(0, bytes); !written) return written;
+    return file->commit();
 }
 
 Result<void> write_file(const std::string& path, const std::vector<std::byte>& bytes, const WriteOptions& options) {

@@ -12,6 +12,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 
@@ -24,7 +26,28 @@ struct AtomicFileOptions {
     bool no_clobber = false;  // an existing file is an error
 };
 
-// Writes `bytes` to `path` as write_file() (container.h) promises. Errors: io, out_of_memory.
+class AtomicFile {
+public:
+    // Finds the target and opens the temporary. Errors: io, out_of_memory.
+    static Result<AtomicFile> open(const std::string& path, const AtomicFileOptions& options);
+    AtomicFile(AtomicFile&& other) noexcept;
+    ~AtomicFile();  // a file that was not committed leaves nothing behind
+
+    // Places bytes, in any order; what is never written is 0. Any number of threads may call at once. For what is written through (standard output,
+    // FIFOs, devices) bytes wait in memory until commit(). Errors: io, out_of_memory.
+    Result<void> write_at(std::uint64_t offset, std::span<const std::byte> bytes);
+
+    // Puts the file into place. To be called once, after all writing. Errors: io, out_of_memory.
+    Result<void> commit();
+
+private:
+    friend Result<void> write_atomically(const std::string&, std::span<const std::byte>, const AtomicFileOptions&);
+    struct State;
+    explicit AtomicFile(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+// All at once: writes `bytes` to `path` as write_file() (container.h) promises. Errors: io, out_of_memory.
 Result<void> write_atomically(const std::string& path, std::span<const std::byte> bytes, const AtomicFileOptions& options);
 
 }  // namespace tex

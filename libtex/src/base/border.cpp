@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 #include "kernels/bake.h"
 
@@ -19,8 +20,8 @@ int mirrored(int i, int n) {
 HeightIndex beyond_first(int distance, int last) {
     const int turns = (distance - 1) / (2 * last);  // pairs of half turns before the last one or two
     const int rest = distance - 2 * last * turns;   // 1 to 2 last
-    if (rest <= last) return {rest, 0, last, 2 * turns, true};
-    return {2 * last - rest, 0, last, 2 * turns + 2, false};
+    if (rest > last) return {2 * last - rest, 0, last, 2 * turns + 2, false};
+    return {rest, 0, turns == 0 ? 0 : last, 2 * turns, true};
 }
 
 float height_at(const float* row, HeightIndex at) {
@@ -47,7 +48,7 @@ HeightIndex height_index(Wrap wrap, int i, int n) {
     if (i < 0) return beyond_first(-i, last);
     // Beyond the other end all is the same seen from there.
     const HeightIndex seen = beyond_first(i - last, last);
-    return {last - seen.index, last, 0, seen.drift, seen.reflected};
+    return {last - seen.index, last, last - seen.other, seen.drift, seen.reflected};
 }
 
 int aligned_count(int count) {
@@ -55,20 +56,23 @@ int aligned_count(int count) {
     return (count + kStep - 1) / kStep * kStep;
 }
 
+HeightRows::HeightRows(Extent extent, RowOf heights, Wrap wrap_x, Wrap wrap_y, int apron, int kept)
+    : extent_(extent), heights_(std::move(heights)), wrap_x_(wrap_x), wrap_y_(wrap_y), apron_(apron), kept_(kept),
+      lead_(aligned_count(apron)), rows_(Extent{lead_ + extent.width + lead_, kept}, 0.0f) {}
+
 HeightRows::HeightRows(PlaneView<const float> heights, Wrap wrap_x, Wrap wrap_y, int apron, int kept)
-    : heights_(heights), wrap_x_(wrap_x), wrap_y_(wrap_y), apron_(apron), kept_(kept),
-      lead_(aligned_count(apron)), rows_(Extent{lead_ + heights.extent.width + lead_, kept}, 0.0f) {}
+    : HeightRows(heights.extent, [heights](int j) { return heights.row(j); }, wrap_x, wrap_y, apron, kept) {}
 
 const float* HeightRows::row(int j) const { return rows_.row(wrap_around(j, kept_)) + lead_; }
 
 const float* HeightRows::fetch(int j) {
-    const int width = heights_.extent.width;
+    const int width = extent_.width;
     float* out = rows_.row(wrap_around(j, kept_)) + lead_;
-    const HeightIndex at = height_index(wrap_y_, j, heights_.extent.height);
+    const HeightIndex at = height_index(wrap_y_, j, extent_.height);
     if (at.plain()) {
-        limit_heights(heights_.row(at.index), width, out);
+        limit_heights(heights_(at.index), width, out);
     } else {
-        continue_heights(heights_.row(at.index), heights_.row(at.edge), heights_.row(at.other), at.reflected,
+        continue_heights(heights_(at.index), heights_(at.edge), heights_(at.other), at.reflected,
                          static_cast<float>(at.drift), width, out);
     }
     for (int k = 1; k <= apron_; ++k) {

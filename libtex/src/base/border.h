@@ -3,10 +3,15 @@
 
 #pragma once
 
+#include <functional>
+
 #include <tex/height_field.h>
 #include <tex/image.h>
 
 namespace tex {
+
+// Row j of something, 0 <= j < height.
+using RowOf = std::function<const float*(int j)>;
 
 // The texel that a filter of vectors or colours reads at index i, any integer, of an axis of n texels:
 // clamp repeats the border texel.
@@ -38,6 +43,7 @@ HeightIndex height_index(Wrap wrap, int i, int n);
 // may be read and written from -lead() to a whole vector past width + apron.
 class HeightRows {
 public:
+    HeightRows(Extent extent, RowOf heights, Wrap wrap_x, Wrap wrap_y, int apron, int kept);
     HeightRows(PlaneView<const float> heights, Wrap wrap_x, Wrap wrap_y, int apron, int kept);
 
     // Computes row j, which replaces the row `kept` rows above it. Rows must be fetched from top to bottom.
@@ -48,7 +54,8 @@ public:
     [[nodiscard]] int lead() const { return lead_; }
 
 private:
-    PlaneView<const float> heights_;
+    Extent extent_;
+    RowOf heights_;
     Wrap wrap_x_;
     Wrap wrap_y_;
     int apron_;

@@ -13,6 +13,7 @@
 #include <array>
 #include <cstdlib>
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -71,8 +72,6 @@ struct PngReader : PngState {
     std::int64_t width = 0;
     std::int64_t height = 0;
     std::int64_t file_row_bytes = 0;
-    std::vector<png_byte> rows;  // one row; all of them where they are interlaced
-    Image image;
 };
 
 bool PngReader::take(png_bytep to, std::size_t count) {
@@ -139,7 +138,8 @@ bool start_rows(PngReader& reader) {
     return true;
 }
 
-void store_row8(const png_byte* from, Image& image, int j) {
+// Rows [first, end) of `image` from rows of bytes.
+void store_rows8(const png_byte* rows, int first, int end, Image& image) {
     static constexpr std::array<float, 256> kValues = [] {
         std::array<float, 256> values{};
         for (std::size_t v = 0; v < 256; ++v) values[v] = static_cast<float>(v) / 255.0f;
@@ -147,50 +147,99 @@ void store_row8(const png_byte* from, Image& image, int j) {
     }();
     const std::size_t channels = image.planes.size();
     const auto width = static_cast<std::size_t>(image.extent().width);
-    for (std::size_t c = 0; c < channels; ++c) {
-        float* to = image.planes[c].row(j);
-        const png_byte* p = from + c;
-        for (std::size_t i = 0; i < width; ++i, p += channels) to[i] = kValues[*p];
+    for (int j = first; j < end; ++j, rows += channels * width) {
+        for (std::size_t c = 0; c < channels; ++c) {
+            float* to = image.planes[c].row(j);
+            const png_byte* p = rows + c;
+            for (std::size_t i = 0; i < width; ++i, p += channels) to[i] = kValues[*p];
+        }
     }
 }
 
-void store_row16(const png_byte* from, Image& image, int j) {
+void store_rows16(const png_byte* rows, int first, int end, Image& image) {
     const std::size_t channels = image.planes.size();
     const auto width = static_cast<std::size_t>(image.extent().width);
-    for (std::size_t c = 0; c < channels; ++c) {
-        float* to = image.planes[c].row(j);
-        const png_byte* p = from + 2 * c;
-        for (std::size_t i = 0; i < width; ++i, p += 2 * channels) {
-            to[i] = static_cast<float>(p[0] << 8 | p[1]) / 65535.0f;
-        }
-    }
-}
-
-void store_row(const png_byte* from, int sample_bits, Image& image, int j) {
-    sample_bits == 16 ? store_row16(from, image, j) : store_row8(from, image, j);
-}
-
-bool read_rows(PngReader& reader, std::size_t row_bytes) {
-    if (setjmp(png_jmpbuf(reader.png))) return false;
-    const int height = reader.image.extent().height;
-    png_byte* rows = reader.rows.data();
-    if (reader.passes == 1) {
-        for (int j = 0; j < height; ++j) {
-            png_read_row(reader.png, rows, nullptr);
-            store_row(rows, reader.sample_bits, reader.image, j);
-        }
-    } else {
-        for (int pass = 0; pass < reader.passes; ++pass) {
-            for (int j = 0; j < height; ++j) {
-                png_read_row(reader.png, rows + static_cast<std::size_t>(j) * row_bytes, nullptr);
+    for (int j = first; j < end; ++j, rows += 2 * channels * width) {
+        for (std::size_t c = 0; c < channels; ++c) {
+            float* to = image.planes[c].row(j);
+            const png_byte* p = rows + 2 * c;
+            for (std::size_t i = 0; i < width; ++i, p += 2 * channels) {
+                to[i] = static_cast<float>(p[0] << 8 | p[1]) / 65535.0f;
             }
         }
-        for (int j = 0; j < height; ++j) {
-            store_row(rows + static_cast<std::size_t>(j) * row_bytes, reader.sample_bits, reader.image, j);
-        }
     }
-    png_read_end(reader.png, nullptr);  // a file without its end is damaged
+}
+
+bool decode_rows(PngReader& reader, int count, png_byte* rows, std::size_t row_bytes) {
+    if (setjmp(png_jmpbuf(reader.png))) return false;
+    const auto total = static_cast<std::size_t>(count);
+    for (std::size_t j = 0; j < total; ++j) png_read_row(reader.png, rows + j * row_bytes, nullptr);
     return true;
+}
+
+// A file without its end is damaged.
+bool decode_end(PngReader& reader) {
+    if (setjmp(png_jmpbuf(reader.png))) return false;
+    png_read_end(reader.png, nullptr);
+    return true;
+}
+
+class PngRows final : public RowSource {
+public:
+    explicit PngRows(InputFile& file) : reader_(file) {}
+
+    // Reads the header; the rows come next.
+    Result<void> open(const ReadOptions& options);
+
+    [[nodiscard]] bool is_sequential() const override { return reader_.passes == 1; }
+    Result<void> decode(int count, std::byte* rows) override {
+        if (!decode_rows(reader_, count, reinterpret_cast<png_byte*>(rows), row_bytes())) return reader_.error();
+        return {};
+    }
+    Result<void> finish() override {
+        if (!decode_end(reader_)) return reader_.error();
+        return {};
+    }
+    void store(const std::byte* rows, int first, int end, Image& image) const override {
+        const auto* bytes = reinterpret_cast<const png_byte*>(rows);
+        reader_.sample_bits == 16 ? store_rows16(bytes, first, end, image) : store_rows8(bytes, first, end, image);
+    }
+    Result<Image> read_all() override;
+
+private:
+    PngReader reader_;
+};
+
+Result<void> PngRows::open(const ReadOptions& options) {
+    InputFile& file = reader_.file;
+    if (Result<void> settled = file.settle(largest_file(options)); !settled) return settled;
+    if (!read_header(reader_)) return reader_.error();
+    const double decoded = static_cast<double>(reader_.height) * static_cast<double>(reader_.file_row_bytes + 1);
+    const Extent claim{static_cast<int>(reader_.width), static_cast<int>(reader_.height)};
+    if (Result<void> ok = check_claim(file.path(), claim, decoded, *file.size(), kDeflateRatio); !ok) return ok;
+    const Result<Extent> extent = claimed_extent(file.path(), reader_.width, reader_.height, options);
+    if (!extent) return extent.error();
+    if (!start_rows(reader_)) return reader_.error();
+    describe(*extent, channel_names(reader_.channels),
+             static_cast<std::size_t>(extent->width) * static_cast<std::size_t>(reader_.channels * reader_.sample_bits / 8));
+    return {};
+}
+
+Result<Image> PngRows::read_all() {
+    const int height = extent().height;
+    Image image = make_image(extent(), names());
+    image.bits = reader_.color_type == PNG_COLOR_TYPE_PALETTE ? 8 : reader_.bit_depth;
+    // All rows where they are interlaced, else one at a time.
+    const int held = is_sequential() ? 1 : height;
+    std::vector<std::byte> rows(row_bytes() * static_cast<std::size_t>(held));
+    for (int j = 0; j < height; j += held) {
+        for (int pass = 0; pass < reader_.passes; ++pass) {
+            if (Result<void> decoded = decode(held, rows.data()); !decoded) return decoded.error();
+        }
+        store(rows.data(), j, j + held, image);
+    }
+    if (Result<void> ended = finish(); !ended) return ended.error();
+    return image;
 }
 
 }  // namespace
@@ -201,25 +250,19 @@ bool is_png(std::span<const std::byte> head) {
     return head.size() >= sizeof kMark && std::memcmp(head.data(), kMark, sizeof kMark) == 0;
 }
 
+Result<std::unique_ptr<RowSource>> open_png(InputFile& file, const ReadOptions& options) {
+    return guarded([&]() -> Result<std::unique_ptr<RowSource>> {
+        auto rows = std::make_unique<PngRows>(file);
+        if (const Result<void> opened = rows->open(options); !opened) return opened.error();
+        return std::unique_ptr<RowSource>(std::move(rows));
+    });
+}
+
 Result<Image> read_png(InputFile& file, const ReadOptions& options) {
     return guarded([&]() -> Result<Image> {
-        if (const Result<void> settled = file.settle(largest_file(options)); !settled) return settled.error();
-        PngReader reader(file);
-        if (!read_header(reader)) return reader.error();
-        const double decoded = static_cast<double>(reader.height) * static_cast<double>(reader.file_row_bytes + 1);
-        const Extent claim{static_cast<int>(reader.width), static_cast<int>(reader.height)};
-        if (const auto ok = check_claim(file.path(), claim, decoded, *file.size(), kDeflateRatio); !ok) return ok.error();
-        const Result<Extent> extent = claimed_extent(file.path(), reader.width, reader.height, options);
-        if (!extent) return extent.error();
-
-        if (!start_rows(reader)) return reader.error();
-        const std::size_t row_bytes = static_cast<std::size_t>(extent->width) *
-                                      static_cast<std::size_t>(reader.channels * reader.sample_bits / 8);
-        reader.rows.resize(row_bytes * (reader.passes > 1 ? static_cast<std::size_t>(extent->height) : 1));
-        reader.image = make_image(*extent, channel_names(reader.channels));
-        reader.image.bits = reader.color_type == PNG_COLOR_TYPE_PALETTE ? 8 : reader.bit_depth;
-        if (!read_rows(reader, row_bytes)) return reader.error();
-        return std::move(reader.image);
+        const Result<std::unique_ptr<RowSource>> rows = open_png(file, options);
+        if (!rows) return rows.error();
+        return (*rows)->read_all();
     });
 }
 

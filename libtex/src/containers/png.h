@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include <tex/image.h>
@@ -12,11 +14,15 @@
 #include <tex/texture.h>
 
 #include "base/input_file.h"
+#include "containers/row_source.h"
 
 namespace tex {
 
 // Whether a file that begins with `head` is a PNG, sound or damaged in transfer.
 bool is_png(std::span<const std::byte> head);
+
+// Opens a PNG, to be read row by row where it is not interlaced. `file` must outlive the rows. Errors: those of read_png() that the header tells.
+Result<std::unique_ptr<RowSource>> open_png(InputFile& file, const ReadOptions& options);
 
 // Reads a PNG as read_image() promises: grey as Y, colour and palette as R, G, B, alpha or tRNS as A; values are code / (2^bits - 1); gAMA, sRGB, iCCP and
 // sBIT change nothing. Damaged ancillary chunks count as damage too.

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// pipeline.h: from file to file, row by row.
+//
+// The verbs of the other headers take whole images and give whole images. Here a file is read a few rows at a time, and each row of texel blocks is
+// written when it is finished, so that memory is needed for a few strips of rows only, and decoding runs beside everything else. The bytes are
+// those of the verbs, one after the other.
+
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+
+#include <tex/bake.h>
+#include <tex/color.h>
+#include <tex/container.h>
+#include <tex/execution.h>
+#include <tex/height_field.h>
+#include <tex/mip.h>
+#include <tex/names.h>
+#include <tex/pack.h>
+#include <tex/result.h>
+
+namespace [[gnu::visibility("default")]] tex {
+
+// Which way a file went: as a stream of rows, or as a whole image through the verbs.
+enum class Path { streamed, whole };
+
+inline constexpr Named<Path> kPathNames[] = {
+    {Path::streamed, "streamed", "row by row, in the memory of a few rows"},
+    {Path::whole, "whole", "as a whole image"},
+};
+
+// What bake_file() does: read_image(), to_linear() where color.space is not empty, height_field(), bake(), build_mip_chain(), pack(), write_texture().
+struct BakeFileOptions {
+    ReadOptions read;
+    ColorOptions color;
+    HeightOptions heights;                     // wrap_x and wrap_y are those of the height field too
+    std::function<Strength(Extent)> strength;  // the bumpiness for a map of this extent; empty: 1. Must not throw
+    BakeOptions bake;
+    MipOptions mip;
+    PackOptions pack;
+    WriteOptions write;
+    bool slopes = false;  // BakeFileReport::slopes is wanted
+};
+
+struct BakeFileReport {
+    Path path = Path::whole;
+    Extent extent;          // of the base level
+    int levels = 1;
+    std::size_t bytes = 0;  // of the output
+    HeightReport heights;
+    SlopeRange slopes;      // where they were wanted, else zeros
+};
+
+// Bakes the height map `input` ("-" is standard input) and writes it to `output` as a file of the kind `container`.
+//
+// Streamed: PNG that is not interlaced, into DDS and KTX2, without fill_invalid and without a colour space. Everything else takes the path of whole
+// images. Pictures that hold one level get the base level.
+//
+// The output appears whole or not at all, see write_file(). What goes to standard output or a FIFO is held in memory until it is whole.
+//
+// Preconditions (asserted): as those of the verbs.
+// Errors: those of the verbs. `file` is empty where the heights are concerned, not a file. Of several errors (a damaged picture, a directory that is
+// not there) any may be told.
+// The same bytes for every number of threads, and on either path.
+[[nodiscard]] Result<BakeFileReport> bake_file(const std::string& input, const std::string& output, Container container,
+                                               const BakeFileOptions& options = {}, const Execution& execution = {});
+
+}  // namespace tex

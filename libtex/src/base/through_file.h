@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// through_file.h: standard output, FIFOs and devices, which are written through.
+
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <tex/result.h>
+
+#include "base/input_file.h"
+
+namespace tex {
+
+class ThroughFile {
+public:
+    // Nothing where `path` is, or will be, a regular file. Errors: io.
+    static Result<std::optional<ThroughFile>> open(const std::string& path);
+
+    // Writes bytes behind those that are written already. Errors: io.
+    Result<void> write(std::span<const std::byte> bytes);
+
+    // Keeps bytes in memory until write_held(), as nothing may go out that an error would make worthless. Any thread may call. Throws std::bad_alloc.
+    void hold(std::uint64_t offset, std::span<const std::byte> bytes);
+    // Writes all that is held, in order, with zeros in between. Errors: io.
+    Result<void> write_held();
+
+private:
+    ThroughFile(std::string path, Descriptor owned, int fd);
+
+    std::string path_;
+    Descriptor owned_;  // where fd_ is ours
+    int fd_;
+    std::unique_ptr<std::mutex> mutex_;
+    std::map<std::uint64_t, std::vector<std::byte>> held_;  // by offset
+};
+
+}  // namespace tex

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// row_source.h: a picture that is read a few rows at a time.
+//
+// Decoding comes first and in order, as decoders want it; what was decoded becomes floats (see Image) later, by any thread. So the two can run beside each other.
+
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <tex/image.h>
+#include <tex/image_io.h>
+#include <tex/result.h>
+
+#include "base/input_file.h"
+
+namespace tex {
+
+class RowSource {
+public:
+    RowSource() = default;
+    RowSource(const RowSource&) = delete;
+    RowSource& operator=(const RowSource&) = delete;
+    virtual ~RowSource() = default;
+
+    [[nodiscard]] Extent extent() const { return extent_; }
+    [[nodiscard]] const std::vector<std::string>& names() const { return names_; }  // of the channels
+    [[nodiscard]] std::size_t row_bytes() const { return row_bytes_; }              // of a decoded row
+
+    // Rows come from the top to the bottom. Where not, read_all() is the only way.
+    [[nodiscard]] virtual bool is_sequential() const = 0;
+
+    // Decodes the next `count` rows into `rows`, row_bytes() each. Errors: bad_data, io, out_of_memory.
+    virtual Result<void> decode(int count, std::byte* rows) = 0;
+
+    // Makes sure, after the last row, that the file ends as it should. Errors: as decode().
+    virtual Result<void> finish() = 0;
+
+    // Decoded rows become rows [first, end) of `image`, which has a plane for each of names(). Any thread may call, also beside decode().
+    virtual void store(const std::byte* rows, int first, int end, Image& image) const = 0;
+
+    // The whole picture; instead of decode() and finish(). Throws std::bad_alloc. Errors: as decode().
+    virtual Result<Image> read_all() = 0;
+
+protected:
+    void describe(Extent extent, std::vector<std::string> names, std::size_t row_bytes) {
+        extent_ = extent;
+        names_ = std::move(names);
+        row_bytes_ = row_bytes;
+    }
+
+private:
+    Extent extent_;
+    std::vector<std::string> names_;
+    std::size_t row_bytes_ = 0;
+};
+
+// The picture in `file`, which must outlive it; null where this kind of file is only read as a whole: see read_image(InputFile&). Errors: as
+// read_image(), those that a header tells.
+Result<std::unique_ptr<RowSource>> open_rows(InputFile& file, const ReadOptions& options);
+
+// As read_image(path), of an open file. Errors name the file.
+Result<Image> read_image(InputFile& file, const ReadOptions& options);
+
+}  // namespace tex

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// height_stage.h: rows of a picture to rows of normals: heights, blurred heights, normals.
+
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include <tex/height_field.h>
+
+#include "base/bake_rows.h"
+#include "base/height_source.h"
+#include "pipeline/row_shelf.h"
+
+namespace tex {
+
+// Rows through a filter that is 2 radius + 1 rows high. They come in the order of row_shelf.h; where they repeat, results come in that order too, from a
+// later start.
+class HeightWindow {
+public:
+    HeightWindow(Extent extent, int start, int radius, Wrap wrap);
+
+    [[nodiscard]] int start() const { return start_; }    // the first row that is made
+    [[nodiscard]] int next() const { return next_; }      // the row that is made next, beyond the last one where they repeat
+    [[nodiscard]] bool done() const { return next_ == start_ + extent_.height; }
+    void advance() { ++next_; }
+
+    // Whether rows [first, end) are there, with all that rows beyond the border are made of.
+    [[nodiscard]] bool has(int first, int end) const;
+
+    RowShelf shelf;
+
+private:
+    const Extent extent_;
+    const Wrap wrap_;
+    const int start_;
+    int next_;
+};
+
+// The same bytes as height_field() without fill_invalid, and bake().
+class HeightStage {
+public:
+    // Where the normals of row j go, and what happens when they are there.
+    struct Sink {
+        std::function<NormalRow(int j)> place;
+        std::function<void(int j)> finish;
+    };
+    HeightStage(Extent extent, const HeightSource& source, const HeightOptions& options, const Gradient& gradient,
+                const Slopes& slopes, Sink sink);
+    ~HeightStage();
+
+    // The row at which normals begin (see row_shelf.h).
+    [[nodiscard]] int start() const;
+
+    // The next row of the picture, which is row `k` of `rows`. Once a height was invalid, the others are only counted.
+    void put(const Image& rows, int k);
+
+    [[nodiscard]] const HeightCounts& counts() const { return counts_; }
+    // After the last row. Errors: bad_data.
+    [[nodiscard]] Result<void> check() const;
+
+private:
+    struct Blur;
+    void take_invalid(const float* row);
+    void blur_row(int j, const float* row);
+    void blur_column(int j);
+    void put_height(int j, ShelfRow row);
+
+    const Extent extent_;
+    const HeightSource source_;
+    const HeightOptions options_;
+    const Gradient gradient_;
+    const Sink sink_;
+    HeightCounts counts_;
+    int first_invalid_[2] = {};  // column, row
+    int row_ = 0;                // of the picture, the next one
+    RowMaker heights_;
+    std::unique_ptr<Blur> blur_;
+    std::unique_ptr<HeightWindow> window_;  // of the gradient
+    std::unique_ptr<BakeRows> bake_;
+};
+
+}  // namespace tex

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <tex/pipeline.h>
+
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+
+#include <tex/image_io.h>
+
+#include "containers/png.h"
+#include "pipeline/bake_stream.h"
+
+namespace tex {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+void append(png_structp png, png_bytep data, std::size_t count) {
+    auto* bytes = static_cast<Bytes*>(png_get_io_ptr(png));
+    const auto* from = reinterpret_cast<const std::byte*>(data);
+    bytes->insert(bytes->end(), from, from + count);
+}
+
+struct Kind {
+    int channels = 1;
+    int bits = 8;
+    bool interlaced = false;
+};
+
+// Bumps with noise.
+Bytes make_png(Extent extent, const Kind& kind = {}, unsigned seed = 1) {
+    constexpr int kColors[] = {PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_RGB, PNG_COLOR_TYPE_RGBA};
+    Bytes bytes;
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+    png_infop info = png_create_info_struct(png);
+    png_set_write_fn(png, &bytes, append, nullptr);
+    png_set_compression_level(png, 1);
+    png_set_IHDR(png, info, static_cast<png_uint_32>(extent.width), static_cast<png_uint_32>(extent.height), kind.bits,
+                 kColors[kind.channels - 1], kind.interlaced ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE, 0, 0);
+    png_write_info(png, info);
+    std::mt19937 random(seed);
+    std::vector<std::vector<png_byte>> rows;
+    std::vector<png_bytep> pointers;
+    for (int j = 0; j < extent.height; ++j) {
+        std::vector<png_byte>& row = rows.emplace_back();
+        for (int i = 0; i < extent.width * kind.channels; ++i) {
+            const auto bump = static_cast<unsigned>(100.0 + 80.0 * std::sin(0.11 * i) * std::cos(0.07 * j));
+            row.push_back(static_cast<png_byte>(bump + random() % 20));
+            if (kind.bits == 16) row.push_back(static_cast<png_byte>(random()));
+        }
+    }
+    for (std::vector<png_byte>& row : rows) pointers.push_back(row.data());
+    png_write_image(png, pointers.data());
+    png_write_end(png, info);
+    png_destroy_write_struct(&png, &info);
+    return bytes;
+}
+
+class Pipeline : public testing::Test {
+protected:
+    void SetUp() override {
+        std::string pattern = testing::TempDir() + "pipeline_XXXXXX";
+        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+        folder_ = pattern;
+        options_.write.sync = false;
+        options_.pack.effort = Effort::fast;
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+    [[nodiscard]] std::string path(const std::string& name) const { return folder_ + "/" + name; }
+    [[nodiscard]] std::string write(const std::string& name, const Bytes& bytes) const {
+        std::ofstream(path(name), std::ios::binary)
+            .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+        return path(name);
+    }
+    [[nodiscard]] std::string content(const std::string& name) const {
+        std::stringstream text;
+        text << std::ifstream(path(name), std::ios::binary).rdbuf();
+        return text.str();
+    }
+    [[nodiscard]] std::size_t files() const {
+        return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_), {}));
+    }
+
+    // What the verbs make of a picture, one after the other.
+    [[nodiscard]] std::string by_verbs(const std::string& input, Container container, SlopeRange* slopes = nullptr) const {
+        auto field = height_field(read_image(input).value(), options_.heights).value();
+        const Strength strength = options_.strength ? options_.strength(field.height.extent()) : Strength();
+        field.bumpiness_x = strength.x;
+        field.bumpiness_y = strength.y;
+        NormalMap normals = bake(field, options_.bake).value();
+        if (slopes != nullptr) *slopes = slope_range(normals);
+        const MipChain chain = build_mip_chain(std::move(normals), options_.mip).value();
+        const Bytes bytes = encode_file(pack(chain, options_.pack).value(), container, options_.write).value();
+        return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+    }
+
+    // The stream of a PNG, cut into small pieces.
+    Result<BakeFileReport> stream(const std::string& input, Container container, int threads, const StreamSizes& sizes,
+                                  std::function<bool(double)> progress = {}) const {
+        Result<InputFile> file = InputFile::open(input);
+        if (!file) return file.error();
+        const auto rows = open_png(*file, options_.read);
+        if (!rows) return rows.error();
+        return bake_stream(**rows, input, path("out"), container, options_, {threads, std::move(progress)}, sizes);
+    }
+
+    std::string folder_;
+    BakeFileOptions options_;
+};
+
+template <class E, std::size_t N>
+E any_of(const Named<E> (&table)[N], std::mt19937& random) {
+    return table[random() % N].value;
+}
+
+TEST_F(Pipeline, StreamsGiveTheBytesOfTheVerbs) {
+    constexpr int kSides[] = {1, 2, 3, 4, 5, 7, 8, 13, 16, 17, 31, 40, 64, 97};
+    std::mt19937 random(7);
+    const auto one_in = [&](unsigned n) { return random() % n == 0; };
+    for (int round = 0; round < 600; ++round) {
+        const Extent extent{kSides[random() % 14], kSides[random() % 14]};
+        options_.heights = {};
+        options_.heights.wrap_x = any_of(kWrapNames, random);
+        options_.heights.wrap_y = any_of(kWrapNames, random);
+        options_.heights.invert = one_in(4);
+        if (one_in(3)) options_.heights.blur_sigma = 0.3f + 0.4f * static_cast<float>(random() % 9);
+        options_.bake.kernel = any_of(kGradientKernelNames, random);
+        options_.bake.gaussian_sigma = 0.4f + 0.5f * static_cast<float>(random() % 6);
+        options_.mip.filter = any_of(kMipFilterNames, random);
+        options_.mip.domain = any_of(kMipDomainNames, random);
+        options_.mip.levels = one_in(2) ? 0 : static_cast<int>(random() % 5);
+        options_.mip.fade = one_in(3) ? std::optional<Fade>(Fade{1, 3}) : std::nullopt;
+        options_.mip.wrap_x = one_in(4) ? any_of(kWrapNames, random) : options_.heights.wrap_x;
+        options_.mip.wrap_y = one_in(4) ? any_of(kWrapNames, random) : options_.heights.wrap_y;
+        options_.pack.encoding = any_of(kEncodingNames, random);
+        options_.pack.y_axis = any_of(kYAxisNames, random);
+        options_.pack.effort = one_in(8) ? any_of(kEffortNames, random) : Effort::fast;
+        options_.write.dds_header = any_of(kDdsHeaderNames, random);
+        options_.write.dds_mark = one_in(4);
+        options_.slopes = true;
+        options_.strength = [&](Extent its) { return Strength{6.0f, static_cast<float>(its.height) / 8.0f}; };
+        const Kind kind{1 + static_cast<int>(random() % 4), one_in(2) ? 8 : 16};
+        if (kind.channels >= 3) options_.heights.channel = any_of(kHeightChannelNames, random);
+        if (kind.channels == 3 && options_.heights.channel == HeightChannel::a) options_.heights.channel = HeightChannel::b;
+        if (options_.heights.channel == HeightChannel::y) options_.heights.channel = HeightChannel::max;
+        const Container container = one_in(2) ? Container::dds : Container::ktx2;
+        const std::string input = write("in.png", make_png(extent, kind, static_cast<unsigned>(random())));
+        SlopeRange slopes;
+        const std::string expected = by_verbs(input, container, &slopes);
+        const int strip_texels = 1 << (2 + random() % 10);
+        const int threads = 1 + static_cast<int>(random() % 3);
+        SCOPED_TRACE(testing::Message() << "round " << round << ", " << extent.width << "x" << extent.height);
+        const auto report = stream(input, container, threads, {strip_texels, 0});
+        ASSERT_TRUE(report) << report.error().message();
+        ASSERT_TRUE(content("out") == expected);
+        EXPECT_EQ(report->path, Path::streamed);
+        EXPECT_EQ(report->extent, extent);
+        EXPECT_EQ(report->bytes, expected.size());
+        EXPECT_EQ(report->slopes.min_x, slopes.min_x);
+        EXPECT_EQ(report->slopes.max_y, slopes.max_y);
+    }
+}
+
+TEST_F(Pipeline, LargePicturesGoThroughManyStripsOnManyThreads) {
+    options_.strength = [](Extent) { return Strength{5.0f, 5.0f}; };
+    for (const Extent extent : {Extent{2048, 201}, Extent{5000, 64}, Extent{131, 3000}}) {
+        const std::string input = write("in.png", make_png(extent));
+        for (const Wrap wrap : {Wrap::repeat, Wrap::clamp}) {
+            options_.heights.wrap_x = options_.heights.wrap_y = options_.mip.wrap_x = options_.mip.wrap_y = wrap;
+            const std::string expected = by_verbs(input, Container::dds);
+            for (const int threads : {1, 2, 5}) {
+                const auto report = bake_file(input, path("out.dds"), Container::dds, options_, {threads, {}});
+                ASSERT_TRUE(report) << report.error().message();
+                EXPECT_EQ(report->path, Path::streamed);
+                EXPECT_TRUE(content("out.dds") == expected) << extent.width << " " << threads;
+            }
+        }
+    }
+}
+
+TEST_F(Pipeline, WhatCannotStreamGoesAsAWhole) {
+    const Extent extent{40, 30};
+    const auto baked = [&](const std::string& input, Container container) {
+        const auto report = bake_file(input, path("out"), container, options_);
+        EXPECT_TRUE(report) << report.error().message();
+        return report ? report->path : Path::streamed;
+    };
+    const std::string plain = write("in.png", make_png(extent));
+    EXPECT_EQ(baked(plain, Container::dds), Path::streamed);
+    EXPECT_EQ(baked(plain, Container::ktx2), Path::streamed);
+    const std::string expected = by_verbs(plain, Container::ktx2);
+    EXPECT_TRUE(content("out") == expected);
+
+    EXPECT_EQ(baked(write("interlaced.png", make_png(extent, {1, 8, true})), Container::ktx2), Path::whole);
+    EXPECT_TRUE(content("out") == expected);
+    options_.heights.fill_invalid = true;
+    EXPECT_EQ(baked(plain, Container::ktx2), Path::whole);
+    EXPECT_TRUE(content("out") == expected);
+    options_.heights.fill_invalid = false;
+    options_.color.space = "sRGB";
+    EXPECT_EQ(baked(plain, Container::dds), Path::whole);
+    options_.color.space.clear();
+    options_.pack.encoding = Encoding::rgb8;
+    EXPECT_EQ(baked(plain, Container::png), Path::whole);
+    EXPECT_EQ(read_image(path("out")).value().extent(), extent);
+}
+
+TEST_F(Pipeline, ADamagedPictureLeavesNothing) {
+    Bytes bytes = make_png({300, 500}, {1, 16});
+    const std::string cut = write("cut.png", Bytes(bytes.begin(), bytes.end() - 400));
+    bytes[bytes.size() / 2] ^= std::byte{0x55};
+    for (const std::string& input : {write("hurt.png", bytes), cut}) {
+        const Error expected = read_image(input).error();
+        for (const int threads : {1, 3}) {
+            const auto report = stream(input, Container::dds, threads, {4096, 0});
+            ASSERT_FALSE(report);
+            EXPECT_EQ(report.error().message(), expected.message());
+            EXPECT_EQ(report.error().code, ErrorCode::bad_data);
+            EXPECT_FALSE(std::filesystem::exists(path("out")));
+        }
+    }
+    EXPECT_EQ(files(), 2u);
+    // A picture that is damaged is damaged first, whatever else is wrong.
+    options_.heights.channel = HeightChannel::a;
+    EXPECT_EQ(bake_file(cut, path("out"), Container::dds, options_).error().code, ErrorCode::bad_data);
+}
+
+TEST_F(Pipeline, HeightsThatCannotBeUsedAreTheSameErrors) {
+    const std::string input = write("in.png", make_png({64, 50}, {3, 8}));
+    const Image image = read_image(input).value();
+    options_.heights.channel = HeightChannel::a;
+    EXPECT_EQ(bake_file(input, path("out"), Container::dds, options_).error().message(),
+              height_field(image, options_.heights).error().message());
+    options_.heights.channel = HeightChannel::r;
+    options_.heights.no_data = image.planes[0].at(7, 31);
+    for (const int threads : {1, 2}) {
+        EXPECT_EQ(stream(input, Container::dds, threads, {64, 0}).error().message(),
+                  height_field(image, options_.heights).error().message());
+    }
+    EXPECT_EQ(files(), 1u);
+    options_.heights = {};
+    const auto report = bake_file(input, path("out"), Container::dds, options_);
+    HeightReport counted;
+    ASSERT_TRUE(height_field(image, options_.heights, {}, &counted));
+    EXPECT_EQ(report.value().heights.luma_texels, counted.luma_texels);
+    EXPECT_GT(counted.luma_texels, 0);
+}
+
+TEST_F(Pipeline, OutputsThatCannotBeWrittenAreErrors) {
+    const std::string input = write("in.png", make_png({64, 50}));
+    const auto missing = bake_file(input, path("none/out.dds"), Container::dds, options_);
+    EXPECT_EQ(missing.error().code, ErrorCode::io);
+    EXPECT_EQ(missing.error().message(), path("none/out.dds") + ": the directory does not exist");
+    EXPECT_EQ(bake_file(input, "/dev/full", Container::dds, options_).error().reason,
+              "cannot be written: no space left on the disk");
+    options_.write.no_clobber = true;
+    ASSERT_TRUE(bake_file(input, path("out"), Container::dds, options_));
+    EXPECT_EQ(bake_file(input, path("out"), Container::dds, options_).error().reason, "exists already");
+    EXPECT_EQ(files(), 2u);
+    EXPECT_EQ(bake_file(path("nothing.png"), path("out"), Container::dds, options_).error().code, ErrorCode::io);
+}
+
+TEST_F(Pipeline, CancellingLeavesNothing) {
+    const std::string input = write("in.png", make_png({200, 400}));
+    for (const int threads : {1, 2}) {
+        std::atomic<int> calls{0};
+        double last = 0.0;
+        const auto report = stream(input, Container::dds, threads, {2000, 0}, [&](double fraction) {
+            EXPECT_GE(fraction, last);
+            last = fraction;
+            return ++calls < 10;
+        });
+        ASSERT_FALSE(report);
+        EXPECT_EQ(report.error().code, ErrorCode::cancelled);
+        EXPECT_EQ(calls, 10);
+        EXPECT_EQ(files(), 1u);
+    }
+}
+
+}  // namespace
+}  // namespace tex
