@@ -219,7 +219,7 @@ Result<void> PreviewNormals::process(cli::Job& job) {
     std::vector<cli::SampledMap> maps;
     for (std::size_t k = 0; k < names.size(); ++k) {
         auto map = cli::read_sampled_map(
-            job, names[k], source, std::nullopt, scene.preview, !difference,
+            job, names[k], source, {false, false, {}, !difference}, scene.preview,
             job.until(0.4 * static_cast<double>(k + 1) / static_cast<double>(names.size())));
         if (!map) return map.error();
         maps.push_back(std::move(*map));

@@ -87,7 +87,7 @@ using tex::reference::Vector;
 constexpr int kWaveSize = 256;
 constexpr int kSamples = 8;  // of the truth along a side of a texel of the base level
 
-// The slope of three crossing waves 11 to 37 texels long, up to 59 degrees steep. x runs to the right and y up, both from 0 to 1.
+// The slope of three crossing waves 11 to 37 texels long, less than 60 degrees steep. x runs to the right and y up, both from 0 to 1.
 Vector wave_slope(double x, double y) {
     struct Wave {
         int across, along;  // crests over the map: it tiles

@@ -105,6 +105,15 @@ TEST_F(BlendNormals, OneDetailGoesOnManyBases) {
         "out/base.dds: \\\n  base.exr \\\n  detail.exr\nout/other.dds: \\\n  other.exr \\\n  detail.exr\n");
 }
 
+TEST_F(BlendNormals, WhatADetailSaysOfItsYCountsBeforeThatOfTheBase) {
+    does("pack-normals", {"detail.exr", "-o", "down.exr", "--y", "down", "--format", "float"});
+    does("blend-normals", {"base.exr", "detail.exr", "-o", "x.exr", "--format", "float"});
+    does("blend-normals", {"base.exr", "down.exr", "-o", "y.exr", "--format", "float", "--y-in", "up"});
+    EXPECT_LT(angle("x.exr", "y.exr"), 1e-3);
+    does("blend-normals", {"base.exr", "down.exr", "-o", "y.exr", "--format", "float", "--detail-y-in", "up"});
+    EXPECT_GT(angle("x.exr", "y.exr"), 1.0);
+}
+
 TEST_F(BlendNormals, ResultsHaveTheBaseSizeAndTheirOwnLevels) {
     const auto report = [&](std::vector<std::string> arguments) {
         arguments.insert(arguments.end(), {"--json", "--effort", "fast"});

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <tex/compare.h>
@@ -134,40 +137,57 @@ TEST(RoundTrip, StaysWithinTheFitOfTheExtremesInEachBlock) {
     }
 }
 
-// A texture that is unpacked (vectors kept as they are) and packed again stays what it was: the blocks' own values are found again.
-TEST(RoundTrip, RepacksRealTexturesWithoutFurtherLoss) {
+// The encoding that stores what `texture` does, if there is one.
+std::optional<Encoding> encoding_of(const Texture& texture) {
+    const bool has_z =
+        std::find(texture.swizzle.begin(), texture.swizzle.end(), Component::z) != texture.swizzle.end();
+    for (const auto& row : kEncodingNames) {
+        if (encoding_info(row.value).format != texture.format || row.value == Encoding::ag8) continue;
+        const bool wants_z = row.value == Encoding::rgb8 || row.value == Encoding::rgba8;
+        if (has_z == wants_z) return row.value;
+    }
+    return std::nullopt;
+}
+
+// A texture that is unpacked and packed again stays what it was, at the default effort within 0.05 degrees on average: the blocks' own values are
+// found again. Vectors are kept as they are stored; where z is not stored that matters only beyond the unit circle.
+TEST(RoundTrip, RepacksEveryRealTextureWithoutFurtherLoss) {
     TEX_NEEDS_SHARED_DATA();
-    struct Case {
-        const char* file;
-        Encoding encoding;
-    };
-    const Case cases[] = {
-        {"urho_Stone_DXT5_xGxR_1024_mips11.dds", Encoding::dxt5nm},
-        {"torque_TP_Ryder_DXT5nm_256_mips9_nvtt.dds", Encoding::dxt5nm},
-        {"torque_Grenade2_DXT5nm_GGGR_512_mips10.dds", Encoding::dxt5nm},
-        {"torque_rock_DXT5nm_GGGR_256_mips9.dds", Encoding::dxt5nm},
-        {"amd_wood_ATI2_A2XY_512_mips10.dds", Encoding::bc5},
-        {"amd_RedLetters_1k_normal_ATI2_A2XY.dds", Encoding::bc5},
-        {"fieldstone_ATI2_512_mips10.dds", Encoding::bc5},
-        {"gz_waves_RGB24_256_mips9_gimp.dds", Encoding::rgb8},
-        {"d3d_dwarf_armor_RGBA8_512_mips10.dds", Encoding::rgba8},
-    };
-    for (const Case& c : cases) {
-        const auto texture = read_texture(shared_data() / "dds" / c.file);
-        ASSERT_TRUE(texture) << texture.error().message();
-        UnpackOptions keep;
-        keep.keep_length = true;
-        const auto kept = unpack(*texture, keep);
-        ASSERT_TRUE(kept);
-        const auto once = unpack(*texture);
-        const auto twice = through(*kept, c.encoding, YAxis::up, Effort::best);
-        ASSERT_TRUE(once && twice);
-        for (std::size_t k = 0; k < once->levels.size(); ++k) {
-            const auto angles = compare(once->levels[k], twice->levels[k]);
-            ASSERT_TRUE(angles);
-            EXPECT_LE(angles->error.mean, 0.05) << c.file << " level " << k << " max " << angles->error.max;
+    // Fits at Effort::normal miss blocks whose values do not reach both endpoints, and some of six values with 0 and 255. Mean of
+    // the worst level, degrees; the last three are test pictures, not normal maps.
+    const std::map<std::string, double> misses = {{"torque_Grenade2_DXT5nm_GGGR_512_mips10", 0.08},
+                                                  {"torque_rock_DXT5nm_GGGR_256_mips9", 0.06},
+                                                  {"run_BC5_nvtt_dx10", 0.9},
+                                                  {"run_BC5_snorm_dx10", 0.9},
+                                                  {"run_DXT5nm_dx9", 0.5}};
+    int repacked = 0;
+    for (const char* folder : {"dds", "dds/reference"}) {
+        for (const auto& path : files_in(folder, ".dds")) {
+            const auto texture = read_texture(path);
+            ASSERT_TRUE(texture) << texture.error().message();
+            const auto encoding = encoding_of(*texture);
+            if (!encoding) continue;
+            ++repacked;
+            UnpackOptions keep;
+            keep.keep_length = true;
+            const auto kept = unpack(*texture, keep);
+            const auto once = unpack(*texture);
+            ASSERT_TRUE(kept && once);
+            const auto miss = misses.find(path.stem());
+            for (const auto& [effort, limit] :
+                 {std::pair{Effort::normal, miss == misses.end() ? 0.05 : miss->second}, {Effort::best, 0.0005}}) {
+                const auto twice = through(*kept, *encoding, YAxis::up, effort);
+                ASSERT_TRUE(twice);
+                for (std::size_t k = 0; k < once->levels.size(); ++k) {
+                    const auto angles = compare(once->levels[k], twice->levels[k]);
+                    ASSERT_TRUE(angles);
+                    EXPECT_LE(angles->error.mean, limit) << path.stem() << " " << name_of(kEffortNames, effort) << " level "
+                                                         << k << " max " << angles->error.max;
+                }
+            }
         }
     }
+    EXPECT_EQ(repacked, 17);
 }
 
 }  // namespace

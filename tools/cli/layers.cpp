@@ -56,7 +56,7 @@ void LayerOptions::add(Command& command) {
         [this](const std::string& text) { y_in_.values.emplace_back(parse_word(text, kYAxisNames)); });
     y.words = words_of(kYAxisNames);
     y.completes = Completes::words;
-    y.preset = "as --y-in, else as the file says";
+    y.preset = "as the file says, else as --y-in";
     y.repeatable = true;
 }
 
@@ -112,7 +112,7 @@ std::vector<std::string> LayerOptions::mask_files() const {
 
 Result<Layer> LayerOptions::read_layer(Job& job, std::size_t k, const std::string& name,
                                        SourceOptions& source, const Execution& execution) const {
-    auto detail = source.read(job, name, execution, false, y_in_.of(k, std::nullopt));
+    auto detail = source.read(job, name, execution, {false, true, y_in_.of(k, std::nullopt)});
     if (!detail) return detail.error();
     Layer layer;
     layer.detail = std::move(detail->chain);

@@ -168,7 +168,7 @@ void SceneOptions::add_detail(Command& command) {
     add_pair(command, fine.offset_x, fine.offset_y, "--detail-offset", "its offset in its own widths");
     command.number(fine.scale, "--detail-scale", "S", {}, "its strength");
     command.choice(detail_y_in, "--detail-y-in", "AXIS", kYAxisNames, "where green points in it").preset =
-        "as --y-in, else as the file says";
+        "as the file says, else as --y-in";
     check_needs(command, "--detail", {"--detail-scale", "--detail-y-in"});
     command.check([&command] {
         if (command.given("--detail") || command.given("--detail-albedo")) return;
@@ -219,9 +219,9 @@ std::vector<std::string> SceneOptions::files() const {
 }
 
 Result<SampledMap> read_sampled_map(Job& job, const std::string& path, SourceOptions& source,
-                                    std::optional<YAxis> y, const PreviewOptions& preview, bool keep_length,
+                                    const Reading& reading, const PreviewOptions& preview,
                                     const Execution& execution) {
-    auto read = source.read(job, path, execution, false, y, keep_length);
+    auto read = source.read(job, path, execution, reading);
     if (!read) return read.error();
     SampledMap map;
     map.without_z =
@@ -241,7 +241,7 @@ Result<SampledMap> read_sampled_map(Job& job, const std::string& path, SourceOpt
 Result<SceneFiles> SceneOptions::read(Job& job, SourceOptions& source, const Execution& execution) const {
     SceneFiles files;
     if (!detail.empty()) {
-        auto map = read_sampled_map(job, detail, source, detail_y_in, preview, false, execution);
+        auto map = read_sampled_map(job, detail, source, {false, true, detail_y_in, false}, preview, execution);
         if (!map) return map.error();
         files.detail = std::move(*map);
     }

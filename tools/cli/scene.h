@@ -21,10 +21,10 @@ struct SampledMap {
     bool without_z = false;
 };
 
-// `keep_length` leaves vectors as long as they are stored, for pictures that show what is wrong with a map.
+// Reading::keep_length is for pictures that show what is wrong with a map.
 [[nodiscard]] Result<SampledMap> read_sampled_map(Job& job, const std::string& path, SourceOptions& source,
-                                                  std::optional<YAxis> y, const PreviewOptions& preview,
-                                                  bool keep_length, const Execution& execution);
+                                                  const Reading& reading, const PreviewOptions& preview,
+                                                  const Execution& execution);
 
 // The files of a scene beside its map.
 struct SceneFiles {

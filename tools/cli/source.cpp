@@ -118,9 +118,14 @@ void SourceOptions::warn_of_guesses() const {
     }
 }
 
+YAxis SourceOptions::y_of(const Texture& texture, const Reading& reading) const {
+    if (reading.y) return *reading.y;
+    if (reading.is_detail && texture.y_known) return texture.y_axis;
+    return unpack.y_axis.value_or(texture.y_axis);
+}
+
 Result<Source> SourceOptions::read(Job& job, const std::string& path, const Execution& execution,
-                                   bool base_only, std::optional<YAxis> y,
-                                   std::optional<bool> keep_length) {
+                                   const Reading& reading) {
     const auto named = [&](Error error) {
         if (error.file.empty()) error.file = path;
         return error;
@@ -131,7 +136,7 @@ Result<Source> SourceOptions::read(Job& job, const std::string& path, const Exec
     for (const std::string& remark : texture->remarks) job.warn(prefix + remark);
     if (texture->srgb)
         job.warn(prefix + "declares sRGB colours, which normals are not; its values are used as they are");
-    if (base_only) texture->levels.resize(1);
+    if (reading.base_only) texture->levels.resize(1);
 
     if (format_info(texture->format).channels == 1) {
         return Error{ErrorCode::unsupported, path,
@@ -143,12 +148,12 @@ Result<Source> SourceOptions::read(Job& job, const std::string& path, const Exec
     if (!guessed) return named(guessed.error());
     source.swizzle = *guessed;
     source.format = texture->format;
-    source.y = y ? *y : unpack.y_axis.value_or(texture->y_axis);
+    source.y = y_of(*texture, reading);
 
     UnpackOptions options = unpack;
     options.swizzle = source.swizzle;
     options.y_axis = source.y;
-    options.keep_length = keep_length.value_or(unpack.keep_length);
+    options.keep_length = reading.keep_length.value_or(unpack.keep_length);
     // Floats that say that they are normals are taken at their word: a chain of commands then gives the bytes of one.
     const FormatInfo info = format_info(texture->format);
     if (info.sample == SampleKind::floating && info.bits == 32 && texture->normal_encoding == "signed") {
@@ -161,7 +166,7 @@ Result<Source> SourceOptions::read(Job& job, const std::string& path, const Exec
 }
 
 Result<Source> SourceOptions::read(Job& job, double until, bool base_only) {
-    auto source = read(job, job.task.input, job.until(until), base_only);
+    auto source = read(job, job.task.input, job.until(until), {base_only});
     if (!source) return source.error();
     job.report["source"] = {{"format", name_of(kFormatNames, source->format)},
                             {"swizzle", swizzle_name(source->swizzle)}};

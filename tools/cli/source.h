@@ -36,6 +36,14 @@ inline constexpr Named<Bc5Order> kBc5OrderNames[] = {
     {Bc5Order::yx, "yx", "y first, as ATI2 files"},
 };
 
+// How one file is read, where that is not what the options say for all.
+struct Reading {
+    bool base_only = false;           // without the smaller levels
+    bool is_detail = false;           // what the file says of y counts before --y-in, which is the base's
+    std::optional<YAxis> y = {};      // counts before all of that
+    std::optional<bool> keep_length = {};
+};
+
 struct SourceOptions {
     std::optional<Swizzle> swizzle;  // none: as the file says, else as its texels look
     bool rg_or_ag = false;           // x in R or A, whichever is not constant
@@ -45,11 +53,9 @@ struct SourceOptions {
     // Without --keep-length for commands that choose themselves.
     void add(Command& command, bool with_keep_length = true);
 
-    // Reads and unpacks `path`, all its levels or the base level alone. Tells the job what a reader
-    // overlooked. `y` goes before what the options and the file say of y, `keep_length` before the option. Any thread may call.
+    // Reads and unpacks `path`. Tells the job what a reader overlooked. Any thread may call.
     [[nodiscard]] Result<Source> read(Job& job, const std::string& path, const Execution& execution,
-                                      bool base_only, std::optional<YAxis> y = std::nullopt,
-                                      std::optional<bool> keep_length = std::nullopt);
+                                      const Reading& reading = {});
 
     // The same for the job's input; tells the job's report the format and swizzle of the source.
     [[nodiscard]] Result<Source> read(Job& job, double until, bool base_only);
@@ -63,6 +69,7 @@ private:
         int count = 0;
     };
 
+    [[nodiscard]] YAxis y_of(const Texture& texture, const Reading& reading) const;
     [[nodiscard]] Result<Swizzle> swizzle_of(const std::string& path, const Texture& texture);
 
     std::mutex mutex_;
