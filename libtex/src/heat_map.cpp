@@ -125,4 +125,19 @@ Result<Image> heat_map(const Plane<float>& degrees, double full_scale, const Exe
     });
 }
 
+Result<Plane<float>> largest_of_cells(const Plane<float>& degrees, int side) {
+    return guarded([&]() -> Result<Plane<float>> {
+        const Extent extent = degrees.extent();
+        const int cell = (std::max(extent.width, extent.height) + side - 1) / side;
+        Plane<float> cells({(extent.width + cell - 1) / cell, (extent.height + cell - 1) / cell}, 0.0f);
+        for (int j = 0; j < extent.height; ++j) {
+            for (int i = 0; i < extent.width; ++i) {
+                float& largest = cells.at(i / cell, j / cell);
+                largest = std::max(largest, degrees.at(i, j));
+            }
+        }
+        return cells;
+    });
+}
+
 }  // namespace tex

@@ -3,7 +3,9 @@
 #include <tex/sheet.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "base/guard.h"
@@ -16,6 +18,7 @@ namespace {
 
 using render::Canvas;
 
+constexpr std::size_t kPaletteSize = 256;  // of a PNG
 constexpr int kGap = 8;
 constexpr int kCaption = 14;  // height of a caption's line, times the letters' scale
 
@@ -50,6 +53,34 @@ Result<Texture> picture_of(const Image& image) {
             }
         }
         return std::move(canvas).take();
+    });
+}
+
+Result<std::vector<std::byte>> encode_picture(const Texture& picture) {
+    return guarded([&]() -> Result<std::vector<std::byte>> {
+        const Level& level = picture.levels.front();
+        const auto count = static_cast<std::size_t>(level.extent.texels());
+        const auto* bytes = reinterpret_cast<const std::uint8_t*>(level.bytes.data());
+        const auto color = [&](std::size_t k) { return PngColor{bytes[3 * k], bytes[3 * k + 1], bytes[3 * k + 2]}; };
+
+        std::set<PngColor> colors;
+        bool is_grey = true;
+        for (std::size_t k = 0; k < count && (is_grey || colors.size() <= kPaletteSize); ++k) {
+            const PngColor c = color(k);
+            is_grey = is_grey && c.r == c.g && c.g == c.b;
+            if (colors.size() <= kPaletteSize) colors.insert(c);
+        }
+        if (!is_grey && colors.size() > kPaletteSize) return encode_png(picture);
+
+        Texture narrow;
+        narrow.format = Format::r8_unorm;
+        narrow.levels.push_back({level.extent, std::vector<std::byte>(count)});
+        const std::vector<PngColor> palette(colors.begin(), colors.end());
+        for (std::size_t k = 0; k < count; ++k) {
+            const auto place = std::lower_bound(palette.begin(), palette.end(), color(k)) - palette.begin();
+            narrow.levels.front().bytes[k] = is_grey ? level.bytes[3 * k] : static_cast<std::byte>(place);
+        }
+        return is_grey ? encode_png(narrow) : encode_indexed_png(narrow.levels.front(), palette);
     });
 }
 

@@ -50,5 +50,18 @@ TEST(HeatMap, LegendNamesItsEnds) {
     EXPECT_FALSE(white(2, 4) || white(6, 0));
 }
 
+TEST(LargestOfCells, LosesNoAngle) {
+    Plane<float> degrees(Extent{10, 5}, 1.0f);
+    degrees.at(9, 4) = 7.0f;
+    degrees.at(3, 1) = 5.0f;
+    const auto cells = largest_of_cells(degrees, 4);
+    ASSERT_TRUE(cells);
+    ASSERT_EQ(cells->extent(), (Extent{4, 2})) << "cells of 3 texels";
+    EXPECT_EQ(cells->at(1, 0), 5.0f);
+    EXPECT_EQ(cells->at(3, 1), 7.0f);
+    EXPECT_EQ(cells->at(0, 0), 1.0f);
+    EXPECT_EQ(largest_of_cells(degrees, 10)->extent(), degrees.extent());
+}
+
 }  // namespace
 }  // namespace tex

@@ -3,9 +3,13 @@
 #include <tex/sheet.h>
 
 #include <cmath>
+#include <filesystem>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <tex/container.h>
+#include <unistd.h>
 
 #include "preview/canvas.h"
 
@@ -44,6 +48,37 @@ TEST(ContactSheet, PutsPanelsInRowsOfEqualColumns) {
     const auto none = contact_sheet({});
     ASSERT_FALSE(none);
     EXPECT_EQ(none.error().code, ErrorCode::bad_option);
+}
+
+TEST(EncodePicture, TakesTheFewestChannels) {
+    const auto color_type = [](const std::vector<std::byte>& png) { return std::to_integer<int>(png[25]); };
+    Texture picture = plain_picture({20, 10}, {7, 7, 7});
+    const auto grey = encode_picture(picture);
+    ASSERT_TRUE(grey);
+    EXPECT_EQ(color_type(*grey), 0);
+    picture.levels.front().bytes[0] = std::byte{8};
+    const auto indexed = encode_picture(picture);
+    ASSERT_TRUE(indexed);
+    EXPECT_EQ(color_type(*indexed), 3);
+
+    Canvas canvas({32, 32}, {0, 0, 0});
+    for (int j = 0; j < 32; ++j) {
+        for (int i = 0; i < 32; ++i) canvas.set(i, j, {static_cast<std::uint8_t>(8 * i), static_cast<std::uint8_t>(8 * j), 1});
+    }
+    Texture many = std::move(canvas).take();
+    const auto colors = encode_picture(many);
+    ASSERT_TRUE(colors);
+    EXPECT_EQ(color_type(*colors), 2);
+
+    // What was written is what is read.
+    for (const auto& [png, made] : {std::pair{&*indexed, &picture}, {&*colors, &many}}) {
+        const std::string path = testing::TempDir() + "encode_picture." + std::to_string(getpid()) + ".png";
+        ASSERT_TRUE(write_file(path, *png));
+        const auto read = read_texture(path);
+        std::filesystem::remove(path);
+        ASSERT_TRUE(read);
+        EXPECT_EQ(read->levels.front().bytes, made->levels.front().bytes);
+    }
 }
 
 TEST(SplitView, ShowsTheLeftHalfOfOneAndTheRightHalfOfTheOther) {

@@ -23,4 +23,9 @@ inline constexpr int kHeatMapLeastWidth = 128;
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] Result<Image> heat_map(const Plane<float>& degrees, double full_scale, const Execution& execution = {});
 
+// The angles for a smaller picture: the longer side divided into at most `side` cells, each holding its largest angle, so that none is lost. Cells are square,
+// of a whole number of texels, but for those at the right and lower border. Precondition: `degrees` is not empty, side >= 1.
+// Errors: out_of_memory.
+[[nodiscard]] Result<Plane<float>> largest_of_cells(const Plane<float>& degrees, int side);
+
 }  // namespace tex

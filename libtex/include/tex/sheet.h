@@ -19,6 +19,10 @@ namespace [[gnu::visibility("default")]] tex {
 // (one of the planes is missing), out_of_memory.
 [[nodiscard]] Result<Texture> picture_of(const Image& image);
 
+// The bytes of a PNG of the picture with the fewest channels that hold its colours: grey where R, G and B are equal everywhere, a palette where there are
+// at most 256 colours (preview()'s false colours), else R, G, B. Errors: out_of_memory.
+[[nodiscard]] Result<std::vector<std::byte>> encode_picture(const Texture& picture);
+
 // A picture with a caption, a part of a sheet.
 struct Panel {
     Texture picture;

@@ -302,7 +302,8 @@ void on_write(png_structp png, png_bytep data, std::size_t count) {
 
 void on_flush(png_structp) {}
 
-bool write_rows(PngWriter& writer, const Level& level, int color_type, int bits, std::size_t row_bytes) {
+// `palette` is null but for indexed colours.
+bool write_rows(PngWriter& writer, const Level& level, int color_type, int bits, std::size_t row_bytes, const std::vector<png_color>* palette) {
     writer.png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, static_cast<PngState*>(&writer), on_error, on_warning,
                                            static_cast<PngState*>(&writer), on_allocate, on_free);
     if (writer.png == nullptr) writer.out_of_memory = true;
@@ -312,11 +313,12 @@ bool write_rows(PngWriter& writer, const Level& level, int color_type, int bits,
     if (writer.info == nullptr) png_error(png, "out of memory");
     png_set_write_fn(png, &writer, on_write, on_flush);
     png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
-    png_set_compression_strategy(png, kStrategy);
-    png_set_filter(png, PNG_FILTER_TYPE_BASE, kFilters);
+    png_set_compression_strategy(png, palette == nullptr ? kStrategy : Z_DEFAULT_STRATEGY);
+    png_set_filter(png, PNG_FILTER_TYPE_BASE, palette == nullptr ? kFilters : PNG_FILTER_NONE);
     png_set_IHDR(png, writer.info, static_cast<png_uint_32>(level.extent.width),
                  static_cast<png_uint_32>(level.extent.height), bits, color_type, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
+    if (palette != nullptr) png_set_PLTE(png, writer.info, palette->data(), static_cast<int>(palette->size()));
     png_write_info(png, writer.info);
     if (bits == 16) png_set_swap(png);  // levels are little-endian, PNG is big-endian
     for (int j = 0; j < level.extent.height; ++j) {
@@ -338,6 +340,12 @@ int png_color_type(const FormatInfo& format) {
     }
 }
 
+Result<std::vector<std::byte>> written(PngWriter& writer, bool is_written) {
+    if (is_written) return std::move(writer.bytes);
+    if (writer.out_of_memory) return out_of_memory_error();
+    return Error{ErrorCode::unsupported, {}, std::string("PNG cannot be written: ") + writer.reason};
+}
+
 }  // namespace
 
 Result<std::vector<std::byte>> encode_png(const Texture& texture) {
@@ -352,11 +360,17 @@ Result<std::vector<std::byte>> encode_png(const Texture& texture) {
         const Level& level = texture.levels.front();
         PngWriter writer;
         const std::size_t row_bytes = static_cast<std::size_t>(level.extent.width) * format.block_bytes;
-        if (!write_rows(writer, level, color_type, format.bits, row_bytes)) {
-            if (writer.out_of_memory) return out_of_memory_error();
-            return Error{ErrorCode::unsupported, {}, std::string("PNG cannot be written: ") + writer.reason};
-        }
-        return std::move(writer.bytes);
+        return written(writer, write_rows(writer, level, color_type, format.bits, row_bytes, nullptr));
+    });
+}
+
+Result<std::vector<std::byte>> encode_indexed_png(const Level& indices, const std::vector<PngColor>& palette) {
+    return guarded([&]() -> Result<std::vector<std::byte>> {
+        std::vector<png_color> colors;
+        for (const PngColor& color : palette) colors.push_back({color.r, color.g, color.b});
+        PngWriter writer;
+        return written(writer, write_rows(writer, indices, PNG_COLOR_TYPE_PALETTE, 8,
+                                          static_cast<std::size_t>(indices.extent.width), &colors));
     });
 }
 

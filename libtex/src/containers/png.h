@@ -3,7 +3,9 @@
 
 #pragma once
 
+#include <compare>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -35,5 +37,13 @@ Result<Image> read_png(InputFile& file, const ReadOptions& options);
 //
 // Errors: unsupported (another format), out_of_memory.
 Result<std::vector<std::byte>> encode_png(const Texture& texture);
+
+// Encodes a level of one byte for each texel, the number of a colour. Precondition: 1 to 256 colours, and no byte beyond them.
+// Errors: unsupported (libpng's reason), out_of_memory.
+struct PngColor {
+    std::uint8_t r, g, b;
+    friend auto operator<=>(const PngColor&, const PngColor&) = default;
+};
+Result<std::vector<std::byte>> encode_indexed_png(const Level& indices, const std::vector<PngColor>& palette);
 
 }  // namespace tex

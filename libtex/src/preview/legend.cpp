@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <utility>
 
 #include "preview/canvas.h"
@@ -18,11 +19,15 @@ constexpr int kBarTop = 6;
 constexpr int kBarHeight = 10;
 constexpr int kTextTop = 21;
 
+// Nobody tells so many colours apart, and with those of the letters they fit into the palette of a PNG.
+constexpr double kColorSteps = 240.0;
+
 }  // namespace
 
 Vec3 ColorScale::color(double value) const {
     const double range = greatest - least;
-    const double t = (value - least) / (range > 0.0 ? range : 1.0);
+    double t = (value - least) / (range > 0.0 ? range : 1.0);
+    if (t > 0.0 && t < 1.0) t = std::floor(t * kColorSteps + 0.5) / kColorSteps;
     switch (palette) {
         case Palette::viridis:
             return viridis(t);
