@@ -12,8 +12,10 @@
 #include "cli/baseline.h"
 #include "cli/batch.h"
 #include "cli/check_config.h"
+#include "cli/collisions.h"
 #include "cli/console.h"
 #include "cli/findings.h"
+#include "cli/html_report.h"
 #include "cli/junit.h"
 #include "cli/sarif.h"
 #include "cli/stream.h"
@@ -36,19 +38,23 @@ struct CheckNormals {
     cli::RunOptions run;
     CheckOptions options;
     Severity fail_on = Severity::error;
-    std::string config, baseline_path, baseline_written, sarif, junit, explain, height_path;
+    std::string config, baseline_path, baseline_written, sarif, junit, page_path, explain, height_path;
     std::vector<std::string> required_texts;  // those of the command line
     bool list = false;
 
     std::optional<cli::Baseline> baseline;
     std::optional<HeightField> height;
     std::mutex mutex;
+    cli::HtmlReport page{"check-normals", cli::check_columns()};
+    cli::HtmlSizes sizes;  // of the page's pictures
     std::map<std::string, CheckReport> reports;  // by file: the documents do not depend on which ended first
     Totals totals;
 
     CheckNormals();
     void add_rules();
     void add_documents();
+    void check_page(const std::vector<cli::Task>& tasks);
+    Result<void> add_to_page(cli::Job& job, const CheckReport& report);
     Result<void> prepare(const std::vector<cli::Task>& tasks);
     Result<void> process(cli::Job& job);
     cli::ExitCode write_documents() const;
@@ -65,6 +71,7 @@ CheckNormals::CheckNormals() {
     command.check([this] {
         if (!list && explain.empty()) return;
         if (!command.inputs().empty()) throw cli::UsageError("--list and --explain take no files");
+        if (!page_path.empty()) throw cli::UsageError("--list and --explain write no --report");
     });
     files.add_inputs(command, [this] { return list || !explain.empty(); });
     run.add(command);
@@ -72,6 +79,7 @@ CheckNormals::CheckNormals() {
                     "What a build wants of its normal maps.");
     command.example("check-normals --config normals.toml --sarif findings.sarif --junit findings.xml --files-from list",
                     "In continuous integration.");
+    command.example("check-normals art/**/*_n.dds --report report.html", "A page with pictures, on which the light can be moved.");
     command.example("check-normals --baseline-write known.json old/*.dds", "Accepts what is wrong today; --baseline known.json then tells what is new.");
     command.example("check-normals bricks_n.png --height bricks_h.png", "Whether a normal map belongs to a height map.");
 }
@@ -108,6 +116,8 @@ void CheckNormals::add_rules() {
 
 void CheckNormals::add_documents() {
     command.group("Documents");
+    command.text(page_path, "--report", "FILE", "write a page with the findings and pictures, on which the light can be moved").completes =
+        cli::Completes::files;
     command.text(sarif, "--sarif", "FILE", "write the findings as SARIF 2.1.0").completes = cli::Completes::files;
     command.text(junit, "--junit", "FILE", "write the findings as JUnit XML").completes = cli::Completes::files;
     command.text(baseline_path, "--baseline", "FILE", "accept the findings that this file lists").completes = cli::Completes::files;
@@ -146,8 +156,30 @@ Result<void> CheckNormals::prepare(const std::vector<cli::Task>& tasks) {
     return {};
 }
 
+void CheckNormals::check_page(const std::vector<cli::Task>& tasks) {
+    std::vector<std::string> inputs;
+    for (const cli::Task& task : tasks) inputs.push_back(task.input);
+    cli::check_document("--report", page_path, inputs, {sarif, junit, baseline_written, baseline_path, config, height_path});
+    sizes = cli::html_sizes(tasks.size());
+}
+
+Result<void> CheckNormals::add_to_page(cli::Job& job, const CheckReport& report) {
+    for (const Finding& finding : report.findings) page.explain(*finding.rule);
+    std::optional<cli::HtmlMap> map;
+    if (!report.error) {
+        const auto texture = read_texture(job.task.input, job.read_options);
+        if (!texture) return texture.error();
+        auto drawn = cli::draw_html_map(job.task.input, *texture, report.swizzle, sizes, job.until(1.0));
+        // What holds no normals has findings, and no pictures.
+        if (drawn) map = std::move(*drawn);
+        else if (drawn.error().code != ErrorCode::bad_option) return drawn.error();
+    }
+    page.add(job.task.input, cli::check_entry(report, options.require, map ? &*map : nullptr));
+    return {};
+}
+
 Result<void> CheckNormals::process(cli::Job& job) {
-    auto report = check_file(job.task.input, options, job.read_options, job.until(1.0));
+    auto report = check_file(job.task.input, options, job.read_options, job.until(page_path.empty() ? 1.0 : 0.5));
     if (!report) return report.error();
     if (report->error && report->error->code == ErrorCode::cancelled) return *report->error;
     const int known = baseline ? baseline->accept(*report) : 0;
@@ -161,6 +193,9 @@ Result<void> CheckNormals::process(cli::Job& job) {
     job.say(cli::findings_text(*report, options.require));
     job.report = cli::findings_json(*report, options.require);
     if (known > 0) job.report["known"] = known;
+    if (!page_path.empty()) {
+        if (const auto added = add_to_page(job, *report); !added) return added.error();
+    }
 
     const std::lock_guard lock(mutex);
     ++totals.files;
@@ -186,6 +221,7 @@ cli::ExitCode CheckNormals::write_documents() const {
     };
     if (!sarif.empty()) write(sarif, cli::sarif_text(all, options.require));
     if (!junit.empty()) write(junit, cli::junit_text(all, options.require, fail_on));
+    if (!page_path.empty()) write(page_path, page.page(summary()));
     if (!baseline_written.empty()) write(baseline_written, cli::Baseline::of(all).text());
     return code;
 }
@@ -196,18 +232,21 @@ std::string CheckNormals::summary() const {
                                    count(totals.by_severity[1], "warning"), count(totals.by_severity[0], "note"));
     if (totals.unreadable > 0) text += fmt::format("; {} unreadable", totals.unreadable);
     if (totals.known > 0) text += fmt::format("; {} known and accepted", totals.known);
-    return text + "\n";
+    return text;
 }
 
 cli::ExitCode run_command(CheckNormals& self) {
     if (self.list) return cli::print(cli::rules_text());
     if (!self.explain.empty()) return cli::print(cli::rule_text(*find_rule(self.explain)));
     cli::Steps steps;
-    steps.check = [&](const std::vector<cli::Task>& tasks) { return self.prepare(tasks); };
+    steps.check = [&](const std::vector<cli::Task>& tasks) {
+        if (!self.page_path.empty()) self.check_page(tasks);
+        return self.prepare(tasks);
+    };
     steps.process = [&](cli::Job& job) { return self.process(job); };
     cli::ExitCode code = cli::run_readers(self.command, self.files, self.run, steps);
     if (self.totals.files > 0) {
-        if (!self.run.json) code = std::max(code, cli::print(self.summary()));
+        if (!self.run.json) code = std::max(code, cli::print(self.summary() + "\n"));
         code = std::max(code, self.write_documents());
     }
     return code;

@@ -8,7 +8,9 @@
 #include <tex/tex.h>
 
 #include "cli/batch.h"
+#include "cli/collisions.h"
 #include "cli/console.h"
+#include "cli/html_report.h"
 #include "cli/interrupt.h"
 #include "cli/json.h"
 #include "cli/stream.h"
@@ -24,7 +26,7 @@ struct CompareNormals {
     int level = 0;
     bool all_levels = false;
     std::optional<double> max_mean, max_p999, max;
-    std::string heat_map_path;
+    std::string heat_map_path, page_path;
     std::optional<double> heat_map_scale;
     cli::RunOptions run;
 
@@ -35,6 +37,8 @@ struct CompareNormals {
     void tell(int number, Extent extent, const AngularError& error) const;
     cli::ExitCode judge(int number, const AngularError& error) const;
     Result<void> write_heat_map(const Comparison& comparison) const;
+    [[nodiscard]] Result<cli::HtmlMap> draw_map(const std::string& path, std::optional<YAxis> y) const;
+    [[nodiscard]] Result<void> write_page(const std::vector<cli::ComparedLevel>& levels, const Plane<float>& degrees) const;
 };
 
 CompareNormals::CompareNormals() {
@@ -58,15 +62,20 @@ CompareNormals::CompareNormals() {
     command.option("--heatmap-scale", "DEGREES", "the angle at the end of the legend", [this](const std::string& text) {
         heat_map_scale = cli::parse_double(text, {0.0, 180.0, false});
     }).preset = "the largest angle";
+    command.group("Report");
+    command.text(page_path, "--report", "FILE", "write a page with the figures and pictures of both maps, on which the light can be moved").completes =
+        cli::Completes::files;
     run.add(command);
     command.check([this] {
         if (command.inputs().size() != 2) throw cli::UsageError("two files are compared: A and B");
         if (heat_map_scale && heat_map_path.empty()) throw cli::UsageError("--heatmap-scale needs --heatmap");
         if (command.inputs()[0] == "-" && command.inputs()[1] == "-") throw cli::UsageError("standard input can only be read once");
+        if (command.given("--report")) cli::check_document("--report", page_path, command.inputs(), {heat_map_path});
     });
     command.example("compare-normals bricks.exr bricks.dds", "What the compression of bricks.dds cost.");
     command.example("compare-normals old.dds new.dds --level all --max-p999 2 --heatmap diff.png",
                     "Fails where more than 1 texel in 1000 moved by over 2 degrees, and shows where.");
+    command.example("compare-normals bricks.exr bricks.dds --report loss.html", "A page with both maps under a light that can be moved.");
     command.example("compare-normals gl.png dx.png --y-b down", "Two conventions of one map.");
 }
 
@@ -136,6 +145,30 @@ Result<void> CompareNormals::write_heat_map(const Comparison& comparison) const 
     return write_texture(heat_map_path, texture);
 }
 
+Result<cli::HtmlMap> CompareNormals::draw_map(const std::string& path, std::optional<YAxis> y) const {
+    auto texture = read_texture(path, run.read);
+    if (!texture) return texture.error();
+    texture->y_axis = y.value_or(texture->y_axis);
+    return cli::draw_html_map(path, *texture, texture->swizzle, cli::html_sizes(1),
+                              {run.threads, [](double) { return cli::caught_signal() == 0; }});
+}
+
+Result<void> CompareNormals::write_page(const std::vector<cli::ComparedLevel>& levels, const Plane<float>& degrees) const {
+    auto a = draw_map(command.inputs()[0], y_a);
+    if (!a) return a.error();
+    auto b = draw_map(command.inputs()[1], y_b);
+    if (!b) return b.error();
+    auto entry = cli::compare_entry(levels, std::move(*a), std::move(*b), degrees, heat_map_scale);
+    if (!entry) return entry.error();
+    cli::HtmlReport page("compare-normals", cli::compare_columns());
+    page.add("", std::move(*entry));
+    const AngularError& e = levels.front().error;
+    const std::string text = page.page(fmt::format("level {}: mean {:.4f}, 99.9th percentile {:.4f}, largest {:.4f} degrees", levels.front().number,
+                                                   e.mean, e.p999, e.max));
+    const auto* bytes = reinterpret_cast<const std::byte*>(text.data());
+    return write_file(page_path, std::vector<std::byte>(bytes, bytes + text.size()));
+}
+
 Result<cli::ExitCode> CompareNormals::compare_files() {
     const std::string &name_a = command.inputs()[0], &name_b = command.inputs()[1];
     const auto a = read(name_a, y_a);
@@ -145,6 +178,8 @@ Result<cli::ExitCode> CompareNormals::compare_files() {
     const std::size_t first = all_levels ? 0 : static_cast<std::size_t>(level);
     const std::size_t end = all_levels ? std::min(a->size(), b->size()) : first + 1;
     cli::ExitCode code = cli::ExitCode::done;
+    std::vector<cli::ComparedLevel> levels;  // of the page
+    Plane<float> degrees;
     for (std::size_t k = first; k < end; ++k) {
         const auto lacks = [&](const std::string& name, std::size_t count) {
             return Error{ErrorCode::bad_option, name, fmt::format("has {} levels, so none of number {}", count, k)};
@@ -157,16 +192,24 @@ Result<cli::ExitCode> CompareNormals::compare_files() {
                          fmt::format("is {}x{} texels, {} is {}x{}", map_b.extent().width, map_b.extent().height, name_a,
                                      map_a.extent().width, map_a.extent().height)};
         }
-        const auto comparison = compare(map_a, map_b, {run.threads, [](double) { return cli::caught_signal() == 0; }});
+        auto comparison = compare(map_a, map_b, {run.threads, [](double) { return cli::caught_signal() == 0; }});
         if (!comparison) return comparison.error();
         if (k == first && !run.json) {
             (void)cli::print(fmt::format("{:>5} {:>11} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}  in degrees; largest at\n", "level", "texels",
                                          "mean", "rms", "p50", "p99", "p99.9", "max"));
         }
         tell(static_cast<int>(k), map_a.extent(), comparison->error);
-        code = std::max(code, judge(static_cast<int>(k), comparison->error));
-        if (k > first || heat_map_path.empty()) continue;
-        if (auto written = write_heat_map(*comparison); !written) return written.error();
+        const cli::ExitCode judged = judge(static_cast<int>(k), comparison->error);
+        code = std::max(code, judged);
+        levels.push_back({static_cast<int>(k), map_a.extent(), comparison->error, judged == cli::ExitCode::done});
+        if (k > first) continue;
+        if (!heat_map_path.empty()) {
+            if (auto written = write_heat_map(*comparison); !written) return written.error();
+        }
+        degrees = std::move(comparison->degrees);
+    }
+    if (!page_path.empty()) {
+        if (auto written = write_page(levels, degrees); !written) return written.error();
     }
     return code;
 }

@@ -103,4 +103,20 @@ void check_collisions(const std::vector<Task>& tasks, const std::string& depfile
         throw UsageError(fmt::format("--depfile: {} is an output", printable(depfile)));
 }
 
+void check_document(const std::string& option, const std::string& path, const std::vector<std::string>& inputs,
+                    const std::vector<std::string>& others) {
+    if (path.empty() || path == "-") throw UsageError(fmt::format("{} needs the name of a file", option));
+    if (path.ends_with('/') || fs::is_directory(path)) throw UsageError(fmt::format("{} {}: is a folder", option, printable(path)));
+    const auto same = [&, name = canonical(path), file = identity(path)](const std::string& other) {
+        return !other.empty() && other != "-" && (canonical(other) == name || (file && identity(other) == file));
+    };
+    for (const std::string& input : inputs) {
+        if (input == "-") throw UsageError(fmt::format("{} reads its inputs twice, which standard input does not allow", option));
+        if (same(input)) throw UsageError(fmt::format("{}: {} is the input {}", option, printable(path), printable(input)));
+    }
+    for (const std::string& other : others) {
+        if (same(other)) throw UsageError(fmt::format("{}: {} is {}, which another option names", option, printable(path), printable(other)));
+    }
+}
+
 }  // namespace tex::cli

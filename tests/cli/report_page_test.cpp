@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// --report of check-normals and compare-normals, as files. tests/browser opens them.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "cli/program.h"
+
+namespace tex::cli {
+
+class Report : public testing::Test {
+protected:
+    Report() {
+        scratch_.add_sample("waves.png", "waves.png");
+        EXPECT_EQ(shell(scratch_, "bake-normals waves.png -o up.dds --bumpiness 6 --no-sync && "
+                                  "bake-normals waves.png -o down.png --bumpiness 6 --y down --no-sync").code, 0);
+    }
+    Ran check(const std::vector<std::string>& arguments) { return run(scratch_, "check-normals", arguments); }
+    Ran compare(const std::vector<std::string>& arguments) { return run(scratch_, "compare-normals", arguments); }
+    [[nodiscard]] bool page_has(const std::string& text) const { return scratch_.read("page.html").find(text) != std::string::npos; }
+    Scratch scratch_;
+};
+
+TEST_F(Report, HoldsFilesFindingsFiguresAndFixes) {
+    scratch_.write("bad.dds", "DDS nonsense");
+    const Ran ran = check({"up.dds", "down.png", "bad.dds", "--require", "y=up", "--report", "page.html"});
+    EXPECT_EQ(ran.code, 4) << ran.err;
+    for (const char* text : {"<!doctype html>", "N401 wrong-y", "Fix: <code>", "up.dds", "bad.dds", "N101", "dxt5nm", "alt=\"down.png: lit from the upper left\"",
+                             "id=\"map-1\"", "</html>"}) {
+        EXPECT_TRUE(page_has(text)) << text;
+    }
+    EXPECT_FALSE(page_has(scratch_.path())) << "no path beyond what was given";
+    EXPECT_FALSE(page_has("://")) << "nothing is loaded from elsewhere";
+}
+
+TEST_F(Report, HasTheSameBytesForEveryNumberOfThreads) {
+    check({"up.dds", "down.png", "--report", "one.html", "--threads", "1"});
+    check({"down.png", "up.dds", "--report", "many.html", "--threads", "4"});
+    EXPECT_EQ(scratch_.read("one.html"), scratch_.read("many.html"));
+    EXPECT_FALSE(scratch_.read("one.html").empty());
+}
+
+TEST_F(Report, HoldsTheLevelsThatWereCompared) {
+    EXPECT_EQ(compare({"up.dds", "down.png", "--y-b", "down", "--level", "0", "--report", "page.html"}).code, 0);
+    EXPECT_TRUE(page_has("data-other=\"1\""));
+    EXPECT_TRUE(page_has("A on the left, B on the right"));
+    EXPECT_EQ(compare({"up.dds", "down.png", "--max", "1", "--report", "page.html"}).code, 1);
+    EXPECT_TRUE(page_has("class=\"over\""));
+}
+
+TEST_F(Report, RefusesWhatItCannotWriteOrWouldDestroy) {
+    const std::string before = scratch_.read("up.dds");
+    EXPECT_EQ(check({"up.dds", "--report", "up.dds"}).code, 2);
+    EXPECT_EQ(check({"up.dds", "--report", "./up.dds"}).code, 2);
+    std::filesystem::create_symlink("up.dds", scratch_.path("link.html"));
+    EXPECT_EQ(check({"up.dds", "--report", "link.html"}).code, 2);
+    EXPECT_EQ(check({"up.dds", "--report", "x.html", "--sarif", "./x.html"}).code, 2);
+    EXPECT_EQ(check({"up.dds", "--report", "x.html", "--junit", "x.html"}).code, 2);
+    EXPECT_EQ(check({"up.dds", "--report", "-"}).code, 2);
+    EXPECT_EQ(check({"up.dds", "--report", ""}).code, 2);
+    EXPECT_EQ(check({"up.dds", "--report", "."}).code, 2);
+    EXPECT_EQ(check({"-", "--report", "x.html"}).code, 2);
+    EXPECT_EQ(check({"--list", "--report", "x.html"}).code, 2);
+    EXPECT_EQ(check({"--explain", "N401", "--report", "x.html"}).code, 2);
+    EXPECT_EQ(compare({"up.dds", "down.png", "--report", "down.png"}).code, 2);
+    EXPECT_EQ(compare({"up.dds", "down.png", "--report", "x.png", "--heatmap", "x.png"}).code, 2);
+    EXPECT_FALSE(scratch_.has("x.html"));
+    EXPECT_EQ(scratch_.read("up.dds"), before);
+    const Ran ran = check({"up.dds", "--report", "gone/x.html"});
+    EXPECT_EQ(ran.code, 3);
+    EXPECT_NE(ran.err.find("gone/x.html"), std::string::npos) << ran.err;
+    EXPECT_EQ(compare({"up.dds", "up.dds", "--report", "gone/x.html"}).code, 3);
+}
+
+}  // namespace tex::cli
