@@ -51,6 +51,14 @@ std::string stage(const HtmlEntry& entry, std::size_t number) {
     return html + "</div>\n";
 }
 
+// Characters that pictures and levels take.
+std::size_t size_of(const HtmlEntry& entry) {
+    std::size_t sum = 0;
+    for (const HtmlPicture& picture : entry.extras) sum += picture.png.size() * 4 / 3;
+    for (const HtmlMap& map : entry.maps) sum += map.picture_size() + map.level_size();
+    return sum;
+}
+
 // Puts `text` where the page has the mark `name`.
 void fill(std::string& page, std::string_view name, std::string_view text) {
     const std::string mark = fmt::format("<!--{}-->", name);
@@ -68,24 +76,22 @@ void HtmlReport::add(const std::string& key, HtmlEntry entry) {
         map.chain = {};
         map.limit(side_);
     }
-    entries_.insert_or_assign(key, std::move(entry));
-    keep_to_budget();
+    HtmlEntry& kept = entries_[key];
+    size_ += size_of(entry) - size_of(kept);
+    kept = std::move(entry);
+    if (size_ > kHtmlBudget) keep_to_budget();
 }
 
 // More entries only make a page larger, so the limit at the end is that of the whole set, whichever entry came last.
 void HtmlReport::keep_to_budget() {
-    for (std::size_t k = 0; k < kSides.size(); ++k) {
-        if (kSides[k] > side_) continue;
-        std::size_t sum = 0;
+    for (const int side : kSides) {
+        if (side >= side_ || size_ <= kHtmlBudget) continue;
+        side_ = side;
+        size_ = 0;
         for (auto& [key, entry] : entries_) {
-            for (const HtmlPicture& picture : entry.extras) sum += picture.png.size() * 4 / 3;
-            for (HtmlMap& map : entry.maps) {
-                map.limit(kSides[k]);
-                sum += map.picture_size() + map.level_size();
-            }
+            for (HtmlMap& map : entry.maps) map.limit(side);
+            size_ += size_of(entry);
         }
-        side_ = kSides[k];
-        if (sum <= kHtmlBudget) return;
     }
 }
 

@@ -61,6 +61,7 @@ private:
     std::map<std::string, HtmlEntry> entries_;
     std::map<std::string, const Rule*> rules_;
     int side_ = kLargestHtmlLevel;  // the longest level that fits in
+    std::size_t size_ = 0;          // of all pictures and levels, in characters
 };
 
 // The columns and an entry of check-normals. `map` is null for a file that could not be decoded.
