@@ -86,7 +86,7 @@ function levelsOf(maps, number) {
 
 // Draws maps by number. Throws where there is no WebGL 2.
 class Lighting {
-  static kMostTextures = 8;  // kept on the GPU
+  static kMostTextures = 24;  // kept on the GPU; more than stages that are live, with their B
 
   constructor(maps) {
     this.maps = maps;
