@@ -113,7 +113,7 @@ std::string level_row(const ComparedLevel& level) {
     const AngularError& e = level.error;
     std::string html = fmt::format("<tr{}><th scope=\"row\">{}</th><td>{}</td>", level.within ? "" : " class=\"over\"", level.number,
                                    extent_text(level.extent));
-    for (const double angle : {e.mean, e.rms, e.p50, e.p99, e.p999, e.max}) html += fmt::format("<td>{:.4f}</td>", angle);
+    for (const double angle : {e.mean, e.rms, e.p50, e.p99, e.p999, e.max}) html += fmt::format("<td>{:.3f}</td>", angle);
     return html + fmt::format("<td>{}, {}</td></tr>\n", e.max_column, e.max_row);
 }
 
@@ -156,16 +156,16 @@ HtmlEntry check_entry(const CheckReport& report, const Requirements& require, Ht
     return entry;
 }
 
-std::vector<std::string> compare_columns() { return {"against", "level", "mean", "p99.9", "largest, degrees"}; }
+std::vector<std::string> compare_columns() { return {"limits", "level", "mean", "p99.9", "largest, degrees"}; }
 
 Result<HtmlEntry> compare_entry(const std::vector<ComparedLevel>& levels, HtmlMap a, HtmlMap b, const Plane<float>& degrees,
                                 std::optional<double> scale) {
     HtmlEntry entry;
-    entry.title = a.file;
+    entry.title = fmt::format("{} and {}", a.file, b.file);
     const bool within = std::all_of(levels.begin(), levels.end(), [](const ComparedLevel& level) { return level.within; });
     entry.words = within ? "clean" : "error";
     const ComparedLevel& first = levels.front();
-    entry.row = fmt::format("<td>{}</td><td>{}</td>", html_text(b.file), first.number);
+    entry.row = fmt::format("<td>{}</td><td>{}</td>", within ? "<span class=\"chip clean\">none passed</span>" : chip(Severity::error, "over a limit"), first.number);
     for (const double angle : {first.error.mean, first.error.p999, first.error.max}) entry.row += fmt::format("<td>{:.4f}</td>", angle);
 
     entry.body = "<dl>\n" + fact("A", a.file) + fact("", layout_text(a.format, a.swizzle)) + fact("B", b.file) +

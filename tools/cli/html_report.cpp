@@ -17,7 +17,7 @@ namespace {
 // The longest sides that levels are limited to, one after the other, until a page is small enough.
 constexpr std::array kSides = {1024, 512, 256, 128, 64, 32, 0};
 
-constexpr int kWidePicture = 300;  // pixels; wider ones take two columns
+constexpr int kWidePicture = 200;  // pixels; wider ones take two columns
 
 std::string image_tag(const HtmlPicture& picture, const std::string& of, const char* attributes) {
     return fmt::format("<img {} width=\"{}\" height=\"{}\" alt=\"{}\" src=\"data:image/png;base64,{}\">", attributes, picture.extent.width,
@@ -30,10 +30,10 @@ std::string figure(const HtmlPicture& picture, const std::string& of) {
                        html_text(picture.caption));
 }
 
-std::string views(const HtmlMap& map) {
-    if (map.views.empty()) return {};
+std::string figures(const std::vector<HtmlPicture>& pictures, const std::string& of) {
+    if (pictures.empty()) return {};
     std::string html = "<div class=\"views\">\n";
-    for (const HtmlPicture& view : map.views) html += figure(view, map.file);
+    for (const HtmlPicture& picture : pictures) html += figure(picture, of);
     return html + "</div>\n";
 }
 
@@ -127,14 +127,10 @@ std::string HtmlReport::sections() const {
         html += fmt::format("<section class=\"file\" id=\"file-{}\" data-words=\"{}\">\n<h2>{}</h2>\n<div class=\"columns\">\n", ++number,
                             html_text(entry.words), html_text(entry.title));
         // The pictures of a single map stand beside it, those of two below.
-        html += stage(entry, map_number) + "<div class=\"facts\">\n" + entry.body + (entry.maps.size() == 1 ? views(entry.maps.front()) : "") + "</div>\n</div>\n";
-        if (!entry.extras.empty()) {
-            html += "<div class=\"views\">\n";
-            for (const HtmlPicture& picture : entry.extras) html += figure(picture, entry.title);
-            html += "</div>\n";
-        }
+        html += stage(entry, map_number) + "<div class=\"facts\">\n" + entry.body + figures(entry.extras, entry.title) +
+                (entry.maps.size() == 1 ? figures(entry.maps.front().views, entry.title) : "") + "</div>\n</div>\n";
         for (const HtmlMap& map : entry.maps) {
-            if (entry.maps.size() > 1 && !map.views.empty()) html += fmt::format("<h3>{}</h3>\n", html_text(map.file)) + views(map);
+            if (entry.maps.size() > 1 && !map.views.empty()) html += fmt::format("<h3>{}</h3>\n", html_text(map.file)) + figures(map.views, map.file);
         }
         html += "</section>\n";
         map_number += entry.maps.size();
