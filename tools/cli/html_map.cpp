@@ -62,7 +62,7 @@ Result<HtmlPicture> draw(const HtmlMap& map, Show show, int size, const char* ca
 
 Result<void> draw_pictures(HtmlMap& map, const HtmlSizes& sizes, const Execution& execution) {
     constexpr const char* kLit = "lit from the upper left";
-    auto thumbnail = draw(map, Show::lit, sizes.thumbnail, "", kLit, execution);
+    auto thumbnail = draw(map, Show::lit, sizes.thumbnail, kLit, kLit, execution);
     if (!thumbnail) return thumbnail.error();
     map.thumbnail = std::move(*thumbnail);
     if (sizes.lit == 0) return {};

@@ -39,14 +39,15 @@ std::string figures(const std::vector<HtmlPicture>& pictures, const std::string&
 
 // The still picture that the script makes a canvas of. `number` is that of the first map in the page.
 std::string stage(const HtmlEntry& entry, std::size_t number) {
-    if (entry.maps.empty() || entry.maps.front().lit.png.empty()) return {};
+    if (entry.maps.empty()) return {};
     const HtmlMap& map = entry.maps.front();
+    const HtmlPicture& still = map.lit.png.empty() ? map.thumbnail : map.lit;
     const bool has_levels = !map.shown().levels.empty();
     std::string html = "<div class=\"stage\"";
     if (has_levels) html += fmt::format(" data-map=\"{}\"", number);
     if (has_levels && entry.maps.size() > 1) html += fmt::format(" data-other=\"{}\"", number + 1);
     html += ">\n";
-    html += figure(map.lit, map.file);
+    html += figure(still, map.file);
     if (!has_levels) html += "<p class=\"remark\">There are too many files in this report for a light that moves.</p>\n";
     return html + "</div>\n";
 }
