@@ -186,9 +186,10 @@ TEST_F(BakeNormals, ThreadsDoNotChangeTheBytes) {
 
 TEST_F(BakeNormals, OneThreadMeansNoOther) {
     if (!is_installed("strace")) GTEST_SKIP() << "no strace";
-    const Ran ran =
-        shell(scratch_,
-              "strace -f -qq -e trace=clone,clone3,fork,vfork bake-normals bricks.png -o x.dds --threads 1");
+    // A sanitizer that looks for leaks does so from a thread of its own, and not under strace.
+    const Ran ran = shell(scratch_,
+                          "ASAN_OPTIONS=detect_leaks=0 strace -f -qq -e trace=clone,clone3,fork,vfork "
+                          "bake-normals bricks.png -o x.dds --threads 1");
     EXPECT_EQ(ran.code, 0);
     EXPECT_EQ(ran.err, "");
 }
