@@ -170,6 +170,13 @@ TEST_F(BakeNormals, TellsWhichWayAFileWent) {
     };
     EXPECT_EQ(path_of({"bricks.png", "-o", "x.dds"}), "streamed");
     EXPECT_EQ(path_of({"bricks.png", "-o", "x.ktx2", "--blur", "2", "--kernel", "scharr", "--mip-filter", "kaiser"}), "streamed");
+    for (const std::string name : {"x.exr", "x.tif", "x.tga", "x.bmp", "x.jpg"}) {
+        EXPECT_EQ(path_of({"bricks.png", "-o", name, "--bumpiness", "9"}), "whole");
+        EXPECT_EQ(path_of({name, "-o", "again.dds"}), "streamed") << name;
+        const std::string streamed = scratch_.read("again.dds");
+        EXPECT_EQ(path_of({name, "-o", "again.dds", "--fill-invalid"}), "whole");
+        EXPECT_TRUE(scratch_.read("again.dds") == streamed) << name;
+    }
     EXPECT_EQ(path_of({"bricks.png", "-o", "x.png"}), "whole");
     EXPECT_EQ(path_of({"bricks.png", "-o", "x.dds", "--color-space", "sRGB"}), "whole");
     EXPECT_EQ(path_of({"bricks.png", "--name", "x{level}.dds"}), "whole");

@@ -11,9 +11,16 @@
 #include <random>
 #include <sstream>
 
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+#include <ImfTiledOutputFile.h>
+#include <half.h>
+
 #include <tex/image_io.h>
 
-#include "containers/png.h"
+#include "containers/row_source.h"
 #include "pipeline/bake_stream.h"
 
 namespace tex {
@@ -100,12 +107,12 @@ protected:
         return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
     }
 
-    // The stream of a PNG, cut into small pieces.
+    // The stream of a picture, cut into small pieces.
     Result<BakeFileReport> stream(const std::string& input, Container container, int threads, const StreamSizes& sizes,
                                   std::function<bool(double)> progress = {}) const {
         Result<InputFile> file = InputFile::open(input);
         if (!file) return file.error();
-        const auto rows = open_png(*file, options_.read);
+        const auto rows = open_rows(*file, options_.read);
         if (!rows) return rows.error();
         return bake_stream(**rows, input, path("out"), container, options_, {threads, std::move(progress)}, sizes);
     }
@@ -209,6 +216,98 @@ TEST_F(Pipeline, WhatCannotStreamGoesAsAWhole) {
     options_.pack.encoding = Encoding::rgb8;
     EXPECT_EQ(baked(plain, Container::png), Path::whole);
     EXPECT_EQ(read_image(path("out")).value().extent(), extent);
+}
+
+struct ExrKind {
+    Imf::Compression compression = Imf::ZIP_COMPRESSION;
+    Imf::PixelType type = Imf::HALF;
+    Imf::LineOrder order = Imf::INCREASING_Y;
+    int tile = 0;  // 0: scanlines
+};
+
+// Bumps, and another channel beside them; the data window begins anywhere.
+void make_exr(const std::string& path, Extent extent, const ExrKind& kind) {
+    const Imath::Box2i window(Imath::V2i(-3, 5), Imath::V2i(extent.width - 4, extent.height + 4));
+    Imf::Header header(window, window);
+    header.compression() = kind.compression;
+    header.lineOrder() = kind.order;
+    header.channels().insert("Y", Imf::Channel(kind.type));
+    header.channels().insert("A", Imf::Channel(Imf::HALF));
+    const auto count = static_cast<std::size_t>(extent.texels());
+    std::vector<Imath::half> halves(count);
+    std::vector<float> floats(count);
+    std::vector<std::uint32_t> integers(count);
+    for (std::size_t k = 0; k < count; ++k) {
+        const auto i = static_cast<double>(k % static_cast<std::size_t>(extent.width));
+        const auto j = static_cast<double>(k / static_cast<std::size_t>(extent.width));
+        const double height = 0.5 + 0.4 * std::sin(0.3 * i) * std::cos(0.2 * j);
+        halves[k] = Imath::half(static_cast<float>(height));
+        floats[k] = static_cast<float>(height);
+        integers[k] = static_cast<std::uint32_t>(height * 4e9);
+    }
+    const auto width = static_cast<std::size_t>(extent.width);
+    const auto slice = [&](Imf::PixelType type, const void* data, std::size_t size) {
+        return Imf::Slice::Make(type, data, window, size, size * width);
+    };
+    Imf::FrameBuffer buffer;
+    buffer.insert("A", slice(Imf::HALF, halves.data(), 2));
+    buffer.insert("Y", kind.type == Imf::HALF    ? slice(kind.type, halves.data(), 2)
+                       : kind.type == Imf::FLOAT ? slice(kind.type, floats.data(), 4)
+                                                 : slice(kind.type, integers.data(), 4));
+    if (kind.tile == 0) {
+        Imf::OutputFile file(path.c_str(), header, 0);
+        file.setFrameBuffer(buffer);
+        file.writePixels(extent.height);
+        return;
+    }
+    header.setTileDescription(Imf::TileDescription(static_cast<unsigned>(kind.tile), static_cast<unsigned>(kind.tile), Imf::ONE_LEVEL));
+    Imf::TiledOutputFile file(path.c_str(), header, 0);
+    file.setFrameBuffer(buffer);
+    file.writeTiles(0, file.numXTiles() - 1, 0, file.numYTiles() - 1);
+}
+
+TEST_F(Pipeline, ExrStreamsWhateverItsRowsAreKeptIn) {
+    const std::vector<ExrKind> kinds = {
+        {}, {Imf::NO_COMPRESSION}, {Imf::ZIPS_COMPRESSION, Imf::FLOAT}, {Imf::PIZ_COMPRESSION, Imf::UINT}, {Imf::RLE_COMPRESSION},
+        {Imf::PXR24_COMPRESSION, Imf::FLOAT}, {Imf::B44_COMPRESSION}, {Imf::DWAA_COMPRESSION}, {Imf::DWAB_COMPRESSION},
+        {Imf::ZIP_COMPRESSION, Imf::FLOAT, Imf::DECREASING_Y}, {Imf::ZIP_COMPRESSION, Imf::HALF, Imf::INCREASING_Y, 16},
+        {Imf::PIZ_COMPRESSION, Imf::FLOAT, Imf::RANDOM_Y, 32}};
+    options_.strength = [](Extent) { return Strength{9.0f, 9.0f}; };
+    for (const Extent extent : {Extent{37, 61}, Extent{5, 3}, Extent{64, 300}}) {
+        for (const ExrKind& kind : kinds) {
+            SCOPED_TRACE(testing::Message() << extent.width << "x" << extent.height << ", " << kind.compression);
+            make_exr(path("in.exr"), extent, kind);
+            const std::string expected = by_verbs(path("in.exr"), Container::dds);
+            for (const int threads : {1, 3}) {
+                const auto report = stream(path("in.exr"), Container::dds, threads, {256, 0});
+                ASSERT_TRUE(report) << report.error().message();
+                EXPECT_TRUE(content("out") == expected);
+            }
+            EXPECT_EQ(bake_file(path("in.exr"), path("out"), Container::dds, options_).value().path, Path::streamed);
+            options_.heights.fill_invalid = true;
+            EXPECT_EQ(bake_file(path("in.exr"), path("out"), Container::dds, options_).value().path, Path::whole);
+            EXPECT_TRUE(content("out") == expected);
+            options_.heights.fill_invalid = false;
+        }
+    }
+}
+
+TEST_F(Pipeline, ADamagedExrIsTheSameErrorOnEveryPath) {
+    make_exr(path("in.exr"), {200, 300}, {});
+    std::string text = content("in.exr");
+    Bytes bytes(reinterpret_cast<const std::byte*>(text.data()), reinterpret_cast<const std::byte*>(text.data()) + text.size());
+    const std::string cut = write("cut.exr", Bytes(bytes.begin(), bytes.end() - 300));
+    bytes[bytes.size() / 2] ^= std::byte{0x5a};
+    for (const std::string& input : {write("hurt.exr", bytes), cut}) {
+        const Error expected = read_image(input).error();
+        for (const int threads : {1, 3}) {
+            const auto report = stream(input, Container::dds, threads, {2048, 0});
+            ASSERT_FALSE(report);
+            EXPECT_EQ(report.error().message(), expected.message());
+            EXPECT_EQ(report.error().code, expected.code);
+            EXPECT_FALSE(std::filesystem::exists(path("out")));
+        }
+    }
 }
 
 TEST_F(Pipeline, ADamagedPictureLeavesNothing) {

@@ -192,7 +192,7 @@ public:
     Result<void> open(const ReadOptions& options);
 
     [[nodiscard]] bool is_sequential() const override { return reader_.passes == 1; }
-    Result<void> decode(int count, std::byte* rows) override {
+    Result<void> decode(int, int count, std::byte* rows) override {
         if (!decode_rows(reader_, count, reinterpret_cast<png_byte*>(rows), row_bytes())) return reader_.error();
         return {};
     }
@@ -234,7 +234,7 @@ Result<Image> PngRows::read_all() {
     std::vector<std::byte> rows(row_bytes() * static_cast<std::size_t>(held));
     for (int j = 0; j < height; j += held) {
         for (int pass = 0; pass < reader_.passes; ++pass) {
-            if (Result<void> decoded = decode(held, rows.data()); !decoded) return decoded.error();
+            if (Result<void> decoded = decode(j, held, rows.data()); !decoded) return decoded.error();
         }
         store(rows.data(), j, j + held, image);
     }

@@ -17,6 +17,8 @@
 #include <chrono>
 #include <climits>
 #include <cstring>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "base/guard.h"
@@ -99,19 +101,22 @@ int spawn(const std::string& program, std::vector<std::string> arguments, int re
     return posix_spawn(&child, program.c_str(), &plan.actions, &plan.attributes, argv.data(), no_environment);
 }
 
-// Waits until the pipe ends, that is until every process that holds it is gone; false where time runs out first.
-bool wait_for_end(int progress, Clock::time_point deadline) {
+enum class News { strip, end, late };
+
+// Waits for word from the process: a strip of rows is there, or the pipe has ended, that is every process that holds it is gone, or time has run out.
+News wait_for_news(int progress, Clock::time_point deadline) {
     for (;;) {
         const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
-        if (left <= 0) return false;
+        if (left <= 0) return News::late;
         pollfd poll_for{progress, POLLIN, 0};
         const int ready = poll(&poll_for, 1, static_cast<int>(std::min<long long>(left + 1, 60'000)));
-        if (ready < 0 && errno != EINTR) return false;
+        if (ready < 0 && errno != EINTR) return News::late;
         if (ready <= 0) continue;
         char strips[256];
         const ssize_t n = read(progress, strips, sizeof strips);
-        if (n == 0) return true;
-        if (n < 0 && errno != EINTR) return false;
+        if (n > 0) return News::strip;
+        if (n == 0) return News::end;
+        if (errno != EINTR) return News::late;
     }
 }
 
@@ -181,47 +186,132 @@ Result<std::string> find_reader(const ReadOptions& options) {
     return Error{ErrorCode::io, {}, "the reader program tex-reader was not found beside libtex"};
 }
 
+Error nonsense(const std::string& path) { return {ErrorCode::bad_data, path, "the decoder handed over nonsense"}; }
+
+bool read_exactly(int fd, std::uint64_t offset, std::byte* to, std::size_t count) {
+    while (count > 0) {
+        const ssize_t n = pread(fd, to, count, static_cast<off_t>(offset));
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return false;
+        to += n;
+        offset += static_cast<std::uint64_t>(n);
+        count -= static_cast<std::size_t>(n);
+    }
+    return true;
+}
+
+bool write_exactly(int fd, std::uint64_t offset, std::span<const std::byte> bytes) {
+    while (!bytes.empty()) {
+        const ssize_t n = pwrite(fd, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return false;
+        offset += static_cast<std::uint64_t>(n);
+        bytes = bytes.subspan(static_cast<std::size_t>(n));
+    }
+    return true;
+}
+
 Result<Descriptor> memory_file(const std::string& path) {
     Descriptor file(memfd_create("libtex", MFD_CLOEXEC | MFD_ALLOW_SEALING));
     if (!file || fcntl(file.get(), F_ADD_SEALS, F_SEAL_SHRINK) != 0) return system_error(path, errno, "a file in memory");
     return file;
 }
 
-Result<ReaderHeader> run_reader(const ReaderJob& job, const ReadOptions& options) {
-    return guarded([&]() -> Result<ReaderHeader> {
+struct ReaderProcess::State {
+    ReaderJob job;
+    std::string program;
+    int seconds = 1;
+    Clock::time_point deadline;
+    Descriptor progress;
+    pid_t child = -1;
+    bool has_spoken = false;  // the header is there
+    bool in_time = true;
+    std::optional<Ending> ending;
+
+    ~State() {
+        if (child > 0 && !ending) collect(child);
+    }
+    [[nodiscard]] ReaderHeader read_header(bool& whole) const {
+        ReaderHeader header;
+        const ssize_t got = pread(job.result, &header, sizeof header, 0);
+        whole = got == static_cast<ssize_t>(sizeof header) && header.magic == kReaderMagic;
+        return header;
+    }
+    // Waits for the next strip; false where the process has ended.
+    bool wait() {
+        if (ending) return false;
+        const News news = wait_for_news(progress.get(), deadline);
+        has_spoken = has_spoken || news == News::strip;
+        if (news == News::strip) return true;
+        in_time = news == News::end;
+        ending = collect(child);
+        return false;
+    }
+};
+
+ReaderProcess::ReaderProcess(std::unique_ptr<State> state) : state_(std::move(state)) {}
+ReaderProcess::ReaderProcess(ReaderProcess&&) noexcept = default;
+ReaderProcess& ReaderProcess::operator=(ReaderProcess&&) noexcept = default;
+ReaderProcess::~ReaderProcess() = default;
+
+Result<ReaderProcess> ReaderProcess::start(const ReaderJob& job, const ReadOptions& options) {
+    return guarded([&]() -> Result<ReaderProcess> {
         const Result<std::string> program = find_reader(options);
         if (!program) return Error{program.error().code, job.path, program.error().reason};
-        const int seconds = std::max(1, options.reader_timeout);
-        const auto deadline = Clock::now() + std::chrono::seconds(seconds);
+        auto state = std::make_unique<State>();
+        state->job = job;
+        state->program = *program;
+        state->seconds = std::max(1, options.reader_timeout);
+        state->deadline = Clock::now() + std::chrono::seconds(state->seconds);
 
         int ends[2];
         if (pipe2(ends, O_CLOEXEC) != 0) return system_error(job.path, errno, "a pipe");
-        const Descriptor progress(ends[0]);
-        Descriptor childs_end(ends[1]);
-        pid_t child = -1;
+        state->progress = Descriptor(ends[0]);
+        const Descriptor childs_end(ends[1]);
         const int failed = spawn(*program,
                                  {job.verb, job.format, std::to_string(options.max_texels),
-                                  std::to_string(options.reader_memory), std::to_string(seconds), std::to_string(getpid())},
-                                 job.result, job.input, childs_end.get(), child);
+                                  std::to_string(options.reader_memory), std::to_string(state->seconds), std::to_string(getpid())},
+                                 job.result, job.input, childs_end.get(), state->child);
         if (failed != 0) {
+            state->child = -1;
             return system_error(job.path, failed, ("the reader program " + *program + " cannot be started").c_str());
         }
-        childs_end.reset();
-        const bool in_time = wait_for_end(progress.get(), deadline);
-        const Ending ending = collect(child);
-        if (!in_time || ending.signal == SIGXCPU) {
+        return ReaderProcess(std::move(state));
+    });
+}
+
+Result<ReaderHeader> ReaderProcess::wait_for_rows(std::uint64_t rows) {
+    for (;;) {
+        bool whole = false;
+        const ReaderHeader header = state_->has_spoken ? state_->read_header(whole) : ReaderHeader();
+        if (whole && header.rows_done >= rows) return header;
+        if (!state_->wait()) return finish();
+    }
+}
+
+Result<ReaderHeader> ReaderProcess::finish() {
+    while (state_->wait()) {
+    }
+    return guarded([&]() -> Result<ReaderHeader> {
+        const ReaderJob& job = state_->job;
+        if (!state_->in_time || state_->ending->signal == SIGXCPU) {
             return Error{ErrorCode::bad_data, job.path,
-                         does(job) + " did not end within " + std::to_string(seconds) + " s"};
+                         does(job) + " did not end within " + std::to_string(state_->seconds) + " s"};
         }
-        ReaderHeader header;
-        const ssize_t got = pread(job.result, &header, sizeof header, 0);
-        const bool whole = got == static_cast<ssize_t>(sizeof header) && header.magic == kReaderMagic;
+        bool whole = false;
+        const ReaderHeader header = state_->read_header(whole);
         if (whole && header.state == ReaderState::refused) return reported_error(job, header);
-        if (!whole || header.state != ReaderState::done || ending.signal != 0) {
-            return abnormal_end(job, *program, ending);
+        if (!whole || header.state != ReaderState::done || state_->ending->signal != 0) {
+            return abnormal_end(job, state_->program, *state_->ending);
         }
         return header;
     });
+}
+
+Result<ReaderHeader> run_reader(const ReaderJob& job, const ReadOptions& options) {
+    Result<ReaderProcess> process = ReaderProcess::start(job, options);
+    if (!process) return process.error();
+    return process->finish();
 }
 
 }  // namespace tex

@@ -30,20 +30,25 @@ public:
     [[nodiscard]] const std::vector<std::string>& names() const { return names_; }  // of the channels
     [[nodiscard]] std::size_t row_bytes() const { return row_bytes_; }              // of a decoded row
 
-    // Rows come from the top to the bottom. Where not, read_all() is the only way.
-    [[nodiscard]] virtual bool is_sequential() const = 0;
+    // Rows come a few at a time. Where not, read_all() is the only way.
+    [[nodiscard]] virtual bool is_sequential() const { return true; }
 
-    // Decodes the next `count` rows into `rows`, row_bytes() each. Errors: bad_data, io, out_of_memory.
-    virtual Result<void> decode(int count, std::byte* rows) = 0;
+    // Rows that the file holds together: decode() costs least where `first` is a multiple of it, and `count` too or up to the last row.
+    [[nodiscard]] virtual int rows_together() const { return 1; }
+    // Whether any rows may be decoded at any time, by several threads at once. If not, rows are decoded from the top, once, without gaps.
+    [[nodiscard]] virtual bool is_random() const { return false; }
+
+    // Decodes rows [first, first + count) into `rows`, row_bytes() each. Throws std::bad_alloc. Errors: bad_data, io, out_of_memory.
+    virtual Result<void> decode(int first, int count, std::byte* rows) = 0;
 
     // Makes sure, after the last row, that the file ends as it should. Errors: as decode().
-    virtual Result<void> finish() = 0;
+    virtual Result<void> finish() { return {}; }
 
     // Decoded rows become rows [first, end) of `image`, which has a plane for each of names(). Any thread may call, also beside decode().
     virtual void store(const std::byte* rows, int first, int end, Image& image) const = 0;
 
-    // The whole picture; instead of decode() and finish(). Throws std::bad_alloc. Errors: as decode().
-    virtual Result<Image> read_all() = 0;
+    // The planes of the whole picture; instead of decode() and finish(). Throws std::bad_alloc. Errors: as decode().
+    virtual Result<Image> read_all();
 
 protected:
     void describe(Extent extent, std::vector<std::string> names, std::size_t row_bytes) {

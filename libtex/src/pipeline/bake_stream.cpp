@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Three stations: rows are decoded; they become normals and mip levels; strips of these are packed and written.
-// The first two work on one strip at a time, in order, as each row builds on those before; the third on several.
+// Four stations: rows are read; they become floats; these become normals and mip levels; strips of these are packed and written.
+// The first and the third work on one batch of rows at a time, in order, as each row builds on those before; the others on several. What can be decoded
+// in any order is decoded by the second.
 
 #include "pipeline/bake_stream.h"
 
@@ -35,8 +36,11 @@ Error of_input(const std::string& input, const Error& error) {
 
 // Some rows on their way: as they were decoded, then the strips that they finished.
 struct Batch {
+    int first = 0;
     int count = 0;
     std::vector<std::byte> rows;
+    Image image;                 // the same as floats
+    std::optional<Error> error;  // they could not be decoded
     std::vector<std::shared_ptr<Strip>> strips;
     std::shared_ptr<Batch> self;  // while it is on its way
 };
@@ -93,15 +97,14 @@ public:
         : rows_(rows), input_(input), writer_(writer), options_(options), execution_(execution), sizes_(sizes), strips_(rows.extent(), levels, sizes.strip_texels),
           heights_(rows.extent(), source, options.heights, gradient_of(options.bake), slopes_of(rows.extent(), options),
                    {[this](int j) { return place(j); }, [this](int j) { finish(j); }}),
-          levels_(rows.extent(), levels, heights_.start(), options.mip, strips_),
-          image_(make_image({rows.extent().width, strips_.strip_rows(0)}, rows.names())) {}
+          levels_(rows.extent(), levels, heights_.start(), options.mip, strips_), batch_rows_(batch_rows(rows, strips_)) {}
 
     Result<void> run() {
         const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
         int threads = std::min(thread_count(execution_), static_cast<int>(allowed));
         if (rows_.extent().texels() < sizes_.worth_threads) threads = 1;
-        convey<Batch>(threads, threads + 2, [this] { return decode(); }, [this](Batch* batch) { make(*batch); },
-                      [this](Batch* batch) { write(*batch); });
+        convey<Batch>(threads, threads + 2, [this] { return read(); }, [this](Batch* batch) { store(*batch); },
+                      [this](Batch* batch) { make(*batch); }, [this](Batch* batch) { write(*batch); });
         if (failure_.error()) return *failure_.error();
         if (const Result<void> sound = heights_.check(); !sound) return sound;
         // Better no file than one with holes.
@@ -118,33 +121,57 @@ private:
         return {strength.x, strength.y, options.heights.wrap_x, options.heights.wrap_y};
     }
 
+    // Those of a strip, and whole groups of what the file holds together.
+    static int batch_rows(const RowSource& rows, const Strips& strips) {
+        const int together = rows.rows_together();
+        return std::min(rows.extent().height, (strips.strip_rows(0) + together - 1) / together * together);
+    }
+
     // The next rows; null after the last ones, or where something failed.
-    Batch* decode() {
+    Batch* read() {
         const int height = rows_.extent().height;
-        Batch* decoded = nullptr;
+        Batch* next = nullptr;
         failure_.watch([&]() -> Result<void> {
-            if (decoded_ == height) return {};
-            std::shared_ptr<Batch> batch = batches_.take([] { return std::make_unique<Batch>(); });
-            batch->count = std::min(strips_.strip_rows(0), height - decoded_);
-            batch->rows.resize(rows_.row_bytes() * static_cast<std::size_t>(batch->count));
-            Result<void> done = rows_.decode(batch->count, batch->rows.data());
-            decoded_ += batch->count;
-            if (done && decoded_ == height) done = rows_.finish();
-            if (!done) return of_input(input_, done.error());
-            decoded = batch.get();
-            decoded->self = std::move(batch);
+            if (read_ == height) return {};
+            std::shared_ptr<Batch> batch = batches_.take([this] {
+                auto made = std::make_unique<Batch>();
+                made->image = make_image({rows_.extent().width, batch_rows_}, rows_.names());
+                made->rows.resize(rows_.row_bytes() * static_cast<std::size_t>(batch_rows_));
+                return made;
+            });
+            batch->first = read_;
+            batch->count = std::min(batch_rows_, height - read_);
+            batch->error.reset();
+            read_ += batch->count;
+            if (!rows_.is_random()) decode(*batch);
+            next = batch.get();
+            next->self = std::move(batch);
             return {};
         });
-        return decoded;
+        return next;
+    }
+
+    void decode(Batch& batch) {
+        const Result<void> done = guarded([&] {
+            Result<void> decoded = rows_.decode(batch.first, batch.count, batch.rows.data());
+            if (decoded && batch.first + batch.count == rows_.extent().height) decoded = rows_.finish();
+            return decoded;
+        });
+        if (!done) batch.error = of_input(input_, done.error());
+    }
+
+    void store(Batch& batch) {
+        if (failure_.happened()) return;
+        if (rows_.is_random()) decode(batch);
+        if (!batch.error) rows_.store(batch.rows.data(), 0, batch.count, batch.image);
     }
 
     void make(Batch& batch) {
         failure_.watch([&]() -> Result<void> {
-            rows_.store(batch.rows.data(), 0, batch.count, image_);
-            for (int k = 0; k < batch.count; ++k) heights_.put(image_, k);
+            if (batch.error) return *batch.error;  // the first of them, whatever the threads do
+            for (int k = 0; k < batch.count; ++k) heights_.put(batch.image, k);
             batch.strips = strips_.take_whole();
-            made_ += batch.count;
-            const double fraction = static_cast<double>(made_) / rows_.extent().height;
+            const double fraction = static_cast<double>(batch.first + batch.count) / rows_.extent().height;
             if (execution_.progress && !execution_.progress(fraction)) return Error{ErrorCode::cancelled, {}, "cancelled"};
             return {};
         });
@@ -180,11 +207,10 @@ private:
     Strips strips_;
     HeightStage heights_;
     LevelStage levels_;
-    Image image_;  // rows of the batch that is being made
     Strips::Place place_;
     Pool<Batch> batches_;
-    int decoded_ = 0;  // rows
-    int made_ = 0;
+    const int batch_rows_;
+    int read_ = 0;  // rows
     SlopeCollector slopes_;
     Failure failure_;
 };
@@ -193,7 +219,7 @@ private:
 Error after_all_rows(RowSource& rows, const std::string& input, const Error& error) {
     std::vector<std::byte> row(rows.row_bytes());
     Result<void> done;
-    for (int j = 0; done && j < rows.extent().height; ++j) done = rows.decode(1, row.data());
+    for (int j = 0; done && j < rows.extent().height; ++j) done = rows.decode(j, 1, row.data());
     if (done) done = rows.finish();
     return done ? error : of_input(input, done.error());
 }

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// exr_rows.h: the rows of an EXR file: scanlines, or tiles side by side.
+
+#pragma once
+
+#include <memory>
+
+#include <tex/image_io.h>
+#include <tex/result.h>
+
+#include "base/input_file.h"
+#include "containers/row_source.h"
+
+namespace tex {
+
+// Opens the first part of an EXR, its largest level, to be read as read_exr() would, a few rows at a time; several threads may decode at once. `file` must outlive
+// the rows. Errors: those of read_exr() that the header tells.
+Result<std::unique_ptr<RowSource>> open_exr_rows(InputFile& file, const ReadOptions& options);
+
+}  // namespace tex

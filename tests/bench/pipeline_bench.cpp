@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+// pipeline_bench: whole processes, from file to file, beside the least that reading the file costs.
+//
+//     ninja -C build/release pipeline_bench bake-normals && build/release/pipeline_bench [--runs N] [--large] [FOLDER]
+//
+// Prints tables in Markdown. Each row is the median of N (at least 7) pairs of runs that alternate, the command and its baseline; ratios are those of the
+// pairs. The commands are those beside this program. Height maps go to FOLDER (default /tmp/pipeline_bench) and stay there. --large adds the memory of
+// 16384x16384 and 65536x4096 texels.
+
+#include <sys/stat.h>
+
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <thread>
+
+#include "bench/height_maps.h"
+#include "bench/process.h"
+
+namespace {
+
+using bench::Measured;
+using Command = std::vector<std::string>;
+
+std::string own_path() { return std::filesystem::read_symlink("/proc/self/exe").string(); }
+std::string beside(const std::string& name) { return std::filesystem::path(own_path()).parent_path() / name; }
+
+struct Bench {
+    int runs = 7;
+    bool large = false;
+    std::string folder = "/tmp/pipeline_bench";
+
+    [[nodiscard]] std::string file(const std::string& name) const { return folder + "/" + name; }
+    // Makes a file unless it is there.
+    std::string need(const std::string& name, const std::function<void(const std::string&)>& make) const {
+        const std::string path = file(name);
+        if (!std::filesystem::exists(path)) {
+            make(path + ".part");
+            std::filesystem::rename(path + ".part", path);
+        }
+        return path;
+    }
+
+    // One row: command against baseline; `scale` is what one baseline counts.
+    void row(const std::string& work, const Command& command, const Command& baseline, double target, double scale = 1.0) const {
+        std::vector<Measured> ours, theirs;
+        std::vector<double> ratios;
+        bench::run(command);  // caches
+        for (int k = 0; k < runs; ++k) {
+            theirs.push_back(bench::run(baseline));
+            ours.push_back(bench::run(command));
+            ratios.push_back(ours.back().wall / (theirs.back().wall * scale));
+        }
+        const Measured us = bench::median_of(ours);
+        const Measured them = bench::median_of(theirs);
+        std::printf("| %s | %.3f | %.3f | %.3f | %.0f | %.3f | %.3f | %.2f | %s |\n", work.c_str(), us.wall, us.user, us.system,
+                    us.memory, them.wall * scale, (them.user + them.system) * scale, bench::median(ratios),
+                    target > 0.0 ? (std::to_string(target).substr(0, 4)).c_str() : "");
+        std::fflush(stdout);
+    }
+
+    // One row without a baseline.
+    void plain_row(const std::string& work, const Command& command, const std::string& target, int times) const {
+        std::vector<Measured> ours;
+        bench::run(command);
+        for (int k = 0; k < times; ++k) ours.push_back(bench::run(command));
+        const Measured us = bench::median_of(ours);
+        std::printf("| %s | %.1f | %.1f | %.1f | %.1f | %s |\n", work.c_str(), us.wall * 1e3, us.user * 1e3, us.system * 1e3,
+                    us.memory, target.c_str());
+        std::fflush(stdout);
+    }
+};
+
+bool is_installed(const std::string& program) {
+    return std::system(("command -v " + program + " >/dev/null 2>&1").c_str()) == 0;
+}
+
+Command bake(const std::string& input, const std::string& output, const Command& more) {
+    Command command = {beside("bake-normals"), input, "-o", output, "--bumpiness", "12", "--threads", "2"};
+    command.insert(command.end(), more.begin(), more.end());
+    return command;
+}
+
+// Keeps `threads` cores busy with arithmetic and nothing else: what two threads can gain here at best.
+int spin(int threads) {
+    const auto work = [threads] {
+        volatile std::uint64_t sink = 0;
+        std::uint64_t x = 1;
+        for (std::int64_t k = 0; k < 1'500'000'000 / threads; ++k) x = x * 6364136223846793005u + 1442695040888963407u;
+        sink = x;
+        return sink;
+    };
+    std::vector<std::thread> others;
+    for (int k = 1; k < threads; ++k) others.emplace_back(work);
+    work();
+    for (std::thread& other : others) other.join();
+    return 0;
+}
+
+void print_against_decoders(const Bench& b) {
+    const std::string out = b.file("out.dds");
+    const std::string png8 = b.need("4096_8.png", [](const std::string& p) { bench::write_png(p, 4096, 4096, 8); });
+    const std::string png16 = b.need("4096_16.png", [](const std::string& p) { bench::write_png(p, 4096, 4096, 16); });
+    const std::string exr = b.need("4096.exr", [](const std::string& p) { bench::write_exr(p, 4096, 4096); });
+    const Command drop8 = {own_path(), "--decode-png", png8};
+    const Command drop16 = {own_path(), "--decode-png", png16};
+    const Command read_exr = {own_path(), "--decode-exr", exr};
+    std::printf("4096x4096 heights to DXT5nm DDS with all levels, 2 threads; the baseline decodes the file and throws the rows away\n\n"
+                "| work | wall, s | user, s | system, s | peak, MB | baseline, s | its user and system, s | ratio | target |\n|---|---|---|---|---|---|---|---|---|\n");
+    b.row("8-bit PNG, fast, --no-sync", bake(png8, out, {"--effort", "fast", "--no-sync"}), drop8, 1.3);
+    b.row("8-bit PNG, fast", bake(png8, out, {"--effort", "fast"}), drop8, 0.0);
+    b.row("16-bit PNG, fast, --no-sync", bake(png16, out, {"--effort", "fast", "--no-sync"}), drop16, 1.12);
+    b.row("16-bit PNG, fast", bake(png16, out, {"--effort", "fast"}), drop16, 0.0);
+    b.row("8-bit PNG, normal, --no-sync", bake(png8, out, {"--no-sync"}), drop8, 2.3);
+    b.row("8-bit PNG, normal", bake(png8, out, {}), drop8, 0.0);
+    b.row("16-bit PNG, normal, --no-sync", bake(png16, out, {"--no-sync"}), drop16, 1.25);
+    b.row("16-bit PNG, normal", bake(png16, out, {}), drop16, 0.0);
+    b.row("half EXR (zip), fast, --no-sync", bake(exr, out, {"--effort", "fast", "--no-sync"}), read_exr, 1.8);
+    b.row("half EXR (zip), fast", bake(exr, out, {"--effort", "fast"}), read_exr, 0.0);
+    if (is_installed("convert")) {
+        b.row("8-bit PNG, ImageMagick (BC3 with levels, no normals)",
+              {"convert", png8, "-define", "dds:compression=dxt5", "-define", "dds:fast-mipmaps=true", "-define",
+               "dds:cluster-fit=false", out}, drop8, 0.0);
+    }
+    if (is_installed("maketx")) {
+        b.row("8-bit PNG, maketx --bumpslopes (EXR, no blocks)",
+              {"maketx", "--bumpslopes", "--threads", "2", "-d", "half", png8, "-o", b.file("out.exr")}, drop8, 0.0);
+    }
+}
+
+void print_many(const Bench& b) {
+    for (const int bits : {8, 16}) {
+        const std::string folder = "many_" + std::to_string(bits);
+        Command files;
+        std::filesystem::create_directories(b.file(folder));
+        std::filesystem::create_directories(b.file("many_out"));
+        for (int k = 0; k < 1000; ++k) {
+            files.push_back(b.need(folder + "/" + std::to_string(k) + ".png",
+                                   [&](const std::string& p) { bench::write_png(p, 256, 256, bits, k); }));
+        }
+        Command command = {beside("bake-normals"), "--out-dir", b.file("many_out"), "--bumpiness", "12", "--threads", "2",
+                           "--effort", "fast", "--no-sync"};
+        command.insert(command.end(), files.begin(), files.end());
+        Command drop = {own_path(), "--decode-png"};
+        drop.insert(drop.end(), files.begin(), files.end());
+        b.row("1000 PNGs of 256x256, " + std::to_string(bits) + " bits, fast, --no-sync; baseline: half of decoding them", command,
+              drop, bits == 8 ? 2.5 : 1.7, 0.5);
+    }
+}
+
+void print_scaling(const Bench& b) {
+    const std::string png16 = b.file("4096_16.png");
+    const auto time = [&](const Command& command) { return bench::run(command).wall; };
+    std::vector<double> ours, ideal;
+    for (int k = 0; k < b.runs; ++k) {
+        Command one = bake(png16, b.file("out.dds"), {"--no-sync"});
+        const double two = time(one);
+        *(std::find(one.begin(), one.end(), "--threads") + 1) = "1";
+        ours.push_back(time(one) / two);
+        ideal.push_back(time({own_path(), "--spin", "1"}) / time({own_path(), "--spin", "2"}));
+    }
+    std::printf("\n2 threads against 1, 16-bit PNG, normal: %.2f times as fast; a loop of arithmetic: %.2f; of that %.2f (target 0.95)\n",
+                bench::median(ours), bench::median(ideal), bench::median(ours) / bench::median(ideal));
+}
+
+void print_start(const Bench& b) {
+    const std::string small = b.need("64.png", [](const std::string& p) { bench::write_png(p, 64, 64, 8); });
+    std::printf("\n| start to finish | wall, ms | user, ms | system, ms | peak, MB | target |\n|---|---|---|---|---|---|\n");
+    b.plain_row("64x64 PNG to DDS", {beside("bake-normals"), small, "-o", b.file("out.dds"), "--no-sync"}, "14 ms, 24 MB", 31);
+    b.plain_row("--version", {beside("bake-normals"), "--version"}, "8 ms", 31);
+    b.plain_row("4096x4096 8-bit PNG, fast", bake(b.file("4096_8.png"), b.file("out.dds"), {"--effort", "fast", "--no-sync"}), "64 MB", 3);
+    b.plain_row("4096x4096 half EXR, fast", bake(b.file("4096.exr"), b.file("out.dds"), {"--effort", "fast", "--no-sync"}), "64 MB", 3);
+    if (!b.large) return;
+    for (const auto& [width, height, target] : {std::tuple(16384, 16384, "160 MB"), std::tuple(65536, 4096, "400 MB")}) {
+        const std::string name = std::to_string(width) + "x" + std::to_string(height);
+        const std::string path = b.need(name + ".png", [w = width, h = height](const std::string& p) { bench::write_png(p, w, h, 8); });
+        b.plain_row(name + " 8-bit PNG, fast", bake(path, b.file("out.dds"), {"--effort", "fast", "--no-sync"}), target, 1);
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const std::string_view verb = argc > 1 ? argv[1] : "";
+    if (verb == "--decode-png") {
+        int failed = 0;
+        for (int k = 2; k < argc; ++k) failed |= bench::decode_png(argv[k]);
+        return failed;
+    }
+    if (verb == "--decode-exr") return bench::decode_exr(argv[2], 2);
+    if (verb == "--spin") return spin(std::atoi(argv[2]));
+    Bench b;
+    for (int k = 1; k < argc; ++k) {
+        if (std::strcmp(argv[k], "--runs") == 0 && k + 1 < argc) {
+            b.runs = std::max(7, std::atoi(argv[++k]));
+        } else if (std::strcmp(argv[k], "--large") == 0) {
+            b.large = true;
+        } else {
+            b.folder = argv[k];
+        }
+    }
+    std::filesystem::create_directories(b.folder);
+    print_against_decoders(b);
+    print_many(b);
+    print_scaling(b);
+    print_start(b);
+}
