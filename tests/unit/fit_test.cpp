@@ -3,8 +3,9 @@
 
 #include "kernels/fit.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <random>
 #include <vector>
 
@@ -69,44 +70,69 @@ TEST(Encode, NoEffortIsWorseThanACheaperOne) {
     }
 }
 
-TEST(Fit, WritesTheBlocksAskedForAndNothingElse) {
-    const std::vector<float> values = noisy_rows();
-    const float* const rows[4] = {&values[0], &values[kWidth + 12], &values[2 * (kWidth + 12)], &values[3 * (kWidth + 12)]};
-    std::vector<std::byte> all(16 * 77);
-    tex::fit_bc4_blocks(rows, 77, tex::kBc4Unorm, false, Effort::fast, all.data());
-    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-        hwy::SetSupportedTargetsForTest(target);
-        for (const int count : {1, 7, 8, 9, 31, 32, 33, 64, 77}) {
-            std::vector<std::byte> some(16 * 77, std::byte{0xAB});
-            tex::fit_bc4_blocks(rows, count, tex::kBc4Unorm, false, Effort::fast, some.data());
-            for (std::size_t k = 0; k < some.size(); ++k) {
-                const bool written = k < static_cast<std::size_t>(16 * count) && k % 16 < 8;
-                ASSERT_EQ(some[k], written ? all[k] : std::byte{0xAB}) << count << " blocks, byte " << k;
+// The rows of both channels, from one array.
+struct Rows {
+    const float* x[4];
+    const float* y[4];
+    explicit Rows(const std::vector<float>& values) {
+        for (int k = 0; k < 4; ++k) x[k] = y[3 - k] = &values[static_cast<std::size_t>(k * (kWidth + 12))];
+    }
+};
+
+TEST(Fit, WritesTheBlocksAskedForAndNothingElseOnEveryTarget) {
+    std::vector<float> values = noisy_rows();
+    // The first blocks are smooth: a few whole codes each, and one value.
+    for (std::size_t k = 0; k < 40; ++k) values[k] = static_cast<float>((k / 4 + 255) % 511) / 255.0f - 1.0f;
+    const Rows rows(values);
+    for (const Effort effort : {Effort::fast, Effort::normal}) {
+        for (const int encoding : {0, 1, 2}) {
+            const auto fit = [&](int count, std::byte* blocks) {
+                if (encoding == 0) return tex::fit_dxt5nm_blocks({rows.x, false}, {rows.y, true}, count, effort, blocks);
+                tex::fit_bc5_blocks({rows.x, false}, {rows.y, true}, count, encoding == 1 ? tex::kBc4Unorm : tex::kBc4Snorm, effort, blocks);
+            };
+            std::vector<std::byte> all(16 * 77);
+            fit(77, all.data());
+            for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+                hwy::SetSupportedTargetsForTest(target);
+                for (const int count : {1, 7, 8, 9, 31, 32, 33, 64, 77}) {
+                    std::vector<std::byte> some(16 * 77, std::byte{0xAB});
+                    fit(count, some.data());
+                    for (std::size_t k = 0; k < some.size(); ++k) {
+                        const bool written = k < static_cast<std::size_t>(16 * count);
+                        ASSERT_EQ(some[k], written ? all[k] : std::byte{0xAB})
+                            << count << " blocks, byte " << k << ", " << hwy::TargetName(target) << ", encoding " << encoding;
+                    }
+                }
             }
+            hwy::SetSupportedTargetsForTest(0);
         }
     }
-    hwy::SetSupportedTargetsForTest(0);
 }
 
 TEST(SingleGreens, AreOnTheirPalettesAndNearest) {
-    for (int third = 0; third <= 765; ++third) {
+    const auto on_palette = [](int third, int lower, int distance) {
+        const int low = tex::widen_green(lower);
+        const int high = tex::widen_green(lower + distance);
+        return third == 3 * low || third == 3 * high || third == 2 * low + high || third == low + 2 * high;
+    };
+    for (int third = 0; third <= tex::kMostThirds; ++third) {
         const tex::SingleGreen& below = tex::single_green_below(third);
         const tex::SingleGreen& above = tex::single_green_above(third);
         EXPECT_LE(below.third, third);
         EXPECT_GE(above.third, third);
-        for (const tex::SingleGreen& green : {below, above, tex::nearest_single_green(static_cast<float>(third) / 3.0f)}) {
-            const int low = tex::widen_green(green.lower);
-            const int high = tex::widen_green(green.lower + green.distance);
-            EXPECT_TRUE(green.third == 3 * low || green.third == 3 * high || green.third == 2 * low + high ||
-                        green.third == low + 2 * high);
+        int least = tex::kMostThirds;
+        for (const std::int32_t packed : {tex::single_greens_below()[third], tex::single_greens_above()[third]}) {
+            EXPECT_TRUE(on_palette(packed >> 16, packed >> 8 & 0xFF, packed & 0xFF));
+            EXPECT_LE(packed & 0xFF, tex::kMaxSingleDistance);
+            least = std::min(least, std::abs((packed >> 16) - third));
         }
-        const tex::SingleGreen near = tex::nearest_single_green(static_cast<float>(third) / 3.0f);
-        EXPECT_LE(std::abs(near.third - third), 2);
-        EXPECT_LE(near.distance, tex::kMaxSingleDistance);
+        EXPECT_LE(least, 2);
+        EXPECT_LE(tex::single_greens_below()[third] >> 16, third);
+        EXPECT_GE(tex::single_greens_above()[third] >> 16, third);
+        EXPECT_TRUE(on_palette(below.third, below.lower, below.distance) && on_palette(above.third, above.lower, above.distance));
     }
-    const tex::SingleGreen flat = tex::nearest_single_green(127.5f);
-    EXPECT_EQ(flat.lower, 31);
-    EXPECT_EQ(flat.distance, 2);
+    EXPECT_EQ(tex::single_greens_above()[383] >> 8 & 0xFF, 31);  // flat, 127.5 codes
+    EXPECT_EQ(tex::single_greens_above()[383] & 0xFF, 2);
 }
 
 }  // namespace

@@ -59,38 +59,42 @@ void search_blocks(const Channel& channel, int first, int top, Search search, Wr
     }
 }
 
-void encode_bc4(const Channel& channel, Bc4Codes codes, Effort effort, std::byte* blocks) {
-    const int fitted = effort == Effort::best ? 0 : channel.whole_blocks();
-    if (fitted > 0) fit_bc4_blocks(channel.rows, fitted, codes, channel.negate, effort, blocks);
+void search_bc4(const Channel& channel, Bc4Codes codes, int first, std::byte* blocks) {
     search_blocks<Bc4Endpoints>(
-        channel, fitted, codes.top,
+        channel, first, codes.top,
         [&](const BlockTexels* texels, const ClusterBounds* bounds, int count, Bc4Endpoints* endpoints) {
             search_bc4_blocks(texels, bounds, count, codes, endpoints);
         },
         [&](const BlockTexels& texels, Bc4Endpoints e, std::byte* block) { write_bc4(texels, codes, e, block); }, blocks);
 }
 
-void encode_green(const Channel& channel, Effort effort, std::byte* blocks) {
-    const int fitted = effort == Effort::best ? 0 : channel.whole_blocks();
-    if (fitted > 0) fit_green_blocks(channel.rows, fitted, channel.negate, effort, blocks);
-    search_blocks<GreenEndpoints>(channel, fitted, 255, search_green_blocks, write_green, blocks);
+void search_green(const Channel& channel, int first, std::byte* blocks) {
+    search_blocks<GreenEndpoints>(channel, first, 255, search_green_blocks, write_green, blocks);
+}
+
+void encode_bc5(const BlockRow& row, Bc4Codes codes, Effort effort, std::byte* blocks) {
+    const Channel x = channel_x(row);
+    const Channel y = channel_y(row);
+    const int fitted = effort == Effort::best ? 0 : x.whole_blocks();
+    if (fitted > 0) fit_bc5_blocks({row.x, false}, {row.y, row.negate_y}, fitted, codes, effort, blocks);
+    if (fitted == x.blocks()) return;
+    search_bc4(x, codes, fitted, blocks);
+    search_bc4(y, codes, fitted, blocks + 8);
 }
 
 }  // namespace
 
 void encode_dxt5nm(const BlockRow& row, Effort effort, std::byte* blocks) {
-    encode_bc4(channel_x(row), kBc4Unorm, effort, blocks);
-    encode_green(channel_y(row), effort, blocks + 8);
+    const Channel x = channel_x(row);
+    const int fitted = effort == Effort::best ? 0 : x.whole_blocks();
+    if (fitted > 0) fit_dxt5nm_blocks({row.x, false}, {row.y, row.negate_y}, fitted, effort, blocks);
+    if (fitted == x.blocks()) return;
+    search_bc4(x, kBc4Unorm, fitted, blocks);
+    search_green(channel_y(row), fitted, blocks + 8);
 }
 
-void encode_bc5_unorm(const BlockRow& row, Effort effort, std::byte* blocks) {
-    encode_bc4(channel_x(row), kBc4Unorm, effort, blocks);
-    encode_bc4(channel_y(row), kBc4Unorm, effort, blocks + 8);
-}
+void encode_bc5_unorm(const BlockRow& row, Effort effort, std::byte* blocks) { encode_bc5(row, kBc4Unorm, effort, blocks); }
 
-void encode_bc5_snorm(const BlockRow& row, Effort effort, std::byte* blocks) {
-    encode_bc4(channel_x(row), kBc4Snorm, effort, blocks);
-    encode_bc4(channel_y(row), kBc4Snorm, effort, blocks + 8);
-}
+void encode_bc5_snorm(const BlockRow& row, Effort effort, std::byte* blocks) { encode_bc5(row, kBc4Snorm, effort, blocks); }
 
 }  // namespace tex

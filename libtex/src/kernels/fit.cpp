@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 
 #include "kernels/single_greens.h"
 
@@ -14,347 +15,237 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "kernels/fit_exact-inl.h"
 #include "kernels/fit_group-inl.h"
+#include "kernels/fit_steps-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tex {
 namespace HWY_NAMESPACE {
 
-// The alpha of BC3, the channels of BC5: 8 values, endpoints of 8 bits.
-struct Bc4Kind {
-    static constexpr int kSteps = 7;
-    float top;
-
-    // Rounds endpoints in codes to what the block can hold.
-    HWY_INLINE void round(F& low, F& high) const {
-        const F most = constant(top);
-        const F half = constant(0.5f);
-        const F a = hn::Min(hn::Max(hn::Floor(hn::Add(low, half)), hn::Zero(Floats())), most);
-        const F b = hn::Min(hn::Max(hn::Floor(hn::Add(high, half)), hn::Zero(Floats())), most);
-        // Equal ones would mean 6 values: take the codes on both sides.
-        const F floor = hn::Min(hn::Max(hn::Floor(low), hn::Zero(Floats())), constant(top - 1.0f));
-        const auto apart = hn::Gt(b, a);
-        low = hn::IfThenElse(apart, a, floor);
-        high = hn::IfThenElse(apart, b, hn::Add(floor, constant(1.0f)));
-    }
-    // The codes of 8 bits that the decoder makes of them.
-    HWY_INLINE F widen(F code) const { return code; }
-};
-
-// DXT5nm's green: 4 values, endpoints of 6 bits.
-struct GreenKind {
-    static constexpr int kSteps = 3;
-
-    HWY_INLINE void round(F& low, F& high) const {
-        const F most = constant(63.0f);
-        const F half = constant(0.5f);
-        const F scale = constant(63.0f / 255.0f);
-        const F a = hn::Min(hn::Max(hn::Floor(hn::Add(hn::Mul(low, scale), half)), hn::Zero(Floats())), most);
-        const F b = hn::Min(hn::Max(hn::Floor(hn::Add(hn::Mul(high, scale), half)), hn::Zero(Floats())), most);
-        low = hn::Min(a, b);
-        high = hn::Max(a, b);
-    }
-    HWY_INLINE F widen(F code) const {
-        return hn::Add(hn::Mul(code, constant(4.0f)), hn::Floor(hn::Mul(code, constant(1.0f / 16.0f))));
-    }
-};
-
-// The ramp of local endpoints a <= b.
-template <class Kind>
-HWY_INLINE void store_ramp(F a, F b, int i, Ramp& ramp) {
-    const Floats d;
-    const F span = hn::Sub(b, a);
-    // At most 65535: a span below 2 n units is that of a block of nearly one value.
-    const F exact = hn::Div(constant(131072.0f * static_cast<float>(Kind::kSteps)), hn::Max(span, constant(2.001f * static_cast<float>(Kind::kSteps))));
-    const F factor = hn::IfThenElseZero(hn::Gt(span, hn::Zero(d)), exact);
-    const F zero_at = hn::Mul(hn::Mul(hn::Add(a, constant(kBias)), factor), constant(1.0f / 1024.0f));
-    store_words(factor, ramp.factor + i);
-    store_words(hn::Min(hn::Max(hn::Sub(zero_at, constant(63.5f)), hn::Zero(d)), constant(65535.0f)), ramp.subtract + i);
-}
-
-template <class Kind>
-HWY_INLINE W index(const Group& group, int texel, W factor, W subtract) {
-    const Words d;
-    const W scaled = hn::MulHigh(hn::Load(d, group.scaled + texel * lanes()), factor);
-    const W k = hn::ShiftRight<7>(hn::SaturatedSub(scaled, subtract));
-    return hn::Min(k, hn::Set(d, static_cast<std::uint16_t>(Kind::kSteps)));
-}
-
-template <class Kind>
-HWY_INLINE void sum_up(const Group& group, const Ramp& ramp, Sums& sums) {
-    const Words d;
-    const W factor = hn::Load(d, ramp.factor);
-    const W subtract = hn::Load(d, ramp.subtract);
-    W sum_k = hn::Zero(d);
-    W sum_kk = hn::Zero(d);
-    W sum_kv = hn::Zero(d);
-    for (int texel = 0; texel < 16; ++texel) {
-        const W k = index<Kind>(group, texel, factor, subtract);
-        const W value = hn::Load(d, group.values + texel * lanes());
-        sum_k = hn::Add(sum_k, k);
-        sum_kk = hn::Add(sum_kk, hn::Mul(k, k));
-        sum_kv = hn::Add(sum_kv, hn::Mul(k, value));
-    }
-    hn::Store(sum_k, d, sums.k);
-    hn::Store(sum_kk, d, sums.kk);
-    hn::Store(sum_kv, d, sums.kv);
-}
-
-// Endpoints in codes on their way, for each block.
-struct Ends {
-    HWY_ALIGN float low[kLanes], high[kLanes];
-};
-
-template <class Kind>
-class Fitter {
-public:
-    Fitter(Group& group, Kind kind) : group_(group), kind_(kind) {}
-
-    // Rounds the endpoints, scores them, keeps them where they are the best so far; with `refined` replaces them by those that
-    // suit the indices best.
-    void step(Ends& ends, bool refined) {
-        const Floats d;
-        const int width = static_cast<int>(hn::Lanes(d));
-        Ramp ramp;
-        Ends rounded;
-        for (int i = 0; i < lanes(); i += width) {
-            F low = hn::Load(d, ends.low + i);
-            F high = hn::Load(d, ends.high + i);
-            kind_.round(low, high);
-            hn::Store(low, d, rounded.low + i);
-            hn::Store(high, d, rounded.high + i);
-            store_ramp<Kind>(local(low, i), local(high, i), i, ramp);
-        }
-        score(rounded, ramp, refined ? &ends : nullptr);
-    }
-
-    // Starts from (g, j) and takes `steps` steps.
-    void start(float g, float j, int steps) {
-        const Floats d;
-        Ends ends;
-        for (int i = 0; i < lanes(); i += static_cast<int>(hn::Lanes(d))) {
-            const F least = hn::Load(d, group_.least + i);
-            const F range = hn::Sub(hn::Load(d, group_.greatest + i), least);
-            const F spacing = hn::Mul(range, constant(1.0f / (static_cast<float>(Kind::kSteps) - j + g)));
-            const F a = hn::Add(least, hn::Mul(spacing, constant(0.5f * g)));
-            const F b = hn::Add(a, hn::Mul(spacing, constant(static_cast<float>(Kind::kSteps))));
-            hn::Store(code(a, i), d, ends.low + i);
-            hn::Store(code(b, i), d, ends.high + i);
-        }
-        for (int k = 0; k < steps; ++k) step(ends, k + 1 < steps);
-    }
-
-    // Endpoints at the extremes, moved inwards by a part of the range, then those that suit their indices best, not scored.
-    HWY_INLINE void solve(float part) {
-        const Floats d;
-        Ends ends;
-        Ramp ramp;
-        for (int i = 0; i < lanes(); i += static_cast<int>(hn::Lanes(d))) {
-            const F least = hn::Load(d, group_.least + i);
-            const F greatest = hn::Load(d, group_.greatest + i);
-            const F inset = hn::Mul(hn::Sub(greatest, least), constant(part));
-            const F a = hn::Add(least, inset);
-            const F b = hn::Sub(greatest, inset);
-            hn::Store(code(a, i), d, ends.low + i);
-            hn::Store(code(b, i), d, ends.high + i);
-            store_ramp<Kind>(a, b, i, ramp);
-        }
-        Sums sums;
-        sum_up<Kind>(group_, ramp, sums);
-        for (int i = 0; i < lanes(); i += static_cast<int>(hn::Lanes(d))) {
-            refine(sums, i, ends);
-            F low = hn::Load(d, ends.low + i);
-            F high = hn::Load(d, ends.high + i);
-            kind_.round(low, high);
-            hn::Store(low, d, group_.low + i);
-            hn::Store(high, d, group_.high + i);
-        }
-    }
-
-    // Scores all pairs of stored codes whose members are within `reach` of the best.
-    void neighbours(int reach, float most) {
-        const Floats d;
-        Ends center;
-        std::memcpy(center.low, group_.low, sizeof center.low);
-        std::memcpy(center.high, group_.high, sizeof center.high);
-        for (int p = -reach; p <= reach; ++p) {
-            for (int q = -reach; q <= reach; ++q) {
-                if (p == 0 && q == 0) continue;
-                Ends moved;
-                Ramp ramp;
-                for (int i = 0; i < lanes(); i += static_cast<int>(hn::Lanes(d))) {
-                    const F top = constant(most);
-                    const F low = hn::Min(hn::Max(hn::Add(hn::Load(d, center.low + i), constant(static_cast<float>(p))), hn::Zero(d)), top);
-                    const F high = hn::Min(hn::Max(hn::Add(hn::Load(d, center.high + i), constant(static_cast<float>(q))), low), top);
-                    hn::Store(low, d, moved.low + i);
-                    hn::Store(high, d, moved.high + i);
-                    store_ramp<Kind>(local(low, i), local(high, i), i, ramp);
-                }
-                score(moved, ramp, nullptr);
-            }
-        }
-    }
-
-    // The indices of the best endpoints.
-    void best_ramp(Ramp& ramp) const {
-        const Floats d;
-        for (int i = 0; i < lanes(); i += static_cast<int>(hn::Lanes(d))) {
-            store_ramp<Kind>(local(hn::Load(d, group_.low + i), i), local(hn::Load(d, group_.high + i), i), i, ramp);
-        }
-    }
-
-private:
-    HWY_INLINE F code(F value, int i) const {
-        const Floats d;
-        return hn::Add(hn::Load(d, group_.base + i), hn::Mul(value, hn::Load(d, group_.unit + i)));
-    }
-    // The stored code as a local value.
-    HWY_INLINE F local(F stored, int i) const {
-        const Floats d;
-        return hn::Mul(hn::Sub(kind_.widen(stored), hn::Load(d, group_.base + i)), hn::Load(d, group_.per_unit + i));
-    }
-
-    void score(const Ends& rounded, const Ramp& ramp, Ends* refined) {
-        const Floats d;
-        const hn::Rebind<std::uint16_t, Floats> dw;
-        const hn::Rebind<std::int32_t, Floats> di;
-        Sums sums;
-        sum_up<Kind>(group_, ramp, sums);
-        for (int i = 0; i < lanes(); i += static_cast<int>(hn::Lanes(d))) {
-            const auto get = [&](const std::uint16_t* row) { return hn::ConvertTo(d, hn::PromoteTo(di, hn::Load(dw, row + i))); };
-            const F k = get(sums.k);
-            const F kk = get(sums.kk);
-            const F kv = get(sums.kv);
-            const F v = hn::Load(d, group_.sum + i);
-            const F low = hn::Load(d, rounded.low + i);
-            const F high = hn::Load(d, rounded.high + i);
-            const F a = local(low, i);
-            const F spacing = hn::Mul(hn::Sub(local(high, i), a), constant(1.0f / static_cast<float>(Kind::kSteps)));
-            // sum of (v - a - k spacing)^2, less the sum of v^2
-            const F from_a = hn::Mul(a, hn::Sub(hn::Mul(constant(16.0f), a), hn::Add(v, v)));
-            const F cross = hn::Sub(hn::Mul(a, k), kv);
-            const F from_k = hn::Mul(spacing, hn::Add(hn::Mul(spacing, kk), hn::Add(cross, cross)));
-            const F error = hn::Add(from_a, from_k);
-            const F least = hn::Load(d, group_.error + i);
-            const auto better = hn::Lt(error, least);
-            hn::Store(hn::IfThenElse(better, error, least), d, group_.error + i);
-            hn::Store(hn::IfThenElse(better, low, hn::Load(d, group_.low + i)), d, group_.low + i);
-            hn::Store(hn::IfThenElse(better, high, hn::Load(d, group_.high + i)), d, group_.high + i);
-            if (refined != nullptr) refine(sums, i, *refined);
-        }
-    }
-
-    // Replaces endpoints by those that suit the indices best, by linear least squares.
-    HWY_INLINE void refine(const Sums& sums, int i, Ends& ends) const {
-        const Floats d;
-        const hn::Rebind<std::uint16_t, Floats> dw;
-        const hn::Rebind<std::int32_t, Floats> di;
-        const auto get = [&](const std::uint16_t* row) { return hn::ConvertTo(d, hn::PromoteTo(di, hn::Load(dw, row + i))); };
-        const F k = get(sums.k);
-        const F kv = get(sums.kv);
-        const F v = hn::Load(d, group_.sum + i);
-        const F determinant = hn::Sub(hn::Mul(constant(16.0f), get(sums.kk)), hn::Mul(k, k));
-        const F slope = hn::Div(hn::Sub(hn::Mul(constant(16.0f), kv), hn::Mul(k, v)), hn::Max(determinant, constant(1.0f)));
-        const F start = hn::Mul(hn::Sub(v, hn::Mul(slope, k)), constant(1.0f / 16.0f));
-        const F end = hn::Add(start, hn::Mul(slope, constant(static_cast<float>(Kind::kSteps))));
-        const auto solvable = hn::Gt(determinant, hn::Zero(d));
-        hn::Store(hn::IfThenElse(solvable, code(start, i), hn::Load(d, ends.low + i)), d, ends.low + i);
-        hn::Store(hn::IfThenElse(solvable, code(end, i), hn::Load(d, ends.high + i)), d, ends.high + i);
-    }
-
-    Group& group_;
-    const Kind kind_;
-};
-
 // Blocks of one value (to half a code): the endpoints that come nearest to it.
-void set_single_greens(Group& group) {
+HWY_INLINE void set_single_greens(const Group& group, Choice& choice) {
     const Floats d;
-    F least = constant(255.0f);
-    for (int i = 0; i < lanes(); i += static_cast<int>(hn::Lanes(d))) {
-        const F range = hn::Sub(hn::Load(d, group.greatest + i), hn::Load(d, group.least + i));
-        least = hn::Min(least, hn::Mul(range, hn::Load(d, group.unit + i)));
-    }
-    if (hn::AllTrue(d, hn::Gt(least, constant(0.5f)))) return;
-    for (int k = 0; k < lanes(); ++k) {
-        const float unit = group.unit[k];
-        if ((group.greatest[k] - group.least[k]) * unit > 0.5f) continue;
-        const SingleGreen single = nearest_single_green(group.base[k] + group.sum[k] * unit * (1.0f / 16.0f));
-        group.low[k] = static_cast<float>(single.lower);
-        group.high[k] = static_cast<float>(single.lower + single.distance);
-    }
-}
-
-// The endpoints' final choice of indices, as words of `bits` for each texel.
-template <class Kind, int kBits>
-HWY_INLINE void choose_indices(Group& group, Kind kind, Effort effort, W* words) {
-    const Words d;
-    if (effort == Effort::fast) {
-        Ramp ramp;
-        Fitter<Kind>(group, kind).best_ramp(ramp);
-        const W factor = hn::Load(d, ramp.factor);
-        const W subtract = hn::Load(d, ramp.subtract);
-        pack_indices<Kind::kSteps, kBits>([&](int texel) { return index<Kind>(group, texel, factor, subtract); }, words);
-    } else {
-        HWY_ALIGN std::uint16_t indices[16 * kLanes];
-        settle(group, kind, indices);
-        pack_indices<Kind::kSteps, kBits>([&](int texel) { return hn::Load(d, indices + texel * lanes()); }, words);
+    const hn::Rebind<std::int32_t, Floats> di;
+    const std::int32_t* below = single_greens_below();
+    const std::int32_t* above = single_greens_above();
+    for (int i = 0; i < lanes(); i += float_lanes()) {
+        const F unit = hn::Load(d, group.unit + i);
+        const auto single = hn::Le(hn::Mul(hn::Load(d, group.greatest + i), unit), constant(0.5f));
+        if (hn::AllFalse(d, single)) continue;
+        const F mean = hn::Mul(hn::Mul(hn::Load(d, group.high_sum + i), unit), constant(1.0f / 16.0f));
+        const F thirds = hn::Mul(hn::Add(hn::Load(d, group.base + i), mean), constant(3.0f));
+        const auto at = hn::ConvertTo(di, thirds);
+        const auto down = hn::GatherIndex(di, below, at);
+        const auto up = hn::GatherIndex(di, above, hn::Min(hn::Add(at, hn::Set(di, 1)), hn::Set(di, kMostThirds)));
+        const F to_down = hn::Abs(hn::Sub(thirds, hn::ConvertTo(d, hn::ShiftRight<16>(down))));
+        const F to_up = hn::Abs(hn::Sub(hn::ConvertTo(d, hn::ShiftRight<16>(up)), thirds));
+        const auto green = hn::IfThenElse(hn::RebindMask(di, hn::Lt(to_down, to_up)), down, up);
+        const F low = hn::ConvertTo(d, hn::And(hn::ShiftRight<8>(green), hn::Set(di, 0xFF)));
+        const F high = hn::Add(low, hn::ConvertTo(d, hn::And(green, hn::Set(di, 0xFF))));
+        hn::Store(hn::IfThenElse(single, low, hn::Load(d, choice.low + i)), d, choice.low + i);
+        hn::Store(hn::IfThenElse(single, high, hn::Load(d, choice.high + i)), d, choice.high + i);
     }
 }
 
-void fit_bc4_blocks(const float* const rows[4], int count, Bc4Codes codes, bool negate, Effort effort, std::byte* blocks) {
+// Indices as blocks store them, by k from the lower endpoint; bit 3 of k tells blocks of 6 values.
+HWY_ALIGN constexpr std::uint8_t kBc4Indices[16] = {1, 7, 6, 5, 4, 3, 2, 0, 0, 2, 3, 4, 5, 1, 1, 1};
+HWY_ALIGN constexpr std::uint8_t kGreenIndices[16] = {1, 3, 2, 0};
+
+HWY_INLINE W stored_index(W k, const std::uint8_t* table) {
+#if HWY_TARGET == HWY_SCALAR
+    return word(table[hn::GetLane(k) & 15]);
+#else
+    // The upper byte is out of the table, which gives 0.
+    const hn::Repartition<std::uint8_t, Words> d8;
+    return hn::BitCast(Words(), hn::TableLookupBytesOr0(hn::LoadDup128(d8, table), hn::BitCast(d8, hn::Or(k, word(0x8000)))));
+#endif
+}
+
+// Words of 16 bits that hold the indices of all texels, `bits` each; k(texel) counts from the lower endpoint.
+template <int kBits, class Index>
+HWY_INLINE void pack_indices(const std::uint8_t* table, Index k, W* words) {
+    for (int texel = 0; texel < 16; ++texel) {
+        const W stored = stored_index(k(texel), table);
+        const int bit = kBits * texel % 16;
+        W& to = words[kBits * texel / 16];
+        to = bit == 0 ? stored : hn::Or(to, hn::ShiftLeftSame(stored, bit));
+        if (bit + kBits > 16) words[kBits * texel / 16 + 1] = hn::ShiftRightSame(stored, 16 - bit);
+    }
+}
+
+HWY_INLINE W stored_codes(const float* codes) {
+    HWY_ALIGN std::uint16_t words[kLanes];
+    for (int i = 0; i < lanes(); i += float_lanes()) store_words(hn::Load(Floats(), codes + i), words + i);
+    return hn::Load(Words(), words);
+}
+
+// How the texels of a block find their indices: those of blocks of 6 values have bit 3 set.
+struct Indexing {
+    W factor, offset, cut, mark;
+};
+
+HWY_INLINE BlockWords bc4_words(const Group& group, Bc4Codes codes, const Ends& ends, const Indexing& by) {
     const Words d;
-    HWY_ALIGN std::uint16_t texels[16 * kLanes];
+    BlockWords block;
+    const auto texel_index = [&](int texel) {
+        return hn::Or(index(hn::Load(d, group.values + texel * lanes()), by.factor, by.offset, by.cut), by.mark);
+    };
+    pack_indices<3>(kBc4Indices, texel_index, block.w + 1);
+    const W byte = word(0xFF);
+    const W e0 = hn::And(hn::Sub(stored_codes(ends.high), word(codes.bias)), byte);
+    const W e1 = hn::Sub(stored_codes(ends.low), word(codes.bias));
+    block.w[0] = hn::Or(e0, hn::ShiftLeft<8>(e1));
+    return block;
+}
+
+// The better ones of endpoints for 8 and for 6 values, which are stored the other way round.
+HWY_INLINE BlockWords choose_bc4(const Group& group, Bc4Codes codes, const Choice& eight, const Choice& six) {
+    const Floats d;
+    const float top = static_cast<float>(codes.top);
+    Ramp ramp, six_ramp;
+    Fitter<EightValues>(group, {top}).ramp_of(eight, ramp);
+    Fitter<SixValues>(group, {top}).ramp_of(six, six_ramp);
+    Ends chosen;
+    HWY_ALIGN std::uint16_t is_six[kLanes];
+    for (int i = 0; i < lanes(); i += float_lanes()) {
+        const auto better = hn::Lt(hn::Load(d, six.error + i), hn::Load(d, eight.error + i));
+        store_words(hn::IfThenElseZero(better, constant(1.0f)), is_six + i);
+        hn::Store(hn::IfThenElse(better, hn::Load(d, six.low + i), hn::Load(d, eight.high + i)), d, chosen.high + i);
+        hn::Store(hn::IfThenElse(better, hn::Load(d, six.high + i), hn::Load(d, eight.low + i)), d, chosen.low + i);
+    }
+    const Words dw;
+    const auto better = hn::Ne(hn::Load(dw, is_six), hn::Zero(dw));
+    const auto either = [&](const std::uint16_t* a, const std::uint16_t* b) { return hn::IfThenElse(better, hn::Load(dw, b), hn::Load(dw, a)); };
+    return bc4_words(group, codes, chosen,
+                     {either(ramp.factor, six_ramp.factor), either(ramp.offset, six_ramp.offset),
+                      hn::IfThenElse(better, word(cut(5)), word(cut(7))), hn::IfThenElseZero(better, word(8))});
+}
+
+// Texels keep the indices for which the endpoints were solved.
+HWY_INLINE BlockWords fast_bc4(const W* texels, Bc4Codes codes) {
+    const Words d;
     Group group;
-    for (int first = 0; first < count; first += lanes()) {
-        const float* const from[4] = {rows[0] + 4 * first, rows[1] + 4 * first, rows[2] + 4 * first, rows[3] + 4 * first};
-        load(from, 4 * (count - first), codes.top, negate, texels);
-        make_group(texels, group);
-        Fitter<Bc4Kind> fitter(group, {static_cast<float>(codes.top)});
-        if (effort == Effort::fast) {
-            fitter.solve(0.0f);
-        } else {
-            for (const float g : {0.0f, 0.5f}) {
-                for (const float j : {0.0f, 1.0f, 2.0f}) fitter.start(g, j, 2);
-            }
-        }
-        W words[3];
-        choose_indices<Bc4Kind, 3>(group, {static_cast<float>(codes.top)}, effort, words);
-        const W bias = hn::Set(d, static_cast<std::uint16_t>(codes.bias));
-        const W byte = hn::Set(d, 0xFF);
-        const W low = hn::And(hn::Sub(stored_codes(group.low), bias), byte);
-        const W high = hn::And(hn::Sub(stored_codes(group.high), bias), byte);
-        store_blocks(hn::Or(high, hn::ShiftLeft<8>(low)), words[0], words[1], words[2], count - first, blocks + 16 * first);
-    }
+    make_group<Precision::coarse>(texels, group);
+    HWY_ALIGN std::uint16_t fractions[kLanes];
+    W any = texels[0];
+    for (int k = 1; k < 16; ++k) any = hn::Or(any, texels[k]);
+    hn::Store(hn::And(any, word(static_cast<int>(kFine) - 1)), d, fractions);
+    Ramp ramp;
+    Choice choice;
+    Fitter<EightValues>(group, {static_cast<float>(codes.top)}).solve(0.0f, fractions, ramp, choice);
+    return bc4_words(group, codes, choice, {hn::Load(d, ramp.factor), hn::Load(d, ramp.offset), word(cut(7)), hn::Zero(d)});
 }
 
-void fit_green_blocks(const float* const rows[4], int count, bool negate, Effort effort, std::byte* blocks) {
-    const Words d;
-    HWY_ALIGN std::uint16_t texels[16 * kLanes];
+HWY_INLINE BlockWords normal_bc4(const W* texels, Bc4Codes codes) {
+    const float top = static_cast<float>(codes.top);
     Group group;
-    for (int first = 0; first < count; first += lanes()) {
-        const float* const from[4] = {rows[0] + 4 * first, rows[1] + 4 * first, rows[2] + 4 * first, rows[3] + 4 * first};
-        load(from, 4 * (count - first), 255, negate, texels);
-        make_group(texels, group);
-        Fitter<GreenKind> fitter(group, {});
-        if (effort == Effort::fast) {
-            fitter.solve(1.0f / 16.0f);
-        } else {
-            for (const float g : {-0.4f, 0.0f, 0.4f}) {
-                for (const float j : {0.0f, 1.0f, 2.0f}) fitter.start(g, j, 3);
-            }
-            fitter.neighbours(2, 63.0f);
-        }
-        set_single_greens(group);
-        W words[2];
-        choose_indices<GreenKind, 2>(group, {}, effort, words);
-        const W red_blue = hn::Set(d, 0xF81F);
-        const W low = hn::Or(hn::ShiftLeft<5>(stored_codes(group.low)), red_blue);
-        const W high = hn::Or(hn::ShiftLeft<5>(stored_codes(group.high)), red_blue);
-        // Equal endpoints use index 0 only.
-        const auto apart = hn::Ne(low, high);
-        store_blocks(high, low, hn::IfThenElseZero(apart, words[0]), hn::IfThenElseZero(apart, words[1]), count - first, blocks + 16 * first);
+    make_group<Precision::full>(texels, group);
+    const Fitter<EightValues> fitter(group, {top});
+    Choice found;
+    for (const auto& [g, j] : {std::pair(0.0f, 1.0f), {0.5f, 0.0f}, {0.5f, 2.0f}}) fitter.start<Precision::coarse>(g, j, 2, found);
+    Choice eight;
+    fitter.measure<Precision::full>(found, eight);
+    fitter.start<Precision::full>(0.0f, 0.0f, 3, eight);
+    fitter.whole_codes(eight);
+    const Fitter<SixValues> six_fitter(group, {top});
+    Choice six;
+    six_fitter.start<Precision::full>(0.0f, 1.0f, 2, six);
+    return choose_bc4(group, codes, eight, six);
+}
+
+HWY_INLINE BlockWords green_words(const Group& group, const Choice& choice) {
+    const Words d;
+    Ramp ramp;
+    Fitter<Greens>(group, {}).ramp_of(choice, ramp);
+    BlockWords block;
+    const W factor = hn::Load(d, ramp.factor);
+    const W offset = hn::Load(d, ramp.offset);
+    const W floor = word(cut(3));
+    pack_indices<2>(kGreenIndices, [&](int texel) { return index(hn::Load(d, group.values + texel * lanes()), factor, offset, floor); }, block.w + 2);
+    const W red_blue = word(0xF81F);
+    block.w[0] = hn::Or(hn::ShiftLeft<5>(stored_codes(choice.high)), red_blue);
+    block.w[1] = hn::Or(hn::ShiftLeft<5>(stored_codes(choice.low)), red_blue);
+    // Equal endpoints use index 0 only.
+    const auto apart = hn::Ne(block.w[0], block.w[1]);
+    block.w[2] = hn::IfThenElseZero(apart, block.w[2]);
+    block.w[3] = hn::IfThenElseZero(apart, block.w[3]);
+    return block;
+}
+
+HWY_INLINE BlockWords fast_green(const W* texels) {
+    Group group;
+    make_group<Precision::coarse>(texels, group);
+    Ramp ramp;
+    Choice choice;
+    Fitter<Greens>(group, {}).solve(1.0f / 16.0f, nullptr, ramp, choice);
+    set_single_greens(group, choice);
+    return green_words(group, choice);
+}
+
+HWY_INLINE BlockWords normal_green(const W* texels) {
+    Group group;
+    make_group<Precision::full>(texels, group);
+    const Fitter<Greens> fitter(group, {});
+    Choice found;
+    for (const float g : {-0.4f, 0.4f}) {
+        for (const float j : {0.0f, 1.0f, 2.0f}) fitter.start<Precision::coarse>(g, j, 2, found);
     }
+    fitter.neighbours(2, found);
+    set_single_greens(group, found);
+    Choice best;
+    fitter.measure<Precision::full>(found, best);
+    fitter.start<Precision::full>(0.0f, 0.0f, 3, best);
+    return green_words(group, best);
+}
+
+// Calls encode(rows of x, rows of y, blocks) for groups of lanes() blocks; the last ones in copies.
+template <class Encode>
+HWY_INLINE void for_each_group(const ChannelRows& x, const ChannelRows& y, int count, std::byte* blocks, Encode encode) {
+    int first = 0;
+    for (; first + lanes() <= count; first += lanes()) {
+        const float* from[2][4];
+        for (int r = 0; r < 4; ++r) {
+            from[0][r] = x.rows[r] + 4 * first;
+            from[1][r] = y.rows[r] + 4 * first;
+        }
+        encode(from[0], from[1], blocks + 16 * first);
+    }
+    if (first == count) return;
+    float copies[2][4][4 * kLanes] = {};
+    std::byte last[16 * kLanes];
+    const float* from[2][4];
+    const auto rest = static_cast<std::size_t>(std::clamp(count - first, 0, kLanes));
+    for (int r = 0; r < 4; ++r) {
+        std::memcpy(copies[0][r], x.rows[r] + 4 * first, rest * 4 * sizeof(float));
+        std::memcpy(copies[1][r], y.rows[r] + 4 * first, rest * 4 * sizeof(float));
+        from[0][r] = copies[0][r];
+        from[1][r] = copies[1][r];
+    }
+    encode(from[0], from[1], last);
+    std::memcpy(blocks + 16 * first, last, 16 * rest);
+}
+
+void fit_dxt5nm_blocks(const ChannelRows& x, const ChannelRows& y, int count, Effort effort, std::byte* blocks) {
+    for_each_group(x, y, count, blocks, [&](const float* const* xs, const float* const* ys, std::byte* to) {
+        W texels[16];
+        load_texels(xs, 255, x.negate, texels);
+        const BlockWords alpha = effort == Effort::fast ? fast_bc4(texels, kBc4Unorm) : normal_bc4(texels, kBc4Unorm);
+        load_texels(ys, 255, y.negate, texels);
+        const BlockWords green = effort == Effort::fast ? fast_green(texels) : normal_green(texels);
+        store_blocks(alpha, green, to);
+    });
+}
+
+void fit_bc5_blocks(const ChannelRows& x, const ChannelRows& y, int count, Bc4Codes codes, Effort effort, std::byte* blocks) {
+    for_each_group(x, y, count, blocks, [&](const float* const* xs, const float* const* ys, std::byte* to) {
+        BlockWords words[2];
+        for (int k = 0; k < 2; ++k) {
+            W texels[16];
+            load_texels(k == 0 ? xs : ys, codes.top, k == 0 ? x.negate : y.negate, texels);
+            words[k] = effort == Effort::fast ? fast_bc4(texels, codes) : normal_bc4(texels, codes);
+        }
+        store_blocks(words[0], words[1], to);
+    });
 }
 
 }  // namespace HWY_NAMESPACE
@@ -364,15 +255,15 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex {
 
-HWY_EXPORT(fit_bc4_blocks);
-HWY_EXPORT(fit_green_blocks);
+HWY_EXPORT(fit_dxt5nm_blocks);
+HWY_EXPORT(fit_bc5_blocks);
 
-void fit_bc4_blocks(const float* const rows[4], int count, Bc4Codes codes, bool negate, Effort effort, std::byte* blocks) {
-    HWY_DYNAMIC_DISPATCH(fit_bc4_blocks)(rows, count, codes, negate, effort, blocks);
+void fit_dxt5nm_blocks(const ChannelRows& x, const ChannelRows& y, int count, Effort effort, std::byte* blocks) {
+    HWY_DYNAMIC_DISPATCH(fit_dxt5nm_blocks)(x, y, count, effort, blocks);
 }
 
-void fit_green_blocks(const float* const rows[4], int count, bool negate, Effort effort, std::byte* blocks) {
-    HWY_DYNAMIC_DISPATCH(fit_green_blocks)(rows, count, negate, effort, blocks);
+void fit_bc5_blocks(const ChannelRows& x, const ChannelRows& y, int count, Bc4Codes codes, Effort effort, std::byte* blocks) {
+    HWY_DYNAMIC_DISPATCH(fit_bc5_blocks)(x, y, count, codes, effort, blocks);
 }
 
 }  // namespace tex

@@ -3,14 +3,13 @@
 #include "kernels/single_greens.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "blocks/bc1.h"
 
 namespace tex {
 namespace {
 
-constexpr int kThirds = 3 * 255 + 1;
+constexpr int kThirds = kMostThirds + 1;
 
 struct Table {
     SingleGreen below[kThirds];
@@ -33,13 +32,24 @@ struct Table {
     }
 };
 
-// With all endpoints, and with near ones.
 const Table& all() {
     static const Table greens(63);
     return greens;
 }
-const Table& near() {
-    static const Table greens(kMaxSingleDistance);
+
+struct Packed {
+    std::int32_t below[kThirds];
+    std::int32_t above[kThirds];
+
+    Packed() {
+        const Table near(kMaxSingleDistance);
+        const auto packed = [](const SingleGreen& green) { return green.third << 16 | green.lower << 8 | green.distance; };
+        std::transform(near.below, near.below + kThirds, below, packed);
+        std::transform(near.above, near.above + kThirds, above, packed);
+    }
+};
+const Packed& near() {
+    static const Packed greens;
     return greens;
 }
 
@@ -48,13 +58,7 @@ const Table& near() {
 const SingleGreen& single_green_below(int third) { return all().below[third]; }
 const SingleGreen& single_green_above(int third) { return all().above[third]; }
 
-SingleGreen nearest_single_green(float value) {
-    const int third = std::clamp(static_cast<int>(3.0f * value), 0, kThirds - 1);
-    const SingleGreen& below = near().below[third];
-    const SingleGreen& above = near().above[std::min(third + 1, kThirds - 1)];
-    const float down = std::fabs(3.0f * value - static_cast<float>(below.third));
-    const float up = std::fabs(static_cast<float>(above.third) - 3.0f * value);
-    return down < up ? below : above;
-}
+const std::int32_t* single_greens_below() { return near().below; }
+const std::int32_t* single_greens_above() { return near().above; }
 
 }  // namespace tex

@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include <cstdint>
+
 namespace tex {
 
 // A value in thirds of a code, and the nearest endpoints (6 bits) of which it is one third, two thirds or an end; the greatest
@@ -17,9 +19,11 @@ struct SingleGreen {
 const SingleGreen& single_green_below(int third);
 const SingleGreen& single_green_above(int third);
 
-// The nearest one to `value`, 0 to 255 codes, with endpoints at most kMaxSingleDistance apart: two thirds of a code away at most. (The error of
-// hardware grows with that distance.) Of two equally near ones the greater.
+// The same for endpoints at most kMaxSingleDistance apart, whose values are two thirds of a code from any other at most (the error of hardware grows with
+// that distance): tables of 0 to kMostThirds thirds, each entry third << 16 | lower << 8 | distance.
 inline constexpr int kMaxSingleDistance = 11;
-SingleGreen nearest_single_green(float value);
+inline constexpr int kMostThirds = 3 * 255;
+const std::int32_t* single_greens_below();
+const std::int32_t* single_greens_above();
 
 }  // namespace tex
