@@ -6,6 +6,7 @@
 #include <cmath>
 #include <complex>
 #include <cstring>
+#include <iterator>
 #include <utility>
 
 namespace tex::reference {
@@ -29,13 +30,17 @@ std::vector<Complex> transform(std::vector<Complex> data, Extent extent, double 
     const auto pass = [&](int count, int lines, auto index) {
         std::vector<Complex> roots(static_cast<std::size_t>(count)), line(static_cast<std::size_t>(count));
         for (int k = 0; k < count; ++k) roots[static_cast<std::size_t>(k)] = std::polar(1.0, sign * 2.0 * kPi * k / count);
+        std::vector<Complex> samples(static_cast<std::size_t>(count));
         for (int l = 0; l < lines; ++l) {
+            for (int n = 0; n < count; ++n) samples[static_cast<std::size_t>(n)] = data[index(n, l)];
             for (int k = 0; k < count; ++k) {
-                Complex sum = 0.0;
+                double real = 0.0, imaginary = 0.0;  // operator* would look for infinities each time
                 for (int n = 0; n < count; ++n) {
-                    sum += data[index(n, l)] * roots[static_cast<std::size_t>(static_cast<long>(k) * n % count)];
+                    const Complex a = samples[static_cast<std::size_t>(n)], b = roots[static_cast<std::size_t>(static_cast<long>(k) * n % count)];
+                    real += a.real() * b.real() - a.imag() * b.imag();
+                    imaginary += a.real() * b.imag() + a.imag() * b.real();
                 }
-                line[static_cast<std::size_t>(k)] = sum;
+                line[static_cast<std::size_t>(k)] = {real, imaginary};
             }
             for (int k = 0; k < count; ++k) data[index(k, l)] = line[static_cast<std::size_t>(k)];
         }
@@ -225,7 +230,48 @@ Codes jpeg(const Codes& codes, int quality) {
     return result;
 }
 
-NormalMap from_heights(const NormalMap& map, int levels, double* slope_step) {
+Codes bc1(const Codes& codes) {
+    Codes result = codes;
+    for (int y = 0; y < codes.extent.height; y += 4) {
+        for (int x = 0; x < codes.extent.width; x += 4) {
+            const int right = std::min(x + 4, codes.extent.width), bottom = std::min(y + 4, codes.extent.height);
+            double low[3] = {255.0, 255.0, 255.0}, high[3] = {};
+            for (int j = y; j < bottom; ++j) {
+                for (int i = x; i < right; ++i) {
+                    for (int c = 0; c < 3; ++c) low[c] = std::min<double>(low[c], codes.at(i, j, c)), high[c] = std::max<double>(high[c], codes.at(i, j, c));
+                }
+            }
+            double palette[4][3];
+            for (int k = 0; k < 4; ++k) {
+                for (int c = 0; c < 3; ++c) {
+                    const double most = c == 1 ? 63.0 : 31.0;
+                    const auto stored = [&](double v) { return std::floor(v / 255.0 * most + 0.5) / most * 255.0; };
+                    palette[k][c] = (stored(low[c]) * (3 - k) + stored(high[c]) * k) / 3.0;
+                }
+            }
+            for (int j = y; j < bottom; ++j) {
+                for (int i = x; i < right; ++i) {
+                    const auto distance = [&](const double* color) {
+                        double sum = 0.0;
+                        for (int c = 0; c < 3; ++c) sum += (color[c] - codes.at(i, j, c)) * (color[c] - codes.at(i, j, c));
+                        return sum;
+                    };
+                    const auto* best = std::min_element(std::begin(palette), std::end(palette),
+                                                        [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+                    for (int c = 0; c < 3; ++c) result.at(i, j, c) = rounded((*best)[c]);
+                }
+            }
+        }
+    }
+    return result;
+}
+
+double Heights::range() const {
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    return *high - *low;
+}
+
+Heights integrate(const NormalMap& map) {
     const Extent extent = map.extent();
     const auto count = static_cast<std::size_t>(extent.texels());
     std::vector<Complex> p(count), q(count), h(count);
@@ -248,19 +294,22 @@ NormalMap from_heights(const NormalMap& map, int levels, double* slope_step) {
         }
     }
     h = transform(std::move(h), extent, 1.0);
-    double low = h[0].real(), high = low;
-    for (const Complex& value : h) {
-        low = std::min(low, value.real());
-        high = std::max(high, value.real());
-    }
-    if (levels > 1 && high > low) {
-        const double step = (high - low) / (levels - 1);
-        if (slope_step != nullptr) *slope_step = step / 2.0;
-        for (Complex& value : h) value = std::floor((value.real() - low) / step + 0.5) * step;
+    Heights heights{extent, {}};
+    for (const Complex& value : h) heights.values.push_back(value.real());
+    return heights;
+}
+
+NormalMap from_heights(const Heights& heights, int levels) {
+    const Extent extent = heights.extent;
+    std::vector<double> h = heights.values;
+    const double low = *std::min_element(h.begin(), h.end()), range = heights.range();
+    if (levels > 1 && range > 0.0) {
+        const double step = range / (levels - 1);
+        for (double& value : h) value = std::floor((value - low) / step + 0.5) * step;
     }
     const auto at = [&](int i, int j) {
         const int x = (i + extent.width) % extent.width, y = (j + extent.height) % extent.height;
-        return h[static_cast<std::size_t>(y) * static_cast<std::size_t>(extent.width) + static_cast<std::size_t>(x)].real();
+        return h[static_cast<std::size_t>(y) * static_cast<std::size_t>(extent.width) + static_cast<std::size_t>(x)];
     };
     NormalMap result(extent);
     for (int j = 0; j < extent.height; ++j) {

@@ -38,9 +38,21 @@ Codes with_alpha(const Codes& codes, bool premultiplied);
 // What a JPEG of this quality leaves: YCbCr, chroma at half size, the tables of ITU-T T.81 annex K scaled as libjpeg scales them.
 Codes jpeg(const Codes& codes, int quality);
 
-// Baked again from heights: the map integrated (Frankot, Chellappa 1988), its range stored with `levels` grey levels (0: not rounded), and central
-// differences of that. y up in the map. slope_step receives the distance of the slopes' lattice.
-NormalMap from_heights(const NormalMap& map, int levels, double* slope_step = nullptr);
+// What BC1 leaves: 5:6:5 endpoints at the corners of each 4x4 block's box of colours, and two colours between them.
+Codes bc1(const Codes& codes);
+
+// The map integrated (Frankot, Chellappa 1988), y up in the map.
+struct Heights {
+    Extent extent;
+    std::vector<double> values;
+    [[nodiscard]] double range() const;
+    // The distance of the lattice of slopes that `levels` grey levels over the range leave: half a level.
+    [[nodiscard]] double slope_step(int levels) const { return range() / (levels - 1) / 2.0; }
+};
+Heights integrate(const NormalMap& map);
+
+// Baked again from heights whose range is stored with `levels` grey levels (0: not rounded), by central differences.
+NormalMap from_heights(const Heights& heights, int levels);
 
 NormalMap crop(const NormalMap& map, int x, int y, Extent extent);
 

@@ -14,7 +14,10 @@ namespace {
 
 constexpr int kMost = 512;  // texels along a side: time matters more
 constexpr int kMostForHeights = 256;
-constexpr double kVisibleStep = 5.0 / 255.0;
+constexpr int kGreyLevels = 256;
+constexpr int kFewestLevels = 8;
+constexpr double kVisibleStep = 5.0 / 255.0;  // of slopes
+constexpr double kVisibleSeam = 2.0;
 constexpr double kVisibleShortness = 0.0125;  // of vectors: a code and a half of z
 
 // The largest part of the map, from its corner, whose sides are powers of two.
@@ -78,9 +81,26 @@ Codes half_flipped(const Codes& codes) {
     return result;
 }
 
+// Parts of the map that do not meet themselves: the first one that shows a seam, as SOURCES.md measures tiling.
+void plant_seam(const NormalMap& whole, std::vector<Planted>& all) {
+    const Extent e = whole.extent();
+    struct Part {
+        int begin, size;  // sixteenths
+    };
+    for (const Part part : {Part{1, 14}, Part{2, 12}, Part{3, 8}, Part{5, 9}}) {
+        const NormalMap cut = crop(whole, e.width * part.begin / 16, e.height * part.begin / 16,
+                                   {std::max(1, e.width * part.size / 16), std::max(1, e.height * part.size / 16)});
+        const bool visible = border_ratio(cut) >= kVisibleSeam;
+        if (!visible && part.begin != 5) continue;
+        all.push_back({"seam", "N307", texture_of(codes_of(cut)), std::make_shared<const Texture>(texture_of(codes_of(whole))), std::nullopt, true,
+                       visible});
+        return;
+    }
+}
+
 }  // namespace
 
-std::vector<Planted> plant_all(const NormalMap& whole, std::optional<YAxis> y, bool tiles) {
+std::vector<Planted> plant_all(const NormalMap& whole, std::optional<YAxis> y, bool tiles, bool blocks) {
     std::vector<Planted> all;
     const NormalMap map = crop(whole, 0, 0, {std::min(whole.extent().width, kMost), std::min(whole.extent().height, kMost)});
     const Codes codes = codes_of(map);
@@ -99,6 +119,7 @@ std::vector<Planted> plant_all(const NormalMap& whole, std::optional<YAxis> y, b
     add("premultiplied", "N303", texture_of(with_alpha(codes, true)), share(texture_of(with_alpha(codes, false))));
     add("x and y exchanged", "N308", texture_of(exchange(codes, 0, 1)), plain);
     add("x and z exchanged", "N308", texture_of(exchange(codes, 0, 2)), plain);
+    if (!blocks) add("BC1 before", "N306", texture_of(bc1(codes)), plain);
     add("JPEG, quality 50", "N304", texture_of(jpeg(codes, 50)), plain);
 
     const NormalMap base = power_of_two_part(map, kMost);
@@ -109,18 +130,17 @@ std::vector<Planted> plant_all(const NormalMap& whole, std::optional<YAxis> y, b
     add("mips of another image", "N502", texture_of(chain_of(base, ChainFault::other_image)), chain);
 
     const NormalMap part = turned(power_of_two_part(map, kMostForHeights), y && *y == YAxis::down);
-    double step = 0.0;
-    const Codes banded = codes_of(from_heights(part, 256, &step));
-    add("banding of 8-bit heights", "N305", texture_of(banded), share(texture_of(codes_of(from_heights(part, 0))))).visible =
-        step >= kVisibleStep;
-
-    if (tiles) {
-        const Extent e = whole.extent();
-        const NormalMap cut = crop(whole, e.width / 16, e.height / 16, {e.width * 7 / 8, e.height * 7 / 8});
-        Planted& seam = add("seam", "N307", texture_of(codes_of(cut)), share(texture_of(codes_of(whole))));
-        seam.tiles = true;
-        seam.visible = border_ratio(cut) >= 2.0;
+    const Heights heights = integrate(part);
+    const auto baked = share(texture_of(codes_of(from_heights(heights, 0))));
+    const auto shows = [&](int levels) { return heights.slope_step(levels) >= kVisibleStep; };
+    add("banding of 8-bit heights", "N305", texture_of(codes_of(from_heights(heights, kGreyLevels))), baked).visible = shows(kGreyLevels);
+    if (!shows(kGreyLevels)) {
+        // The same heights in the largest part of the 8 bits whose steps show.
+        int levels = kGreyLevels / 2;
+        while (!shows(levels) && levels > kFewestLevels) levels /= 2;
+        add("banding, part of 8 bits", "N305", texture_of(codes_of(from_heights(heights, levels))), baked).visible = shows(levels);
     }
+    if (tiles) plant_seam(whole, all);
     return all;
 }
 

@@ -23,7 +23,8 @@ struct Planted {
     bool visible = true;         // false: in this map the damage is below what 8 bits hold, or below the map's own steps
 };
 
-// `map` holds unit vectors, y as in the file; `y` is its direction, where it is known; `tiles` whether it tiles.
-std::vector<Planted> plant_all(const NormalMap& map, std::optional<YAxis> y, bool tiles);
+// `map` holds unit vectors, y as in the file; `y` is its direction, where it is known; `tiles` whether it tiles; `blocks` whether it was decoded from blocks, so
+// that blocks are no damage to plant.
+std::vector<Planted> plant_all(const NormalMap& map, std::optional<YAxis> y, bool tiles, bool blocks);
 
 }  // namespace tex::reference

@@ -22,6 +22,9 @@ inline const char* to_string(LabelSource source) {
     return source == LabelSource::name ? "name" : source == LabelSource::heights ? "heights" : "measured";
 }
 
+// Whether that is a label: a statement of the author, or one of the pair that the curl test has no part in.
+inline bool is_label(LabelSource source) { return source != LabelSource::measured; }
+
 struct RealMap {
     std::string path;          // below ../shared/data
     std::optional<YAxis> y;    // nullopt: SOURCES.md says that it cannot be told
@@ -32,5 +35,9 @@ struct RealMap {
 
 // All of them; the files are there only where ../shared/data is.
 const std::vector<RealMap>& real_maps();
+
+// Half of the pictures set thresholds, the other half is held out and reports: pictures of intact maps sorted by the FNV-1a hash (32 bits) of their names, the
+// first half sets. Two files of one picture (GL and DX, TGA and ATI2) fall into the same half.
+bool sets_thresholds(const RealMap& map);
 
 }  // namespace tex::reference

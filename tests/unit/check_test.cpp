@@ -13,6 +13,8 @@
 #include <gtest/gtest.h>
 
 #include <tex/bake.h>
+#include <tex/mip.h>
+#include <tex/pack.h>
 
 #include "reference/damage.h"
 
@@ -94,6 +96,20 @@ TEST(Check, SoundMapsHaveNoFindings) {
     EXPECT_EQ(ids(map_texture()), Ids{});
     EXPECT_EQ(ids(map_texture(), requiring({"y=up", "tiles", "pow2", "mips=none", "format=rgb8", "extent=128x128", "max-extent=128"})), Ids{});
     EXPECT_EQ(ids(reference::texture_of(reference::chain_of(bumps({128, 128}), reference::ChainFault::none)), requiring({"mips=full"})), Ids{});
+}
+
+// What mip --fade makes: the last levels are flat, which is no other image.
+TEST(Check, LevelsThatFadedToFlatAreRelated) {
+    for (const Encoding encoding : {Encoding::rgb8, Encoding::dxt5nm}) {
+        MipOptions mips;
+        mips.fade = Fade{0, 3};
+        auto chain = build_mip_chain(bumps({256, 256}), mips);
+        ASSERT_TRUE(chain);
+        const auto texture = pack(*chain, {encoding, YAxis::up, Effort::fast});
+        ASSERT_TRUE(texture);
+        const auto met = ids(*texture);
+        for (const char* id : {"N501", "N502", "N503", "N504"}) EXPECT_EQ(met.count(id), 0u) << id;
+    }
 }
 
 TEST(Check, RequirementsAreWhatTheySay) {

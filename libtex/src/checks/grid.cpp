@@ -8,8 +8,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "base/math.h"
-
 namespace tex {
 namespace {
 
@@ -96,55 +94,6 @@ double share_at(const Stored& stored, int offset) {
     return all > 0.0 ? few / all : 0.0;
 }
 
-// Row u of the cosine transform of 8 samples (ITU-T T.81, A.3.3).
-struct CosineBasis {
-    float row[8][8];
-    CosineBasis() {
-        for (int u = 0; u < 8; ++u) {
-            const double scale = u == 0 ? std::sqrt(0.125) : 0.5;
-            for (int x = 0; x < 8; ++x) row[u][x] = static_cast<float>(scale * math::cos((2 * x + 1) * u * math::kPi / 16.0));
-        }
-    }
-};
-
-// The energy of luma, in squared codes, above the diagonal of the transform of the 8x8 texels at (x, y).
-double block_energy(const Image& image, const CosineBasis& basis, int x, int y) {
-    float luma[8][8], half[8][8] = {};
-    for (int j = 0; j < 8; ++j) {
-        const float *r = image.planes[0].row(y + j) + x, *g = image.planes[1].row(y + j) + x, *b = image.planes[2].row(y + j) + x;
-        for (int i = 0; i < 8; ++i) luma[j][i] = 255.0f * (0.299f * r[i] + 0.587f * g[i] + 0.114f * b[i]);
-    }
-    for (int u = 0; u < 8; ++u) {
-        for (int j = 0; j < 8; ++j) {
-            for (int i = 0; i < 8; ++i) half[j][u] += luma[j][i] * basis.row[u][i];
-        }
-    }
-    double energy = 0.0;
-    for (int u = 1; u < 8; ++u) {
-        for (int v = 8 - u; v < 8; ++v) {
-            float value = 0.0f;
-            for (int j = 0; j < 8; ++j) value += half[j][u] * basis.row[v][j];
-            energy += static_cast<double>(value) * value;
-        }
-    }
-    return energy;
-}
-
-// The median over every other block, in the pattern of a chess board.
-double high_energy(const Stored& stored, int offset) {
-    const CosineBasis basis;
-    std::vector<double> energies;
-    for (const Rect& window : sample_windows(stored.extent())) {
-        for (int y = offset; y + 8 <= window.height; y += 8) {
-            for (int x = offset + (y / 8 % 2) * 8; x + 8 <= window.width; x += 16) {
-                const double energy = block_energy(*stored.image, basis, window.x + x, window.y + y);
-                if (energy < 1e9) energies.push_back(energy);  // not NaN
-            }
-        }
-    }
-    return median(energies);
-}
-
 }  // namespace
 
 double grid_ratio(const Stored& stored, int block) {
@@ -155,12 +104,6 @@ double grid_ratio(const Stored& stored, int block) {
         most = std::max(most, std::min(axis_ratio(plane, windows, block, true), axis_ratio(plane, windows, block, false)));
     }
     return most;
-}
-
-double missing_frequencies(const Stored& stored) {
-    if (stored.image->planes.size() < 3) return 1.0;
-    const double aligned = high_energy(stored, 0), offset = high_energy(stored, 4);
-    return (offset + 1.0) / (aligned + 1.0);
 }
 
 double palette_share(const Stored& stored) { return share_at(stored, 0) - share_at(stored, 2); }

@@ -13,11 +13,6 @@ namespace tex {
 // directions, of channel x or y, whichever shows more.
 double grid_ratio(const Stored& stored, int block);
 
-// How many times more energy luma has in the high frequencies of 8x8 blocks at an offset of (4, 4) than of aligned ones, medians of both. JPEG removes
-// them from aligned blocks alone: about 1 where no JPEG was, 10 and more after one of moderate quality. (1 is added to both, in squared codes of 8 bits,
-// so that soft maps give 1.) 1 for fewer than three channels.
-double missing_frequencies(const Stored& stored);
-
 // The share of aligned 4x4 blocks (of those that are not of one colour) whose texels have at most four different colours, as BC1 to BC3 leave
 // them, less the same share at an offset of (2, 2).
 double palette_share(const Stored& stored);

@@ -166,6 +166,7 @@ LevelMeasure measure_of(const Sums& sums) {
     const double ss = sums.ss - (sums.s[0] * sums.s[0] + sums.s[1] * sums.s[1]) / n;
     const double rs = sums.rs - (sums.r[0] * sums.s[0] + sums.r[1] * sums.s[1]) / n;
     measure.signal = std::sqrt(std::max(0.0, rr) / n);
+    measure.stored_signal = std::sqrt(std::max(0.0, ss) / n);
     measure.correlation = rr > 0.0 && ss > 0.0 ? rs / std::sqrt(rr * ss) : 0.0;
     measure.gain = sums.rr > 0.0 ? sums.rs / sums.rr : 1.0;
     measure.length = sums.length / n;

@@ -25,6 +25,7 @@ struct LevelMeasure {
     int level = 0;
     Extent extent;
     double signal = 0.0;          // root mean square of r about its mean: what there is to compare, in components
+    double stored_signal = 0.0;   // the same of s: about 0 where a level faded to flat
     double correlation = 0.0;     // of s with r, each about its mean
     double gain = 1.0;            // the g that minimises |s - g r|: below 1 where detail fades
     double shift_x = 0.0;         // how far s lies to the right of r, in texels of this level (Lucas, Kanade 1981)

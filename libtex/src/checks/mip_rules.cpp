@@ -10,18 +10,17 @@
 #include <tex/unpack.h>
 
 #include "checks/levels.h"
+#include "checks/thresholds.h"
 
 namespace tex {
 namespace {
 
 constexpr int kLeastSide = 16;         // of a level that is judged: smaller ones have too few texels
 constexpr double kLeastSignal = 0.02;   // of components, 2.5 codes of 8 bits
-constexpr double kShortBy = 0.01;       // mean length below the base level's
-constexpr double kRelated = 0.7;
-constexpr double kShift = 0.35;         // texels of the level
-constexpr double kShiftRelated = 0.5;   // less is no evidence of a shift
+constexpr double kLeastDue = 0.01;      // where z is not stored: what renormalising must change to be seen
 constexpr double kFaded = 0.7;
 constexpr double kFadeRelated = 0.95;
+constexpr double kFadeShort = 0.01;     // fading is no averaging: the vectors stay of unit length
 constexpr double kFlatGain = 0.15;
 
 Region whole(const LevelMeasure& m) { return {m.level, 0, 0, m.extent.width, m.extent.height}; }
@@ -33,8 +32,10 @@ std::string name_level(const LevelMeasure& m) {
 // Mean length falls, as that of averages does; or, where z is not stored, x and y are those of the averages and not of unit vectors.
 bool is_not_normalised(const LevelMeasure& m, double base_length, bool has_z) {
     const double due = base_length - m.average_length;
-    if (has_z) return base_length - m.length > kShortBy && base_length - m.length > 0.5 * due;
-    return due > kShortBy && m.error_normalised > kShortBy && m.error_average < 0.5 * m.error_normalised;
+    // A base level of vectors longer than 1 does not make renormalised ones short.
+    const double short_by = std::min(base_length, 1.0) - m.length;
+    if (has_z) return short_by > thresholds::kLevelShort && short_by > 0.5 * due;
+    return due > kLeastDue && m.error_normalised > kLeastDue && m.error_average < 0.5 * m.error_normalised;
 }
 
 void check_lengths(const std::vector<LevelMeasure>& levels, double base_length, bool has_z, Findings& findings) {
@@ -59,14 +60,14 @@ void check_lengths(const std::vector<LevelMeasure>& levels, double base_length, 
 void check_relations(const std::vector<LevelMeasure>& levels, Findings& findings) {
     for (const LevelMeasure& m : levels) {
         const double shift = std::max(std::abs(m.shift_x), std::abs(m.shift_y));
-        if (m.correlation > kShiftRelated && shift > kShift && shift < 2.0) {
+        if (m.correlation > thresholds::kLevelRelated && shift > thresholds::kLevelShift && shift < 2.0) {
             Finding& finding = findings.add("N503", name_level(m) + " lies " + decimal(m.shift_x, 2) + " texels to the right of and " +
                                                         decimal(m.shift_y, 2) + " below its place");
             finding.figure = shift;
             finding.unit = "texels";
             finding.confidence = 0.95;
             finding.regions = {whole(m)};
-        } else if (m.correlation < kRelated) {
+        } else if (m.correlation < thresholds::kLevelRelated && m.stored_signal > kLeastSignal) {  // else flat: it faded
             Finding& finding = findings.add("N502", name_level(m) + " correlates by " + decimal(m.correlation, 2) +
                                                         " with the filtered base level");
             finding.figure = m.correlation;
@@ -80,7 +81,7 @@ void check_relations(const std::vector<LevelMeasure>& levels, Findings& findings
 // Levels that are the base level's with less and less detail, but whose last one still has some.
 void check_fade(const std::vector<LevelMeasure>& levels, Findings& findings) {
     const auto fades = [](const LevelMeasure& m) {
-        return m.correlation > kFadeRelated && m.gain < kFaded && m.length > 1.0 - kShortBy;
+        return m.correlation > kFadeRelated && m.gain < kFaded && m.length > 1.0 - kFadeShort;
     };
     if (levels.empty() || std::none_of(levels.begin(), levels.end(), fades)) return;
     const LevelMeasure& last = levels.back();

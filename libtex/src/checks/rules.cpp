@@ -106,8 +106,8 @@ constexpr Rule kRules[] = {
      "",
      "N201 N202 N205 N207 N212 N213 N301 N305 N308 N401 N402 N403 N404 N501 N502 N504"},
     {"N304", "jpeg-blocks", damage, warning, true, "The map shows the 8x8 blocks of lossy JPEG.",
-     "Steps stand out at every eighth column and row, or high frequencies are missing from the blocks. Chroma "
-     "subsampling halves the resolution of x; go back to a lossless source.",
+     "The cosine transform of aligned blocks is quantised as JPEG of about quality 65 or less does it, or steps stand out at every "
+     "eighth column and row. Chroma subsampling halves the resolution of x; go back to a lossless source.",
      "", "N201 N202"},
     {"N305", "banding", damage, warning, true, "The slopes lie on a lattice.",
      "The map was baked from heights of 8 bits: slopes take few values, which shows as terraces in reflections. Bake from 16 bits, "
@@ -141,7 +141,7 @@ constexpr Rule kRules[] = {
      "Averages of vectors are shorter than 1: without renormalising, distant surfaces turn dull and dark.",
      "mip-normals FILE -o FIXED.dds", ""},
     {"N502", "level-unrelated", mips, error, true, "A level does not follow from the base level.",
-     "It correlates by less than 0.7 with the filtered base level: another image, a level sampled instead of filtered, or one "
+     "It correlates by less than 0.44 with the filtered base level: another image, a level sampled instead of filtered, or one "
      "that was shifted by more than a texel.",
      "mip-normals FILE -o FIXED.dds", "N501 N504"},
     {"N503", "level-shifted", mips, warning, true, "A level is shifted against the base level.",
@@ -158,7 +158,8 @@ constexpr Rule kRules[] = {
      "another map.",
      "bake-normals HEIGHT -o FIXED.dds", "N602"},
     {"N602", "height-inverted", pair, warning, true, "White is low in the height map.",
-     "The normals follow from it with the opposite sign. Parallax shaders want one of both.", "bake-normals HEIGHT --invert -o FIXED.dds",
+     "The normals follow from it with the opposite sign. Where they are right it is a depth map, and shaders want to be told; else bake "
+     "them again.", "bake-normals HEIGHT -o FIXED.dds",
      ""},
 };
 

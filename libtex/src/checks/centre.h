@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// centre.h: what most texels hold: 1/2 in a map of a flat surface, unless it went through the sRGB curve.
+
+#pragma once
+
+#include "checks/stored.h"
+
+namespace tex {
+
+// Medians of the stored x and y over the sampled texels in which one of them is not black: what fills the space outside of UV islands does not count. Half,
+// where all are black. Precondition: x and y are stored.
+struct Centre {
+    double x = 0.5, y = 0.5;
+    // The larger distance of both from `value`.
+    [[nodiscard]] double distance(double value) const;
+};
+Centre measure_centre(const Stored& stored);
+
+// IEC 61966-2-1:1999.
+double srgb_encoded(double c);
+double srgb_decoded(double c);
+
+}  // namespace tex

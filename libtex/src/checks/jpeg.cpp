@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "checks/jpeg.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "base/math.h"
+
+namespace tex {
+namespace {
+
+// Coefficients (u, v) with 1 <= u + v <= 4: higher ones are mostly 0 after quantisation.
+constexpr int kHighest = 4;
+constexpr int kSide = kHighest + 1;
+// The steps of those of luma at quality 50 (T.81, table K.1), [v][u].
+constexpr int kSteps[kSide][kSide] = {{16, 11, 10, 16, 24}, {12, 12, 14, 19, 26}, {14, 13, 16, 24, 40}, {14, 17, 22, 29, 51}, {18, 22, 37, 56, 68}};
+
+constexpr int kFinest = 4;     // finer steps drown in the rounding of R, G and B
+constexpr int kCoarsest = 60;
+constexpr int kBins = 16;       // of a histogram, in 1
+constexpr int kRange = 512;     // magnitudes above are rare
+constexpr int kBlocks = 8192;   // are enough
+constexpr double kLeastCount = 12.0;      // coefficients that are not rounded to 0
+constexpr std::size_t kLeastCoefficients = 3;
+constexpr double kAsStrong = 0.1;   // every multiple of 2q is one of q: the largest step among the strong ones
+constexpr double kStrong = 0.6;
+
+using Histogram = std::vector<double>;
+
+// Row u of the cosine transform of 8 samples (T.81, A.3.3).
+struct CosineBasis {
+    float row[kSide][8];
+    CosineBasis() {
+        for (int u = 0; u < kSide; ++u) {
+            const double scale = u == 0 ? std::sqrt(0.125) : 0.5;
+            for (int x = 0; x < 8; ++x) row[u][x] = static_cast<float>(scale * math::cos((2 * x + 1) * u * math::kPi / 16.0));
+        }
+    }
+};
+
+// Adds the coefficients of the block at (x, y), in codes of 8 bits, to their histograms [v][u].
+void add_block(const Image& image, const CosineBasis& basis, int x, int y, std::array<Histogram, kSide * kSide>& histograms) {
+    float half[8][kSide] = {};
+    for (int j = 0; j < 8; ++j) {
+        const float *r = image.planes[0].row(y + j) + x, *g = image.planes[1].row(y + j) + x, *b = image.planes[2].row(y + j) + x;
+        for (int i = 0; i < 8; ++i) {
+            const float luma = 255.0f * (0.299f * r[i] + 0.587f * g[i] + 0.114f * b[i]);
+            for (int u = 0; u < kSide; ++u) half[j][u] += luma * basis.row[u][i];
+        }
+    }
+    for (int v = 0; v < kSide; ++v) {
+        for (int u = 0; u < kSide; ++u) {
+            if (u + v == 0 || u + v > kHighest) continue;
+            float value = 0.0f;
+            for (int j = 0; j < 8; ++j) value += half[j][u] * basis.row[v][j];
+            const float magnitude = std::abs(value) * static_cast<float>(kBins) + 0.5f;
+            if (!(magnitude < static_cast<float>(kRange * kBins))) continue;  // NaN too
+            histograms[static_cast<std::size_t>(v * kSide + u)][static_cast<std::size_t>(magnitude)] += 1.0;
+        }
+    }
+}
+
+// The mean of cos(2 pi c / step) over the coefficients c of at least half a step: 1 where all are multiples. -1 for too few.
+double strength_at(const Histogram& histogram, int step) {
+    const auto period = static_cast<std::size_t>(step * kBins);
+    std::vector<double> wave(period);
+    for (std::size_t k = 0; k < period; ++k) wave[k] = math::cos(2.0 * math::kPi * static_cast<double>(k) / static_cast<double>(period));
+    double sum = 0.0, count = 0.0;
+    for (std::size_t k = period / 2; k < histogram.size(); ++k) {
+        sum += histogram[k] * wave[k % period];
+        count += histogram[k];
+    }
+    return count < kLeastCount ? -1.0 : sum / count;
+}
+
+struct Step {
+    double strength = -1.0;
+    int step = 0;
+};
+
+Step step_of(const Histogram& histogram) {
+    std::array<double, kCoarsest + 1> strengths{};
+    double most = -1.0;
+    for (int step = kFinest; step <= kCoarsest; ++step) {
+        strengths[static_cast<std::size_t>(step)] = strength_at(histogram, step);
+        most = std::max(most, strengths[static_cast<std::size_t>(step)]);
+    }
+    for (int step = kCoarsest; step >= kFinest && most > 0.0; --step) {
+        const double strength = strengths[static_cast<std::size_t>(step)];
+        if (strength >= most - kAsStrong && strength > 0.0) return {strength, step};
+    }
+    return {};
+}
+
+double median(std::vector<double>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+}  // namespace
+
+JpegTrace measure_jpeg(const Stored& stored) {
+    if (stored.image->planes.size() < 3 || stored.is_signed) return {};
+    const std::vector<Rect> windows = sample_windows(stored.extent());
+    std::int64_t blocks = 0;
+    for (const Rect& window : windows) blocks += std::int64_t{window.width / 8} * (window.height / 8);
+    const auto stride = static_cast<int>(std::max<std::int64_t>(1, blocks / kBlocks));
+    std::array<Histogram, kSide * kSide> histograms;
+    histograms.fill(Histogram(static_cast<std::size_t>(kRange * kBins)));
+    const CosineBasis basis;
+    for (const Rect& window : windows) {
+        for (int y = 0; y + 8 <= window.height; y += 8) {
+            for (int x = y / 8 % stride * 8; x + 8 <= window.width; x += 8 * stride) {
+                add_block(*stored.image, basis, window.x + x, window.y + y, histograms);
+            }
+        }
+    }
+    std::vector<double> strengths, scales;
+    for (int v = 0; v < kSide; ++v) {
+        for (int u = 0; u < kSide; ++u) {
+            const Step step = step_of(histograms[static_cast<std::size_t>(v * kSide + u)]);
+            if (step.step == 0) continue;
+            strengths.push_back(step.strength);
+            if (step.strength > kStrong) scales.push_back(static_cast<double>(step.step) / kSteps[v][u]);
+        }
+    }
+    if (strengths.size() < kLeastCoefficients || scales.empty()) return {};
+    return {median(strengths), median(scales)};
+}
+
+}  // namespace tex
