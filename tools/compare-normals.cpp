@@ -133,16 +133,9 @@ Result<void> CompareNormals::write_heat_map(const Comparison& comparison) const 
     const double scale = heat_map_scale.value_or(std::clamp(comparison.error.max, 0.01, 180.0));
     const auto image = heat_map(comparison.degrees, scale);
     if (!image) return image.error();
-    Texture texture;
-    texture.format = Format::rgb8_unorm;
-    Level picture{image->extent(), {}};
-    for (int j = 0; j < picture.extent.height; ++j) {
-        for (int i = 0; i < picture.extent.width; ++i) {
-            for (const auto& plane : image->planes) picture.bytes.push_back(static_cast<std::byte>(std::floor(plane.at(i, j) * 255.0f + 0.5f)));
-        }
-    }
-    texture.levels.push_back(std::move(picture));
-    return write_texture(heat_map_path, texture);
+    const auto picture = picture_of(*image);
+    if (!picture) return picture.error();
+    return write_texture(heat_map_path, *picture);
 }
 
 Result<cli::HtmlMap> CompareNormals::draw_map(const std::string& path, std::optional<YAxis> y) const {
@@ -177,6 +170,9 @@ Result<cli::ExitCode> CompareNormals::compare_files() {
     if (!b) return b.error();
     const std::size_t first = all_levels ? 0 : static_cast<std::size_t>(level);
     const std::size_t end = all_levels ? std::min(a->size(), b->size()) : first + 1;
+    if (all_levels && a->size() != b->size()) {
+        cli::print_warning(fmt::format("levels: {} of {}, {} of {}; only those that both have are compared", a->size(), name_a, b->size(), name_b));
+    }
     cli::ExitCode code = cli::ExitCode::done;
     std::vector<cli::ComparedLevel> levels;  // of the page
     Plane<float> degrees;

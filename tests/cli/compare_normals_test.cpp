@@ -53,6 +53,10 @@ TEST_F(CompareNormals, EveryLevelHasALine) {
         EXPECT_EQ(line["extent"][0], 128 >> k);
         EXPECT_EQ(line["degrees"]["max"], 0.0);
     }
+    const Ran fewer = compare({"up.exr", "waves.dds", "--level", "all"});
+    EXPECT_EQ(fewer.code, 0);
+    EXPECT_EQ(lines_of(fewer.out).size(), 2u) << "a heading and a level";
+    EXPECT_NE(fewer.err.find("levels: 1 of up.exr, 8 of waves.dds"), std::string::npos) << fewer.err;
     EXPECT_EQ(compare({"waves.dds", "waves.dds", "--level", "3"}).code, 0);
     const Ran missing = compare({"waves.dds", "waves.dds", "--level", "8"});
     EXPECT_EQ(missing.code, 4);

@@ -41,13 +41,24 @@ TEST(HeatMap, NarrowMapsHaveRoomForTheLegend) {
     EXPECT_EQ(image->extent(), (Extent{kHeatMapLeastWidth, 1 + kHeatMapLegendRows}));
 }
 
-// The label "0" at the left: a box of dots two texels wide.
+// Under the map as under preview()'s false colours: a bar of the scale's colours, and its ends in letters.
 TEST(HeatMap, LegendNamesItsEnds) {
     const auto image = heat_map(Plane<float>(Extent{160, 4}, 0.0f), 7.5);
     ASSERT_TRUE(image);
-    const auto white = [&](int i, int j) { return image->planes[1].at(i, 4 + 14 + j) == 1.0f; };
-    EXPECT_TRUE(white(0, 0) && white(5, 0) && white(0, 9) && white(5, 9));
-    EXPECT_FALSE(white(2, 4) || white(6, 0));
+    const int bar = 4 + 10;  // a row of it
+    EXPECT_LT(image->planes[0].at(8, bar), 0.01f);
+    EXPECT_GT(image->planes[0].at(151, bar), 0.98f);
+    const auto ink = [&](int from, int to) {
+        int count = 0;
+        for (int j = 4 + 21; j < 4 + 30; ++j) {
+            for (int i = from; i < to; ++i) count += image->planes[0].at(i, j) > 0.8f ? 1 : 0;
+        }
+        return count;
+    };
+    EXPECT_GT(ink(8, 13), 10) << "0";
+    EXPECT_EQ(ink(14, 50), 0);
+    EXPECT_GT(ink(60, 100), 30) << "degrees";
+    EXPECT_GT(ink(130, 152), 20) << "7.5";
 }
 
 TEST(LargestOfCells, LosesNoAngle) {

@@ -10,13 +10,13 @@
 namespace [[gnu::visibility("default")]] tex {
 
 // Rows of the legend under the picture, and the width that it needs.
-inline constexpr int kHeatMapLegendRows = 28;
+inline constexpr int kHeatMapLegendRows = 36;
 inline constexpr int kHeatMapLeastWidth = 128;
 
 // A picture of angles in degrees, one for each texel: planes R, G, B in [0, 1]. Black is 0, pale yellow is `full_scale` degrees and
 // more. (The colours of matplotlib's "inferno", Smith and van der Walt 2015, in ten linear pieces: its lightness grows evenly, so that it also reads in
 // grey and by people who do not see red and green apart.) Under the map stands a legend of kHeatMapLegendRows rows: the colours from 0 on the left to
-// full_scale on the right, with the values at 0, half and full. Maps narrower than kHeatMapLeastWidth have black beside them.
+// full_scale on the right, with the values at both ends. Maps narrower than kHeatMapLeastWidth have black beside them.
 //
 // Preconditions (asserted): `degrees` is not empty and has no NaN; 0 < full_scale <= 180.
 // Errors: out_of_memory, cancelled.

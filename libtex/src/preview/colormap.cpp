@@ -43,6 +43,19 @@ Vec3 diverging(double t) {
     return kStops[k] + (kStops[k + 1] - kStops[k]) * (place - k);
 }
 
+Vec3 inferno(double t) {
+    constexpr std::uint32_t kStops[] = {0x000004, 0x1b0c42, 0x4b0c6b, 0x781c6d, 0xa52c60, 0xcf4446, 0xed6925, 0xfb9a06, 0xf7d03c, 0xfcffa4};
+    constexpr int kPieces = 9;
+    const auto stop = [&](int k) {
+        const auto channel = [&](int shift) { return static_cast<double>(kStops[k] >> shift & 0xff) / 255.0; };
+        return Vec3{channel(16), channel(8), channel(0)};
+    };
+    if (t != t) return kMagenta;
+    const double place = unit(t) * kPieces;
+    const int k = std::min(static_cast<int>(place), kPieces - 1);
+    return stop(k) + (stop(k + 1) - stop(k)) * (place - k);
+}
+
 std::uint8_t display_code(double value) {
     return static_cast<std::uint8_t>(unit(value) * 255.0 + 0.5);
 }

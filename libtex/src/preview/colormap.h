@@ -24,7 +24,10 @@ struct Code {
 // people who confuse red and green.
 [[nodiscard]] Vec3 diverging(double t);
 
-// Both clamp t to their range and show NaN in magenta.
+// Inferno (Smith and van der Walt 2015; CC0), 0 to 1, in ten linear pieces.
+[[nodiscard]] Vec3 inferno(double t);
+
+// All clamp t to their range and show NaN in magenta.
 
 // The code of a display value.
 [[nodiscard]] std::uint8_t display_code(double value);

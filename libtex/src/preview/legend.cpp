@@ -13,7 +13,6 @@ namespace tex::render {
 namespace {
 
 // In pixels, times text_scale().
-constexpr int kHeight = 36;
 constexpr int kMargin = 8;
 constexpr int kBarTop = 6;
 constexpr int kBarHeight = 10;
@@ -35,6 +34,8 @@ Vec3 ColorScale::color(double value) const {
             return diverging(2.0 * t - 1.0);
         case Palette::grey:
             return Vec3{1.0, 1.0, 1.0} * t;
+        case Palette::inferno:
+            return inferno(t);
     }
     return {};
 }
@@ -45,27 +46,33 @@ std::string number(double value) {
     return {text, end.ptr};
 }
 
-Texture with_legend(Texture picture, const ColorScale& scale) {
-    const Level& level = picture.levels.front();
-    const int width = level.extent.width, top = level.extent.height, unit = text_scale(width);
-    Canvas canvas({width, top + kHeight * unit});
-    canvas.draw(0, 0, level);
-
+Level legend(int width, int unit, const ColorScale& scale) {
+    Canvas canvas(Extent{width, kLegendRows * unit});
     const int bar = std::max(1, width - 2 * kMargin * unit);
     for (int i = 0; i < bar; ++i) {
         const Vec3 color =
             scale.color(scale.least + (scale.greatest - scale.least) *
                                           (bar > 1 ? static_cast<double>(i) / (bar - 1) : 0.0));
-        canvas.fill((width - bar) / 2 + i, top + kBarTop * unit, {1, kBarHeight * unit},
+        canvas.fill((width - bar) / 2 + i, kBarTop * unit, {1, kBarHeight * unit},
                     {display_code(color.x), display_code(color.y), display_code(color.z)});
     }
     const std::string left = number(scale.least), right = number(scale.greatest);
-    const int y = top + kTextTop * unit;
+    const int y = kTextTop * unit;
     canvas.text(kMargin * unit, y, unit, left);
     canvas.text(width - kMargin * unit - text_width(right, unit), y, unit, right);
     const int side = std::max(text_width(left, unit), text_width(right, unit)) + 2 * kMargin * unit;
     const std::string title = fitted(scale.title, unit, width - 2 * side);
     canvas.text((width - text_width(title, unit)) / 2, y, unit, title);
+    return std::move(std::move(canvas).take().levels.front());
+}
+
+Texture with_legend(Texture picture, const ColorScale& scale) {
+    const Level& level = picture.levels.front();
+    const int width = level.extent.width, top = level.extent.height;
+    const Level below = legend(width, text_scale(width), scale);
+    Canvas canvas({width, top + below.extent.height});
+    canvas.draw(0, 0, level);
+    canvas.draw(0, top, below);
     return std::move(canvas).take();
 }
 

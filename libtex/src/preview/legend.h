@@ -11,8 +11,8 @@
 
 namespace tex::render {
 
-// Values from `least` to `greatest`, in viridis, in the diverging colours (then least = -greatest), or in grey.
-enum class Palette { viridis, diverging, grey };
+// Values from `least` to `greatest`, in viridis, in the diverging colours (then least = -greatest), in grey, or in inferno.
+enum class Palette { viridis, diverging, grey, inferno };
 struct ColorScale {
     std::string title;
     double least = 0.0, greatest = 1.0;
@@ -25,7 +25,11 @@ struct ColorScale {
 // Three significant digits, the shortest form, the same in every locale.
 [[nodiscard]] std::string number(double value);
 
-// The picture with a legend below: a bar of the colours, the values at its ends, the title between them.
+// A bar of the colours, the values at its ends, the title between them: a picture of `width` pixels and kLegendRows times `unit` rows.
+inline constexpr int kLegendRows = 36;
+[[nodiscard]] Level legend(int width, int unit, const ColorScale& scale);
+
+// The picture with its legend below.
 [[nodiscard]] Texture with_legend(Texture picture, const ColorScale& scale);
 
 }  // namespace tex::render
