@@ -134,9 +134,12 @@ Result<void> CheckNormals::prepare(const std::vector<cli::Task>& tasks) {
         for (const std::string& text : required_texts) (void)add_requirement(merged.require, text);
         const auto append = [](auto& list_of, const auto& more) { list_of.insert(list_of.end(), more.begin(), more.end()); };
         append(merged.enable, options.enable);
-        append(merged.disable, options.disable);
         append(merged.severity, options.severity);
-        for (const std::string& name : options.enable) std::erase(merged.disable, name);
+        // A rule may be called by its id in one place and by its name in the other.
+        for (const std::string& name : options.enable) {
+            std::erase_if(merged.disable, [&](const std::string& other) { return find_rule(other) == find_rule(name); });
+        }
+        append(merged.disable, options.disable);
         options = std::move(merged);
         if (read->fail_on && !command.given("--fail-on")) fail_on = *read->fail_on;
     }
@@ -178,6 +181,14 @@ Result<void> CheckNormals::add_to_page(cli::Job& job, const CheckReport& report)
     return {};
 }
 
+// What was fitted to the height map, whether or not that is a finding.
+std::string pair_text(const CheckReport& report) {
+    if (!report.pair) return {};
+    const PairEvidence& pair = *report.pair;
+    return fmt::format("{}: fits the height map with correlation {:.2f}, strength {:.2f}, y {}, offset {}, {}\n", cli::printable(report.file), pair.correlation,
+                       pair.strength, name_of(kYAxisNames, pair.y), pair.offset_x, pair.offset_y);
+}
+
 Result<void> CheckNormals::process(cli::Job& job) {
     auto report = check_file(job.task.input, options, job.read_options, job.until(page_path.empty() ? 1.0 : 0.5));
     if (!report) return report.error();
@@ -190,7 +201,7 @@ Result<void> CheckNormals::process(cli::Job& job) {
     const bool fails = std::any_of(report->findings.begin(), report->findings.end(),
                                    [&](const Finding& finding) { return finding.severity >= fail_on; });
     if (fails && baseline_written.empty()) job.raise(cli::ExitCode::findings);
-    job.say(cli::findings_text(*report, options.require));
+    job.say(cli::findings_text(*report, options.require) + pair_text(*report));
     job.report = cli::findings_json(*report, options.require);
     if (known > 0) job.report["known"] = known;
     if (!page_path.empty()) {
