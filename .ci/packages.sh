@@ -11,7 +11,7 @@ build_packages=(
 # shellcheck disable=SC2034
 test_packages=(
     libgtest-dev libgmock-dev libsquish-dev libosmesa6-dev libgl-dev
-    imagemagick openimageio-tools mandoc shellcheck dpkg-dev file git strace zsh fish
+    imagemagick openimageio-tools python3-jsonschema libxml2-utils mandoc shellcheck dpkg-dev file git strace zsh fish
 )
 # shellcheck disable=SC2034
 gate_packages=(clang-14 ccache libbenchmark-dev chromium)  # the browser takes 300 MB: elsewhere its tests say that they skipped

@@ -14,6 +14,7 @@
 
 #include <fcntl.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -112,8 +113,12 @@ Ran run(const Scratch& scratch, const std::string& program, const std::vector<st
         kill(child, setting.signal);
     }
     int status = 0;
-    waitpid(child, &status, 0);
+    rusage usage{};
+    wait4(child, &status, 0, &usage);
     Ran ran;
+    ran.peak_bytes = std::int64_t{usage.ru_maxrss} * 1024;
+    const auto seconds = [](const timeval& time) { return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) * 1e-6; };
+    ran.cpu_seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
     ran.code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
     if (setting.stdout_path.empty()) ran.out = streams.read("out");
     ran.err = streams.read("err");

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -34,6 +35,8 @@ struct Ran {
     int code = -1;  // as a shell sees it: 128 + n after signal n
     std::string out;
     std::string err;
+    std::int64_t peak_bytes = 0;  // resident, of the larger one of the program and what it started and waited for
+    double cpu_seconds = 0.0;     // of all of them, user and system
 };
 
 struct Setting {
