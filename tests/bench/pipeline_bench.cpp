@@ -46,7 +46,7 @@ struct Bench {
     void row(const std::string& work, const Command& command, const Command& baseline, double target, double scale = 1.0) const {
         std::vector<Measured> ours, theirs;
         std::vector<double> ratios;
-        bench::run(command);  // caches
+        bench::run(command);  // caches, and outputs to replace
         for (int k = 0; k < runs; ++k) {
             theirs.push_back(bench::run(baseline));
             ours.push_back(bench::run(command));

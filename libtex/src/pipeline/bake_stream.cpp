@@ -94,7 +94,7 @@ class BakeStream {
 public:
     BakeStream(RowSource& rows, const std::string& input, const HeightSource& source, StripWriter& writer, const BakeFileOptions& options,
                int levels, const Execution& execution, const StreamSizes& sizes)
-        : rows_(rows), input_(input), writer_(writer), options_(options), execution_(execution), sizes_(sizes), strips_(rows.extent(), levels, sizes.strip_texels),
+        : rows_(rows), input_(input), writer_(writer), options_(options), execution_(execution), sizes_(sizes), strips_(rows.extent(), levels, alone() ? std::min(sizes.strip_texels, sizes.strip_texels_alone) : sizes.strip_texels),
           heights_(rows.extent(), source, options.heights, gradient_of(options.bake), slopes_of(rows.extent(), options),
                    {[this](int j) { return place(j); }, [this](int j) { finish(j); }}),
           levels_(rows.extent(), levels, heights_.start(), options.mip, strips_), batch_rows_(batch_rows(rows, strips_)) {}
@@ -102,7 +102,7 @@ public:
     Result<void> run() {
         const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
         int threads = std::min(thread_count(execution_), static_cast<int>(allowed));
-        if (rows_.extent().texels() < sizes_.worth_threads) threads = 1;
+        if (alone()) threads = 1;
         convey<Batch>(threads, threads + 2, [this] { return read(); }, [this](Batch* batch) { store(*batch); },
                       [this](Batch* batch) { make(*batch); }, [this](Batch* batch) { write(*batch); });
         if (failure_.error()) return *failure_.error();
@@ -120,6 +120,8 @@ private:
         const Strength strength = options.strength ? options.strength(extent) : Strength();
         return {strength.x, strength.y, options.heights.wrap_x, options.heights.wrap_y};
     }
+
+    [[nodiscard]] bool alone() const { return rows_.extent().texels() < sizes_.worth_threads; }
 
     // Those of a strip, and whole groups of what the file holds together.
     static int batch_rows(const RowSource& rows, const Strips& strips) {
