@@ -176,17 +176,19 @@ TEST_F(Pipeline, StreamsGiveTheBytesOfTheVerbs) {
 
 TEST_F(Pipeline, LargePicturesGoThroughManyStripsOnManyThreads) {
     options_.strength = [](Extent) { return Strength{5.0f, 5.0f}; };
-    for (const Extent extent : {Extent{2048, 201}, Extent{5000, 64}, Extent{131, 3000}}) {
+    struct Case {
+        Extent extent;
+        Wrap wrap;
+    };
+    for (const auto& [extent, wrap] : {Case{{2048, 70}, Wrap::repeat}, Case{{131, 1100}, Wrap::clamp}}) {
         const std::string input = write("in.png", make_png(extent));
-        for (const Wrap wrap : {Wrap::repeat, Wrap::clamp}) {
-            options_.heights.wrap_x = options_.heights.wrap_y = options_.mip.wrap_x = options_.mip.wrap_y = wrap;
-            const std::string expected = by_verbs(input, Container::dds);
-            for (const int threads : {1, 2, 5}) {
-                const auto report = bake_file(input, path("out.dds"), Container::dds, options_, {threads, {}});
-                ASSERT_TRUE(report) << report.error().message();
-                EXPECT_EQ(report->path, Path::streamed);
-                EXPECT_TRUE(content("out.dds") == expected) << extent.width << " " << threads;
-            }
+        options_.heights.wrap_x = options_.heights.wrap_y = options_.mip.wrap_x = options_.mip.wrap_y = wrap;
+        const std::string expected = by_verbs(input, Container::dds);
+        for (const int threads : {1, 2, 5}) {
+            const auto report = bake_file(input, path("out.dds"), Container::dds, options_, {threads, {}});
+            ASSERT_TRUE(report) << report.error().message();
+            EXPECT_EQ(report->path, Path::streamed);
+            EXPECT_TRUE(content("out.dds") == expected) << extent.width << " " << threads;
         }
     }
 }

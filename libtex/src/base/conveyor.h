@@ -1,66 +1,137 @@
 // SPDX-License-Identifier: Apache-2.0
-// conveyor.h: items that go through four stations, each beside the others, on TBB's threads.
-//
-// fork_join.h says why the thread sanitizer has to be told what happens before what.
+// conveyor.h: items that go through four stations, each beside the others.
 
 #pragma once
 
-#include <tbb/parallel_pipeline.h>
-#include <tbb/task_arena.h>
+#include <condition_variable>
+#include <cstddef>
+#include <mutex>
+#include <vector>
 
 #include "base/fork_join.h"
 
 namespace tex {
 
-// Calls, for one item after the other until first() returns null,
+// Takes items, one after the other until first() returns null, through
 //
 //     Item* first()          one at a time
 //     second(item)           several at once
 //     third(item)            one at a time, in the order of first()
 //     fourth(item)           several at once
 //
-// At most `items` items are on their way. No function may throw. Uses up to `threads` threads.
+// A thread that is free does what stands nearest to the beginning of this list, so that first(), where the work comes in, never waits for a thread while another
+// station has one. At most `items` items are on their way. No function may throw. Uses up to `threads` threads.
 //
 // Preconditions: items >= 1; 1 <= threads <= what tbb::global_control allows. With one thread everything runs in the caller's.
 template <class Item, class First, class Second, class Third, class Fourth>
-void convey(int threads, int items, const First& first, const Second& second, const Third& third, const Fourth& fourth) {
-    if (threads <= 1) {
-        while (Item* item = first()) {
-            second(item);
-            third(item);
-            fourth(item);
+class Conveyor {
+public:
+    Conveyor(int threads, int items, const First& first, const Second& second, const Third& third, const Fourth& fourth)
+        : threads_(threads), first_(first), second_(second), third_(third), fourth_(fourth), places_(static_cast<std::size_t>(items)) {}
+
+    void run() {
+        if (threads_ > 1) {
+            fork_join(threads_, threads_, [this](int) { work(); });
+            return;
         }
-        return;
+        while (Item* item = first_()) {
+            second_(item);
+            third_(item);
+            fourth_(item);
+        }
     }
-    happens_before(fork_moment);
-    const auto station = [](const auto& work) {
-        return [&work](Item* item) {
-            happens_after(fork_moment);
-            happens_after(join_moment);
-            work(item);
-            happens_before(join_moment);
-            return item;
-        };
+
+private:
+    enum class At { nowhere, second, third, fourth, station };  // where an item waits, or that it is at a station
+
+    struct Place {
+        Item* item = nullptr;
+        At at = At::nowhere;
     };
-    const auto source = [&](tbb::flow_control& flow) {
-        happens_after(fork_moment);
-        happens_after(join_moment);
-        Item* item = first();
-        happens_before(join_moment);
-        if (item == nullptr) flow.stop();
-        return item;
-    };
-    constexpr auto kInOrder = tbb::filter_mode::serial_in_order;
-    constexpr auto kParallel = tbb::filter_mode::parallel;
-    const auto last = station(fourth);
-    tbb::task_arena(threads).execute([&] {
-        tbb::parallel_pipeline(static_cast<std::size_t>(items),
-                               tbb::make_filter<void, Item*>(kInOrder, source) &
-                                   tbb::make_filter<Item*, Item*>(kParallel, station(second)) &
-                                   tbb::make_filter<Item*, Item*>(kInOrder, station(third)) &
-                                   tbb::make_filter<Item*, void>(kParallel, [&](Item* item) { last(item); }));
-    });
-    happens_after(join_moment);
+
+    // Works until nothing is left, or waits where what is left depends on another thread.
+    void work() {
+        std::unique_lock lock(mutex_);
+        while (true) {
+            if (step(lock)) {
+                changed_.notify_all();
+            } else if (busy_ == 0) {
+                return;  // and so will the others find it
+            } else {
+                changed_.wait(lock);
+            }
+        }
+    }
+
+    // Does one thing at one station, unlocked meanwhile. False where there is none to do.
+    bool step(std::unique_lock<std::mutex>& lock) {
+        Place& next = place(begun_);
+        if (!first_busy_ && !ended_ && next.at == At::nowhere) {
+            first_busy_ = true;
+            next.item = unlocked(lock, [this] { return first_(); });
+            first_busy_ = false;
+            ended_ = next.item == nullptr;
+            if (ended_) return true;
+            next.at = At::second;
+            ++begun_;
+            return true;
+        }
+        for (std::size_t k = ordered_; k < begun_; ++k) {
+            if (place(k).at == At::second) return visit(lock, place(k), second_, At::third);
+        }
+        if (!third_busy_ && ordered_ < begun_ && place(ordered_).at == At::third) {
+            third_busy_ = true;
+            Place& here = place(ordered_++);
+            visit(lock, here, third_, At::fourth);
+            third_busy_ = false;
+            return true;
+        }
+        for (Place& here : places_) {
+            if (here.at == At::fourth) return visit(lock, here, fourth_, At::nowhere);
+        }
+        return false;
+    }
+
+    template <class Station>
+    bool visit(std::unique_lock<std::mutex>& lock, Place& here, const Station& station, At then) {
+        here.at = At::station;
+        unlocked(lock, [&] { return station(here.item), nullptr; });
+        here.at = then;
+        return true;
+    }
+
+    Place& place(std::size_t k) { return places_[k % places_.size()]; }
+
+    template <class Body>
+    auto unlocked(std::unique_lock<std::mutex>& lock, const Body& body) {
+        ++busy_;
+        lock.unlock();
+        auto result = body();
+        lock.lock();
+        --busy_;
+        return result;
+    }
+
+    const int threads_;
+    const First& first_;
+    const Second& second_;
+    const Third& third_;
+    const Fourth& fourth_;
+
+    std::mutex mutex_;  // of all below
+    std::condition_variable changed_;
+    std::vector<Place> places_;  // item k is at k modulo their number
+    std::size_t begun_ = 0;      // items that came out of first()
+    std::size_t ordered_ = 0;    // items that went into third()
+    int busy_ = 0;               // threads at a station
+    bool first_busy_ = false;
+    bool third_busy_ = false;
+    bool ended_ = false;
+};
+
+template <class Item, class First, class Second, class Third, class Fourth>
+void convey(int threads, int items, const First& first, const Second& second, const Third& third, const Fourth& fourth) {
+    Conveyor<Item, First, Second, Third, Fourth>(threads, items, first, second, third, fourth).run();
 }
 
 }  // namespace tex
