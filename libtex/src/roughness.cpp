@@ -18,6 +18,7 @@
 #include "base/border.h"
 #include "base/guard.h"
 #include "base/parallel.h"
+#include "base/sampler.h"
 #include "kernels/encode.h"
 #include "kernels/mip.h"
 #include "kernels/roughness.h"
@@ -38,36 +39,90 @@ AverageViews views_of(const Averages& averages) {
 
 int strip_rows(Extent extent) { return std::max(1, kPieceTexels / extent.width); }
 
-// A level and the next.
-struct Step {
-    const AverageViews& from;
-    Averages& to;
-    Plane<float>& roughness;  // of `to`
-    RoughnessModel model;
-    const MipOptions& options;
-    AxisFilter x, y;
+// From the planes of a level to those of the next.
+class LevelFilter {
+public:
+    LevelFilter(Extent from, const MipOptions& options)
+        : from_(from), options_(options), x_(make_axis_filter(options.filter, from.width)),
+          y_(make_axis_filter(options.filter, from.height)) {}
+
+    // Rows [begin, end) of `to`: down the columns, then across.
+    void run(PlaneView<const float> from, Plane<float>& to, int begin, int end) const {
+        RowFilter across(x_, options_.wrap_x, from_.width);
+        std::vector<const float*> rows(static_cast<std::size_t>(y_.taps));
+        std::vector<float> weights(static_cast<std::size_t>(y_.taps));
+        for (int j = begin; j < end; ++j) {
+            for (int k = 0; k < y_.taps; ++k) {
+                const int row = border_index(options_.wrap_y, 2 * j + y_.first + k, from_.height);
+                rows[static_cast<std::size_t>(k)] = from.row(row);
+                weights[static_cast<std::size_t>(k)] = y_.weight(k, j);
+            }
+            filter_rows(rows.data(), weights.data(), y_.taps, from_.width, across.row());
+            across.run(to.row(j));
+        }
+    }
+
+private:
+    Extent from_;
+    const MipOptions& options_;
+    AxisFilter x_, y_;
 };
 
-// Rows [begin, end) of step.to: down the columns, then across.
-void filter_strip(const Step& step, int begin, int end) {
-    const Extent extent = step.from[0].extent;
-    const int taps = step.y.taps;
-    RowFilter across(step.x, step.options.wrap_x, extent.width);
-    std::vector<const float*> rows(static_cast<std::size_t>(taps));
-    std::vector<float> weights(static_cast<std::size_t>(taps));
-    for (int j = begin; j < end; ++j) {
-        for (int k = 0; k < taps; ++k) weights[static_cast<std::size_t>(k)] = step.y.weight(k, j);
-        for (std::size_t plane = 0; plane < step.to.size(); ++plane) {
-            for (int k = 0; k < taps; ++k) {
-                const int row = border_index(step.options.wrap_y, 2 * j + step.y.first + k, extent.height);
-                rows[static_cast<std::size_t>(k)] = step.from[plane].row(row);
-            }
-            filter_rows(rows.data(), weights.data(), taps, extent.width, across.row());
-            across.run(step.to[plane].row(j));
-        }
-        roughness_of_averages(step.model, step.to[0].row(j), step.to[1].row(j), step.to[2].row(j),
-                              step.to[kAlpha2].row(j), step.to[0].extent().width, step.roughness.row(j));
+// The roughness and alpha^2 of the base level.
+struct BaseLevel {
+    Plane<float> roughness, alpha2;
+};
+
+Result<BaseLevel> clean_level(const Plane<float>& roughness, const Execution& execution, ProgressSpan span) {
+    const Extent extent = roughness.extent();
+    BaseLevel level{Plane<float>(extent), Plane<float>(extent)};
+    const auto clean = [&](int begin, int end) {
+        for (int j = begin; j < end; ++j)
+            clean_roughness(roughness.row(j), extent.width, level.roughness.row(j), level.alpha2.row(j));
+    };
+    auto cleaned = parallel_for(execution, extent.height, strip_rows(extent), clean, span);
+    if (!cleaned) return cleaned.error();
+    return level;
+}
+
+// The alpha^2 of another extent: halved while it is twice as large, then sampled.
+Result<Plane<float>> stretched(Plane<float> alpha2, Extent extent, const MipOptions& options, const Execution& execution,
+                               ProgressSpan span) {
+    const ProgressSpan start{span.from, span.from};
+    while (alpha2.extent().width >= 2 * extent.width && alpha2.extent().height >= 2 * extent.height) {
+        const Extent from = alpha2.extent();
+        Plane<float> half(level_extent(from, 1));
+        const LevelFilter filter(from, options);
+        auto made = parallel_for(
+            execution, half.extent().height, strip_rows(half.extent()),
+            [&](int begin, int end) { filter.run(alpha2.view(), half, begin, end); }, start);
+        if (!made) return made.error();
+        alpha2 = std::move(half);
     }
+    Plane<float> result(extent);
+    const auto sample = [&](int begin, int end) {
+        Sampler sampler(alpha2.extent(), extent, stretch(extent), options.wrap_x, options.wrap_y);
+        for (int j = begin; j < end; ++j) {
+            sampler.place(j);
+            sampler.sample(alpha2, result.row(j));
+        }
+    };
+    auto sampled = parallel_for(execution, extent.height, strip_rows(extent), sample, span);
+    if (!sampled) return sampled.error();
+    return result;
+}
+
+Result<BaseLevel> base_level(const Plane<float>& roughness, Extent extent, const MipOptions& options,
+                             const Execution& execution, ProgressSpan span) {
+    if (roughness.extent() == extent) return clean_level(roughness, execution, span);
+    const double middle = (span.from + span.to) / 2.0;
+    auto level = clean_level(roughness, execution, {span.from, middle});
+    if (!level) return level.error();
+    auto alpha2 = stretched(std::move(level->alpha2), extent, options, execution, {middle, span.to});
+    if (!alpha2) return alpha2.error();
+    BaseLevel result{Plane<float>(extent), std::move(*alpha2)};
+    for (int j = 0; j < extent.height; ++j) roughness_of_alpha2(result.alpha2.row(j), extent.width, result.roughness.row(j));
+    return result;
 }
 
 Result<RoughnessChain> build_chain(const NormalMap& base, const Plane<float>& roughness, RoughnessModel model,
@@ -75,31 +130,29 @@ Result<RoughnessChain> build_chain(const NormalMap& base, const Plane<float>& ro
     const Extent extent = base.extent();
     const int complete = level_count(extent);
     const int count = options.levels > 0 ? std::min(options.levels, complete) : complete;
-    RoughnessChain chain;
-    chain.levels.emplace_back(extent);
-    Plane<float> alpha2(extent);
-    const auto clean = [&](int begin, int end) {
-        for (int j = begin; j < end; ++j)
-            clean_roughness(roughness.row(j), extent.width, chain.levels[0].row(j), alpha2.row(j));
-    };
     double done = count > 1 ? 0.1 : 1.0;
-    if (auto cleaned = parallel_for(execution, extent.height, strip_rows(extent), clean, {0.0, done}); !cleaned)
-        return cleaned.error();
+    auto level0 = base_level(roughness, extent, options, execution, {0.0, done});
+    if (!level0) return level0.error();
+    RoughnessChain chain;
+    chain.levels.push_back(std::move(level0->roughness));
 
-    AverageViews from = {base.x.view(), base.y.view(), base.z.view(), alpha2.view()};
+    AverageViews from = {base.x.view(), base.y.view(), base.z.view(), level0->alpha2.view()};
     Averages held;  // what `from` shows, below the base level
     for (int level = 1; level < count; ++level) {
         const Extent smaller = level_extent(extent, level);
         Averages to;
         for (Plane<float>& plane : to) plane = Plane<float>(smaller);
-        chain.levels.emplace_back(smaller);
-        const Step step{from, to, chain.levels.back(), model, options,
-                        make_axis_filter(options.filter, from[0].extent.width),
-                        make_axis_filter(options.filter, from[0].extent.height)};
+        Plane<float>& rougher = chain.levels.emplace_back(smaller);
+        const LevelFilter filter(from[0].extent, options);
+        const auto strip = [&](int begin, int end) {
+            for (std::size_t plane = 0; plane < to.size(); ++plane) filter.run(from[plane], to[plane], begin, end);
+            for (int j = begin; j < end; ++j) {
+                roughness_of_averages(model, to[0].row(j), to[1].row(j), to[2].row(j), to[kAlpha2].row(j), smaller.width,
+                                      rougher.row(j));
+            }
+        };
         const double next = level + 1 < count ? done + (1.0 - done) * 0.75 : 1.0;
-        const auto made = parallel_for(
-            execution, smaller.height, strip_rows(smaller),
-            [&](int begin, int end) { filter_strip(step, begin, end); }, {done, next});
+        const auto made = parallel_for(execution, smaller.height, strip_rows(smaller), strip, {done, next});
         if (!made) return made.error();
         held = std::move(to);
         from = views_of(held);
@@ -207,7 +260,7 @@ Result<Texture> pack_chain(const RoughnessChain& chain, Format format, Effort ef
 
 Result<RoughnessChain> build_roughness_chain(const NormalMap& base, const Plane<float>& roughness, RoughnessModel model,
                                              const MipOptions& options, const Execution& execution) {
-    assert(!base.x.empty() && roughness.extent() == base.extent() && options.levels >= 0);
+    assert(!base.x.empty() && !roughness.empty() && options.levels >= 0);
     return guarded([&] { return build_chain(base, roughness, model, options, execution); });
 }
 

@@ -158,6 +158,30 @@ TEST(Roughness, TheBaseLevelIsWhatWasGivenCutToItsRange) {
     });
 }
 
+TEST(Roughness, MapsOfOtherExtentsAreStretched) {
+    const NormalMap base = noise_normals({24, 20});
+    for (const Extent extent : {Extent{1, 1}, Extent{12, 10}, Extent{31, 9}, Extent{48, 40}, Extent{99, 101}}) {
+        const RoughnessChain even = chain_of(base, Plane<float>(extent, 0.4f), RoughnessModel::vmf);
+        const RoughnessChain same = chain_of(base, 0.4f, RoughnessModel::vmf);
+        for (std::size_t k = 0; k < same.levels.size(); ++k) {
+            ASSERT_EQ(even.levels[k].extent(), same.levels[k].extent());
+            EXPECT_NEAR(even.levels[k].at(0, 0), same.levels[k].at(0, 0), 1e-6);
+        }
+    }
+    // Twice as large: alpha^2 averaged. Half as large: between texels.
+    const auto alpha2 = [](double roughness) { return std::pow(roughness, 4.0); };
+    const Plane<float> large = noise_roughness({48, 40}), small = noise_roughness({12, 10});
+    const Plane<float> from_large = chain_of(base, large, RoughnessModel::vmf).levels[0].clone();
+    const Plane<float> from_small = chain_of(base, small, RoughnessModel::vmf).levels[0].clone();
+    double mean = 0.0, between = 0.0;
+    for (int k = 0; k < 4; ++k) {
+        mean += alpha2(large.at(6 + k % 2, 8 + k / 2)) / 4.0;
+        between += alpha2(small.at(3 + k % 2, 4 + k / 2)) * (k % 2 == 0 ? 0.75 : 0.25) * (k / 2 == 0 ? 0.75 : 0.25);
+    }
+    EXPECT_NEAR(alpha2(from_large.at(3, 4)), mean, 1e-5);
+    EXPECT_NEAR(alpha2(from_small.at(7, 9)), between, 1e-5);
+}
+
 TEST(Roughness, NeitherDomainNorFadeMatters) {
     const NormalMap base = noise_normals({31, 16});
     const Plane<float> roughness = noise_roughness({31, 16});

@@ -46,7 +46,7 @@ void RoughnessOptions::add(Command& command, FileOptions& files) {
               "write a roughness map whose levels make up for what the normals lose; of many inputs a pattern as --name")
         .completes = Completes::files;
     Row& input = command.option("--roughness-in", "FILE|VALUE",
-                                "the material's own roughness, FILE[:CHANNEL] of the normal map's size or a number",
+                                "the material's own roughness, FILE[:CHANNEL] or a number",
                                 [this](const std::string& text) { take_input(text); });
     input.preset = "0";
     input.completes = Completes::files;
@@ -126,12 +126,6 @@ Result<RoughnessChain> RoughnessOptions::build(Job& job, const NormalMap& base, 
     job.depends_on(source.file);
     auto roughness = read_channel(job, source, {execution.threads, {}});
     if (!roughness) return roughness.error();
-    const Extent is = roughness->extent(), wanted = base.extent();
-    if (is != wanted) {
-        return Error{ErrorCode::bad_option, source.file,
-                     fmt::format("has {}x{} texels, the normal map {}x{}: roughness wants the same", is.width, is.height,
-                                 wanted.width, wanted.height)};
-    }
     return build_roughness_chain(base, *roughness, model_, mip, execution);
 }
 

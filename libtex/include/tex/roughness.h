@@ -57,15 +57,16 @@ struct RoughnessChain {
 
 // The roughness of every level of the chain that build_mip_chain() makes of `base` with the same options.
 //
-// The base level is `roughness` as given, values beyond 0 to 1 cut to it and NaN made 0. Below it, vectors and alpha^2 are averaged by options.filter,
+// The base level is `roughness` as given, values beyond 0 to 1 cut to it and NaN made 0. A map of another extent is stretched over the base:
+// its alpha^2 is halved by the filter while it is at least twice as large along both axes, and then sampled bilinearly. Below it, vectors and alpha^2 are averaged by options.filter,
 // each level from the averages of the one before, borders as options.wrap_x and wrap_y say; m is the length of the averaged vector and alpha^2
 // the average, both cut to [0, 1] (filters with negative lobes overshoot). alpha^2 and not roughness is averaged because it is a variance: those
 // of several lobes average, and that of the vectors comes on top (as the moments of Olano, Baker: LEAN Mapping, I3D 2010). Vectors are averaged as such
 // in either options.domain, and options.fade does not matter: flat levels lack what their vectors said as well. 1 - m^2 below 2^-20, vectors
 // that differ by 0.06 degrees, is the rounding of floats and counts as 0.
 //
-// Preconditions (asserted): `base` is not empty, its vectors are of unit length (shorter ones count as averages), `roughness` has its
-// extent; options as in build_mip_chain().
+// Preconditions (asserted): `base` is not empty, its vectors are of unit length (shorter ones count as averages), `roughness`
+// is not empty; options as in build_mip_chain().
 // Errors: out_of_memory, cancelled.
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] Result<RoughnessChain> build_roughness_chain(const NormalMap& base, const Plane<float>& roughness,

@@ -33,6 +33,11 @@ void CleanRoughness(const float* roughness, int count, float* clean, float* alph
     }
 }
 
+void RoughnessOfAlpha2(const float* alpha2, int count, float* roughness) {
+    for (int i = 0; i < count; i += kLanes)
+        hn::StoreU(hn::Sqrt(hn::Sqrt(cut(hn::LoadU(kD, alpha2 + i)))), kD, roughness + i);
+}
+
 // What the averages of a texel say: the length m, 1 - m^2, and alpha^2.
 struct Averages {
     V m, loss, alpha2;
@@ -79,10 +84,15 @@ HWY_AFTER_NAMESPACE();
 namespace tex {
 
 HWY_EXPORT(CleanRoughness);
+HWY_EXPORT(RoughnessOfAlpha2);
 HWY_EXPORT(RoughnessOfAverages);
 
 void clean_roughness(const float* roughness, int count, float* clean, float* alpha2) {
     HWY_DYNAMIC_DISPATCH(CleanRoughness)(roughness, count, clean, alpha2);
+}
+
+void roughness_of_alpha2(const float* alpha2, int count, float* roughness) {
+    HWY_DYNAMIC_DISPATCH(RoughnessOfAlpha2)(alpha2, count, roughness);
 }
 
 void roughness_of_averages(RoughnessModel model, const float* x, const float* y, const float* z,

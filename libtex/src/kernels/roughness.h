@@ -12,6 +12,9 @@ namespace tex {
 // `clean` becomes the roughness cut to [0, 1], NaN 0; alpha2 its fourth power.
 void clean_roughness(const float* roughness, int count, float* clean, float* alpha2);
 
+// The fourth roots of alpha^2, cut to [0, 1].
+void roughness_of_alpha2(const float* alpha2, int count, float* roughness);
+
 // The roughness of a row of a smaller level: of averaged vectors and of averaged alpha^2.
 void roughness_of_averages(RoughnessModel model, const float* x, const float* y, const float* z,
                            const float* alpha2, int count, float* roughness);
