@@ -41,6 +41,7 @@ TEST_F(CheckNormalsCi, WorkflowsPassAndFail) {
         const Ran good = shell(scratch_, steps(file));
         EXPECT_EQ(good.code, 0) << file << good.out << good.err;
         EXPECT_TRUE(scratch_.has(document));
+        EXPECT_TRUE(scratch_.has("normals.html"));
         bake("art/a_n.dds", "down");
         const Ran bad = shell(scratch_, steps(file));
         EXPECT_EQ(bad.code, 1) << file << bad.out << bad.err;

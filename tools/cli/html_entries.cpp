@@ -125,7 +125,9 @@ HtmlEntry check_entry(const CheckReport& report, const Requirements& require, Ht
     HtmlEntry entry;
     entry.title = report.file;
     entry.row = "<td>";
-    for (const Finding& finding : report.findings) {
+    std::vector<Finding> worst_first = report.findings;
+    std::stable_sort(worst_first.begin(), worst_first.end(), [](const Finding& p, const Finding& q) { return p.severity > q.severity; });
+    for (const Finding& finding : worst_first) {
         entry.row += chip(finding.severity, fmt::format("{} {}", finding.rule->id, finding.rule->name)) + " ";
         const std::string word(name_of(kSeverityNames, finding.severity));
         if (entry.words.find(word) == std::string::npos) entry.words += (entry.words.empty() ? "" : " ") + word;

@@ -40,7 +40,7 @@ namespace [[gnu::visibility("default")]] tex {
 //   height         the height map, from its lowest value (black) to its highest (white)
 //
 // Values from 0 are shown in viridis, values of both signs in blue, white and red-brown; both order colours by lightness or by blue against
-// orange, which people with any common colour vision deficiency can read. A legend stands below. There are 240 steps between its ends; values
+// orange, which people with any common colour vision deficiency can read. A legend stands below. There are 240 steps between its ends (grey has all codes); values
 // beyond take the end's colour, NaN is magenta.
 enum class Show {
     lit, plain, normals, world_normals, slope, tilt, length, z_error, curl, channels, mips, height,

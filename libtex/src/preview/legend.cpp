@@ -26,7 +26,7 @@ constexpr double kColorSteps = 240.0;
 Vec3 ColorScale::color(double value) const {
     const double range = greatest - least;
     double t = (value - least) / (range > 0.0 ? range : 1.0);
-    if (t > 0.0 && t < 1.0) t = std::floor(t * kColorSteps + 0.5) / kColorSteps;
+    if (palette != Palette::grey && t > 0.0 && t < 1.0) t = std::floor(t * kColorSteps + 0.5) / kColorSteps;
     switch (palette) {
         case Palette::viridis:
             return viridis(t);

@@ -18,7 +18,7 @@ struct ColorScale {
     double least = 0.0, greatest = 1.0;
     Palette palette = Palette::viridis;
 
-    // Display colour of a value, in 240 steps from `least` to `greatest`.
+    // Display colour of a value; other than grey in 240 steps from `least` to `greatest`.
     [[nodiscard]] Vec3 color(double value) const;
 };
 
