@@ -23,26 +23,12 @@
 
 #include <tex/mip_chain.h>
 
+#include "unit/exr_files.h"
+
 namespace tex {
 namespace {
 
 using Bytes = std::vector<std::byte>;
-
-class Sink final : public Imf::OStream {
-public:
-    explicit Sink(Bytes& bytes) : Imf::OStream(""), bytes_(bytes) {}
-    void write(const char data[], int n) override {
-        bytes_.resize(std::max(bytes_.size(), at_ + static_cast<std::size_t>(n)));
-        std::memcpy(bytes_.data() + at_, data, static_cast<std::size_t>(n));
-        at_ += static_cast<std::size_t>(n);
-    }
-    std::uint64_t tellp() override { return at_; }
-    void seekp(std::uint64_t at) override { at_ = at; }
-
-private:
-    Bytes& bytes_;
-    std::size_t at_ = 0;
-};
 
 Result<InputFile> open(const Bytes& bytes) { return InputFile::from_memory("test.exr", bytes); }
 
@@ -52,48 +38,6 @@ Result<Image> read(const Bytes& bytes, const ReadOptions& options = {}) {
     return read_exr(*file, options);
 }
 
-float value(int i, int j, int c) { return static_cast<float>(i * 3 - j * 5 + c * 7) / 16.0f; }  // exact as half
-
-// A file as OpenEXR writes it: channels of one type, a data window that begins at (-3, 5).
-Bytes make_exr(Extent extent, const std::vector<std::string>& names, Imf::PixelType type, Imf::Compression compression,
-               bool tiled = false) {
-    const Imath::Box2i window({-3, 5}, {-3 + extent.width - 1, 5 + extent.height - 1});
-    Imf::Header header(window, window, 1.0f, {0, 0}, 1.0f, Imf::DECREASING_Y, compression);
-    Imf::FrameBuffer buffer;
-    std::vector<std::vector<float>> floats(names.size());
-    std::vector<std::vector<std::uint32_t>> integers(names.size());
-    std::vector<std::vector<Imath::half>> halves(names.size());
-    for (std::size_t c = 0; c < names.size(); ++c) {
-        for (int j = 0; j < extent.height; ++j) {
-            for (int i = 0; i < extent.width; ++i) {
-                floats[c].push_back(value(i, j, static_cast<int>(c)));
-                halves[c].push_back(Imath::half(floats[c].back()));
-                integers[c].push_back(static_cast<std::uint32_t>(i) * 123456789u + static_cast<std::uint32_t>(j));
-            }
-        }
-        const std::size_t size = type == Imf::HALF ? 2 : 4;
-        void* base = floats[c].data();
-        if (type == Imf::HALF) base = halves[c].data();
-        if (type == Imf::UINT) base = integers[c].data();
-        header.channels().insert(names[c], Imf::Channel(type));
-        buffer.insert(names[c], Imf::Slice::Make(type, base, window, size, size * static_cast<std::size_t>(extent.width)));
-    }
-    Bytes bytes;
-    Sink sink(bytes);
-    if (tiled) {
-        header.lineOrder() = Imf::INCREASING_Y;
-        header.setTileDescription(Imf::TileDescription(16, 8, Imf::ONE_LEVEL));
-        Imf::TiledOutputFile file(sink, header);
-        file.setFrameBuffer(buffer);
-        file.writeTiles(0, file.numXTiles() - 1, 0, file.numYTiles() - 1);
-    } else {
-        Imf::OutputFile file(sink, header);
-        file.setFrameBuffer(buffer);
-        file.writePixels(extent.height);
-    }
-    return bytes;
-}
-
 TEST(Exr, ReadsEveryTypeCompressionAndLayoutExactly) {
     const Extent extent{37, 21};
     for (const Imf::PixelType type : {Imf::HALF, Imf::FLOAT, Imf::UINT}) {
@@ -101,7 +45,7 @@ TEST(Exr, ReadsEveryTypeCompressionAndLayoutExactly) {
                                                    Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION}) {
             for (const bool tiled : {false, true}) {
                 SCOPED_TRACE(testing::Message() << type << ", " << compression << ", " << tiled);
-                const Result<Image> image = read(make_exr(extent, {"G", "R", "B"}, type, compression, tiled));
+                const Result<Image> image = read(exr_file(extent, {"G", "R", "B"}, type, compression, tiled));
                 ASSERT_TRUE(image) << image.error().message();
                 ASSERT_EQ(image->extent(), extent);
                 ASSERT_EQ(image->names, (std::vector<std::string>{"R", "G", "B"}));
@@ -113,9 +57,9 @@ TEST(Exr, ReadsEveryTypeCompressionAndLayoutExactly) {
                             const std::uint32_t code = static_cast<std::uint32_t>(i) * 123456789u + static_cast<std::uint32_t>(j);
                             ASSERT_EQ(image->planes[0].at(i, j), static_cast<float>(code / 4294967295.0));
                         } else {
-                            ASSERT_EQ(image->planes[0].at(i, j), value(i, j, 1));
-                            ASSERT_EQ(image->planes[1].at(i, j), value(i, j, 0));
-                            ASSERT_EQ(image->planes[2].at(i, j), value(i, j, 2));
+                            ASSERT_EQ(image->planes[0].at(i, j), exr_value(i, j, 1));
+                            ASSERT_EQ(image->planes[1].at(i, j), exr_value(i, j, 0));
+                            ASSERT_EQ(image->planes[2].at(i, j), exr_value(i, j, 2));
                         }
                     }
                 }
@@ -126,10 +70,10 @@ TEST(Exr, ReadsEveryTypeCompressionAndLayoutExactly) {
 
 TEST(Exr, KeepsOtherChannelNames) {
     const Result<Image> image =
-        read(make_exr({5, 4}, {"height", "A", "diffuse.R", "Z"}, Imf::FLOAT, Imf::ZIP_COMPRESSION));
+        read(exr_file({5, 4}, {"height", "A", "diffuse.R", "Z"}, Imf::FLOAT, Imf::ZIP_COMPRESSION));
     ASSERT_TRUE(image);
     EXPECT_EQ(image->names, (std::vector<std::string>{"A", "Z", "diffuse.R", "height"}));
-    EXPECT_EQ(image->planes[3].at(2, 1), value(2, 1, 0));
+    EXPECT_EQ(image->planes[3].at(2, 1), exr_value(2, 1, 0));
 }
 
 TEST(Exr, RefusesDeepData) {
@@ -138,7 +82,7 @@ TEST(Exr, RefusesDeepData) {
     header.setType(Imf::DEEPSCANLINE);
     header.compression() = Imf::ZIPS_COMPRESSION;
     Bytes bytes;
-    Sink sink(bytes);
+    ExrSink sink(bytes);
     {
         Imf::DeepScanLineOutputFile file(sink, header);
         unsigned counts[16] = {};
@@ -159,7 +103,7 @@ TEST(Exr, RefusesSubsampledChannels) {
     header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
     header.channels().insert("RY", Imf::Channel(Imf::FLOAT, 2, 2));
     Bytes bytes;
-    Sink sink(bytes);
+    ExrSink sink(bytes);
     std::vector<float> values(16);
     {
         Imf::OutputFile file(sink, header);
@@ -184,7 +128,7 @@ TEST(Exr, OfSeveralPartsReadsTheFirst) {
         headers[k].channels().insert("Y", Imf::Channel(Imf::FLOAT));
     }
     Bytes bytes;
-    Sink sink(bytes);
+    ExrSink sink(bytes);
     std::vector<float> values(64, 0.75f);
     {
         Imf::MultiPartOutputFile file(sink, headers.data(), 2);
@@ -204,7 +148,7 @@ TEST(Exr, OfSeveralPartsReadsTheFirst) {
 
 TEST(Exr, EveryTruncationIsDamage) {
     for (const bool tiled : {false, true}) {
-        const Bytes whole = make_exr({37, 21}, {"R", "G", "B"}, Imf::HALF, Imf::ZIP_COMPRESSION, tiled);
+        const Bytes whole = exr_file({37, 21}, {"R", "G", "B"}, Imf::HALF, Imf::ZIP_COMPRESSION, tiled);
         for (std::size_t n = 1; n < whole.size(); ++n) {
             const Result<Image> image = read(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(n)));
             ASSERT_FALSE(image) << n << " of " << whole.size();
@@ -215,7 +159,7 @@ TEST(Exr, EveryTruncationIsDamage) {
 
 TEST(Exr, RefusesClaimsBeforeTakingMemory) {
     for (const Imf::Compression compression : {Imf::NO_COMPRESSION, Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION}) {
-        Bytes bytes = make_exr({4, 4}, {"Y"}, Imf::HALF, compression);
+        Bytes bytes = exr_file({4, 4}, {"Y"}, Imf::HALF, compression);
         const std::string name = "dataWindow";
         auto at = std::search(bytes.begin(), bytes.end(), name.begin(), name.end(),
                               [](std::byte a, char b) { return static_cast<char>(a) == b; });
@@ -230,7 +174,7 @@ TEST(Exr, RefusesClaimsBeforeTakingMemory) {
 }
 
 TEST(Exr, RefusesAttributesThatClaimMoreThanTheFileHolds) {
-    Bytes bytes = make_exr({4, 4}, {"Y"}, Imf::HALF, Imf::ZIP_COMPRESSION);
+    Bytes bytes = exr_file({4, 4}, {"Y"}, Imf::HALF, Imf::ZIP_COMPRESSION);
     const std::string name = "screenWindowWidth";
     auto at = std::search(bytes.begin(), bytes.end(), name.begin(), name.end(),
                           [](std::byte a, char b) { return static_cast<char>(a) == b; });
@@ -254,7 +198,7 @@ std::byte* attribute(Bytes& bytes, const std::string& name, const std::string& t
 }
 
 TEST(Exr, RefusesTilesWhoseAreaOverflows) {
-    Bytes bytes = make_exr({37, 21}, {"Y"}, Imf::HALF, Imf::ZIP_COMPRESSION, true);
+    Bytes bytes = exr_file({37, 21}, {"Y"}, Imf::HALF, Imf::ZIP_COMPRESSION, true);
     std::byte* tiles = attribute(bytes, "tiles", "tiledesc");
     ASSERT_NE(tiles, nullptr);
     // The first pair overflows 64 signed bits, the others 32 bits.
@@ -269,7 +213,7 @@ TEST(Exr, RefusesTilesWhoseAreaOverflows) {
 
 TEST(Exr, RefusesAttributesWhoseSizeIsNotTheirValuesOwn) {
     for (const std::int32_t size : {0, 3, 5, 8}) {
-        Bytes bytes = make_exr({4, 4}, {"Y"}, Imf::HALF, Imf::ZIP_COMPRESSION);
+        Bytes bytes = exr_file({4, 4}, {"Y"}, Imf::HALF, Imf::ZIP_COMPRESSION);
         std::byte* width = attribute(bytes, "screenWindowWidth", "float");
         ASSERT_NE(width, nullptr);
         std::memcpy(width, &size, sizeof size);
@@ -282,7 +226,7 @@ TEST(Exr, RefusesAttributesWhoseSizeIsNotTheirValuesOwn) {
 TEST(Exr, RefusesMoreTexelsThanTheLimit) {
     ReadOptions options;
     options.max_texels = 15;
-    EXPECT_EQ(read(make_exr({4, 4}, {"Y"}, Imf::HALF, Imf::ZIP_COMPRESSION), options).error().code,
+    EXPECT_EQ(read(exr_file({4, 4}, {"Y"}, Imf::HALF, Imf::ZIP_COMPRESSION), options).error().code,
               ErrorCode::unsupported);
 }
 
@@ -297,7 +241,7 @@ Texture texture_of(Format format, Extent extent, int levels) {
         for (int j = 0; j < level.extent.height; ++j) {
             for (int i = 0; i < level.extent.width; ++i) {
                 for (int c = 0; c < info.channels; ++c) {
-                    const float v = value(i, j, c + 5 * k);
+                    const float v = exr_value(i, j, c + 5 * k);
                     const std::uint16_t h = Imath::half(v).bits();
                     const auto* from = info.bits == 16 ? reinterpret_cast<const std::byte*>(&h)
                                                        : reinterpret_cast<const std::byte*>(&v);

@@ -28,11 +28,11 @@ constexpr int kTileSize = 64;
 
 // -- reading -----------------------------------------------------------------------------------------------
 
-// Opens the first part, checks it, and returns body(file), a Result. Nothing that OpenEXR throws gets past here.
+// Opens the first part, checks it, and returns body(file, stream), a Result. Nothing that OpenEXR throws gets past here.
 template <class Body>
 auto with_exr(InputFile& file, const ReadOptions& options, const Body& body)
-    -> decltype(body(std::declval<Imf::MultiPartInputFile&>())) {
-    return guarded([&]() -> decltype(body(std::declval<Imf::MultiPartInputFile&>())) {
+    -> decltype(body(std::declval<Imf::MultiPartInputFile&>(), std::declval<const ExrStream&>())) {
+    return guarded([&]() -> decltype(body(std::declval<Imf::MultiPartInputFile&>(), std::declval<const ExrStream&>())) {
         if (const Result<void> settled = file.settle(largest_file(options)); !settled) return settled.error();
         ExrStream stream(file);
         try {
@@ -42,7 +42,7 @@ auto with_exr(InputFile& file, const ReadOptions& options, const Body& body)
             Imf::MultiPartInputFile exr(stream, kNoThreads, kKeepTable);
             const Result<Extent> extent = check_header(file.path(), exr.header(0), *file.size(), options);
             if (!extent) return extent.error();
-            return body(exr);
+            return body(exr, stream);
         } catch (const std::bad_alloc&) {
             throw;
         } catch (const std::exception& thrown) {
@@ -134,17 +134,17 @@ bool is_exr(std::span<const std::byte> head) {
 }
 
 Result<Image> read_exr(InputFile& file, const ReadOptions& options) {
-    return with_exr(file, options, [](Imf::MultiPartInputFile& exr) -> Result<Image> {
-        return PartReader(exr, channels_of(exr.header(0))).read(0);
+    return with_exr(file, options, [](Imf::MultiPartInputFile& exr, const ExrStream& stream) -> Result<Image> {
+        return PartReader(exr, stream, channels_of(exr.header(0))).read(0);
     });
 }
 
 Result<Texture> read_exr_texture(InputFile& file, const ReadOptions& options) {
-    return with_exr(file, options, [&](Imf::MultiPartInputFile& exr) -> Result<Texture> {
+    return with_exr(file, options, [&](Imf::MultiPartInputFile& exr, const ExrStream& stream) -> Result<Texture> {
         const Imf::Header& header = exr.header(0);
         Result<std::vector<ExrChannel>> channels = texture_channels(file.path(), header);
         if (!channels) return std::move(channels).error();
-        PartReader part(exr, std::move(*channels));
+        PartReader part(exr, stream, std::move(*channels));
         Texture texture;
         int levels = 1;
         for (int level = 0; level < levels; ++level) {

@@ -13,6 +13,7 @@
 #include <ImfStringAttribute.h>
 
 #include "containers/claims.h"
+#include "containers/exr_chunk.h"
 
 namespace tex {
 namespace {
@@ -132,7 +133,44 @@ void scale_integers(Plane<float>& plane) {
     }
 }
 
+// The chunk that was read last: OpenEXR reads its bytes with one call, after all else, and keeps them.
+void check_chunk(const Imf::Header& header, const ExrStream& stream, int width, int height) {
+    std::size_t texel_bytes = 0;
+    for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
+        texel_bytes += it.channel().type == Imf::HALF ? sizeof(std::uint16_t) : sizeof(std::uint32_t);
+    }
+    const auto wanted = static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * texel_bytes;
+    if (!chunk_is_whole(header.compression(), stream.last_read().data(), stream.last_read().size(), wanted)) {
+        throw Iex::InputExc("a chunk ends too early");
+    }
+}
+
 }  // namespace
+
+void read_lines(Imf::InputPart& part, const ExrStream& stream, int first, int last) {
+    const Imf::Header& header = part.header();
+    const Imath::Box2i window = header.dataWindow();
+    const int lines = chunk_lines(header.compression());
+    const int first_chunk = (first - window.min.y) / lines;
+    const int last_chunk = (last - window.min.y) / lines;
+    for (int k = 0; k <= last_chunk - first_chunk; ++k) {  // in the order of the file
+        const int chunk = header.lineOrder() == Imf::DECREASING_Y ? last_chunk - k : first_chunk + k;
+        const int begin = window.min.y + chunk * lines;
+        const int end = std::min(begin + lines - 1, window.max.y);
+        part.readPixels(std::max(begin, first), std::min(end, last));
+        check_chunk(header, stream, window.max.x - window.min.x + 1, end - begin + 1);
+    }
+}
+
+void read_tiles(Imf::TiledInputPart& part, const ExrStream& stream, int first, int last, int level) {
+    for (int j = first; j <= last; ++j) {
+        for (int i = 0; i < part.numXTiles(level); ++i) {
+            part.readTile(i, j, level, level);
+            const Imath::Box2i tile = part.dataWindowForTile(i, j, level, level);
+            check_chunk(part.header(), stream, tile.max.x - tile.min.x + 1, tile.max.y - tile.min.y + 1);
+        }
+    }
+}
 
 // OpenEXR adds its own opening ('Cannot read image file "NAME". ') to every reason, sometimes twice; it stands before what matters.
 Error exr_error(const std::string& path, const std::exception& thrown) {
@@ -149,6 +187,7 @@ ExrStream::ExrStream(const InputFile& file)
 
 bool ExrStream::read(char data[], int count) {
     const auto n = static_cast<std::size_t>(count);
+    last_ = std::span(reinterpret_cast<const std::byte*>(data), count < 0 ? 0 : n);
     if (count < 0 || n > size_ || at_ > size_ - n) throw Iex::InputExc("the file ends too early");
     if (at_ >= buffered_from_ && at_ + n <= buffered_from_ + buffered_) {
         std::memcpy(data, buffer_.data() + (at_ - buffered_from_), n);
@@ -232,8 +271,8 @@ Result<Extent> check_header(const std::string& path, const Imf::Header& header, 
     return extent;
 }
 
-PartReader::PartReader(Imf::MultiPartInputFile& file, std::vector<ExrChannel> channels)
-    : header_(file.header(0)), channels_(std::move(channels)) {
+PartReader::PartReader(Imf::MultiPartInputFile& file, const ExrStream& stream, std::vector<ExrChannel> channels)
+    : header_(file.header(0)), stream_(stream), channels_(std::move(channels)) {
     header_.hasTileDescription() ? void(tiled_.emplace(file, 0)) : void(lines_.emplace(file, 0));
 }
 
@@ -250,10 +289,10 @@ Image PartReader::read(int level) {
     }
     if (tiled_) {
         tiled_->setFrameBuffer(buffer);
-        tiled_->readTiles(0, tiled_->numXTiles(level) - 1, 0, tiled_->numYTiles(level) - 1, level, level);
+        read_tiles(*tiled_, stream_, 0, tiled_->numYTiles(level) - 1, level);
     } else {
         lines_->setFrameBuffer(buffer);
-        lines_->readPixels(window.min.y, window.max.y);
+        read_lines(*lines_, stream_, window.min.y, window.max.y);
     }
     for (std::size_t k = 0; k < channels_.size(); ++k) {
         if (channels_[k].type == Imf::UINT) scale_integers(image.planes[k]);

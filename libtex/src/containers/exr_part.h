@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <exception>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,9 @@ public:
     void seekg(std::uint64_t at) override { at_ = at; }
     [[nodiscard]] std::uint64_t size() const { return size_; }
 
+    // Where the last read() put its bytes.
+    [[nodiscard]] std::span<const std::byte> last_read() const { return last_; }
+
     // What the system said, where it was not the format that failed.
     [[nodiscard]] const std::optional<Error>& failure() const { return failure_; }
 
@@ -53,6 +57,7 @@ private:
     std::vector<std::byte> buffer_;
     std::uint64_t buffered_from_ = 0;
     std::size_t buffered_ = 0;
+    std::span<const std::byte> last_;
     std::optional<Error> failure_;
 };
 
@@ -73,16 +78,22 @@ std::vector<ExrChannel> channels_of(const Imf::Header& header);
 Result<Extent> check_header(const std::string& path, const Imf::Header& header, std::int64_t file_size,
                             const ReadOptions& options);
 
-// Reads levels of the first part into planes, one for each of `channels`. Throws what OpenEXR throws, and std::bad_alloc.
+// Read scan lines `first` to `last`, or rows of tiles, chunk by chunk. Throw what OpenEXR throws, also for chunks that do not hold all of their texels.
+// Precondition: the part reads from `stream`, without threads.
+void read_lines(Imf::InputPart& part, const ExrStream& stream, int first, int last);
+void read_tiles(Imf::TiledInputPart& part, const ExrStream& stream, int first, int last, int level);
+
+// Reads levels of the first part into planes, one for each of `channels`. Throws as read_lines(), and std::bad_alloc. Precondition: `file` reads from `stream`, without threads.
 class PartReader {
 public:
-    PartReader(Imf::MultiPartInputFile& file, std::vector<ExrChannel> channels);
+    PartReader(Imf::MultiPartInputFile& file, const ExrStream& stream, std::vector<ExrChannel> channels);
     Image read(int level);
 
 private:
     void describe(Image& image) const;
 
     const Imf::Header& header_;
+    const ExrStream& stream_;
     const std::vector<ExrChannel> channels_;
     std::optional<Imf::InputPart> lines_;
     std::optional<Imf::TiledInputPart> tiled_;

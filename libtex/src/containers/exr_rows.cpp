@@ -12,24 +12,11 @@
 
 #include "base/guard.h"
 #include "base/pool.h"
+#include "containers/exr_chunk.h"
 #include "containers/exr_part.h"
 
 namespace tex {
 namespace {
-
-// The scanlines of a chunk.
-int chunk_lines(Imf::Compression compression) {
-    switch (compression) {
-        case Imf::ZIP_COMPRESSION:
-        case Imf::PXR24_COMPRESSION: return 16;
-        case Imf::PIZ_COMPRESSION:
-        case Imf::B44_COMPRESSION:
-        case Imf::B44A_COMPRESSION:
-        case Imf::DWAA_COMPRESSION: return 32;
-        case Imf::DWAB_COMPRESSION: return 256;
-        default: return 1;
-    }
-}
 
 // The file open once more: OpenEXR's objects are for one thread at a time.
 struct ExrReader {
@@ -132,10 +119,10 @@ Result<void> ExrRows::decode(int first, int count, std::byte* rows) {
         if (reader.tiles) {
             const auto height = static_cast<int>(reader.tiles->tileYSize());
             reader.tiles->setFrameBuffer(buffer);
-            reader.tiles->readTiles(0, reader.tiles->numXTiles(0) - 1, first / height, (first + count - 1) / height, 0, 0);
+            read_tiles(*reader.tiles, reader.stream, first / height, (first + count - 1) / height, 0);
         } else {
             reader.lines->setFrameBuffer(buffer);
-            reader.lines->readPixels(top.y, top.y + count - 1);
+            read_lines(*reader.lines, reader.stream, top.y, top.y + count - 1);
         }
         return {};
     });
