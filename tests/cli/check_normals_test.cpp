@@ -88,6 +88,10 @@ TEST_F(CheckNormals, BaselineAcceptsWhatIsKnown) {
     EXPECT_EQ(check({"good.dds", "--require", "y=down", "--baseline", "known.json"}).code, 1);
     scratch_.write("known.json", "[]");
     EXPECT_EQ(check({"good.dds", "--baseline", "known.json"}).code, 4);
+    for (const char* text : {R"({"version": "1", "findings": []})", R"({"version": 1, "findings": [{"file": "a", "id": "N201", "level": 4294967296}]})"}) {
+        scratch_.write("known.json", text);
+        EXPECT_EQ(check({"good.dds", "--baseline", "known.json"}).code, 4) << text;
+    }
 }
 
 TEST_F(CheckNormals, UnreadableFilesAreFindingsAndExit4) {

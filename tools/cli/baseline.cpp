@@ -3,6 +3,7 @@
 #include "cli/baseline.h"
 
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -20,10 +21,14 @@ Baseline::Key Baseline::key_of(const CheckReport& report, const Finding& finding
 Result<Baseline> Baseline::read(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     if (!file) return Error{ErrorCode::io, path, std::strerror(errno)};
-    const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+    return parse(path, {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()});
+}
+
+Result<Baseline> Baseline::parse(const std::string& path, const std::string& text) {
     const Json json = Json::parse(text, nullptr, false);
     const auto bad = [&](const char* reason) { return Error{ErrorCode::bad_data, path, reason}; };
-    if (!json.is_object() || json.value("version", 0) != 1 || !json.contains("findings") || !json["findings"].is_array()) {
+    const bool known = json.is_object() && json.contains("version") && json["version"] == 1;
+    if (!known || !json.contains("findings") || !json["findings"].is_array()) {
         return bad("not a baseline that check-normals wrote");
     }
     Baseline baseline;
@@ -32,7 +37,10 @@ Result<Baseline> Baseline::read(const std::string& path) {
                            item["id"].is_string();
         if (!whole) return bad("a finding without file or id");
         const bool has_level = item.contains("level") && item["level"].is_number_integer();
-        baseline.known_.emplace(item["file"].get<std::string>(), item["id"].get<std::string>(), has_level ? item["level"].get<int>() : 0);
+        const auto level = has_level ? item["level"].get<std::int64_t>() : 0;
+        constexpr std::int64_t kMostLevels = 1000;
+        if (level < 0 || level > kMostLevels) return bad("a finding on a level that no file has");
+        baseline.known_.emplace(item["file"].get<std::string>(), item["id"].get<std::string>(), static_cast<int>(level));
     }
     return baseline;
 }

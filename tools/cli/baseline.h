@@ -19,6 +19,8 @@ class Baseline {
 public:
     // Errors: io, bad_data.
     [[nodiscard]] static Result<Baseline> read(const std::string& path);
+    // The same from memory; `path` is for messages. Errors: bad_data.
+    [[nodiscard]] static Result<Baseline> parse(const std::string& path, const std::string& text);
     [[nodiscard]] static Baseline of(const std::vector<CheckReport>& reports);
 
     // Takes known findings out of the report; returns how many.

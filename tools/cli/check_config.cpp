@@ -89,6 +89,10 @@ Result<CheckConfig> read_check_config(const std::string& path) {
     std::string text;
     if (file) text.assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
     if (!file || file.bad()) return Error{ErrorCode::io, path, std::strerror(errno)};
+    return parse_check_config(path, text);
+}
+
+CheckConfig parse_check_config(const std::string& path, const std::string& text) {
     try {
         const toml::table table = toml::parse(text);
         return Reader(path, table).read();

@@ -28,4 +28,7 @@ struct CheckConfig {
 // Throws UsageError where the file says what does not exist (with its line where that is known). Errors: io.
 [[nodiscard]] Result<CheckConfig> read_check_config(const std::string& path);
 
+// The same from memory; `path` is for messages.
+[[nodiscard]] CheckConfig parse_check_config(const std::string& path, const std::string& text);
+
 }  // namespace tex::cli
