@@ -71,7 +71,11 @@ public:
         if (workers <= 1) {
             work(0);
         } else {
-            fork_join(workers, workers, work);
+            try {
+                fork_join(workers, workers, work);
+            } catch (const std::runtime_error&) {  // of TBB: process() lets nothing through
+                throw std::system_error(EAGAIN, std::generic_category(), "the system refuses threads");
+            }
         }
         clear_progress();
     }

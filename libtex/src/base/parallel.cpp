@@ -6,6 +6,7 @@
 #include <atomic>
 #include <mutex>
 #include <new>
+#include <stdexcept>
 
 #include <tbb/global_control.h>
 #include <tbb/info.h>
@@ -82,7 +83,11 @@ Result<void> parallel_for(const Execution& execution, int count, int grain,
     if (threads <= 1) {
         for (int piece = 0; piece < pieces; ++piece) run(piece);
     } else {
-        fork_join(threads, pieces, run);
+        try {
+            fork_join(threads, pieces, run);
+        } catch (const std::runtime_error&) {  // of TBB: the threads that could start a moment ago cannot any more
+            return Error{ErrorCode::out_of_memory, {}, "the system refuses threads"};
+        }
     }
     return ticker.result();
 }
