@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <array>
@@ -354,7 +355,15 @@ TEST(Reader, FilesInMemoryGrowButDoNotShrink) {
     EXPECT_NE(ftruncate(file.value().get(), 999), 0);
 }
 
-TEST(Reader, FiltersSystemCalls) {
+TEST(Reader, FilesOnDiskAreReadThroughTheSandbox) {
+    const std::string path = testing::TempDir() + "reader_test.ppm";
+    std::ofstream(path) << "P5 2 1 255\n" << '\xff' << '\0';
+    const Result<Image> image = read_with_reader(path, quick());
+    std::filesystem::remove(path);
+    expect_row(image, 0, {1.0f, 0.0f});
+}
+
+TEST(Reader, FiltersSystemCallsAndRestrictsFiles) {
     const Result<std::string> program = find_reader({});
     ASSERT_TRUE(program) << program.error().message();
     FILE* pipe = popen((*program + " --version").c_str(), "r");
@@ -362,6 +371,8 @@ TEST(Reader, FiltersSystemCalls) {
     EXPECT_GT(fread(text, 1, sizeof text - 1, pipe), 0u);
     pclose(pipe);
     EXPECT_NE(std::strstr(text, "system calls filtered"), nullptr) << text;
+    const bool has_landlock = syscall(SYS_landlock_create_ruleset, nullptr, 0, 1) >= 1;
+    EXPECT_NE(std::strstr(text, has_landlock ? "files restricted" : "files not restricted"), nullptr) << text;
 }
 
 }  // namespace

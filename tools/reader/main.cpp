@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // tex-reader: decodes and encodes pictures with OpenImageIO for libtex, which starts it. Not meant to be run by hand, except
 //
-//     tex-reader --version      OpenImageIO's version, and whether the kernel takes the filter of system calls
+//     tex-reader --version      OpenImageIO's version, and whether the kernel takes the restriction of files and the filter of system calls
 
 #include <unistd.h>
 
@@ -58,8 +58,10 @@ bool parse(const char* text, T& value) {
 }
 
 int version() {
-    const bool sandboxed = enter_sandbox();
-    std::printf("OpenImageIO %s, system calls %s\n", OIIO_VERSION_STRING, sandboxed ? "filtered" : "not filtered");
+    const bool restricted = restrict_files();
+    const bool filtered = filter_calls();
+    std::printf("OpenImageIO %s, files %s, system calls %s\n", OIIO_VERSION_STRING, restricted ? "restricted" : "not restricted",
+                filtered ? "filtered" : "not filtered");
     return std::fflush(stdout) == 0 ? 0 : 1;
 }
 
@@ -76,14 +78,17 @@ int run(const std::string_view verb, const Task& task) {
     try {
         limit_process(task);
         calm_openimageio();
-        header.sandboxed = enter_sandbox() ? 1 : 0;
+        if (restrict_files()) header.sandboxed |= kFilesRestricted;
+        if (filter_calls()) header.sandboxed |= kCallsFiltered;
         const bool done = verb == "decode" ? decode(task, header) : encode(task, header);
         if (!done) return 0;
         header.state = ReaderState::done;
         put_header(header);
     } catch (const std::bad_alloc&) {
-        refuse(header, ErrorCode::unsupported,
-               "needs more memory than the " + std::to_string(task.memory >> 20) + " MiB that a decoder may have");
+        // The limit of --reader-memory, or a lower one that this process came with.
+        const std::int64_t most = memory_limit();
+        refuse(header, most < task.memory ? ErrorCode::out_of_memory : ErrorCode::unsupported,
+               "needs more memory than the " + std::to_string(std::min(most, task.memory) >> 20) + " MiB that a decoder may have");
     } catch (const std::exception& thrown) {
         refuse(header, ErrorCode::bad_data, thrown.what());
     }

@@ -25,9 +25,15 @@ struct Task {
 // Limits of memory, time and descriptors; no core file; ends when the parent does.
 void limit_process(const Task& task);
 
-// Takes away the system calls that a decoder needs no more: the network, opening files for writing, other programs, other processes. False where the kernel
-// refuses the filter: the other limits stay.
-bool enter_sandbox();
+// Bytes of address space that this process may have.
+std::int64_t memory_limit();
+
+// Takes away all files but the input, which may be read (Landlock). False where the kernel does not know it, or refuses.
+bool restrict_files();
+
+// Takes away the system calls that a decoder needs no more: the network, opening files for writing, other programs, other processes (seccomp). False where the
+// kernel refuses the filter. Where either is refused, the other and the limits stay.
+bool filter_calls();
 
 // Both answer in kResultDescriptor and return false after they have refused.
 bool decode(const Task& task, ReaderHeader& header);

@@ -32,6 +32,10 @@ inline constexpr std::uint32_t kReaderMagic = 0x31786574;  // "tex1": changes wi
 inline constexpr int kMaxReaderChannels = 64;
 inline constexpr std::size_t kReaderDataOffset = 8192;
 
+// Bits of ReaderHeader::sandboxed.
+inline constexpr std::uint32_t kCallsFiltered = 1;
+inline constexpr std::uint32_t kFilesRestricted = 2;
+
 enum class ReaderState : std::uint32_t { working, done, refused };
 
 enum class ReaderType : std::uint32_t { u8, s8, u16, s16, u32, s32, f16, f32 };
@@ -54,7 +58,7 @@ struct ReaderHeader {
     std::uint32_t magic = kReaderMagic;
     ReaderState state = ReaderState::working;
     std::uint32_t error = 0;      // an ErrorCode, where the state is `refused`
-    std::uint32_t sandboxed = 0;  // 1 where the kernel took the filter of system calls
+    std::uint32_t sandboxed = 0;  // what the kernel granted: kCallsFiltered, kFilesRestricted
     std::int32_t width = 0;
     std::int32_t height = 0;
     std::int32_t channels = 0;
