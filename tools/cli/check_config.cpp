@@ -2,6 +2,7 @@
 
 #include "cli/check_config.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -93,8 +94,12 @@ Result<CheckConfig> read_check_config(const std::string& path) {
 }
 
 CheckConfig parse_check_config(const std::string& path, const std::string& text) {
+    // toml++ 3.3 has no defined behaviour for letters beyond ASCII outside strings and comments. No key or value of ours has one: they become question marks,
+    // which are refused like any other mistake. A mark of the encoding may stand first.
+    std::string ascii = text.substr(text.starts_with("\xef\xbb\xbf") ? 3 : 0);
+    std::replace_if(ascii.begin(), ascii.end(), [](char c) { return static_cast<unsigned char>(c) > 0x7e; }, '?');
     try {
-        const toml::table table = toml::parse(text);
+        const toml::table table = toml::parse(ascii);
         return Reader(path, table).read();
     } catch (const toml::parse_error& error) {
         throw UsageError(fmt::format("{}: line {}: {}", printable(path), error.source().begin.line, printable(error.description())));
