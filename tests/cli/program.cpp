@@ -109,7 +109,7 @@ Ran run(const Scratch& scratch, const std::string& program, const std::vector<st
     posix_spawn_file_actions_destroy(&actions);
     if (failed != 0) throw std::runtime_error("cannot start " + words[0]);
     if (setting.signal != 0) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(setting.interrupt_after_ms));
+        std::this_thread::sleep_for(std::chrono::milliseconds(setting.interrupt_after_ms) + std::chrono::microseconds(setting.interrupt_after_us));
         kill(child, setting.signal);
     }
     int status = 0;

@@ -43,7 +43,8 @@ struct Setting {
     std::string input;                     // standard input
     std::vector<std::string> environment;  // "NAME=value", beside the test's own
     std::string stdout_path;               // standard output goes there instead of into Ran::out
-    int interrupt_after_ms = 0;            // send `signal` after so long
+    int interrupt_after_ms = 0;            // send `signal` after so long, and so many microseconds
+    int interrupt_after_us = 0;
     int signal = 0;
 };
 
