@@ -11,6 +11,7 @@
 #include "base/guard.h"
 #include "base/pack_rows.h"
 #include "base/parallel.h"
+#include "kernels/encode.h"
 
 namespace tex {
 namespace {
@@ -60,6 +61,23 @@ Result<Texture> pack_chain(const MipChain& chain, const PackOptions& options, co
 Result<Texture> pack(const MipChain& chain, const PackOptions& options, const Execution& execution) {
     assert(!chain.levels.empty());
     return guarded([&]() -> Result<Texture> { return pack_chain(chain, options, execution); });
+}
+
+void encode_blocks(PlaneView<const float> x, PlaneView<const float> y, const PackOptions& options, std::byte* blocks, std::size_t pitch) {
+    const Extent extent = x.extent;
+    assert(extent == y.extent && extent.width >= 1 && extent.height >= 1);
+    assert(pitch >= (static_cast<std::size_t>(extent.width) + 3) / 4 * 16);
+    for (int j = 0; j < extent.height; j += 4, blocks += pitch) {
+        BlockRow row;
+        row.width = extent.width;
+        row.height = std::min(4, extent.height - j);
+        row.negate_y = options.y_axis == YAxis::down;
+        for (int k = 0; k < 4; ++k) {
+            row.x[k] = x.row(j + std::min(k, row.height - 1));
+            row.y[k] = y.row(j + std::min(k, row.height - 1));
+        }
+        encode_blocks(row, options, blocks);
+    }
 }
 
 }  // namespace tex

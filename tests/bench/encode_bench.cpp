@@ -12,7 +12,12 @@
 // `best`, which is the optimum of the squared error in both channels. Maps are cut to whole blocks. "pooled" is the sum over the maps divided by the
 // sum over the optima.
 
+//
+// Then, under the rules by which processors return 8 bits (decode_rules.h), the errors on a sample of blocks divided by the least that any blocks of
+// DXT5nm have under the same rule; how two threads scale, beside a loop that only counts; and the pooled figures as README.md shows them.
+
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -20,6 +25,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <dlfcn.h>
@@ -28,6 +34,7 @@
 
 #include <tex/tex.h>
 
+#include "bench/decode_rules.h"
 #include "blocks/bc1.h"
 #include "blocks/bc4.h"
 #include "kernels/encode.h"
@@ -55,11 +62,17 @@ struct Quality {
     double mean = 0, most_999 = 0, largest = 0;  // angles in degrees
 };
 
+// Sums of squared errors under each rule.
+struct RuleErrors {
+    double green[4] = {}, alpha[4] = {};
+};
+
 struct Encoder {
     std::string name;
     std::function<double(const Map&, std::vector<std::byte>&)> run;  // returns seconds
     Quality sum;
     double seconds = 0;
+    RuleErrors under_rules;
 };
 
 Quality measure(const Map& map, const std::vector<std::byte>& blocks) {
@@ -94,16 +107,51 @@ Quality measure(const Map& map, const std::vector<std::byte>& blocks) {
     return q;
 }
 
+// A sample of about kSampled blocks of the map: calls visit(block, y, x) with the texels in codes.
+constexpr int kSampled = 24;
+template <class Visit>
+void for_sampled_blocks(const Map& map, Visit visit) {
+    const int across = map.width / 4;
+    const int step = std::max(1, map.blocks() / kSampled) | 1;  // odd: not one column of blocks only
+    for (int block = step / 2; block < map.blocks(); block += step) {
+        float x[16], y[16];
+        for (int k = 0; k < 16; ++k) {
+            x[k] = map.normals.x.at(block % across * 4 + k % 4, block / across * 4 + k / 4) * 127.5f + 127.5f;
+            y[k] = map.normals.y.at(block % across * 4 + k % 4, block / across * 4 + k / 4) * 127.5f + 127.5f;
+        }
+        visit(block, y, x);
+    }
+}
+
+void add_rule_errors(const Map& map, const std::vector<std::byte>& blocks, RuleErrors& sum) {
+    for_sampled_blocks(map, [&](int block, const float* y, const float* x) {
+        for (int r = 0; r < 4; ++r) {
+            const std::byte* bytes = blocks.data() + 16 * static_cast<std::ptrdiff_t>(block);
+            sum.green[r] += rules::green_error(static_cast<rules::Rule>(r), bytes, y);
+            sum.alpha[r] += rules::alpha_error(static_cast<rules::Rule>(r), bytes, x);
+        }
+    });
+}
+
+void add_least_errors(const Map& map, RuleErrors& sum) {
+    for_sampled_blocks(map, [&](int, const float* y, const float* x) {
+        for (int r = 0; r < 4; ++r) {
+            sum.green[r] += static_cast<double>(rules::least_green_error(static_cast<rules::Rule>(r), y));
+            sum.alpha[r] += static_cast<double>(rules::least_alpha_error(static_cast<rules::Rule>(r), x));
+        }
+    });
+}
+
 double median(std::vector<double> values) {
     std::sort(values.begin(), values.end());
     return values[values.size() / 2];
 }
 
 // Ours: rows of blocks, each several times in a row, so that its texels are in the cache.
-double encode_ours(const Map& map, tex::Effort effort, std::vector<std::byte>& blocks) {
-    const int repeats = effort == tex::Effort::best ? 1 : 8;
+double encode_ours(const Map& map, tex::Effort effort, std::vector<std::byte>& blocks, tex::Metric metric = tex::Metric::component) {
+    const int repeats = effort == tex::Effort::best ? 1 : effort == tex::Effort::normal ? 2 : 8;
     std::vector<double> seconds;
-    for (int run = 0; run < (effort == tex::Effort::best ? 1 : 5); ++run) {
+    for (int run = 0; run < (effort == tex::Effort::best ? 1 : 3); ++run) {
         const double start = processor_seconds();
         for (int j = 0; j < map.height; j += 4) {
             tex::BlockRow row;
@@ -113,7 +161,9 @@ double encode_ours(const Map& map, tex::Effort effort, std::vector<std::byte>& b
             }
             row.width = map.width;
             std::byte* out = blocks.data() + 16 * static_cast<std::ptrdiff_t>(j / 4) * (map.width / 4);
-            for (int repeat = 0; repeat < repeats; ++repeat) tex::encode_dxt5nm(row, effort, out);
+            for (int repeat = 0; repeat < repeats; ++repeat) {
+                tex::encode_blocks(row, {tex::Encoding::dxt5nm, tex::YAxis::up, effort, metric}, out);
+            }
         }
         seconds.push_back((processor_seconds() - start) / repeats);
     }
@@ -178,7 +228,9 @@ void print(const std::string& map, const Encoder& encoder, double speed, const Q
 
 std::vector<Encoder> our_encoders() {
     std::vector<Encoder> encoders;
-    encoders.push_back({"best", [](const Map& map, auto& blocks) { return encode_ours(map, tex::Effort::best, blocks); }, {}, 0});
+    encoders.push_back({"best", [](const Map& map, auto& blocks) { return encode_ours(map, tex::Effort::best, blocks); }, {}, 0, {}});
+    encoders.push_back(
+        {"best, angle", [](const Map& map, auto& blocks) { return encode_ours(map, tex::Effort::best, blocks, tex::Metric::angle); }, {}, 0, {}});
     for (const tex::Effort effort : {tex::Effort::normal, tex::Effort::fast}) {
         for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
             const std::string name = std::string(tex::name_of(tex::kEffortNames, effort)) + " " + hwy::TargetName(target);
@@ -187,7 +239,7 @@ std::vector<Encoder> our_encoders() {
                                     const double seconds = encode_ours(map, effort, blocks);
                                     hwy::SetSupportedTargetsForTest(0);
                                     return seconds;
-                                }, {}, 0});
+                                }, {}, 0, {}});
         }
     }
     for (const int flag : {squish::kColourRangeFit, squish::kColourClusterFit}) {
@@ -196,9 +248,62 @@ std::vector<Encoder> our_encoders() {
                                 return encode_others(map, blocks, [flag](const Map& m, std::uint8_t* out) {
                                     squish::CompressImage(m.rgba8.data(), m.width, m.height, out, squish::kDxt5 | flag);
                                 }, 1);
-                            }, {}, 0});
+                            }, {}, 0, {}});
     }
     return encoders;
+}
+
+// Seconds on the clock for `work` on each of `threads` threads at once: the least of several runs.
+template <class Work>
+double wall_seconds(int threads, Work work) {
+    double least = HUGE_VAL;
+    for (int run = 0; run < 5; ++run) {
+        const auto start = std::chrono::steady_clock::now();
+        std::vector<std::jthread> running;
+        for (int k = 0; k < threads; ++k) running.emplace_back(work);
+        running.clear();
+        least = std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    }
+    return least;
+}
+
+// How much more two threads do than one, and how much more of what only counts.
+void print_threads(const Map& map) {
+    const auto count = [] {
+        for (std::uint64_t k = 0; k < 200'000'000; ++k) asm volatile("" : "+r"(k));
+    };
+    const double counting = 2 * wall_seconds(1, count) / wall_seconds(2, count);
+    for (const tex::Effort effort : {tex::Effort::fast, tex::Effort::normal}) {
+        const auto encode = [&map, effort] {
+            std::vector<std::byte> blocks(static_cast<std::size_t>(map.blocks()) * 16);
+            encode_ours(map, effort, blocks);
+        };
+        const double encoding = 2 * wall_seconds(1, encode) / wall_seconds(2, encode);
+        std::printf("two threads, %s: %.2f of one (counting alone: %.2f, ratio %.2f)\n", std::string(tex::name_of(tex::kEffortNames, effort)).c_str(),
+                    encoding, counting, encoding / counting);
+    }
+}
+
+void print_rules(const std::vector<Encoder>& encoders, const RuleErrors& least) {
+    std::printf("\n%-22s", "green, alpha");
+    for (const char* name : rules::kNames) std::printf(" %16s", name);
+    for (const Encoder& encoder : encoders) {
+        std::printf("\n%-22s", encoder.name.c_str());
+        for (int r = 0; r < 4; ++r) {
+            std::printf("   %6.3f %6.3f", encoder.under_rules.green[r] / least.green[r], encoder.under_rules.alpha[r] / least.alpha[r]);
+        }
+    }
+    std::printf("\n\n");
+}
+
+void print_markdown(const std::vector<Encoder>& encoders, double texels) {
+    std::printf("\n| encoder | Mtexel/s | mean angle | p99.9 angle | green MSE | alpha MSE |\n|---|---|---|---|---|---|\n");
+    const Quality& best = encoders.front().sum;
+    for (const Encoder& encoder : encoders) {
+        const double speed = texels / encoder.seconds * 1e-6;
+        std::printf("| %s | %.*f | %.3f | %.3f | %.3f | %.3f |\n", encoder.name.c_str(), speed < 20 ? 1 : 0, speed, encoder.sum.mean / best.mean,
+                    encoder.sum.most_999 / best.most_999, encoder.sum.green / best.green, encoder.sum.alpha / best.alpha);
+    }
 }
 
 }  // namespace
@@ -220,7 +325,7 @@ int main(int argc, char** argv) {
                                     return encode_others(map, blocks, [encode](const Map& m, std::uint8_t* out) {
                                         encode(m.rgba8.data(), m.width, m.height, static_cast<std::size_t>(4 * m.width), out);
                                     }, 3);
-                                }, {}, 0});
+                                }, {}, 0, {}});
         } else if (fs::is_directory(path)) {
             add_directory(path, maps);
         } else {
@@ -234,7 +339,9 @@ int main(int argc, char** argv) {
     }
     std::printf("%-28s %-22s %9s %8s %8s %8s %8s %8s\n", "map", "encoder", "Mtexel/s", "mean", "green", "alpha", "p99.9", "largest");
     double texels = 0;
+    RuleErrors least;
     for (const Map& map : maps) {
+        add_least_errors(map, least);
         std::vector<std::byte> blocks(static_cast<std::size_t>(map.blocks()) * 16);
         texels += 16.0 * map.blocks();
         Quality best;
@@ -242,6 +349,7 @@ int main(int argc, char** argv) {
             const double seconds = encoder.run(map, blocks);
             const Quality q = measure(map, blocks);
             if (&encoder == encoders.data()) best = q;
+            add_rule_errors(map, blocks, encoder.under_rules);
             print(map.name, encoder, 16.0 * map.blocks() / seconds * 1e-6, q, best);
             encoder.seconds += seconds;
             for (double Quality::*field : {&Quality::green, &Quality::alpha, &Quality::mean, &Quality::most_999, &Quality::largest}) {
@@ -250,5 +358,8 @@ int main(int argc, char** argv) {
         }
     }
     for (const Encoder& encoder : encoders) print("pooled", encoder, texels / encoder.seconds * 1e-6, encoder.sum, encoders.front().sum);
+    print_rules(encoders, least);
+    if (!maps.empty()) print_threads(maps.front());
+    print_markdown(encoders, texels);
     return 0;
 }

@@ -265,4 +265,25 @@ TEST(Pack, TexelsOutsideTheLevelCarryNoWeight) {
     }
 }
 
+TEST(Pack, EncodeBlocksGivesTheSameBytesWithAnyStrideAndPitch) {
+    const MipChain chain = chain_of(bumpy({37, 14}, 3));
+    const tex::NormalMap& map = chain.levels[0];
+    std::vector<float> x(41 * 14), y(45 * 14);
+    for (int j = 0; j < 14; ++j) {
+        std::copy_n(map.x.row(j), 37, &x[static_cast<std::size_t>(41 * j)]);
+        std::copy_n(map.y.row(j), 37, &y[static_cast<std::size_t>(45 * j)]);
+    }
+    for (const Encoding encoding : {Encoding::dxt5nm, Encoding::bc5, Encoding::bc5_snorm}) {
+        for (const tex::PackOptions& options : {tex::PackOptions{encoding, tex::YAxis::down, Effort::fast}, tex::PackOptions{encoding},
+                                                tex::PackOptions{encoding, tex::YAxis::up, Effort::best, tex::Metric::angle}}) {
+            const std::vector<std::byte> packed = pack_bytes(chain, options);
+            constexpr std::size_t kRow = 10 * 16;
+            constexpr std::size_t kPitch = kRow + 8;
+            std::vector<std::byte> blocks(4 * kPitch);
+            tex::encode_blocks({x.data(), {37, 14}, 41}, {y.data(), {37, 14}, 45}, options, blocks.data(), kPitch);
+            for (std::size_t k = 0; k < packed.size(); ++k) ASSERT_EQ(packed[k], blocks[k / kRow * kPitch + k % kRow]) << k;
+        }
+    }
+}
+
 }  // namespace

@@ -87,6 +87,7 @@ void OutputOptions::add(Command& command, std::string format_default, std::strin
         std::move(y_default);
     command.choice(effort, "--effort", "E", kEffortNames,
                    "how hard block encoders look for the smallest error");
+    command.choice(metric, "--metric", "M", kMetricNames, "which error --effort best makes smallest; angle implies it");
     command.choice(dds_header, "--dds-header", "H", kDdsHeaderNames, "the header of DDS files");
     command.flag(dds_mark, "--dds-mark", "mark DDS files as normal maps, as NVIDIA's tools do");
 }

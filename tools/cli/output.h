@@ -21,6 +21,7 @@ struct OutputOptions {
     std::optional<Container> container;  // none: by the output's extension
     std::optional<YAxis> y;              // none: the input's
     Effort effort = PackOptions{}.effort;
+    Metric metric = PackOptions{}.metric;
     DdsHeader dds_header = WriteOptions{}.dds_header;
     bool dds_mark = WriteOptions{}.dds_mark;
 
@@ -30,7 +31,10 @@ struct OutputOptions {
     // The container of `output` ("-" is `standard_output`'s); throws UsageError where its name does not tell.
     [[nodiscard]] Container container_for(const std::string& output, Container standard_output) const;
 
-    [[nodiscard]] PackOptions pack_options(Encoding encoding, YAxis y_axis) const { return {encoding, y_axis, effort}; }
+    // A metric of angles implies the best effort.
+    [[nodiscard]] PackOptions pack_options(Encoding encoding, YAxis y_axis) const {
+        return {encoding, y_axis, metric == Metric::angle ? Effort::best : effort, metric};
+    }
     // Those of the job, with what is asked for here.
     [[nodiscard]] WriteOptions write_options(const Job& job) const;
 

@@ -3,7 +3,6 @@
 #include "base/pack_rows.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cstdint>
 #include <cstring>
 #include <vector>
@@ -96,17 +95,11 @@ void pack_values(const Rows& rows, int channels, int begin, int end, std::byte* 
 void pack_rows(const NormalMap& map, int height, const PackOptions& options, int begin, int end, std::byte* out) {
     const auto [format, swizzle] = encoding_info(options.encoding);
     const FormatInfo info = format_info(format);
-    const Effort effort = options.effort;
     const Rows rows(map, height, swizzle, options.y_axis);
     const std::size_t row_blocks = (size(rows.extent().width) + 3) / 4;
     for (int j = begin; j < end && info.block == 4; j += 4) {
         std::byte* blocks = out + size(j / 4) * row_blocks * info.block_bytes;
-        switch (format) {
-            case Format::bc3_unorm: encode_dxt5nm(rows.block_row(j), effort, blocks); break;
-            case Format::bc5_unorm: encode_bc5_unorm(rows.block_row(j), effort, blocks); break;
-            case Format::bc5_snorm: encode_bc5_snorm(rows.block_row(j), effort, blocks); break;
-            default: assert(false && "no encoding has this format"); break;
-        }
+        encode_blocks(rows.block_row(j), options, blocks);
     }
     if (info.block == 4) return;
     if (info.bits == 8) {

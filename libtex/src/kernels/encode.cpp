@@ -3,9 +3,11 @@
 #include "kernels/encode.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "blocks/bc1.h"
 #include "blocks/bc4.h"
+#include "kernels/angle_search.h"
 #include "kernels/bc4_search.h"
 #include "kernels/clusters.h"
 #include "kernels/fit.h"
@@ -96,5 +98,15 @@ void encode_dxt5nm(const BlockRow& row, Effort effort, std::byte* blocks) {
 void encode_bc5_unorm(const BlockRow& row, Effort effort, std::byte* blocks) { encode_bc5(row, kBc4Unorm, effort, blocks); }
 
 void encode_bc5_snorm(const BlockRow& row, Effort effort, std::byte* blocks) { encode_bc5(row, kBc4Snorm, effort, blocks); }
+
+void encode_blocks(const BlockRow& row, const PackOptions& options, std::byte* blocks) {
+    switch (options.encoding) {
+        case Encoding::dxt5nm: encode_dxt5nm(row, options.effort, blocks); break;
+        case Encoding::bc5: encode_bc5_unorm(row, options.effort, blocks); break;
+        case Encoding::bc5_snorm: encode_bc5_snorm(row, options.effort, blocks); break;
+        default: assert(false && "not an encoding in blocks"); return;
+    }
+    if (options.effort == Effort::best && options.metric == Metric::angle) improve_angles(row, options.encoding, blocks);
+}
 
 }  // namespace tex

@@ -26,4 +26,7 @@ void encode_dxt5nm(const BlockRow& row, Effort effort, std::byte* blocks);
 void encode_bc5_unorm(const BlockRow& row, Effort effort, std::byte* blocks);
 void encode_bc5_snorm(const BlockRow& row, Effort effort, std::byte* blocks);
 
+// All that the options say of blocks: encoding (dxt5nm, bc5 or bc5_snorm), effort and metric.
+void encode_blocks(const BlockRow& row, const PackOptions& options, std::byte* blocks);
+
 }  // namespace tex

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "kernels/angle_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "blocks/bc1.h"
+#include "blocks/bc4.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/angle_search.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#ifndef TEX_ANGLE_SEARCH_ONCE
+#define TEX_ANGLE_SEARCH_ONCE
+namespace tex {
+namespace {
+
+enum class Coding { bc4_unorm, bc4_snorm, green };
+
+// One channel of a block: its endpoints in the order in which they are stored; those of snorm from 0 to 254.
+struct Ends {
+    Coding coding;
+    int e[2];
+};
+
+struct Palette {
+    int count;
+    float values[8];  // components, in the order of indices
+};
+
+int most_code(Coding coding) { return coding == Coding::green ? 63 : coding == Coding::bc4_unorm ? 255 : 254; }
+
+int steps_of(const Ends& ends) { return ends.coding == Coding::green ? 3 : ends.e[0] > ends.e[1] ? 7 : 5; }
+
+Palette palette_of(const Ends& ends) {
+    const int steps = steps_of(ends);
+    const bool green = ends.coding == Coding::green;
+    const int top = ends.coding == Coding::bc4_snorm ? 254 : 255;
+    const int e0 = green ? widen_green(ends.e[0]) : ends.e[0];
+    const int e1 = green ? widen_green(ends.e[1]) : ends.e[1];
+    const auto component = [&](int k) {  // (steps - k) e0 + k e1, of `steps`
+        return static_cast<float>(2 * ((steps - k) * e0 + k * e1)) / static_cast<float>(steps * top) - 1.0f;
+    };
+    Palette palette{green ? 4 : 8, {component(0), component(steps)}};
+    for (int k = 1; k < steps; ++k) palette.values[k + 1] = component(k);
+    if (steps == 5) palette.values[6] = -1.0f, palette.values[7] = 1.0f;
+    // Equal greens use index 0 only.
+    if (green && e0 == e1) palette.count = 1;
+    return palette;
+}
+
+std::uint64_t load_bytes(const std::byte* from, int count) {
+    std::uint64_t value = 0;
+    for (int k = 0; k < count; ++k) value |= std::to_integer<std::uint64_t>(from[k]) << (8 * k);
+    return value;
+}
+
+void store_bytes(std::uint64_t value, int count, std::byte* to) {
+    for (int k = 0; k < count; ++k) to[k] = static_cast<std::byte>(value >> (8 * k));
+}
+
+Ends load_ends(Coding coding, const std::byte* block) {
+    if (coding == Coding::green) {
+        const auto colors = static_cast<int>(load_bytes(block, 4) & 0x7FFFFFFF);
+        return {coding, {colors >> 5 & 63, colors >> 21 & 63}};
+    }
+    const int e0 = std::to_integer<int>(block[0]);
+    const int e1 = std::to_integer<int>(block[1]);
+    if (coding == Coding::bc4_unorm) return {coding, {e0, e1}};
+    return {coding, {static_cast<std::int8_t>(e0) + 127, static_cast<std::int8_t>(e1) + 127}};
+}
+
+void store_channel(const Ends& ends, const int* indices, std::byte* block) {
+    const int bits = ends.coding == Coding::green ? 2 : 3;
+    std::uint64_t packed = 0;
+    for (int k = 0; k < 16; ++k) packed |= static_cast<std::uint64_t>(indices[k]) << (bits * k);
+    if (ends.coding == Coding::green) {
+        const auto word = [](int green) { return static_cast<std::uint64_t>(31 << 11 | green << 5 | 31); };
+        store_bytes(word(ends.e[0]) | word(ends.e[1]) << 16 | packed << 32, 8, block);
+    } else {
+        const int bias = ends.coding == Coding::bc4_snorm ? 127 : 0;
+        const auto byte = [&](int code) { return static_cast<std::uint64_t>(static_cast<std::uint8_t>(code - bias)); };
+        store_bytes(byte(ends.e[0]) | byte(ends.e[1]) << 8 | packed << 16, 8, block);
+    }
+}
+
+// Whether the channel may have these endpoints, the palette being of the same kind as before.
+bool allowed(const Ends& before, const Ends& after) {
+    const int most = most_code(after.coding);
+    if (std::min(after.e[0], after.e[1]) < 0 || std::max(after.e[0], after.e[1]) > most) return false;
+    return after.coding == Coding::green ? after.e[0] >= after.e[1] : steps_of(before) == steps_of(after);
+}
+
+}  // namespace
+}  // namespace tex
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace tex {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::CappedTag<float, 16>;
+using F = hn::Vec<Floats>;
+
+// The normals of a block's texels; weights of texels outside the level are 0.
+struct Normals {
+    HWY_ALIGN float x[16], y[16], z[16], weight[16];
+};
+
+// The sum over the texels, and for each the best pair of indices (of x + 8 times that of y), where asked for.
+float measure(const Normals& n, const Ends& x_ends, const Ends& y_ends, int* pairs) {
+    const Floats d;
+    const Palette px = palette_of(x_ends);
+    const Palette py = palette_of(y_ends);
+    HWY_ALIGN float chords[16];
+    HWY_ALIGN float best[16];
+    for (int i = 0; i < 16; i += static_cast<int>(hn::Lanes(d))) {
+        const F x = hn::Load(d, n.x + i);
+        const F y = hn::Load(d, n.y + i);
+        const F z = hn::Load(d, n.z + i);
+        F least = hn::Set(d, 1e9f);
+        F pair = hn::Zero(d);
+        for (int b = 0; b < py.count; ++b) {
+            const F dy = hn::Sub(y, hn::Set(d, py.values[b]));
+            const F dyy = hn::Mul(dy, dy);
+            for (int a = 0; a < px.count; ++a) {
+                const float mx = px.values[a];
+                const float my = py.values[b];
+                const F dx = hn::Sub(x, hn::Set(d, mx));
+                const F dz = hn::Sub(z, hn::Set(d, std::sqrt(1.0f - std::min(1.0f, mx * mx + my * my))));
+                const F chord = hn::Add(hn::Add(hn::Mul(dx, dx), dyy), hn::Mul(dz, dz));
+                if (pairs != nullptr) pair = hn::IfThenElse(hn::Lt(chord, least), hn::Set(d, static_cast<float>(a + 8 * b)), pair);
+                least = hn::Min(least, chord);
+            }
+        }
+        hn::Store(hn::Mul(least, hn::Load(d, n.weight + i)), d, chords + i);
+        hn::Store(pair, d, best + i);
+    }
+    float sum = 0.0f;
+    for (int k = 0; k < 16; ++k) {
+        sum += chords[k];
+        if (pairs != nullptr) pairs[k] = static_cast<int>(best[k]);
+    }
+    return sum;
+}
+
+// Takes the step that gains most, of all that change the endpoints of one channel by up to 3 codes. False where none gains.
+bool take_step(const Normals& n, Ends (&ends)[2], float& sum) {
+    constexpr int kMoves[8][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}};
+    const Ends before[2] = {ends[0], ends[1]};
+    bool gained = false;
+    for (int channel = 0; channel < 2; ++channel) {
+        for (int distance = 1; distance <= 3; ++distance) {
+            for (const auto& move : kMoves) {
+                Ends moved[2] = {before[0], before[1]};
+                moved[channel].e[0] += distance * move[0];
+                moved[channel].e[1] += distance * move[1];
+                if (!allowed(before[channel], moved[channel])) continue;
+                const float moved_sum = measure(n, moved[0], moved[1], nullptr);
+                if (!(moved_sum < sum)) continue;
+                sum = moved_sum;
+                ends[0] = moved[0];
+                ends[1] = moved[1];
+                gained = true;
+            }
+        }
+    }
+    return gained;
+}
+
+void improve_angles(const BlockRow& row, Encoding encoding, std::byte* blocks) {
+    const Coding x_coding = encoding == Encoding::bc5_snorm ? Coding::bc4_snorm : Coding::bc4_unorm;
+    const Coding y_coding = encoding == Encoding::dxt5nm ? Coding::green : x_coding;
+    for (int block = 0; 4 * block < row.width; ++block) {
+        Normals n;
+        for (int k = 0; k < 16; ++k) {
+            const int i = std::min(4 * block + k % 4, row.width - 1);
+            const float y = row.y[k / 4][i];
+            n.x[k] = std::clamp(row.x[k / 4][i], -1.0f, 1.0f);
+            n.y[k] = std::clamp(row.negate_y ? -y : y, -1.0f, 1.0f);
+            n.z[k] = std::sqrt(1.0f - std::min(1.0f, n.x[k] * n.x[k] + n.y[k] * n.y[k]));
+            n.weight[k] = 4 * block + k % 4 < row.width && k / 4 < row.height ? 1.0f : 0.0f;
+        }
+        std::byte* bytes = blocks + 16 * static_cast<std::ptrdiff_t>(block);
+        Ends ends[2] = {load_ends(x_coding, bytes), load_ends(y_coding, bytes + 8)};
+        float sum = measure(n, ends[0], ends[1], nullptr);
+        while (take_step(n, ends, sum)) {
+        }
+        int pairs[16], x_indices[16], y_indices[16];
+        measure(n, ends[0], ends[1], pairs);
+        for (int k = 0; k < 16; ++k) {
+            x_indices[k] = pairs[k] % 8;
+            y_indices[k] = pairs[k] / 8;
+        }
+        store_channel(ends[0], x_indices, bytes);
+        store_channel(ends[1], y_indices, bytes + 8);
+    }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tex
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tex {
+
+HWY_EXPORT(improve_angles);
+
+void improve_angles(const BlockRow& row, Encoding encoding, std::byte* blocks) {
+    HWY_DYNAMIC_DISPATCH(improve_angles)(row, encoding, blocks);
+}
+
+}  // namespace tex
+#endif  // HWY_ONCE
