@@ -64,15 +64,28 @@ void add_block(const Image& image, const CosineBasis& basis, int x, int y, std::
     }
 }
 
+// One period of cos(2 pi c / step) for each step, in bins: made once, as small files would take most of their time for it.
+const std::vector<double>& wave_of(int step) {
+    static const auto waves = [] {
+        std::array<std::vector<double>, kCoarsest + 1> all;
+        for (int each = kFinest; each <= kCoarsest; ++each) {
+            const int period = each * kBins;
+            for (int k = 0; k < period; ++k) all[static_cast<std::size_t>(each)].push_back(math::cos(2.0 * math::kPi * k / period));
+        }
+        return all;
+    }();
+    return waves[static_cast<std::size_t>(step)];
+}
+
 // The mean of cos(2 pi c / step) over the coefficients c of at least half a step: 1 where all are multiples. -1 for too few.
 double strength_at(const Histogram& histogram, int step) {
-    const auto period = static_cast<std::size_t>(step * kBins);
-    std::vector<double> wave(period);
-    for (std::size_t k = 0; k < period; ++k) wave[k] = math::cos(2.0 * math::kPi * static_cast<double>(k) / static_cast<double>(period));
+    const std::vector<double>& wave = wave_of(step);
     double sum = 0.0, count = 0.0;
-    for (std::size_t k = period / 2; k < histogram.size(); ++k) {
-        sum += histogram[k] * wave[k % period];
+    std::size_t phase = wave.size() / 2;
+    for (std::size_t k = phase; k < histogram.size(); ++k) {
+        sum += histogram[k] * wave[phase];
         count += histogram[k];
+        if (++phase == wave.size()) phase = 0;
     }
     return count < kLeastCount ? -1.0 : sum / count;
 }
@@ -119,6 +132,10 @@ JpegTrace measure_jpeg(const Stored& stored) {
                 add_block(*stored.image, basis, window.x + x, window.y + y, histograms);
             }
         }
+    }
+    // Most coefficients are small: the rest of the bins is empty.
+    for (Histogram& histogram : histograms) {
+        while (!histogram.empty() && histogram.back() == 0.0) histogram.pop_back();
     }
     std::vector<double> strengths, scales;
     for (int v = 0; v < kSide; ++v) {
