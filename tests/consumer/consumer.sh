@@ -3,6 +3,7 @@
 # consumer.sh STEP BUILD [CXX]: what somebody meets who installs libtex, from the build folder BUILD. Steps, each a test:
 #   install    installs into BUILD/stage; the files are those of manifest.txt
 #   move       the installation works from another place, too: a command bakes
+#   exports    the library exports what its headers declare, and nothing else of its own
 #   cmake      a project finds the library with find_package, builds samples/bake_and_pack.cpp, bakes
 #   pkgconfig  the same through pkg-config
 #   package    cpack makes a Debian package whose dependencies are named and whose commands run
@@ -52,6 +53,24 @@ move)
     check_bake "$scratch/bricks.dds"
     # TIFF goes through the reader program, which must be found too.
     "$scratch/elsewhere/bin/bake-normals" "$samples/bricks.png" -o "$scratch/bricks.tif" --bumpiness 12
+    ;;
+exports)
+    library=$build/libtex.so
+    if [ -e "$build/libtex.a" ]; then  # the same objects as a shared library
+        library=$scratch/libtex.so
+        "$cxx" -shared -o "$library" -Wl,--whole-archive "$build/libtex.a" -Wl,--no-whole-archive
+    fi
+    # Functions of the namespace tex itself: "tex::bake(". What the headers define inline may be there or not.
+    nm -DC --defined-only "$library" | sed -n 's/^[0-9a-f]* [TW] tex::\([a-z][a-z0-9_]*\)\((\|\[abi\).*/\1/p' | sort -u >"$scratch/exported.txt"
+    while read -r name; do
+        grep -rqw -- "$name" "$here/../../libtex/include/tex" || fail "the library exports $name, which no header declares"
+    done <"$scratch/exported.txt"
+    # The functions that sources define: they begin a line, after [[nodiscard]].
+    grep -h '^\[\[nodiscard\]\]' "$here"/../../libtex/include/tex/*.h | grep -v 'constexpr\|inline' |
+        sed -n 's/^\[\[nodiscard\]\] [^(]*[ *]\([a-z][a-z0-9_]*\)(.*/\1/p' | sort -u >"$scratch/declared.txt"
+    [ "$(wc -l <"$scratch/declared.txt")" -ge 30 ] || fail "only $(wc -l <"$scratch/declared.txt") functions were found in the headers"
+    missing=$(comm -23 "$scratch/declared.txt" "$scratch/exported.txt")
+    [ -z "$missing" ] || fail "the library does not export: $missing"
     ;;
 cmake)
     cmake -S "$here/project" -B "$scratch/build" -G Ninja -DCMAKE_PREFIX_PATH="$stage" -DCMAKE_CXX_COMPILER="$cxx" \

@@ -9,7 +9,8 @@
 #include <tex/normal_map.h>
 #include <tex/result.h>
 
-namespace [[gnu::visibility("default")]] tex {
+#pragma GCC visibility push(default)
+namespace tex {
 
 // How slopes are measured. Each is the product of a derivative d along one axis and a smoothing s across it,
 // normalised so that a plane of slope 1 gives 1:
@@ -66,3 +67,4 @@ struct SlopeRange {
 [[nodiscard]] SlopeRange slope_range(const NormalMap& map, const Execution& execution = {});
 
 }  // namespace tex
+#pragma GCC visibility pop

@@ -13,7 +13,8 @@
 #include <tex/result.h>
 #include <tex/scale.h>
 
-namespace [[gnu::visibility("default")]] tex {
+#pragma GCC visibility push(default)
+namespace tex {
 
 // How a base normal a and a detail normal b become one.
 //
@@ -87,3 +88,4 @@ struct BlendOptions {
                                       const Execution& execution = {});
 
 }  // namespace tex
+#pragma GCC visibility pop

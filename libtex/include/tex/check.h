@@ -25,7 +25,8 @@
 #include <tex/result.h>
 #include <tex/texture.h>
 
-namespace [[gnu::visibility("default")]] tex {
+#pragma GCC visibility push(default)
+namespace tex {
 
 enum class Severity { note, warning, error };
 
@@ -165,3 +166,4 @@ struct CheckReport {
                                              const ReadOptions& read = {}, const Execution& execution = {});
 
 }  // namespace tex
+#pragma GCC visibility pop

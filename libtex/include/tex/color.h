@@ -12,7 +12,8 @@
 #include <tex/image.h>
 #include <tex/result.h>
 
-namespace [[gnu::visibility("default")]] tex {
+#pragma GCC visibility push(default)
+namespace tex {
 
 struct ColorOptions {
     std::string space;   // a colour space, role or alias of the configuration; without one "sRGB" or "linear" (any case)
@@ -30,3 +31,4 @@ struct ColorOptions {
 [[nodiscard]] Result<void> to_linear(Image& image, const ColorOptions& options);
 
 }  // namespace tex
+#pragma GCC visibility pop

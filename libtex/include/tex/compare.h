@@ -10,7 +10,8 @@
 #include <tex/normal_map.h>
 #include <tex/result.h>
 
-namespace [[gnu::visibility("default")]] tex {
+#pragma GCC visibility push(default)
+namespace tex {
 
 // The distribution of the angle between two maps' normals, in degrees (0 to 180).
 //
@@ -45,3 +46,4 @@ struct Comparison {
 [[nodiscard]] Result<Comparison> compare(const NormalMap& a, const NormalMap& b, const Execution& execution = {});
 
 }  // namespace tex
+#pragma GCC visibility pop

@@ -13,7 +13,8 @@
 #include <tex/result.h>
 #include <tex/texture.h>
 
-namespace [[gnu::visibility("default")]] tex {
+#pragma GCC visibility push(default)
+namespace tex {
 
 // Kinds of file that libtex writes, by extension: .dds .ktx2 .png .exr .tif .tiff .tga .bmp .jpg .jpeg
 enum class Container { dds, ktx2, png, exr, tiff, tga, bmp, jpeg };
@@ -95,3 +96,4 @@ struct WriteOptions {
                                           const ReadOptions& options = {});
 
 }  // namespace tex
+#pragma GCC visibility pop

@@ -5,7 +5,8 @@
 
 #include <functional>
 
-namespace [[gnu::visibility("default")]] tex {
+#pragma GCC visibility push(default)
+namespace tex {
 
 // How a verb runs. The result never depends on it: the bytes are the same for every number of threads.
 struct Execution {
@@ -20,3 +21,4 @@ struct Execution {
 };
 
 }  // namespace tex
+#pragma GCC visibility pop

@@ -10,7 +10,8 @@
 #include <tex/image.h>
 #include <tex/names.h>
 
-namespace [[gnu::visibility("default")]] tex {
+#pragma GCC visibility push(default)
+namespace tex {
 
 // The layout of a level's bytes. Channels are in the order R, G, B, A, little-endian, rows from the top
 // without padding; block formats store 4x4 blocks, rows of blocks from the top, edge blocks whole.
@@ -125,3 +126,4 @@ struct EncodingInfo {
 [[nodiscard]] EncodingInfo encoding_info(Encoding encoding);
 
 }  // namespace tex
+#pragma GCC visibility pop

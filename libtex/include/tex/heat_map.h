@@ -7,7 +7,8 @@
 #include <tex/image.h>
 #include <tex/result.h>
 
-namespace [[gnu::visibility("default")]] tex {
+#pragma GCC visibility push(default)
+namespace tex {
 
 // Rows of the legend under the picture, and the width that it needs.
 inline constexpr int kHeatMapLegendRows = 36;
@@ -29,3 +30,4 @@ inline constexpr int kHeatMapLeastWidth = 128;
 [[nodiscard]] Result<Plane<float>> largest_of_cells(const Plane<float>& degrees, int side);
 
 }  // namespace tex
+#pragma GCC visibility pop

@@ -14,7 +14,8 @@
 #include <tex/names.h>
 #include <tex/result.h>
 
-namespace [[gnu::visibility("default")]] tex {
+#pragma GCC visibility push(default)
+namespace tex {
 
 // What lies beyond the border of an axis of n texels.
 //
@@ -116,3 +117,4 @@ struct HeightReport {
                                                HeightReport* report = nullptr);
 
 }  // namespace tex
+#pragma GCC visibility pop

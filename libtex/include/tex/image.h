@@ -22,7 +22,8 @@
 
 #include <tex/names.h>
 
-namespace [[gnu::visibility("default")]] tex {
+#pragma GCC visibility push(default)
+namespace tex {
 
 // Width and height in texels; a valid extent has both at least 1.
 struct Extent {
@@ -136,3 +137,4 @@ struct Image {
 };
 
 }  // namespace tex
+#pragma GCC visibility pop

@@ -13,7 +13,8 @@
 #include <tex/image.h>
 #include <tex/result.h>
 
-namespace [[gnu::visibility("default")]] tex {
+#pragma GCC visibility push(default)
+namespace tex {
 
 struct ReadOptions {
     // Files that claim more texels than this are refused (unsupported) before memory is taken.
@@ -40,3 +41,4 @@ struct ReadOptions {
 [[nodiscard]] Result<Image> read_image(const std::string& path, const ReadOptions& options = {});
 
 }  // namespace tex
+#pragma GCC visibility pop

@@ -11,7 +11,8 @@
 #include <tex/names.h>
 #include <tex/result.h>
 
-namespace [[gnu::visibility("default")]] tex {
+#pragma GCC visibility push(default)
+namespace tex {
 
 // The filter between a level and the next. x is the distance from the centre of the smaller level's texel, in texels of the
 // smaller level; weights are normalised to sum 1 for each texel.
@@ -78,3 +79,4 @@ struct MipOptions {
                                                const Execution& execution = {});
 
 }  // namespace tex
+#pragma GCC visibility pop

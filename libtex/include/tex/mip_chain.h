@@ -8,7 +8,8 @@
 
 #include <tex/normal_map.h>
 
-namespace [[gnu::visibility("default")]] tex {
+#pragma GCC visibility push(default)
+namespace tex {
 
 // levels[0] is the base level; level k + 1 is max(1, floor(w / 2)) by max(1, floor(h / 2)) texels, as
 // OpenGL, Vulkan and Direct3D want it. A chain is complete where its last level is 1x1, but need not be.
@@ -32,3 +33,4 @@ struct MipChain {
 }
 
 }  // namespace tex
+#pragma GCC visibility pop

@@ -11,7 +11,8 @@
 #include <optional>
 #include <string_view>
 
-namespace [[gnu::visibility("default")]] tex {
+#pragma GCC visibility push(default)
+namespace tex {
 
 // One row of a name table: the enumerator, its name as a user types it (lower case, words joined by "-"),
 // and one clause for the help that says what it means.
@@ -41,3 +42,4 @@ constexpr std::optional<E> find_by_name(const Named<E> (&table)[N], std::string_
 }
 
 }  // namespace tex
+#pragma GCC visibility pop

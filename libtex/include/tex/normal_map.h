@@ -13,7 +13,8 @@
 #include <tex/image.h>
 #include <tex/names.h>
 
-namespace [[gnu::visibility("default")]] tex {
+#pragma GCC visibility push(default)
+namespace tex {
 
 // Which way green points in a file.
 enum class YAxis { up, down };
@@ -62,3 +63,4 @@ inline constexpr Named<ScaleMode> kScaleModeNames[] = {
 }
 
 }  // namespace tex
+#pragma GCC visibility pop

@@ -12,7 +12,8 @@
 #include <tex/result.h>
 #include <tex/texture.h>
 
-namespace [[gnu::visibility("default")]] tex {
+#pragma GCC visibility push(default)
+namespace tex {
 
 // How hard the block encoders look for the smallest error (dxt5nm, bc5 and bc5_snorm; the others are exact). With normal and best no channel of
 // a block has a greater squared error than a plain fit gives: endpoints at the extremes, twice refined by linear least squares, of values
@@ -78,3 +79,4 @@ struct PackOptions {
 void encode_blocks(PlaneView<const float> x, PlaneView<const float> y, const PackOptions& options, std::byte* blocks, std::size_t pitch);
 
 }  // namespace tex
+#pragma GCC visibility pop

@@ -21,7 +21,8 @@
 #include <tex/pack.h>
 #include <tex/result.h>
 
-namespace [[gnu::visibility("default")]] tex {
+#pragma GCC visibility push(default)
+namespace tex {
 
 // Which way a file went: as a stream of rows, or as a whole image through the verbs.
 enum class Path { streamed, whole };
@@ -68,3 +69,4 @@ struct BakeFileReport {
                                                const BakeFileOptions& options = {}, const Execution& execution = {});
 
 }  // namespace tex
+#pragma GCC visibility pop

@@ -20,7 +20,8 @@
 #include <tex/result.h>
 #include <tex/texture.h>
 
-namespace [[gnu::visibility("default")]] tex {
+#pragma GCC visibility push(default)
+namespace tex {
 
 // What a picture shows. n = (x, y, z) is the stored normal of a texel, p = -x/z and q = -y/z are its slopes (z at least 1/256).
 //
@@ -206,3 +207,4 @@ struct PreviewOptions {
                                       const Execution& execution = {});
 
 }  // namespace tex
+#pragma GCC visibility pop

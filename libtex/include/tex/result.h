@@ -14,7 +14,8 @@
 
 #include <tex/names.h>
 
-namespace [[gnu::visibility("default")]] tex {
+#pragma GCC visibility push(default)
+namespace tex {
 
 // What kind of failure it was. The commands map it to their exit codes (see normal-maps(7)).
 enum class ErrorCode {
@@ -91,3 +92,4 @@ private:
 };
 
 }  // namespace tex
+#pragma GCC visibility pop

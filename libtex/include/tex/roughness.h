@@ -41,7 +41,8 @@
 #include <tex/result.h>
 #include <tex/texture.h>
 
-namespace [[gnu::visibility("default")]] tex {
+#pragma GCC visibility push(default)
+namespace tex {
 
 enum class RoughnessModel { toksvig, vmf };
 
@@ -83,3 +84,4 @@ struct RoughnessChain {
                                              Effort effort = Effort::normal, const Execution& execution = {});
 
 }  // namespace tex
+#pragma GCC visibility pop

@@ -8,7 +8,8 @@
 #include <tex/normal_map.h>
 #include <tex/result.h>
 
-namespace [[gnu::visibility("default")]] tex {
+#pragma GCC visibility push(default)
+namespace tex {
 
 // The greatest magnitude of a scale.
 inline constexpr float kMaxScale = 1e6f;
@@ -34,3 +35,4 @@ inline constexpr float kMaxScale = 1e6f;
                                      const Execution& execution = {});
 
 }  // namespace tex
+#pragma GCC visibility pop

@@ -11,7 +11,8 @@
 #include <tex/result.h>
 #include <tex/texture.h>
 
-namespace [[gnu::visibility("default")]] tex {
+#pragma GCC visibility push(default)
+namespace tex {
 
 // A picture here is a texture as preview() makes it: rgb8, one level, sRGB.
 
@@ -42,3 +43,4 @@ struct Panel {
 [[nodiscard]] Result<std::vector<std::byte>> encode_animation(const std::vector<Texture>& pictures, int frames_per_second = 20);
 
 }  // namespace tex
+#pragma GCC visibility pop

@@ -8,7 +8,8 @@
 #include <tex/result.h>
 #include <tex/texture.h>
 
-namespace [[gnu::visibility("default")]] tex {
+#pragma GCC visibility push(default)
+namespace tex {
 
 inline constexpr Named<Swizzle> kSwizzleNames[] = {
     {{Component::x, Component::y, Component::z, Component::other}, "rgb", "x, y, z in R, G, B"},
@@ -36,3 +37,4 @@ inline constexpr Named<Swizzle> kSwizzleNames[] = {
 [[nodiscard]] Result<Swizzle> guess_swizzle(const Texture& texture, const Execution& execution = {});
 
 }  // namespace tex
+#pragma GCC visibility pop

@@ -69,9 +69,11 @@
 #include <tex/image_io.h>
 #include <tex/pipeline.h>
 
-namespace [[gnu::visibility("default")]] tex {
+#pragma GCC visibility push(default)
+namespace tex {
 
 // "0.1.0": the version of the library that runs, not of the header.
 [[nodiscard]] const char* version();
 
 }  // namespace tex
+#pragma GCC visibility pop

@@ -10,7 +10,8 @@
 #include <tex/format.h>
 #include <tex/normal_map.h>
 
-namespace [[gnu::visibility("default")]] tex {
+#pragma GCC visibility push(default)
+namespace tex {
 
 // One level: exactly level_bytes(format, extent) bytes in the layout of the format.
 struct Level {
@@ -44,3 +45,4 @@ struct Texture {
 };
 
 }  // namespace tex
+#pragma GCC visibility pop

@@ -10,7 +10,8 @@
 #include <tex/result.h>
 #include <tex/texture.h>
 
-namespace [[gnu::visibility("default")]] tex {
+#pragma GCC visibility push(default)
+namespace tex {
 
 // Decodes one level to float planes, one for each channel of the format, named R, G, B, A: [0, 1] for unorm, [-1, 1] for
 // snorm, as stored for floats. Block formats decode as described here, not as a particular GPU does: 5- and 6-bit endpoints are
@@ -68,3 +69,4 @@ struct UnpackOptions {
                                        const Execution& execution = {});
 
 }  // namespace tex
+#pragma GCC visibility pop
