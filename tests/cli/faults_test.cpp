@@ -24,6 +24,7 @@ struct Case {
     std::vector<std::string> arguments;
     int most_calls;  // that are made to fail: the first ones; decoders and encoders of other processes take long to come to theirs
 };
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
 const Case kCases[] = {
     {"Texture", "bake-normals", {"a.png", "-o", "out.dds", "--threads", "2"}, 1000},

@@ -25,6 +25,7 @@
 #include <cerrno>
 #include <cstdarg>
 #include <cstdlib>
+#include <type_traits>
 
 namespace {
 
@@ -43,6 +44,18 @@ int number(const char* name, int otherwise) {
     return text == nullptr ? otherwise : atoi(text);
 }
 
+// syscall() takes registers: an int must not come with whatever the upper half of one held.
+template <class T>
+auto wide(T argument) {
+    if constexpr (std::is_integral_v<T>) return static_cast<long>(argument);
+    else return argument;
+}
+
+template <class... Arguments>
+long wide_syscall(long which, Arguments... arguments) {
+    return syscall(which, wide(arguments)...);
+}
+
 Plan make_plan() {
     Plan plan;
     plan.at = number("TEX_FAULT_AT", 0);
@@ -52,10 +65,10 @@ Plan make_plan() {
     plan.no_threads = number("TEX_FAULT_NO_THREADS", 0) != 0;
     plan.shorten = getenv("TEX_FAULT_SHORTEN");
     if (const char* file = getenv("TEX_FAULT_COUNT")) {
-        const auto fd = static_cast<int>(syscall(SYS_openat, AT_FDCWD, file, O_RDWR | O_CLOEXEC));
-        const long place = syscall(SYS_mmap, nullptr, sizeof(int), PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
+        const auto fd = static_cast<int>(wide_syscall(SYS_openat, AT_FDCWD, file, O_RDWR | O_CLOEXEC));
+        const long place = wide_syscall(SYS_mmap, nullptr, sizeof(int), PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
         if (fd >= 0 && place != -1) plan.calls = reinterpret_cast<std::atomic<int>*>(place);
-        if (fd >= 0) syscall(SYS_close, fd);
+        if (fd >= 0) wide_syscall(SYS_close, fd);
     }
     return plan;
 }
@@ -77,7 +90,7 @@ bool fails() {
     }
     if (plan().shorten != nullptr) {
         struct stat status {};
-        if (stat(plan().shorten, &status) == 0) syscall(SYS_truncate, plan().shorten, status.st_size / 2);
+        if (stat(plan().shorten, &status) == 0) wide_syscall(SYS_truncate, plan().shorten, status.st_size / 2);
         return false;
     }
     errno = plan().error;
@@ -86,7 +99,7 @@ bool fails() {
 
 template <class... Arguments>
 long call(long which, Arguments... arguments) {
-    return fails() ? -1 : syscall(which, arguments...);
+    return fails() ? -1 : wide_syscall(which, arguments...);
 }
 
 int open_file(int folder, const char* path, int flags, mode_t mode) {
@@ -165,10 +178,10 @@ TEX_CALL(int, memfd_create, const char* name, unsigned flags) { return static_ca
 TEX_CALL(int, pipe2, int* ends, int flags) { return static_cast<int>(call(SYS_pipe2, ends, flags)); }
 
 TEX_CALL(void*, mmap, void* at, size_t size, int protection, int flags, int fd, off_t offset) {
-    return fails() ? MAP_FAILED : reinterpret_cast<void*>(syscall(SYS_mmap, at, size, protection, flags, fd, offset));
+    return fails() ? MAP_FAILED : reinterpret_cast<void*>(wide_syscall(SYS_mmap, at, size, protection, flags, fd, offset));
 }
 TEX_CALL(void*, mmap64, void* at, size_t size, int protection, int flags, int fd, off_t offset) {
-    return fails() ? MAP_FAILED : reinterpret_cast<void*>(syscall(SYS_mmap, at, size, protection, flags, fd, offset));
+    return fails() ? MAP_FAILED : reinterpret_cast<void*>(wide_syscall(SYS_mmap, at, size, protection, flags, fd, offset));
 }
 
 TEX_CALL(int, posix_spawn, pid_t* child, const char* path, const posix_spawn_file_actions_t* actions, const posix_spawnattr_t* attributes,

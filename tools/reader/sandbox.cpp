@@ -99,7 +99,7 @@ std::int64_t memory_limit() {
 bool restrict_files() {
     // What the first version of Landlock knows (Linux 5.13), and from its second and third on renames across folders and truncation.
     constexpr std::uint64_t kFirst = (std::uint64_t{1} << 13) - 1;
-    const long version = syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION);
+    const long version = syscall(SYS_landlock_create_ruleset, nullptr, 0L, LANDLOCK_CREATE_RULESET_VERSION);
     if (version < 1) return false;
     landlock_ruleset_attr attributes{};
     attributes.handled_access_fs = kFirst | (version >= 2 ? std::uint64_t{1} << 13 : 0) | (version >= 3 ? std::uint64_t{1} << 14 : 0);
