@@ -10,11 +10,21 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include "cli/command.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
+
+// toml++ 3.3 asserts what a file can break (a table whose name begins with a colon), and in releases assumes it: here that is an error of the file.
+namespace tex::cli {
+struct BrokenToml {};
+[[noreturn]] static void refuse_toml() { throw BrokenToml(); }
+}  // namespace tex::cli
+#pragma push_macro("NDEBUG")
+#undef NDEBUG
+#define TOML_ASSERT(condition) ((condition) ? static_cast<void>(0) : tex::cli::refuse_toml())
+#include <toml++/toml.h>
+#pragma pop_macro("NDEBUG")
 
 namespace tex::cli {
 namespace {
@@ -33,7 +43,7 @@ public:
             }
         }
         for (const auto& [text, node] : strings("require")) {
-            if (auto added = add_requirement(config.options.require, text); !added) fail(*node, added.error().reason);
+            if (auto added = add_requirement(config.options.require, text); !added) fail(*node, printable(added.error().reason));
         }
         for (const auto& [text, node] : strings("enable")) config.options.enable.push_back(rule_name(text, *node));
         for (const auto& [text, node] : strings("disable")) config.options.disable.push_back(rule_name(text, *node));
@@ -103,6 +113,8 @@ CheckConfig parse_check_config(const std::string& path, const std::string& text)
         return Reader(path, table).read();
     } catch (const toml::parse_error& error) {
         throw UsageError(fmt::format("{}: line {}: {}", printable(path), error.source().begin.line, printable(error.description())));
+    } catch (const BrokenToml&) {
+        throw UsageError(fmt::format("{}: this is not TOML", printable(path)));
     }
 }
 
