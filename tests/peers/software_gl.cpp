@@ -2,62 +2,13 @@
 
 #include "software_gl.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
-
-#include <GL/osmesa.h>
-#include <GL/glext.h>
+#include <utility>
 
 namespace peers {
 namespace {
-
-template <class Function>
-Function load(const char* name) {
-    return reinterpret_cast<Function>(OSMesaGetProcAddress(name));
-}
-
-// The entry points that sampling needs; Mesa's off-screen library exports none of them by itself.
-struct Gl {
-#define PEERS_GL(type, name) type name = load<type>("gl" #name)
-    PEERS_GL(PFNGLCREATESHADERPROC, CreateShader);
-    PEERS_GL(PFNGLSHADERSOURCEPROC, ShaderSource);
-    PEERS_GL(PFNGLCOMPILESHADERPROC, CompileShader);
-    PEERS_GL(PFNGLCREATEPROGRAMPROC, CreateProgram);
-    PEERS_GL(PFNGLATTACHSHADERPROC, AttachShader);
-    PEERS_GL(PFNGLLINKPROGRAMPROC, LinkProgram);
-    PEERS_GL(PFNGLUSEPROGRAMPROC, UseProgram);
-    PEERS_GL(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation);
-    PEERS_GL(PFNGLUNIFORM1FPROC, Uniform1f);
-    PEERS_GL(PFNGLUNIFORM2FPROC, Uniform2f);
-    PEERS_GL(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays);
-    PEERS_GL(PFNGLBINDVERTEXARRAYPROC, BindVertexArray);
-    PEERS_GL(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers);
-    PEERS_GL(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers);
-    PEERS_GL(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer);
-    PEERS_GL(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D);
-    PEERS_GL(PFNGLCOMPRESSEDTEXIMAGE2DPROC, CompressedTexImage2D);
-#undef PEERS_GL
-#define PEERS_GL(result, name, ...) \
-    result (*name)(__VA_ARGS__) = load<result (*)(__VA_ARGS__)>("gl" #name)
-    PEERS_GL(void, GenTextures, GLsizei, GLuint*);
-    PEERS_GL(void, DeleteTextures, GLsizei, const GLuint*);
-    PEERS_GL(void, BindTexture, GLenum, GLuint);
-    PEERS_GL(void, TexParameteri, GLenum, GLenum, GLint);
-    PEERS_GL(void, TexImage2D, GLenum, GLint, GLint, GLsizei, GLsizei, GLint, GLenum, GLenum, const void*);
-    PEERS_GL(void, Viewport, GLint, GLint, GLsizei, GLsizei);
-    PEERS_GL(void, DrawArrays, GLenum, GLint, GLsizei);
-    PEERS_GL(void, ReadPixels, GLint, GLint, GLsizei, GLsizei, GLenum, GLenum, void*);
-    PEERS_GL(GLenum, GetError, void);
-#undef PEERS_GL
-};
-
-constexpr const char* kVertexShader =
-    "#version 330 core\n"
-    "void main() { vec2 p = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0; gl_Position = vec4(p, 0, 1); }\n";
-constexpr const char* kFragmentShader =
-    "#version 330 core\n"
-    "uniform sampler2D map; uniform float lod; uniform vec2 extent; out vec4 color;\n"
-    "void main() { color = textureLod(map, gl_FragCoord.xy / extent, lod); }\n";
 
 bool make_context() {
     // Shortcuts in llvmpipe: 8-bit ones would round what the shader reads, others mix less of the next mip level than they should.
@@ -69,89 +20,115 @@ bool make_context() {
     return context != nullptr && OSMesaMakeCurrent(context, buffer.data(), GL_UNSIGNED_BYTE, 16, 16) == GL_TRUE;
 }
 
-GLuint make_program(const Gl& gl) {
-    const GLuint program = gl.CreateProgram();
-    for (const auto& [kind, source] : {std::pair{GL_VERTEX_SHADER, kVertexShader}, std::pair{GL_FRAGMENT_SHADER, kFragmentShader}}) {
-        const GLuint shader = gl.CreateShader(static_cast<GLenum>(kind));
-        gl.ShaderSource(shader, 1, &source, nullptr);
-        gl.CompileShader(shader);
-        gl.AttachShader(program, shader);
-    }
-    gl.LinkProgram(program);
-    return program;
-}
-
-GLenum gl_format(tex::Format format) {
-    switch (format) {
-        case tex::Format::bc3_unorm: return GL_COMPRESSED_RGBA_S3TC_DXT5_EXT;
-        case tex::Format::bc5_unorm: return GL_COMPRESSED_RG_RGTC2;
-        case tex::Format::bc5_snorm: return GL_COMPRESSED_SIGNED_RG_RGTC2;
-        default: return 0;
-    }
-}
-
-GLuint upload(const Gl& gl, tex::Format format, const std::vector<GlLevel>& levels) {
+GLuint bind_new_texture() {
     GLuint texture = 0;
-    gl.GenTextures(1, &texture);
-    gl.BindTexture(GL_TEXTURE_2D, texture);
-    for (std::size_t k = 0; k < levels.size(); ++k) {
-        gl.CompressedTexImage2D(GL_TEXTURE_2D, static_cast<GLint>(k), gl_format(format), levels[k].extent.width,
-                                levels[k].extent.height, 0, static_cast<GLsizei>(levels[k].bytes.size()),
-                                levels[k].bytes.data());
-    }
-    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
-    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    software_gl().GenTextures(1, &texture);
+    software_gl().BindTexture(GL_TEXTURE_2D, texture);
     return texture;
 }
 
-GlTexels draw_level(const Gl& gl, GLuint program, GLuint texture, int level, tex::Extent extent) {
-    GLuint target = 0;
-    gl.GenTextures(1, &target);
-    gl.BindTexture(GL_TEXTURE_2D, target);
-    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, extent.width, extent.height, 0, GL_RGBA, GL_FLOAT, nullptr);
-    GLuint framebuffer = 0;
-    gl.GenFramebuffers(1, &framebuffer);
-    gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-    gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target, 0);
-    gl.Viewport(0, 0, extent.width, extent.height);
-    gl.BindTexture(GL_TEXTURE_2D, texture);
-    gl.UseProgram(program);
-    gl.Uniform1f(gl.GetUniformLocation(program, "lod"), static_cast<float>(level));
-    gl.Uniform2f(gl.GetUniformLocation(program, "extent"), static_cast<float>(extent.width),
-                 static_cast<float>(extent.height));
-    gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 3);
-    GlTexels texels{extent, std::vector<float>(static_cast<std::size_t>(extent.texels()) * 4)};
-    gl.ReadPixels(0, 0, extent.width, extent.height, GL_RGBA, GL_FLOAT, texels.rgba.data());
-    gl.DeleteFramebuffers(1, &framebuffer);
-    gl.DeleteTextures(1, &target);
-    return texels;
+void set_filters(std::size_t levels) {
+    const Gl& gl = software_gl();
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, static_cast<GLint>(levels - 1));
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, levels > 1 ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR);
+    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
 }
 
 }  // namespace
+
+const char* const kWholeTarget =
+    "#version 330 core\n"
+    "void main() { vec2 p = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0; gl_Position = vec4(p, 0, 1); }\n";
 
 bool software_gl_works() {
     static const bool works = make_context();
     return works;
 }
 
-std::vector<GlTexels> sample_levels(tex::Format format, const std::vector<GlLevel>& levels) {
-    if (!software_gl_works()) return {};
-    static const Gl gl;
-    static const GLuint program = make_program(gl);
-    static const GLuint vertices = [] {
-        GLuint name = 0;
-        gl.GenVertexArrays(1, &name);
-        return name;
+const Gl& software_gl() {
+    static const Gl gl = [] {
+        Gl entries;
+        GLuint vertices = 0;
+        entries.GenVertexArrays(1, &vertices);
+        entries.BindVertexArray(vertices);
+        return entries;
     }();
-    gl.BindVertexArray(vertices);
-    const GLuint texture = upload(gl, format, levels);
-    std::vector<GlTexels> result;
-    for (std::size_t k = 0; k < levels.size(); ++k) {
-        result.push_back(draw_level(gl, program, texture, static_cast<int>(k), levels[k].extent));
+    return gl;
+}
+
+GLuint make_program(const char* vertex_shader, const char* fragment_shader) {
+    const Gl& gl = software_gl();
+    const GLuint program = gl.CreateProgram();
+    for (const auto& [kind, source] : {std::pair{GL_VERTEX_SHADER, vertex_shader}, std::pair{GL_FRAGMENT_SHADER, fragment_shader}}) {
+        const GLuint shader = gl.CreateShader(static_cast<GLenum>(kind));
+        gl.ShaderSource(shader, 1, &source, nullptr);
+        gl.CompileShader(shader);
+        gl.AttachShader(program, shader);
     }
-    gl.DeleteTextures(1, &texture);
-    if (gl.GetError() != GL_NO_ERROR) result.clear();
-    return result;
+    gl.LinkProgram(program);
+    GLint linked = 0;
+    gl.GetProgramiv(program, GL_LINK_STATUS, &linked);
+    return linked != 0 ? program : 0;
+}
+
+GLuint upload_map(const tex::MipChain& map, const std::function<Rgba(float, float, float)>& texel) {
+    const GLuint texture = bind_new_texture();
+    for (std::size_t k = 0; k < map.levels.size(); ++k) {
+        const tex::NormalMap& level = map.levels[k];
+        const tex::Extent extent = level.extent();
+        std::vector<float> rgba;
+        for (int j = extent.height - 1; j >= 0; --j) {
+            for (int i = 0; i < extent.width; ++i) {
+                const Rgba values = texel(level.x.at(i, j), level.y.at(i, j), level.z.at(i, j));
+                rgba.insert(rgba.end(), values.begin(), values.end());
+            }
+        }
+        software_gl().TexImage2D(GL_TEXTURE_2D, static_cast<GLint>(k), GL_RGBA32F, extent.width, extent.height, 0, GL_RGBA, GL_FLOAT, rgba.data());
+    }
+    set_filters(map.levels.size());
+    return texture;
+}
+
+GLuint upload_plane(const tex::Plane<float>& plane) {
+    const GLuint texture = bind_new_texture();
+    const tex::Extent extent = plane.extent();
+    std::vector<float> red;
+    for (int j = extent.height - 1; j >= 0; --j) red.insert(red.end(), plane.row(j), plane.row(j) + extent.width);
+    software_gl().TexImage2D(GL_TEXTURE_2D, 0, GL_R32F, extent.width, extent.height, 0, GL_RED, GL_FLOAT, red.data());
+    set_filters(1);
+    return texture;
+}
+
+std::vector<float> draw(GLuint program, tex::Extent extent, int vertices, const std::function<void(const Place&)>& set_uniforms) {
+    const Gl& gl = software_gl();
+    gl.ActiveTexture(GL_TEXTURE2);  // 0 and 1 hold the maps
+    const GLuint target = bind_new_texture();
+    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, extent.width, extent.height, 0, GL_RGBA, GL_FLOAT, nullptr);
+    GLuint framebuffer = 0;
+    gl.GenFramebuffers(1, &framebuffer);
+    gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target, 0);
+    gl.Viewport(0, 0, extent.width, extent.height);
+    constexpr float kNothing[4] = {};
+    gl.ClearBufferfv(GL_COLOR, 0, kNothing);
+    gl.UseProgram(program);
+    set_uniforms([&](const char* uniform) { return gl.GetUniformLocation(program, uniform); });
+    gl.DrawArrays(GL_TRIANGLE_STRIP, 0, vertices);
+    std::vector<float> rgba(static_cast<std::size_t>(extent.texels()) * 4);
+    gl.ReadPixels(0, 0, extent.width, extent.height, GL_RGBA, GL_FLOAT, rgba.data());
+    gl.DeleteFramebuffers(1, &framebuffer);
+    gl.DeleteTextures(1, &target);
+    gl.ActiveTexture(GL_TEXTURE0);
+    if (gl.GetError() != GL_NO_ERROR) rgba.clear();
+    return rgba;
+}
+
+std::vector<float> flipped(const std::vector<float>& rgba, tex::Extent extent) {
+    std::vector<float> rows(rgba.size());
+    const auto pitch = static_cast<std::ptrdiff_t>(extent.width) * 4;
+    auto to = rows.begin();
+    for (auto end = rgba.end(); end != rgba.begin(); end -= pitch) to = std::copy(end - pitch, end, to);
+    return rows;
 }
 
 }  // namespace peers

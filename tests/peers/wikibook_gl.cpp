@@ -2,12 +2,7 @@
 
 #include "wikibook_gl.h"
 
-#include <cstdio>
-#include <string>
 #include <utility>
-
-#include <GL/osmesa.h>
-#include <GL/glext.h>
 
 #include "software_gl.h"
 
@@ -74,98 +69,7 @@ void main() {
     fragment = vec4(srgb(sum.r), srgb(sum.g), srgb(sum.b), 1.0);
 })";
 
-// The entry points that a drawing needs.
-struct Gl {
-#define PEERS_GL(type, name) type name = reinterpret_cast<type>(OSMesaGetProcAddress("gl" #name))
-    PEERS_GL(PFNGLCREATESHADERPROC, CreateShader);
-    PEERS_GL(PFNGLSHADERSOURCEPROC, ShaderSource);
-    PEERS_GL(PFNGLCOMPILESHADERPROC, CompileShader);
-    PEERS_GL(PFNGLCREATEPROGRAMPROC, CreateProgram);
-    PEERS_GL(PFNGLATTACHSHADERPROC, AttachShader);
-    PEERS_GL(PFNGLLINKPROGRAMPROC, LinkProgram);
-    PEERS_GL(PFNGLGETPROGRAMIVPROC, GetProgramiv);
-    PEERS_GL(PFNGLUSEPROGRAMPROC, UseProgram);
-    PEERS_GL(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation);
-    PEERS_GL(PFNGLUNIFORM1IPROC, Uniform1i);
-    PEERS_GL(PFNGLUNIFORM1FPROC, Uniform1f);
-    PEERS_GL(PFNGLUNIFORM3FPROC, Uniform3f);
-    PEERS_GL(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays);
-    PEERS_GL(PFNGLBINDVERTEXARRAYPROC, BindVertexArray);
-    PEERS_GL(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers);
-    PEERS_GL(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer);
-    PEERS_GL(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D);
-    PEERS_GL(PFNGLACTIVETEXTUREPROC, ActiveTexture);
-    PEERS_GL(PFNGLCLEARBUFFERFVPROC, ClearBufferfv);
-#undef PEERS_GL
-#define PEERS_GL(result, name, ...)                                                                  \
-    result (*name)(__VA_ARGS__) = reinterpret_cast<result (*)(__VA_ARGS__)>(OSMesaGetProcAddress("g" \
-                                                                                                 "l" #name))
-    PEERS_GL(void, GenTextures, GLsizei, GLuint*);
-    PEERS_GL(void, BindTexture, GLenum, GLuint);
-    PEERS_GL(void, TexParameteri, GLenum, GLenum, GLint);
-    PEERS_GL(void, TexImage2D, GLenum, GLint, GLint, GLsizei, GLsizei, GLint, GLenum, GLenum, const void*);
-    PEERS_GL(void, Viewport, GLint, GLint, GLsizei, GLsizei);
-    PEERS_GL(void, DrawArrays, GLenum, GLint, GLsizei);
-    PEERS_GL(void, ReadPixels, GLint, GLint, GLsizei, GLsizei, GLenum, GLenum, void*);
-    PEERS_GL(GLenum, GetError, void);
-#undef PEERS_GL
-};
-
-GLuint make_program(const Gl& gl) {
-    const GLuint program = gl.CreateProgram();
-    for (const auto& [kind, source] :
-         {std::pair{GL_VERTEX_SHADER, kVertexShader}, std::pair{GL_FRAGMENT_SHADER, kFragmentShader}}) {
-        const GLuint shader = gl.CreateShader(static_cast<GLenum>(kind));
-        gl.ShaderSource(shader, 1, &source, nullptr);
-        gl.CompileShader(shader);
-        gl.AttachShader(program, shader);
-    }
-    gl.LinkProgram(program);
-    GLint linked = 0;
-    gl.GetProgramiv(program, GL_LINK_STATUS, &linked);
-    return linked != 0 ? program : 0;
-}
-
-void set_filters(const Gl& gl, bool mip_mapped) {
-    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, mip_mapped ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR);
-    gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-}
-
-// Rows from the bottom, as v grows.
-void upload_map(const Gl& gl, const tex::MipChain& map) {
-    GLuint texture = 0;
-    gl.GenTextures(1, &texture);
-    gl.BindTexture(GL_TEXTURE_2D, texture);
-    for (std::size_t k = 0; k < map.levels.size(); ++k) {
-        const tex::NormalMap& level = map.levels[k];
-        const tex::Extent extent = level.extent();
-        std::vector<float> rgba;
-        for (int j = extent.height - 1; j >= 0; --j) {
-            for (int i = 0; i < extent.width; ++i) {
-                rgba.insert(rgba.end(),
-                            {1.0f, (level.y.at(i, j) + 1.0f) / 2.0f, 1.0f, (level.x.at(i, j) + 1.0f) / 2.0f});
-            }
-        }
-        gl.TexImage2D(GL_TEXTURE_2D, static_cast<GLint>(k), GL_RGBA32F, extent.width, extent.height, 0,
-                      GL_RGBA, GL_FLOAT, rgba.data());
-    }
-    set_filters(gl, map.levels.size() > 1);
-}
-
-void upload_height(const Gl& gl, const tex::Plane<float>& height) {
-    GLuint texture = 0;
-    gl.GenTextures(1, &texture);
-    gl.BindTexture(GL_TEXTURE_2D, texture);
-    const tex::Extent extent = height.extent();
-    std::vector<float> red;
-    for (int j = extent.height - 1; j >= 0; --j)
-        red.insert(red.end(), height.row(j), height.row(j) + extent.width);
-    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_R32F, extent.width, extent.height, 0, GL_RED, GL_FLOAT, red.data());
-    set_filters(gl, false);
-}
-
-void set_uniforms(const Gl& gl, GLuint program, const GlScene& s) {
-    const auto place = [&](const char* name) { return gl.GetUniformLocation(program, name); };
+void set_uniforms(const Gl& gl, const Place& place, const GlScene& s) {
     const std::pair<const char*, float> numbers[] = {
         {"slope", s.slope},
         {"aspect", static_cast<float>(s.picture.width) / static_cast<float>(s.picture.height)},
@@ -191,45 +95,21 @@ void set_uniforms(const Gl& gl, GLuint program, const GlScene& s) {
     gl.Uniform1i(place("parallaxMap"), 1);
 }
 
-void make_target(const Gl& gl, tex::Extent extent) {
-    GLuint target = 0, framebuffer = 0;
-    gl.GenTextures(1, &target);
-    gl.BindTexture(GL_TEXTURE_2D, target);
-    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, extent.width, extent.height, 0, GL_RGBA, GL_FLOAT, nullptr);
-    gl.GenFramebuffers(1, &framebuffer);
-    gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-    gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target, 0);
-    gl.Viewport(0, 0, extent.width, extent.height);
-    constexpr float kNothing[4] = {};
-    gl.ClearBufferfv(GL_COLOR, 0, kNothing);
-}
-
 }  // namespace
 
 std::vector<float> draw_wikibook_plane(const GlScene& scene) {
     if (!software_gl_works()) return {};
-    const Gl gl;
-    const GLuint program = make_program(gl);
-    if (program == 0) return {};
-    GLuint vertices = 0;
-    gl.GenVertexArrays(1, &vertices);
-    gl.BindVertexArray(vertices);
-    make_target(gl, scene.picture);
+    const Gl& gl = software_gl();
+    const GLuint program = make_program(kVertexShader, kFragmentShader);
     gl.ActiveTexture(GL_TEXTURE1);
-    if (scene.height != nullptr) upload_height(gl, *scene.height);
+    const GLuint height = scene.height != nullptr ? upload_plane(*scene.height) : 0;
     gl.ActiveTexture(GL_TEXTURE0);
-    upload_map(gl, *scene.map);
-    gl.UseProgram(program);
-    set_uniforms(gl, program, scene);
-    gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-    const std::size_t row = static_cast<std::size_t>(scene.picture.width) * 4;
-    std::vector<float> bottom_up(row * static_cast<std::size_t>(scene.picture.height)), top_down;
-    gl.ReadPixels(0, 0, scene.picture.width, scene.picture.height, GL_RGBA, GL_FLOAT, bottom_up.data());
-    if (gl.GetError() != GL_NO_ERROR) return {};
-    for (auto end = bottom_up.end(); end != bottom_up.begin(); end -= static_cast<std::ptrdiff_t>(row)) {
-        top_down.insert(top_down.end(), end - static_cast<std::ptrdiff_t>(row), end);
-    }
-    return top_down;
+    // As DXT5nm decodes: x in alpha, y in green.
+    const GLuint map = upload_map(*scene.map, [](float x, float y, float) { return Rgba{1.0f, (y + 1.0f) / 2.0f, 1.0f, (x + 1.0f) / 2.0f}; });
+    const std::vector<float> rgba = draw(program, scene.picture, 4, [&](const Place& place) { set_uniforms(gl, place, scene); });
+    for (const GLuint texture : {height, map}) gl.DeleteTextures(1, &texture);
+    gl.DeleteProgram(program);
+    return flipped(rgba, scene.picture);
 }
 
 }  // namespace peers
