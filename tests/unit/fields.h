@@ -11,6 +11,7 @@
 #include <functional>
 
 #include <tex/height_field.h>
+#include <tex/mip_chain.h>
 #include <tex/normal_map.h>
 
 namespace tex::fields {
@@ -80,6 +81,12 @@ inline std::uint64_t hash_of(const Plane<float>& plane, std::uint64_t hash = 0xc
 
 inline std::uint64_t hash_of(const NormalMap& map, std::uint64_t hash = 0xcbf29ce484222325u) {
     return hash_of(map.z, hash_of(map.y, hash_of(map.x, hash)));
+}
+
+inline std::uint64_t hash_of(const MipChain& chain) {
+    std::uint64_t hash = 0xcbf29ce484222325u;
+    for (const NormalMap& level : chain.levels) hash = hash_of(level, hash);
+    return hash;
 }
 
 }  // namespace tex::fields

@@ -4,15 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "reference/mip.h"
+#include "unit/chains.h"
 #include "unit/fields.h"
-#include "unit/targets.h"
+#include "unit/normal_maps.h"
 
 namespace {
 
@@ -31,34 +31,6 @@ using tex::fields::same_bytes;
 constexpr Wrap kWraps[] = {Wrap::repeat, Wrap::clamp, Wrap::mirror};
 constexpr MipDomain kDomains[] = {MipDomain::vector, MipDomain::slope};
 constexpr Extent kExtents[] = {{1, 1}, {1, 300}, {300, 1}, {5, 7}, {253, 253}, {1025, 1025}};
-
-NormalMap copy_of(const NormalMap& map) {
-    NormalMap copy;
-    copy.x = map.x.clone();
-    copy.y = map.y.clone();
-    copy.z = map.z.clone();
-    return copy;
-}
-
-MipChain chain_of(const NormalMap& base, const MipOptions& options = {}, int threads = 1) {
-    return std::move(tex::build_mip_chain(copy_of(base), options, {threads, {}}).value());
-}
-
-NormalMap constant_normals(Extent extent, float x, float y, float z) {
-    NormalMap map;
-    map.x = tex::Plane<float>(extent, x);
-    map.y = tex::Plane<float>(extent, y);
-    map.z = tex::Plane<float>(extent, z);
-    return map;
-}
-
-MipOptions options_of(MipFilter filter, MipDomain domain, Wrap wrap) {
-    MipOptions options;
-    options.filter = filter;
-    options.domain = domain;
-    options.wrap_x = options.wrap_y = wrap;
-    return options;
-}
 
 double length_at(const NormalMap& map, int i, int j) {
     return std::sqrt(static_cast<double>(map.x.at(i, j)) * static_cast<double>(map.x.at(i, j)) +
@@ -146,7 +118,7 @@ TEST(Mip, AConstantVectorStays) {
         for (const auto& filter : tex::kMipFilterNames) {
             for (const MipDomain domain : kDomains) {
                 for (const Wrap wrap : kWraps) {
-                    const MipChain chain = chain_of(constant_normals(extent, 0.36f, -0.48f, 0.8f),
+                    const MipChain chain = chain_of(tex::uniform_map(extent, 0.36f, -0.48f, 0.8f),
                                                     options_of(filter.value, domain, wrap));
                     const NormalMap& last = chain.levels.back();
                     EXPECT_NEAR(last.x.at(0, 0), 0.36f, 1e-6f);
@@ -161,7 +133,7 @@ TEST(Mip, AConstantVectorStays) {
 TEST(Mip, HalfFlatAndHalfSteepDiffersByDomain) {
     // tan 53.13 degrees = 4/3. The mean vector of it and flat leans by half the angle, 26.57 degrees; the
     // mean slope is 2/3, 33.69 degrees: what the averaged heights have.
-    NormalMap base = constant_normals({2, 1}, 0.0f, 0.0f, 1.0f);
+    NormalMap base = tex::uniform_map({2, 1}, 0.0f, 0.0f, 1.0f);
     base.x.at(0, 0) = 0.8f;
     base.z.at(0, 0) = 0.6f;
     EXPECT_NEAR(
@@ -176,7 +148,7 @@ TEST(Mip, HalfFlatAndHalfSteepDiffersByDomain) {
 
 TEST(Mip, EveryLevelIsTheAverageOfTheBaseNotOfNormalisedLevels) {
     // Two opposite steep vectors cancel to a short one, which must not count as much as the two that agree.
-    NormalMap base = constant_normals({4, 1}, 0.0f, 0.0f, 1.0f);
+    NormalMap base = tex::uniform_map({4, 1}, 0.0f, 0.0f, 1.0f);
     base.x.at(0, 0) = 0.96f;
     base.z.at(0, 0) = 0.28f;
     base.x.at(1, 0) = -0.96f;
@@ -281,7 +253,7 @@ TEST(Mip, ABumpStaysWhereItIs) {
 }
 
 TEST(Mip, VectorsThatCancelBecomeFlat) {
-    NormalMap base = constant_normals({2, 1}, 1.0f, 0.0f, 0.0f);
+    NormalMap base = tex::uniform_map({2, 1}, 1.0f, 0.0f, 0.0f);
     base.x.at(1, 0) = -1.0f;
     const MipChain chain = chain_of(base);
     EXPECT_EQ(chain.levels[1].x.at(0, 0), 0.0f);
@@ -290,7 +262,7 @@ TEST(Mip, VectorsThatCancelBecomeFlat) {
 }
 
 TEST(Mip, VectorsThatLookInwardsAreLaidFlat) {
-    const MipChain chain = chain_of(constant_normals({2, 2}, 0.6f, 0.0f, -0.8f));
+    const MipChain chain = chain_of(tex::uniform_map({2, 2}, 0.6f, 0.0f, -0.8f));
     EXPECT_EQ(chain.levels[1].x.at(0, 0), 1.0f);
     EXPECT_EQ(chain.levels[1].z.at(0, 0), 0.0f);
 }
@@ -300,7 +272,7 @@ TEST(Mip, VectorsThatLookInwardsAreLaidFlat) {
 TEST(Mip, FadingMovesLevelsToFlat) {
     MipOptions options;
     options.fade = Fade{1, 3};
-    const NormalMap base = constant_normals({32, 32}, 0.8f, 0.0f, 0.6f);
+    const NormalMap base = tex::uniform_map({32, 32}, 0.8f, 0.0f, 0.6f);
     const MipChain chain = chain_of(base, options);
     EXPECT_NEAR(chain.levels[1].x.at(0, 0), 0.8f, 1e-6f);
     // Half way in vector space: (0.4, 0, 0.8), normalised.
@@ -310,108 +282,6 @@ TEST(Mip, FadingMovesLevelsToFlat) {
         EXPECT_EQ(chain.levels[k].x.at(0, 0), 0.0f);
         EXPECT_EQ(chain.levels[k].z.at(0, 0), 1.0f);
     }
-}
-
-// -- against the reference ---------------------------------------------------------------------------------
-
-TEST(Mip, AgreesWithTheReferenceForEveryFilterDomainWrapAndSize) {
-    for (const auto& filter : tex::kMipFilterNames) {
-        for (const MipDomain domain : kDomains) {
-            for (const Wrap wrap : kWraps) {
-                for (const Extent extent : {Extent{1, 1}, Extent{2, 2}, Extent{3, 5}, Extent{15, 16},
-                                            Extent{17, 33}, Extent{1, 30}, Extent{64, 36}}) {
-                    const NormalMap base = noise_normals(extent);
-                    MipOptions options = options_of(filter.value, domain, wrap);
-                    options.fade = Fade{2, 9};
-                    const MipChain chain = chain_of(base, options);
-                    const auto truth =
-                        tex::reference::build_mip_chain(tex::reference::grid_of(base), options);
-                    ASSERT_EQ(chain.levels.size(), truth.size());
-                    for (std::size_t k = 0; k < truth.size(); ++k) {
-                        ASSERT_LT(largest_angle(chain.levels[k], truth[k]), 0.01)
-                            << filter.name << " " << name_of(tex::kMipDomainNames, domain) << " "
-                            << name_of(tex::kWrapNames, wrap) << " " << extent.width << "x" << extent.height
-                            << " level " << k;
-                    }
-                }
-            }
-        }
-    }
-}
-
-TEST(Mip, AxesMayWrapDifferently) {
-    const NormalMap base = noise_normals({20, 27});
-    for (const Wrap wrap_x : kWraps) {
-        for (const Wrap wrap_y : kWraps) {
-            MipOptions options = options_of(MipFilter::lanczos3, MipDomain::vector, wrap_x);
-            options.wrap_y = wrap_y;
-            const auto truth = tex::reference::build_mip_chain(tex::reference::grid_of(base), options);
-            EXPECT_LT(largest_angle(chain_of(base, options).levels[1], truth[1]), 0.01);
-        }
-    }
-}
-
-// -- the same bytes ----------------------------------------------------------------------------------------
-
-// The chain is the same on every target and for each number of threads.
-void expect_same_bytes(const NormalMap& base, const MipOptions& options, const std::vector<int>& threads) {
-    std::optional<MipChain> first;
-    tex::on_every_target([&] {
-        for (const int count : threads) {
-            MipChain chain = chain_of(base, options, count);
-            if (!first) first = std::move(chain);
-            else
-                for (std::size_t k = 0; k < chain.levels.size(); ++k) {
-                    EXPECT_TRUE(same_bytes(first->levels[k], chain.levels[k]))
-                        << "level " << k << ", " << count << " threads";
-                }
-        }
-    });
-}
-
-TEST(Mip, GivesTheSameBytesOnEveryTarget) {
-    for (const Extent extent : {Extent{64, 96}, Extent{53, 123}, Extent{140, 33}}) {
-        for (const auto& filter : tex::kMipFilterNames) {
-            for (const MipDomain domain : kDomains) {
-                MipOptions options = options_of(filter.value, domain, Wrap::mirror);
-                options.fade = Fade{1, 20};
-                expect_same_bytes(noise_normals(extent), options, {1});
-            }
-        }
-    }
-}
-
-TEST(Mip, GivesTheSameBytesForEveryNumberOfThreads) {
-    // Several strips of rows in the first levels.
-    for (const Extent extent : {Extent{512, 512}, Extent{513, 411}}) {
-        for (const MipFilter filter : {MipFilter::box, MipFilter::mitchell}) {
-            for (const MipDomain domain : kDomains) {
-                expect_same_bytes(noise_normals(extent), options_of(filter, domain, Wrap::repeat),
-                                  {1, 2, 3, 8});
-            }
-        }
-    }
-}
-
-TEST(Mip, ReportsProgressUpwardsThroughAllLevels) {
-    std::vector<double> seen = {0.0};
-    const auto chain = tex::build_mip_chain(noise_normals({301, 300}),
-                                            options_of(MipFilter::mitchell, MipDomain::slope, Wrap::clamp),
-                                            {1, [&](double fraction) {
-                                                 seen.push_back(fraction);
-                                                 return true;
-                                             }});
-    ASSERT_TRUE(chain);
-    EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
-    EXPECT_GT(seen.size(), 4u);
-    EXPECT_EQ(seen.back(), 1.0);
-}
-
-TEST(Mip, CanBeCancelled) {
-    const auto result =
-        tex::build_mip_chain(noise_normals({512, 512}), {}, {1, [](double) { return false; }});
-    ASSERT_FALSE(result);
-    EXPECT_EQ(result.error().code, tex::ErrorCode::cancelled);
 }
 
 }  // namespace

@@ -4,8 +4,7 @@
 #pragma once
 
 #include <cmath>
-#include <cstdint>
-#include <cstring>
+#include <utility>
 
 #include <tex/mip_chain.h>
 #include <tex/normal_map.h>
@@ -28,6 +27,7 @@ inline NormalMap wavy_map(Extent extent, double phase = 0.0) {
     return map;
 }
 
+// The same vector everywhere, of any length.
 inline NormalMap uniform_map(Extent extent, float x, float y, float z) {
     NormalMap map;
     map.x = Plane<float>(extent, x);
@@ -50,21 +50,6 @@ inline MipChain chain_from(NormalMap map) {
     MipChain chain;
     chain.levels.push_back(std::move(map));
     return chain;
-}
-
-// FNV-1a of the bits of all texels.
-inline std::uint64_t checksum(const NormalMap& map) {
-    std::uint64_t hash = 14695981039346656037u;
-    for (const Plane<float>* plane : {&map.x, &map.y, &map.z}) {
-        for (int j = 0; j < map.extent().height; ++j) {
-            for (int i = 0; i < map.extent().width; ++i) {
-                std::uint32_t bits;
-                std::memcpy(&bits, &plane->at(i, j), sizeof bits);
-                hash = (hash ^ bits) * 1099511628211u;
-            }
-        }
-    }
-    return hash;
 }
 
 }  // namespace tex

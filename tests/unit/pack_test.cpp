@@ -14,6 +14,7 @@
 
 #include "blocks/bc1.h"
 #include "blocks/bc4.h"
+#include "unit/normal_maps.h"
 #include "unit/packing.h"
 
 namespace {
@@ -32,14 +33,6 @@ constexpr Encoding kAllEncodings[] = {Encoding::dxt5nm, Encoding::bc5,  Encoding
                                       Encoding::rgba8,  Encoding::rgb16, Encoding::ag8,      Encoding::rg8,
                                       Encoding::rg16,   Encoding::half, Encoding::float_};
 constexpr Effort kAllEfforts[] = {Effort::fast, Effort::normal, Effort::best};
-
-NormalMap constant(Extent extent, float x, float y, float z) {
-    NormalMap map;
-    map.x = tex::Plane<float>(extent, x);
-    map.y = tex::Plane<float>(extent, y);
-    map.z = tex::Plane<float>(extent, z);
-    return map;
-}
 
 template <class T>
 std::vector<T> as(const std::vector<std::byte>& bytes) {
@@ -90,18 +83,18 @@ TEST(Pack, UnormCodesFollowTheFormulaInEveryLayout) {
 }
 
 TEST(Pack, FlatIs128And128And255) {
-    const auto rgb8 = as<std::uint8_t>(pack_bytes(chain_of(constant({3, 3}, 0, 0, 1)), {Encoding::rgb8}));
+    const auto rgb8 = as<std::uint8_t>(pack_bytes(chain_of(tex::uniform_map({3, 3}, 0, 0, 1)), {Encoding::rgb8}));
     EXPECT_EQ(rgb8, (std::vector<std::uint8_t>{128, 128, 255, 128, 128, 255, 128, 128, 255, 128, 128, 255, 128, 128,
                                                255, 128, 128, 255, 128, 128, 255, 128, 128, 255, 128, 128, 255}));
 }
 
 TEST(Pack, CodesAreClamped) {
-    const auto rgb16 = as<std::uint16_t>(pack_bytes(chain_of(constant({1, 1}, -1.5f, 1.5f, 1)), {Encoding::rgb16}));
+    const auto rgb16 = as<std::uint16_t>(pack_bytes(chain_of(tex::uniform_map({1, 1}, -1.5f, 1.5f, 1)), {Encoding::rgb16}));
     EXPECT_EQ(rgb16, (std::vector<std::uint16_t>{0, 65535, 65535}));
 }
 
 TEST(Pack, FloatsAreTheComponentsAndHalvesRoundToNearestEven) {
-    const MipChain chain = chain_of(constant({2, 1}, 0.1f, -1.0f / 3.0f, 1.0f + 1.0f / 2048.0f));
+    const MipChain chain = chain_of(tex::uniform_map({2, 1}, 0.1f, -1.0f / 3.0f, 1.0f + 1.0f / 2048.0f));
     EXPECT_EQ(as<float>(pack_bytes(chain, {Encoding::float_}))[4], -1.0f / 3.0f);
     const auto half = as<std::uint16_t>(pack_bytes(chain, {Encoding::half}));
     ASSERT_EQ(half.size(), 6u);
@@ -119,7 +112,7 @@ TEST(Pack, YDownStoresMinusYAndNothingElse) {
     for (const Encoding encoding : kAllEncodings) {
         EXPECT_EQ(pack_bytes(down, {encoding, tex::YAxis::down}), pack_bytes(up, {encoding, tex::YAxis::up}));
     }
-    const auto flat = as<std::uint32_t>(pack_bytes(chain_of(constant({1, 1}, 0, 0, 1)), {Encoding::float_, tex::YAxis::down}));
+    const auto flat = as<std::uint32_t>(pack_bytes(chain_of(tex::uniform_map({1, 1}, 0, 0, 1)), {Encoding::float_, tex::YAxis::down}));
     EXPECT_EQ(flat[1], 0u);  // not -0
 }
 
@@ -202,7 +195,7 @@ TEST(Pack, FlatDecodesTo127Or128UnderEveryVendorsRule) {
     for (const Effort effort : kAllEfforts) {
         for (const float x : {0.0f, 1.0f / 255.0f, -1.0f / 255.0f}) {
             const auto bytes =
-                pack_bytes(chain_of(constant({4, 4}, x, x, 1)), {Encoding::dxt5nm, tex::YAxis::up, effort});
+                pack_bytes(chain_of(tex::uniform_map({4, 4}, x, x, 1)), {Encoding::dxt5nm, tex::YAxis::up, effort});
             const auto byte = [&](std::size_t k) { return std::to_integer<int>(bytes[k]); };
             float decoded_x[16], decoded_y[16];
             decode_codes(bytes.data(), Encoding::dxt5nm, decoded_x, decoded_y);
@@ -234,7 +227,7 @@ TEST(Pack, ConstantBlocksAreWithinHalfACodeAtEveryLevel) {
         for (int code = 0; code < 256; ++code) {
             const float n = static_cast<float>(code) / 127.5f - 1.0f;
             for (const Effort effort : kAllEfforts) {
-                const auto bytes = pack_bytes(chain_of(constant({4, 4}, n, n, 0)), {encoding, tex::YAxis::up, effort});
+                const auto bytes = pack_bytes(chain_of(tex::uniform_map({4, 4}, n, n, 0)), {encoding, tex::YAxis::up, effort});
                 float x[16], y[16];
                 decode_codes(bytes.data(), encoding, x, y);
                 EXPECT_NEAR(x[0], static_cast<float>(code), 0.51f);

@@ -11,17 +11,10 @@
 #include "preview/legend.h"
 #include "preview/measures.h"
 #include "reference/wikibook_shader.h"
+#include "unit/preview_pictures.h"
 
 namespace tex::render {
 namespace {
-
-NormalMap constant(Extent extent, float x, float y, float z) {
-    NormalMap map;
-    map.x = Plane<float>(extent, x);
-    map.y = Plane<float>(extent, y);
-    map.z = Plane<float>(extent, z);
-    return map;
-}
 
 // The normals of smooth heights that repeat, green up or upside down.
 NormalMap waves(Extent extent, bool upside_down) {
@@ -37,24 +30,6 @@ NormalMap waves(Extent extent, bool upside_down) {
         }
     }
     return map;
-}
-
-Texture plain_picture(Extent extent, Code color) {
-    return Canvas(extent, color).take();
-}
-
-Code code_at(const Texture& picture, int i, int j) {
-    const Level& level = picture.levels.front();
-    const std::byte* p =
-        &level.bytes[(static_cast<std::size_t>(j) * static_cast<std::size_t>(level.extent.width) +
-                      static_cast<std::size_t>(i)) *
-                     3];
-    return {std::to_integer<std::uint8_t>(p[0]), std::to_integer<std::uint8_t>(p[1]),
-            std::to_integer<std::uint8_t>(p[2])};
-}
-
-bool operator==(Code a, Code b) {
-    return a.r == b.r && a.g == b.g && a.b == b.b;
 }
 
 TEST(PreviewColors, SrgbCodesAreTheNearestOnes) {
@@ -98,7 +73,7 @@ TEST(PreviewColors, DivergingIsLightestAtZeroAndDarkensToBothSides) {
 }
 
 TEST(PreviewMeasures, AreWhatTheirNamesSay) {
-    const NormalMap map = constant({4, 4}, 0.6f, 0.0f, 0.9f);
+    const NormalMap map = uniform_map({4, 4}, 0.6f, 0.0f, 0.9f);
     const auto value = [&](Show show) { return measure(show, map, 0.0f, {})->values.at(1, 2); };
     EXPECT_NEAR(value(Show::slope), 0.6 / 0.9, 1e-6);
     EXPECT_NEAR(value(Show::tilt), std::atan2(0.6, 0.9) * 180.0 / 3.14159265358979, 1e-4);

@@ -11,6 +11,9 @@
 #include <gtest/gtest.h>
 #include <tex/preview.h>
 
+#include "preview/canvas.h"
+#include "unit/normal_maps.h"
+
 namespace tex {
 
 using Pixel = std::array<int, 3>;
@@ -25,12 +28,7 @@ inline Pixel pixel(const Texture& picture, int i, int j) {
 }
 
 inline MipChain constant(Extent extent, float x, float y, float z) {
-    MipChain chain;
-    chain.levels.emplace_back(extent);
-    chain.levels[0].x = Plane<float>(extent, x);
-    chain.levels[0].y = Plane<float>(extent, y);
-    chain.levels[0].z = Plane<float>(extent, z);
-    return chain;
+    return chain_from(uniform_map(extent, x, y, z));
 }
 
 inline MipChain random_map(Extent extent, unsigned seed) {
@@ -60,6 +58,18 @@ inline Execution on_threads(int count) {
     execution.threads = count;
     return execution;
 }
+
+// A picture of one color, and the color of one of its texels.
+inline Texture plain_picture(Extent extent, render::Code color) { return render::Canvas(extent, color).take(); }
+
+inline render::Code code_at(const Texture& picture, int i, int j) {
+    const Pixel p = pixel(picture, i, j);
+    return {static_cast<std::uint8_t>(p[0]), static_cast<std::uint8_t>(p[1]), static_cast<std::uint8_t>(p[2])};
+}
+
+namespace render {
+inline bool operator==(Code a, Code b) { return a.r == b.r && a.g == b.g && a.b == b.b; }
+}  // namespace render
 
 // Largest difference between two pictures, in codes.
 inline int difference(const Texture& a, const Texture& b) {

@@ -11,28 +11,10 @@
 #include <tex/container.h>
 #include <unistd.h>
 
-#include "preview/canvas.h"
+#include "unit/preview_pictures.h"
 
 namespace tex::render {
 namespace {
-
-Texture plain_picture(Extent extent, Code color) {
-    return Canvas(extent, color).take();
-}
-
-Code code_at(const Texture& picture, int i, int j) {
-    const Level& level = picture.levels.front();
-    const std::byte* p =
-        &level.bytes[(static_cast<std::size_t>(j) * static_cast<std::size_t>(level.extent.width) +
-                      static_cast<std::size_t>(i)) *
-                     3];
-    return {std::to_integer<std::uint8_t>(p[0]), std::to_integer<std::uint8_t>(p[1]),
-            std::to_integer<std::uint8_t>(p[2])};
-}
-
-bool operator==(Code a, Code b) {
-    return a.r == b.r && a.g == b.g && a.b == b.b;
-}
 
 TEST(ContactSheet, PutsPanelsInRowsOfEqualColumns) {
     std::vector<Panel> panels;

@@ -9,7 +9,7 @@
 #include <tex/mip.h>
 
 #include "base/axis_filter.h"
-#include "kernels/bake.h"
+#include "kernels/normal_row.h"
 
 namespace tex {
 

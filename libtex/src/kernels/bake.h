@@ -7,6 +7,8 @@
 
 #pragma once
 
+#include "kernels/normal_row.h"
+
 namespace tex {
 
 // Heights are cut to this: beyond it sums of differences could become infinite, and infinity minus infinity
@@ -26,13 +28,6 @@ void limit_heights(const float* in, int count, float* out);
 // all cut to +-kMaxHeight before.
 void continue_heights(const float* inner, const float* edge, const float* other, bool reflected, float drift,
                       int count, float* out);
-
-// A row of normals.
-struct NormalRow {
-    float* x;
-    float* y;
-    float* z;
-};
 
 // normalize(-slope_x, -slope_y, 1) with slope_x = (right - left) scale_x, slope_y = (up - down) scale_y.
 void normals_by_difference(const float* left, const float* right, const float* down, const float* up,

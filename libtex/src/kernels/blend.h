@@ -5,14 +5,9 @@
 
 #include <tex/blend.h>
 
-namespace tex {
+#include "kernels/normal_row.h"
 
-// A row of normals.
-struct NormalRow {
-    float* x;
-    float* y;
-    float* z;
-};
+namespace tex {
 
 // Blends `detail` on `base`, in place: see BlendMode. With `weight`, a value for each texel, the result is
 // normalize(lerp(base, blended, weight)); a null pointer means 1.

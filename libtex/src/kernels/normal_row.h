@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// kernels/normal_row.h: a row of normals, as kernels read and write it.
+
+#pragma once
+
+namespace tex {
+
+// Rows may be read and written up to a whole vector (64 bytes) past their last texel.
+struct NormalRow {
+    float* x;
+    float* y;
+    float* z;
+};
+
+}  // namespace tex
