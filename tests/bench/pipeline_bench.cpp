@@ -44,6 +44,7 @@ struct Bench {
 
     // One row: command against baseline; `scale` is what one baseline counts.
     void row(const std::string& work, const Command& command, const Command& baseline, double target, double scale = 1.0) const {
+        bench::tile = std::vector<float>();
         std::vector<Measured> ours, theirs;
         std::vector<double> ratios;
         bench::run(command);  // caches, and outputs to replace
@@ -62,6 +63,7 @@ struct Bench {
 
     // One row without a baseline.
     void plain_row(const std::string& work, const Command& command, const std::string& target, int times) const {
+        bench::tile = std::vector<float>();
         std::vector<Measured> ours;
         bench::run(command);
         for (int k = 0; k < times; ++k) ours.push_back(bench::run(command));
