@@ -28,12 +28,11 @@ HWY_INLINE void set_single_greens(const Group& group, Choice& choice) {
     const hn::Rebind<std::int32_t, Floats> di;
     const std::int32_t* below = single_greens_below();
     const std::int32_t* above = single_greens_above();
-    for (int i = 0; i < lanes(); i += float_lanes()) {
-        const F unit = hn::Load(d, group.unit + i);
-        const auto single = hn::Le(hn::Mul(hn::Load(d, group.greatest + i), unit), constant(0.5f));
+    for (int p = 0; p < kParts; ++p) {
+        const auto single = hn::Le(hn::Mul(group.greatest[p], group.unit[p]), constant(0.5f));
         if (hn::AllFalse(d, single)) continue;
-        const F mean = hn::Mul(hn::Mul(hn::Load(d, group.high_sum + i), unit), constant(1.0f / 16.0f));
-        const F thirds = hn::Mul(hn::Add(hn::Load(d, group.base + i), mean), constant(3.0f));
+        const F mean = hn::Mul(hn::Mul(group.high_sum[p], group.unit[p]), constant(1.0f / 16.0f));
+        const F thirds = hn::Mul(hn::Add(group.base[p], mean), constant(3.0f));
         const auto at = hn::ConvertTo(di, thirds);
         const auto down = hn::GatherIndex(di, below, at);
         const auto up = hn::GatherIndex(di, above, hn::Min(hn::Add(at, hn::Set(di, 1)), hn::Set(di, kMostThirds)));
@@ -42,8 +41,8 @@ HWY_INLINE void set_single_greens(const Group& group, Choice& choice) {
         const auto green = hn::IfThenElse(hn::RebindMask(di, hn::Lt(to_down, to_up)), down, up);
         const F low = hn::ConvertTo(d, hn::And(hn::ShiftRight<8>(green), hn::Set(di, 0xFF)));
         const F high = hn::Add(low, hn::ConvertTo(d, hn::And(green, hn::Set(di, 0xFF))));
-        hn::Store(hn::IfThenElse(single, low, hn::Load(d, choice.low + i)), d, choice.low + i);
-        hn::Store(hn::IfThenElse(single, high, hn::Load(d, choice.high + i)), d, choice.high + i);
+        choice.low[p] = hn::IfThenElse(single, low, choice.low[p]);
+        choice.high[p] = hn::IfThenElse(single, high, choice.high[p]);
     }
 }
 
@@ -73,51 +72,40 @@ HWY_INLINE void pack_indices(const std::uint8_t* table, Index k, W* words) {
     }
 }
 
-HWY_INLINE W stored_codes(const float* codes) {
-    HWY_ALIGN std::uint16_t words[kLanes];
-    for (int i = 0; i < lanes(); i += float_lanes()) store_words(hn::Load(Floats(), codes + i), words + i);
-    return hn::Load(Words(), words);
-}
-
 // How the texels of a block find their indices: those of blocks of 6 values have bit 3 set.
 struct Indexing {
     W factor, offset, cut, mark;
 };
 
 HWY_INLINE BlockWords bc4_words(const Group& group, Bc4Codes codes, const Ends& ends, const Indexing& by) {
-    const Words d;
     BlockWords block;
     const auto texel_index = [&](int texel) {
-        return hn::Or(index(hn::Load(d, group.values + texel * lanes()), by.factor, by.offset, by.cut), by.mark);
+        return hn::Or(index(group.values[texel], by.factor, by.offset, by.cut), by.mark);
     };
     pack_indices<3>(kBc4Indices, texel_index, block.w + 1);
     const W byte = word(0xFF);
-    const W e0 = hn::And(hn::Sub(stored_codes(ends.high), word(codes.bias)), byte);
-    const W e1 = hn::Sub(stored_codes(ends.low), word(codes.bias));
+    const W e0 = hn::And(hn::Sub(to_words(ends.high), word(codes.bias)), byte);
+    const W e1 = hn::Sub(to_words(ends.low), word(codes.bias));
     block.w[0] = hn::Or(e0, hn::ShiftLeft<8>(e1));
     return block;
 }
 
 // The better ones of endpoints for 8 and for 6 values, which are stored the other way round.
 HWY_INLINE BlockWords choose_bc4(const Group& group, Bc4Codes codes, const Choice& eight, const Choice& six) {
-    const Floats d;
     const float top = static_cast<float>(codes.top);
-    Ramp ramp, six_ramp;
-    Fitter<EightValues>(group, {top}).ramp_of(eight, ramp);
-    Fitter<SixValues>(group, {top}).ramp_of(six, six_ramp);
+    const Ramp ramp = Fitter<EightValues>(group, {top}).ramp_of(eight);
+    const Ramp six_ramp = Fitter<SixValues>(group, {top}).ramp_of(six);
     Ends chosen;
-    HWY_ALIGN std::uint16_t is_six[kLanes];
-    for (int i = 0; i < lanes(); i += float_lanes()) {
-        const auto better = hn::Lt(hn::Load(d, six.error + i), hn::Load(d, eight.error + i));
-        store_words(hn::IfThenElseZero(better, constant(1.0f)), is_six + i);
-        hn::Store(hn::IfThenElse(better, hn::Load(d, six.low + i), hn::Load(d, eight.high + i)), d, chosen.high + i);
-        hn::Store(hn::IfThenElse(better, hn::Load(d, six.high + i), hn::Load(d, eight.low + i)), d, chosen.low + i);
+    F is_six[kParts];
+    for (int p = 0; p < kParts; ++p) {
+        const auto better = hn::Lt(six.error[p], eight.error[p]);
+        is_six[p] = hn::IfThenElseZero(better, constant(65535.0f));
+        chosen.high[p] = hn::IfThenElse(better, six.low[p], eight.high[p]);
+        chosen.low[p] = hn::IfThenElse(better, six.high[p], eight.low[p]);
     }
-    const Words dw;
-    const auto better = hn::Ne(hn::Load(dw, is_six), hn::Zero(dw));
-    const auto either = [&](const std::uint16_t* a, const std::uint16_t* b) { return hn::IfThenElse(better, hn::Load(dw, b), hn::Load(dw, a)); };
+    const auto better = hn::MaskFromVec(to_words(is_six));
     return bc4_words(group, codes, chosen,
-                     {either(ramp.factor, six_ramp.factor), either(ramp.offset, six_ramp.offset),
+                     {hn::IfThenElse(better, six_ramp.factor, ramp.factor), hn::IfThenElse(better, six_ramp.offset, ramp.offset),
                       hn::IfThenElse(better, word(cut(5)), word(cut(7))), hn::IfThenElseZero(better, word(8))});
 }
 
@@ -126,14 +114,14 @@ HWY_INLINE BlockWords fast_bc4(const W* texels, Bc4Codes codes) {
     const Words d;
     Group group;
     make_group<Precision::coarse>(texels, group);
-    HWY_ALIGN std::uint16_t fractions[kLanes];
     W any = texels[0];
     for (int k = 1; k < 16; ++k) any = hn::Or(any, texels[k]);
-    hn::Store(hn::And(any, word(static_cast<int>(kFine) - 1)), d, fractions);
-    Ramp ramp;
+    const Parts fractions = to_floats(hn::And(any, word(static_cast<int>(kFine) - 1)));
+    hn::Mask<Floats> whole[kParts];
+    for (int p = 0; p < kParts; ++p) whole[p] = hn::Eq(fractions.part[p], hn::Zero(Floats()));
     Choice choice;
-    Fitter<EightValues>(group, {static_cast<float>(codes.top)}).solve(0.0f, fractions, ramp, choice);
-    return bc4_words(group, codes, choice, {hn::Load(d, ramp.factor), hn::Load(d, ramp.offset), word(cut(7)), hn::Zero(d)});
+    const Ramp ramp = Fitter<EightValues>(group, {static_cast<float>(codes.top)}).solve(0.0f, whole, choice);
+    return bc4_words(group, codes, choice, {ramp.factor, ramp.offset, word(cut(7)), hn::Zero(d)});
 }
 
 HWY_INLINE BlockWords normal_bc4(const W* texels, Bc4Codes codes) {
@@ -144,7 +132,7 @@ HWY_INLINE BlockWords normal_bc4(const W* texels, Bc4Codes codes) {
     Choice found;
     for (const auto& [g, j] : {std::pair(0.0f, 1.0f), {0.5f, 0.0f}, {0.5f, 2.0f}}) fitter.start<Precision::coarse>(g, j, 2, found);
     Choice eight;
-    fitter.measure<Precision::full>(found, eight);
+    fitter.score<Precision::full>(found, nullptr, eight);
     fitter.start<Precision::full>(0.0f, 0.0f, 3, eight);
     fitter.whole_codes(eight);
     const Fitter<SixValues> six_fitter(group, {top});
@@ -154,17 +142,12 @@ HWY_INLINE BlockWords normal_bc4(const W* texels, Bc4Codes codes) {
 }
 
 HWY_INLINE BlockWords green_words(const Group& group, const Choice& choice) {
-    const Words d;
-    Ramp ramp;
-    Fitter<Greens>(group, {}).ramp_of(choice, ramp);
+    const Ramp ramp = Fitter<Greens>(group, {}).ramp_of(choice);
     BlockWords block;
-    const W factor = hn::Load(d, ramp.factor);
-    const W offset = hn::Load(d, ramp.offset);
-    const W floor = word(cut(3));
-    pack_indices<2>(kGreenIndices, [&](int texel) { return index(hn::Load(d, group.values + texel * lanes()), factor, offset, floor); }, block.w + 2);
+    pack_indices<2>(kGreenIndices, [&](int texel) { return index(group.values[texel], ramp.factor, ramp.offset, word(cut(3))); }, block.w + 2);
     const W red_blue = word(0xF81F);
-    block.w[0] = hn::Or(hn::ShiftLeft<5>(stored_codes(choice.high)), red_blue);
-    block.w[1] = hn::Or(hn::ShiftLeft<5>(stored_codes(choice.low)), red_blue);
+    block.w[0] = hn::Or(hn::ShiftLeft<5>(to_words(choice.high)), red_blue);
+    block.w[1] = hn::Or(hn::ShiftLeft<5>(to_words(choice.low)), red_blue);
     // Equal endpoints use index 0 only.
     const auto apart = hn::Ne(block.w[0], block.w[1]);
     block.w[2] = hn::IfThenElseZero(apart, block.w[2]);
@@ -175,9 +158,8 @@ HWY_INLINE BlockWords green_words(const Group& group, const Choice& choice) {
 HWY_INLINE BlockWords fast_green(const W* texels) {
     Group group;
     make_group<Precision::coarse>(texels, group);
-    Ramp ramp;
     Choice choice;
-    Fitter<Greens>(group, {}).solve(1.0f / 16.0f, nullptr, ramp, choice);
+    Fitter<Greens>(group, {}).solve(1.0f / 16.0f, nullptr, choice);
     set_single_greens(group, choice);
     return green_words(group, choice);
 }
@@ -193,7 +175,7 @@ HWY_INLINE BlockWords normal_green(const W* texels) {
     fitter.neighbours(2, found);
     set_single_greens(group, found);
     Choice best;
-    fitter.measure<Precision::full>(found, best);
+    fitter.score<Precision::full>(found, nullptr, best);
     fitter.start<Precision::full>(0.0f, 0.0f, 3, best);
     return green_words(group, best);
 }

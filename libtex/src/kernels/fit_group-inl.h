@@ -38,29 +38,50 @@ HWY_INLINE constexpr int float_lanes() { return static_cast<int>(hn::MaxLanes(Fl
 HWY_INLINE F constant(float value) { return hn::Set(Floats(), value); }
 HWY_INLINE W word(int value) { return hn::Set(Words(), static_cast<std::uint16_t>(value)); }
 
-HWY_INLINE F load_words(const std::uint16_t* from) {
+// A vector of words in floats takes kParts vectors: the words of even lanes, then those of odd lanes. So no lane moves.
+#if HWY_TARGET == HWY_SCALAR
+constexpr int kParts = 1;
+struct Parts {
+    F part[kParts];
+};
+HWY_INLINE Parts to_floats(W words) {
+    return {{hn::ConvertTo(Floats(), hn::PromoteTo(hn::Rebind<std::int32_t, Floats>(), words))}};
+}
+// Numbers of 0 to 65535, rounded to whole ones: added to 2^23, the lowest bits of the sum hold them.
+HWY_INLINE W to_words(const F (&value)[kParts]) {
+    return hn::TruncateTo(Words(), hn::BitCast(hn::Rebind<std::uint32_t, Floats>(), hn::Add(value[0], constant(8388608.0f))));
+}
+#else
+constexpr int kParts = 2;
+struct Parts {
+    F part[kParts];
+};
+HWY_INLINE Parts to_floats(W words) {
     const Floats d;
-    const hn::Rebind<std::uint16_t, Floats> dw;
     const hn::Rebind<std::int32_t, Floats> di;
-    return hn::ConvertTo(d, hn::PromoteTo(di, hn::Load(dw, from)));
-}
-
-// Stores numbers of 0 to 65535, rounded to whole ones: added to 2^23, the lowest bits of the sum hold them.
-HWY_INLINE void store_words(F value, std::uint16_t* to) {
     const hn::Rebind<std::uint32_t, Floats> du;
-    const hn::Rebind<std::uint16_t, Floats> dw;
-    hn::Store(hn::TruncateTo(dw, hn::BitCast(du, hn::Add(value, constant(8388608.0f)))), dw, to);
+    const auto pairs = hn::BitCast(du, words);
+    const auto even = hn::And(pairs, hn::Set(du, 0xFFFFu));
+    return {{hn::ConvertTo(d, hn::BitCast(di, even)), hn::ConvertTo(d, hn::BitCast(di, hn::ShiftRight<16>(pairs)))}};
 }
+// Numbers of 0 to 65535, rounded to whole ones: added to 2^23, the lowest bits of the sum hold them.
+HWY_INLINE W to_words(const F (&value)[kParts]) {
+    const hn::Rebind<std::uint32_t, Floats> du;
+    const auto even = hn::And(hn::BitCast(du, hn::Add(value[0], constant(8388608.0f))), hn::Set(du, 0xFFFFu));
+    const auto odd = hn::ShiftLeft<16>(hn::BitCast(du, hn::Add(value[1], constant(8388608.0f))));
+    return hn::BitCast(Words(), hn::Or(even, odd));
+}
+#endif
 
 // Blocks in lanes. Values, and endpoints called a and b, are local: units of `unit` codes from the least texel, `base` codes, on, such that the
 // greatest texel lies between 32768 and 65535.
 struct Group {
-    HWY_ALIGN std::uint16_t values[16 * kLanes];
-    HWY_ALIGN std::uint16_t high[16 * kLanes];  // values = kHighUnit high + low, high up to 512
-    HWY_ALIGN std::int16_t low[16 * kLanes];    // -64 to 63; of groups made with full precision
-    HWY_ALIGN float base[kLanes], unit[kLanes], per_unit[kLanes];
-    HWY_ALIGN float greatest[kLanes];
-    HWY_ALIGN float sum[kLanes], high_sum[kLanes];  // of values, and of kHighUnit high
+    W values[16];
+    W high[16];  // values = kHighUnit high + low, high up to 512
+    W low[16];   // -64 to 63; of groups made with full precision
+    F base[kParts], unit[kParts], per_unit[kParts];
+    F greatest[kParts];
+    F sum[kParts], high_sum[kParts];  // of values, and of kHighUnit high
 };
 
 // Texels of four rows, 16 vectors of 1/128 code, clamped to 0 to `top` codes. Transposing within 16 bytes is cheaper than across the vector:
@@ -129,42 +150,35 @@ HWY_INLINE void make_group(const W* v, Group& group) {
         greatest = hn::Max(greatest, v[k]);
     }
     // Values are multiplied by the power of two that takes the greatest to 32768 to 65535.
-    HWY_ALIGN std::uint16_t ranges[kLanes], bases[kLanes], factors[kLanes];
-    hn::Store(hn::Sub(greatest, least), d, ranges);
-    hn::Store(least, d, bases);
-    for (int i = 0; i < lanes(); i += float_lanes()) {
-        const F range = load_words(ranges + i);
+    const Parts ranges = to_floats(hn::Sub(greatest, least));
+    const Parts bases = to_floats(least);
+    F factors[kParts];
+    for (int p = 0; p < kParts; ++p) {
+        const F range = ranges.part[p];
         const auto exponent = hn::And(hn::BitCast(du, hn::Max(range, constant(1.0f))), hn::Set(du, 0x7F800000u));
-        const F factor = hn::BitCast(df, hn::Sub(hn::Set(du, (2u * 127u + 15u) << 23), exponent));
-        const F per_unit = hn::Mul(factor, constant(kFine));
-        store_words(factor, factors + i);
-        hn::Store(per_unit, df, group.per_unit + i);
-        hn::Store(hn::Div(constant(1.0f), per_unit), df, group.unit + i);  // exact: powers of two
-        hn::Store(hn::Mul(range, factor), df, group.greatest + i);
-        hn::Store(hn::Mul(load_words(bases + i), constant(1.0f / kFine)), df, group.base + i);
+        factors[p] = hn::BitCast(df, hn::Sub(hn::Set(du, (2u * 127u + 15u) << 23), exponent));
+        group.per_unit[p] = hn::Mul(factors[p], constant(kFine));
+        group.unit[p] = hn::Div(constant(1.0f), group.per_unit[p]);  // exact: powers of two
+        group.greatest[p] = hn::Mul(range, factors[p]);
+        group.base[p] = hn::Mul(bases.part[p], constant(1.0f / kFine));
     }
-    const W factor = hn::Load(d, factors);
+    const W factor = to_words(factors);
     W high_sum = hn::Zero(d);
-    W low_sum = hn::Zero(d);
+    W low_sum = word(1024);
     for (int k = 0; k < 16; ++k) {
-        const W value = hn::Mul(hn::Sub(v[k], least), factor);
-        const W high = hn::AverageRound(hn::ShiftRight<6>(value), hn::Zero(d));
-        hn::Store(value, d, group.values + k * lanes());
-        hn::Store(high, d, group.high + k * lanes());
-        high_sum = hn::Add(high_sum, high);
+        group.values[k] = hn::Mul(hn::Sub(v[k], least), factor);
+        group.high[k] = hn::AverageRound(hn::ShiftRight<6>(group.values[k]), hn::Zero(d));
+        high_sum = hn::Add(high_sum, group.high[k]);
         if constexpr (kPrecision == Precision::full) {
-            const W low = hn::Sub(value, hn::ShiftLeft<7>(high));
-            hn::Store(hn::BitCast(hn::Rebind<std::int16_t, Words>(), low), hn::Rebind<std::int16_t, Words>(), group.low + k * lanes());
-            low_sum = hn::Add(low_sum, low);
+            group.low[k] = hn::Sub(group.values[k], hn::ShiftLeft<7>(group.high[k]));
+            low_sum = hn::Add(low_sum, group.low[k]);
         }
     }
-    HWY_ALIGN std::uint16_t high_sums[kLanes], low_sums[kLanes];
-    hn::Store(high_sum, d, high_sums);
-    hn::Store(hn::Add(low_sum, word(1024)), d, low_sums);
-    for (int i = 0; i < lanes(); i += float_lanes()) {
-        const F sum = hn::Mul(load_words(high_sums + i), constant(kHighUnit));
-        hn::Store(sum, df, group.high_sum + i);
-        hn::Store(hn::Add(sum, hn::Sub(load_words(low_sums + i), constant(1024.0f))), df, group.sum + i);
+    const Parts high_sums = to_floats(high_sum);
+    const Parts low_sums = to_floats(low_sum);
+    for (int p = 0; p < kParts; ++p) {
+        group.high_sum[p] = hn::Mul(high_sums.part[p], constant(kHighUnit));
+        group.sum[p] = hn::Add(group.high_sum[p], hn::Sub(low_sums.part[p], constant(1024.0f)));
     }
 }
 

@@ -75,7 +75,7 @@ struct Greens {
 // Turns a value into an index, counted from the lower endpoint: q = value * factor / 65536 + offset has 2^kIndexBits for each spacing, and
 // the additions saturate at both ends of the palette: k = (q - cut) / 2^kIndexBits.
 struct Ramp {
-    HWY_ALIGN std::uint16_t factor[kLanes], offset[kLanes];
+    W factor, offset;
 };
 constexpr int kIndexBits = 11;
 constexpr int cut(int steps) { return 65536 - ((steps + 1) << kIndexBits); }
@@ -86,59 +86,58 @@ HWY_INLINE W index(W value, W factor, W offset, W cut) {
 
 // The ramp of local endpoints a <= b.
 template <class Kind>
-HWY_INLINE void store_ramp(F a, F b, int i, Ramp& ramp) {
+HWY_INLINE Ramp make_ramp(const F (&a)[kParts], const F (&b)[kParts]) {
     constexpr float kUnit = static_cast<float>(1 << kIndexBits);
-    const F span = hn::Sub(b, a);
-    const F exact = hn::Div(constant(65536.0f * kUnit * static_cast<float>(Kind::kSteps)), hn::Max(span, constant(1.0f)));
-    const F factor = hn::IfThenElseZero(hn::Gt(span, hn::Zero(Floats())), hn::Min(exact, constant(65535.0f)));
-    const F start = hn::Mul(hn::Mul(a, factor), constant(1.0f / 65536.0f));
-    store_words(factor, ramp.factor + i);
-    store_words(clamped(hn::Sub(constant(static_cast<float>(cut(Kind::kSteps)) + 0.5f * kUnit), start), 65535.0f), ramp.offset + i);
+    F factor[kParts], offset[kParts];
+    for (int p = 0; p < kParts; ++p) {
+        const F span = hn::Sub(b[p], a[p]);
+        const F exact = hn::Div(constant(65536.0f * kUnit * static_cast<float>(Kind::kSteps)), hn::Max(span, constant(1.0f)));
+        factor[p] = hn::IfThenElseZero(hn::Gt(span, hn::Zero(Floats())), hn::Min(exact, constant(65535.0f)));
+        const F start = hn::Mul(hn::Mul(a[p], factor[p]), constant(1.0f / 65536.0f));
+        offset[p] = clamped(hn::Sub(constant(static_cast<float>(cut(Kind::kSteps)) + 0.5f * kUnit), start), 65535.0f);
+    }
+    return {to_words(factor), to_words(offset)};
 }
 
 // What follows from the indices k of the texels' values v.
 struct Sums {
-    HWY_ALIGN std::uint16_t k[kLanes], kk[kLanes], k_high[kLanes], k_low[kLanes];
+    W k, kk, k_high, k_low;
 };
 constexpr int kLowBias = 8192;  // of k_low, which may be negative
 
 template <class Kind, Precision kPrecision>
-HWY_INLINE void sum_up(const Group& group, const Ramp& ramp, Sums& sums) {
+HWY_INLINE Sums sum_up(const Group& group, const Ramp& ramp) {
     const Words d;
-    const hn::Rebind<std::int16_t, Words> ds;
-    const W factor = hn::Load(d, ramp.factor);
-    const W offset = hn::Load(d, ramp.offset);
-    W sum_k = hn::Zero(d);
-    W sum_kk = hn::Zero(d);
-    W sum_high = hn::Zero(d);
-    W sum_low = word(kLowBias);
+    Sums sums{hn::Zero(d), hn::Zero(d), hn::Zero(d), word(kLowBias)};
     for (int texel = 0; texel < 16; ++texel) {
-        const W k = index(hn::Load(d, group.values + texel * lanes()), factor, offset, word(cut(Kind::kSteps)));
-        sum_k = hn::Add(sum_k, k);
-        sum_kk = hn::Add(sum_kk, hn::Mul(k, k));
-        sum_high = hn::Add(sum_high, hn::Mul(k, hn::Load(d, group.high + texel * lanes())));
-        if constexpr (kPrecision == Precision::full) {
-            sum_low = hn::Add(sum_low, hn::Mul(k, hn::BitCast(d, hn::Load(ds, group.low + texel * lanes()))));
-        }
+        const W k = index(group.values[texel], ramp.factor, ramp.offset, word(cut(Kind::kSteps)));
+        sums.k = hn::Add(sums.k, k);
+        sums.kk = hn::Add(sums.kk, hn::Mul(k, k));
+        sums.k_high = hn::Add(sums.k_high, hn::Mul(k, group.high[texel]));
+        if constexpr (kPrecision == Precision::full) sums.k_low = hn::Add(sums.k_low, hn::Mul(k, group.low[texel]));
     }
-    hn::Store(sum_k, d, sums.k);
-    hn::Store(sum_kk, d, sums.kk);
-    hn::Store(sum_high, d, sums.k_high);
-    hn::Store(sum_low, d, sums.k_low);
+    return sums;
 }
 
 // Endpoints in codes on their way, for each block.
 struct Ends {
-    HWY_ALIGN float low[kLanes], high[kLanes];
+    F low[kParts], high[kParts];
 };
 
 // The best endpoints so far, as stored codes, and their error less a constant of the block, in local units.
 struct Choice : Ends {
-    HWY_ALIGN float error[kLanes];
+    F error[kParts];
     Choice() {
-        std::fill(low, low + kLanes, 0.0f);
-        std::fill(high, high + kLanes, 0.0f);
-        std::fill(error, error + kLanes, 1e30f);
+        for (int p = 0; p < kParts; ++p) {
+            low[p] = high[p] = hn::Zero(Floats());
+            error[p] = constant(1e30f);
+        }
+    }
+    HWY_INLINE void offer(int p, F offered, F offered_low, F offered_high) {
+        const auto better = hn::Lt(offered, error[p]);
+        error[p] = hn::IfThenElse(better, offered, error[p]);
+        low[p] = hn::IfThenElse(better, offered_low, low[p]);
+        high[p] = hn::IfThenElse(better, offered_high, high[p]);
     }
 };
 
@@ -151,11 +150,11 @@ public:
     template <Precision kPrecision>
     HWY_INLINE void start(float g, float j, int steps, Choice& choice) const {
         Ends ends;
-        for (int i = 0; i < lanes(); i += float_lanes()) {
-            const F spacing = hn::Mul(hn::Load(Floats(), group_.greatest + i), constant(1.0f / (kSteps - j + g)));
+        for (int p = 0; p < kParts; ++p) {
+            const F spacing = hn::Mul(group_.greatest[p], constant(1.0f / (kSteps - j + g)));
             const F a = hn::Mul(spacing, constant(0.5f * g));
-            hn::Store(code(a, i), Floats(), ends.low + i);
-            hn::Store(code(hn::Add(a, hn::Mul(spacing, constant(kSteps))), i), Floats(), ends.high + i);
+            ends.low[p] = code(a, p);
+            ends.high[p] = code(hn::Add(a, hn::Mul(spacing, constant(kSteps))), p);
         }
         for (int k = 0; k < steps; ++k) step<kPrecision>(ends, k + 1 < steps, choice);
     }
@@ -164,17 +163,9 @@ public:
     // them by those that suit the indices best.
     template <Precision kPrecision>
     HWY_INLINE void step(Ends& ends, bool refined, Choice& choice) const {
-        Ramp ramp;
-        Ends stored;
-        for (int i = 0; i < lanes(); i += float_lanes()) {
-            F low = hn::Load(Floats(), ends.low + i);
-            F high = hn::Load(Floats(), ends.high + i);
-            kind_.round(low, high);
-            hn::Store(low, Floats(), stored.low + i);
-            hn::Store(high, Floats(), stored.high + i);
-            store_ramp<Kind>(local(low, i), local(high, i), i, ramp);
-        }
-        score<kPrecision>(stored, ramp, refined ? &ends : nullptr, choice);
+        Ends stored = ends;
+        for (int p = 0; p < kParts; ++p) kind_.round(stored.low[p], stored.high[p]);
+        score<kPrecision>(stored, refined ? &ends : nullptr, choice);
     }
 
     // Where a block's range is at most n codes, a spacing of one code: it loses nothing where all texels are whole codes.
@@ -182,164 +173,146 @@ public:
         const Floats d;
         Ends ends = choice;  // the other blocks learn nothing new
         auto all_wide = hn::Eq(constant(0.0f), constant(0.0f));
-        for (int i = 0; i < lanes(); i += float_lanes()) {
-            const F range = hn::Mul(hn::Load(d, group_.greatest + i), hn::Load(d, group_.unit + i));
+        for (int p = 0; p < kParts; ++p) {
+            const F range = hn::Mul(group_.greatest[p], group_.unit[p]);
             const auto wide = hn::Gt(range, constant(kSteps));
             all_wide = hn::And(all_wide, wide);
-            const F low = hn::Min(hn::Floor(hn::Load(d, group_.base + i)), constant(kind_.top - kSteps));
-            hn::Store(hn::IfThenElse(wide, hn::Load(d, ends.low + i), low), d, ends.low + i);
-            hn::Store(hn::IfThenElse(wide, hn::Load(d, ends.high + i), hn::Add(low, constant(kSteps))), d, ends.high + i);
+            const F low = hn::Min(hn::Floor(group_.base[p]), constant(kind_.top - kSteps));
+            ends.low[p] = hn::IfThenElse(wide, ends.low[p], low);
+            ends.high[p] = hn::IfThenElse(wide, ends.high[p], hn::Add(low, constant(kSteps)));
         }
-        if (!hn::AllTrue(d, all_wide)) measure<Precision::full>(ends, choice);
+        if (!hn::AllTrue(d, all_wide)) score<Precision::full>(ends, nullptr, choice);
     }
 
-    // Scores stored endpoints.
+    // Scores stored endpoints; with `refined` replaces these by those that suit the indices best.
     template <Precision kPrecision>
-    HWY_INLINE void measure(const Ends& stored, Choice& choice) const {
-        Ramp ramp;
-        ramp_of(stored, ramp);
-        score<kPrecision>(stored, ramp, nullptr, choice);
-    }
-
-    template <Precision kPrecision>
-    HWY_INLINE void score(const Ends& stored, const Ramp& ramp, Ends* refined, Choice& choice) const {
-        const Floats d;
-        Sums sums;
-        sum_up<Kind, kPrecision>(group_, ramp, sums);
-        for (int i = 0; i < lanes(); i += float_lanes()) {
-            const Moments m = moments<kPrecision>(sums, i);
-            const F low = hn::Load(d, stored.low + i);
-            const F high = hn::Load(d, stored.high + i);
-            const F error = error_of(m, local(low, i), local(high, i));
-            const F least = hn::Load(d, choice.error + i);
-            const auto better = hn::Lt(error, least);
-            hn::Store(hn::IfThenElse(better, error, least), d, choice.error + i);
-            hn::Store(hn::IfThenElse(better, low, hn::Load(d, choice.low + i)), d, choice.low + i);
-            hn::Store(hn::IfThenElse(better, high, hn::Load(d, choice.high + i)), d, choice.high + i);
-            if (refined != nullptr) refine(m, i, *refined);
+    HWY_INLINE void score(const Ends& stored, Ends* refined, Choice& choice) const {
+        const Sums sums = sum_up<Kind, kPrecision>(group_, ramp_of(stored));
+        const Moments m = moments<kPrecision>(sums);
+        for (int p = 0; p < kParts; ++p) {
+            choice.offer(p, error_of(m, p, local(stored.low[p], p), local(stored.high[p], p)), stored.low[p], stored.high[p]);
+            if (refined != nullptr) refine(m, p, *refined);
         }
     }
 
     // From endpoints at the extremes, moved inwards by a part of the range, to those that suit their indices best, rounded. Returns the indices' ramp.
-    // Where `fractions`, if given, are 0 (all texels are whole codes) and the range is at most n codes: a spacing of one code, which loses nothing.
-    HWY_INLINE void solve(float part, const std::uint16_t* fractions, Ramp& ramp, Choice& choice) const {
+    // Where `whole` is set, if given (all texels are whole codes), and the range is at most n codes: a spacing of one code, which loses nothing.
+    HWY_INLINE Ramp solve(float part, const hn::Mask<Floats>* whole, Choice& choice) const {
         const Floats d;
-        Ends ends;
-        for (int i = 0; i < lanes(); i += float_lanes()) {
-            const F greatest = hn::Load(d, group_.greatest + i);
+        Ends ends, at;
+        for (int p = 0; p < kParts; ++p) {
+            const F greatest = group_.greatest[p];
             F a = hn::Mul(greatest, constant(part));
             F b = hn::Sub(greatest, a);
-            if (fractions != nullptr) {
-                const F steps = hn::Mul(hn::Load(d, group_.per_unit + i), constant(kSteps));
-                const auto whole = hn::And(hn::Eq(load_words(fractions + i), hn::Zero(d)), hn::Le(greatest, steps));
-                a = hn::IfThenElse(whole, hn::Min(a, local(constant(kind_.top - kSteps), i)), a);
-                b = hn::IfThenElse(whole, hn::Add(a, steps), b);
+            if (whole != nullptr) {
+                const F steps = hn::Mul(group_.per_unit[p], constant(kSteps));
+                const auto narrow = hn::And(whole[p], hn::Le(greatest, steps));
+                a = hn::IfThenElse(narrow, hn::Min(a, local(constant(kind_.top - kSteps), p)), a);
+                b = hn::IfThenElse(narrow, hn::Add(a, steps), b);
             }
-            hn::Store(code(a, i), d, ends.low + i);
-            hn::Store(code(b, i), d, ends.high + i);
-            store_ramp<Kind>(a, b, i, ramp);
+            at.low[p] = a;
+            at.high[p] = b;
+            ends.low[p] = code(a, p);
+            ends.high[p] = code(b, p);
         }
-        Sums sums;
-        sum_up<Kind, Precision::coarse>(group_, ramp, sums);
-        for (int i = 0; i < lanes(); i += float_lanes()) {
-            refine(moments<Precision::coarse>(sums, i), i, ends);
-            F low = hn::Load(d, ends.low + i);
-            F high = hn::Load(d, ends.high + i);
-            kind_.round(low, high);
-            hn::Store(low, d, choice.low + i);
-            hn::Store(high, d, choice.high + i);
+        const Ramp ramp = make_ramp<Kind>(at.low, at.high);
+        const Moments m = moments<Precision::coarse>(sum_up<Kind, Precision::coarse>(group_, ramp));
+        F narrow[kParts];
+        auto any_narrow = hn::Lt(constant(0.0f), constant(0.0f));
+        for (int p = 0; p < kParts; ++p) {
+            refine(m, p, ends);
+            kind_.round(ends.low[p], ends.high[p]);
+            choice.low[p] = ends.low[p];
+            choice.high[p] = ends.high[p];
             // Rounding took these far from where they were, in terms of the range: other values are nearest.
-            const auto narrow = hn::Lt(hn::Load(d, group_.greatest + i), hn::Load(d, group_.per_unit + i));
-            if (!hn::AllFalse(d, narrow)) store_ramp_where(narrow, local(low, i), local(high, i), i, ramp);
+            const auto is_narrow = hn::Lt(group_.greatest[p], group_.per_unit[p]);
+            narrow[p] = hn::IfThenElseZero(is_narrow, constant(65535.0f));
+            any_narrow = hn::Or(any_narrow, is_narrow);
         }
+        if (hn::AllFalse(d, any_narrow)) return ramp;
+        const Ramp rounded_ramp = ramp_of(choice);
+        const auto where = hn::MaskFromVec(to_words(narrow));
+        return {hn::IfThenElse(where, rounded_ramp.factor, ramp.factor), hn::IfThenElse(where, rounded_ramp.offset, ramp.offset)};
     }
 
     // Scores all pairs of stored codes whose members are within `reach` of the choice.
     HWY_INLINE void neighbours(int reach, Choice& choice) const {
-        const Floats d;
-        Ends center;
-        std::memcpy(center.low, choice.low, sizeof center.low);
-        std::memcpy(center.high, choice.high, sizeof center.high);
-        for (int p = -reach; p <= reach; ++p) {
-            for (int q = -reach; q <= reach; ++q) {
-                if (p == 0 && q == 0) continue;
+        const Ends center = choice;
+        for (int i = -reach; i <= reach; ++i) {
+            for (int j = -reach; j <= reach; ++j) {
+                if (i == 0 && j == 0) continue;
                 Ends moved;
-                for (int i = 0; i < lanes(); i += float_lanes()) {
-                    const F low = clamped(hn::Add(hn::Load(d, center.low + i), constant(static_cast<float>(p))), kind_.top);
-                    const F high = hn::Max(clamped(hn::Add(hn::Load(d, center.high + i), constant(static_cast<float>(q))), kind_.top), low);
-                    hn::Store(low, d, moved.low + i);
-                    hn::Store(high, d, moved.high + i);
+                for (int p = 0; p < kParts; ++p) {
+                    moved.low[p] = clamped(hn::Add(center.low[p], constant(static_cast<float>(i))), kind_.top);
+                    moved.high[p] = hn::Max(clamped(hn::Add(center.high[p], constant(static_cast<float>(j))), kind_.top), moved.low[p]);
                 }
-                measure<Precision::coarse>(moved, choice);
+                score<Precision::coarse>(moved, nullptr, choice);
             }
         }
     }
 
     // The ramp of stored endpoints.
-    HWY_INLINE void ramp_of(const Ends& stored, Ramp& ramp) const {
-        for (int i = 0; i < lanes(); i += float_lanes()) {
-            store_ramp<Kind>(local(hn::Load(Floats(), stored.low + i), i), local(hn::Load(Floats(), stored.high + i), i), i, ramp);
+    HWY_INLINE Ramp ramp_of(const Ends& stored) const {
+        F a[kParts], b[kParts];
+        for (int p = 0; p < kParts; ++p) {
+            a[p] = local(stored.low[p], p);
+            b[p] = local(stored.high[p], p);
         }
+        return make_ramp<Kind>(a, b);
     }
 
 private:
     static constexpr float kSteps = static_cast<float>(Kind::kSteps);
 
-    static HWY_INLINE void store_ramp_where(hn::Mask<Floats> where, F a, F b, int i, Ramp& ramp) {
-        const F factor = load_words(ramp.factor + i);
-        const F offset = load_words(ramp.offset + i);
-        store_ramp<Kind>(a, b, i, ramp);
-        store_words(hn::IfThenElse(where, load_words(ramp.factor + i), factor), ramp.factor + i);
-        store_words(hn::IfThenElse(where, load_words(ramp.offset + i), offset), ramp.offset + i);
-    }
-
     // Sums over the texels.
     struct Moments {
-        F k, kk, v, kv;
+        Parts k, kk, kv;
+        const F* v;
     };
 
     template <Precision kPrecision>
-    HWY_INLINE Moments moments(const Sums& sums, int i) const {
-        F kv = hn::Mul(load_words(sums.k_high + i), constant(kHighUnit));
-        if constexpr (kPrecision == Precision::full) kv = hn::Add(kv, hn::Sub(load_words(sums.k_low + i), constant(kLowBias)));
-        const F v = hn::Load(Floats(), (kPrecision == Precision::full ? group_.sum : group_.high_sum) + i);
-        return {load_words(sums.k + i), load_words(sums.kk + i), v, kv};
+    HWY_INLINE Moments moments(const Sums& sums) const {
+        Moments m{to_floats(sums.k), to_floats(sums.kk), to_floats(sums.k_high), kPrecision == Precision::full ? group_.sum : group_.high_sum};
+        for (int p = 0; p < kParts; ++p) m.kv.part[p] = hn::Mul(m.kv.part[p], constant(kHighUnit));
+        if constexpr (kPrecision == Precision::full) {
+            const Parts low = to_floats(sums.k_low);
+            for (int p = 0; p < kParts; ++p) m.kv.part[p] = hn::Add(m.kv.part[p], hn::Sub(low.part[p], constant(kLowBias)));
+        }
+        return m;
     }
 
-    HWY_INLINE F code(F value, int i) const {
-        return hn::Add(hn::Load(Floats(), group_.base + i), hn::Mul(value, hn::Load(Floats(), group_.unit + i)));
-    }
+    HWY_INLINE F code(F value, int p) const { return hn::Add(group_.base[p], hn::Mul(value, group_.unit[p])); }
     // The stored code as a local value.
-    HWY_INLINE F local(F stored, int i) const {
-        return hn::Mul(hn::Sub(kind_.widen(stored), hn::Load(Floats(), group_.base + i)), hn::Load(Floats(), group_.per_unit + i));
-    }
+    HWY_INLINE F local(F stored, int p) const { return hn::Mul(hn::Sub(kind_.widen(stored), group_.base[p]), group_.per_unit[p]); }
 
     // The sum of (v - a - k spacing)^2, less that of (v - c)^2, c being the middle of the range of values. Indices are counted from n / 2
     // and values from c: that keeps the numbers, and so their rounding, small.
-    HWY_INLINE F error_of(const Moments& m, F a, F b) const {
+    HWY_INLINE F error_of(const Moments& m, int p, F a, F b) const {
         constexpr float kHalf = 0.5f * kSteps;
         constexpr float kMiddle = 32768.0f;
         const F spacing = hn::Mul(hn::Sub(b, a), constant(1.0f / kSteps));
         const F middle = hn::Sub(hn::Mul(hn::Add(a, b), constant(0.5f)), constant(kMiddle));
-        const F k = hn::Sub(m.k, constant(16.0f * kHalf));
-        const F kk = hn::Add(hn::Sub(m.kk, hn::Mul(m.k, constant(kSteps))), constant(16.0f * kHalf * kHalf));
-        const F v = hn::Sub(m.v, constant(16.0f * kMiddle));
-        const F kv = hn::Sub(hn::Sub(m.kv, hn::Mul(m.v, constant(kHalf))), hn::Mul(k, constant(kMiddle)));
+        const F k = hn::Sub(m.k.part[p], constant(16.0f * kHalf));
+        const F kk = hn::Add(hn::Sub(m.kk.part[p], hn::Mul(m.k.part[p], constant(kSteps))), constant(16.0f * kHalf * kHalf));
+        const F v = hn::Sub(m.v[p], constant(16.0f * kMiddle));
+        const F kv = hn::Sub(hn::Sub(m.kv.part[p], hn::Mul(m.v[p], constant(kHalf))), hn::Mul(k, constant(kMiddle)));
         const F from_middle = hn::Mul(middle, hn::Sub(hn::Mul(constant(16.0f), middle), hn::Add(v, v)));
         const F cross = hn::Sub(hn::Mul(middle, k), kv);
         return hn::Add(from_middle, hn::Mul(spacing, hn::Add(hn::Mul(spacing, kk), hn::Add(cross, cross))));
     }
 
     // Replaces endpoints by those that suit the indices best, by linear least squares.
-    HWY_INLINE void refine(const Moments& m, int i, Ends& ends) const {
+    HWY_INLINE void refine(const Moments& m, int p, Ends& ends) const {
         const Floats d;
-        const F determinant = hn::Sub(hn::Mul(constant(16.0f), m.kk), hn::Mul(m.k, m.k));
-        const F slope = hn::Div(hn::Sub(hn::Mul(constant(16.0f), m.kv), hn::Mul(m.k, m.v)), hn::Max(determinant, constant(1.0f)));
-        const F start = hn::Mul(hn::Sub(m.v, hn::Mul(slope, m.k)), constant(1.0f / 16.0f));
+        const F k = m.k.part[p];
+        const F kv = m.kv.part[p];
+        const F determinant = hn::Sub(hn::Mul(constant(16.0f), m.kk.part[p]), hn::Mul(k, k));
+        const F slope = hn::Div(hn::Sub(hn::Mul(constant(16.0f), kv), hn::Mul(k, m.v[p])), hn::Max(determinant, constant(1.0f)));
+        const F start = hn::Mul(hn::Sub(m.v[p], hn::Mul(slope, k)), constant(1.0f / 16.0f));
         const F end = hn::Add(start, hn::Mul(slope, constant(kSteps)));
         const auto solvable = hn::Gt(determinant, hn::Zero(d));
-        hn::Store(hn::IfThenElse(solvable, code(start, i), hn::Load(d, ends.low + i)), d, ends.low + i);
-        hn::Store(hn::IfThenElse(solvable, code(end, i), hn::Load(d, ends.high + i)), d, ends.high + i);
+        ends.low[p] = hn::IfThenElse(solvable, code(start, p), ends.low[p]);
+        ends.high[p] = hn::IfThenElse(solvable, code(end, p), ends.high[p]);
     }
 
     const Group& group_;
