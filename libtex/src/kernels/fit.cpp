@@ -172,7 +172,7 @@ HWY_INLINE BlockWords normal_green(const W* texels) {
     for (const float g : {-0.4f, 0.4f}) {
         for (const float j : {0.0f, 1.0f, 2.0f}) fitter.start<Precision::coarse>(g, j, 2, found);
     }
-    fitter.neighbours(2, found);
+    fitter.neighbours<2>(found);
     set_single_greens(group, found);
     Choice best;
     fitter.score<Precision::full>(found, nullptr, best);

@@ -47,6 +47,9 @@ struct Parts {
 HWY_INLINE Parts to_floats(W words) {
     return {{hn::ConvertTo(Floats(), hn::PromoteTo(hn::Rebind<std::int32_t, Floats>(), words))}};
 }
+HWY_INLINE Parts sum_of(W a, W b, W c) {
+    return {{hn::Add(hn::Add(to_floats(a).part[0], to_floats(b).part[0]), to_floats(c).part[0])}};
+}
 // Numbers of 0 to 65535, rounded to whole ones: added to 2^23, the lowest bits of the sum hold them.
 HWY_INLINE W to_words(const F (&value)[kParts]) {
     return hn::TruncateTo(Words(), hn::BitCast(hn::Rebind<std::uint32_t, Floats>(), hn::Add(value[0], constant(8388608.0f))));
@@ -63,6 +66,18 @@ HWY_INLINE Parts to_floats(W words) {
     const auto pairs = hn::BitCast(du, words);
     const auto even = hn::And(pairs, hn::Set(du, 0xFFFFu));
     return {{hn::ConvertTo(d, hn::BitCast(di, even)), hn::ConvertTo(d, hn::BitCast(di, hn::ShiftRight<16>(pairs)))}};
+}
+HWY_INLINE Parts sum_of(W a, W b, W c) {
+    const Floats d;
+    const hn::Rebind<std::int32_t, Floats> di;
+    const hn::Rebind<std::uint32_t, Floats> du;
+    const auto x = hn::BitCast(du, a);
+    const auto y = hn::BitCast(du, b);
+    const auto z = hn::BitCast(du, c);
+    const auto low = hn::Set(du, 0xFFFFu);
+    const auto even = hn::Add(hn::Add(hn::And(x, low), hn::And(y, low)), hn::And(z, low));
+    const auto odd = hn::Add(hn::Add(hn::ShiftRight<16>(x), hn::ShiftRight<16>(y)), hn::ShiftRight<16>(z));
+    return {{hn::ConvertTo(d, hn::BitCast(di, even)), hn::ConvertTo(d, hn::BitCast(di, odd))}};
 }
 // Numbers of 0 to 65535, rounded to whole ones: added to 2^23, the lowest bits of the sum hold them.
 HWY_INLINE W to_words(const F (&value)[kParts]) {
