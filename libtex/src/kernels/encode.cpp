@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstddef>
 
 #include "blocks/bc1.h"
 #include "blocks/bc4.h"
@@ -16,7 +17,7 @@
 namespace tex {
 namespace {
 
-// Blocks that are searched together.
+// Blocks that are encoded together.
 constexpr int kRun = 64;
 
 // One channel of a row of blocks.
@@ -46,58 +47,88 @@ struct Channel {
 Channel channel_x(const BlockRow& row) { return {row.x, row.width, row.height, false}; }
 Channel channel_y(const BlockRow& row) { return {row.y, row.width, row.height, row.negate_y}; }
 
-// The optimum of blocks [first, channel.blocks()), a run at a time.
-template <class Endpoints, class Search, class Write>
-void search_blocks(const Channel& channel, int first, int top, Search search, Write write, std::byte* blocks) {
+// The optimum of those blocks for which wanted(block, texels) is true.
+template <class Endpoints, class Wanted, class Search, class Write>
+void search_blocks(const Channel& channel, Wanted wanted, int top, Search search, Write write, std::byte* blocks) {
     BlockTexels texels[kRun];
     ClusterBounds bounds[kRun];
     Endpoints endpoints[kRun];
-    for (; first < channel.blocks(); first += kRun) {
-        const int count = std::min(kRun, channel.blocks() - first);
-        for (int k = 0; k < count; ++k) texels[k] = channel.texels(first + k, top);
-        cluster_bounds(texels, count, bounds);
-        search(texels, bounds, count, endpoints);
-        for (int k = 0; k < count; ++k) write(texels[k], endpoints[k], blocks + 16 * (first + k));
+    int at[kRun];
+    int count = 0;
+    for (int block = 0; block < channel.blocks(); ++block) {
+        texels[count] = channel.texels(block, top);
+        at[count] = block;
+        if (wanted(block, texels[count])) ++count;
     }
+    if (count == 0) return;
+    cluster_bounds(texels, count, bounds);
+    search(texels, bounds, count, endpoints);
+    for (int k = 0; k < count; ++k) write(texels[k], endpoints[k], blocks + 16 * at[k]);
 }
 
-void search_bc4(const Channel& channel, Bc4Codes codes, int first, std::byte* blocks) {
+// Whether a texel, but not all of them, has the lowest or the greatest code, which blocks of 6 values hold besides.
+bool has_extremes(const BlockTexels& texels, int top) {
+    const auto [least, greatest] = std::minmax_element(texels.values, texels.values + 16);
+    return *least < *greatest && (*least == 0 || *greatest == top * kCodeUnit);
+}
+
+// Searches the blocks from `first` on, and before them those with extremes, if there are any.
+void search_bc4(const Channel& channel, Bc4Codes codes, int first, bool any_extremes, std::byte* blocks) {
     search_blocks<Bc4Endpoints>(
-        channel, first, codes.top,
+        channel,
+        [&](int block, const BlockTexels& texels) { return block >= first || (any_extremes && has_extremes(texels, codes.top)); }, codes.top,
         [&](const BlockTexels* texels, const ClusterBounds* bounds, int count, Bc4Endpoints* endpoints) {
             search_bc4_blocks(texels, bounds, count, codes, endpoints);
         },
         [&](const BlockTexels& texels, Bc4Endpoints e, std::byte* block) { write_bc4(texels, codes, e, block); }, blocks);
 }
 
-void search_green(const Channel& channel, int first, std::byte* blocks) {
-    search_blocks<GreenEndpoints>(channel, first, 255, search_green_blocks, write_green, blocks);
+// Calls encode(run of the row, blocks).
+template <class Encode>
+void for_each_run(const BlockRow& row, std::byte* blocks, Encode encode) {
+    for (int first = 0; 4 * first < row.width; first += kRun) {
+        BlockRow run = row;
+        run.width = std::min(row.width - 4 * first, 4 * kRun);
+        for (int k = 0; k < 4; ++k) {
+            run.x[k] += 4 * first;
+            run.y[k] += 4 * first;
+        }
+        encode(run, blocks + 16 * static_cast<std::ptrdiff_t>(first));
+    }
 }
 
 void encode_bc5(const BlockRow& row, Bc4Codes codes, Effort effort, std::byte* blocks) {
     const Channel x = channel_x(row);
-    const Channel y = channel_y(row);
     const int fitted = effort == Effort::best ? 0 : x.whole_blocks();
-    if (fitted > 0) fit_bc5_blocks({row.x, false}, {row.y, row.negate_y}, fitted, codes, effort, blocks);
+    const bool extremes = fitted > 0 && fit_bc5_blocks({row.x, false}, {row.y, row.negate_y}, fitted, codes, effort, blocks);
+    if (!extremes && fitted == x.blocks()) return;
+    search_bc4(x, codes, fitted, extremes, blocks);
+    search_bc4(channel_y(row), codes, fitted, extremes, blocks + 8);
+}
+
+void encode_dxt5nm_run(const BlockRow& row, Effort effort, std::byte* blocks) {
+    const Channel x = channel_x(row);
+    const int fitted = effort == Effort::best ? 0 : x.whole_blocks();
+    const bool extremes = fitted > 0 && fit_dxt5nm_blocks({row.x, false}, {row.y, row.negate_y}, fitted, effort, blocks);
+    if (extremes || fitted < x.blocks()) search_bc4(x, kBc4Unorm, fitted, extremes, blocks);
     if (fitted == x.blocks()) return;
-    search_bc4(x, codes, fitted, blocks);
-    search_bc4(y, codes, fitted, blocks + 8);
+    const auto wanted = [&](int block, const BlockTexels&) { return block >= fitted; };
+    search_blocks<GreenEndpoints>(channel_y(row), wanted, 255, search_green_blocks, write_green, blocks + 8);
 }
 
 }  // namespace
 
 void encode_dxt5nm(const BlockRow& row, Effort effort, std::byte* blocks) {
-    const Channel x = channel_x(row);
-    const int fitted = effort == Effort::best ? 0 : x.whole_blocks();
-    if (fitted > 0) fit_dxt5nm_blocks({row.x, false}, {row.y, row.negate_y}, fitted, effort, blocks);
-    if (fitted == x.blocks()) return;
-    search_bc4(x, kBc4Unorm, fitted, blocks);
-    search_green(channel_y(row), fitted, blocks + 8);
+    for_each_run(row, blocks, [&](const BlockRow& run, std::byte* to) { encode_dxt5nm_run(run, effort, to); });
 }
 
-void encode_bc5_unorm(const BlockRow& row, Effort effort, std::byte* blocks) { encode_bc5(row, kBc4Unorm, effort, blocks); }
+void encode_bc5_unorm(const BlockRow& row, Effort effort, std::byte* blocks) {
+    for_each_run(row, blocks, [&](const BlockRow& run, std::byte* to) { encode_bc5(run, kBc4Unorm, effort, to); });
+}
 
-void encode_bc5_snorm(const BlockRow& row, Effort effort, std::byte* blocks) { encode_bc5(row, kBc4Snorm, effort, blocks); }
+void encode_bc5_snorm(const BlockRow& row, Effort effort, std::byte* blocks) {
+    for_each_run(row, blocks, [&](const BlockRow& run, std::byte* to) { encode_bc5(run, kBc4Snorm, effort, to); });
+}
 
 void encode_blocks(const BlockRow& row, const PackOptions& options, std::byte* blocks) {
     switch (options.encoding) {

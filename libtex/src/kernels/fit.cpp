@@ -16,6 +16,7 @@
 #include <hwy/highway.h>
 
 #include "kernels/fit_group-inl.h"
+#include "kernels/fit_palettes-inl.h"
 #include "kernels/fit_steps-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -109,14 +110,19 @@ HWY_INLINE BlockWords choose_bc4(const Group& group, Bc4Codes codes, const Choic
                       hn::IfThenElse(better, word(cut(5)), word(cut(7))), hn::IfThenElseZero(better, word(8))});
 }
 
+// Zero where all texels are whole codes.
+HWY_INLINE W fractions_of(const W* texels) {
+    W any = texels[0];
+    for (int k = 1; k < 16; ++k) any = hn::Or(any, texels[k]);
+    return hn::And(any, word(static_cast<int>(kFine) - 1));
+}
+
 // Texels keep the indices for which the endpoints were solved.
 HWY_INLINE BlockWords fast_bc4(const W* texels, Bc4Codes codes) {
     const Words d;
     Group group;
     make_group<Precision::coarse>(texels, group);
-    W any = texels[0];
-    for (int k = 1; k < 16; ++k) any = hn::Or(any, texels[k]);
-    const Parts fractions = to_floats(hn::And(any, word(static_cast<int>(kFine) - 1)));
+    const Parts fractions = to_floats(fractions_of(texels));
     hn::Mask<Floats> whole[kParts];
     for (int p = 0; p < kParts; ++p) whole[p] = hn::Eq(fractions.part[p], hn::Zero(Floats()));
     Choice choice;
@@ -124,7 +130,8 @@ HWY_INLINE BlockWords fast_bc4(const W* texels, Bc4Codes codes) {
     return bc4_words(group, codes, choice, {ramp.factor, ramp.offset, word(cut(7)), hn::Zero(d)});
 }
 
-HWY_INLINE BlockWords normal_bc4(const W* texels, Bc4Codes codes) {
+// Sets `extremes` where blocks have texels of the lowest or the greatest code, and others.
+HWY_INLINE BlockWords normal_bc4(const W* texels, Bc4Codes codes, bool& extremes) {
     const float top = static_cast<float>(codes.top);
     Group group;
     make_group<Precision::full>(texels, group);
@@ -138,6 +145,18 @@ HWY_INLINE BlockWords normal_bc4(const W* texels, Bc4Codes codes) {
     const Fitter<SixValues> six_fitter(group, {top});
     Choice six;
     six_fitter.start<Precision::full>(0.0f, 1.0f, 2, six);
+    // A spacing of one code has no error where all texels are whole codes.
+    const Parts fractions = to_floats(fractions_of(texels));
+    F open[kParts];
+    for (int p = 0; p < kParts; ++p) {
+        const F range = hn::Mul(group.greatest[p], group.unit[p]);
+        const auto lowest = hn::Eq(group.base[p], hn::Zero(Floats()));
+        const auto extreme = hn::Or(lowest, hn::Eq(hn::Add(group.base[p], range), constant(top)));
+        extremes |= !hn::AllFalse(Floats(), hn::And(extreme, hn::Gt(range, hn::Zero(Floats()))));
+        const F least_range = hn::IfThenElse(hn::Eq(fractions.part[p], hn::Zero(Floats())), constant(7.0f), constant(0.5f));
+        open[p] = hn::IfThenElseZero(hn::Gt(range, least_range), constant(65535.0f));
+    }
+    offer_bc4_palettes(group, to_words(open), top, eight, six);
     return choose_bc4(group, codes, eight, six);
 }
 
@@ -177,6 +196,11 @@ HWY_INLINE BlockWords normal_green(const W* texels) {
     Choice best;
     fitter.score<Precision::full>(found, nullptr, best);
     fitter.start<Precision::full>(0.0f, 0.0f, 3, best);
+    F wide[kParts];  // two spacings have 8/3 codes or more
+    for (int p = 0; p < kParts; ++p) {
+        wide[p] = hn::IfThenElseZero(hn::Gt(group.greatest[p], hn::Mul(group.per_unit[p], constant(2.5f))), constant(65535.0f));
+    }
+    offer_green_palettes(group, to_words(wide), best);
     return green_words(group, best);
 }
 
@@ -207,27 +231,31 @@ HWY_INLINE void for_each_group(const ChannelRows& x, const ChannelRows& y, int c
     std::memcpy(blocks + 16 * first, last, 16 * rest);
 }
 
-void fit_dxt5nm_blocks(const ChannelRows& x, const ChannelRows& y, int count, Effort effort, std::byte* blocks) {
+bool fit_dxt5nm_blocks(const ChannelRows& x, const ChannelRows& y, int count, Effort effort, std::byte* blocks) {
+    bool extremes = false;
     for_each_group(x, y, count, blocks, [&](const float* const* xs, const float* const* ys, std::byte* to) {
         W texels[16];
         load_texels(xs, 255, x.negate, texels);
-        const BlockWords alpha = effort == Effort::fast ? fast_bc4(texels, kBc4Unorm) : normal_bc4(texels, kBc4Unorm);
+        const BlockWords alpha = effort == Effort::fast ? fast_bc4(texels, kBc4Unorm) : normal_bc4(texels, kBc4Unorm, extremes);
         load_texels(ys, 255, y.negate, texels);
         const BlockWords green = effort == Effort::fast ? fast_green(texels) : normal_green(texels);
         store_blocks(alpha, green, to);
     });
+    return extremes;
 }
 
-void fit_bc5_blocks(const ChannelRows& x, const ChannelRows& y, int count, Bc4Codes codes, Effort effort, std::byte* blocks) {
+bool fit_bc5_blocks(const ChannelRows& x, const ChannelRows& y, int count, Bc4Codes codes, Effort effort, std::byte* blocks) {
+    bool extremes = false;
     for_each_group(x, y, count, blocks, [&](const float* const* xs, const float* const* ys, std::byte* to) {
         BlockWords words[2];
         for (int k = 0; k < 2; ++k) {
             W texels[16];
             load_texels(k == 0 ? xs : ys, codes.top, k == 0 ? x.negate : y.negate, texels);
-            words[k] = effort == Effort::fast ? fast_bc4(texels, codes) : normal_bc4(texels, codes);
+            words[k] = effort == Effort::fast ? fast_bc4(texels, codes) : normal_bc4(texels, codes, extremes);
         }
         store_blocks(words[0], words[1], to);
     });
+    return extremes;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -240,12 +268,12 @@ namespace tex {
 HWY_EXPORT(fit_dxt5nm_blocks);
 HWY_EXPORT(fit_bc5_blocks);
 
-void fit_dxt5nm_blocks(const ChannelRows& x, const ChannelRows& y, int count, Effort effort, std::byte* blocks) {
-    HWY_DYNAMIC_DISPATCH(fit_dxt5nm_blocks)(x, y, count, effort, blocks);
+bool fit_dxt5nm_blocks(const ChannelRows& x, const ChannelRows& y, int count, Effort effort, std::byte* blocks) {
+    return HWY_DYNAMIC_DISPATCH(fit_dxt5nm_blocks)(x, y, count, effort, blocks);
 }
 
-void fit_bc5_blocks(const ChannelRows& x, const ChannelRows& y, int count, Bc4Codes codes, Effort effort, std::byte* blocks) {
-    HWY_DYNAMIC_DISPATCH(fit_bc5_blocks)(x, y, count, codes, effort, blocks);
+bool fit_bc5_blocks(const ChannelRows& x, const ChannelRows& y, int count, Bc4Codes codes, Effort effort, std::byte* blocks) {
+    return HWY_DYNAMIC_DISPATCH(fit_bc5_blocks)(x, y, count, codes, effort, blocks);
 }
 
 }  // namespace tex

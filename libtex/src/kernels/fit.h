@@ -44,7 +44,10 @@ struct ChannelRows {
 };
 
 // Fit `count` blocks that lie whole in the rows, and write 16 bytes for each: DXT5nm from x and y; BC5 from x and y.
-void fit_dxt5nm_blocks(const ChannelRows& x, const ChannelRows& y, int count, Effort effort, std::byte* blocks);
-void fit_bc5_blocks(const ChannelRows& x, const ChannelRows& y, int count, Bc4Codes codes, Effort effort, std::byte* blocks);
+//
+// Blocks of 6 values hold the lowest and the greatest code besides, which these fits do not use. Return true where, at Effort::normal and in
+// a channel of BC4, texels with one of these were met in a block that has others, too: such blocks are for a search.
+[[nodiscard]] bool fit_dxt5nm_blocks(const ChannelRows& x, const ChannelRows& y, int count, Effort effort, std::byte* blocks);
+[[nodiscard]] bool fit_bc5_blocks(const ChannelRows& x, const ChannelRows& y, int count, Bc4Codes codes, Effort effort, std::byte* blocks);
 
 }  // namespace tex

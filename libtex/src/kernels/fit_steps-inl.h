@@ -299,6 +299,10 @@ public:
         return make_ramp<Kind>(a, b);
     }
 
+    // A local value in codes, and a stored code as a local value.
+    HWY_INLINE F code(F value, int p) const { return hn::Add(group_.base[p], hn::Mul(value, group_.unit[p])); }
+    HWY_INLINE F local(F stored, int p) const { return hn::Mul(hn::Sub(kind_.widen(stored), group_.base[p]), group_.per_unit[p]); }
+
 private:
     // The mean of max(v, t) over the texels, from the greater of four roundings: at most two units above.
     template <int kFirst, int kCount>
@@ -328,10 +332,6 @@ private:
         }
         return m;
     }
-
-    HWY_INLINE F code(F value, int p) const { return hn::Add(group_.base[p], hn::Mul(value, group_.unit[p])); }
-    // The stored code as a local value.
-    HWY_INLINE F local(F stored, int p) const { return hn::Mul(hn::Sub(kind_.widen(stored), group_.base[p]), group_.per_unit[p]); }
 
     // The sum of (v - a - k spacing)^2, less that of (v - c)^2, c being the middle of the range of values. Indices are counted from n / 2
     // and values from c: that keeps the numbers, and so their rounding, small.
