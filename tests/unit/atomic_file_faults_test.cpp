@@ -63,9 +63,9 @@ ssize_t pwrite(int fd, const void* data, std::size_t count, off_t offset) {
 int openat(int folder, const char* path, int flags, ...) {
     va_list list;
     va_start(list, flags);
-    const mode_t mode = (flags & (O_CREAT | __O_TMPFILE)) != 0 ? va_arg(list, mode_t) : 0;
+    const mode_t mode = (flags & O_CREAT) != 0 || (flags & __O_TMPFILE) == __O_TMPFILE ? va_arg(list, mode_t) : 0;
     va_end(list);
-    if (faults.active && faults.no_nameless && (flags & __O_TMPFILE) != 0) {
+    if (faults.active && faults.no_nameless && (flags & __O_TMPFILE) == __O_TMPFILE) {  // which has O_DIRECTORY in it
         errno = EOPNOTSUPP;
         return -1;
     }

@@ -221,6 +221,9 @@ Result<void> ReaderRows::open(const ReadOptions& options) {
     if (!plausible(*header)) return nonsense(file_.path());
     const Result<Extent> extent = claimed_extent(file_.path(), header->width, header->height, options);
     if (!extent) return extent.error();
+    // Of what the process may write, before memory is taken for it.
+    const std::uint64_t claimed = tex::row_bytes(*header) * static_cast<std::uint64_t>(extent->height);
+    if (claimed > static_cast<std::uint64_t>(std::max<std::int64_t>(options.reader_memory, 0))) return nonsense(file_.path());
     header_ = *header;
     describe(*extent, plane_names(header_), tex::row_bytes(header_));
     const Result<Scale> scale = find_scale();
