@@ -269,9 +269,14 @@ protected:
 };
 
 TEST_F(BadReader, ThatCrashesIsOneSentence) {
-    const Error error = read_with("kill -SEGV $$");
+    ReaderHeader header = sound();
+    header.state = ReaderState::working;
+    const Error error = read_with(handing_over(header, 4) + "; kill -SEGV $$");
     EXPECT_EQ(error.code, ErrorCode::bad_data);
     EXPECT_EQ(error.reason, "the decoder crashed on this file (signal 11)");
+    const Error early = read_with("kill -SEGV $$");  // before it was ready: not a matter of the file
+    EXPECT_EQ(early.code, ErrorCode::io);
+    EXPECT_EQ(early.reason, "the reader program " + folder_ + "/reader cannot be started (signal 11)");
 }
 
 TEST_F(BadReader, ThatHangsIsStoppedWithAllItStarted) {
@@ -293,7 +298,8 @@ TEST_F(BadReader, ThatClosesItsPipeAndLingersIsStopped) {
 
 TEST_F(BadReader, ThatEndsEarlyIsOneSentence) {
     EXPECT_EQ(read_with("exit 0").reason, "the decoder ended without a result (exit status 0)");
-    EXPECT_EQ(read_with("exit 3").reason, "the decoder ended without a result (exit status 3)");
+    EXPECT_EQ(read_with("exit 4").reason, "the decoder ended without a result (exit status 4)");
+    EXPECT_EQ(read_with("exit 3").code, ErrorCode::out_of_memory);  // kNoRoom
 }
 
 TEST_F(BadReader, ThatHandsOverNoiseIsNotBelieved) {
@@ -314,6 +320,8 @@ TEST_F(BadReader, ThatLiesAboutThePictureIsNotBelieved) {
     header = sound();
     header.width = header.height = 30'000;
     EXPECT_EQ(read_with(handing_over(header, 4)).code, ErrorCode::bad_data);
+    header.channels = kMaxReaderChannels;  // 58 GB of bytes, 230 GB of floats
+    EXPECT_EQ(read_with(handing_over(header, 4)).reason, "the decoder handed over nonsense");
     header = sound();
     header.channels = 1'000'000;
     EXPECT_EQ(read_with(handing_over(header, 4)).code, ErrorCode::bad_data);

@@ -10,6 +10,8 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/mman.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include "cli/console.h"
@@ -32,6 +34,23 @@ bool write_all(int fd, std::string_view text) {
     return true;
 }
 
+// Before the libraries' constructors, which end with abort() where they get no memory, and before the standard library has set memory for exceptions aside
+// (without which throwing one ends with abort(), too): a command that cannot have even this much says so.
+void check_memory(int, char** argv, char**) {
+    constexpr std::size_t kStart = std::size_t{4} << 20;
+    // Not through the C library: libraries that put calls of their own before it are not ready.
+    const long memory = syscall(SYS_mmap, 0L, kStart, long{PROT_NONE}, long{MAP_PRIVATE | MAP_ANONYMOUS}, -1L, 0L);
+    if (memory != -1) {
+        syscall(SYS_munmap, memory, kStart);
+        return;
+    }
+    const char* const slash = std::strrchr(argv[0], '/');
+    write_all(STDERR_FILENO, slash == nullptr ? argv[0] : slash + 1);
+    write_all(STDERR_FILENO, ": error: out of memory\n");
+    _exit(static_cast<int>(ExitCode::io));
+}
+[[gnu::section(".preinit_array"), gnu::used]] void (*const g_check_memory)(int, char**, char**) = check_memory;
+
 }  // namespace
 
 void secure_streams() {
@@ -42,6 +61,7 @@ void secure_streams() {
         }
     }
     std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
 }
 
 bool write_stdout(std::string_view text) {

@@ -11,7 +11,7 @@ namespace tex::cli {
 
 // Opens /dev/null in the wrong direction for each of the three streams that is closed, so that no file that
 // we open becomes standard output by accident; reading or writing such a stream then fails. Ignores
-// SIGPIPE: a reader that went away is an error of write().
+// SIGPIPE and SIGXFSZ: a reader that went away and a limit on the size of files are errors of write().
 void secure_streams();
 
 // Writes all of `text` to standard output, unbuffered. False where that failed (errno says why).

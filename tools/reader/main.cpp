@@ -10,30 +10,43 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <new>
 #include <string_view>
+#include <system_error>
 
 #include "reader.h"
 
 namespace tex::reader {
 
-void put_bytes(std::uint64_t offset, const void* data, std::uint64_t count) {
+namespace {
+
+bool write_result(std::uint64_t offset, const void* data, std::uint64_t count) {
     const auto* from = static_cast<const char*>(data);
     while (count > 0) {
         const ssize_t n = pwrite(kResultDescriptor, from, count, static_cast<off_t>(offset));
         if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) _exit(1);
+        if (n <= 0) return false;
         from += n;
         offset += static_cast<std::uint64_t>(n);
         count -= static_cast<std::uint64_t>(n);
     }
+    return true;
 }
 
-void put_header(const ReaderHeader& header) { put_bytes(0, &header, sizeof header); }
+}  // namespace
+
+void put_bytes(std::uint64_t offset, const void* data, std::uint64_t count) {
+    if (!write_result(offset, data, count)) throw std::bad_alloc();
+}
+
+void put_header(const ReaderHeader& header) {
+    if (!write_result(0, &header, sizeof header)) _exit(kNoRoom);
+}
 
 void put_progress() {
     const char strip = 0;
@@ -73,13 +86,20 @@ void calm_openimageio() {
     OIIO::attribute("limits:channels", kMaxReaderChannels);
 }
 
+std::string in_units(std::int64_t bytes) {
+    constexpr std::int64_t kMany = std::int64_t{8} << 20;
+    return bytes < kMany ? std::to_string(bytes >> 10) + " KiB" : std::to_string(bytes >> 20) + " MiB";
+}
+
 int run(const std::string_view verb, const Task& task) {
     ReaderHeader header;
     try {
+        std::signal(SIGXFSZ, SIG_IGN);  // a result that is too large is an error of pwrite()
         limit_process(task);
         calm_openimageio();
         if (restrict_files()) header.sandboxed |= kFilesRestricted;
         if (filter_calls()) header.sandboxed |= kCallsFiltered;
+        put_header(header);  // from here on, what goes wrong is a matter of the file
         const bool done = verb == "decode" ? decode(task, header) : encode(task, header);
         if (!done) return 0;
         header.state = ReaderState::done;
@@ -88,7 +108,9 @@ int run(const std::string_view verb, const Task& task) {
         // The limit of --reader-memory, or a lower one that this process came with.
         const std::int64_t most = memory_limit();
         refuse(header, most < task.memory ? ErrorCode::out_of_memory : ErrorCode::unsupported,
-               "needs more memory than the " + std::to_string(std::min(most, task.memory) >> 20) + " MiB that a decoder may have");
+               "needs more memory than the " + in_units(std::min(most, task.memory)) + " that a decoder may have");
+    } catch (const std::system_error& thrown) {  // of threads that are refused
+        refuse(header, ErrorCode::out_of_memory, std::string("the decoder gets no threads: ") + thrown.what());
     } catch (const std::exception& thrown) {
         refuse(header, ErrorCode::bad_data, thrown.what());
     }

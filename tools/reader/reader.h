@@ -25,7 +25,7 @@ struct Task {
 // Limits of memory, time and descriptors; no core file; ends when the parent does.
 void limit_process(const Task& task);
 
-// Bytes of address space that this process may have.
+// Bytes of address space and of one file that this process may have: the lesser of both.
 std::int64_t memory_limit();
 
 // Takes away all files but the input, which may be read (Landlock). False where the kernel does not know it, or refuses.
@@ -39,8 +39,9 @@ bool filter_calls();
 bool decode(const Task& task, ReaderHeader& header);
 bool encode(const Task& task, ReaderHeader& header);
 
-// Writes the header. A result that cannot be written ends the process with status 1.
+// Writes the header; where that fails, the process ends with kNoRoom.
 void put_header(const ReaderHeader& header);
+// Throws std::bad_alloc where the result has no room for them.
 void put_bytes(std::uint64_t offset, const void* data, std::uint64_t count);
 // Tells the parent that rows have arrived.
 void put_progress();

@@ -10,6 +10,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <limits>
@@ -91,9 +92,12 @@ void limit_process(const Task& task) {
 }
 
 std::int64_t memory_limit() {
-    rlimit now{};
-    constexpr auto kMost = static_cast<rlim_t>(std::numeric_limits<std::int64_t>::max());
-    return getrlimit(RLIMIT_AS, &now) == 0 && now.rlim_cur < kMost ? static_cast<std::int64_t>(now.rlim_cur) : std::numeric_limits<std::int64_t>::max();
+    auto most = static_cast<rlim_t>(std::numeric_limits<std::int64_t>::max());
+    for (const auto what : {RLIMIT_AS, RLIMIT_FSIZE}) {
+        rlimit now{};
+        if (getrlimit(what, &now) == 0) most = std::min(most, now.rlim_cur);
+    }
+    return static_cast<std::int64_t>(most);
 }
 
 bool restrict_files() {

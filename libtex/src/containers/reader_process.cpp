@@ -9,6 +9,7 @@
 #include <signal.h>
 #include <spawn.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -139,17 +140,31 @@ Ending collect(pid_t child) {
 
 std::string does(const ReaderJob& job) { return job.verb == "encode" ? "the encoder" : "the decoder"; }
 
-Error abnormal_end(const ReaderJob& job, const std::string& program, Ending ending) {
+// Whether this process may have less memory than the reader: so the reader has that little, too.
+bool is_short_of_memory(std::int64_t reader_memory) {
+    rlimit now{};
+    return getrlimit(RLIMIT_AS, &now) == 0 && now.rlim_cur < static_cast<rlim_t>(std::max<std::int64_t>(reader_memory, 0));
+}
+
+// `begun`: it was ready to look at the file.
+Error abnormal_end(const ReaderJob& job, const std::string& program, Ending ending, bool begun, bool is_short) {
     constexpr int kNotLoaded = 127;  // of the dynamic loader, and of shells
+    const std::string signal = " (signal " + std::to_string(ending.signal) + ")";
     if (ending.signal == SIGKILL) {
         return {ErrorCode::out_of_memory, job.path, does(job) + " was killed by the system: out of memory?"};
     }
-    if (ending.signal != 0) {
-        return {ErrorCode::bad_data, job.path,
-                does(job) + " crashed on this file (signal " + std::to_string(ending.signal) + ")"};
+    if (ending.signal != 0 && is_short) {
+        return {ErrorCode::out_of_memory, job.path, does(job) + " crashed" + signal + "; it has little memory (ulimit -v)"};
     }
+    if (ending.signal != 0 && !begun) {
+        return {ErrorCode::io, job.path, "the reader program " + program + " cannot be started" + signal};
+    }
+    if (ending.signal != 0) return {ErrorCode::bad_data, job.path, does(job) + " crashed on this file" + signal};
     if (ending.status == kNotLoaded) {
         return {ErrorCode::io, job.path, "the reader program " + program + " cannot be loaded"};
+    }
+    if (ending.status == kNoRoom) {
+        return {ErrorCode::out_of_memory, job.path, does(job) + " cannot hand over its result: no memory, or a limit on the size of files (ulimit -f)"};
     }
     return {ErrorCode::bad_data, job.path, does(job) + " ended without a result (exit status " + std::to_string(ending.status) + ")"};
 }
@@ -221,6 +236,7 @@ struct ReaderProcess::State {
     ReaderJob job;
     std::string program;
     int seconds = 1;
+    std::int64_t memory = 0;  // bytes
     Clock::time_point deadline;
     Descriptor progress;
     pid_t child = -1;
@@ -262,6 +278,7 @@ Result<ReaderProcess> ReaderProcess::start(const ReaderJob& job, const ReadOptio
         state->job = job;
         state->program = *program;
         state->seconds = std::max(1, options.reader_timeout);
+        state->memory = options.reader_memory;
         state->deadline = Clock::now() + std::chrono::seconds(state->seconds);
 
         int ends[2];
@@ -302,7 +319,7 @@ Result<ReaderHeader> ReaderProcess::finish() {
         const ReaderHeader header = state_->read_header(whole);
         if (whole && header.state == ReaderState::refused) return reported_error(job, header);
         if (!whole || header.state != ReaderState::done || state_->ending->signal != 0) {
-            return abnormal_end(job, state_->program, *state_->ending);
+            return abnormal_end(job, state_->program, *state_->ending, whole, is_short_of_memory(state_->memory));
         }
         return header;
     });

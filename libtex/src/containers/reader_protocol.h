@@ -14,6 +14,9 @@
 // Texels are interleaved, native byte order, rows from the top without padding: row j is at kReaderDataOffset + j * row_bytes(). rows_done in the
 // header grows while they arrive, so that a consumer may follow. An encoded file is `bytes` long.
 //
+// The header is there, as `working`, once the process is ready: one that ends earlier has not seen its input. It ends with status kNoRoom where even the header
+// cannot be written.
+//
 // The reader is not trusted: whatever it hands over is checked as if it came from the file itself.
 
 #pragma once
@@ -35,6 +38,8 @@ inline constexpr std::size_t kReaderDataOffset = 8192;
 // Bits of ReaderHeader::sandboxed.
 inline constexpr std::uint32_t kCallsFiltered = 1;
 inline constexpr std::uint32_t kFilesRestricted = 2;
+
+inline constexpr int kNoRoom = 3;
 
 enum class ReaderState : std::uint32_t { working, done, refused };
 
