@@ -2,13 +2,10 @@
 // samples/broken: every rule has a file that makes this rule fire, and no other.
 
 #include <algorithm>
-#include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -18,14 +15,6 @@
 #include "cli/program.h"
 
 namespace tex::cli {
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-#elif defined(__has_feature)
-constexpr bool kSanitized = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
-#else
-constexpr bool kSanitized = false;
-#endif
 
 class CheckNormalsBroken : public testing::Test {
 protected:
@@ -91,34 +80,6 @@ TEST_F(CheckNormalsBroken, EveryFixRepairsItsFinding) {
     }
     const auto has_fix = [](const Rule& rule) { return !rule.fix.empty(); };
     EXPECT_EQ(repaired, static_cast<std::size_t>(std::count_if(rules().begin(), rules().end(), has_fix)));
-}
-
-// Other people's hostile files: findings or a reason, never a crash, a hang or more than 1 GiB, the process that decodes included: the limit is on the larger
-// one of both, twice. (The sanitizers' own memory is no part of that.)
-TEST(HostileFiles, EndInTimeAndMemory) {
-    const std::filesystem::path folder = TEX_SOURCE_DIR "/../shared/data/bad";
-    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no " << folder;
-    constexpr std::int64_t kMost = std::int64_t{1} << 30;
-    constexpr double kSeconds = 10.0;
-    const Scratch scratch;
-    int files = 0;
-    std::int64_t peak = 0;
-    double slowest = 0.0;
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-        const std::string name = entry.path().string();
-        for (const auto& [command, arguments] : {std::pair<const char*, std::vector<std::string>>{"check-normals", {name}},
-                                                 {"compare-normals", {name, name}}}) {
-            const Ran ran = run(scratch, command, arguments);
-            EXPECT_TRUE(ran.code == 0 || ran.code == 1 || ran.code == 4) << command << " " << name << ": " << ran.code << ran.err;
-            EXPECT_TRUE(ran.code != 4 || !(ran.out + ran.err).empty()) << command << " " << name;
-            EXPECT_LT(ran.cpu_seconds, kSeconds) << command << " " << name;
-            EXPECT_TRUE(kSanitized || 2 * ran.peak_bytes < kMost) << command << " " << name;
-            peak = std::max(peak, ran.peak_bytes);
-            slowest = std::max(slowest, ran.cpu_seconds);
-        }
-        ++files;
-    }
-    std::printf("%d files: the largest process takes %lld MB, the longest run %.2f s\n", files, static_cast<long long>(peak >> 20), slowest);
 }
 
 }  // namespace tex::cli

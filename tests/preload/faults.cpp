@@ -6,6 +6,7 @@
 //     TEX_FAULT_ERRNO=E        with this error (EIO)
 //     TEX_FAULT_KILL=1         SIGKILL instead
 //     TEX_FAULT_SHORTEN=FILE   instead, FILE loses its second half before the call
+//     TEX_FAULT_REPLACE=FILE   instead, the file TEX_FAULT_BY takes the name of FILE before the call
 //     TEX_FAULT_NO_TMPFILE=1   the file system has no nameless files
 //     TEX_FAULT_NO_THREADS=1   no thread can be started
 //
@@ -36,6 +37,8 @@ struct Plan {
     bool no_tmpfile = false;
     bool no_threads = false;
     const char* shorten = nullptr;
+    const char* replace = nullptr;
+    const char* by = nullptr;
     std::atomic<int>* calls = nullptr;
 };
 
@@ -64,6 +67,8 @@ Plan make_plan() {
     plan.no_tmpfile = number("TEX_FAULT_NO_TMPFILE", 0) != 0;
     plan.no_threads = number("TEX_FAULT_NO_THREADS", 0) != 0;
     plan.shorten = getenv("TEX_FAULT_SHORTEN");
+    plan.replace = getenv("TEX_FAULT_REPLACE");
+    plan.by = getenv("TEX_FAULT_BY");
     if (const char* file = getenv("TEX_FAULT_COUNT")) {
         const auto fd = static_cast<int>(wide_syscall(SYS_openat, AT_FDCWD, file, O_RDWR | O_CLOEXEC));
         const long place = wide_syscall(SYS_mmap, nullptr, sizeof(int), PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
@@ -91,6 +96,10 @@ bool fails() {
     if (plan().shorten != nullptr) {
         struct stat status {};
         if (stat(plan().shorten, &status) == 0) wide_syscall(SYS_truncate, plan().shorten, status.st_size / 2);
+        return false;
+    }
+    if (plan().replace != nullptr) {
+        wide_syscall(SYS_renameat2, AT_FDCWD, plan().by, AT_FDCWD, plan().replace, 0);
         return false;
     }
     errno = plan().error;
