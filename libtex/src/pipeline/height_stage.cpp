@@ -79,7 +79,7 @@ struct HeightStage::Blur {
 };
 
 HeightStage::HeightStage(Extent extent, const HeightSource& source, const HeightOptions& options,
-                         const Gradient& gradient, const Slopes& slopes, Sink sink)
+                         const Gradient& gradient, const Slopes& slopes, NormalSink sink)
     : extent_(extent), source_(source), options_(options), gradient_(gradient), sink_(std::move(sink)),
       heights_(extent.width, 1) {
     if (options.blur_sigma > 0.0f) blur_ = std::make_unique<Blur>(extent, options);
@@ -93,7 +93,11 @@ HeightStage::~HeightStage() = default;
 
 int HeightStage::start() const { return window_->start(); }
 
-void HeightStage::put(const Image& rows, int k) {
+void HeightStage::put(const Image& rows, int count) {
+    for (int k = 0; k < count; ++k) put_row(rows, k);
+}
+
+void HeightStage::put_row(const Image& rows, int k) {
     const std::shared_ptr<Plane<float>> row = heights_.make();
     const HeightCounts counts = take_heights(rows, source_, options_, k, row->row(0));
     counts_.luma += counts.luma;

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -12,6 +11,7 @@
 
 #include "base/bake_rows.h"
 #include "base/height_source.h"
+#include "pipeline/normal_stage.h"
 #include "pipeline/row_shelf.h"
 
 namespace tex {
@@ -40,29 +40,24 @@ private:
 };
 
 // The same bytes as height_field() without fill_invalid, and bake().
-class HeightStage {
+class HeightStage final : public NormalStage {
 public:
-    // Where the normals of row j go, and what happens when they are there.
-    struct Sink {
-        std::function<NormalRow(int j)> place;
-        std::function<void(int j)> finish;
-    };
     HeightStage(Extent extent, const HeightSource& source, const HeightOptions& options, const Gradient& gradient,
-                const Slopes& slopes, Sink sink);
-    ~HeightStage();
+                const Slopes& slopes, NormalSink sink);
+    ~HeightStage() override;
 
     // The row at which normals begin (see row_shelf.h).
     [[nodiscard]] int start() const;
 
-    // The next row of the picture, which is row `k` of `rows`. Once a height was invalid, the others are only counted.
-    void put(const Image& rows, int k);
+    // Once a height was invalid, the others are only counted.
+    void put(const Image& rows, int count) override;
 
     [[nodiscard]] const HeightCounts& counts() const { return counts_; }
-    // After the last row. Errors: bad_data.
-    [[nodiscard]] Result<void> check() const;
+    [[nodiscard]] Result<void> check() const override;
 
 private:
     struct Blur;
+    void put_row(const Image& rows, int k);
     void take_invalid(const float* row);
     void blur_row(int j, const float* row);
     void blur_column(int j);
@@ -72,7 +67,7 @@ private:
     const HeightSource source_;
     const HeightOptions options_;
     const Gradient gradient_;
-    const Sink sink_;
+    const NormalSink sink_;
     HeightCounts counts_;
     int first_invalid_[2] = {};  // column, row
     int row_ = 0;                // of the picture, the next one

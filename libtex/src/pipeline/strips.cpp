@@ -8,7 +8,8 @@
 #include <tex/mip_chain.h>
 
 namespace tex {
-Strips::Strips(Extent base, int levels, int strip_texels) : levels_(static_cast<std::size_t>(levels)) {
+Strips::Strips(Extent base, int levels, int strip_texels, int first)
+    : first_(first), levels_(static_cast<std::size_t>(levels)) {
     for (int k = 0; k < levels; ++k) {
         Level& level = levels_[static_cast<std::size_t>(k)];
         level.extent = level_extent(base, k);
@@ -28,7 +29,7 @@ Strips::Place Strips::place(int level_index, int j) {
             made->map = NormalMap(extent);
             return made;
         });
-        strip->level = level_index;
+        strip->level = first_ + level_index;
         strip->first = j / level.rows * level.rows;
         strip->height = std::min(level.rows, level.extent.height - strip->first);
         strip->filled = 0;

@@ -18,7 +18,7 @@ namespace tex {
 
 // Some rows of a level, from the row `first`, a multiple of 4, on: as many as a strip has, or those up to the level's end.
 struct Strip {
-    int level = 0;
+    int level = 0;                 // of the file
     int first = 0;
     int height = 0;
     int filled = 0;                // rows that are finished
@@ -29,8 +29,8 @@ struct Strip {
 // The strips of all levels. Rows come in any order; one thread alone brings them.
 class Strips {
 public:
-    // A strip of the base level has about `strip_texels` texels, and at least a row of blocks.
-    Strips(Extent base, int levels, int strip_texels);
+    // A strip of the base level has about `strip_texels` texels, and at least a row of blocks. The base level is level `first` of the file.
+    Strips(Extent base, int levels, int strip_texels, int first = 0);
 
     // Where row j of a level goes, and who owns the place.
     struct Place {
@@ -56,6 +56,7 @@ private:
         std::map<int, std::shared_ptr<Strip>> open;
         Pool<Strip> pool;
     };
+    const int first_;
     std::vector<Level> levels_;
     std::int64_t missing_ = 0;
     std::vector<std::shared_ptr<Strip>> whole_;
