@@ -8,6 +8,7 @@
 #include "cli/groups.h"
 #include "cli/heights.h"
 #include "cli/name_pattern.h"
+#include "cli/repack.h"
 #include "cli/usage_error.h"
 
 namespace {
@@ -121,7 +122,7 @@ Encoding BakeNormals::encoding(const cli::Job& job) const {
 
 void BakeNormals::report_way(cli::Job& job, const SlopeRange& slopes, Path path) {
     job.report["slopes"] = {{"x", {slopes.min_x, slopes.max_x}}, {"y", {slopes.min_y, slopes.max_y}}};
-    job.report["path"] = name_of(kPathNames, path);
+    cli::report_path(job, path);
 }
 
 }  // namespace

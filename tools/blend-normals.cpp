@@ -106,8 +106,8 @@ Result<void> BlendNormals::process(cli::Job& job) {
     mip.levels = mips.levels_for(job.task);
     auto chain = build_mip_chain(std::move(*blended), mip, job.until(0.7));
     if (!chain) return chain.error();
-    const Encoding encoding = output.format.value_or(cli::encoding_of(*base, job.task));
-    return cli::write_chain(job, std::move(*chain), output, encoding, output.y.value_or(base->y));
+    const Encoding encoding = output.format.value_or(cli::encoding_of(base->info, job.task));
+    return cli::write_chain(job, std::move(*chain), output, encoding, output.y.value_or(base->info.y_axis));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "cli/batch.h"
 #include "cli/groups.h"
 #include "cli/name_pattern.h"
+#include "cli/repack.h"
 #include "cli/roughness.h"
 #include "cli/source.h"
 #include "cli/text.h"
@@ -32,6 +33,7 @@ struct MipNormals {
     MipNormals();
     void check(const std::vector<cli::Task>& tasks) const;
     Result<void> process(cli::Job& job);
+    Result<void> process_chain(cli::Job& job);
 };
 
 MipNormals::MipNormals() {
@@ -67,6 +69,16 @@ void MipNormals::check(const std::vector<cli::Task>& tasks) const {
 }
 
 Result<void> MipNormals::process(cli::Job& job) {
+    if (cli::has_level(job.task.output) || roughness.is_given()) return process_chain(job);
+    PackFileOptions options;
+    options.mip = mips.mip;
+    options.mip->levels = mips.levels.value_or(0);
+    return cli::repack(job, source, output, options,
+                       [&](const SourceInfo&) { return default_encoding(job.task.container); });
+}
+
+// A file for each level, or roughness that is made of the normals: the chain is held as a whole.
+Result<void> MipNormals::process_chain(cli::Job& job) {
     auto read = source.read(job, 0.4, true);
     if (!read) return read.error();
     MipOptions options = mips.mip;
@@ -81,8 +93,10 @@ Result<void> MipNormals::process(cli::Job& job) {
     auto chain = build_mip_chain(std::move(base), options, job.until(0.6));
     if (!chain) return chain.error();
     const Encoding encoding = output.format.value_or(default_encoding(job.task.container));
-    auto written = cli::write_chain(job, std::move(*chain), output, encoding, output.y.value_or(read->y));
-    if (!written || !roughness.is_given()) return written;
+    auto written = cli::write_chain(job, std::move(*chain), output, encoding, output.y.value_or(read->info.y_axis));
+    if (!written) return written;
+    cli::report_path(job, Path::whole);
+    if (!roughness.is_given()) return {};
     return roughness.write(job, rougher, output, job.until(0.99));
 }
 

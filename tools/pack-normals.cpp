@@ -5,6 +5,8 @@
 
 #include "cli/batch.h"
 #include "cli/groups.h"
+#include "cli/name_pattern.h"
+#include "cli/repack.h"
 #include "cli/source.h"
 
 namespace {
@@ -24,6 +26,7 @@ struct PackNormals {
 
     PackNormals();
     Result<void> process(cli::Job& job);
+    Result<void> process_levels(cli::Job& job);
 };
 
 PackNormals::PackNormals() {
@@ -44,6 +47,18 @@ PackNormals::PackNormals() {
 }
 
 Result<void> PackNormals::process(cli::Job& job) {
+    if (cli::has_level(job.task.output)) return process_levels(job);
+    PackFileOptions options;
+    if (!mips.keep && mips.levels) {
+        options.mip = mips.mip;
+        options.mip->levels = *mips.levels;
+    }
+    return cli::repack(job, source, output, options,
+                       [&](const SourceInfo&) { return default_encoding(job.task.container); });
+}
+
+// A file for each level: the chain is held as a whole.
+Result<void> PackNormals::process_levels(cli::Job& job) {
     const bool keeps = mips.keep || !mips.levels;
     auto read = source.read(job, 0.4, !keeps);
     if (!read) return read.error();
@@ -56,7 +71,9 @@ Result<void> PackNormals::process(cli::Job& job) {
         chain = std::move(*built);
     }
     const Encoding encoding = output.format.value_or(default_encoding(job.task.container));
-    return cli::write_chain(job, std::move(chain), output, encoding, output.y.value_or(read->y));
+    auto written = cli::write_chain(job, std::move(chain), output, encoding, output.y.value_or(read->info.y_axis));
+    if (written) cli::report_path(job, Path::whole);
+    return written;
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "cli/batch.h"
 #include "cli/name_pattern.h"
+#include "cli/repack.h"
 #include "cli/source.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
@@ -32,6 +33,8 @@ struct UnpackNormals {
     UnpackNormals();
     void check(const std::vector<cli::Task>& tasks) const;
     Result<void> process(cli::Job& job);
+    Result<void> process_levels(cli::Job& job);
+    [[nodiscard]] Encoding encoding(const cli::Job& job) const;
 };
 
 UnpackNormals::UnpackNormals() {
@@ -72,6 +75,15 @@ void UnpackNormals::check(const std::vector<cli::Task>& tasks) const {
 }
 
 Result<void> UnpackNormals::process(cli::Job& job) {
+    if (cli::has_level(job.task.output)) return process_levels(job);
+    PackFileOptions options;
+    if (!all_levels) options.level = level;
+    if (command.given("--scale")) options.scale = {scale, scale_mode};
+    return cli::repack(job, source, output, options, [&](const SourceInfo&) { return encoding(job); });
+}
+
+// A file for each level: the chain is held as a whole.
+Result<void> UnpackNormals::process_levels(cli::Job& job) {
     auto read = source.read(job, 0.5, !all_levels && level == 0);
     if (!read) return read.error();
     MipChain chain = std::move(read->chain);
@@ -88,10 +100,15 @@ Result<void> UnpackNormals::process(cli::Job& job) {
         if (!scaled) return scaled.error();
         chain = std::move(*scaled);
     }
+    auto written = cli::write_chain(job, std::move(chain), output, output.format.value_or(encoding(job)),
+                                    output.y.value_or(read->info.y_axis));
+    if (written) cli::report_path(job, Path::whole);
+    return written;
+}
+
+Encoding UnpackNormals::encoding(const cli::Job& job) const {
     const bool is_texture = job.task.container == Container::dds || job.task.container == Container::ktx2;
-    const Encoding encoding =
-        output.format.value_or(is_texture ? Encoding::rgb8 : default_encoding(job.task.container));
-    return cli::write_chain(job, std::move(chain), output, encoding, output.y.value_or(read->y));
+    return is_texture ? Encoding::rgb8 : default_encoding(job.task.container);
 }
 
 }  // namespace

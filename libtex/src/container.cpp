@@ -11,9 +11,9 @@
 #include "containers/dds.h"
 #include "containers/exr.h"
 #include "containers/ktx2.h"
-#include "containers/picture.h"
 #include "containers/png.h"
 #include "containers/reader.h"
+#include "containers/texture_rows.h"
 
 namespace tex {
 namespace {
@@ -40,13 +40,6 @@ std::string extension_of(std::string_view path) {
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
     }
     return extension;
-}
-
-Result<Texture> texture_from(Result<Image> image, const std::string& path) {
-    if (!image) return image.error();
-    Result<Texture> texture = texture_of(*image);
-    if (!texture) return Error{texture.error().code, path, texture.error().reason};
-    return texture;
 }
 
 }  // namespace
@@ -123,14 +116,7 @@ Result<Texture> read_texture(const std::string& path, const ReadOptions& options
     return guarded([&]() -> Result<Texture> {
         Result<InputFile> file = InputFile::open(path);
         if (!file) return file.error();
-        const std::span<const std::byte> head = file->head();
-        if (is_dds(head.data(), head.size()) || is_ktx2(head.data(), head.size())) {
-            const Result<std::vector<std::byte>> bytes = file->read_rest(largest_file(options));
-            if (!bytes) return bytes.error();
-            return decode_file(bytes->data(), bytes->size(), path, options);
-        }
-        if (is_exr(head)) return read_exr_texture(*file, options);
-        return texture_from(is_png(head) ? read_png(*file, options) : read_with_reader(*file, options), path);
+        return read_texture(*file, options);
     });
 }
 

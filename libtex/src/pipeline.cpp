@@ -1,17 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which path a file takes, and the path of whole images; pipeline/bake_stream.cpp is the other one.
+// Which path a file takes, and the path of whole images; pipeline/bake_stream.cpp and pipeline/pack_stream.cpp are the other one.
 
 #include <tex/pipeline.h>
 
+#include <cassert>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include <tex/image_io.h>
 
 #include "base/guard.h"
 #include "base/input_file.h"
+#include "base/parallel.h"
 #include "containers/row_source.h"
+#include "containers/texture_rows.h"
 #include "pipeline/bake_stream.h"
+#include "pipeline/normal_source.h"
+#include "pipeline/pack_stream.h"
 
 namespace tex {
 namespace {
@@ -23,11 +29,13 @@ bool can_stream(const RowSource* rows, Container container, const BakeFileOption
            !options.heights.fill_invalid;
 }
 
-// The part of an execution from a fraction to another.
-Execution part_of(const Execution& execution, double from, double to) {
-    if (!execution.progress) return execution;
-    return {execution.threads,
-            [&execution, from, to](double done) { return execution.progress(from + (to - from) * done); }};
+// One file that holds `texture`.
+Result<std::size_t> write_whole(Texture texture, const std::string& output, Container container, const WriteOptions& options) {
+    auto bytes = encode_file(texture, container, options);
+    if (!bytes) return Error{bytes.error().code, output, bytes.error().reason};
+    texture.levels.clear();
+    if (auto written = write_file(output, *bytes, options); !written) return written.error();
+    return bytes->size();
 }
 
 Result<BakeFileReport> bake_whole(Image image, const std::string& output, Container container,
@@ -55,11 +63,43 @@ Result<BakeFileReport> bake_whole(Image image, const std::string& output, Contai
     if (!texture) return texture.error();
     chain->levels.clear();
     report.levels = static_cast<int>(texture->levels.size());
-    auto bytes = encode_file(*texture, container, options.write);
-    if (!bytes) return Error{bytes.error().code, output, bytes.error().reason};
-    texture->levels.clear();
-    report.bytes = bytes->size();
-    if (auto written = write_file(output, *bytes, options.write); !written) return written.error();
+    auto bytes = write_whole(std::move(*texture), output, container, options.write);
+    if (!bytes) return bytes.error();
+    report.bytes = *bytes;
+    return report;
+}
+
+Result<PackFileReport> pack_whole(InputFile& file, const std::string& output, Container container, const PackFileOptions& options,
+                                  const Execution& execution) {
+    const bool base_only = options.level ? *options.level == 0 : options.mip.has_value();
+    auto source = read_normals(file, options.source, base_only, part_of(execution, 0.0, 0.4));
+    if (!source) return source.error();
+    PackFileReport report;
+    report.source = std::move(source->info);
+    report.pack = pack_options(options, container, report.source);
+    MipChain chain = std::move(source->chain);
+    const auto first = static_cast<std::size_t>(options.level.value_or(0));
+    if (first >= chain.levels.size()) return no_such_level(file.path(), *options.level, chain.levels.size());
+    std::swap(chain.levels.front(), chain.levels[first]);
+    if (options.level || options.mip || !can_hold_levels(container)) chain.levels.resize(1);
+    if (options.scale) {
+        auto scaled = scale(std::move(chain), options.scale->scale, options.scale->mode, part_of(execution, 0.4, 0.5));
+        if (!scaled) return scaled.error();
+        chain = std::move(*scaled);
+    }
+    if (options.mip && can_hold_levels(container)) {
+        auto built = build_mip_chain(std::move(chain.levels.front()), *options.mip, part_of(execution, 0.5, 0.6));
+        if (!built) return built.error();
+        chain = std::move(*built);
+    }
+    auto texture = pack(chain, report.pack, part_of(execution, 0.6, 0.95));
+    if (!texture) return texture.error();
+    chain.levels.clear();
+    report.extent = texture->extent();
+    report.levels = static_cast<int>(texture->levels.size());
+    auto bytes = write_whole(std::move(*texture), output, container, options.write);
+    if (!bytes) return bytes.error();
+    report.bytes = *bytes;
     return report;
 }
 
@@ -83,6 +123,21 @@ Result<BakeFileReport> bake_file(const std::string& input, const std::string& ou
         }
         rows->reset();
         return bake_whole(std::move(*image), output, container, options, execution);
+    });
+}
+
+Result<PackFileReport> pack_file(const std::string& input, const std::string& output, Container container,
+                                 const PackFileOptions& options, const Execution& execution) {
+    assert(!options.level || *options.level >= 0);
+    return guarded([&]() -> Result<PackFileReport> {
+        Result<InputFile> file = InputFile::open(input);
+        if (!file) return file.error();
+        if (is_texture(container)) {
+            Result<std::optional<TextureRows>> texture = open_texture_rows(*file, options.source.read);
+            if (!texture) return texture.error();
+            if (*texture) return pack_stream(*file, std::move(**texture), output, container, options, execution);
+        }
+        return pack_whole(*file, output, container, options, execution);
     });
 }
 

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <cmath>
 #include <cstring>
 
 #include "base/guard.h"
 #include "base/parallel.h"
+#include "base/unpack_rows.h"
 #include "kernels/decode.h"
 #include "kernels/unpack.h"
 
@@ -40,63 +40,6 @@ void decode_strip(Format format, const Level& level, int strip, const ChannelRow
         }
         decode_texels(format, level.bytes.data() + static_cast<std::size_t>(j) * pitch, width, row);
     }
-}
-
-// Which of four channels hold x, y and z; -1 for none.
-struct Sources {
-    int x = -1;
-    int y = -1;
-    int z = -1;
-};
-
-int channel_of(const Swizzle& swizzle, Component component) {
-    const auto found = std::find(swizzle.begin(), swizzle.end(), component);
-    return found == swizzle.end() ? -1 : static_cast<int>(found - swizzle.begin());
-}
-
-// `available` channels can be read: bit c for channel c.
-Result<Sources> sources_of(const Swizzle& swizzle, unsigned available) {
-    const Sources sources = {channel_of(swizzle, Component::x), channel_of(swizzle, Component::y),
-                             channel_of(swizzle, Component::z)};
-    const std::string name = to_string(swizzle);
-    if (sources.x < 0) return Error{ErrorCode::bad_option, {}, "the swizzle " + name + " has no x"};
-    if (sources.y < 0) return Error{ErrorCode::bad_option, {}, "the swizzle " + name + " has no y"};
-    for (const int c : {sources.x, sources.y, sources.z}) {
-        if (c >= 0 && (available >> c & 1) == 0) {
-            return Error{ErrorCode::bad_option, {},
-                         "the swizzle " + name + " reads " + kChannelNames[c] + ", which is not there"};
-        }
-    }
-    return sources;
-}
-
-// What the values of some rows say about ValueRange.
-struct RangeEvidence {
-    bool negative = false;
-    double off_signed = 0.0;    // how far the vectors are from unit length, read as signed
-    double off_unsigned = 0.0;  // and as unsigned
-};
-
-double length_error(double x, double y, double z, bool has_z) {
-    const double excess = x * x + y * y + z * z - 1.0;
-    return has_z ? std::abs(excess) : std::max(0.0, excess);
-}
-
-RangeEvidence weigh_row(const float* x, const float* y, const float* z, int count) {
-    RangeEvidence evidence;
-    for (int i = 0; i < count; ++i) {
-        const double nx = x[i];
-        const double ny = y[i];
-        const double nz = z != nullptr ? z[i] : 0.0;
-        if (nx < 0.0 || ny < 0.0 || nz < 0.0) evidence.negative = true;
-        const double mz = z != nullptr ? 2.0 * nz - 1.0 : 0.0;
-        const double off_signed = length_error(nx, ny, nz, z != nullptr);
-        const double off_unsigned = length_error(2.0 * nx - 1.0, 2.0 * ny - 1.0, mz, z != nullptr);
-        if (!std::isfinite(off_signed) || !std::isfinite(off_unsigned)) continue;
-        evidence.off_signed += off_signed;
-        evidence.off_unsigned += off_unsigned;
-    }
-    return evidence;
 }
 
 // The rows of one strip, for x, y and z; those of z are null where there is none. Padded to whole vectors.
@@ -169,19 +112,13 @@ Result<bool> weigh_range(const Reader& reader, const Execution& execution) {
     });
     if (!weighed) return weighed.error();
     RangeEvidence sum;
-    for (const RangeEvidence& row : rows) {
-        if (row.negative) return false;
-        sum.off_signed += row.off_signed;
-        sum.off_unsigned += row.off_unsigned;
-    }
-    return sum.off_unsigned <= sum.off_signed;
+    for (const RangeEvidence& row : rows) sum.add(row);
+    return sum.says_unsigned();
 }
 
 template <class Reader>
 Result<bool> is_unsigned(const Reader& reader, SampleKind sample, ValueRange range, const Execution& execution) {
-    if (sample == SampleKind::unorm) return true;
-    if (sample == SampleKind::snorm || range == ValueRange::signed_) return false;
-    if (range == ValueRange::unsigned_) return true;
+    if (const std::optional<bool> known = is_unsigned(sample, range)) return *known;
     return weigh_range(reader, execution);
 }
 
@@ -203,14 +140,6 @@ Result<void> unpack_rows(const Reader& reader, const UnpackRule& rule, NormalMap
     }, span);
 }
 
-UnpackRule rule_of(const UnpackOptions& options, SampleKind sample, int bits, YAxis y_axis) {
-    UnpackRule rule;
-    rule.snap_flat = options.snap_flat && sample == SampleKind::unorm && bits == 8;
-    rule.flip_y = y_axis == YAxis::down;
-    rule.keep_length = options.keep_length;
-    return rule;
-}
-
 // The planes that stand for R, G, B and A; null for those that are not there.
 std::array<const Plane<float>*, 4> planes_of(const Image& image) {
     std::array<const Plane<float>*, 4> planes = {};
@@ -226,13 +155,6 @@ std::array<const Plane<float>*, 4> planes_of(const Image& image) {
         for (std::size_t c = 0; c < std::min<std::size_t>(4, image.planes.size()); ++c) planes[c] = &image.planes[c];
     }
     return planes;
-}
-
-ValueRange range_of(const std::string& normal_encoding, const UnpackOptions& options) {
-    if (options.range != ValueRange::automatic) return options.range;
-    if (normal_encoding == "signed") return ValueRange::signed_;
-    if (normal_encoding == "unsigned") return ValueRange::unsigned_;
-    return ValueRange::automatic;
 }
 
 #ifndef NDEBUG

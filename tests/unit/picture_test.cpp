@@ -45,6 +45,22 @@ TEST(Picture, KeepsItsValuesInTheSmallestFormat) {
     EXPECT_NEAR(decode(*twelve, 0)->planes[0].at(0, 0), 1234.0f / 4095.0f, 0.5f / 65535.0f);
 }
 
+TEST(Picture, ItsRowsAreRoundedAsItsTexels) {
+    Image image = picture({"R", "G", "B"}, {0.0f, 0.0f, 1.0f}, SampleKind::unorm, 12);
+    for (int k = 0; k < 6; ++k) image.planes[0].at(k % 3, k / 3) = static_cast<float>(k * 817) / 4095.0f;
+    const auto described = picture_texture_of(image.names, image.sample, image.bits);
+    EXPECT_TRUE(described->rounds);
+    EXPECT_FALSE(picture_texture_of(image.names, image.sample, 16)->rounds);
+    EXPECT_FALSE(picture_texture_of(image.names, image.sample, 4)->rounds);
+    const auto texture = texture_of(image);
+    EXPECT_EQ(described->head.format, texture->format);
+    for (int j = 0; j < 2; ++j) {
+        float rounded[3];
+        round_to_texels(image.planes[described->planes[0]].row(j), 3, rounded);
+        for (int i = 0; i < 3; ++i) EXPECT_EQ(rounded[i], decode(*texture, 0)->planes[0].at(i, j));
+    }
+}
+
 TEST(Picture, FindsItsChannelsByName) {
     const auto reversed = texture_of(picture({"A", "B", "G", "R"}, {0.0f, 0.2f, 0.4f, 0.6f}, SampleKind::unorm, 8));
     EXPECT_EQ(decode(*reversed, 0)->planes[0].at(0, 0), 0.6f);

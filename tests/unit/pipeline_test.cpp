@@ -220,6 +220,24 @@ TEST_F(Pipeline, WhatCannotStreamGoesAsAWhole) {
     EXPECT_EQ(read_image(path("out")).value().extent(), extent);
 }
 
+TEST_F(Pipeline, NormalsInAnInterlacedPictureGoAsAWhole) {
+    PackFileOptions options;
+    options.write.sync = false;
+    options.mip = MipOptions();
+    const auto packed = [&](const std::string& input, const std::string& output) {
+        const auto report = pack_file(input, path(output), Container::dds, options);
+        EXPECT_TRUE(report) << report.error().message();
+        return report ? report->path : Path::streamed;
+    };
+    EXPECT_EQ(packed(write("plain.png", make_png({40, 30}, {3, 8})), "a.dds"), Path::streamed);
+    EXPECT_EQ(packed(write("interlaced.png", make_png({40, 30}, {3, 8, true})), "b.dds"), Path::whole);
+    EXPECT_TRUE(content("a.dds") == content("b.dds"));
+    // Grey and alpha are R = G = B and A.
+    EXPECT_EQ(packed(write("plain.png", make_png({40, 30}, {2, 16})), "a.dds"), Path::streamed);
+    EXPECT_EQ(packed(write("interlaced.png", make_png({40, 30}, {2, 16, true})), "b.dds"), Path::whole);
+    EXPECT_TRUE(content("a.dds") == content("b.dds"));
+}
+
 struct ExrKind {
     Imf::Compression compression = Imf::ZIP_COMPRESSION;
     Imf::PixelType type = Imf::HALF;

@@ -225,7 +225,7 @@ Result<SampledMap> read_sampled_map(Job& job, const std::string& path, SourceOpt
     if (!read) return read.error();
     SampledMap map;
     map.without_z =
-        std::find(read->swizzle.begin(), read->swizzle.end(), Component::z) == read->swizzle.end();
+        std::find(read->info.swizzle.begin(), read->info.swizzle.end(), Component::z) == read->info.swizzle.end();
     map.chain = std::move(read->chain);
     if (map.chain.levels.size() == 1) {
         MipOptions mip;

@@ -17,17 +17,13 @@ namespace {
 constexpr Swizzle kXY = {Component::x, Component::y, Component::zero, Component::one};
 constexpr Swizzle kYX = {Component::y, Component::x, Component::zero, Component::one};
 
-bool is_bc5(Format format) {
-    return format == Format::bc5_unorm || format == Format::bc5_snorm;
-}
-
 // "rgb" for what is in the table, else the letters: "1y1x".
 std::string swizzle_name(const Swizzle& swizzle) {
     const std::string_view name = name_of(kSwizzleNames, swizzle);
     return name.empty() ? to_string(swizzle) : std::string(name);
 }
 
-Encoding exact_encoding(const Source& source) {
+Encoding exact_encoding(const SourceInfo& source) {
     switch (source.format) {
         case Format::bc3_unorm:
             return Encoding::dxt5nm;
@@ -53,7 +49,7 @@ Encoding exact_encoding(const Source& source) {
 
 }  // namespace
 
-Encoding encoding_of(const Source& source, const Task& task) {
+Encoding encoding_of(const SourceInfo& source, const Task& task) {
     const auto is_texture = [](Container container) {
         return container == Container::dds || container == Container::ktx2;
     };
@@ -64,6 +60,10 @@ Encoding encoding_of(const Source& source, const Task& task) {
         if (encoding == Encoding::rgba8 && can_hold(task.container, Encoding::rgb8)) return Encoding::rgb8;
     }
     return default_encoding(task.container);
+}
+
+void report_source(Job& job, const SourceInfo& info) {
+    job.report["source"] = {{"format", name_of(kFormatNames, info.format)}, {"swizzle", swizzle_name(info.swizzle)}};
 }
 
 void SourceOptions::add(Command& command, bool with_keep_length) {
@@ -91,24 +91,6 @@ void SourceOptions::add(Command& command, bool with_keep_length) {
     if (with_keep_length) command.flag(unpack.keep_length, "--keep-length", "do not normalise what is read");
 }
 
-Result<Swizzle> SourceOptions::swizzle_of(const std::string& path, const Texture& texture) {
-    if (swizzle) return *swizzle;
-    if (bc5_order && is_bc5(texture.format)) return *bc5_order == Bc5Order::xy ? kXY : kYX;
-    if (texture.swizzle_known && !rg_or_ag) return texture.swizzle;
-    auto guessed = guess_swizzle(texture);
-    if (!guessed) return guessed.error();
-    if (rg_or_ag) return (*guessed)[3] == Component::x ? *guessed : kXY;
-    // Nothing is told where a file is what everybody takes it for: x, y and z in R, G and B.
-    const std::string name = swizzle_name(*guessed);
-    if (format_info(texture.format).channels == 4 && (name != "rgb" || texture.swizzle[3] == Component::x)) {
-        const std::lock_guard lock(mutex_);
-        Guesses& guesses = guesses_[name];
-        // Of files that are read at once any may come first: the first in the alphabet is named.
-        if (guesses.count++ == 0 || path < guesses.first) guesses.first = path;
-    }
-    return *guessed;
-}
-
 void SourceOptions::warn_of_guesses() const {
     for (const auto& [name, guesses] : guesses_) {
         const std::string more =
@@ -118,58 +100,41 @@ void SourceOptions::warn_of_guesses() const {
     }
 }
 
-YAxis SourceOptions::y_of(const Texture& texture, const Reading& reading) const {
-    if (reading.y) return *reading.y;
-    if (reading.is_detail && texture.y_known) return texture.y_axis;
-    return unpack.y_axis.value_or(texture.y_axis);
+tex::SourceOptions SourceOptions::options(const Job& job, const Reading& reading) const {
+    tex::SourceOptions options;
+    options.read = job.read_options;
+    options.unpack = unpack;
+    options.unpack.swizzle = swizzle;
+    if (reading.y) options.unpack.y_axis = reading.y;
+    options.unpack.keep_length = reading.keep_length.value_or(unpack.keep_length);
+    if (bc5_order) options.bc5_swizzle = *bc5_order == Bc5Order::xy ? kXY : kYX;
+    options.r_or_a = rg_or_ag;
+    options.file_y_first = reading.is_detail && !reading.y;
+    return options;
+}
+
+void SourceOptions::note(Job& job, const std::string& path, const SourceInfo& info) {
+    const std::string prefix = path == job.task.input ? std::string() : path + ": ";
+    for (const std::string& remark : info.remarks) job.warn(prefix + remark);
+    if (info.srgb)
+        job.warn(prefix + "declares sRGB colours, which normals are not; its values are used as they are");
+    if (!info.guessed) return;
+    const std::lock_guard lock(mutex_);
+    Guesses& guesses = guesses_[swizzle_name(info.swizzle)];
+    // Of files that are read at once any may come first: the first in the alphabet is named.
+    if (guesses.count++ == 0 || path < guesses.first) guesses.first = path;
 }
 
 Result<Source> SourceOptions::read(Job& job, const std::string& path, const Execution& execution,
                                    const Reading& reading) {
-    const auto named = [&](Error error) {
-        if (error.file.empty()) error.file = path;
-        return error;
-    };
-    auto texture = read_texture(path, job.read_options);
-    if (!texture) return texture.error();
-    const std::string prefix = path == job.task.input ? std::string() : path + ": ";
-    for (const std::string& remark : texture->remarks) job.warn(prefix + remark);
-    if (texture->srgb)
-        job.warn(prefix + "declares sRGB colours, which normals are not; its values are used as they are");
-    if (reading.base_only) texture->levels.resize(1);
-
-    if (format_info(texture->format).channels == 1) {
-        return Error{ErrorCode::unsupported, path,
-                     "has one channel, which holds no normals (bake-normals reads heights)"};
-    }
-
-    Source source;
-    auto guessed = swizzle_of(path, *texture);
-    if (!guessed) return named(guessed.error());
-    source.swizzle = *guessed;
-    source.format = texture->format;
-    source.y = y_of(*texture, reading);
-
-    UnpackOptions options = unpack;
-    options.swizzle = source.swizzle;
-    options.y_axis = source.y;
-    options.keep_length = reading.keep_length.value_or(unpack.keep_length);
-    // Floats that say that they are normals are taken at their word: a chain of commands then gives the bytes of one.
-    const FormatInfo info = format_info(texture->format);
-    if (info.sample == SampleKind::floating && info.bits == 32 && texture->normal_encoding == "signed") {
-        options.keep_length = true;
-    }
-    auto chain = tex::unpack(*texture, options, execution);
-    if (!chain) return named(chain.error());
-    source.chain = std::move(*chain);
+    auto source = read_normals(path, options(job, reading), reading.base_only, execution);
+    if (source) note(job, path, source->info);
     return source;
 }
 
 Result<Source> SourceOptions::read(Job& job, double until, bool base_only) {
     auto source = read(job, job.task.input, job.until(until), {base_only});
-    if (!source) return source.error();
-    job.report["source"] = {{"format", name_of(kFormatNames, source->format)},
-                            {"swizzle", swizzle_name(source->swizzle)}};
+    if (source) report_source(job, source->info);
     return source;
 }
 

@@ -9,25 +9,19 @@
 #include <string>
 
 #include <tex/container.h>
-#include <tex/mip_chain.h>
-#include <tex/unpack.h>
+#include <tex/source.h>
 
 #include "cli/command.h"
 #include "cli/job.h"
 
 namespace tex::cli {
 
-// A normal map as it was read: y up in memory, whatever `y` says of the file.
-struct Source {
-    MipChain chain;
-    YAxis y = YAxis::up;
-    Format format = Format::rgba8_unorm;
-    Swizzle swizzle{};
-};
-
 // The encoding for an output that is to stay what the source was, where the user names none: that of the
 // source where both are textures or both are pictures and the output can hold it, else the container's own.
-[[nodiscard]] Encoding encoding_of(const Source& source, const Task& task);
+[[nodiscard]] Encoding encoding_of(const SourceInfo& source, const Task& task);
+
+// Tells the job's report the format and swizzle of its input.
+void report_source(Job& job, const SourceInfo& info);
 
 enum class Bc5Order { xy, yx };
 
@@ -53,11 +47,17 @@ struct SourceOptions {
     // Without --keep-length for commands that choose themselves.
     void add(Command& command, bool with_keep_length = true);
 
-    // Reads and unpacks `path`. Tells the job what a reader overlooked. Any thread may call.
+    // The same for the library.
+    [[nodiscard]] tex::SourceOptions options(const Job& job, const Reading& reading = {}) const;
+
+    // Warns of what a reader of `path` overlooked, and notes what was guessed. Any thread may call.
+    void note(Job& job, const std::string& path, const SourceInfo& info);
+
+    // Reads and unpacks `path`, and notes it. Any thread may call.
     [[nodiscard]] Result<Source> read(Job& job, const std::string& path, const Execution& execution,
                                       const Reading& reading = {});
 
-    // The same for the job's input; tells the job's report the format and swizzle of the source.
+    // The same for the job's input, see report_source().
     [[nodiscard]] Result<Source> read(Job& job, double until, bool base_only);
 
     // A warning for each layout that files were taken for which do not say what their channels hold.
@@ -68,9 +68,6 @@ private:
         std::string first;  // file
         int count = 0;
     };
-
-    [[nodiscard]] YAxis y_of(const Texture& texture, const Reading& reading) const;
-    [[nodiscard]] Result<Swizzle> swizzle_of(const std::string& path, const Texture& texture);
 
     std::mutex mutex_;
     std::map<std::string, Guesses> guesses_;  // by the name of the swizzle

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include <tex/bake.h>
@@ -20,6 +21,8 @@
 #include <tex/names.h>
 #include <tex/pack.h>
 #include <tex/result.h>
+#include <tex/scale.h>
+#include <tex/source.h>
 
 #pragma GCC visibility push(default)
 namespace tex {
@@ -67,6 +70,46 @@ struct BakeFileReport {
 // The same bytes for every number of threads, and on either path.
 [[nodiscard]] Result<BakeFileReport> bake_file(const std::string& input, const std::string& output, Container container,
                                                const BakeFileOptions& options = {}, const Execution& execution = {});
+
+// What pack_file() does: read_normals(), scale() where there is a scale, build_mip_chain() where there is `mip`, pack(), write_texture().
+struct PackFileOptions {
+    SourceOptions source;
+    std::optional<int> level;      // this level of the source alone, which becomes the base level; none: all of them
+    std::optional<Scaling> scale;  // none: as they are
+    std::optional<MipOptions> mip; // levels are built of the base level; none: the source's own are kept
+
+    // How the output is packed, told by what the source is. Empty: default_encoding() of the container, y as in the source. Must not throw. Where the
+    // texels tell the swizzle, it may be called more than once; the last call counts.
+    std::function<PackOptions(const SourceInfo&)> pack;
+    WriteOptions write;
+};
+
+struct PackFileReport {
+    Path path = Path::whole;
+    Extent extent;          // of the base level that was written
+    int levels = 1;
+    std::size_t bytes = 0;  // of the output
+    PackOptions pack;
+    SourceInfo source;
+};
+
+// Reads the normal map `input` ("-" is standard input) and writes it to `output` as a file of the kind `container`, in another encoding, with levels built
+// of it, scaled, or one level of it.
+//
+// Streamed: PNG that is not interlaced, EXR of one level, and what the reader process decodes (TIFF, TGA, JPEG ...), into DDS and KTX2. Everything else takes
+// the path of whole images. Pictures that hold one level get the base level.
+//
+// Streams cannot look at all texels before the first is written. Where these decide (four channels without a swizzle; floats without a range), the
+// likeliest layout of the format is assumed: x, y, z in R, G, B; x in A and y in G in BC3; signed floats. Where the texels turn out to say otherwise, the
+// file is read once more, and nothing of the first attempt remains.
+//
+// The output appears whole or not at all, see write_file(). What goes to standard output or a FIFO is held in memory until it is whole.
+//
+// Preconditions (asserted): as those of the verbs.
+// Errors: those of the verbs; bad_option where the source has no such level. Of several errors any may be told.
+// The same bytes for every number of threads, and on either path.
+[[nodiscard]] Result<PackFileReport> pack_file(const std::string& input, const std::string& output, Container container,
+                                               const PackFileOptions& options = {}, const Execution& execution = {});
 
 }  // namespace tex
 #pragma GCC visibility pop

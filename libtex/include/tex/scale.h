@@ -14,6 +14,12 @@ namespace tex {
 // The greatest magnitude of a scale.
 inline constexpr float kMaxScale = 1e6f;
 
+// What scale() takes, as a value.
+struct Scaling {
+    float scale = 1.0f;
+    ScaleMode mode = ScaleMode::slope;
+};
+
 // Scales every normal by `scale`, the bump scale of shaders:
 //
 //   slope   normalize(s x, s y, z)                            what scaling the height by s does (glTF's normalTexture.scale)

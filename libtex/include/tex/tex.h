@@ -67,6 +67,7 @@
 #include <tex/color.h>
 #include <tex/container.h>
 #include <tex/image_io.h>
+#include <tex/source.h>
 #include <tex/pipeline.h>
 
 #pragma GCC visibility push(default)

@@ -139,6 +139,13 @@ Result<std::size_t> InputFile::read(std::byte* data, std::size_t count) {
     return known + *more;
 }
 
+Result<void> InputFile::rewind() {
+    position_ = 0;
+    const auto after_head = start_ + static_cast<std::int64_t>(head_.size());
+    if (!memory_ && lseek(fd_.get(), after_head, SEEK_SET) < 0) return system_error(path_, errno);
+    return {};
+}
+
 Result<std::size_t> InputFile::read_at(std::int64_t offset, std::byte* data, std::size_t count) const {
     if (memory_) {
         const std::size_t from = std::min(static_cast<std::size_t>(offset), memory_->size());

@@ -61,6 +61,8 @@ public:
 
     // Reads the next `count` bytes; fewer only at the end of the file. Errors: io.
     Result<std::size_t> read(std::byte* data, std::size_t count);
+    // read() begins at the first byte again. Precondition: size() is known. Errors: io.
+    Result<void> rewind();
     // Reads `count` bytes at `offset`; fewer only at the end of the file. Precondition: size() is known. Errors: io.
     Result<std::size_t> read_at(std::int64_t offset, std::byte* data, std::size_t count) const;
     // Reads all that read() has not yet read. More than `limit` bytes are unsupported. Errors: io, unsupported, out_of_memory.

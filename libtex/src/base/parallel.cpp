@@ -57,6 +57,12 @@ private:
 
 }  // namespace
 
+Execution part_of(const Execution& execution, double from, double to) {
+    if (!execution.progress) return execution;
+    return {execution.threads,
+            [&execution, from, to](double done) { return execution.progress(from + (to - from) * done); }};
+}
+
 int thread_count(const Execution& execution) {
     return execution.threads > 0 ? execution.threads : std::max(1, tbb::info::default_concurrency());
 }

@@ -24,6 +24,9 @@ struct ProgressSpan {
 Result<void> parallel_for(const Execution& execution, int count, int grain,
                           const std::function<void(int begin, int end)>& body, ProgressSpan span = {});
 
+// The part of an execution from a fraction to another: what runs with it tells 0 to 1. `execution` must outlive it.
+Execution part_of(const Execution& execution, double from, double to);
+
 // The number of threads that `execution` means: at least 1.
 int thread_count(const Execution& execution);
 

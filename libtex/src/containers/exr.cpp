@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
-#include <optional>
 #include <string>
 
 #include <ImfChannelList.h>
@@ -18,6 +17,7 @@
 
 #include "base/guard.h"
 #include "containers/exr_part.h"
+#include "containers/exr_texture.h"
 
 namespace tex {
 namespace {
@@ -52,25 +52,6 @@ auto with_exr(InputFile& file, const ReadOptions& options, const Body& body)
     });
 }
 
-// The channels of a texture: colour where there is colour, else everything.
-Result<std::vector<ExrChannel>> texture_channels(const std::string& path, const Imf::Header& header) {
-    std::vector<ExrChannel> channels = channels_of(header);
-    const Imf::ChannelList& list = header.channels();
-    if (list.findChannel("R") && list.findChannel("G") && list.findChannel("B")) {
-        channels.resize(list.findChannel("A") ? 4 : 3);
-    } else if (channels.size() > 4) {
-        return Error{ErrorCode::unsupported, path,
-                     std::to_string(channels.size()) + " channels, and not R, G and B among them"};
-    }
-    return channels;
-}
-
-Format float_format(std::size_t channels, bool half) {
-    constexpr Format kHalf[] = {Format::r16_float, Format::rg16_float, Format::rgb16_float, Format::rgba16_float};
-    constexpr Format kFloat[] = {Format::r32_float, Format::rg32_float, Format::rgb32_float, Format::rgba32_float};
-    return (half ? kHalf : kFloat)[channels - 1];
-}
-
 // Planes to interleaved texels. Values that came from half go back to the same half.
 Level interleave(const Image& image, Format format) {
     Level level{image.extent(), std::vector<std::byte>(level_bytes(format, image.extent()))};
@@ -93,39 +74,6 @@ Level interleave(const Image& image, Format format) {
     return level;
 }
 
-void describe_normals(const Imf::Header& header, std::size_t channels, Texture& texture) {
-    constexpr Component kX = Component::x, kY = Component::y, kZ = Component::z, kOther = Component::other;
-    if (channels == 1) texture.swizzle = {kOther, Component::zero, Component::zero, Component::one};
-    if (channels == 2) texture.swizzle = {kX, kY, Component::zero, Component::one};
-    if (channels == 3) texture.swizzle = {kX, kY, kZ, Component::one};
-    if (channels == 4) texture.swizzle = {kX, kY, kZ, kOther};
-    if (const auto* text = header.findTypedAttribute<Imf::StringAttribute>(kNormalEncoding)) {
-        texture.normal_encoding = text->value();
-        texture.swizzle_known = channels >= 2;
-    }
-    if (const auto* text = header.findTypedAttribute<Imf::StringAttribute>(kNormalYAxis)) {
-        if (const std::optional<YAxis> axis = find_by_name(kYAxisNames, text->value())) {
-            texture.y_axis = *axis;
-            texture.y_known = true;
-        }
-    }
-}
-
-// How many levels of a part follow our rule.
-int usable_levels(const Imf::Header& header, Extent base, std::vector<std::string>& remarks) {
-    if (!header.hasTileDescription()) return 1;
-    const Imf::TileDescription& tiles = header.tileDescription();
-    if (tiles.mode == Imf::ONE_LEVEL) return 1;
-    if (tiles.mode == Imf::MIPMAP_LEVELS) {
-        const auto power = [](int n) { return (n & (n - 1)) == 0; };
-        if (tiles.roundingMode == Imf::ROUND_DOWN || (power(base.width) && power(base.height))) return level_count(base);
-        remarks.emplace_back("mip levels with extents rounded up are left out");
-    } else {
-        remarks.emplace_back("ripmap levels are left out");
-    }
-    return 1;
-}
-
 }  // namespace
 
 bool is_exr(std::span<const std::byte> head) {
@@ -141,20 +89,14 @@ Result<Image> read_exr(InputFile& file, const ReadOptions& options) {
 
 Result<Texture> read_exr_texture(InputFile& file, const ReadOptions& options) {
     return with_exr(file, options, [&](Imf::MultiPartInputFile& exr, const ExrStream& stream) -> Result<Texture> {
-        const Imf::Header& header = exr.header(0);
-        Result<std::vector<ExrChannel>> channels = texture_channels(file.path(), header);
-        if (!channels) return std::move(channels).error();
-        PartReader part(exr, stream, std::move(*channels));
-        Texture texture;
-        int levels = 1;
-        for (int level = 0; level < levels; ++level) {
-            const Image image = part.read(level);
-            if (level == 0) {
-                texture.format = float_format(image.planes.size(), image.bits == 16);
-                describe_normals(header, image.planes.size(), texture);
-                levels = usable_levels(header, image.extent(), texture.remarks);
-            }
-            texture.levels.push_back(interleave(image, texture.format));
+        const Imath::Box2i window = exr.header(0).dataWindow();
+        const Extent base{window.max.x - window.min.x + 1, window.max.y - window.min.y + 1};
+        Result<ExrTexture> described = exr_texture_of(file.path(), exr.header(0), base);
+        if (!described) return std::move(described).error();
+        PartReader part(exr, stream, std::move(described->channels));
+        Texture texture = std::move(described->head);
+        for (int level = 0; level < described->levels; ++level) {
+            texture.levels.push_back(interleave(part.read(level), texture.format));
         }
         return texture;
     });

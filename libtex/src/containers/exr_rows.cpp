@@ -14,6 +14,7 @@
 #include "base/pool.h"
 #include "containers/exr_chunk.h"
 #include "containers/exr_part.h"
+#include "containers/exr_texture.h"
 
 namespace tex {
 namespace {
@@ -47,8 +48,8 @@ class ExrRows final : public RowSource {
 public:
     ExrRows(const InputFile& file, const ReadOptions& options) : file_(file), options_(options) {}
 
-    // Reads the header. Throws what OpenEXR throws.
-    Result<void> open();
+    // Reads the header; of a texture's rows, where `texture` is not null, also what it says of that.
+    Result<void> open(ExrTexture* texture);
 
     [[nodiscard]] int rows_together() const override { return rows_together_; }
     [[nodiscard]] bool is_random() const override { return true; }
@@ -83,17 +84,24 @@ Result<void> ExrRows::with_reader(const Body& body) {
     }
 }
 
-Result<void> ExrRows::open() {
-    return with_reader([this](ExrReader& reader) -> Result<void> {
+Result<void> ExrRows::open(ExrTexture* texture) {
+    return with_reader([&](ExrReader& reader) -> Result<void> {
         const Imf::Header& header = reader.exr->header(0);
         const Result<Extent> extent = check_header(file_.path(), header, *file_.size(), options_);
         if (!extent) return extent.error();
         origin_ = header.dataWindow().min;
         rows_together_ = header.hasTileDescription() ? static_cast<int>(header.tileDescription().ySize) : chunk_lines(header.compression());
         rows_together_ = std::min(rows_together_, extent->height);
+        std::vector<ExrChannel> channels = channels_of(header);
+        if (texture != nullptr) {
+            Result<ExrTexture> described = exr_texture_of(file_.path(), header, *extent);
+            if (!described) return std::move(described).error();
+            *texture = std::move(*described);
+            channels = texture->channels;
+        }
         std::vector<std::string> names;
         std::size_t bytes = 0;
-        for (ExrChannel& channel : channels_of(header)) {
+        for (ExrChannel& channel : channels) {
             constexpr std::size_t kAlignment = 16;
             const std::size_t size = static_cast<std::size_t>(extent->width) * (channel.type == Imf::HALF ? 2 : 4);
             names.push_back(channel.name);
@@ -155,14 +163,25 @@ void ExrRows::store(const std::byte* rows, int first, int end, Image& image) con
     }
 }
 
+Result<std::unique_ptr<RowSource>> open_part_rows(InputFile& file, const ReadOptions& options, ExrTexture* texture) {
+    if (const Result<void> settled = file.settle(largest_file(options)); !settled) return settled.error();
+    auto rows = std::make_unique<ExrRows>(file, options);
+    if (const Result<void> opened = rows->open(texture); !opened) return opened.error();
+    return std::unique_ptr<RowSource>(std::move(rows));
+}
+
 }  // namespace
 
 Result<std::unique_ptr<RowSource>> open_exr_rows(InputFile& file, const ReadOptions& options) {
-    return guarded([&]() -> Result<std::unique_ptr<RowSource>> {
-        if (const Result<void> settled = file.settle(largest_file(options)); !settled) return settled.error();
-        auto rows = std::make_unique<ExrRows>(file, options);
-        if (const Result<void> opened = rows->open(); !opened) return opened.error();
-        return std::unique_ptr<RowSource>(std::move(rows));
+    return guarded([&] { return open_part_rows(file, options, nullptr); });
+}
+
+Result<ExrTextureRows> open_exr_texture_rows(InputFile& file, const ReadOptions& options) {
+    return guarded([&]() -> Result<ExrTextureRows> {
+        ExrTexture texture;
+        Result<std::unique_ptr<RowSource>> rows = open_part_rows(file, options, &texture);
+        if (!rows) return std::move(rows).error();
+        return ExrTextureRows{std::move(*rows), std::move(texture.head), texture.levels};
     });
 }
 

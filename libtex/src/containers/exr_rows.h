@@ -7,6 +7,7 @@
 
 #include <tex/image_io.h>
 #include <tex/result.h>
+#include <tex/texture.h>
 
 #include "base/input_file.h"
 #include "containers/row_source.h"
@@ -16,5 +17,13 @@ namespace tex {
 // Opens the first part of an EXR, its largest level, to be read as read_exr() would, a few rows at a time; several threads may decode at once. `file` must outlive
 // the rows. Errors: those of read_exr() that the header tells.
 Result<std::unique_ptr<RowSource>> open_exr_rows(InputFile& file, const ReadOptions& options);
+
+// The same of a texture: the channels that read_exr_texture() takes.
+struct ExrTextureRows {
+    std::unique_ptr<RowSource> rows;  // of the base level
+    Texture head;                     // what read_exr_texture() makes of the file, but for the levels
+    int levels = 1;                   // that it would read
+};
+Result<ExrTextureRows> open_exr_texture_rows(InputFile& file, const ReadOptions& options);
 
 }  // namespace tex

@@ -16,10 +16,10 @@ namespace {
 
 enum class Sample { unorm8, unorm16, half, floating };
 
-Sample sample_of(const Image& image) {
-    if (image.sample == SampleKind::floating) return image.bits == 16 ? Sample::half : Sample::floating;
-    if (image.sample == SampleKind::snorm || image.bits > 16) return Sample::floating;
-    const bool exact = image.bits == 1 || image.bits == 2 || image.bits == 4 || image.bits == 8;
+Sample sample_of(SampleKind kind, int bits) {
+    if (kind == SampleKind::floating) return bits == 16 ? Sample::half : Sample::floating;
+    if (kind == SampleKind::snorm || bits > 16) return Sample::floating;
+    const bool exact = bits == 1 || bits == 2 || bits == 4 || bits == 8;
     return exact ? Sample::unorm8 : Sample::unorm16;
 }
 
@@ -34,31 +34,32 @@ Format format_of(Sample sample, std::size_t channels) {
 }
 
 // The planes of the channels, in their order.
-std::vector<const Plane<float>*> channels_of(const Image& image) {
-    std::vector<const Plane<float>*> channels;
+std::vector<std::size_t> planes_of(const std::vector<std::string>& names) {
+    std::vector<std::size_t> planes;
+    const auto find = [&](const char* name) { return std::find(names.begin(), names.end(), name); };
     const auto add = [&](const char* name) {
-        const int k = image.find(name);
-        if (k >= 0) channels.push_back(&image.planes[static_cast<std::size_t>(k)]);
+        if (const auto found = find(name); found != names.end()) planes.push_back(static_cast<std::size_t>(found - names.begin()));
     };
-    if (image.find("R") >= 0) {
+    if (find("R") != names.end()) {
         for (const char* name : {"R", "G", "B", "A"}) add(name);
-    } else if (image.planes.size() == 2 && image.find("Y") >= 0 && image.find("A") >= 0) {
+    } else if (names.size() == 2 && find("Y") != names.end() && find("A") != names.end()) {
         for (const char* name : {"Y", "Y", "Y", "A"}) add(name);
     } else {
-        for (const Plane<float>& plane : image.planes) channels.push_back(&plane);
+        for (std::size_t k = 0; k < names.size(); ++k) planes.push_back(k);
     }
-    return channels;
+    return planes;
+}
+
+std::uint32_t code_of(float value, float greatest) {
+    return static_cast<std::uint32_t>(std::floor(std::min(std::max(value, 0.0f), 1.0f) * greatest + 0.5f));
 }
 
 // Stores `value` as a sample. Values come from samples of at most this depth: nothing is lost.
 void store(Sample sample, float value, std::byte* out) {
-    const auto code = [&](float greatest) {
-        return static_cast<std::uint32_t>(std::floor(std::min(std::max(value, 0.0f), 1.0f) * greatest + 0.5f));
-    };
     switch (sample) {
-        case Sample::unorm8: *out = static_cast<std::byte>(code(255.0f)); break;
+        case Sample::unorm8: *out = static_cast<std::byte>(code_of(value, 255.0f)); break;
         case Sample::unorm16: {
-            const auto bits = static_cast<std::uint16_t>(code(65535.0f));
+            const auto bits = static_cast<std::uint16_t>(code_of(value, 65535.0f));
             std::memcpy(out, &bits, sizeof bits);
             break;
         }
@@ -73,25 +74,38 @@ void store(Sample sample, float value, std::byte* out) {
 
 }  // namespace
 
-Result<Texture> texture_of(const Image& image) {
-    const std::vector<const Plane<float>*> channels = channels_of(image);
-    if (channels.empty() || channels.size() > 4) {
+Result<PictureTexture> picture_texture_of(const std::vector<std::string>& names, SampleKind sample, int bits) {
+    PictureTexture picture;
+    picture.planes = planes_of(names);
+    if (picture.planes.empty() || picture.planes.size() > 4) {
         return Error{ErrorCode::unsupported, {},
-                     "a picture of " + std::to_string(channels.size()) + " channels, none of them called R"};
+                     "a picture of " + std::to_string(picture.planes.size()) + " channels, none of them called R"};
     }
-    const Sample sample = sample_of(image);
-    Texture texture;
-    texture.format = format_of(sample, channels.size());
-    texture.swizzle = likely_swizzle(texture.format);
+    const Sample stored = sample_of(sample, bits);
+    picture.head.format = format_of(stored, picture.planes.size());
+    picture.head.swizzle = likely_swizzle(picture.head.format);
+    picture.rounds = stored == Sample::unorm16 && bits != 16;
+    return picture;
+}
+
+void round_to_texels(const float* values, int count, float* out) {
+    for (int i = 0; i < count; ++i) out[i] = static_cast<float>(code_of(values[i], 65535.0f)) / 65535.0f;
+}
+
+Result<Texture> texture_of(const Image& image) {
+    Result<PictureTexture> picture = picture_texture_of(image.names, image.sample, image.bits);
+    if (!picture) return std::move(picture).error();
+    Texture texture = std::move(picture->head);
     texture.normal_encoding = image.normal_encoding;
+    const Sample sample = sample_of(image.sample, image.bits);
     const Extent extent = image.extent();
     Level level{extent, std::vector<std::byte>(level_bytes(texture.format, extent))};
-    const std::size_t sample_bytes = format_info(texture.format).block_bytes / channels.size();
+    const std::size_t sample_bytes = format_info(texture.format).block_bytes / picture->planes.size();
     std::byte* out = level.bytes.data();
     for (int j = 0; j < extent.height; ++j) {
         for (int i = 0; i < extent.width; ++i) {
-            for (const Plane<float>* channel : channels) {
-                store(sample, channel->at(i, j), out);
+            for (const std::size_t plane : picture->planes) {
+                store(sample, image.planes[plane].at(i, j), out);
                 out += sample_bytes;
             }
         }

@@ -222,13 +222,14 @@ Result<void> PngRows::open(const ReadOptions& options) {
     if (!start_rows(reader_)) return reader_.error();
     describe(*extent, channel_names(reader_.channels),
              static_cast<std::size_t>(extent->width) * static_cast<std::size_t>(reader_.channels * reader_.sample_bits / 8));
+    describe_samples(SampleKind::unorm, reader_.color_type == PNG_COLOR_TYPE_PALETTE ? 8 : reader_.bit_depth);
     return {};
 }
 
 Result<Image> PngRows::read_all() {
     const int height = extent().height;
     Image image = make_image(extent(), names());
-    image.bits = reader_.color_type == PNG_COLOR_TYPE_PALETTE ? 8 : reader_.bit_depth;
+    image.bits = bits();
     // All rows where they are interlaced, else one at a time.
     const int held = is_sequential() ? 1 : height;
     std::vector<std::byte> rows(row_bytes() * static_cast<std::size_t>(held));

@@ -177,7 +177,6 @@ public:
     Result<void> decode(int first, int count, std::byte* rows) override;
     Result<void> finish() override;
     void store(const std::byte* rows, int first, int end, Image& image) const override;
-    Result<Image> read_all() override;
 
 private:
     Result<void> start(const ReadOptions& options);
@@ -229,6 +228,7 @@ Result<void> ReaderRows::open(const ReadOptions& options) {
     const Result<Scale> scale = find_scale();
     if (!scale) return scale.error();
     scale_ = *scale;
+    describe_samples(scale_.kind, scale_.bits);
     return {};
 }
 
@@ -281,14 +281,6 @@ void ReaderRows::store(const std::byte* rows, int first, int end, Image& image) 
     with_type(header_.type, [&](auto zero) {
         for (int j = first; j < end; ++j, rows += row_bytes()) store_row<decltype(zero)>(rows, scale_, image, j);
     });
-}
-
-Result<Image> ReaderRows::read_all() {
-    Result<Image> image = RowSource::read_all();
-    if (!image) return image;
-    image->sample = scale_.kind;
-    image->bits = scale_.bits;
-    return image;
 }
 
 }  // namespace

@@ -29,6 +29,8 @@ public:
     [[nodiscard]] Extent extent() const { return extent_; }
     [[nodiscard]] const std::vector<std::string>& names() const { return names_; }  // of the channels
     [[nodiscard]] std::size_t row_bytes() const { return row_bytes_; }              // of a decoded row
+    [[nodiscard]] SampleKind sample() const { return sample_; }                     // this and the next as in Image
+    [[nodiscard]] int bits() const { return bits_; }
 
     // Rows come a few at a time. Where not, read_all() is the only way.
     [[nodiscard]] virtual bool is_sequential() const { return true; }
@@ -56,11 +58,17 @@ protected:
         names_ = std::move(names);
         row_bytes_ = row_bytes;
     }
+    void describe_samples(SampleKind sample, int bits) {
+        sample_ = sample;
+        bits_ = bits;
+    }
 
 private:
     Extent extent_;
     std::vector<std::string> names_;
     std::size_t row_bytes_ = 0;
+    SampleKind sample_ = SampleKind::unorm;
+    int bits_ = 8;
 };
 
 // The picture in `file`, which must outlive it; null where this kind of file is only read as a whole: see read_image(InputFile&). Errors: as

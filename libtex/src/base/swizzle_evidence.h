@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// swizzle_evidence.h: what the texels of four channels say about their layout: the rule of guess_swizzle(), row by row.
+
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include <tex/image.h>
+#include <tex/texture.h>
+
+namespace tex {
+
+class SwizzleEvidence {
+public:
+    explicit SwizzleEvidence(Extent extent);
+
+    // Takes row j of the level, its channels R, G, B and A. Rows come in their order, each once; some are passed over.
+    void add_row(int j, const float* const (&channels)[4]);
+
+    // The layout, by what has been added so far: at least row 0.
+    [[nodiscard]] Swizzle layout() const;
+
+private:
+    struct Range {
+        float least = INFINITY;
+        float greatest = -INFINITY;
+
+        void add(float value);
+        [[nodiscard]] bool is_constant() const;
+    };
+    // How far vectors are from unit length.
+    struct Errors {
+        double rgb = 0.0;
+        double rxgb = 0.0;
+    };
+
+    const Extent extent_;
+    const int step_;  // between the texels that are looked at
+    Range channels_[4];
+    Errors signed_;
+    Errors unsigned_;
+    double off_grey_ = 0.0;
+    std::int64_t count_ = 0;
+};
+
+}  // namespace tex

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "containers/texture_rows.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <tex/container.h>
+
+#include "base/guard.h"
+#include "containers/dds.h"
+#include "containers/exr.h"
+#include "containers/exr_rows.h"
+#include "containers/ktx2.h"
+#include "containers/picture.h"
+#include "containers/png.h"
+#include "containers/reader.h"
+#include "containers/reader_rows.h"
+
+namespace tex {
+namespace {
+
+bool is_texture(const InputFile& file) {
+    return is_dds(file.head().data(), file.head().size()) || is_ktx2(file.head().data(), file.head().size());
+}
+
+Error named(const InputFile& file, const Error& error) {
+    return error.file.empty() ? Error{error.code, file.path(), error.reason} : error;
+}
+
+using Opened = Result<std::optional<TextureRows>>;
+
+// A picture, from its rows.
+Opened picture_rows(const InputFile& file, Result<std::unique_ptr<RowSource>> rows) {
+    if (!rows) return named(file, rows.error());
+    Result<PictureTexture> picture = picture_texture_of((*rows)->names(), (*rows)->sample(), (*rows)->bits());
+    // What is wrong with a picture shows when it has been read.
+    if (!picture || !(*rows)->is_sequential()) return std::optional<TextureRows>();
+    TextureRows texture;
+    texture.head = std::move(picture->head);
+    texture.levels.push_back(std::move(*rows));
+    texture.planes = std::move(picture->planes);
+    texture.rounds = picture->rounds;
+    return std::optional(std::move(texture));
+}
+
+Opened exr_rows(InputFile& file, const ReadOptions& options) {
+    Result<ExrTextureRows> rows = open_exr_texture_rows(file, options);
+    if (!rows) return named(file, rows.error());
+    if (rows->levels > 1) return std::optional<TextureRows>();
+    TextureRows texture;
+    texture.head = std::move(rows->head);
+    texture.levels.push_back(std::move(rows->rows));
+    for (std::size_t c = 0; c < texture.levels.front()->names().size(); ++c) texture.planes.push_back(c);
+    return std::optional(std::move(texture));
+}
+
+}  // namespace
+
+Result<Texture> read_texture(InputFile& file, const ReadOptions& options) {
+    return guarded([&]() -> Result<Texture> {
+        if (is_texture(file)) {
+            const Result<std::vector<std::byte>> bytes = file.read_rest(largest_file(options));
+            if (!bytes) return bytes.error();
+            return decode_file(bytes->data(), bytes->size(), file.path(), options);
+        }
+        if (is_exr(file.head())) return read_exr_texture(file, options);
+        const Result<Image> image = is_png(file.head()) ? read_png(file, options) : read_with_reader(file, options);
+        if (!image) return image.error();
+        Result<Texture> texture = texture_of(*image);
+        if (!texture) return named(file, texture.error());
+        return texture;
+    });
+}
+
+Opened open_texture_rows(InputFile& file, const ReadOptions& options) {
+    return guarded([&]() -> Opened {
+        if (is_texture(file)) return std::optional<TextureRows>();
+        if (is_exr(file.head())) return exr_rows(file, options);
+        if (!is_png(file.head())) {  // so that it can be read once more
+            const Result<void> settled = file.settle(std::min(largest_file(options), options.reader_memory));
+            if (!settled) return settled.error();
+        }
+        Opened rows = picture_rows(file, is_png(file.head()) ? open_png(file, options) : open_reader_rows(file, options));
+        if (rows && !*rows) {
+            if (const Result<void> again = file.rewind(); !again) return again.error();
+        }
+        return rows;
+    });
+}
+
+}  // namespace tex

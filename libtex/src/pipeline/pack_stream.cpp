@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "pipeline/pack_stream.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include <tex/mip_chain.h>
+
+#include "base/parallel.h"
+#include "base/source_layout.h"
+#include "pipeline/layout_finder.h"
+#include "pipeline/level_stage.h"
+#include "pipeline/strip_writer.h"
+#include "pipeline/unpack_stage.h"
+
+namespace tex {
+namespace {
+
+Error named(const std::string& input, const Error& error) {
+    return error.file.empty() ? Error{error.code, input, error.reason} : error;
+}
+
+// One reading of the file, under an assumption about its layout.
+class Attempt {
+public:
+    Attempt(TextureRows& texture, const std::string& input, const std::string& output, Container container, const PackFileOptions& options,
+            const Execution& execution, const StreamSizes& sizes, const KnownLayout& known)
+        : texture_(texture), input_(input), output_(output), container_(container), options_(options), execution_(execution), sizes_(sizes),
+          finder_(texture, options.source, known) {}
+
+    // Nothing in the result, but correction(), where the texels say that the assumption was wrong.
+    Result<std::optional<PackFileReport>> run();
+    [[nodiscard]] const KnownLayout& correction() const { return *correction_; }
+
+private:
+    Result<void> prepare();
+    Result<void> stream_level(std::size_t k, StripWriter& writer, const Execution& execution);
+    [[nodiscard]] RowSource& rows(std::size_t k) const { return *texture_.levels[k]; }
+
+    TextureRows& texture_;
+    const std::string& input_;
+    const std::string& output_;
+    const Container container_;
+    const PackFileOptions& options_;
+    const Execution& execution_;
+    const StreamSizes& sizes_;
+    LayoutFinder finder_;
+    std::optional<KnownLayout> correction_;
+    Sources sources_;
+    UnpackRule rule_;
+    std::size_t first_ = 0;  // the level that becomes the base level
+    std::size_t end_ = 1;    // of the levels that are read
+    PackFileReport report_;
+};
+
+// What is to be read, and written. Errors are those of options that do not fit the file.
+Result<void> Attempt::prepare() {
+    const Texture& head = texture_.head;
+    if (const Result<void> fit = check_channels(head); !fit) return fit;
+    const FormatInfo info = format_info(head.format);
+    const Result<Sources> sources = sources_of(finder_.layout().swizzle, (1u << info.channels) - 1);
+    if (!sources) return sources.error();
+    sources_ = *sources;
+    report_.source = source_info(head, finder_.layout().swizzle, options_.source);
+    rule_ = rule_of(unpack_options(head, report_.source, options_.source), info.sample, info.bits, report_.source.y_axis);
+    rule_.is_unsigned = finder_.layout().is_unsigned;
+
+    const std::size_t held = texture_.levels.size();
+    first_ = static_cast<std::size_t>(options_.level.value_or(0));
+    if (first_ >= held) return no_such_level(input_, *options_.level, held);
+    end_ = options_.level || options_.mip || !can_hold_levels(container_) ? first_ + 1 : held;
+    report_.path = Path::streamed;
+    report_.extent = rows(first_).extent();
+    report_.pack = pack_options(options_, container_, report_.source);
+    report_.levels = static_cast<int>(end_ - first_);
+    if (options_.mip && can_hold_levels(container_)) {
+        const int complete = level_count(report_.extent);
+        report_.levels = options_.mip->levels > 0 ? std::min(options_.mip->levels, complete) : complete;
+    }
+    return {};
+}
+
+// Level k, and what is built of it.
+Result<void> Attempt::stream_level(std::size_t k, StripWriter& writer, const Execution& execution) {
+    const Extent extent = rows(k).extent();
+    const int levels = options_.mip ? report_.levels : 1;
+    LayoutFinder* const finder = k == 0 && finder_.depends_on_texels() ? &finder_ : nullptr;
+    RowStream stream(rows(k), input_, static_cast<int>(k - first_), levels, writer, execution, sizes_);
+    UnpackStage normals(texture_, extent, sources_, rule_, options_.scale, finder, stream.sink());
+    constexpr int kFromTheTop = 0;
+    LevelStage mips(extent, levels, kFromTheTop, options_.mip.value_or(MipOptions()), stream.strips());
+    const Result<void> done = stream.run(normals, mips);
+    if (done && finder != nullptr) correction_ = finder->correction();
+    return done;
+}
+
+Result<std::optional<PackFileReport>> Attempt::run() {
+    if (const Result<void> ready = prepare(); !ready) return after_all_rows(rows(0), input_, named(input_, ready.error()));
+    Result<StripWriter> writer =
+        StripWriter::open(output_, container_, report_.extent, report_.levels, report_.pack, options_.write);
+    if (!writer) return writer.error();
+    double texels = 0.0;
+    for (std::size_t k = first_; k < end_; ++k) texels += static_cast<double>(rows(k).extent().texels());
+    double done = 0.0;
+    for (std::size_t k = first_; k < end_; ++k) {
+        const double next = done + static_cast<double>(rows(k).extent().texels()) / texels;
+        const Result<void> streamed = stream_level(k, *writer, part_of(execution_, done, std::min(1.0, next)));
+        if (!streamed) return streamed.error();
+        if (correction_) return std::optional<PackFileReport>();
+        done = next;
+    }
+    if (const Result<void> committed = writer->commit(); !committed) return committed.error();
+    report_.bytes = writer->file_bytes();
+    return std::optional(report_);
+}
+
+}  // namespace
+
+PackOptions pack_options(const PackFileOptions& options, Container container, const SourceInfo& source) {
+    if (options.pack) return options.pack(source);
+    PackOptions pack;
+    pack.encoding = default_encoding(container);
+    pack.y_axis = source.y_axis;
+    return pack;
+}
+
+Error no_such_level(const std::string& input, int level, std::size_t levels) {
+    return {ErrorCode::bad_option, input, "has no level " + std::to_string(level) + ", only " + std::to_string(levels)};
+}
+
+Result<PackFileReport> pack_stream(InputFile& file, TextureRows texture, const std::string& output, Container container,
+                                   const PackFileOptions& options, const Execution& execution, const StreamSizes& sizes) {
+    double told = 0.0;  // no attempt falls behind one before
+    Execution onward{execution.threads, {}};
+    if (execution.progress) {
+        onward.progress = [&](double fraction) { return execution.progress(told = std::max(told, fraction)); };
+    }
+    KnownLayout known;
+    while (true) {
+        Attempt attempt(texture, file.path(), output, container, options, onward, sizes, known);
+        Result<std::optional<PackFileReport>> done = attempt.run();
+        if (!done) return done.error();
+        if (*done) return **done;
+        known = attempt.correction();
+        texture = {};
+        if (const Result<void> again = file.rewind(); !again) return again.error();
+        Result<std::optional<TextureRows>> opened = open_texture_rows(file, options.source.read);
+        if (!opened) return opened.error();
+        if (!*opened) return Error{ErrorCode::io, file.path(), "changed while it was read"};
+        texture = std::move(**opened);
+    }
+}
+
+}  // namespace tex

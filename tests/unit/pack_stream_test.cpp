@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "pipeline/pack_stream.h"
+
+#include <gtest/gtest.h>
+#include <half.h>
+
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include <tex/mip.h>
+
+#include "normal_maps.h"
+#include "textures.h"
+
+namespace tex {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+template <class E, std::size_t N>
+E any_of(const Named<E> (&table)[N], std::mt19937& random) {
+    return table[random() % N].value;
+}
+
+class PackStream : public testing::Test {
+protected:
+    void SetUp() override {
+        std::string pattern = testing::TempDir() + "pack_stream_XXXXXX";
+        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+        folder_ = pattern;
+        options_.write.sync = false;
+        pack_.effort = Effort::fast;
+        pack_.encoding = Encoding::dxt5nm;
+        options_.pack = [this](const SourceInfo& info) {
+            PackOptions pack = pack_;
+            if (!y_) pack.y_axis = info.y_axis;
+            return pack;
+        };
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+    [[nodiscard]] std::string path(const std::string& name) const { return folder_ + "/" + name; }
+    [[nodiscard]] std::string write(const std::string& name, const Bytes& bytes) const {
+        std::ofstream(path(name), std::ios::binary)
+            .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+        return path(name);
+    }
+    [[nodiscard]] std::size_t files() const {
+        return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_), {}));
+    }
+    // A file of `kind` that holds the texture.
+    [[nodiscard]] std::string write(const Texture& texture, Container kind) const {
+        const std::string name(name_of(kContainerNames, kind));
+        return write("in." + name, encode_file(texture, kind, options_.write).value());
+    }
+    [[nodiscard]] std::string write_map(Extent extent, Container kind, Encoding encoding) const {
+        return write(pack(chain_from(wavy_map(extent)), {encoding, YAxis::down, Effort::fast}).value(), kind);
+    }
+
+    // What the verbs make of a file, one after the other.
+    [[nodiscard]] Result<Bytes> by_verbs(const std::string& input, Container container) const {
+        Result<Source> source = read_normals(input, options_.source);
+        if (!source) return source.error();
+        MipChain chain = std::move(source->chain);
+        if (options_.level) std::swap(chain.levels.front(), chain.levels.at(static_cast<std::size_t>(*options_.level)));
+        if (options_.level || options_.mip || !can_hold_levels(container)) chain.levels.resize(1);
+        if (options_.scale) chain = scale(std::move(chain), options_.scale->scale, options_.scale->mode).value();
+        if (options_.mip && can_hold_levels(container)) {
+            chain = build_mip_chain(std::move(chain.levels.front()), *options_.mip).value();
+        }
+        return encode_file(pack(chain, options_.pack(source->info)).value(), container, options_.write);
+    }
+
+    // The stream of a file, cut into small pieces.
+    Result<PackFileReport> stream(const std::string& input, Container container, int threads, const StreamSizes& sizes,
+                                  std::function<bool(double)> progress = {}) const {
+        Result<InputFile> file = InputFile::open(input);
+        if (!file) return file.error();
+        Result<std::optional<TextureRows>> texture = open_texture_rows(*file, options_.source.read);
+        if (!texture) return texture.error();
+        EXPECT_TRUE(*texture) << input;
+        return pack_stream(*file, std::move(**texture), path("out"), container, options_, {threads, std::move(progress)}, sizes);
+    }
+
+    void draw_options(std::mt19937& random, int levels) {
+        const auto one_in = [&](unsigned n) { return random() % n == 0; };
+        options_.source = {};
+        options_.source.unpack.snap_flat = one_in(3);
+        options_.source.unpack.keep_length = one_in(3);
+        options_.source.unpack.range = one_in(2) ? ValueRange::automatic : any_of(kValueRangeNames, random);
+        if (one_in(2)) options_.source.unpack.y_axis = any_of(kYAxisNames, random);
+        if (one_in(8)) options_.source.r_or_a = true;
+        options_.scale = one_in(3) ? std::optional<Scaling>({0.5f * static_cast<float>(random() % 7) - 1.0f, any_of(kScaleModeNames, random)})
+                                   : std::nullopt;
+        options_.level = one_in(4) ? std::optional<int>(static_cast<int>(random() % static_cast<unsigned>(levels))) : std::nullopt;
+        options_.mip.reset();
+        if (one_in(2)) {
+            options_.mip = MipOptions();
+            options_.mip->filter = any_of(kMipFilterNames, random);
+            options_.mip->domain = any_of(kMipDomainNames, random);
+            options_.mip->levels = one_in(2) ? 0 : static_cast<int>(random() % 5);
+            if (one_in(3)) options_.mip->fade = Fade{1, 3};
+            options_.mip->wrap_x = any_of(kWrapNames, random);
+            options_.mip->wrap_y = any_of(kWrapNames, random);
+        }
+        y_ = one_in(2);
+        pack_.encoding = any_of(kEncodingNames, random);
+        pack_.y_axis = any_of(kYAxisNames, random);
+        options_.write.dds_header = any_of(kDdsHeaderNames, random);
+    }
+
+    std::string folder_;
+    PackFileOptions options_;
+    PackOptions pack_;
+    bool y_ = false;  // pack_.y_axis counts
+};
+
+Encoding encoding_in(Container kind, std::mt19937& random) {
+    while (true) {
+        const Encoding encoding = any_of(kEncodingNames, random);
+        if (can_hold(kind, encoding)) return encoding;
+    }
+}
+
+constexpr int kSides[] = {1, 2, 3, 4, 5, 7, 8, 13, 16, 17, 31, 40, 64, 97};
+
+TEST_F(PackStream, GivesTheBytesOfTheVerbs) {
+    constexpr Container kInputs[] = {Container::png, Container::exr};
+    std::mt19937 random(11);
+    for (int round = 0; round < 500; ++round) {
+        const Extent extent{kSides[random() % 14], kSides[random() % 14]};
+        const Container kind = kInputs[random() % std::size(kInputs)];
+        const Container container = random() % 2 == 0 ? Container::dds : Container::ktx2;
+        draw_options(random, 1);
+        const std::string input = write_map(extent, kind, encoding_in(kind, random));
+        SCOPED_TRACE(testing::Message() << "round " << round << ", " << extent.width << "x" << extent.height);
+        const Result<Bytes> expected = by_verbs(input, container);
+        ASSERT_TRUE(expected) << expected.error().message();
+        const int strip_texels = 1 << (2 + random() % 10);
+        const auto report = stream(input, container, 1 + static_cast<int>(random() % 3), {strip_texels, 0});
+        ASSERT_TRUE(report) << report.error().message();
+        ASSERT_TRUE(bytes_of(path("out")) == *expected);
+        EXPECT_EQ(report->path, Path::streamed);
+        EXPECT_EQ(report->extent, extent);
+        EXPECT_EQ(report->bytes, expected->size());
+    }
+}
+
+// Layouts that only the texels tell: the first assumption may be wrong.
+TEST_F(PackStream, ReadsOnceMoreWhereTheTexelsSayOtherwise) {
+    std::mt19937 random(5);
+    constexpr Swizzle kUnknown = {Component::other, Component::other, Component::other, Component::other};
+    constexpr Encoding kEncodings[] = {Encoding::rgba8, Encoding::ag8, Encoding::rgb8, Encoding::half, Encoding::float_};
+    for (int round = 0; round < 120; ++round) {
+        const Extent extent{kSides[random() % 14], kSides[random() % 14]};
+        const Encoding encoding = kEncodings[random() % std::size(kEncodings)];
+        Texture texture = pack(chain_from(wavy_map(extent)), {encoding}).value();
+        const bool floats = format_info(texture.format).sample == SampleKind::floating;
+        if (floats && random() % 2 == 0) {  // (n + 1) / 2, and four channels
+            const bool doom = random() % 2 == 0;
+            const Texture source = pack(chain_from(wavy_map(extent)), {Encoding::float_}).value();
+            texture.format = Format::rgba32_float;
+            texture.levels[0].bytes.resize(level_bytes(texture.format, extent));
+            for (std::size_t k = 0; k < static_cast<std::size_t>(extent.texels()); ++k) {
+                float n[4] = {0, 0, 0, 1};
+                std::memcpy(n, source.levels[0].bytes.data() + 12 * k, 12);
+                for (int c = 0; c < 3; ++c) n[c] = (n[c] + 1) / 2;
+                if (doom) std::swap(n[0], n[3]);
+                std::memcpy(texture.levels[0].bytes.data() + 16 * k, n, 16);
+            }
+        }
+        texture.swizzle = kUnknown;  // EXR says nothing then
+        draw_options(random, 1);
+        options_.source.unpack.range = ValueRange::automatic;
+        const std::string input = write(texture, floats ? Container::exr : Container::png);
+        SCOPED_TRACE(testing::Message() << "round " << round << ", " << extent.width << "x" << extent.height);
+        const Result<Bytes> expected = by_verbs(input, Container::ktx2);
+        ASSERT_TRUE(expected) << expected.error().message();
+        double last = 0.0;
+        const auto report = stream(input, Container::ktx2, 1 + round % 3, {64, 0}, [&](double fraction) {
+            EXPECT_GE(fraction, last);
+            last = fraction;
+            return true;
+        });
+        ASSERT_TRUE(report) << report.error().message();
+        ASSERT_TRUE(bytes_of(path("out")) == *expected);
+        const SourceInfo info = read_normals(input, options_.source).value().info;
+        EXPECT_EQ(report->source.swizzle, info.swizzle);
+        EXPECT_EQ(report->source.guessed, info.guessed);
+        EXPECT_EQ(report->source.y_axis, info.y_axis);
+        EXPECT_EQ(files(), 1u + static_cast<std::size_t>(std::filesystem::exists(path("out"))) +
+                               static_cast<std::size_t>(std::filesystem::exists(path("in.png")) && std::filesystem::exists(path("in.exr"))));
+    }
+}
+
+TEST_F(PackStream, LargeMapsGoThroughManyStripsOnManyThreads) {
+    options_.mip = MipOptions();
+    for (const Extent extent : {Extent{2048, 70}, Extent{131, 1100}}) {
+        for (const Container kind : {Container::png, Container::exr}) {
+            const std::string input = write_map(extent, kind, default_encoding(kind));
+            const Bytes expected = by_verbs(input, Container::dds).value();
+            for (const int threads : {1, 2, 5}) {
+                const auto report = pack_file(input, path("out"), Container::dds, options_, {threads, {}});
+                ASSERT_TRUE(report) << report.error().message();
+                EXPECT_EQ(report->path, Path::streamed);
+                EXPECT_TRUE(bytes_of(path("out")) == expected) << extent.width << " " << threads;
+            }
+        }
+    }
+}
+
+TEST_F(PackStream, TakesEveryInputThatComesInOrder) {
+    const Extent extent{45, 30};
+    options_.mip = MipOptions();
+    struct Case {
+        Container kind;
+        Encoding encoding;
+    };
+    for (const auto& [kind, encoding] :
+         {Case{Container::png, Encoding::rgb8}, Case{Container::png, Encoding::rgb16}, Case{Container::exr, Encoding::half},
+          Case{Container::exr, Encoding::float_}, Case{Container::tiff, Encoding::rgb16}, Case{Container::tga, Encoding::ag8},
+          Case{Container::bmp, Encoding::rgb8}, Case{Container::jpeg, Encoding::rgb8}}) {
+        SCOPED_TRACE(name_of(kContainerNames, kind));
+        const std::string input = write_map(extent, kind, encoding);
+        const auto report = pack_file(input, path("out"), Container::ktx2, options_);
+        ASSERT_TRUE(report) << report.error().message();
+        EXPECT_EQ(report->path, Path::streamed);
+        EXPECT_EQ(report->levels, 6);
+        EXPECT_TRUE(bytes_of(path("out")) == by_verbs(input, Container::ktx2).value());
+    }
+}
+
+TEST_F(PackStream, LeavesWholeImagesToTheVerbs) {
+    const MipChain chain = build_mip_chain(wavy_map({32, 16})).value();
+    const std::string mipped = write(pack(chain, {Encoding::half}).value(), Container::exr);
+    const std::string plain = write_map({32, 16}, Container::png, Encoding::rgb8);
+    struct Case {
+        std::string input;
+        Container container;
+    };
+    for (const auto& [input, container] : {Case{mipped, Container::dds}, Case{plain, Container::tga}}) {
+        for (const bool builds : {false, true}) {
+            options_.mip = builds ? std::optional(MipOptions()) : std::nullopt;
+            pack_.encoding = container == Container::dds ? Encoding::bc5 : Encoding::rgb8;
+            const auto report = pack_file(input, path("out"), container, options_);
+            ASSERT_TRUE(report) << report.error().message();
+            EXPECT_EQ(report->path, Path::whole);
+            EXPECT_TRUE(bytes_of(path("out")) == by_verbs(input, container).value());
+        }
+    }
+}
+
+TEST_F(PackStream, DamageIsTheSameErrorAndLeavesNothing) {
+    for (const Container kind : {Container::png, Container::exr}) {
+        const std::string sound = write_map({300, 200}, kind, default_encoding(kind));
+        Bytes bytes = bytes_of(sound);
+        const std::string cut = write("cut", Bytes(bytes.begin(), bytes.end() - 300));
+        bytes[bytes.size() / 2] ^= std::byte{0x5a};
+        for (const std::string& input : {write("hurt", bytes), cut}) {
+            const Error expected = read_normals(input).error();
+            for (const int threads : {1, 3}) {
+                const auto report = stream(input, Container::dds, threads, {2048, 0});
+                ASSERT_FALSE(report);
+                EXPECT_EQ(report.error().message(), expected.message());
+                EXPECT_EQ(report.error().code, expected.code);
+                EXPECT_FALSE(std::filesystem::exists(path("out")));
+            }
+        }
+    }
+    // A file that is damaged is damaged first, whatever else is wrong.
+    options_.level = 3;
+    EXPECT_EQ(pack_file(path("cut"), path("out"), Container::dds, options_).error().code, ErrorCode::bad_data);
+    EXPECT_EQ(files(), 4u);
+}
+
+TEST_F(PackStream, OptionsThatDoNotFitAreTheSameErrors) {
+    const std::string input = write_map({20, 10}, Container::png, Encoding::rgb8);
+    options_.source.unpack.swizzle = Swizzle{Component::z, Component::y, Component::other, Component::x};
+    EXPECT_EQ(pack_file(input, path("out"), Container::dds, options_).error().message(),
+              read_normals(input, options_.source).error().message());
+    options_.source = {};
+    options_.level = 2;
+    EXPECT_EQ(pack_file(input, path("out"), Container::dds, options_).error().message(), input + ": has no level 2, only 1");
+    EXPECT_EQ(pack_file(input, path("out"), Container::tga, options_).error().message(), input + ": has no level 2, only 1");
+    Texture grey;
+    grey.format = Format::r8_unorm;
+    grey.levels.push_back({{4, 4}, Bytes(16)});
+    const std::string one = write(grey, Container::png);
+    options_.level.reset();
+    EXPECT_EQ(pack_file(one, path("out"), Container::dds, options_).error().message(), read_normals(one).error().message());
+    EXPECT_EQ(pack_file(path("none.png"), path("out"), Container::dds, options_).error().code, ErrorCode::io);
+    EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(PackStream, CancellingLeavesNothing) {
+    const std::string input = write_map({200, 400}, Container::png, Encoding::rgb8);
+    for (const int threads : {1, 2}) {
+        std::atomic<int> calls{0};
+        const auto report = stream(input, Container::dds, threads, {2000, 0}, [&](double) { return ++calls < 10; });
+        ASSERT_FALSE(report);
+        EXPECT_EQ(report.error().code, ErrorCode::cancelled);
+        EXPECT_EQ(calls, 10);
+        EXPECT_EQ(files(), 1u);
+    }
+}
+
+}  // namespace
+}  // namespace tex

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <tex/source.h>
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include <tex/container.h>
+#include <tex/mip.h>
+#include <tex/pack.h>
+
+#include "fields.h"
+#include "normal_maps.h"
+
+namespace tex {
+namespace {
+
+class SourceFiles : public testing::Test {
+protected:
+    void SetUp() override {
+        std::string pattern = testing::TempDir() + "source_XXXXXX";
+        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+        folder_ = pattern;
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
+    [[nodiscard]] std::string write(const std::string& name, const Texture& texture) const {
+        WriteOptions options;
+        options.sync = false;
+        EXPECT_TRUE(write_texture(folder_ + "/" + name, texture, options));
+        return folder_ + "/" + name;
+    }
+    [[nodiscard]] static Texture packed(Encoding encoding, YAxis y_axis = YAxis::up) {
+        return pack(chain_from(wavy_map({20, 12})), {encoding, y_axis}).value();
+    }
+
+    std::string folder_;
+};
+
+TEST_F(SourceFiles, AreReadAsTheySay) {
+    const Source source = read_normals(write("a.ktx2", packed(Encoding::bc5, YAxis::down))).value();
+    EXPECT_EQ(source.info.format, Format::bc5_unorm);
+    EXPECT_EQ(source.info.y_axis, YAxis::down);
+    EXPECT_FALSE(source.info.guessed);
+    EXPECT_TRUE(fields::same_bytes(source.chain.levels.front(), unpack(packed(Encoding::bc5, YAxis::down)).value().levels.front()));
+    SourceOptions options;
+    options.unpack.y_axis = YAxis::up;
+    EXPECT_EQ(read_normals(folder_ + "/a.ktx2", options).value().info.y_axis, YAxis::up);
+    options.file_y_first = true;
+    EXPECT_EQ(read_normals(folder_ + "/a.ktx2", options).value().info.y_axis, YAxis::down);
+    options.bc5_swizzle = Swizzle{Component::y, Component::x, Component::zero, Component::one};
+    EXPECT_EQ(read_normals(folder_ + "/a.ktx2", options).value().info.swizzle, *options.bc5_swizzle);
+}
+
+TEST_F(SourceFiles, ThatDoNotSayAreReadAsTheirTexelsLook) {
+    const std::string png = write("a.png", packed(Encoding::ag8));
+    const Source source = read_normals(png).value();
+    EXPECT_TRUE(source.info.guessed);
+    EXPECT_EQ(name_of(kSwizzleNames, source.info.swizzle), "dxt5nm");
+    SourceOptions options;
+    options.r_or_a = true;
+    EXPECT_EQ(read_normals(png, options).value().info.swizzle[3], Component::x);
+    const std::string rgba = write("b.png", packed(Encoding::rgba8));
+    EXPECT_EQ(read_normals(rgba, options).value().info.swizzle[0], Component::x);
+    EXPECT_FALSE(read_normals(rgba).value().info.guessed);
+    options.unpack.swizzle = Swizzle{Component::other, Component::y, Component::z, Component::x};
+    EXPECT_EQ(read_normals(rgba, options).value().info.swizzle, *options.unpack.swizzle);
+}
+
+TEST_F(SourceFiles, OfSignedFloatsAreTakenAtTheirWord) {
+    NormalMap map = wavy_map({9, 7});
+    map.x.at(3, 3) *= 0.5f;
+    const std::string path = write("a.exr", pack(chain_from(copy_of(map)), {Encoding::float_}).value());
+    EXPECT_TRUE(fields::same_bytes(read_normals(path).value().chain.levels.front(), map));
+}
+
+TEST_F(SourceFiles, HaveTheBaseLevelAloneWhereThatIsAskedFor) {
+    const std::string path = write("a.dds", pack(build_mip_chain(wavy_map({16, 8})).value(), {Encoding::bc5}).value());
+    EXPECT_EQ(read_normals(path).value().chain.levels.size(), 5u);
+    EXPECT_EQ(read_normals(path, {}, true).value().chain.levels.size(), 1u);
+}
+
+TEST_F(SourceFiles, WithoutNormalsAreErrorsThatNameThem) {
+    Texture grey;
+    grey.format = Format::r8_unorm;
+    grey.levels.push_back({{4, 4}, std::vector<std::byte>(16)});
+    const Error one = read_normals(write("grey.png", grey)).error();
+    EXPECT_EQ(one.code, ErrorCode::unsupported);
+    EXPECT_EQ(one.message(), folder_ + "/grey.png: has one channel, which holds no normals (bake-normals reads heights)");
+    SourceOptions options;
+    options.unpack.swizzle = Swizzle{Component::z, Component::y, Component::other, Component::x};
+    const Error lacking = read_normals(write("rgb.png", packed(Encoding::rgb8)), options).error();
+    EXPECT_EQ(lacking.code, ErrorCode::bad_option);
+    EXPECT_EQ(lacking.file, folder_ + "/rgb.png");
+    EXPECT_EQ(read_normals(folder_ + "/none.png").error().code, ErrorCode::io);
+}
+
+}  // namespace
+}  // namespace tex

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cli/repack.h"
+
+#include <utility>
+
+namespace tex::cli {
+
+Result<void> repack(Job& job, SourceOptions& source, const OutputOptions& output, PackFileOptions options,
+                    const EncodingOf& encoding) {
+    options.source = source.options(job);
+    options.pack = [&](const SourceInfo& info) {
+        return output.pack_options(output.format ? *output.format : encoding(info), output.y.value_or(info.y_axis));
+    };
+    options.write = output.write_options(job);
+    const auto packed = pack_file(job.task.input, job.task.output, job.task.container, options, job.until(1.0));
+    if (!packed) return packed.error();
+    source.note(job, job.task.input, packed->source);
+    report_source(job, packed->source);
+    job.wrote(job.task.output);
+    report_texture(job, packed->extent, packed->levels, packed->pack, packed->bytes);
+    report_path(job, packed->path);
+    return {};
+}
+
+void report_path(Job& job, Path path) { job.report["path"] = name_of(kPathNames, path); }
+
+}  // namespace tex::cli
