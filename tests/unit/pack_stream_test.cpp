@@ -55,8 +55,11 @@ protected:
         const std::string name(name_of(kContainerNames, kind));
         return write("in." + name, encode_file(texture, kind, options_.write).value());
     }
-    [[nodiscard]] std::string write_map(Extent extent, Container kind, Encoding encoding) const {
-        return write(pack(chain_from(wavy_map(extent)), {encoding, YAxis::down, Effort::fast}).value(), kind);
+    [[nodiscard]] std::string write_map(Extent extent, Container kind, Encoding encoding, int levels = 1) const {
+        MipOptions mip;
+        mip.levels = levels;
+        const MipChain chain = build_mip_chain(wavy_map(extent), mip).value();
+        return write(pack(chain, {encoding, YAxis::down, Effort::fast}).value(), kind);
     }
 
     // What the verbs make of a file, one after the other.
@@ -127,14 +130,17 @@ Encoding encoding_in(Container kind, std::mt19937& random) {
 constexpr int kSides[] = {1, 2, 3, 4, 5, 7, 8, 13, 16, 17, 31, 40, 64, 97};
 
 TEST_F(PackStream, GivesTheBytesOfTheVerbs) {
-    constexpr Container kInputs[] = {Container::png, Container::exr};
+    constexpr Container kInputs[] = {Container::png, Container::exr, Container::dds, Container::ktx2};
     std::mt19937 random(11);
-    for (int round = 0; round < 500; ++round) {
+    for (int round = 0; round < 800; ++round) {
         const Extent extent{kSides[random() % 14], kSides[random() % 14]};
         const Container kind = kInputs[random() % std::size(kInputs)];
         const Container container = random() % 2 == 0 ? Container::dds : Container::ktx2;
-        draw_options(random, 1);
-        const std::string input = write_map(extent, kind, encoding_in(kind, random));
+        const bool is_texture = kind == Container::dds || kind == Container::ktx2;
+        const int levels = is_texture ? 1 + static_cast<int>(random() % static_cast<unsigned>(level_count(extent))) : 1;
+        draw_options(random, levels);
+        options_.write.dds_mark = random() % 2 == 0;
+        const std::string input = write_map(extent, kind, encoding_in(kind, random), levels);
         SCOPED_TRACE(testing::Message() << "round " << round << ", " << extent.width << "x" << extent.height);
         const Result<Bytes> expected = by_verbs(input, container);
         ASSERT_TRUE(expected) << expected.error().message();
@@ -143,8 +149,61 @@ TEST_F(PackStream, GivesTheBytesOfTheVerbs) {
         ASSERT_TRUE(report) << report.error().message();
         ASSERT_TRUE(bytes_of(path("out")) == *expected);
         EXPECT_EQ(report->path, Path::streamed);
-        EXPECT_EQ(report->extent, extent);
+        EXPECT_EQ(report->extent, level_extent(extent, options_.level.value_or(0)));
         EXPECT_EQ(report->bytes, expected->size());
+    }
+}
+
+// Every file of others: channels by masks, rows that run upwards, headers that claim too much.
+TEST_F(PackStream, TakesTheTexturesOfOthersAsTheVerbsDo) {
+    std::vector<std::filesystem::path> inputs;
+    for (const auto& entry : std::filesystem::directory_iterator(TEX_SOURCE_DIR "/samples/broken")) inputs.push_back(entry.path());
+    if (std::filesystem::exists(shared_data())) {
+        for (const char* folder : {"dds", "dds/reference", "bad"}) {
+            for (const auto& file : files_in(folder, ".dds")) inputs.push_back(file);
+        }
+    }
+    pack_.encoding = Encoding::bc5;
+    for (const auto& input : inputs) {
+        const std::string extension = input.extension();
+        if (extension != ".dds" && extension != ".ktx2") continue;
+        for (const std::optional<int> level : {std::optional<int>(), std::optional<int>(1)}) {
+            SCOPED_TRACE(input.string());
+            options_.level = level;
+            const Result<Source> source = read_normals(input, options_.source);
+            const auto report = pack_file(input, path("out"), Container::dds, options_, {2, {}});
+            if (source && level && source->chain.levels.size() < 2) {
+                EXPECT_EQ(report.error().code, ErrorCode::bad_option);
+                continue;
+            }
+            ASSERT_EQ(bool(report), bool(source));
+            if (!report) {
+                EXPECT_EQ(report.error().message(), source.error().message());
+                EXPECT_EQ(report.error().code, source.error().code);
+                EXPECT_FALSE(std::filesystem::exists(path("out")));
+                continue;
+            }
+            EXPECT_EQ(report->path, Path::streamed);
+            EXPECT_TRUE(bytes_of(path("out")) == by_verbs(input, Container::dds).value());
+            EXPECT_EQ(report->source.remarks, source->info.remarks);
+            EXPECT_EQ(report->source.swizzle, source->info.swizzle);
+            std::filesystem::remove(path("out"));
+        }
+    }
+}
+
+TEST_F(PackStream, TakesRowsThatRunUpwards) {
+    Texture texture = pack(chain_from(wavy_map({19, 11})), {Encoding::rgb8}).value();
+    Bytes bytes = encode_file(texture, Container::ktx2).value();
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const std::size_t at = text.find("KTXorientation") + 16;  // "rd"
+    bytes[at] = std::byte{'u'};
+    const std::string input = write("up.ktx2", bytes);
+    const Bytes expected = by_verbs(input, Container::dds).value();
+    EXPECT_FALSE(expected == by_verbs(write(texture, Container::ktx2), Container::dds).value());
+    for (const int strip_texels : {4, 100, 10000}) {
+        ASSERT_TRUE(stream(input, Container::dds, 2, {strip_texels, 0}));
+        EXPECT_TRUE(bytes_of(path("out")) == expected);
     }
 }
 
@@ -196,10 +255,10 @@ TEST_F(PackStream, ReadsOnceMoreWhereTheTexelsSayOtherwise) {
 }
 
 TEST_F(PackStream, LargeMapsGoThroughManyStripsOnManyThreads) {
-    options_.mip = MipOptions();
     for (const Extent extent : {Extent{2048, 70}, Extent{131, 1100}}) {
-        for (const Container kind : {Container::png, Container::exr}) {
-            const std::string input = write_map(extent, kind, default_encoding(kind));
+        for (const Container kind : {Container::png, Container::exr, Container::dds}) {
+            const std::string input = write_map(extent, kind, default_encoding(kind), kind == Container::dds ? 0 : 1);
+            options_.mip = kind == Container::dds ? std::nullopt : std::optional(MipOptions());
             const Bytes expected = by_verbs(input, Container::dds).value();
             for (const int threads : {1, 2, 5}) {
                 const auto report = pack_file(input, path("out"), Container::dds, options_, {threads, {}});

@@ -193,19 +193,6 @@ std::size_t file_bytes(const DdsTexels& texels, Extent extent) {
     return static_cast<std::size_t>(extent.texels()) * static_cast<std::size_t>(texels.fields->texel_bytes);
 }
 
-Level read_level(const DdsTexels& texels, Extent extent, const std::byte* source) {
-    Level level;
-    level.extent = extent;
-    level.bytes.resize(level_bytes(texels.format, extent));
-    if (texels.fields) {
-        convert_fields(*texels.fields, source, static_cast<std::size_t>(extent.texels()), texels.format,
-                       level.bytes.data());
-    } else {
-        std::memcpy(level.bytes.data(), source, level.bytes.size());
-    }
-    return level;
-}
-
 // How many levels the header means.
 int wanted_levels(const Header& header, Extent extent, std::vector<std::string>& remarks) {
     const int most = level_count(extent);
@@ -280,9 +267,10 @@ FileLayout dds_layout(const TextureHead& head, const WriteOptions& options) {
     return layout;
 }
 
-Result<Texture> decode_dds(const std::byte* data, std::size_t size, const std::string& name,
-                           const ReadOptions& options) {
-    Result<Header> header = parse_header(data, size, name);
+Result<StoredTexture> parse_dds(const FetchBytes& fetch, std::size_t size, const std::string& name, const ReadOptions& options) {
+    const Result<std::vector<std::byte>> head = fetch(0, std::min(size, kMagicBytes + kHeaderBytes + kDx10Bytes));
+    if (!head) return head.error();
+    Result<Header> header = parse_header(head->data(), size, name);
     if (!header) return header.error();
     if (const Result<void> kind = check_kind(*header, name); !kind) return kind.error();
     const Result<Extent> extent = claimed_extent(name, header->width, header->height, options);
@@ -290,7 +278,9 @@ Result<Texture> decode_dds(const std::byte* data, std::size_t size, const std::s
     Result<DdsTexels> texels = header->has_dx10 ? texels_of_dxgi(header->dxgi) : texels_of(header->pixel_format);
     if (!texels) return Error{texels.error().code, name, texels.error().reason};
 
-    Texture texture;
+    StoredTexture stored;
+    stored.fields = texels->fields;
+    Texture& texture = stored.head;
     texture.format = texels->format;
     texture.swizzle = texels->swizzle;
     texture.swizzle_known = texels->swizzle_known;
@@ -313,13 +303,20 @@ Result<Texture> decode_dds(const std::byte* data, std::size_t size, const std::s
             left = 0;
             break;
         }
-        texture.levels.push_back(read_level(*texels, level, data + (size - left)));
+        stored.levels.push_back({level, size - left});
         left -= bytes;
     }
     if (left > 0) {
         texture.remarks.push_back(std::to_string(left) + " bytes after the last level were not read");
     }
-    return texture;
+    return stored;
+}
+
+Result<Texture> decode_dds(const std::byte* data, std::size_t size, const std::string& name,
+                           const ReadOptions& options) {
+    Result<StoredTexture> stored = parse_dds(fetch_from(data), size, name, options);
+    if (!stored) return stored.error();
+    return load_texture(std::move(*stored), data);
 }
 
 }  // namespace tex

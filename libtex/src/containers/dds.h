@@ -15,6 +15,7 @@
 #include <tex/texture.h>
 
 #include "containers/file_layout.h"
+#include "containers/stored_texture.h"
 
 namespace tex {
 
@@ -24,6 +25,10 @@ namespace tex {
 // Legacy where the options ask for it and Direct3D 9 has the format, else DX10. Three channels of 16 or 32 bits are widened. (DXGI has
 // three floats of 32 bits; few readers know them.)
 [[nodiscard]] FileLayout dds_layout(const TextureHead& head, const WriteOptions& options);
+
+// Where the texels of a file of `size` bytes stand. Errors: as decode_dds(); those of `fetch`. May throw std::bad_alloc.
+[[nodiscard]] Result<StoredTexture> parse_dds(const FetchBytes& fetch, std::size_t size, const std::string& name,
+                                              const ReadOptions& options);
 
 // Errors: bad_data, unsupported, as read_texture(). May throw std::bad_alloc.
 [[nodiscard]] Result<Texture> decode_dds(const std::byte* data, std::size_t size, const std::string& name,

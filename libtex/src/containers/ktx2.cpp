@@ -206,22 +206,17 @@ bool apply_ktx_swizzle(std::string_view value, Texture& texture) {
     return true;
 }
 
-void flip_rows(Format format, Level& level) {
-    const std::size_t pitch = level_bytes(format, {level.extent.width, 1});
-    for (std::size_t top = 0, bottom = level.bytes.size() - pitch; top < bottom; top += pitch, bottom -= pitch) {
-        std::swap_ranges(level.bytes.begin() + static_cast<std::ptrdiff_t>(top),
-                         level.bytes.begin() + static_cast<std::ptrdiff_t>(top + pitch),
-                         level.bytes.begin() + static_cast<std::ptrdiff_t>(bottom));
-    }
-}
-
-// What the key/value data say. Returns true where rows run upwards.
-bool apply_key_values(const std::byte* data, std::size_t size, const Ktx2Header& header, Texture& texture) {
+// What the key/value data say. Returns true where rows run upwards. Errors: those of `fetch`.
+Result<bool> apply_key_values(const FetchBytes& fetch, std::size_t size, const Ktx2Header& header, Texture& texture) {
     if (header.key_values_bytes == 0) return false;
     const std::size_t offset = header.key_values_offset;
+    std::vector<std::byte> bytes;  // that the entries point into
     std::optional<std::vector<KeyValue>> entries;
     if (offset <= size && header.key_values_bytes <= size - offset) {
-        entries = parse_key_values(data + offset, header.key_values_bytes);
+        Result<std::vector<std::byte>> fetched = fetch(offset, header.key_values_bytes);
+        if (!fetched) return fetched.error();
+        bytes = std::move(*fetched);
+        entries = parse_key_values(bytes.data(), bytes.size());
     }
     if (!entries) {
         texture.remarks.push_back("the key/value data are damaged and were not read");
@@ -242,12 +237,12 @@ bool apply_key_values(const std::byte* data, std::size_t size, const Ktx2Header&
     return upwards;
 }
 
-Result<Level> read_level(const std::byte* data, std::size_t size, std::size_t k, const VkRow& row, Extent extent,
-                         const std::string& name) {
-    const std::byte* index = data + kHeaderBytes + k * kLevelIndexBytes;
-    const std::uint64_t offset = load_u64(index);
-    const std::uint64_t bytes = load_u64(index + 8);
-    const std::size_t wanted = level_bytes(row.format, extent);
+// Where level k stands, by its entry in the level index.
+Result<StoredTexture::Place> place_of(const std::byte* entry, std::size_t size, std::size_t k, Format format, Extent extent,
+                                      const std::string& name) {
+    const std::uint64_t offset = load_u64(entry);
+    const std::uint64_t bytes = load_u64(entry + 8);
+    const std::size_t wanted = level_bytes(format, extent);
     const std::string level_text = "level " + std::to_string(k);
     if (bytes != wanted) {
         return bad_data(name, level_text + " has " + std::to_string(bytes) + " bytes instead of " +
@@ -256,10 +251,7 @@ Result<Level> read_level(const std::byte* data, std::size_t size, std::size_t k,
     if (offset > size || bytes > size - offset) {
         return bad_data(name, "truncated: " + level_text + " ends beyond the end of the file");
     }
-    Level level{extent, std::vector<std::byte>(wanted)};
-    rearrange_texels(row.format, row.bgr ? Rearrange::bgr : Rearrange::none, data + offset,
-                     wanted / format_info(row.format).block_bytes, level.bytes.data());
-    return level;
+    return StoredTexture::Place{extent, offset};
 }
 
 }  // namespace
@@ -316,10 +308,11 @@ FileLayout ktx2_layout(const TextureHead& head) {
     return layout;
 }
 
-Result<Texture> decode_ktx2(const std::byte* data, std::size_t size, const std::string& name,
-                            const ReadOptions& options) {
+Result<StoredTexture> parse_ktx2(const FetchBytes& fetch, std::size_t size, const std::string& name, const ReadOptions& options) {
     if (size < kHeaderBytes) return bad_data(name, "truncated: the KTX2 header is not complete");
-    const Ktx2Header header = parse_header(data);
+    const Result<std::vector<std::byte>> head = fetch(0, kHeaderBytes);
+    if (!head) return head.error();
+    const Ktx2Header header = parse_header(head->data());
     const Result<Extent> extent = check_header(header, name, options);
     if (!extent) return extent.error();
     const auto row = std::find_if(std::begin(kVkFormats), std::end(kVkFormats),
@@ -336,21 +329,35 @@ Result<Texture> decode_ktx2(const std::byte* data, std::size_t size, const std::
         return bad_data(name, "truncated: the level index is not complete");
     }
 
-    Texture texture;
+    const Result<std::vector<std::byte>> index = fetch(kHeaderBytes, levels * kLevelIndexBytes);
+    if (!index) return index.error();
+
+    StoredTexture stored;
+    stored.bgr = row->bgr;
+    Texture& texture = stored.head;
     texture.format = row->format;
     texture.swizzle = likely_swizzle(row->format);
     texture.srgb = row->srgb;
-    const bool upwards = apply_key_values(data, size, header, texture);
-    if (upwards && format_info(row->format).block > 1) {
+    const Result<bool> upwards = apply_key_values(fetch, size, header, texture);
+    if (!upwards) return upwards.error();
+    stored.upwards = *upwards;
+    if (stored.upwards && format_info(row->format).block > 1) {
         return unsupported(name, "blocks whose rows run upwards (KTXorientation) are not supported");
     }
     for (std::size_t k = 0; k < levels; ++k) {
-        Result<Level> level = read_level(data, size, k, *row, level_extent(*extent, static_cast<int>(k)), name);
-        if (!level) return level.error();
-        if (upwards) flip_rows(row->format, *level);
-        texture.levels.push_back(std::move(*level));
+        const Result<StoredTexture::Place> place = place_of(index->data() + k * kLevelIndexBytes, size, k, row->format,
+                                                            level_extent(*extent, static_cast<int>(k)), name);
+        if (!place) return place.error();
+        stored.levels.push_back(*place);
     }
-    return texture;
+    return stored;
+}
+
+Result<Texture> decode_ktx2(const std::byte* data, std::size_t size, const std::string& name,
+                            const ReadOptions& options) {
+    Result<StoredTexture> stored = parse_ktx2(fetch_from(data), size, name, options);
+    if (!stored) return stored.error();
+    return load_texture(std::move(*stored), data);
 }
 
 }  // namespace tex

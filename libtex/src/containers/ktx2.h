@@ -13,6 +13,7 @@
 #include <tex/texture.h>
 
 #include "containers/file_layout.h"
+#include "containers/stored_texture.h"
 
 namespace tex {
 
@@ -22,6 +23,10 @@ namespace tex {
 // Three channels of 16 or 32 bits are widened. Where the swizzle is known, the key "libtex.normal" holds it: "dxt5nm"
 // or the four letters of to_string(), and behind a blank "+y" or "-y" where that is known.
 [[nodiscard]] FileLayout ktx2_layout(const TextureHead& head);
+
+// Where the texels of a file of `size` bytes stand. Errors: as decode_ktx2(); those of `fetch`. May throw std::bad_alloc.
+[[nodiscard]] Result<StoredTexture> parse_ktx2(const FetchBytes& fetch, std::size_t size, const std::string& name,
+                                               const ReadOptions& options);
 
 // Errors: bad_data, unsupported, as read_texture(). May throw std::bad_alloc.
 [[nodiscard]] Result<Texture> decode_ktx2(const std::byte* data, std::size_t size, const std::string& name,

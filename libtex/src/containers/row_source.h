@@ -40,13 +40,18 @@ public:
     // Whether any rows may be decoded at any time, by several threads at once. If not, rows are decoded from the top, once, without gaps.
     [[nodiscard]] virtual bool is_random() const { return false; }
 
-    // Decodes rows [first, first + count) into `rows`, row_bytes() each. Throws std::bad_alloc. Errors: bad_data, io, out_of_memory.
+    // Only these planes are looked at; what is in the others does not matter. To be called before rows are stored.
+    virtual void choose_planes(const std::vector<bool>&) {}
+
+    // Decodes rows [first, first + count) into `rows`, row_bytes() each; there is room for a multiple of four rows. Throws std::bad_alloc. Errors: bad_data,
+    // io, out_of_memory.
     virtual Result<void> decode(int first, int count, std::byte* rows) = 0;
 
     // Makes sure, after the last row, that the file ends as it should. Errors: as decode().
     virtual Result<void> finish() { return {}; }
 
-    // Decoded rows become rows [first, end) of `image`, which has a plane for each of names(). Any thread may call, also beside decode().
+    // Decoded rows become rows [first, end) of `image`, which has a plane for each of names() and room for a multiple of four rows. Any thread
+    // may call, also beside decode().
     virtual void store(const std::byte* rows, int first, int end, Image& image) const = 0;
 
     // The planes of the whole picture; instead of decode() and finish(). Throws std::bad_alloc. Errors: as decode().

@@ -12,6 +12,7 @@
 #include "containers/exr.h"
 #include "containers/exr_rows.h"
 #include "containers/ktx2.h"
+#include "containers/level_rows.h"
 #include "containers/picture.h"
 #include "containers/png.h"
 #include "containers/reader.h"
@@ -41,6 +42,28 @@ Opened picture_rows(const InputFile& file, Result<std::unique_ptr<RowSource>> ro
     texture.levels.push_back(std::move(*rows));
     texture.planes = std::move(picture->planes);
     texture.rounds = picture->rounds;
+    return std::optional(std::move(texture));
+}
+
+// The levels of a DDS or KTX2 file.
+Opened level_rows(InputFile& file, const ReadOptions& options) {
+    if (const Result<void> settled = file.settle(largest_file(options)); !settled) return settled.error();
+    if (*file.size() > largest_file(options)) return std::optional<TextureRows>();  // read_texture() says so
+    const FetchBytes fetch = [&file](std::uint64_t offset, std::size_t count) -> Result<std::vector<std::byte>> {
+        std::vector<std::byte> bytes(count);
+        const Result<std::size_t> got = file.read_at(static_cast<std::int64_t>(offset), bytes.data(), count);
+        if (!got) return got.error();
+        if (*got < count) return Error{ErrorCode::bad_data, file.path(), "the file ends too early"};
+        return bytes;
+    };
+    const auto parse = is_dds(file.head().data(), file.head().size()) ? parse_dds : parse_ktx2;
+    Result<StoredTexture> parsed = parse(fetch, static_cast<std::size_t>(*file.size()), file.path(), options);
+    if (!parsed) return parsed.error();
+    const auto stored = std::make_shared<const StoredTexture>(std::move(*parsed));
+    TextureRows texture;
+    texture.head = stored->head;
+    for (std::size_t k = 0; k < stored->levels.size(); ++k) texture.levels.push_back(open_level_rows(file, stored, k));
+    for (int c = 0; c < format_info(stored->head.format).channels; ++c) texture.planes.push_back(static_cast<std::size_t>(c));
     return std::optional(std::move(texture));
 }
 
@@ -75,7 +98,7 @@ Result<Texture> read_texture(InputFile& file, const ReadOptions& options) {
 
 Opened open_texture_rows(InputFile& file, const ReadOptions& options) {
     return guarded([&]() -> Opened {
-        if (is_texture(file)) return std::optional<TextureRows>();
+        if (is_texture(file)) return level_rows(file, options);
         if (is_exr(file.head())) return exr_rows(file, options);
         if (!is_png(file.head())) {  // so that it can be read once more
             const Result<void> settled = file.settle(std::min(largest_file(options), options.reader_memory));

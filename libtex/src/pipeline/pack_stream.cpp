@@ -10,6 +10,7 @@
 
 #include "base/parallel.h"
 #include "base/source_layout.h"
+#include "containers/claims.h"
 #include "pipeline/layout_finder.h"
 #include "pipeline/level_stage.h"
 #include "pipeline/strip_writer.h"
@@ -36,6 +37,7 @@ public:
 
 private:
     Result<void> prepare();
+    Result<void> look_at_base_level();
     Result<void> stream_level(std::size_t k, StripWriter& writer, const Execution& execution);
     [[nodiscard]] RowSource& rows(std::size_t k) const { return *texture_.levels[k]; }
 
@@ -82,11 +84,38 @@ Result<void> Attempt::prepare() {
     return {};
 }
 
+// Where the base level decides how another one is to be read.
+Result<void> Attempt::look_at_base_level() {
+    RowSource& base = rows(0);
+    constexpr int kRows = 4;
+    Image image = make_image({base.extent().width, kRows}, base.names());
+    std::vector<std::byte> decoded(base.row_bytes() * kRows);
+    for (int j = 0; j < base.extent().height; j += kRows) {
+        const int count = std::min(kRows, base.extent().height - j);
+        if (const Result<void> done = base.decode(j, count, decoded.data()); !done) return done;
+        base.store(decoded.data(), 0, count, image);
+        for (int k = 0; k < count; ++k) {
+            const float* channels[4] = {};
+            for (std::size_t c = 0; c < texture_.planes.size(); ++c) channels[c] = image.planes[texture_.planes[c]].row(k);
+            finder_.add_row(channels);
+        }
+    }
+    correction_ = finder_.correction();
+    return {};
+}
+
 // Level k, and what is built of it.
 Result<void> Attempt::stream_level(std::size_t k, StripWriter& writer, const Execution& execution) {
     const Extent extent = rows(k).extent();
     const int levels = options_.mip ? report_.levels : 1;
     LayoutFinder* const finder = k == 0 && finder_.depends_on_texels() ? &finder_ : nullptr;
+    if (finder == nullptr) {
+        std::vector<bool> wanted(rows(k).names().size(), false);
+        for (const int c : {sources_.x, sources_.y, sources_.z}) {
+            if (c >= 0) wanted[texture_.planes[static_cast<std::size_t>(c)]] = true;
+        }
+        rows(k).choose_planes(wanted);
+    }
     RowStream stream(rows(k), input_, static_cast<int>(k - first_), levels, writer, execution, sizes_);
     UnpackStage normals(texture_, extent, sources_, rule_, options_.scale, finder, stream.sink());
     constexpr int kFromTheTop = 0;
@@ -98,6 +127,10 @@ Result<void> Attempt::stream_level(std::size_t k, StripWriter& writer, const Exe
 
 Result<std::optional<PackFileReport>> Attempt::run() {
     if (const Result<void> ready = prepare(); !ready) return after_all_rows(rows(0), input_, named(input_, ready.error()));
+    if (first_ > 0 && finder_.depends_on_texels()) {
+        if (const Result<void> seen = look_at_base_level(); !seen) return named(input_, seen.error());
+        if (correction_) return std::optional<PackFileReport>();
+    }
     Result<StripWriter> writer =
         StripWriter::open(output_, container_, report_.extent, report_.levels, report_.pack, options_.write);
     if (!writer) return writer.error();
