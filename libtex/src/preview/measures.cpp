@@ -172,7 +172,7 @@ Result<Measure> measure(Show show, const NormalMap& map, float maximum, const Ex
             break;
         case Show::length:
         case Show::z_error:
-            scale.title = show == Show::length ? "length - 1" : "z - sqrt(1 - x^2 - y^2)";
+            scale.title = show == Show::length ? "length - 1" : "z - z(x, y)";
             if (choose) scale.greatest = round_maximum(result.values, 0.01);
             scale.palette = Palette::diverging;
             break;
