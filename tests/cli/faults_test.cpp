@@ -31,6 +31,7 @@ void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 const Case kCases[] = {
     {"Texture", "bake-normals", {"a.png", "-o", "out.dds", "--threads", "2"}, ""},
     {"Levels", "bake-normals", {"a.png", "--out-dir", ".", "--name", "out{level}.png", "--threads", "2", "--mips", "2"}, ""},
+    {"Stream", "pack-normals", {"a.dds", "-o", "out.ktx2", "--format", "bc5", "--threads", "2"}, "a.dds"},
     {"Report", "bake-normals", {"a.png", "b.png", "--out-dir", ".", "--name", "out_{stem}.ktx2", "--json"}, ""},
     {"Picture", "preview-normals", {"a.dds", "-o", "out.png", "--size", "32"}, "a.dds"},
     {"Exr", "mip-normals", {"a.exr", "-o", "out.exr"}, "a.exr"},
@@ -82,13 +83,13 @@ protected:
     }
 
     // Variables as "AT=3".
-    Ran run_with(const std::vector<std::string>& variables, int kill_after_us = -1) {
+    Ran run_with(const std::vector<std::string>& variables, int kill_after_us = -1, int signal = SIGKILL) {
         counts_.write("calls", std::string(sizeof(int), '\0'));
         Setting setting;
         setting.environment = {"LD_PRELOAD=" TEX_BINARY_DIR "/faults.so", "TEX_FAULT_COUNT=" + counts_.path("calls"), "LD_LIBRARY_PATH=" + counts_.path("lib")};
         for (const std::string& variable : variables) setting.environment.push_back("TEX_FAULT_" + variable);
         if (kill_after_us >= 0) {
-            setting.signal = SIGKILL;
+            setting.signal = signal;
             setting.interrupt_after_us = kill_after_us;
         }
         return run(scratch_, program_, GetParam().arguments, setting);
@@ -238,6 +239,23 @@ TEST_P(Faults, DeathAtAnyMomentLosesNothing) {
     }
     ASSERT_EQ(run_with({"NO_TMPFILE=1"}).code, 0);
     EXPECT_EQ(count_strangers(), 0);
+}
+
+TEST_P(Faults, ASignalAtAnyMomentLeavesNothing) {
+    const auto start = std::chrono::steady_clock::now();
+    ASSERT_EQ(run_with({}).code, 0);
+    const auto whole = std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - start).count();
+    std::minstd_rand random(12);
+    const int rounds = GetParam().needs_reader ? 2 : 10;
+    for (int round = 0; round < rounds; ++round) {
+        SCOPED_TRACE(round);
+        put_old_files(true);
+        const auto after = static_cast<int>(random() % static_cast<unsigned long>(whole));
+        const Ran ran = run_with({"NO_TMPFILE=1"}, after, round % 4 < 2 ? SIGINT : SIGTERM);
+        ASSERT_TRUE(ran.code == 0 || ran.code == 128 + SIGINT || ran.code == 128 + SIGTERM) << ran.code << "\n" << ran.err;
+        expect_whole(true, ran.code == 0);
+        EXPECT_EQ(count_strangers(), 0);
+    }
 }
 
 TEST_P(Faults, WithoutThreadsTheBytesAreTheSame) {

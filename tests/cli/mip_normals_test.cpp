@@ -114,4 +114,23 @@ TEST_F(MipNormals, YIsThatOfTheInputUnlessAskedFor) {
     EXPECT_EQ(y_of({"down.exr", "-o", "x.dds", "--y-in", "up"}), "up");
 }
 
+TEST_F(MipNormals, TellsWhichWayAFileWent) {
+    const auto path_of = [&](const std::string& command, std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), {"--json", "--effort", "fast"});
+        const Ran ran = go(command, arguments);
+        EXPECT_EQ(ran.code, 0) << ran.err;
+        return nlohmann::json::parse(ran.out)["path"].get<std::string>();
+    };
+    scratch_.add_sample("waves.png", "h.png");
+    for (const std::string name : {"n.png", "n.exr", "n.tif", "n.dds", "n.ktx2"}) {
+        go("bake-normals", {"h.png", "-o", name, "--bumpiness", "8", "--mips", "none"});
+        EXPECT_EQ(path_of("mip-normals", {name, "-o", "x.dds"}), "streamed") << name;
+        EXPECT_EQ(path_of("pack-normals", {name, "-o", "x.ktx2"}), "streamed") << name;
+        EXPECT_EQ(path_of("unpack-normals", {name, "-o", "x.dds"}), "streamed") << name;
+        EXPECT_EQ(path_of("scale-normals", {name, "-o", "x.ktx2", "--scale", "2"}), "streamed") << name;
+    }
+    EXPECT_EQ(path_of("mip-normals", {"n.png", "-o", "x.exr"}), "whole");
+    EXPECT_EQ(path_of("mip-normals", {"n.png", "--name", "x{level}.dds"}), "whole");
+}
+
 }  // namespace tex::cli

@@ -101,6 +101,23 @@ TEST_F(Streams, SignalsEndTheRunAndLeaveNothing) {
     }
 }
 
+// One large file, in the middle of its stream: the first progress has been told, and the rest takes seconds.
+TEST_F(Streams, SignalsDuringALargeStreamLeaveNothing) {
+    const std::string noise = "head -c $((3 * 2048 * 2048)) /dev/urandom";
+    ASSERT_EQ(shell(scratch_, "{ printf 'P6 2048 2048 255\n'; " + noise + "; } > in.ppm").code, 0);
+    for (const std::string command : {"bake-normals", "mip-normals"}) {
+        for (const auto& [name, number] : {std::pair{"INT", SIGINT}, std::pair{"TERM", SIGTERM}}) {
+            // Job control, as a shell without it lets its background ignore SIGINT.
+            const Ran ran = shell(scratch_, "set -m; " + command + " in.ppm -o out.dds --effort best --metric angle --progress always 2>err & "
+                                            "for k in {1..3000}; do grep -q % err 2>/dev/null && break; sleep 0.01; done; "
+                                            "kill -" + name + " $!; wait $!; exit $?");
+            EXPECT_EQ(ran.code, 128 + number) << command << scratch_.read("err");
+            EXPECT_EQ(scratch_.list(), (std::vector<std::string>{"a.png", "err", "in.ppm"})) << command << name;
+            std::filesystem::remove(scratch_.path("err"));
+        }
+    }
+}
+
 TEST_F(Streams, ABlockedReadCanBeInterrupted) {
     const Ran ran =
         shell(scratch_, "sleep 5 | timeout -s TERM 0.2 bake-normals - -o a.dds & wait $!; echo done");
