@@ -18,6 +18,7 @@
 #include "pipeline/bake_stream.h"
 #include "pipeline/normal_source.h"
 #include "pipeline/pack_stream.h"
+#include "pipeline/strip_writer.h"
 
 namespace tex {
 namespace {
@@ -132,10 +133,17 @@ Result<PackFileReport> pack_file(const std::string& input, const std::string& ou
     return guarded([&]() -> Result<PackFileReport> {
         Result<InputFile> file = InputFile::open(input);
         if (!file) return file.error();
-        if (is_texture(container)) {
+        const bool builds = options.mip && options.mip->levels != 1;
+        if (takes_strips(container, builds ? 2 : 1)) {
             Result<std::optional<TextureRows>> texture = open_texture_rows(*file, options.source.read);
             if (!texture) return texture.error();
-            if (*texture) return pack_stream(*file, std::move(**texture), output, container, options, execution);
+            if (*texture && can_stream(**texture, container, options)) {
+                return pack_stream(*file, std::move(**texture), output, container, options, execution);
+            }
+            if (*texture) {
+                texture->reset();
+                if (const Result<void> again = file->rewind(); !again) return again.error();
+            }
         }
         return pack_whole(*file, output, container, options, execution);
     });

@@ -32,6 +32,8 @@ const Case kCases[] = {
     {"Texture", "bake-normals", {"a.png", "-o", "out.dds", "--threads", "2"}, ""},
     {"Levels", "bake-normals", {"a.png", "--out-dir", ".", "--name", "out{level}.png", "--threads", "2", "--mips", "2"}, ""},
     {"Stream", "pack-normals", {"a.dds", "-o", "out.ktx2", "--format", "bc5", "--threads", "2"}, "a.dds"},
+    {"Unpacked", "unpack-normals", {"a.dds", "-o", "out.png", "--threads", "2"}, "a.dds"},
+    {"Floats", "unpack-normals", {"a.dds", "-o", "out.exr", "--threads", "2"}, "a.dds"},
     {"Report", "bake-normals", {"a.png", "b.png", "--out-dir", ".", "--name", "out_{stem}.ktx2", "--json"}, ""},
     {"Picture", "preview-normals", {"a.dds", "-o", "out.png", "--size", "32"}, "a.dds"},
     {"Exr", "mip-normals", {"a.exr", "-o", "out.exr"}, "a.exr"},

@@ -126,10 +126,12 @@ TEST_F(MipNormals, TellsWhichWayAFileWent) {
         go("bake-normals", {"h.png", "-o", name, "--bumpiness", "8", "--mips", "none"});
         EXPECT_EQ(path_of("mip-normals", {name, "-o", "x.dds"}), "streamed") << name;
         EXPECT_EQ(path_of("pack-normals", {name, "-o", "x.ktx2"}), "streamed") << name;
-        EXPECT_EQ(path_of("unpack-normals", {name, "-o", "x.dds"}), "streamed") << name;
+        EXPECT_EQ(path_of("unpack-normals", {name, "-o", "x.png"}), "streamed") << name;
+        EXPECT_EQ(path_of("unpack-normals", {name, "-o", "x.exr"}), "streamed") << name;
         EXPECT_EQ(path_of("scale-normals", {name, "-o", "x.ktx2", "--scale", "2"}), "streamed") << name;
     }
     EXPECT_EQ(path_of("mip-normals", {"n.png", "-o", "x.exr"}), "whole");
+    EXPECT_EQ(path_of("unpack-normals", {"n.png", "-o", "x.tga"}), "whole");
     EXPECT_EQ(path_of("mip-normals", {"n.png", "--name", "x{level}.dds"}), "whole");
 }
 

@@ -101,6 +101,15 @@ TEST_F(Streams, SignalsEndTheRunAndLeaveNothing) {
     }
 }
 
+TEST_F(Streams, PicturesGoThroughPipesAsIntoFiles) {
+    ASSERT_EQ(shell(scratch_, "bake-normals a.png -o a.dds").code, 0);
+    for (const std::string kind : {"png", "exr"}) {
+        const Ran ran = shell(scratch_, "unpack-normals a.dds -o x." + kind + " && unpack-normals a.dds -o - --container " + kind +
+                                            " | cat > y && cmp x." + kind + " y");
+        EXPECT_EQ(ran.code, 0) << ran.err;
+    }
+}
+
 // One large file, in the middle of its stream: the first progress has been told, and the rest takes seconds.
 TEST_F(Streams, SignalsDuringALargeStreamLeaveNothing) {
     const std::string noise = "head -c $((3 * 2048 * 2048)) /dev/urandom";

@@ -130,16 +130,21 @@ Encoding encoding_in(Container kind, std::mt19937& random) {
 constexpr int kSides[] = {1, 2, 3, 4, 5, 7, 8, 13, 16, 17, 31, 40, 64, 97};
 
 TEST_F(PackStream, GivesTheBytesOfTheVerbs) {
-    constexpr Container kInputs[] = {Container::png, Container::exr, Container::dds, Container::ktx2};
+    constexpr Container kKinds[] = {Container::png, Container::exr, Container::dds, Container::ktx2};
     std::mt19937 random(11);
-    for (int round = 0; round < 400; ++round) {
+    for (int round = 0; round < 600; ++round) {
         const Extent extent{kSides[random() % 14], kSides[random() % 14]};
-        const Container kind = kInputs[random() % std::size(kInputs)];
-        const Container container = random() % 2 == 0 ? Container::dds : Container::ktx2;
+        const Container kind = kKinds[random() % std::size(kKinds)];
+        const Container container = kKinds[random() % std::size(kKinds)];
         const bool is_texture = kind == Container::dds || kind == Container::ktx2;
         const int levels = is_texture ? 1 + static_cast<int>(random() % static_cast<unsigned>(level_count(extent))) : 1;
         draw_options(random, levels);
         options_.write.dds_mark = random() % 2 == 0;
+        pack_.encoding = encoding_in(container, random);
+        if (container == Container::exr) {
+            options_.mip.reset();
+            options_.level = static_cast<int>(random() % static_cast<unsigned>(levels));
+        }
         const std::string input = write_map(extent, kind, encoding_in(kind, random), levels);
         SCOPED_TRACE(testing::Message() << "round " << round << ", " << extent.width << "x" << extent.height);
         const Result<Bytes> expected = by_verbs(input, container);
@@ -257,6 +262,7 @@ TEST_F(PackStream, ReadsOnceMoreWhereTheTexelsSayOtherwise) {
 TEST_F(PackStream, LargeMapsGoThroughManyStripsOnManyThreads) {
     for (const Extent extent : {Extent{2048, 70}, Extent{131, 1100}}) {
         for (const Container kind : {Container::png, Container::exr, Container::dds}) {
+            pack_.encoding = Encoding::dxt5nm;
             const std::string input = write_map(extent, kind, default_encoding(kind), kind == Container::dds ? 0 : 1);
             options_.mip = kind == Container::dds ? std::nullopt : std::optional(MipOptions());
             const Bytes expected = by_verbs(input, Container::dds).value();
@@ -266,6 +272,15 @@ TEST_F(PackStream, LargeMapsGoThroughManyStripsOnManyThreads) {
                 EXPECT_EQ(report->path, Path::streamed);
                 EXPECT_TRUE(bytes_of(path("out")) == expected) << extent.width << " " << threads;
             }
+            options_.mip.reset();
+            options_.level = 0;
+            pack_.encoding = default_encoding(kind == Container::dds ? Container::png : kind);
+            const Container picture = kind == Container::dds ? Container::png : kind;
+            const auto report = pack_file(input, path("out"), picture, options_, {3, {}});
+            ASSERT_TRUE(report) << report.error().message();
+            EXPECT_EQ(report->path, Path::streamed);
+            EXPECT_TRUE(bytes_of(path("out")) == by_verbs(input, picture).value());
+            options_.level.reset();
         }
     }
 }
@@ -295,6 +310,13 @@ TEST_F(PackStream, LeavesWholeImagesToTheVerbs) {
     const MipChain chain = build_mip_chain(wavy_map({32, 16})).value();
     const std::string mipped = write(pack(chain, {Encoding::half}).value(), Container::exr);
     const std::string plain = write_map({32, 16}, Container::png, Encoding::rgb8);
+    options_.mip = MipOptions();
+    pack_.encoding = Encoding::half;
+    EXPECT_EQ(pack_file(plain, path("out"), Container::exr, options_).value().path, Path::whole);
+    EXPECT_TRUE(bytes_of(path("out")) == by_verbs(plain, Container::exr).value());
+    options_.mip->levels = 1;
+    EXPECT_EQ(pack_file(plain, path("out"), Container::exr, options_).value().path, Path::streamed);
+    EXPECT_TRUE(bytes_of(path("out")) == by_verbs(plain, Container::exr).value());
     struct Case {
         std::string input;
         Container container;
@@ -353,15 +375,32 @@ TEST_F(PackStream, OptionsThatDoNotFitAreTheSameErrors) {
     EXPECT_EQ(files(), 1u);
 }
 
+TEST_F(PackStream, OutputsThatCannotBeWrittenAreErrors) {
+    const std::string input = write_map({300, 200}, Container::dds, Encoding::bc5);
+    for (const Container container : {Container::png, Container::exr, Container::ktx2}) {
+        pack_.encoding = default_encoding(container);
+        EXPECT_EQ(pack_file(input, path("none/out"), container, options_).error().message(), path("none/out") + ": the directory does not exist");
+        EXPECT_EQ(pack_file(input, "/dev/full", container, options_).error().message(), "/dev/full: cannot be written: no space left on the disk");
+    }
+    pack_.encoding = Encoding::bc5;
+    EXPECT_EQ(pack_file(input, path("out"), Container::png, options_).error().message(),
+              path("out") + ": PNG holds 8 or 16 bits in one, three or four channels, not bc5-unorm");
+    EXPECT_EQ(pack_file(input, path("out"), Container::exr, options_).error().message(), path("out") + ": EXR holds half and float, not bc5-unorm");
+    EXPECT_EQ(files(), 1u);
+}
+
 TEST_F(PackStream, CancellingLeavesNothing) {
     const std::string input = write_map({200, 400}, Container::png, Encoding::rgb8);
-    for (const int threads : {1, 2}) {
-        std::atomic<int> calls{0};
-        const auto report = stream(input, Container::dds, threads, {2000, 0}, [&](double) { return ++calls < 10; });
-        ASSERT_FALSE(report);
-        EXPECT_EQ(report.error().code, ErrorCode::cancelled);
-        EXPECT_EQ(calls, 10);
-        EXPECT_EQ(files(), 1u);
+    pack_.encoding = Encoding::rgb8;
+    for (const Container container : {Container::dds, Container::png}) {
+        for (const int threads : {1, 2}) {
+            std::atomic<int> calls{0};
+            const auto report = stream(input, container, threads, {2000, 0}, [&](double) { return ++calls < 10; });
+            ASSERT_FALSE(report);
+            EXPECT_EQ(report.error().code, ErrorCode::cancelled);
+            EXPECT_EQ(calls, 10);
+            EXPECT_EQ(files(), 1u);
+        }
     }
 }
 

@@ -96,8 +96,9 @@ struct PackFileReport {
 // Reads the normal map `input` ("-" is standard input) and writes it to `output` as a file of the kind `container`, in another encoding, with levels built
 // of it, scaled, or one level of it.
 //
-// Streamed: DDS and KTX2, level by level, PNG that is not interlaced, EXR of one level, and what the reader process decodes (TIFF, TGA, JPEG ...), into DDS
-// and KTX2. Everything else takes the path of whole images. Pictures that hold one level get the base level.
+// Streamed: DDS and KTX2, level by level, PNG that is not interlaced, EXR of one level, and what the reader process decodes (TIFF, TGA, JPEG ...), into DDS,
+// KTX2, PNG and EXR of one level. Everything else takes the path of whole images: the levels of an EXR stand in tiles, and the reader process encodes whole
+// pictures. Pictures that hold one level get the base level.
 //
 // Streams cannot look at all texels before the first is written. Where these decide (four channels without a swizzle; floats without a range), the
 // likeliest layout of the format is assumed: x, y, z in R, G, B; x in A and y in G in BC3; signed floats. Where the texels turn out to say otherwise, the

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include <tex/texture.h>
 
 #include "base/input_file.h"
+#include "containers/row_target.h"
 
 namespace tex {
 
@@ -31,6 +33,9 @@ Result<Image> read_exr(InputFile& file, const ReadOptions& options);
 //
 // Errors: as read_exr(); unsupported where more than four channels lack R, G, B.
 Result<Texture> read_exr_texture(InputFile& file, const ReadOptions& options);
+
+// Writes a half or float texture of one level row by row, with the bytes of encode_exr(). Errors: unsupported (another format), out_of_memory.
+Result<std::unique_ptr<RowTarget>> open_exr_target(const TextureHead& head, WriteBytes write);
 
 // Encodes a half or float texture: ZIP compression; tiles of 64x64 and mip levels where the texture has more than one level, else scanlines. Attributes:
 // normalEncoding "signed", normalYAxis "up" or "down". No date, owner or comment: equal textures give equal bytes.

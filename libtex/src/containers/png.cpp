@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // libpng reports errors by longjmp, which must not pass over a C++ object that has a destructor. So everything with one lives in
-// the structs PngReader and PngWriter; the functions that call setjmp, and the callbacks that call png_error, hold plain
+// the structs PngReader and, in png_write.cpp, PngWriter; the functions that call setjmp, and the callbacks that call png_error, hold plain
 // values only.
 
 #include "containers/png.h"
 
 #include <png.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -19,33 +18,10 @@
 
 #include "base/guard.h"
 #include "containers/claims.h"
+#include "containers/png_state.h"
 
 namespace tex {
 namespace {
-
-// What both directions keep: libpng's objects, and why they stopped.
-struct PngState {
-    png_structp png = nullptr;
-    png_infop info = nullptr;
-    char reason[128] = {};
-    bool out_of_memory = false;
-};
-
-[[noreturn]] void on_error(png_structp png, png_const_charp message) {
-    auto* state = static_cast<PngState*>(png_get_error_ptr(png));
-    std::strncpy(state->reason, message, sizeof state->reason - 1);
-    png_longjmp(png, 1);
-}
-
-void on_warning(png_structp, png_const_charp) {}
-
-png_voidp on_allocate(png_structp png, png_alloc_size_t size) {
-    void* memory = std::malloc(size);
-    if (memory == nullptr) static_cast<PngState*>(png_get_mem_ptr(png))->out_of_memory = true;
-    return memory;
-}
-
-void on_free(png_structp, png_voidp memory) { std::free(memory); }
 
 // -- reading -----------------------------------------------------------------------------------------------
 
@@ -104,8 +80,8 @@ void on_read(png_structp png, png_bytep data, std::size_t count) {
 }
 
 bool read_header(PngReader& reader) {
-    reader.png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, static_cast<PngState*>(&reader), on_error, on_warning,
-                                          static_cast<PngState*>(&reader), on_allocate, on_free);
+    reader.png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, static_cast<PngState*>(&reader), on_png_error, on_png_warning,
+                                          static_cast<PngState*>(&reader), on_png_allocate, on_png_free);
     if (reader.png == nullptr) reader.out_of_memory = true;
     if (reader.png == nullptr || setjmp(png_jmpbuf(reader.png))) return false;
     png_structp png = reader.png;
@@ -264,114 +240,6 @@ Result<Image> read_png(InputFile& file, const ReadOptions& options) {
         const Result<std::unique_ptr<RowSource>> rows = open_png(file, options);
         if (!rows) return rows.error();
         return (*rows)->read_all();
-    });
-}
-
-// -- writing -----------------------------------------------------------------------------------------------
-
-namespace {
-
-// After an adaptive filter a normal map holds hardly any repetition that deflate could find, so run lengths alone give the same size as zlib's
-// level 6, two to five times as fast (measured on baked and on painted maps, 8 and 16 bits).
-constexpr int kStrategy = Z_RLE;
-constexpr int kFilters = PNG_ALL_FILTERS;
-
-struct PngWriter : PngState {
-    PngWriter() = default;
-    ~PngWriter() { png_destroy_write_struct(&png, &info); }
-    PngWriter(const PngWriter&) = delete;
-
-    bool append(png_const_bytep data, std::size_t count);
-
-    std::vector<std::byte> bytes;
-};
-
-bool PngWriter::append(png_const_bytep data, std::size_t count) {
-    try {
-        const auto* from = reinterpret_cast<const std::byte*>(data);
-        bytes.insert(bytes.end(), from, from + count);
-        return true;
-    } catch (const std::exception&) {
-        out_of_memory = true;
-        return false;
-    }
-}
-
-void on_write(png_structp png, png_bytep data, std::size_t count) {
-    if (!static_cast<PngWriter*>(png_get_io_ptr(png))->append(data, count)) png_error(png, "out of memory");
-}
-
-void on_flush(png_structp) {}
-
-// `palette` is null but for indexed colours.
-bool write_rows(PngWriter& writer, const Level& level, int color_type, int bits, std::size_t row_bytes, const std::vector<png_color>* palette) {
-    writer.png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, static_cast<PngState*>(&writer), on_error, on_warning,
-                                           static_cast<PngState*>(&writer), on_allocate, on_free);
-    if (writer.png == nullptr) writer.out_of_memory = true;
-    if (writer.png == nullptr || setjmp(png_jmpbuf(writer.png))) return false;
-    png_structp png = writer.png;
-    writer.info = png_create_info_struct(png);
-    if (writer.info == nullptr) png_error(png, "out of memory");
-    png_set_write_fn(png, &writer, on_write, on_flush);
-    png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
-    png_set_compression_strategy(png, palette == nullptr ? kStrategy : Z_DEFAULT_STRATEGY);
-    png_set_filter(png, PNG_FILTER_TYPE_BASE, palette == nullptr ? kFilters : PNG_FILTER_NONE);
-    png_set_IHDR(png, writer.info, static_cast<png_uint_32>(level.extent.width),
-                 static_cast<png_uint_32>(level.extent.height), bits, color_type, PNG_INTERLACE_NONE,
-                 PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
-    if (palette != nullptr) png_set_PLTE(png, writer.info, palette->data(), static_cast<int>(palette->size()));
-    png_write_info(png, writer.info);
-    if (bits == 16) png_set_swap(png);  // levels are little-endian, PNG is big-endian
-    for (int j = 0; j < level.extent.height; ++j) {
-        const std::byte* row = level.bytes.data() + static_cast<std::size_t>(j) * row_bytes;
-        png_write_row(png, reinterpret_cast<png_const_bytep>(row));
-    }
-    png_write_end(png, writer.info);
-    return true;
-}
-
-// The colour type of a format, or -1.
-int png_color_type(const FormatInfo& format) {
-    if (format.sample != SampleKind::unorm || format.block != 1) return -1;
-    switch (format.channels) {
-        case 1: return PNG_COLOR_TYPE_GRAY;
-        case 3: return PNG_COLOR_TYPE_RGB;
-        case 4: return PNG_COLOR_TYPE_RGBA;
-        default: return -1;
-    }
-}
-
-Result<std::vector<std::byte>> written(PngWriter& writer, bool is_written) {
-    if (is_written) return std::move(writer.bytes);
-    if (writer.out_of_memory) return out_of_memory_error();
-    return Error{ErrorCode::unsupported, {}, std::string("PNG cannot be written: ") + writer.reason};
-}
-
-}  // namespace
-
-Result<std::vector<std::byte>> encode_png(const Texture& texture) {
-    return guarded([&]() -> Result<std::vector<std::byte>> {
-        const FormatInfo format = format_info(texture.format);
-        const int color_type = png_color_type(format);
-        if (color_type < 0 || texture.levels.empty()) {
-            return Error{ErrorCode::unsupported, {},
-                         "PNG holds 8 or 16 bits in one, three or four channels, not " +
-                             std::string(name_of(kFormatNames, texture.format))};
-        }
-        const Level& level = texture.levels.front();
-        PngWriter writer;
-        const std::size_t row_bytes = static_cast<std::size_t>(level.extent.width) * format.block_bytes;
-        return written(writer, write_rows(writer, level, color_type, format.bits, row_bytes, nullptr));
-    });
-}
-
-Result<std::vector<std::byte>> encode_indexed_png(const Level& indices, const std::vector<PngColor>& palette) {
-    return guarded([&]() -> Result<std::vector<std::byte>> {
-        std::vector<png_color> colors;
-        for (const PngColor& color : palette) colors.push_back({color.r, color.g, color.b});
-        PngWriter writer;
-        return written(writer, write_rows(writer, indices, PNG_COLOR_TYPE_PALETTE, 8,
-                                          static_cast<std::size_t>(indices.extent.width), &colors));
     });
 }
 

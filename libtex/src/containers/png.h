@@ -17,6 +17,7 @@
 
 #include "base/input_file.h"
 #include "containers/row_source.h"
+#include "containers/row_target.h"
 
 namespace tex {
 
@@ -31,6 +32,9 @@ Result<std::unique_ptr<RowSource>> open_png(InputFile& file, const ReadOptions& 
 //
 // Errors: bad_data (with libpng's reason), unsupported (too large), io, out_of_memory.
 Result<Image> read_png(InputFile& file, const ReadOptions& options);
+
+// Writes the base level of a texture row by row, with the bytes of encode_png(). Errors: unsupported (another format), out_of_memory.
+Result<std::unique_ptr<RowTarget>> open_png_target(const TextureHead& head, WriteBytes write);
 
 // Encodes the base level of a texture in an 8- or 16-bit unorm format: one channel as grey, three as RGB, four as RGBA. Equal
 // textures give equal bytes (with one version of zlib).

@@ -55,10 +55,11 @@ Result<BakeFileReport> bake_stream(RowSource& rows, const std::string& input, co
     report.path = Path::streamed;
     report.extent = rows.extent();
     report.levels = options.mip.levels > 0 ? std::min(options.mip.levels, complete) : complete;
-    Result<StripWriter> writer =
+    const Result<std::unique_ptr<StripWriter>> opened =
         StripWriter::open(output, container, rows.extent(), report.levels, options.pack, options.write);
-    if (!writer) return writer.error();
-    RowStream stream(rows, input, 0, report.levels, *writer, execution, sizes);
+    if (!opened) return opened.error();
+    StripWriter& writer = **opened;
+    RowStream stream(rows, input, 0, report.levels, writer, execution, sizes);
     SlopeCollector slopes;
     if (options.slopes) {
         stream.watch([&slopes](const Strip& strip) {
@@ -69,8 +70,8 @@ Result<BakeFileReport> bake_stream(RowSource& rows, const std::string& input, co
     HeightStage heights(rows.extent(), *source, options.heights, gradient, slopes_of(rows.extent(), options), stream.sink());
     LevelStage levels(rows.extent(), report.levels, heights.start(), options.mip, stream.strips());
     if (const Result<void> done = stream.run(heights, levels); !done) return done.error();
-    if (const Result<void> done = writer->commit(); !done) return done.error();
-    report.bytes = writer->file_bytes();
+    if (const Result<void> done = writer.commit(); !done) return done.error();
+    report.bytes = writer.file_bytes();
     report.heights = {heights.counts().luma, heights.counts().invalid};
     report.slopes = slopes.range();
     return report;

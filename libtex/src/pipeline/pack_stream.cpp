@@ -23,6 +23,12 @@ Error named(const std::string& input, const Error& error) {
     return error.file.empty() ? Error{error.code, input, error.reason} : error;
 }
 
+// How many levels build_mip_chain() makes.
+int levels_built(const MipOptions& options, Extent base) {
+    const int complete = level_count(base);
+    return options.levels > 0 ? std::min(options.levels, complete) : complete;
+}
+
 // One reading of the file, under an assumption about its layout.
 class Attempt {
 public:
@@ -78,8 +84,7 @@ Result<void> Attempt::prepare() {
     report_.pack = pack_options(options_, container_, report_.source);
     report_.levels = static_cast<int>(end_ - first_);
     if (options_.mip && can_hold_levels(container_)) {
-        const int complete = level_count(report_.extent);
-        report_.levels = options_.mip->levels > 0 ? std::min(options_.mip->levels, complete) : complete;
+        report_.levels = levels_built(*options_.mip, report_.extent);
     }
     return {};
 }
@@ -131,21 +136,22 @@ Result<std::optional<PackFileReport>> Attempt::run() {
         if (const Result<void> seen = look_at_base_level(); !seen) return named(input_, seen.error());
         if (correction_) return std::optional<PackFileReport>();
     }
-    Result<StripWriter> writer =
+    const Result<std::unique_ptr<StripWriter>> opened =
         StripWriter::open(output_, container_, report_.extent, report_.levels, report_.pack, options_.write);
-    if (!writer) return writer.error();
+    if (!opened) return opened.error();
+    StripWriter& writer = **opened;
     double texels = 0.0;
     for (std::size_t k = first_; k < end_; ++k) texels += static_cast<double>(rows(k).extent().texels());
     double done = 0.0;
     for (std::size_t k = first_; k < end_; ++k) {
         const double next = done + static_cast<double>(rows(k).extent().texels()) / texels;
-        const Result<void> streamed = stream_level(k, *writer, part_of(execution_, done, std::min(1.0, next)));
+        const Result<void> streamed = stream_level(k, writer, part_of(execution_, done, std::min(1.0, next)));
         if (!streamed) return streamed.error();
         if (correction_) return std::optional<PackFileReport>();
         done = next;
     }
-    if (const Result<void> committed = writer->commit(); !committed) return committed.error();
-    report_.bytes = writer->file_bytes();
+    if (const Result<void> committed = writer.commit(); !committed) return committed.error();
+    report_.bytes = writer.file_bytes();
     return std::optional(report_);
 }
 
@@ -157,6 +163,16 @@ PackOptions pack_options(const PackFileOptions& options, Container container, co
     pack.encoding = default_encoding(container);
     pack.y_axis = source.y_axis;
     return pack;
+}
+
+bool can_stream(const TextureRows& texture, Container container, const PackFileOptions& options) {
+    int levels = static_cast<int>(texture.levels.size());
+    if (options.level || options.mip) levels = 1;
+    if (options.mip) {
+        const auto level = std::min(static_cast<std::size_t>(options.level.value_or(0)), texture.levels.size() - 1);
+        levels = levels_built(*options.mip, texture.levels[level]->extent());
+    }
+    return takes_strips(container, levels);
 }
 
 Error no_such_level(const std::string& input, int level, std::size_t levels) {

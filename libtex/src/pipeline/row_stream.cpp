@@ -82,6 +82,7 @@ struct RowStream::Work {
     void decode(Batch& batch);
     void store(Batch& batch);
     void make(Batch& batch, NormalStage& stage);
+    void write_strips(Batch& batch);
     void write(Batch& batch);
 
     RowSource& rows;
@@ -145,13 +146,14 @@ void RowStream::Work::make(Batch& batch, NormalStage& stage) {
         if (batch.error) return *batch.error;  // the first of them, whatever the threads do
         stage.put(batch.image, batch.count);
         batch.strips = strips.take_whole();
+        if (writer.is_in_order()) write_strips(batch);
         const double fraction = static_cast<double>(batch.first + batch.count) / rows.extent().height;
         if (execution.progress && !execution.progress(fraction)) return Error{ErrorCode::cancelled, {}, "cancelled"};
         return {};
     });
 }
 
-void RowStream::Work::write(Batch& batch) {
+void RowStream::Work::write_strips(Batch& batch) {
     for (std::shared_ptr<Strip>& strip : batch.strips) {
         failure.watch([&]() -> Result<void> {
             if (const Result<void> written = writer.write(*strip); !written) return written;
@@ -161,6 +163,10 @@ void RowStream::Work::write(Batch& batch) {
         strip.reset();
     }
     batch.strips.clear();
+}
+
+void RowStream::Work::write(Batch& batch) {
+    write_strips(batch);
     const std::shared_ptr<Batch> done = std::move(batch.self);
 }
 

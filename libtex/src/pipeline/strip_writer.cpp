@@ -2,30 +2,40 @@
 
 #include "pipeline/strip_writer.h"
 
+#include <algorithm>
 #include <utility>
 
+#include "base/atomic_file.h"
 #include "base/guard.h"
 #include "base/pack_rows.h"
 #include "containers/dds.h"
+#include "containers/file_layout.h"
 #include "containers/ktx2.h"
+#include "containers/row_target.h"
 
 namespace tex {
+namespace {
 
-StripWriter::StripWriter(AtomicFile file, FileLayout layout, const PackOptions& pack)
-    : file_(std::move(file)), layout_(std::move(layout)), pack_(pack) {}
+bool is_texture(Container container) { return container == Container::dds || container == Container::ktx2; }
 
-Result<StripWriter> StripWriter::open(const std::string& path, Container container, Extent extent, int levels,
-                                      const PackOptions& pack, const WriteOptions& options) {
-    const EncodingInfo encoding = encoding_info(pack.encoding);
-    const TextureHead head{encoding.format, extent, levels, encoding.swizzle, true, pack.y_axis, true};
-    FileLayout layout = container == Container::dds ? dds_layout(head, options) : ktx2_layout(head);
-    Result<AtomicFile> file = AtomicFile::open(path, {options.sync, options.no_clobber});
-    if (!file) return file.error();
-    if (const Result<void> written = file->write_at(0, layout.head); !written) return written.error();
-    return StripWriter(std::move(*file), std::move(layout), pack);
-}
+// DDS and KTX2: every level has its place from the start.
+class TextureWriter final : public StripWriter {
+public:
+    TextureWriter(AtomicFile file, FileLayout layout, const PackOptions& pack)
+        : file_(std::move(file)), layout_(std::move(layout)), pack_(pack) {}
 
-Result<void> StripWriter::write(Strip& strip) {
+    [[nodiscard]] bool is_in_order() const override { return false; }
+    Result<void> write(Strip& strip) override;
+    Result<void> commit() override { return file_.commit(); }
+    [[nodiscard]] std::size_t file_bytes() const override { return layout_.size; }
+
+private:
+    AtomicFile file_;
+    FileLayout layout_;
+    PackOptions pack_;
+};
+
+Result<void> TextureWriter::write(Strip& strip) {
     return guarded([&]() -> Result<void> {
         const Format format = encoding_info(pack_.encoding).format;
         const Extent extent{strip.map.extent().width, strip.height};
@@ -44,6 +54,70 @@ Result<void> StripWriter::write(Strip& strip) {
         const std::size_t before = stored_level_bytes(format, {extent.width, strip.first}, layout_.rearrange);
         return file_.write_at(layout_.levels[static_cast<std::size_t>(strip.level)].offset + before, stored);
     });
+}
+
+// Pictures, whose rows are compressed one after the other.
+class PictureWriter final : public StripWriter {
+public:
+    PictureWriter(std::string path, AtomicFile file, const PackOptions& pack) : path_(std::move(path)), file_(std::move(file)), pack_(pack) {}
+
+    Result<void> begin(Container container, const TextureHead& head) {
+        Result<std::unique_ptr<RowTarget>> target =
+            open_row_target(container, head, [this](std::uint64_t offset, std::span<const std::byte> bytes) {
+                size_ = std::max(size_, static_cast<std::size_t>(offset) + bytes.size());
+                return bytes.empty() ? Result<void>() : file_.write_at(offset, bytes);
+            });
+        if (!target) return named(target.error());
+        target_ = std::move(*target);
+        return {};
+    }
+    [[nodiscard]] bool is_in_order() const override { return true; }
+    Result<void> write(Strip& strip) override;
+    Result<void> commit() override;
+    [[nodiscard]] std::size_t file_bytes() const override { return size_; }
+
+private:
+    [[nodiscard]] Error named(const Error& error) const { return error.file.empty() ? Error{error.code, path_, error.reason} : error; }
+
+    const std::string path_;
+    AtomicFile file_;
+    PackOptions pack_;
+    std::size_t size_ = 0;
+    std::unique_ptr<RowTarget> target_;  // writes into the file
+};
+
+Result<void> PictureWriter::write(Strip& strip) {
+    return guarded([&]() -> Result<void> {
+        strip.bytes.resize(level_bytes(encoding_info(pack_.encoding).format, {strip.map.extent().width, strip.height}));
+        pack_rows(strip.map, strip.height, pack_, 0, strip.height, strip.bytes.data());
+        const Result<void> put = target_->put(strip.bytes.data(), strip.height);
+        return put ? put : Result<void>(named(put.error()));
+    });
+}
+
+Result<void> PictureWriter::commit() {
+    const Result<void> ended = guarded([&] { return target_->finish(); });
+    return ended ? file_.commit() : Result<void>(named(ended.error()));
+}
+
+}  // namespace
+
+bool takes_strips(Container container, int levels) { return is_texture(container) || takes_rows(container, levels); }
+
+Result<std::unique_ptr<StripWriter>> StripWriter::open(const std::string& path, Container container, Extent extent, int levels,
+                                                       const PackOptions& pack, const WriteOptions& options) {
+    const EncodingInfo encoding = encoding_info(pack.encoding);
+    const TextureHead head{encoding.format, extent, levels, encoding.swizzle, true, pack.y_axis, true};
+    Result<AtomicFile> file = AtomicFile::open(path, {options.sync, options.no_clobber});
+    if (!file) return file.error();
+    if (!is_texture(container)) {
+        auto picture = std::make_unique<PictureWriter>(path, std::move(*file), pack);
+        if (const Result<void> begun = picture->begin(container, head); !begun) return begun.error();
+        return std::unique_ptr<StripWriter>(std::move(picture));
+    }
+    FileLayout layout = container == Container::dds ? dds_layout(head, options) : ktx2_layout(head);
+    if (const Result<void> written = file->write_at(0, layout.head); !written) return written.error();
+    return std::unique_ptr<StripWriter>(std::make_unique<TextureWriter>(std::move(*file), std::move(layout), pack));
 }
 
 }  // namespace tex
