@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # consumer.sh STEP BUILD [CXX]: what somebody meets who installs libtex, from the build folder BUILD. Steps, each a test:
 #   install    installs into BUILD/stage; the files are those of manifest.txt
-#   move       the installation works from another place, too: a command bakes
+#   move       the installation works from another place, too: a command bakes; and nothing is loaded from the folder that one stands in
 #   exports    the library exports what its headers declare, and nothing else of its own
 #   cmake      a project finds the library with find_package, builds samples/bake_and_pack.cpp, bakes
 #   pkgconfig  the same through pkg-config
@@ -53,6 +53,14 @@ move)
     check_bake "$scratch/bricks.dds"
     # TIFF goes through the reader program, which must be found too.
     "$scratch/elsewhere/bin/bake-normals" "$samples/bricks.png" -o "$scratch/bricks.tif" --bumpiness 12
+    # An empty or relative entry in the search path would load libraries from there.
+    for program in "$stage"/bin/* "$build"/*-normals; do
+        path=$(readelf -dW "$program" | sed -n 's/.*(R\(UN\)\?PATH).*\[\(.*\)\]$/\2/p')
+        [ -n "$path" ] || continue
+        while read -r -d : entry; do
+            case $entry in \$ORIGIN* | /*) ;; *) fail "$program searches '$entry' for libraries: $path" ;; esac
+        done <<<"$path:"
+    done
     ;;
 exports)
     library=$build/libtex.so

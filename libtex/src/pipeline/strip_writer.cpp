@@ -3,7 +3,9 @@
 #include "pipeline/strip_writer.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "base/atomic_file.h"
 #include "base/guard.h"
@@ -16,23 +18,38 @@
 namespace tex {
 namespace {
 
+// A file of at most so many bytes is put together in memory and written at once: a call of the system for each of its levels takes as long as they do.
+constexpr std::size_t kWrittenAtOnce = std::size_t{1} << 18;
+
 bool is_texture(Container container) { return container == Container::dds || container == Container::ktx2; }
 
 // DDS and KTX2: every level has its place from the start.
 class TextureWriter final : public StripWriter {
 public:
     TextureWriter(AtomicFile file, FileLayout layout, const PackOptions& pack)
-        : file_(std::move(file)), layout_(std::move(layout)), pack_(pack) {}
+        : file_(std::move(file)), layout_(std::move(layout)), pack_(pack),
+          whole_(layout_.size <= kWrittenAtOnce ? layout_.size : 0) {}
 
+    Result<void> begin() { return put(0, layout_.head); }
     [[nodiscard]] bool is_in_order() const override { return false; }
     Result<void> write(Strip& strip) override;
-    Result<void> commit() override { return file_.commit(); }
+    Result<void> commit() override {
+        const Result<void> written = whole_.empty() ? Result<void>() : file_.write_at(0, whole_);
+        return written ? file_.commit() : written;
+    }
     [[nodiscard]] std::size_t file_bytes() const override { return layout_.size; }
 
 private:
+    Result<void> put(std::uint64_t offset, std::span<const std::byte> bytes) {
+        if (whole_.empty()) return file_.write_at(offset, bytes);
+        std::copy(bytes.begin(), bytes.end(), whole_.begin() + static_cast<std::ptrdiff_t>(offset));
+        return {};
+    }
+
     AtomicFile file_;
     FileLayout layout_;
     PackOptions pack_;
+    std::vector<std::byte> whole_;  // a small file
 };
 
 Result<void> TextureWriter::write(Strip& strip) {
@@ -52,7 +69,7 @@ Result<void> TextureWriter::write(Strip& strip) {
         }
         // Strips begin with whole rows of blocks.
         const std::size_t before = stored_level_bytes(format, {extent.width, strip.first}, layout_.rearrange);
-        return file_.write_at(layout_.levels[static_cast<std::size_t>(strip.level)].offset + before, stored);
+        return put(layout_.levels[static_cast<std::size_t>(strip.level)].offset + before, stored);
     });
 }
 
@@ -116,8 +133,9 @@ Result<std::unique_ptr<StripWriter>> StripWriter::open(const std::string& path, 
         return std::unique_ptr<StripWriter>(std::move(picture));
     }
     FileLayout layout = container == Container::dds ? dds_layout(head, options) : ktx2_layout(head);
-    if (const Result<void> written = file->write_at(0, layout.head); !written) return written.error();
-    return std::unique_ptr<StripWriter>(std::make_unique<TextureWriter>(std::move(*file), std::move(layout), pack));
+    auto texture = std::make_unique<TextureWriter>(std::move(*file), std::move(layout), pack);
+    if (const Result<void> begun = texture->begin(); !begun) return begun.error();
+    return std::unique_ptr<StripWriter>(std::move(texture));
 }
 
 }  // namespace tex
