@@ -159,6 +159,8 @@ Result<void> convert_by_config(const std::vector<Plane<float>*>& planes, const C
 
 }  // namespace
 
+const char* opencolorio_version() { return OCIO::GetVersion(); }
+
 Result<void> to_linear(Image& image, const ColorOptions& options) {
     return guarded([&]() -> Result<void> {
         const std::vector<Plane<float>*> planes = colour_planes(image);

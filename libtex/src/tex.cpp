@@ -2,8 +2,17 @@
 
 #include <tex/tex.h>
 
+#include "containers/exr.h"
+#include "containers/png.h"
+#include "kernels/target.h"
+
 namespace tex {
 
 const char* version() { return TEX_VERSION; }
+
+Runtime runtime() {
+    return {kernel_target_name(),
+            {{"highway", highway_version()}, {"libpng", png_version()}, {"opencolorio", opencolorio_version()}, {"openexr", exr_version()}}};
+}
 
 }  // namespace tex

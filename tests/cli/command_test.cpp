@@ -51,7 +51,13 @@ TEST_P(EveryCommand, VersionIsOneLineOrJson) {
     EXPECT_EQ(json["program"], GetParam());
     EXPECT_EQ(json["version"], TEX_VERSION);
     EXPECT_EQ(json["libtex"], TEX_VERSION);
-    EXPECT_TRUE(json["dependencies"].contains("onetbb"));
+    for (const char* name : {"cli11", "fmt", "highway", "libpng", "nlohmann-json", "onetbb", "opencolorio", "openexr", "openimageio"}) {
+        EXPECT_TRUE(json["dependencies"].contains(name) && std::isdigit(static_cast<unsigned char>(json["dependencies"][name].get<std::string>().at(0))) != 0) << name;
+    }
+    EXPECT_EQ(json["reader"]["system_calls"], "filtered");
+    EXPECT_EQ(json["reader"]["files"], json["reader"]["landlock"].get<int>() > 0 ? "restricted" : "not restricted");
+    EXPECT_TRUE(std::filesystem::exists(json["reader"]["program"].get<std::string>()));
+    EXPECT_FALSE(json["instruction_set"].get<std::string>().empty());
 }
 
 TEST_P(EveryCommand, AFullDiskBehindStandardOutputIsAnError) {

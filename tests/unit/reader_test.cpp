@@ -371,6 +371,19 @@ TEST(Reader, FilesOnDiskAreReadThroughTheSandbox) {
     expect_row(image, 0, {1.0f, 0.0f});
 }
 
+TEST(Reader, TellsWhatItIs) {
+    const Result<ReaderInfo> info = reader_info(quick());
+    ASSERT_TRUE(info) << info.error().message();
+    EXPECT_TRUE(fs::exists(info->program));
+    EXPECT_TRUE(info->openimageio.starts_with("2.")) << info->openimageio;
+    EXPECT_TRUE(info->calls_filtered);
+    EXPECT_EQ(info->landlock, static_cast<int>(std::max(0L, syscall(SYS_landlock_create_ruleset, nullptr, 0, 1))));
+    EXPECT_EQ(info->files_restricted, info->landlock > 0);
+    ReadOptions absent = quick();
+    absent.reader = "/nowhere/tex-reader";
+    EXPECT_EQ(reader_info(absent).error().code, ErrorCode::io);
+}
+
 TEST(Reader, FiltersSystemCallsAndRestrictsFiles) {
     const Result<std::string> program = find_reader({});
     ASSERT_TRUE(program) << program.error().message();

@@ -43,6 +43,19 @@ std::string version_json(const Command& command) {
     json["dependencies"]["nlohmann-json"] = fmt::format(
         "{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH);
     json["dependencies"]["onetbb"] = TBB_runtime_version();
+    const Runtime runs = runtime();
+    json["instruction_set"] = runs.instruction_set;
+    for (const auto& [name, number] : runs.dependencies) json["dependencies"][name] = number;
+    const auto reader = reader_info();
+    if (!reader) {
+        json["reader"]["error"] = reader.error().message();
+    } else {
+        json["dependencies"]["openimageio"] = reader->openimageio;
+        json["reader"] = {{"program", reader->program},
+                          {"landlock", reader->landlock},
+                          {"files", reader->files_restricted ? "restricted" : "not restricted"},
+                          {"system_calls", reader->calls_filtered ? "filtered" : "not filtered"}};
+    }
     return to_line(json);
 }
 

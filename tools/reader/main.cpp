@@ -97,11 +97,15 @@ int run(const std::string_view verb, const Task& task) {
         std::signal(SIGXFSZ, SIG_IGN);  // a result that is too large is an error of pwrite()
         limit_process(task);
         calm_openimageio();
+        header.landlock = static_cast<std::uint32_t>(landlock_version());
         if (restrict_files()) header.sandboxed |= kFilesRestricted;
         if (filter_calls()) header.sandboxed |= kCallsFiltered;
         put_header(header);  // from here on, what goes wrong is a matter of the file
-        const bool done = verb == "decode" ? decode(task, header) : encode(task, header);
-        if (!done) return 0;
+        if (verb == "describe") {
+            std::strncpy(header.reason, OIIO_VERSION_STRING, sizeof header.reason - 1);
+        } else if (!(verb == "decode" ? decode(task, header) : encode(task, header))) {
+            return 0;
+        }
         header.state = ReaderState::done;
         put_header(header);
     } catch (const std::bad_alloc&) {
@@ -126,7 +130,7 @@ int main(int argc, char** argv) {
     // It always leaves without destructors: OpenImageIO's libraries take a tenth of a second to go, and the sandbox has no room for that.
     if (argc == 2 && verb == "--version") _exit(version());
     Task task;
-    if (argc != 7 || (verb != "decode" && verb != "encode") || !parse(argv[3], task.max_texels) ||
+    if (argc != 7 || (verb != "decode" && verb != "encode" && verb != "describe") || !parse(argv[3], task.max_texels) ||
         !parse(argv[4], task.memory) || !parse(argv[5], task.seconds) || !parse(argv[6], task.parent)) {
         std::fputs("tex-reader: started by libtex, not by hand\n", stderr);
         return 2;

@@ -31,6 +31,9 @@ std::int64_t memory_limit();
 // Takes away all files but the input, which may be read (Landlock). False where the kernel does not know it, or refuses.
 bool restrict_files();
 
+// The kernel's version of Landlock; 0 where it has none.
+int landlock_version();
+
 // Takes away the system calls that a decoder needs no more: the network, opening files for writing, other programs, other processes (seccomp). False where the
 // kernel refuses the filter. Where either is refused, the other and the limits stay.
 bool filter_calls();

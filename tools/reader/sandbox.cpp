@@ -100,10 +100,15 @@ std::int64_t memory_limit() {
     return static_cast<std::int64_t>(most);
 }
 
+int landlock_version() {
+    const long version = syscall(SYS_landlock_create_ruleset, nullptr, 0L, LANDLOCK_CREATE_RULESET_VERSION);
+    return version < 1 ? 0 : static_cast<int>(version);
+}
+
 bool restrict_files() {
     // What the first version of Landlock knows (Linux 5.13), and from its second and third on renames across folders and truncation.
     constexpr std::uint64_t kFirst = (std::uint64_t{1} << 13) - 1;
-    const long version = syscall(SYS_landlock_create_ruleset, nullptr, 0L, LANDLOCK_CREATE_RULESET_VERSION);
+    const int version = landlock_version();
     if (version < 1) return false;
     landlock_ruleset_attr attributes{};
     attributes.handled_access_fs = kFirst | (version >= 2 ? std::uint64_t{1} << 13 : 0) | (version >= 3 ? std::uint64_t{1} << 14 : 0);

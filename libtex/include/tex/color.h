@@ -30,5 +30,8 @@ struct ColorOptions {
 //         out_of_memory
 [[nodiscard]] Result<void> to_linear(Image& image, const ColorOptions& options);
 
+// "2.1.2": of the library that converts.
+[[nodiscard]] const char* opencolorio_version();
+
 }  // namespace tex
 #pragma GCC visibility pop

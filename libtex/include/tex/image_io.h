@@ -40,5 +40,17 @@ struct ReadOptions {
 // min(what the file claims, what it can hold).
 [[nodiscard]] Result<Image> read_image(const std::string& path, const ReadOptions& options = {});
 
+// What the reader process is, and what it gives up before it opens a file.
+struct ReaderInfo {
+    std::string program;
+    std::string openimageio;      // its version
+    int landlock = 0;             // the kernel's version of Landlock; 0: it has none
+    bool files_restricted = false;  // by Landlock: no file but the input
+    bool calls_filtered = false;    // by seccomp: no network, no writing, no other programs
+};
+
+// Starts the process once, to ask it (a tenth of a second). Errors: as read_image(), where the process does not run.
+[[nodiscard]] Result<ReaderInfo> reader_info(const ReadOptions& options = {});
+
 }  // namespace tex
 #pragma GCC visibility pop

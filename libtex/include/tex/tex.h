@@ -40,6 +40,10 @@
 
 #pragma once
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include <tex/names.h>
 #include <tex/result.h>
 #include <tex/execution.h>
@@ -75,6 +79,13 @@ namespace tex {
 
 // "0.1.0": the version of the library that runs, not of the header.
 [[nodiscard]] const char* version();
+
+// What libtex runs with on this machine, for reports.
+struct Runtime {
+    std::string instruction_set;                                   // of the kernels, as Highway names it: "AVX2"; results do not depend on it
+    std::vector<std::pair<std::string, std::string>> dependencies;  // libraries that it links, and their versions: ("libpng", "1.6.39")
+};
+[[nodiscard]] Runtime runtime();
 
 }  // namespace tex
 #pragma GCC visibility pop

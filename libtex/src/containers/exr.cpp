@@ -71,6 +71,8 @@ bool is_exr(std::span<const std::byte> head) {
     return head.size() >= sizeof kMagic && std::memcmp(head.data(), kMagic, sizeof kMagic) == 0;
 }
 
+const char* exr_version() { return OPENEXR_VERSION_STRING; }
+
 Result<Image> read_exr(InputFile& file, const ReadOptions& options) {
     return with_exr(file, options, [](Imf::MultiPartInputFile& exr, const ExrStream& stream) -> Result<Image> {
         return PartReader(exr, stream, channels_of(exr.header(0))).read(0);

@@ -221,6 +221,8 @@ Result<Image> PngRows::read_all() {
 
 }  // namespace
 
+const char* png_version() { return png_get_libpng_ver(nullptr); }
+
 bool is_png(std::span<const std::byte> head) {
     // The first four bytes: what transfers as text damage are the bytes after them.
     constexpr unsigned char kMark[4] = {0x89, 'P', 'N', 'G'};

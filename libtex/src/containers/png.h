@@ -24,6 +24,9 @@ namespace tex {
 // Whether a file that begins with `head` is a PNG, sound or damaged in transfer.
 bool is_png(std::span<const std::byte> head);
 
+// Of the libpng that runs.
+const char* png_version();
+
 // Opens a PNG, to be read row by row where it is not interlaced. `file` must outlive the rows. Errors: those of read_png() that the header tells.
 Result<std::unique_ptr<RowSource>> open_png(InputFile& file, const ReadOptions& options);
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <climits>
 #include <cmath>
 #include <cstring>
 #include <optional>
@@ -58,6 +59,23 @@ Result<Image> read_with_reader(InputFile& file, const ReadOptions& options) {
         const Result<std::unique_ptr<RowSource>> rows = open_reader_rows(file, options);
         if (!rows) return rows.error();
         return (*rows)->read_all();
+    });
+}
+
+Result<ReaderInfo> reader_info(const ReadOptions& options) {
+    return guarded([&]() -> Result<ReaderInfo> {
+        const Result<std::string> program = find_reader(options);
+        if (!program) return program.error();
+        const Result<Descriptor> input = memory_file({});
+        const Result<Descriptor> result = memory_file({});
+        if (!input) return input.error();
+        if (!result) return result.error();
+        const Result<ReaderHeader> reply = run_reader({{}, "describe", "-", input->get(), result->get()}, options);
+        if (!reply) return reply.error();
+        const std::string version(reply->reason, strnlen(reply->reason, sizeof reply->reason));
+        const bool sound = std::all_of(version.begin(), version.end(), [](char c) { return c > 0x20 && c < 0x7f; });
+        if (!sound || reply->landlock > INT_MAX) return nonsense({});
+        return ReaderInfo{*program, version, static_cast<int>(reply->landlock), (reply->sandboxed & kFilesRestricted) != 0, (reply->sandboxed & kCallsFiltered) != 0};
     });
 }
 

@@ -3,12 +3,13 @@
 //
 // libtex starts
 //
-//     tex-reader decode|encode FORMAT MAX_TEXELS MEMORY SECONDS PARENT
+//     tex-reader decode|encode|describe FORMAT MAX_TEXELS MEMORY SECONDS PARENT
 //
 // (FORMAT as OpenImageIO names it, MEMORY in bytes, PARENT the process id of the caller) with these descriptors and no others:
 //
 //     kResultDescriptor    a file in memory, empty: ReaderHeader at 0, the data at kReaderDataOffset
 //     kInputDescriptor     decode: the picture file; encode: a file in memory, ReaderHeader at 0 (extent, channels, type), the texels at kReaderDataOffset
+//                          describe: an empty file in memory; the answer is in `sandboxed`, `landlock` and, as the version of OpenImageIO, `reason`
 //     kProgressDescriptor  a pipe: a byte for each strip of rows that is in place; its end tells that the process is gone
 //
 // Texels are interleaved, native byte order, rows from the top without padding: row j is at kReaderDataOffset + j * row_bytes(). rows_done in the
@@ -69,7 +70,7 @@ struct ReaderHeader {
     std::int32_t channels = 0;
     ReaderType type = ReaderType::u8;
     std::uint32_t bits = 0;  // significant bits of a sample in the file
-    std::uint32_t unused = 0;
+    std::uint32_t landlock = 0;  // the kernel's version of it
     std::uint64_t rows_done = 0;
     std::uint64_t bytes = 0;  // of an encoded file
     char reason[1024] = {};

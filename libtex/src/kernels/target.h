@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace tex {
 
@@ -13,5 +14,7 @@ std::int64_t kernel_target();
 
 // Its name: "AVX2".
 const char* kernel_target_name();
+
+std::string highway_version();
 
 }  // namespace tex
