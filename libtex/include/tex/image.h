@@ -164,3 +164,4 @@ struct Image {
 
 }  // namespace tex
 #pragma GCC visibility pop
+#undef TEX_ADDRESS_SANITIZER
