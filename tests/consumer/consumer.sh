@@ -112,11 +112,15 @@ package)
     diff -u "$here/manifest.txt" "$scratch/packaged.txt" || fail "the package differs from $here/manifest.txt"
     "$scratch/root/usr/bin/bake-normals" "$samples/bricks.png" -o "$scratch/bricks.dds" --bumpiness 12
     check_bake "$scratch/bricks.dds"
-    # Hardened: position-independent, read-only relocations, bound at start, with stack protector and fortified calls.
-    for program in "$scratch"/root/usr/bin/* "$scratch/root/usr/libexec/libtex/tex-reader"; do
+    # Hardened as by Debian's hardening=+all: position-independent, read-only relocations, bound at start, no code on the stack, with stack protector and fortified calls.
+    for program in "$scratch"/root/usr/bin/* "$scratch/root/usr/libexec/libtex/tex-reader" "$(find "$scratch/root" -name 'libtex.so.0')"; do
+        readelf --dyn-syms -W "$program" >"$scratch/symbols.txt"
         readelf -hW "$program" | grep -q 'Type: *DYN' || fail "$program is not position-independent"
         readelf -dW "$program" | grep -q BIND_NOW || fail "$program binds lazily"
         readelf -lW "$program" | grep -q GNU_RELRO || fail "$program has writable relocations"
+        readelf -lW "$program" | grep -q 'GNU_STACK.* RW  *0x' || fail "$program may run code on its stack"
+        grep -q ' __stack_chk_fail@' "$scratch/symbols.txt" || fail "$program has no stack protector"
+        grep -q ' __[a-z]*_chk@' "$scratch/symbols.txt" || fail "$program has no fortified calls"
     done
     ;;
 *) fail "no such step" ;;
