@@ -70,6 +70,71 @@ TEST(Encode, NoEffortIsWorseThanACheaperOne) {
     }
 }
 
+// A row of decoded blocks: random endpoints at least 8 codes apart, and of their palettes some values only, of which there are three or more.
+std::vector<float> decoded_rows(tex::Encoding encoding, bool second, unsigned seed) {
+    std::mt19937 random(seed);
+    std::vector<float> rows(4 * (kWidth + 12));
+    for (int block = 0; block < kWidth / 4; ++block) {
+        std::byte bytes[8];
+        for (std::byte& byte : bytes) byte = static_cast<std::byte>(random());
+        const bool green = encoding == tex::Encoding::dxt5nm && second;
+        const auto code = [&](int k) {
+            return encoding == tex::Encoding::bc5_snorm ? static_cast<std::int8_t>(bytes[k]) : std::to_integer<int>(bytes[k]);
+        };
+        if (!green && std::abs(code(0) - code(1)) < 8) bytes[0] ^= std::byte{0x40};
+        float palette[16], r[16], b[16], a[16];
+        const auto set_indices = [&](int first, int count) {  // texel k takes index first + k % count
+            std::uint64_t indices = 0;
+            for (int k = 0; k < 16; ++k) indices |= static_cast<std::uint64_t>(first + k % count) << ((green ? 2 : 3) * k);
+            const int header = green ? 4 : 2;
+            for (int k = header; k < 8; ++k) bytes[k] = static_cast<std::byte>(indices >> (8 * (k - header)));
+        };
+        const int most = green ? 4 : 8;
+        const int count = green ? 3 : 3 + static_cast<int>(random() % 4);
+        set_indices(static_cast<int>(random()) & (most - count), count);
+        if (green) tex::decode_bc1(bytes, tex::Bc1Mode::four_colors, r, palette, b, a);
+        else if (encoding == tex::Encoding::bc5_snorm) tex::decode_bc4_snorm(bytes, palette);
+        else tex::decode_bc4_unorm(bytes, palette);
+        for (int k = 0; k < 16; ++k) {
+            const float n = encoding == tex::Encoding::bc5_snorm ? palette[k] : 2.0f * palette[k] - 1.0f;
+            rows[static_cast<std::size_t>(k / 4 * (kWidth + 12) + 4 * block + k % 4)] = n;
+        }
+    }
+    return rows;
+}
+
+TEST(Encode, FindsThePalettesOfBlocksThatWereDecodedBefore) {
+    for (const tex::Encoding encoding : {tex::Encoding::dxt5nm, tex::Encoding::bc5, tex::Encoding::bc5_snorm}) {
+        for (unsigned seed = 0; seed < 8; ++seed) {
+            const std::vector<float> values[2] = {decoded_rows(encoding, false, seed), decoded_rows(encoding, true, 100 + seed)};
+            tex::BlockRow row;
+            for (int k = 0; k < 4; ++k) {
+                row.x[k] = values[0].data() + k * (kWidth + 12);
+                row.y[k] = values[1].data() + k * (kWidth + 12);
+            }
+            row.width = kWidth;
+            std::vector<std::byte> blocks(16 * kWidth / 4);
+            tex::encode_blocks(row, {encoding}, blocks.data());
+            for (int block = 0; block < kWidth / 4; ++block) {
+                float decoded[2][16], r[16], b[16], a[16];
+                for (int channel = 0; channel < 2; ++channel) {
+                    const std::byte* bytes = blocks.data() + 16 * block + 8 * channel;
+                    const bool green = encoding == tex::Encoding::dxt5nm && channel == 1;
+                    if (green) tex::decode_bc1(bytes, tex::Bc1Mode::four_colors, r, decoded[1], b, a);
+                    else if (encoding == tex::Encoding::bc5_snorm) tex::decode_bc4_snorm(bytes, decoded[channel]);
+                    else tex::decode_bc4_unorm(bytes, decoded[channel]);
+                    for (int k = 0; k < 16; ++k) {
+                        const float n = encoding == tex::Encoding::bc5_snorm ? decoded[channel][k] : 2.0f * decoded[channel][k] - 1.0f;
+                        const float before = values[channel][static_cast<std::size_t>(k / 4 * (kWidth + 12) + 4 * block + k % 4)];
+                        ASSERT_NEAR(n * 127.5f, before * 127.5f, 0.1f)
+                            << tex::name_of(tex::kEncodingNames, encoding) << " seed " << seed << " channel " << channel << " block " << block;
+                    }
+                }
+            }
+        }
+    }
+}
+
 // The rows of both channels, from one array.
 struct Rows {
     const float* x[4];

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 #include "blocks/bc1.h"
 #include "blocks/bc4.h"
@@ -31,6 +33,13 @@ struct Channel {
     // Blocks that lie whole in the level: the others are always searched, as fits weigh all texels alike.
     [[nodiscard]] int whole_blocks() const { return height == 4 ? width / 4 : 0; }
 
+    // Whether a whole block may have the lowest or the greatest code: a quick test.
+    [[nodiscard]] bool reaches_extremes(int block) const {
+        float most = 0.0f;
+        for (int k = 0; k < 16; ++k) most = std::max(most, std::abs(rows[k / 4][4 * block + k % 4]));
+        return most > 0.9999f;
+    }
+
     [[nodiscard]] BlockTexels texels(int block, int top) const {
         BlockTexels texels;
         texels.mask = 0;
@@ -47,18 +56,33 @@ struct Channel {
 Channel channel_x(const BlockRow& row) { return {row.x, row.width, row.height, false}; }
 Channel channel_y(const BlockRow& row) { return {row.y, row.width, row.height, row.negate_y}; }
 
-// The optimum of those blocks for which wanted(block, texels) is true.
-template <class Endpoints, class Wanted, class Search, class Write>
-void search_blocks(const Channel& channel, Wanted wanted, int top, Search search, Write write, std::byte* blocks) {
+// Whether a block that was decoded before may have had 6 values, and the lowest or the greatest code: it has one of these, and up to eight values.
+bool may_have_six_values(const BlockTexels& texels, int top) {
+    const auto [least, greatest] = std::minmax_element(texels.values, texels.values + 16);
+    if (*least == *greatest || (*least != 0 && *greatest != top * kCodeUnit)) return false;
+    std::int32_t values[8];
+    int count = 0;
+    for (const std::int32_t value : texels.values) {
+        if (std::find(values, values + count, value) != values + count) continue;
+        if (count == 8) return false;
+        values[count++] = value;
+    }
+    return true;
+}
+
+// The optimum of the blocks from `first` on and, where `six_values` is set, of those before that may have had 6 values.
+template <class Endpoints, class Search, class Write>
+void search_blocks(const Channel& channel, int first, bool six_values, int top, Search search, Write write, std::byte* blocks) {
     BlockTexels texels[kRun];
     ClusterBounds bounds[kRun];
     Endpoints endpoints[kRun];
     int at[kRun];
     int count = 0;
-    for (int block = 0; block < channel.blocks(); ++block) {
+    for (int block = six_values ? 0 : first; block < channel.blocks(); ++block) {
+        if (block < first && !channel.reaches_extremes(block)) continue;
         texels[count] = channel.texels(block, top);
-        at[count] = block;
-        if (wanted(block, texels[count])) ++count;
+        if (block < first && !may_have_six_values(texels[count], top)) continue;
+        at[count++] = block;
     }
     if (count == 0) return;
     cluster_bounds(texels, count, bounds);
@@ -66,17 +90,9 @@ void search_blocks(const Channel& channel, Wanted wanted, int top, Search search
     for (int k = 0; k < count; ++k) write(texels[k], endpoints[k], blocks + 16 * at[k]);
 }
 
-// Whether a texel, but not all of them, has the lowest or the greatest code, which blocks of 6 values hold besides.
-bool has_extremes(const BlockTexels& texels, int top) {
-    const auto [least, greatest] = std::minmax_element(texels.values, texels.values + 16);
-    return *least < *greatest && (*least == 0 || *greatest == top * kCodeUnit);
-}
-
-// Searches the blocks from `first` on, and before them those with extremes, if there are any.
-void search_bc4(const Channel& channel, Bc4Codes codes, int first, bool any_extremes, std::byte* blocks) {
+void search_bc4(const Channel& channel, Bc4Codes codes, int first, bool six_values, std::byte* blocks) {
     search_blocks<Bc4Endpoints>(
-        channel,
-        [&](int block, const BlockTexels& texels) { return block >= first || (any_extremes && has_extremes(texels, codes.top)); }, codes.top,
+        channel, first, six_values, codes.top,
         [&](const BlockTexels* texels, const ClusterBounds* bounds, int count, Bc4Endpoints* endpoints) {
             search_bc4_blocks(texels, bounds, count, codes, endpoints);
         },
@@ -112,8 +128,7 @@ void encode_dxt5nm_run(const BlockRow& row, Effort effort, std::byte* blocks) {
     const bool extremes = fitted > 0 && fit_dxt5nm_blocks({row.x, false}, {row.y, row.negate_y}, fitted, effort, blocks);
     if (extremes || fitted < x.blocks()) search_bc4(x, kBc4Unorm, fitted, extremes, blocks);
     if (fitted == x.blocks()) return;
-    const auto wanted = [&](int block, const BlockTexels&) { return block >= fitted; };
-    search_blocks<GreenEndpoints>(channel_y(row), wanted, 255, search_green_blocks, write_green, blocks + 8);
+    search_blocks<GreenEndpoints>(channel_y(row), fitted, false, 255, search_green_blocks, write_green, blocks + 8);
 }
 
 }  // namespace

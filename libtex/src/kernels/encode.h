@@ -21,7 +21,8 @@ struct BlockRow {
 
 // Encode (width + 3) / 4 blocks of 16 bytes each, one after the other. Components are clamped to [-1, 1]. See pack() for what the blocks
 // promise. Effort::fast and normal fit (fit.h), best searches (bc4_search.h, green_search.h); blocks that lie partly outside the level are
-// searched at every effort.
+// searched at every effort; at normal so are channels in BC4 that have the lowest or the greatest code and up to eight values, as blocks do that were
+// decoded before.
 void encode_dxt5nm(const BlockRow& row, Effort effort, std::byte* blocks);
 void encode_bc5_unorm(const BlockRow& row, Effort effort, std::byte* blocks);
 void encode_bc5_snorm(const BlockRow& row, Effort effort, std::byte* blocks);

@@ -15,6 +15,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/fit_greens-inl.h"
 #include "kernels/fit_group-inl.h"
 #include "kernels/fit_palettes-inl.h"
 #include "kernels/fit_steps-inl.h"
@@ -186,12 +187,13 @@ HWY_INLINE BlockWords fast_green(const W* texels) {
 HWY_INLINE BlockWords normal_green(const W* texels) {
     Group group;
     make_group<Precision::full>(texels, group);
-    const Fitter<Greens> fitter(group, {});
+    const GreenFitter fitter(group);
     Choice found;
     for (const float g : {-0.4f, 0.4f}) {
-        for (const float j : {0.0f, 1.0f, 2.0f}) fitter.start<Precision::coarse>(g, j, 2, found);
+        for (const float j : {0.0f, 1.0f, 2.0f}) fitter.start_and_step(g, j, found);
     }
-    fitter.neighbours<2>(found);
+    fitter.neighbours(2, found);
+    fitter.neighbours(1, found);
     set_single_greens(group, found);
     Choice best;
     fitter.score<Precision::full>(found, nullptr, best);

@@ -13,9 +13,12 @@
 //            green: the extremes less 1/16 of the range, solved once; texels take the nearest values
 //   normal   alpha: 8 values: (0, 1), (1/2, 0), (1/2, 2), 2 steps; (0, 0), 3 steps; ranges of at most 7 codes: a spacing of one code
 //                   6 values: (0, 1), 2 steps
-//            green: g = -0.4, 0.4; j = 0, 1, 2; 2 steps; then all pairs within 2 codes; (0, 0), 3 steps
+//            green: g = -0.4, 0.4; j = 0, 1, 2; 1 step, of which the end is scored; then all pairs within 2 codes of the best, then within 1 code of
+//                   the best of these; (0, 0), 3 steps
+//            both:  where the values lie on a palette, as those of blocks do that were decoded before: its endpoints (fit_palettes-inl.h)
 //
-// A green that needs a single value takes it from single_greens.h.
+// A green that needs a single value takes it from single_greens.h. Greens are scored by the thresholds between values (fit_greens-inl.h), which
+// needs no indices.
 //
 // What is promised. normal: the last three steps are those of a plain fit (the extremes, twice refined by least squares), so that no block is worse
 // than that. fast: least squares do not lose to the palette between the extremes (in green: less 1/16 of the range at both ends), exact and not
@@ -24,7 +27,7 @@
 // where least squares leave the range of codes.
 //
 // Precision: values are rounded to 1/128 of a code, then scaled by a power of two such that 16 bits hold the block's range; 9 of these bits
-// count in the coarse sums with which most starts are compared, all of them in the full sums that decide. Texels that lie within 1/2000
+// count in the coarse sums with which most starts of alpha are compared, all of them in the full sums that decide. Texels that lie within 1/2000
 // of a spacing of the middle between two values may take either. Blocks lie in lanes: their order and number change nothing.
 
 #pragma once
@@ -46,7 +49,7 @@ struct ChannelRows {
 // Fit `count` blocks that lie whole in the rows, and write 16 bytes for each: DXT5nm from x and y; BC5 from x and y.
 //
 // Blocks of 6 values hold the lowest and the greatest code besides, which these fits do not use. Return true where, at Effort::normal and in
-// a channel of BC4, texels with one of these were met in a block that has others, too: such blocks are for a search.
+// a channel of BC4, texels with one of these were met in a block that has others, too: such blocks may be for a search.
 [[nodiscard]] bool fit_dxt5nm_blocks(const ChannelRows& x, const ChannelRows& y, int count, Effort effort, std::byte* blocks);
 [[nodiscard]] bool fit_bc5_blocks(const ChannelRows& x, const ChannelRows& y, int count, Bc4Codes codes, Effort effort, std::byte* blocks);
 

@@ -150,12 +150,7 @@ public:
     template <Precision kPrecision>
     HWY_INLINE void start(float g, float j, int steps, Choice& choice) const {
         Ends ends;
-        for (int p = 0; p < kParts; ++p) {
-            const F spacing = hn::Mul(group_.greatest[p], constant(1.0f / (kSteps - j + g)));
-            const F a = hn::Mul(spacing, constant(0.5f * g));
-            ends.low[p] = code(a, p);
-            ends.high[p] = code(hn::Add(a, hn::Mul(spacing, constant(kSteps))), p);
-        }
+        start_at(g, j, ends);
         for (int k = 0; k < steps; ++k) step<kPrecision>(ends, k + 1 < steps, choice);
     }
 
@@ -235,60 +230,6 @@ public:
         return {hn::IfThenElse(where, rounded_ramp.factor, ramp.factor), hn::IfThenElse(where, rounded_ramp.offset, ramp.offset)};
     }
 
-    // Scores all pairs of stored codes whose members are within `reach` of the choice, which is scored again. With 4 values a <= b spacing s, the
-    // squared error is that of a alone, less 2 s times the sum of max(0, v - t) over the texels v and the three thresholds t between values: no
-    // indices are needed, and `max` and means in 16 bits do.
-    template <int kReach>
-    HWY_INLINE void neighbours(Choice& choice) const {
-        static_assert(Kind::kSteps == 3);
-        constexpr int kCount = 2 * kReach + 1;
-        const Ends center = choice;
-        F low[kCount][kParts], high[kCount][kParts];    // stored codes
-        F a[kCount][kParts], b[kCount][kParts];         // their values, in sixths of local units
-        F alone[kCount][kParts];                        // the error with a alone, less that of the middle of the range
-        for (int i = 0; i < kCount; ++i) {
-            for (int p = 0; p < kParts; ++p) {
-                const F moved = constant(static_cast<float>(i - kReach));
-                low[i][p] = clamped(hn::Add(center.low[p], moved), kind_.top);
-                high[i][p] = clamped(hn::Add(center.high[p], moved), kind_.top);
-                const F from = local(low[i][p], p);
-                a[i][p] = hn::Mul(from, constant(1.0f / 6.0f));
-                b[i][p] = hn::Mul(local(high[i][p], p), constant(1.0f / 6.0f));
-                const F middle = hn::Sub(from, constant(32768.0f));
-                const F v = hn::Sub(group_.sum[p], constant(16.0f * 32768.0f));
-                alone[i][p] = hn::Mul(middle, hn::Sub(hn::Mul(constant(16.0f), middle), hn::Add(v, v)));
-            }
-        }
-        for (int p = 0; p < kParts; ++p) choice.error[p] = constant(1e30f);
-#pragma GCC unroll 1
-        for (int i = 0; i < kCount; ++i) {
-#pragma GCC unroll 1
-            for (int j = 0; j < kCount; ++j) {
-                F t[3][kParts], sum[kParts];
-                F upper[kParts];
-                for (int p = 0; p < kParts; ++p) {
-                    upper[p] = hn::Max(a[i][p], b[j][p]);
-                    const F both = hn::Add(a[i][p], upper[p]);
-                    const F most = constant(65535.0f);
-                    const F low_t = hn::Min(hn::Add(both, hn::Mul(a[i][p], constant(4.0f))), most);
-                    const F mid_t = hn::Min(hn::Mul(both, constant(3.0f)), most);
-                    const F high_t = hn::Min(hn::Add(both, hn::Mul(upper[p], constant(4.0f))), most);
-                    sum[p] = hn::Add(hn::Add(low_t, mid_t), high_t);
-                    t[0][p] = hn::Max(low_t, hn::Zero(Floats()));
-                    t[1][p] = hn::Max(mid_t, hn::Zero(Floats()));
-                    t[2][p] = hn::Max(high_t, hn::Zero(Floats()));
-                }
-                const Parts means = sum_of(mean_greater<0, 16>(to_words(t[0])), mean_greater<0, 16>(to_words(t[1])), mean_greater<0, 16>(to_words(t[2])));
-                for (int p = 0; p < kParts; ++p) {
-                    const F gain = hn::Sub(means.part[p], sum[p]);
-                    const F spacings = hn::Mul(hn::Sub(upper[p], a[i][p]), constant(2.0f * 16.0f * 2.0f));
-                    const F error = hn::Sub(alone[i][p], hn::Mul(spacings, gain));
-                    choice.offer(p, error, low[i][p], hn::Max(low[i][p], high[j][p]));
-                }
-            }
-        }
-    }
-
     // The ramp of stored endpoints.
     HWY_INLINE Ramp ramp_of(const Ends& stored) const {
         F a[kParts], b[kParts];
@@ -303,14 +244,13 @@ public:
     HWY_INLINE F code(F value, int p) const { return hn::Add(group_.base[p], hn::Mul(value, group_.unit[p])); }
     HWY_INLINE F local(F stored, int p) const { return hn::Mul(hn::Sub(kind_.widen(stored), group_.base[p]), group_.per_unit[p]); }
 
-private:
-    // The mean of max(v, t) over the texels, from the greater of four roundings: at most two units above.
-    template <int kFirst, int kCount>
-    HWY_INLINE W mean_greater(W t) const {
-        if constexpr (kCount == 1) {
-            return hn::Max(group_.values[kFirst], t);
-        } else {
-            return hn::AverageRound(mean_greater<kFirst, kCount / 2>(t), mean_greater<kFirst + kCount / 2, kCount / 2>(t));
+protected:
+    HWY_INLINE void start_at(float g, float j, Ends& ends) const {
+        for (int p = 0; p < kParts; ++p) {
+            const F spacing = hn::Mul(group_.greatest[p], constant(1.0f / (kSteps - j + g)));
+            const F a = hn::Mul(spacing, constant(0.5f * g));
+            ends.low[p] = code(a, p);
+            ends.high[p] = code(hn::Add(a, hn::Mul(spacing, constant(kSteps))), p);
         }
     }
 
