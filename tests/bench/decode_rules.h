@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // decode_rules.h: how processors return DXT5nm, at 8 bits, and the least squared error that any block can have with such a rule: an exhaustive search.
 //
-// Where two codes are mixed, with k of n parts of the second one (Giesen, "GPU BCn decoding", 2021; Castano, "GPU DXT Decompression", 2009):
+// Where two codes are mixed, with k of n parts of the second one:
 //
-//     AMD                 (64 - w) a + w b + 32 >> 6, w = 64 k / n rounded
+//     AMD                 (64 - w) a + w b + 32 >> 6, w = 64 k / n rounded: 21 and 43 of green
 //     Intel               (256 - w) a + w b + 128 >> 8, w = 256 k / n rounded
-//     NVIDIA              green: 256 a + d / 4 + 128 + 80 d >> 8, d = b - a; alpha: to the nearest code (ours: its rule is not published)
+//     NVIDIA              green: 256 a + d / 4 + 128 + 80 d, divided by 256, d = b - a, both towards zero, a being the nearer code;
+//                         alpha: the nearest code
 //     Mesa and libsquish  (n - k) a + k b divided by n, rounded down
+//
+// What is known: the greens of AMD and NVIDIA are those that rgbcx encodes for (Geldreich, bc7enc_rdo, rgbcx.h: bc1_approx_mode, interp_5_6_amd and
+// interp_6_nv; measured by Castano, "GPU DXT Decompression", 2009); AMD's and Intel's mixes, of green and alpha alike, are those of Giesen ("GPU BCn
+// decoding", 2021), who found expressions that match all three vendors to the last bit. What is assumed: NVIDIA's alpha. rgbcx has one BC4 for all
+// processors, sevenths and fifths rounded down, and no formula was found elsewhere; here it is the nearest code.
+// Processors return BC4 and BC5 with more bits than 8: these rules are for BC3.
 
 #pragma once
 
