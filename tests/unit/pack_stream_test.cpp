@@ -259,15 +259,15 @@ TEST_F(PackStream, ReadsOnceMoreWhereTheTexelsSayOtherwise) {
     }
 }
 
-TEST_F(PackStream, LargeMapsGoThroughManyStripsOnManyThreads) {
-    for (const Extent extent : {Extent{2048, 70}, Extent{131, 1100}}) {
+TEST_F(PackStream, MapsGoThroughManyStripsOnManyThreads) {
+    for (const Extent extent : {Extent{512, 70}, Extent{131, 300}}) {
         for (const Container kind : {Container::png, Container::exr, Container::dds}) {
             pack_.encoding = Encoding::dxt5nm;
             const std::string input = write_map(extent, kind, default_encoding(kind), kind == Container::dds ? 0 : 1);
             options_.mip = kind == Container::dds ? std::nullopt : std::optional(MipOptions());
             const Bytes expected = by_verbs(input, Container::dds).value();
-            for (const int threads : {1, 2, 5}) {
-                const auto report = pack_file(input, path("out"), Container::dds, options_, {threads, {}});
+            for (const int threads : {2, 5}) {
+                const auto report = stream(input, Container::dds, threads, {4096, 0});
                 ASSERT_TRUE(report) << report.error().message();
                 EXPECT_EQ(report->path, Path::streamed);
                 EXPECT_TRUE(bytes_of(path("out")) == expected) << extent.width << " " << threads;
@@ -276,7 +276,7 @@ TEST_F(PackStream, LargeMapsGoThroughManyStripsOnManyThreads) {
             options_.level = 0;
             pack_.encoding = default_encoding(kind == Container::dds ? Container::png : kind);
             const Container picture = kind == Container::dds ? Container::png : kind;
-            const auto report = pack_file(input, path("out"), picture, options_, {3, {}});
+            const auto report = stream(input, picture, 3, {4096, 0});
             ASSERT_TRUE(report) << report.error().message();
             EXPECT_EQ(report->path, Path::streamed);
             EXPECT_TRUE(bytes_of(path("out")) == by_verbs(input, picture).value());
