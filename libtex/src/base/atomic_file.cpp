@@ -144,7 +144,7 @@ std::string temporary_name(const Target& target, const Make& make) {
     std::string stem(1, '.');
     stem.append(target.name, 0, kMostOfName).append(".tex-tmp");
     for (int k = 0; k < kMostWriters; ++k) {
-        const std::string name = stem + std::to_string(k);
+        std::string name = stem + std::to_string(k);
         if (make(name)) return name;
         if (errno != EEXIST) return {};
         sweep(target, name);

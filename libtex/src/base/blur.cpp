@@ -80,6 +80,7 @@ std::vector<float> gaussian_weights(double sigma) {
         sum += k == 0 ? g.back() : 2.0 * g.back();
     }
     std::vector<float> weights;
+    weights.reserve(g.size());
     for (const double value : g) weights.push_back(static_cast<float>(value / sum));
     return weights;
 }

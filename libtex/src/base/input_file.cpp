@@ -125,7 +125,7 @@ Result<void> InputFile::settle(std::int64_t limit) {
 
 Result<std::size_t> InputFile::read(std::byte* data, std::size_t count) {
     if (memory_) {
-        const Result<std::size_t> got = read_at(static_cast<std::int64_t>(position_), data, count);
+        Result<std::size_t> got = read_at(static_cast<std::int64_t>(position_), data, count);
         position_ += *got;
         return got;
     }

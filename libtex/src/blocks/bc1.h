@@ -46,7 +46,7 @@ struct GreenEndpoints {
 constexpr int widen_green(int code) { return code << 2 | code >> 4; }
 
 // The squared error of a block whose texels take the nearest value of the palette, in units of (code / kGreenErrorUnit)^2. Exact.
-inline constexpr std::int64_t kGreenErrorUnit = 3 * kCodeUnit;
+inline constexpr std::int64_t kGreenErrorUnit = std::int64_t{3} * kCodeUnit;
 [[nodiscard]] std::int64_t green_error(const BlockTexels& texels, GreenEndpoints endpoints);
 
 // The endpoints with the least squared error of all whose lower one lies within `reach` 6-bit codes of the least value and whose

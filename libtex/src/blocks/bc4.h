@@ -40,7 +40,7 @@ struct Bc4Endpoints {
 };
 
 // The squared error of a block whose texels take the nearest value of the palette, in units of (code / kBc4ErrorUnit)^2. Exact.
-inline constexpr std::int64_t kBc4ErrorUnit = 35 * kCodeUnit;
+inline constexpr std::int64_t kBc4ErrorUnit = std::int64_t{35} * kCodeUnit;
 [[nodiscard]] std::int64_t bc4_error(const BlockTexels& texels, Bc4Codes codes, Bc4Endpoints endpoints);
 
 // The endpoints with the least squared error of all whose lower one lies within `reach` codes of the least value and whose

@@ -68,6 +68,7 @@ Votes votes_of(const Subject& subject) {
     if (all.empty()) return {};
     const auto energy = [](const Neighbourhood& n) { return std::sqrt(n.sums.p_square * n.sums.q_square); };
     std::vector<double> energies;
+    energies.reserve(all.size());
     for (const Neighbourhood& n : all) energies.push_back(energy(n));
     const auto middle = energies.begin() + static_cast<std::ptrdiff_t>(energies.size() / 2);
     std::nth_element(energies.begin(), middle, energies.end());
