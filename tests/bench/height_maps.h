@@ -55,16 +55,16 @@ inline double fractal(int i, int j, int octaves = 9) {
     return sum / most;
 }
 
-// The heights of a tile, once they are computed. To be cleared before other programs are measured: the memory of whoever starts them counts as theirs.
-inline std::vector<float> tile;
-
+// The heights of a tile, computed once.
 inline float height(int i, int j) {
-    if (tile.empty()) {
-        tile.reserve(static_cast<std::size_t>(kPeriod) * kPeriod);
+    static const std::vector<float> tile = [] {
+        std::vector<float> values;
+        values.reserve(static_cast<std::size_t>(kPeriod) * kPeriod);
         for (int y = 0; y < kPeriod; ++y) {
-            for (int x = 0; x < kPeriod; ++x) tile.push_back(static_cast<float>(fractal(x, y)));
+            for (int x = 0; x < kPeriod; ++x) values.push_back(static_cast<float>(fractal(x, y)));
         }
-    }
+        return values;
+    }();
     return tile[static_cast<std::size_t>((j & (kPeriod - 1)) * kPeriod + (i & (kPeriod - 1)))];
 }
 
@@ -93,10 +93,10 @@ inline void write_png(const std::string& path, int width, int height_of, int bit
     std::fclose(file);
 }
 
-// Half, ZIP.
-inline void write_exr(const std::string& path, int width, int height_of) {
+// Half.
+inline void write_exr(const std::string& path, int width, int height_of, Imf::Compression compression = Imf::ZIP_COMPRESSION) {
     Imf::Header header(width, height_of);
-    header.compression() = Imf::ZIP_COMPRESSION;
+    header.compression() = compression;
     header.channels().insert("Y", Imf::Channel(Imf::HALF));
     Imf::OutputFile file(path.c_str(), header, 0);
     std::vector<Imath::half> row(static_cast<std::size_t>(width));
