@@ -11,6 +11,9 @@
 
 namespace tex {
 
+inline constexpr Wrap kWraps[] = {Wrap::repeat, Wrap::clamp, Wrap::mirror};
+inline constexpr MipDomain kDomains[] = {MipDomain::vector, MipDomain::slope};
+
 inline MipChain chain_of(const NormalMap& base, const MipOptions& options = {}, int threads = 1) {
     return std::move(build_mip_chain(copy_of(base), options, {threads, {}}).value());
 }

@@ -23,10 +23,9 @@ using tex::MipOptions;
 using tex::NormalMap;
 using tex::Wrap;
 using tex::fields::noise_normals;
+using tex::kDomains;
+using tex::kWraps;
 using tex::fields::same_bytes;
-
-constexpr Wrap kWraps[] = {Wrap::repeat, Wrap::clamp, Wrap::mirror};
-constexpr MipDomain kDomains[] = {MipDomain::vector, MipDomain::slope};
 
 // -- against the reference ---------------------------------------------------------------------------------
 

@@ -26,10 +26,9 @@ using tex::NormalMap;
 using tex::Wrap;
 using tex::fields::noise;
 using tex::fields::noise_normals;
+using tex::kDomains;
+using tex::kWraps;
 using tex::fields::same_bytes;
-
-constexpr Wrap kWraps[] = {Wrap::repeat, Wrap::clamp, Wrap::mirror};
-constexpr MipDomain kDomains[] = {MipDomain::vector, MipDomain::slope};
 constexpr Extent kExtents[] = {{1, 1}, {1, 300}, {300, 1}, {5, 7}, {253, 253}, {1025, 1025}};
 
 double length_at(const NormalMap& map, int i, int j) {

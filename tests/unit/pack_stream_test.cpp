@@ -7,30 +7,19 @@
 
 #include <atomic>
 #include <filesystem>
-#include <fstream>
 #include <random>
 
 #include <tex/mip.h>
 
-#include "normal_maps.h"
-#include "textures.h"
+#include "unit/normal_maps.h"
+#include "unit/streams.h"
 
 namespace tex {
 namespace {
 
-using Bytes = std::vector<std::byte>;
-
-template <class E, std::size_t N>
-E any_of(const Named<E> (&table)[N], std::mt19937& random) {
-    return table[random() % N].value;
-}
-
-class PackStream : public testing::Test {
+class PackStream : public StreamTest {
 protected:
-    void SetUp() override {
-        std::string pattern = testing::TempDir() + "pack_stream_XXXXXX";
-        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-        folder_ = pattern;
+    PackStream() {
         options_.write.sync = false;
         pack_.effort = Effort::fast;
         pack_.encoding = Encoding::dxt5nm;
@@ -40,16 +29,8 @@ protected:
             return pack;
         };
     }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-    [[nodiscard]] std::string path(const std::string& name) const { return folder_ + "/" + name; }
-    [[nodiscard]] std::string write(const std::string& name, const Bytes& bytes) const {
-        std::ofstream(path(name), std::ios::binary)
-            .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-        return path(name);
-    }
-    [[nodiscard]] std::size_t files() const {
-        return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_), {}));
-    }
+
+    using StreamTest::write;
     // A file of `kind` that holds the texture.
     [[nodiscard]] std::string write(const Texture& texture, Container kind) const {
         const std::string name(name_of(kContainerNames, kind));
@@ -114,7 +95,6 @@ protected:
         options_.write.dds_header = any_of(kDdsHeaderNames, random);
     }
 
-    std::string folder_;
     PackFileOptions options_;
     PackOptions pack_;
     bool y_ = false;  // pack_.y_axis counts
@@ -335,20 +315,8 @@ TEST_F(PackStream, LeavesWholeImagesToTheVerbs) {
 
 TEST_F(PackStream, DamageIsTheSameErrorAndLeavesNothing) {
     for (const Container kind : {Container::png, Container::exr}) {
-        const std::string sound = write_map({300, 200}, kind, default_encoding(kind));
-        Bytes bytes = bytes_of(sound);
-        const std::string cut = write("cut", Bytes(bytes.begin(), bytes.end() - 300));
-        bytes[bytes.size() / 2] ^= std::byte{0x5a};
-        for (const std::string& input : {write("hurt", bytes), cut}) {
-            const Error expected = read_normals(input).error();
-            for (const int threads : {1, 3}) {
-                const auto report = stream(input, Container::dds, threads, {2048, 0});
-                ASSERT_FALSE(report);
-                EXPECT_EQ(report.error().message(), expected.message());
-                EXPECT_EQ(report.error().code, expected.code);
-                EXPECT_FALSE(std::filesystem::exists(path("out")));
-            }
-        }
+        expect_same_damage(write_map({300, 200}, kind, default_encoding(kind)), [](const std::string& input) { return read_normals(input); },
+                           [&](const std::string& input, int threads) { return stream(input, Container::dds, threads, {2048, 0}); });
     }
     // A file that is damaged is damaged first, whatever else is wrong.
     options_.level = 3;

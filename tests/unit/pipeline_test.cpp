@@ -7,9 +7,7 @@
 
 #include <atomic>
 #include <filesystem>
-#include <fstream>
 #include <random>
-#include <sstream>
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -22,11 +20,10 @@
 
 #include "containers/row_source.h"
 #include "pipeline/bake_stream.h"
+#include "unit/streams.h"
 
 namespace tex {
 namespace {
-
-using Bytes = std::vector<std::byte>;
 
 void append(png_structp png, png_bytep data, std::size_t count) {
     auto* bytes = static_cast<Bytes*>(png_get_io_ptr(png));
@@ -69,33 +66,15 @@ Bytes make_png(Extent extent, const Kind& kind = {}, unsigned seed = 1) {
     return bytes;
 }
 
-class Pipeline : public testing::Test {
+class Pipeline : public StreamTest {
 protected:
-    void SetUp() override {
-        std::string pattern = testing::TempDir() + "pipeline_XXXXXX";
-        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-        folder_ = pattern;
+    Pipeline() {
         options_.write.sync = false;
         options_.pack.effort = Effort::fast;
     }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-    [[nodiscard]] std::string path(const std::string& name) const { return folder_ + "/" + name; }
-    [[nodiscard]] std::string write(const std::string& name, const Bytes& bytes) const {
-        std::ofstream(path(name), std::ios::binary)
-            .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-        return path(name);
-    }
-    [[nodiscard]] std::string content(const std::string& name) const {
-        std::stringstream text;
-        text << std::ifstream(path(name), std::ios::binary).rdbuf();
-        return text.str();
-    }
-    [[nodiscard]] std::size_t files() const {
-        return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_), {}));
-    }
 
     // What the verbs make of a picture, one after the other.
-    [[nodiscard]] std::string by_verbs(const std::string& input, Container container, SlopeRange* slopes = nullptr) const {
+    [[nodiscard]] Bytes by_verbs(const std::string& input, Container container, SlopeRange* slopes = nullptr) const {
         auto field = height_field(read_image(input).value(), options_.heights).value();
         const Strength strength = options_.strength ? options_.strength(field.height.extent()) : Strength();
         field.bumpiness_x = strength.x;
@@ -103,8 +82,7 @@ protected:
         NormalMap normals = bake(field, options_.bake).value();
         if (slopes != nullptr) *slopes = slope_range(normals);
         const MipChain chain = build_mip_chain(std::move(normals), options_.mip).value();
-        const Bytes bytes = encode_file(pack(chain, options_.pack).value(), container, options_.write).value();
-        return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+        return encode_file(pack(chain, options_.pack).value(), container, options_.write).value();
     }
 
     // The stream of a picture, cut into small pieces.
@@ -117,14 +95,8 @@ protected:
         return bake_stream(**rows, input, path("out"), container, options_, {threads, std::move(progress)}, sizes);
     }
 
-    std::string folder_;
     BakeFileOptions options_;
 };
-
-template <class E, std::size_t N>
-E any_of(const Named<E> (&table)[N], std::mt19937& random) {
-    return table[random() % N].value;
-}
 
 TEST_F(Pipeline, StreamsGiveTheBytesOfTheVerbs) {
     constexpr int kSides[] = {1, 2, 3, 4, 5, 7, 8, 13, 16, 17, 31, 40, 64, 97};
@@ -159,13 +131,13 @@ TEST_F(Pipeline, StreamsGiveTheBytesOfTheVerbs) {
         const Container container = one_in(2) ? Container::dds : Container::ktx2;
         const std::string input = write("in.png", make_png(extent, kind, static_cast<unsigned>(random())));
         SlopeRange slopes;
-        const std::string expected = by_verbs(input, container, &slopes);
+        const Bytes expected = by_verbs(input, container, &slopes);
         const int strip_texels = 1 << (2 + random() % 10);
         const int threads = 1 + static_cast<int>(random() % 3);
         SCOPED_TRACE(testing::Message() << "round " << round << ", " << extent.width << "x" << extent.height);
         const auto report = stream(input, container, threads, {strip_texels, 0});
         ASSERT_TRUE(report) << report.error().message();
-        ASSERT_TRUE(content("out") == expected);
+        ASSERT_TRUE(bytes_of(path("out")) == expected);
         EXPECT_EQ(report->path, Path::streamed);
         EXPECT_EQ(report->extent, extent);
         EXPECT_EQ(report->bytes, expected.size());
@@ -183,12 +155,12 @@ TEST_F(Pipeline, LargePicturesGoThroughManyStripsOnManyThreads) {
     for (const auto& [extent, wrap] : {Case{{2048, 70}, Wrap::repeat}, Case{{131, 1100}, Wrap::clamp}}) {
         const std::string input = write("in.png", make_png(extent));
         options_.heights.wrap_x = options_.heights.wrap_y = options_.mip.wrap_x = options_.mip.wrap_y = wrap;
-        const std::string expected = by_verbs(input, Container::dds);
+        const Bytes expected = by_verbs(input, Container::dds);
         for (const int threads : {1, 2, 5}) {
             const auto report = bake_file(input, path("out.dds"), Container::dds, options_, {threads, {}});
             ASSERT_TRUE(report) << report.error().message();
             EXPECT_EQ(report->path, Path::streamed);
-            EXPECT_TRUE(content("out.dds") == expected) << extent.width << " " << threads;
+            EXPECT_TRUE(bytes_of(path("out.dds")) == expected) << extent.width << " " << threads;
         }
     }
 }
@@ -203,14 +175,14 @@ TEST_F(Pipeline, WhatCannotStreamGoesAsAWhole) {
     const std::string plain = write("in.png", make_png(extent));
     EXPECT_EQ(baked(plain, Container::dds), Path::streamed);
     EXPECT_EQ(baked(plain, Container::ktx2), Path::streamed);
-    const std::string expected = by_verbs(plain, Container::ktx2);
-    EXPECT_TRUE(content("out") == expected);
+    const Bytes expected = by_verbs(plain, Container::ktx2);
+    EXPECT_TRUE(bytes_of(path("out")) == expected);
 
     EXPECT_EQ(baked(write("interlaced.png", make_png(extent, {1, 8, true})), Container::ktx2), Path::whole);
-    EXPECT_TRUE(content("out") == expected);
+    EXPECT_TRUE(bytes_of(path("out")) == expected);
     options_.heights.fill_invalid = true;
     EXPECT_EQ(baked(plain, Container::ktx2), Path::whole);
-    EXPECT_TRUE(content("out") == expected);
+    EXPECT_TRUE(bytes_of(path("out")) == expected);
     options_.heights.fill_invalid = false;
     options_.color.space = "sRGB";
     EXPECT_EQ(baked(plain, Container::dds), Path::whole);
@@ -231,11 +203,11 @@ TEST_F(Pipeline, NormalsInAnInterlacedPictureGoAsAWhole) {
     };
     EXPECT_EQ(packed(write("plain.png", make_png({40, 30}, {3, 8})), "a.dds"), Path::streamed);
     EXPECT_EQ(packed(write("interlaced.png", make_png({40, 30}, {3, 8, true})), "b.dds"), Path::whole);
-    EXPECT_TRUE(content("a.dds") == content("b.dds"));
+    EXPECT_TRUE(bytes_of(path("a.dds")) == bytes_of(path("b.dds")));
     // Grey and alpha are R = G = B and A.
     EXPECT_EQ(packed(write("plain.png", make_png({40, 30}, {2, 16})), "a.dds"), Path::streamed);
     EXPECT_EQ(packed(write("interlaced.png", make_png({40, 30}, {2, 16, true})), "b.dds"), Path::whole);
-    EXPECT_TRUE(content("a.dds") == content("b.dds"));
+    EXPECT_TRUE(bytes_of(path("a.dds")) == bytes_of(path("b.dds")));
 }
 
 struct ExrKind {
@@ -297,57 +269,31 @@ TEST_F(Pipeline, ExrStreamsWhateverItsRowsAreKeptIn) {
         for (const ExrKind& kind : kinds) {
             SCOPED_TRACE(testing::Message() << extent.width << "x" << extent.height << ", " << kind.compression);
             make_exr(path("in.exr"), extent, kind);
-            const std::string expected = by_verbs(path("in.exr"), Container::dds);
+            const Bytes expected = by_verbs(path("in.exr"), Container::dds);
             for (const int threads : {1, 3}) {
                 const auto report = stream(path("in.exr"), Container::dds, threads, {256, 0});
                 ASSERT_TRUE(report) << report.error().message();
-                EXPECT_TRUE(content("out") == expected);
+                EXPECT_TRUE(bytes_of(path("out")) == expected);
             }
             EXPECT_EQ(bake_file(path("in.exr"), path("out"), Container::dds, options_).value().path, Path::streamed);
             options_.heights.fill_invalid = true;
             EXPECT_EQ(bake_file(path("in.exr"), path("out"), Container::dds, options_).value().path, Path::whole);
-            EXPECT_TRUE(content("out") == expected);
+            EXPECT_TRUE(bytes_of(path("out")) == expected);
             options_.heights.fill_invalid = false;
         }
     }
 }
 
-TEST_F(Pipeline, ADamagedExrIsTheSameErrorOnEveryPath) {
+TEST_F(Pipeline, DamageIsTheSameErrorAndLeavesNothing) {
     make_exr(path("in.exr"), {200, 300}, {});
-    std::string text = content("in.exr");
-    Bytes bytes(reinterpret_cast<const std::byte*>(text.data()), reinterpret_cast<const std::byte*>(text.data()) + text.size());
-    const std::string cut = write("cut.exr", Bytes(bytes.begin(), bytes.end() - 300));
-    bytes[bytes.size() / 2] ^= std::byte{0x5a};
-    for (const std::string& input : {write("hurt.exr", bytes), cut}) {
-        const Error expected = read_image(input).error();
-        for (const int threads : {1, 3}) {
-            const auto report = stream(input, Container::dds, threads, {2048, 0});
-            ASSERT_FALSE(report);
-            EXPECT_EQ(report.error().message(), expected.message());
-            EXPECT_EQ(report.error().code, expected.code);
-            EXPECT_FALSE(std::filesystem::exists(path("out")));
-        }
+    for (const std::string& sound : {path("in.exr"), write("in.png", make_png({300, 500}, {1, 16}))}) {
+        expect_same_damage(sound, [](const std::string& input) { return read_image(input); },
+                           [&](const std::string& input, int threads) { return stream(input, Container::dds, threads, {2048, 0}); });
     }
-}
-
-TEST_F(Pipeline, ADamagedPictureLeavesNothing) {
-    Bytes bytes = make_png({300, 500}, {1, 16});
-    const std::string cut = write("cut.png", Bytes(bytes.begin(), bytes.end() - 400));
-    bytes[bytes.size() / 2] ^= std::byte{0x55};
-    for (const std::string& input : {write("hurt.png", bytes), cut}) {
-        const Error expected = read_image(input).error();
-        for (const int threads : {1, 3}) {
-            const auto report = stream(input, Container::dds, threads, {4096, 0});
-            ASSERT_FALSE(report);
-            EXPECT_EQ(report.error().message(), expected.message());
-            EXPECT_EQ(report.error().code, ErrorCode::bad_data);
-            EXPECT_FALSE(std::filesystem::exists(path("out")));
-        }
-    }
-    EXPECT_EQ(files(), 2u);
+    EXPECT_EQ(files(), 4u);
     // A picture that is damaged is damaged first, whatever else is wrong.
     options_.heights.channel = HeightChannel::a;
-    EXPECT_EQ(bake_file(cut, path("out"), Container::dds, options_).error().code, ErrorCode::bad_data);
+    EXPECT_EQ(bake_file(path("cut"), path("out"), Container::dds, options_).error().code, ErrorCode::bad_data);
 }
 
 TEST_F(Pipeline, HeightsThatCannotBeUsedAreTheSameErrors) {

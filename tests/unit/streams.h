@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// streams.h: what the tests of files that go through as streams share: a folder of their own, and damage.
+
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <tex/names.h>
+#include <tex/result.h>
+
+#include "unit/textures.h"
+
+namespace tex {
+
+using Bytes = std::vector<std::byte>;
+
+template <class E, std::size_t N>
+E any_of(const Named<E> (&table)[N], std::mt19937& random) {
+    return table[random() % N].value;
+}
+
+class StreamTest : public testing::Test {
+protected:
+    void SetUp() override {
+        std::string pattern = testing::TempDir() + "stream_XXXXXX";
+        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+        folder_ = pattern;
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
+    [[nodiscard]] std::string path(const std::string& name) const { return folder_ + "/" + name; }
+    [[nodiscard]] std::string write(const std::string& name, const Bytes& bytes) const {
+        std::ofstream(path(name), std::ios::binary)
+            .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+        return path(name);
+    }
+    [[nodiscard]] std::size_t files() const {
+        return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_), {}));
+    }
+
+    // Of a sound file, "cut" and "hurt" are damaged copies: stream(input, threads) must tell the error of read(input), and leave no "out".
+    template <class Read, class Stream>
+    void expect_same_damage(const std::string& sound, const Read& read, const Stream& stream) const {
+        Bytes bytes = bytes_of(sound);
+        const std::string cut = write("cut", Bytes(bytes.begin(), bytes.end() - 300));
+        bytes[bytes.size() / 2] ^= std::byte{0x5a};
+        for (const std::string& input : {write("hurt", bytes), cut}) {
+            const Error expected = read(input).error();
+            EXPECT_EQ(expected.code, ErrorCode::bad_data);
+            for (const int threads : {1, 3}) {
+                const auto report = stream(input, threads);
+                ASSERT_FALSE(report);
+                EXPECT_EQ(report.error().message(), expected.message());
+                EXPECT_EQ(report.error().code, expected.code);
+                EXPECT_FALSE(std::filesystem::exists(path("out")));
+            }
+        }
+    }
+
+private:
+    std::string folder_;
+};
+
+}  // namespace tex
