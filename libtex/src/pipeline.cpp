@@ -23,8 +23,6 @@
 namespace tex {
 namespace {
 
-bool is_texture(Container container) { return container == Container::dds || container == Container::ktx2; }
-
 bool can_stream(const RowSource* rows, Container container, const BakeFileOptions& options) {
     return rows != nullptr && rows->is_sequential() && is_texture(container) && options.color.space.empty() &&
            !options.heights.fill_invalid;

@@ -21,8 +21,6 @@ namespace {
 // A file of at most so many bytes is put together in memory and written at once: a call of the system for each of its levels takes as long as they do.
 constexpr std::size_t kWrittenAtOnce = std::size_t{1} << 18;
 
-bool is_texture(Container container) { return container == Container::dds || container == Container::ktx2; }
-
 // DDS and KTX2: every level has its place from the start.
 class TextureWriter final : public StripWriter {
 public:
@@ -118,6 +116,8 @@ Result<void> PictureWriter::commit() {
 }
 
 }  // namespace
+
+bool is_texture(Container container) { return container == Container::dds || container == Container::ktx2; }
 
 bool takes_strips(Container container, int levels) { return is_texture(container) || takes_rows(container, levels); }
 

@@ -37,6 +37,9 @@ public:
     [[nodiscard]] virtual std::size_t file_bytes() const = 0;
 };
 
+// DDS and KTX2, whose strips come in any order.
+[[nodiscard]] bool is_texture(Container container);
+
 // Whether files of this kind, with so many levels, are written strip by strip: DDS, KTX2, and those that takes_rows() knows, in order.
 [[nodiscard]] bool takes_strips(Container container, int levels);
 
