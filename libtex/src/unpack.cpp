@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cassert>
 #include <cstring>
 
@@ -97,20 +98,22 @@ template <class Reader>
 Result<bool> weigh_range(const Reader& reader, const Execution& execution) {
     const Extent extent = reader.extent();
     std::vector<RangeEvidence> rows(static_cast<std::size_t>(extent.height));
+    std::atomic<bool> negative = false;  // a negative value settles it
     Execution silent;
     silent.threads = execution.threads;
     const auto weighed = parallel_for(silent, strips_of(extent), grain_of(extent), [&](int begin, int end) {
         Plane<float> scratch = make_scratch(extent);
-        for (int strip = begin; strip < end; ++strip) {
+        for (int strip = begin; strip < end && !negative; ++strip) {
             const StripRows strip_rows = reader.read(strip, scratch);
             for (int r = 0; r < kStripRows && strip * kStripRows + r < extent.height; ++r) {
-                rows[static_cast<std::size_t>(strip * kStripRows + r)] =
-                    weigh_row(strip_rows.component[0][r], strip_rows.component[1][r], strip_rows.component[2][r],
-                              extent.width);
+                RangeEvidence& row = rows[static_cast<std::size_t>(strip * kStripRows + r)];
+                row = weigh_row(strip_rows.component[0][r], strip_rows.component[1][r], strip_rows.component[2][r], extent.width);
+                if (row.negative) negative = true;
             }
         }
     });
     if (!weighed) return weighed.error();
+    if (negative) return false;
     RangeEvidence sum;
     for (const RangeEvidence& row : rows) sum.add(row);
     return sum.says_unsigned();

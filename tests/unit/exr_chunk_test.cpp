@@ -29,31 +29,45 @@ Bytes deflated(std::size_t size) {
     return bytes;
 }
 
-TEST(ExrChunk, ZipIsInflatedToItsEnd) {
-    for (const Imf::Compression zip : {Imf::ZIP_COMPRESSION, Imf::ZIPS_COMPRESSION}) {
-        const Bytes bytes = deflated(100'000);
-        EXPECT_TRUE(chunk_is_whole(zip, bytes.data(), bytes.size(), 100'000));
-        EXPECT_FALSE(chunk_is_whole(zip, bytes.data(), bytes.size(), 100'001));
-        EXPECT_FALSE(chunk_is_whole(zip, bytes.data(), bytes.size() / 2, 100'000));
-        EXPECT_FALSE(chunk_is_whole(zip, bytes.data() + 1, bytes.size() - 1, 100'000));
+TEST(ExrChunk, ZipHoldsAllTexelsOrNone) {
+    Unzipper unzipper;
+    const Bytes chunk = deflated(100'000);
+    const std::span<const std::byte> bytes(chunk);
+    EXPECT_EQ(unzipper.texels(bytes, 100'000, 100'000).size(), 100'000u);
+    EXPECT_EQ(unzipper.texels(bytes, 99'999, 100'000).size(), 99'999u);
+    EXPECT_TRUE(unzipper.texels(bytes, 100'001, 200'000).empty());
+    EXPECT_TRUE(unzipper.texels(bytes, 99'999, 99'999).empty()) << "more than a chunk can hold";
+    EXPECT_TRUE(unzipper.texels(bytes.first(bytes.size() / 2), 100'000, 100'000).empty());
+    EXPECT_TRUE(unzipper.texels(bytes.subspan(1), 100'000, 100'000).empty());
+    EXPECT_TRUE(unzipper.texels({}, 100'000, 100'000).empty());
+}
+
+// Zeros that were stored as differences from 128 are a fall of 128 at each byte: 0, 128, 0, ... in the even places, and on in the odd ones.
+TEST(ExrChunk, ZipPredictsAndInterleaves) {
+    Unzipper unzipper;
+    const Bytes chunk = deflated(7'001);
+    const auto texels = unzipper.texels(chunk, 7'001, 7'001);
+    ASSERT_EQ(texels.size(), 7'001u);
+    for (std::size_t k = 0; k < texels.size(); ++k) {
+        const std::size_t stored = k % 2 == 0 ? k / 2 : 3'501 + k / 2;
+        ASSERT_EQ(texels[k], std::byte(stored % 2 == 0 ? 0 : 128)) << k;
     }
 }
 
 TEST(ExrChunk, RunsAreCounted) {
     const Bytes bytes = {std::byte{9}, std::byte{1}, std::byte{0xfd}, std::byte{1}, std::byte{2}, std::byte{3}};  // 10 times 1, then 3 bytes
-    EXPECT_TRUE(chunk_is_whole(Imf::RLE_COMPRESSION, bytes.data(), bytes.size(), 13));
-    EXPECT_FALSE(chunk_is_whole(Imf::RLE_COMPRESSION, bytes.data(), bytes.size(), 14));
+    EXPECT_TRUE(chunk_is_whole(Imf::RLE_COMPRESSION, bytes, 13));
+    EXPECT_FALSE(chunk_is_whole(Imf::RLE_COMPRESSION, bytes, 14));
 }
 
 TEST(ExrChunk, EmptyOnesAreNeverWhole) {
+    const Bytes stored(8);
     for (int k = 0; k < Imf::NUM_COMPRESSION_METHODS; ++k) {
         const auto compression = static_cast<Imf::Compression>(k);
-        const std::byte stored[8] = {};
-        EXPECT_FALSE(chunk_is_whole(compression, stored, 0, 8)) << k;
-        EXPECT_TRUE(chunk_is_whole(compression, stored, 8, 8)) << k;
+        EXPECT_FALSE(chunk_is_whole(compression, {}, 8)) << k;
+        EXPECT_TRUE(chunk_is_whole(compression, stored, 8)) << k;
     }
-    const std::byte stored[8] = {};
-    EXPECT_FALSE(chunk_is_whole(Imf::NO_COMPRESSION, stored, 7, 8));
+    EXPECT_FALSE(chunk_is_whole(Imf::NO_COMPRESSION, std::span(stored).first(7), 8));
 }
 
 // What a file of these bytes is read as, where new memory holds `poison` (the C library's M_PERTURB).

@@ -287,8 +287,6 @@ TEST_F(PackStream, TakesEveryInputThatComesInOrder) {
 }
 
 TEST_F(PackStream, LeavesWholeImagesToTheVerbs) {
-    const MipChain chain = build_mip_chain(wavy_map({32, 16})).value();
-    const std::string mipped = write(pack(chain, {Encoding::half}).value(), Container::exr);
     const std::string plain = write_map({32, 16}, Container::png, Encoding::rgb8);
     options_.mip = MipOptions();
     pack_.encoding = Encoding::half;
@@ -297,19 +295,26 @@ TEST_F(PackStream, LeavesWholeImagesToTheVerbs) {
     options_.mip->levels = 1;
     EXPECT_EQ(pack_file(plain, path("out"), Container::exr, options_).value().path, Path::streamed);
     EXPECT_TRUE(bytes_of(path("out")) == by_verbs(plain, Container::exr).value());
-    struct Case {
-        std::string input;
-        Container container;
-    };
-    for (const auto& [input, container] : {Case{mipped, Container::dds}, Case{plain, Container::tga}}) {
-        for (const bool builds : {false, true}) {
-            options_.mip = builds ? std::optional(MipOptions()) : std::nullopt;
-            pack_.encoding = container == Container::dds ? Encoding::bc5 : Encoding::rgb8;
-            const auto report = pack_file(input, path("out"), container, options_);
-            ASSERT_TRUE(report) << report.error().message();
-            EXPECT_EQ(report->path, Path::whole);
-            EXPECT_TRUE(bytes_of(path("out")) == by_verbs(input, container).value());
-        }
+    for (const bool builds : {false, true}) {
+        options_.mip = builds ? std::optional(MipOptions()) : std::nullopt;
+        pack_.encoding = Encoding::rgb8;
+        const auto report = pack_file(plain, path("out"), Container::tga, options_);
+        ASSERT_TRUE(report) << report.error().message();
+        EXPECT_EQ(report->path, Path::whole);
+        EXPECT_TRUE(bytes_of(path("out")) == by_verbs(plain, Container::tga).value());
+    }
+}
+
+TEST_F(PackStream, LevelsOfAnExrStream) {
+    const std::string mipped = write(pack(build_mip_chain(wavy_map({320, 190})).value(), {Encoding::half}).value(), Container::exr);
+    pack_.encoding = Encoding::bc5;
+    for (const bool builds : {false, true}) {
+        options_.mip = builds ? std::optional(MipOptions()) : std::nullopt;
+        const auto report = pack_file(mipped, path("out"), Container::dds, options_);
+        ASSERT_TRUE(report) << report.error().message();
+        EXPECT_EQ(report->path, Path::streamed);
+        EXPECT_EQ(report->levels, 9);
+        EXPECT_TRUE(bytes_of(path("out")) == by_verbs(mipped, Container::dds).value());
     }
 }
 

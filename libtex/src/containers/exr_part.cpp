@@ -8,12 +8,9 @@
 
 #include <Iex.h>
 #include <ImfChannelList.h>
-#include <ImfFrameBuffer.h>
 #include <ImfPartType.h>
-#include <ImfStringAttribute.h>
 
 #include "containers/claims.h"
-#include "containers/exr_chunk.h"
 
 namespace tex {
 namespace {
@@ -116,61 +113,7 @@ private:
     ExrStream& stream_;
 };
 
-std::vector<std::string> names_of(const std::vector<ExrChannel>& channels) {
-    std::vector<std::string> names;
-    for (const ExrChannel& channel : channels) names.push_back(channel.name);
-    return names;
-}
-
-// The bits of integers become code / (2^32 - 1).
-void scale_integers(Plane<float>& plane) {
-    for (int j = 0; j < plane.extent().height; ++j) {
-        for (int i = 0; i < plane.extent().width; ++i) {
-            std::uint32_t code = 0;
-            std::memcpy(&code, &plane.at(i, j), sizeof code);
-            plane.at(i, j) = static_cast<float>(static_cast<double>(code) / 4294967295.0);
-        }
-    }
-}
-
-// The chunk that was read last: OpenEXR reads its bytes with one call, after all else, and keeps them.
-void check_chunk(const Imf::Header& header, const ExrStream& stream, int width, int height) {
-    std::size_t texel_bytes = 0;
-    for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
-        texel_bytes += it.channel().type == Imf::HALF ? sizeof(std::uint16_t) : sizeof(std::uint32_t);
-    }
-    const auto wanted = static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * texel_bytes;
-    if (!chunk_is_whole(header.compression(), stream.last_read().data(), stream.last_read().size(), wanted)) {
-        throw Iex::InputExc("a chunk ends too early");
-    }
-}
-
 }  // namespace
-
-void read_lines(Imf::InputPart& part, const ExrStream& stream, int first, int last) {
-    const Imf::Header& header = part.header();
-    const Imath::Box2i window = header.dataWindow();
-    const int lines = chunk_lines(header.compression());
-    const int first_chunk = (first - window.min.y) / lines;
-    const int last_chunk = (last - window.min.y) / lines;
-    for (int k = 0; k <= last_chunk - first_chunk; ++k) {  // in the order of the file
-        const int chunk = header.lineOrder() == Imf::DECREASING_Y ? last_chunk - k : first_chunk + k;
-        const int begin = window.min.y + chunk * lines;
-        const int end = std::min(begin + lines - 1, window.max.y);
-        part.readPixels(std::max(begin, first), std::min(end, last));
-        check_chunk(header, stream, window.max.x - window.min.x + 1, end - begin + 1);
-    }
-}
-
-void read_tiles(Imf::TiledInputPart& part, const ExrStream& stream, int first, int last, int level) {
-    for (int j = first; j <= last; ++j) {
-        for (int i = 0; i < part.numXTiles(level); ++i) {
-            part.readTile(i, j, level, level);
-            const Imath::Box2i tile = part.dataWindowForTile(i, j, level, level);
-            check_chunk(part.header(), stream, tile.max.x - tile.min.x + 1, tile.max.y - tile.min.y + 1);
-        }
-    }
-}
 
 // OpenEXR adds its own opening ('Cannot read image file "NAME". ') to every reason, sometimes twice; it stands before what matters.
 Error exr_error(const std::string& path, const std::exception& thrown) {
@@ -269,48 +212,6 @@ Result<Extent> check_header(const std::string& path, const Imf::Header& header, 
         }
     }
     return extent;
-}
-
-PartReader::PartReader(Imf::MultiPartInputFile& file, const ExrStream& stream, std::vector<ExrChannel> channels)
-    : header_(file.header(0)), stream_(stream), channels_(std::move(channels)) {
-    header_.hasTileDescription() ? void(tiled_.emplace(file, 0)) : void(lines_.emplace(file, 0));
-}
-
-Image PartReader::read(int level) {
-    const Imath::Box2i window = tiled_ ? tiled_->dataWindowForLevel(level, level) : header_.dataWindow();
-    Image image = make_image({window.max.x - window.min.x + 1, window.max.y - window.min.y + 1}, names_of(channels_));
-    Imf::FrameBuffer buffer;
-    for (std::size_t k = 0; k < channels_.size(); ++k) {
-        Plane<float>& plane = image.planes[k];
-        const Imf::PixelType type = channels_[k].type == Imf::UINT ? Imf::UINT : Imf::FLOAT;
-        buffer.insert(channels_[k].name.c_str(),
-                      Imf::Slice::Make(type, plane.row(0), window.min, plane.extent().width, plane.extent().height,
-                                       sizeof(float), static_cast<std::size_t>(plane.stride()) * sizeof(float)));
-    }
-    if (tiled_) {
-        tiled_->setFrameBuffer(buffer);
-        read_tiles(*tiled_, stream_, 0, tiled_->numYTiles(level) - 1, level);
-    } else {
-        lines_->setFrameBuffer(buffer);
-        read_lines(*lines_, stream_, window.min.y, window.max.y);
-    }
-    for (std::size_t k = 0; k < channels_.size(); ++k) {
-        if (channels_[k].type == Imf::UINT) scale_integers(image.planes[k]);
-    }
-    describe(image);
-    return image;
-}
-
-void PartReader::describe(Image& image) const {
-    const auto all = [&](Imf::PixelType type) {
-        return std::all_of(channels_.begin(), channels_.end(),
-                           [type](const ExrChannel& channel) { return channel.type == type; });
-    };
-    image.sample = all(Imf::UINT) ? SampleKind::unorm : SampleKind::floating;
-    image.bits = all(Imf::HALF) ? 16 : 32;
-    if (const auto* text = header_.findTypedAttribute<Imf::StringAttribute>(kNormalEncoding)) {
-        image.normal_encoding = text->value();
-    }
 }
 
 }  // namespace tex

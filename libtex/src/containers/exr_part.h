@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// exr_part.h: the first part of an EXR file, through OpenEXR: checked before it is believed, read one level at a time.
+// exr_part.h: the first part of an EXR file, as its header tells: checked before it is believed.
 
 #pragma once
 
@@ -13,10 +13,7 @@
 
 #include <ImfHeader.h>
 #include <ImfIO.h>
-#include <ImfInputPart.h>
-#include <ImfMultiPartInputFile.h>
 #include <ImfPixelType.h>
-#include <ImfTiledInputPart.h>
 
 #include <tex/image.h>
 #include <tex/image_io.h>
@@ -77,26 +74,5 @@ std::vector<ExrChannel> channels_of(const Imf::Header& header);
 // large), bad_data.
 Result<Extent> check_header(const std::string& path, const Imf::Header& header, std::int64_t file_size,
                             const ReadOptions& options);
-
-// Read scan lines `first` to `last`, or rows of tiles, chunk by chunk. Throw what OpenEXR throws, also for chunks that do not hold all of their texels.
-// Precondition: the part reads from `stream`, without threads.
-void read_lines(Imf::InputPart& part, const ExrStream& stream, int first, int last);
-void read_tiles(Imf::TiledInputPart& part, const ExrStream& stream, int first, int last, int level);
-
-// Reads levels of the first part into planes, one for each of `channels`. Throws as read_lines(), and std::bad_alloc. Precondition: `file` reads from `stream`, without threads.
-class PartReader {
-public:
-    PartReader(Imf::MultiPartInputFile& file, const ExrStream& stream, std::vector<ExrChannel> channels);
-    Image read(int level);
-
-private:
-    void describe(Image& image) const;
-
-    const Imf::Header& header_;
-    const ExrStream& stream_;
-    const std::vector<ExrChannel> channels_;
-    std::optional<Imf::InputPart> lines_;
-    std::optional<Imf::TiledInputPart> tiled_;
-};
 
 }  // namespace tex

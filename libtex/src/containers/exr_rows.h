@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include <tex/image_io.h>
 #include <tex/result.h>
@@ -18,11 +19,10 @@ namespace tex {
 // the rows. Errors: those of read_exr() that the header tells.
 Result<std::unique_ptr<RowSource>> open_exr_rows(InputFile& file, const ReadOptions& options);
 
-// The same of a texture: the channels that read_exr_texture() takes.
+// The same of a texture: the levels and channels that read_exr_texture() takes.
 struct ExrTextureRows {
-    std::unique_ptr<RowSource> rows;  // of the base level
-    Texture head;                     // what read_exr_texture() makes of the file, but for the levels
-    int levels = 1;                   // that it would read
+    std::vector<std::unique_ptr<RowSource>> levels;
+    Texture head;  // what read_exr_texture() makes of the file, but for its levels
 };
 Result<ExrTextureRows> open_exr_texture_rows(InputFile& file, const ReadOptions& options);
 

@@ -29,8 +29,9 @@ public:
     [[nodiscard]] Extent extent() const { return extent_; }
     [[nodiscard]] const std::vector<std::string>& names() const { return names_; }  // of the channels
     [[nodiscard]] std::size_t row_bytes() const { return row_bytes_; }              // of a decoded row
-    [[nodiscard]] SampleKind sample() const { return sample_; }                     // this and the next as in Image
+    [[nodiscard]] SampleKind sample() const { return sample_; }                     // this and the next two as in Image
     [[nodiscard]] int bits() const { return bits_; }
+    [[nodiscard]] const std::string& normal_encoding() const { return normal_encoding_; }
 
     // Rows come a few at a time. Where not, read_all() is the only way.
     [[nodiscard]] virtual bool is_sequential() const { return true; }
@@ -63,9 +64,10 @@ protected:
         names_ = std::move(names);
         row_bytes_ = row_bytes;
     }
-    void describe_samples(SampleKind sample, int bits) {
+    void describe_samples(SampleKind sample, int bits, std::string normal_encoding = {}) {
         sample_ = sample;
         bits_ = bits;
+        normal_encoding_ = std::move(normal_encoding);
     }
 
 private:
@@ -74,6 +76,7 @@ private:
     std::size_t row_bytes_ = 0;
     SampleKind sample_ = SampleKind::unorm;
     int bits_ = 8;
+    std::string normal_encoding_;
 };
 
 // The picture in `file`, which must outlive it; null where this kind of file is only read as a whole: see read_image(InputFile&). Errors: as

@@ -70,10 +70,9 @@ Opened level_rows(InputFile& file, const ReadOptions& options) {
 Opened exr_rows(InputFile& file, const ReadOptions& options) {
     Result<ExrTextureRows> rows = open_exr_texture_rows(file, options);
     if (!rows) return named(file, rows.error());
-    if (rows->levels > 1) return std::optional<TextureRows>();
     TextureRows texture;
     texture.head = std::move(rows->head);
-    texture.levels.push_back(std::move(rows->rows));
+    texture.levels = std::move(rows->levels);
     for (std::size_t c = 0; c < texture.levels.front()->names().size(); ++c) texture.planes.push_back(c);
     return std::optional(std::move(texture));
 }

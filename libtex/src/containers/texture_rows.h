@@ -28,7 +28,7 @@ struct TextureRows {
     bool rounds = false;                             // values are to go through round_to_texels() (picture.h)
 };
 
-// The texture in `file`, which must outlive it. Nothing where it can only be read as a whole: interlaced PNG, EXR with several levels; read_texture() may follow
+// The texture in `file`, which must outlive it. Nothing where it can only be read as a whole: interlaced PNG; read_texture() may follow
 // then. Errors: those of read_texture() that a header tells.
 Result<std::optional<TextureRows>> open_texture_rows(InputFile& file, const ReadOptions& options);
 

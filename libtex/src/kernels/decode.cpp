@@ -7,14 +7,12 @@
 #include "kernels/decode.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <cstring>
 
-#include <half.h>
-
 #include "blocks/bc1.h"
 #include "blocks/bc4.h"
+#include "kernels/samples.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/decode.cpp"
@@ -226,62 +224,13 @@ namespace tex {
 
 HWY_EXPORT(DecodeBlocks);
 
-namespace {
-
-template <class T>
-T load(const std::byte* p) {
-    T value;
-    std::memcpy(&value, p, sizeof value);
-    return value;
-}
-
-constexpr std::array<float, 256> kUnorm8 = [] {
-    std::array<float, 256> values{};
-    for (int code = 0; code < 256; ++code) values[static_cast<std::size_t>(code)] = static_cast<float>(code) / 255.0f;
-    return values;
-}();
-
-float from_unorm8(const std::byte* p) { return kUnorm8[std::to_integer<std::size_t>(*p)]; }
-float from_unorm16(const std::byte* p) { return static_cast<float>(load<std::uint16_t>(p)) / 65535.0f; }
-float from_snorm8(const std::byte* p) { return std::max(static_cast<float>(load<std::int8_t>(p)) / 127.0f, -1.0f); }
-float from_snorm16(const std::byte* p) { return std::max(static_cast<float>(load<std::int16_t>(p)) / 32767.0f, -1.0f); }
-
-float from_half(const std::byte* p) {
-    Imath::half value;
-    value.setBits(load<std::uint16_t>(p));
-    return value;
-}
-
-template <float (*kDecode)(const std::byte*)>
-void decode_samples(const std::byte* first, std::size_t step, int count, float* out) {
-    for (int i = 0; i < count; ++i, first += step) out[i] = kDecode(first);
-}
-
-}  // namespace
-
 void decode_texels(Format format, const std::byte* texels, int count, const ChannelRows& rows) {
     const FormatInfo info = format_info(format);
     const std::size_t sample_bytes = static_cast<std::size_t>(info.bits) / 8;
-    const bool wide = info.bits == 16;
     for (int c = 0; c < info.channels; ++c) {
-        float* out = rows.channel[c];
-        if (out == nullptr) continue;
+        if (rows.channel[c] == nullptr) continue;
         const std::byte* first = texels + static_cast<std::size_t>(c) * sample_bytes;
-        const std::size_t step = info.block_bytes;
-        switch (info.sample) {
-            case SampleKind::unorm:
-                wide ? decode_samples<from_unorm16>(first, step, count, out)
-                     : decode_samples<from_unorm8>(first, step, count, out);
-                break;
-            case SampleKind::snorm:
-                wide ? decode_samples<from_snorm16>(first, step, count, out)
-                     : decode_samples<from_snorm8>(first, step, count, out);
-                break;
-            case SampleKind::floating:
-                wide ? decode_samples<from_half>(first, step, count, out)
-                     : decode_samples<load<float>>(first, step, count, out);
-                break;
-        }
+        decode_samples(info.sample, info.bits, first, info.block_bytes, count, rows.channel[c]);
     }
 }
 
