@@ -34,7 +34,7 @@ void expect_all(SampleKind sample, const Expected& expected) {
     std::vector<T> codes(std::size_t{1} << (8 * sizeof(T)));
     for (std::size_t k = 0; k < codes.size(); ++k) codes[k] = static_cast<T>(k);
     on_every_target([&] {
-        for (const std::size_t gap : {1, 3}) {
+        for (const std::size_t gap : {std::size_t{1}, std::size_t{3}}) {
             const std::vector<float> values = decoded(sample, codes, gap);
             for (std::size_t k = 0; k < codes.size(); ++k) {
                 ASSERT_EQ(std::bit_cast<std::uint32_t>(values[k]), std::bit_cast<std::uint32_t>(expected(codes[k]))) << k;

@@ -43,6 +43,16 @@ struct Chunks {
     int end = 0;
 };
 
+// Where OpenEXR puts `count` lines from `top`, of those in `window`.
+Imf::FrameBuffer buffer_of(const Imath::Box2i& window, int top, int count, const ExrTarget& target) {
+    Imf::FrameBuffer buffer;
+    for (const ExrPlane& plane : target.planes) {
+        buffer.insert(plane.channel.name.c_str(), Imf::Slice::Make(plane.channel.type, target.rows + plane.offset, {window.min.x, top}, width_of(window), count,
+                                                                   value_bytes(plane.channel.type), target.row_bytes));
+    }
+    return buffer;
+}
+
 }  // namespace
 
 const Imf::Header& ExrReader::header() {
@@ -69,27 +79,23 @@ Imath::Box2i ExrReader::window(int level) {
 void ExrReader::read(int level, int first, int count, const ExrTarget& target) {
     open_part();
     const Imath::Box2i all = window(level);
-    const int top = all.min.y + first;
-    const int last = top + count - 1;
-    if (lines_ && is_zip(header())) return unzip_lines(top, last, target);
-
-    Imf::FrameBuffer buffer;
-    for (const ExrPlane& plane : target.planes) {
-        buffer.insert(plane.channel.name.c_str(), Imf::Slice::Make(plane.channel.type, target.rows + plane.offset, {all.min.x, top}, width_of(all), count,
-                                                                   value_bytes(plane.channel.type), target.row_bytes));
-    }
     if (lines_) {
-        lines_->setFrameBuffer(buffer);
-        read_lines(top, last);
-    } else {
-        const auto height = static_cast<int>(tiles_->tileYSize());
-        tiles_->setFrameBuffer(buffer);
-        read_tiles(level, first / height, (first + count - 1) / height);
+        const int top = all.min.y + first;
+        return is_zip(header()) ? unzip_lines(top, top + count - 1, target) : read_lines(top, top + count - 1, target);
     }
+    // OpenEXR writes whole tiles.
+    const auto tile = static_cast<int>(tiles_->tileYSize());
+    const int begin = first / tile * tile;
+    const int end = std::min(((first + count - 1) / tile + 1) * tile, all.max.y - all.min.y + 1);
+    if (begin == first && end == first + count) return read_tiles(level, begin, end, target);
+    std::vector<std::byte> rows(target.row_bytes * static_cast<std::size_t>(end - begin));
+    read_tiles(level, begin, end, {target.planes, rows.data(), target.row_bytes});
+    std::memcpy(target.rows, rows.data() + target.row_bytes * static_cast<std::size_t>(first - begin), target.row_bytes * static_cast<std::size_t>(count));
 }
 
-void ExrReader::read_lines(int first, int last) {
+void ExrReader::read_lines(int first, int last, const ExrTarget& target) {
     const Chunks chunks(header(), first, last);
+    lines_->setFrameBuffer(buffer_of(chunks.window, first, last - first + 1, target));
     for (int chunk = chunks.begin; chunk < chunks.end; ++chunk) {
         const int begin = chunks.first_line(chunk);
         const int end = chunks.last_line(chunk);
@@ -124,8 +130,11 @@ void ExrReader::unzip_lines(int first, int last, const ExrTarget& target) {
     }
 }
 
-void ExrReader::read_tiles(int level, int first, int last) {
-    for (int j = first; j <= last; ++j) {
+void ExrReader::read_tiles(int level, int begin, int end, const ExrTarget& target) {
+    const Imath::Box2i all = window(level);
+    const auto height = static_cast<int>(tiles_->tileYSize());
+    tiles_->setFrameBuffer(buffer_of(all, all.min.y + begin, end - begin, target));
+    for (int j = begin / height; j * height < end; ++j) {
         for (int i = 0; i < tiles_->numXTiles(level); ++i) {
             tiles_->readTile(i, j, level, level);
             const Imath::Box2i tile = tiles_->dataWindowForTile(i, j, level, level);

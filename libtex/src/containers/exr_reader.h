@@ -50,9 +50,11 @@ public:
 
 private:
     void open_part();
-    void read_lines(int first, int last);
+    // Lines in the file's coordinates.
+    void read_lines(int first, int last, const ExrTarget& target);
     void unzip_lines(int first, int last, const ExrTarget& target);
-    void read_tiles(int level, int first, int last);
+    // Rows [begin, end) of a level, whole tiles.
+    void read_tiles(int level, int begin, int end, const ExrTarget& target);
     // Makes sure that the chunk read last holds `width` x `height` texels.
     void check_chunk(int width, int height);
 

@@ -92,11 +92,11 @@ Result<void> Attempt::prepare() {
 // Where the base level decides how another one is to be read.
 Result<void> Attempt::look_at_base_level() {
     RowSource& base = rows(0);
-    constexpr int kRows = 4;
-    Image image = make_image({base.extent().width, kRows}, base.names());
-    std::vector<std::byte> decoded(base.row_bytes() * kRows);
-    for (int j = 0; j < base.extent().height; j += kRows) {
-        const int count = std::min(kRows, base.extent().height - j);
+    const int step = (base.rows_together() + 3) / 4 * 4;  // see RowSource::decode() and store()
+    Image image = make_image({base.extent().width, step}, base.names());
+    std::vector<std::byte> decoded(base.row_bytes() * static_cast<std::size_t>(step));
+    for (int j = 0; j < base.extent().height; j += step) {
+        const int count = std::min(step, base.extent().height - j);
         if (const Result<void> done = base.decode(j, count, decoded.data()); !done) return done;
         base.store(decoded.data(), 0, count, image);
         for (int k = 0; k < count; ++k) {

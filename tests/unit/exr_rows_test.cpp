@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "containers/exr_rows.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+#include "containers/claims.h"
+#include "containers/exr.h"
+#include "unit/exr_files.h"
+
+namespace tex {
+namespace {
+
+// Rows [first, first + count) as decode() and store() give them. Nothing is written beside them.
+Image some_rows(RowSource& rows, int first, int count) {
+    constexpr std::byte kGuard{0xa5};
+    const std::size_t size = rows.row_bytes() * static_cast<std::size_t>((count + 3) / 4 * 4);
+    std::vector<std::byte> decoded(size + 4096, kGuard);
+    EXPECT_TRUE(rows.decode(first, count, decoded.data()));
+    EXPECT_TRUE(std::all_of(decoded.begin() + static_cast<std::ptrdiff_t>(size), decoded.end(), [](std::byte b) { return b == kGuard; }));
+    Image image = make_image({rows.extent().width, count}, rows.names());
+    rows.store(decoded.data(), 0, count, image);
+    return image;
+}
+
+void expect_same(const Image& part, const Image& whole, int first) {
+    for (std::size_t c = 0; c < whole.planes.size(); ++c) {
+        for (int j = 0; j < part.extent().height; ++j) {
+            const float* const row = part.planes[c].row(j);
+            ASSERT_TRUE(std::equal(row, row + part.extent().width, whole.planes[c].row(first + j))) << c << " " << first << " + " << j;
+        }
+    }
+}
+
+// Chunks have 1 to 256 lines, tiles 8: rows begin and end anywhere in them.
+TEST(ExrRows, AnyRowsAreThoseOfTheWholePicture) {
+    std::minstd_rand random(3);
+    for (int k = 0; k < Imf::NUM_COMPRESSION_METHODS; ++k) {
+        for (const bool tiled : {false, true}) {
+            for (const Imf::PixelType type : {Imf::HALF, Imf::FLOAT, Imf::UINT}) {
+                SCOPED_TRACE(testing::Message() << "compression " << k << (tiled ? ", tiles, type " : ", lines, type ") << type);
+                const auto bytes = exr_file({37, 41}, {"G", "R", "depth"}, type, static_cast<Imf::Compression>(k), tiled);
+                Result<InputFile> file = InputFile::from_memory("rows.exr", bytes);
+                const Result<Image> whole = read_exr(*file, {});
+                ASSERT_TRUE(whole) << whole.error().message();
+                const auto rows = open_exr_rows(*file, {});
+                ASSERT_TRUE(rows) << rows.error().message();
+                for (int round = 0; round < 12; ++round) {
+                    const int first = static_cast<int>(random() % 41);
+                    const int count = 1 + static_cast<int>(random() % static_cast<unsigned>(41 - first));
+                    expect_same(some_rows(**rows, first, count), *whole, first);
+                }
+            }
+        }
+    }
+}
+
+TEST(ExrRows, PlanesThatNobodyWantsStayAsTheyWere) {
+    Result<InputFile> file = InputFile::from_memory("rows.exr", exr_file({5, 4}, {"G", "R"}, Imf::FLOAT, Imf::ZIP_COMPRESSION, false));
+    const auto rows = open_exr_rows(*file, {});
+    ASSERT_TRUE(rows);
+    (*rows)->choose_planes({false, true});
+    std::vector<std::byte> decoded((*rows)->row_bytes() * 4);
+    ASSERT_TRUE((*rows)->decode(0, 4, decoded.data()));
+    Image image = make_image({5, 4}, (*rows)->names());
+    std::fill_n(image.planes[0].row(1), 5, 7.0f);
+    (*rows)->store(decoded.data(), 0, 4, image);
+    EXPECT_EQ(image.planes[0].at(3, 1), 7.0f);
+    EXPECT_EQ(image.planes[1].at(3, 1), exr_value(3, 1, 0));
+}
+
+}  // namespace
+}  // namespace tex
