@@ -43,6 +43,7 @@ struct CheckNormals {
     bool list = false;
 
     std::optional<cli::Baseline> baseline;
+    cli::Baseline new_baseline;
     std::optional<HeightField> height;
     std::mutex mutex;
     cli::HtmlReport page{"check-normals", cli::check_columns()};
@@ -53,7 +54,7 @@ struct CheckNormals {
     CheckNormals();
     void add_rules();
     void add_documents();
-    void check_page(const std::vector<cli::Task>& tasks);
+    void check_documents(const std::vector<cli::Task>& tasks);
     Result<void> add_to_page(cli::Job& job, const CheckReport& report);
     Result<void> prepare(const std::vector<cli::Task>& tasks);
     Result<void> process(cli::Job& job);
@@ -159,10 +160,17 @@ Result<void> CheckNormals::prepare(const std::vector<cli::Task>& tasks) {
     return {};
 }
 
-void CheckNormals::check_page(const std::vector<cli::Task>& tasks) {
+// Every document is a file of its own; only the baseline that is written may be the one that is read.
+void CheckNormals::check_documents(const std::vector<cli::Task>& tasks) {
     std::vector<std::string> inputs;
     for (const cli::Task& task : tasks) inputs.push_back(task.input);
-    cli::check_document("--report", page_path, inputs, {sarif, junit, baseline_written, baseline_path, config, height_path});
+    std::vector<cli::NamedFile> others = {{"--config", config}, {"--height", height_path}, {"--files-from", files.files_from}};
+    for (const cli::NamedFile& document : std::initializer_list<cli::NamedFile>{
+             {"--baseline-write", baseline_written}, {"--baseline", baseline_path}, {"--report", page_path}, {"--sarif", sarif}, {"--junit", junit}}) {
+        if (!document.path.empty() && document.option != "--baseline") cli::check_document(document, inputs, others);
+        others.push_back(document);
+    }
+    if (!page_path.empty()) cli::check_read_twice("--report", inputs);
     sizes = cli::html_sizes(tasks.size());
 }
 
@@ -193,6 +201,10 @@ Result<void> CheckNormals::process(cli::Job& job) {
     auto report = check_file(job.task.input, options, job.read_options, job.until(page_path.empty() ? 1.0 : 0.5));
     if (!report) return report.error();
     if (report->error && report->error->code == ErrorCode::cancelled) return *report->error;
+    if (!baseline_written.empty()) {
+        const std::lock_guard lock(mutex);
+        new_baseline.add(*report);  // with what --baseline accepts
+    }
     const int known = baseline ? baseline->accept(*report) : 0;
     if (report->error) {
         if (report->findings.empty()) cli::print_error(report->error->message());
@@ -213,8 +225,7 @@ Result<void> CheckNormals::process(cli::Job& job) {
     totals.known += known;
     if (report->error) ++totals.unreadable;
     for (const Finding& finding : report->findings) ++totals.by_severity[static_cast<int>(finding.severity)];
-    const bool wanted = !sarif.empty() || !junit.empty() || !baseline_written.empty();
-    if (wanted) reports.insert_or_assign(job.task.input, std::move(*report));
+    if (!sarif.empty() || !junit.empty()) reports.insert_or_assign(job.task.input, std::move(*report));
     return {};
 }
 
@@ -233,7 +244,7 @@ cli::ExitCode CheckNormals::write_documents() const {
     if (!sarif.empty()) write(sarif, cli::sarif_text(all, options.require));
     if (!junit.empty()) write(junit, cli::junit_text(all, options.require, fail_on));
     if (!page_path.empty()) write(page_path, page.page(summary()));
-    if (!baseline_written.empty()) write(baseline_written, cli::Baseline::of(all).text());
+    if (!baseline_written.empty()) write(baseline_written, new_baseline.text());
     return code;
 }
 
@@ -251,12 +262,14 @@ cli::ExitCode run_command(CheckNormals& self) {
     if (!self.explain.empty()) return cli::print(cli::rule_text(*find_rule(self.explain)));
     cli::Steps steps;
     steps.check = [&](const std::vector<cli::Task>& tasks) {
-        if (!self.page_path.empty()) self.check_page(tasks);
+        self.check_documents(tasks);
         return self.prepare(tasks);
     };
     steps.process = [&](cli::Job& job) { return self.process(job); };
+    bool has_run = false;
+    steps.finish = [&] { has_run = true; };
     cli::ExitCode code = cli::run_readers(self.command, self.files, self.run, steps);
-    if (self.totals.files > 0) {
+    if (has_run) {
         if (!self.run.json) code = std::max(code, cli::print(self.summary() + "\n"));
         code = std::max(code, self.write_documents());
     }

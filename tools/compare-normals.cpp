@@ -14,6 +14,7 @@
 #include "cli/interrupt.h"
 #include "cli/json.h"
 #include "cli/stream.h"
+#include "cli/text.h"
 #include "cli/usage_error.h"
 
 namespace {
@@ -31,10 +32,12 @@ struct CompareNormals {
     cli::RunOptions run;
 
     CompareNormals();
+    void check_documents() const;
     void add_limit(std::optional<double>& limit, const std::string& name, const std::string& what);
     Result<std::vector<NormalMap>> read(const std::string& path, std::optional<YAxis> y) const;
     Result<cli::ExitCode> compare_files();
-    void tell(int number, Extent extent, const AngularError& error) const;
+    [[nodiscard]] cli::ExitCode tell(const Error& error) const;
+    [[nodiscard]] cli::ExitCode tell(int number, Extent extent, const AngularError& error) const;
     cli::ExitCode judge(int number, const AngularError& error) const;
     Result<void> write_heat_map(const Comparison& comparison) const;
     [[nodiscard]] Result<cli::HtmlMap> draw_map(const std::string& path, std::optional<YAxis> y) const;
@@ -70,13 +73,26 @@ CompareNormals::CompareNormals() {
         if (command.inputs().size() != 2) throw cli::UsageError("two files are compared: A and B");
         if (heat_map_scale && heat_map_path.empty()) throw cli::UsageError("--heatmap-scale needs --heatmap");
         if (command.inputs()[0] == "-" && command.inputs()[1] == "-") throw cli::UsageError("standard input can only be read once");
-        if (command.given("--report")) cli::check_document("--report", page_path, command.inputs(), {heat_map_path});
+        check_documents();
     });
     command.example("compare-normals bricks.exr bricks.dds", "What the compression of bricks.dds cost.");
     command.example("compare-normals old.dds new.dds --level all --max-p999 2 --heatmap diff.png",
                     "Fails where more than 1 texel in 1000 moved by over 2 degrees, and shows where.");
     command.example("compare-normals bricks.exr bricks.dds --report loss.html", "A page with both maps under a light that can be moved.");
     command.example("compare-normals gl.png dx.png --y-b down", "Two conventions of one map.");
+}
+
+void CompareNormals::check_documents() const {
+    const cli::NamedFile heat_map_file = {"--heatmap", heat_map_path}, page = {"--report", page_path};
+    if (!heat_map_path.empty()) {
+        cli::check_document(heat_map_file, command.inputs(), {});
+        const auto container = container_of(heat_map_path);
+        if (!container || !can_hold(*container, Encoding::rgb8))
+            throw cli::UsageError(fmt::format("--heatmap: {} is no kind of picture that can be written", cli::printable(heat_map_path)));
+    }
+    if (page_path.empty()) return;
+    cli::check_document(page, command.inputs(), {heat_map_file});
+    cli::check_read_twice("--report", command.inputs());
 }
 
 void CompareNormals::add_limit(std::optional<double>& limit, const std::string& name, const std::string& what) {
@@ -96,7 +112,7 @@ Result<std::vector<NormalMap>> CompareNormals::read(const std::string& path, std
     return error;
 }
 
-void CompareNormals::tell(int number, Extent extent, const AngularError& e) const {
+cli::ExitCode CompareNormals::tell(int number, Extent extent, const AngularError& e) const {
     if (run.json) {
         const auto degrees = [](double angle) { return static_cast<float>(angle); };
         cli::Json line;
@@ -108,12 +124,21 @@ void CompareNormals::tell(int number, Extent extent, const AngularError& e) cons
         line["degrees"] = {{"mean", degrees(e.mean)}, {"rms", degrees(e.rms)}, {"p50", degrees(e.p50)}, {"p99", degrees(e.p99)},
                            {"p99.9", degrees(e.p999)}, {"max", degrees(e.max)}};
         line["max_at"] = {e.max_column, e.max_row};
-        (void)cli::print(cli::to_line(line));
-        return;
+        return cli::print(cli::to_line(line));
     }
-    (void)cli::print(fmt::format("{:>5} {:>11} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f}  column {}, row {}\n", number,
+    return cli::print(fmt::format("{:>5} {:>11} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f}  column {}, row {}\n", number,
                                  fmt::format("{}x{}", extent.width, extent.height), e.mean, e.rms, e.p50, e.p99, e.p999, e.max,
                                  e.max_column, e.max_row));
+}
+
+cli::ExitCode CompareNormals::tell(const Error& error) const {
+    cli::print_error(error.message());
+    if (!run.json) return cli::ExitCode::done;
+    cli::Json line;
+    line["a"] = command.inputs()[0];
+    line["b"] = command.inputs()[1];
+    line["error"] = cli::error_json(error, "");
+    return cli::print(cli::to_line(line));
 }
 
 cli::ExitCode CompareNormals::judge(int number, const AngularError& error) const {
@@ -173,7 +198,7 @@ Result<cli::ExitCode> CompareNormals::compare_files() {
     if (all_levels && a->size() != b->size()) {
         cli::print_warning(fmt::format("levels: {} of {}, {} of {}; only those that both have are compared", a->size(), name_a, b->size(), name_b));
     }
-    cli::ExitCode code = cli::ExitCode::done;
+    cli::ExitCode code = cli::ExitCode::done, told = code;
     std::vector<cli::ComparedLevel> levels;  // of the page
     Plane<float> degrees;
     for (std::size_t k = first; k < end; ++k) {
@@ -191,12 +216,12 @@ Result<cli::ExitCode> CompareNormals::compare_files() {
         auto comparison = compare(map_a, map_b, {run.threads, [](double) { return cli::caught_signal() == 0; }});
         if (!comparison) return comparison.error();
         if (k == first && !run.json) {
-            (void)cli::print(fmt::format("{:>5} {:>11} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}  in degrees; largest at\n", "level", "texels",
-                                         "mean", "rms", "p50", "p99", "p99.9", "max"));
+            told = cli::print(fmt::format("{:>5} {:>11} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}  in degrees; largest at\n", "level", "texels",
+                                          "mean", "rms", "p50", "p99", "p99.9", "max"));
         }
-        tell(static_cast<int>(k), map_a.extent(), comparison->error);
+        if (told == cli::ExitCode::done) told = tell(static_cast<int>(k), map_a.extent(), comparison->error);
         const cli::ExitCode judged = judge(static_cast<int>(k), comparison->error);
-        code = std::max(code, judged);
+        code = std::max({code, judged, told});
         levels.push_back({static_cast<int>(k), map_a.extent(), comparison->error, judged == cli::ExitCode::done});
         if (k > first) continue;
         if (!heat_map_path.empty()) {
@@ -220,7 +245,6 @@ int main(int argc, char** argv) {
         const auto code = self.compare_files();
         if (const int signal = cli::caught_signal(); signal != 0) cli::end_by_signal(signal);
         if (code) return *code;
-        cli::print_error(code.error().message());
-        return cli::exit_code(code.error().code);
+        return std::max(self.tell(code.error()), cli::exit_code(code.error().code));
     });
 }

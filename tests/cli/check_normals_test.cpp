@@ -176,6 +176,50 @@ TEST_F(CheckNormals, HeightMapsAreComparedWithTheirNormals) {
     EXPECT_EQ(check({"good.dds", "down.dds", "--height", "bricks.png"}).code, 2);
 }
 
+TEST_F(CheckNormals, DocumentsNeverReplaceWhatIsRead) {
+    scratch_.write("list", "good.dds\n");
+    scratch_.write("normals.toml", "");
+    const std::string before = scratch_.read("good.dds");
+    const auto refuses = [&](std::vector<std::string> arguments, const std::string& reason) {
+        const Ran ran = check(arguments);
+        EXPECT_EQ(ran.code, 2) << arguments[1] << ": " << ran.out;
+        EXPECT_NE(ran.err.find(reason), std::string::npos) << ran.err;
+    };
+    for (const char* option : {"--sarif", "--junit", "--baseline-write", "--report"}) {
+        refuses({"good.dds", option, "good.dds"}, "good.dds is the input good.dds");
+        refuses({"good.dds", option, "list", "--files-from", "list"}, "list is the file of --files-from");
+        refuses({"good.dds", option, "bricks.png", "--height", "bricks.png"}, "bricks.png is the file of --height");
+        refuses({"good.dds", option, "normals.toml", "--config", "./normals.toml"}, "normals.toml is the file of --config");
+        refuses({"good.dds", option, "-"}, "needs the name of a file");
+        refuses({"good.dds", option, "."}, "is a folder");
+    }
+    refuses({"good.dds", "--sarif", "f", "--junit", "f"}, "--junit: f is the file of --sarif");
+    refuses({"good.dds", "--report", "f", "--baseline-write", "f"}, "--report: f is the file of --baseline-write");
+    refuses({"good.dds", "--sarif", "f", "--baseline", "f"}, "--sarif: f is the file of --baseline");
+    EXPECT_EQ(scratch_.read("good.dds"), before);
+    EXPECT_EQ(scratch_.read("list"), "good.dds\n");
+    EXPECT_FALSE(scratch_.has("f"));
+    EXPECT_EQ(check({"good.dds", "--sarif", "/dev/null", "--junit", "/dev/null"}).code, 0);
+}
+
+// What was accepted stays accepted where the file is renewed in its place.
+TEST_F(CheckNormals, ABaselineIsRenewedWithAllFindings) {
+    ASSERT_EQ(check({"down.dds", "--require", "y=up", "--baseline-write", "known.json"}).code, 0);
+    const std::string before = scratch_.read("known.json");
+    EXPECT_EQ(check({"down.dds", "--require", "y=up", "--baseline", "known.json", "--baseline-write", "known.json"}).code, 0);
+    EXPECT_EQ(scratch_.read("known.json"), before);
+    EXPECT_EQ(check({"down.dds", "--require", "y=up", "--baseline", "known.json"}).code, 0);
+}
+
+TEST_F(CheckNormals, AnEmptyListHasItsDocuments) {
+    scratch_.write("list", "");
+    const Ran ran = check({"--files-from", "list", "--sarif", "out.sarif", "--junit", "out.xml"});
+    EXPECT_EQ(ran.code, 0);
+    EXPECT_EQ(ran.out, "0 files: 0 errors, 0 warnings, 0 notes\n");
+    EXPECT_TRUE(nlohmann::json::parse(scratch_.read("out.sarif"))["runs"][0]["results"].empty());
+    EXPECT_TRUE(scratch_.has("out.xml"));
+}
+
 TEST_F(CheckNormals, ListsAndExplainsEveryRule) {
     const Ran list = check({"--list"});
     EXPECT_EQ(list.code, 0);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <filesystem>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <tex/tex.h>
@@ -69,6 +71,48 @@ TEST_F(CompareNormals, HeatMapHasTheMapAndALegend) {
     const auto image = read_image(scratch_.path("heat.png"));
     ASSERT_TRUE(image);
     EXPECT_EQ(image->extent(), (Extent{128, 128 + kHeatMapLegendRows}));
+}
+
+TEST_F(CompareNormals, PicturesAndPagesNeverReplaceWhatIsCompared) {
+    const std::string before = scratch_.read("up.exr");
+    scratch_.write("copy.png", before);  // the content decides how it is read
+    std::filesystem::create_symlink("copy.png", scratch_.path("link.png"));
+    const auto refuses = [&](const std::vector<std::string>& more, const std::string& reason) {
+        std::vector<std::string> arguments = {"up.exr", "copy.png"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Ran ran = compare(arguments);
+        EXPECT_EQ(ran.code, 2) << ran.err;
+        EXPECT_NE(ran.err.find(reason), std::string::npos) << ran.err;
+        EXPECT_EQ(scratch_.read("up.exr"), before);
+        EXPECT_EQ(scratch_.read("copy.png"), before);
+    };
+    refuses({"--heatmap", "copy.png"}, "--heatmap: copy.png is the input copy.png");
+    refuses({"--heatmap", "./link.png"}, "is the input copy.png");
+    refuses({"--report", "up.exr"}, "--report: up.exr is the input up.exr");
+    refuses({"--heatmap", "x.png", "--report", "x.png"}, "--report: x.png is the file of --heatmap");
+    refuses({"--heatmap", "-"}, "needs the name of a file");
+    refuses({"--heatmap", "x.foo"}, "x.foo is no kind of picture that can be written");
+    refuses({"--heatmap", "x.exr"}, "x.exr is no kind of picture that can be written");
+    EXPECT_EQ(compare({"up.exr", "copy.png", "--report", std::string(300, 'x')}).code, 3);
+}
+
+TEST_F(CompareNormals, ResultsThatCannotBeToldAreAFailure) {
+    Setting full;
+    full.stdout_path = "/dev/full";
+    for (const char* json : {"--json", "--quiet"}) {
+        const Ran ran = run(scratch_, "compare-normals", {"up.exr", "waves.dds", json}, full);
+        EXPECT_EQ(ran.code, 3);
+        EXPECT_EQ(ran.err, "compare-normals: error: standard output: no space left on the disk\n");
+    }
+}
+
+TEST_F(CompareNormals, FailuresHaveALineOfJson) {
+    const Ran ran = compare({"up.exr", "gone.exr", "--json"});
+    EXPECT_EQ(ran.code, 3);
+    const auto line = nlohmann::json::parse(ran.out);
+    EXPECT_EQ(line["a"], "up.exr");
+    EXPECT_EQ(line["error"]["code"], "io");
+    EXPECT_EQ(line["error"]["file"], "gone.exr");
 }
 
 TEST_F(CompareNormals, RefusesWhatCannotBeCompared) {

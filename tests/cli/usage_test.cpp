@@ -2,6 +2,7 @@
 // Misuse that every command must refuse: exit 2, one clear sentence, nothing written.
 
 #include <algorithm>
+#include <filesystem>
 
 #include <gtest/gtest.h>
 
@@ -132,6 +133,16 @@ TEST_P(EveryUsage, NamePatternsAreChecked) {
     refuses({"../a.png", "--out-dir", "out", "--name", "{dir}/{stem}.dds"}, "leads out of --out-dir");
 }
 
+TEST_P(EveryUsage, AListNeedsANameWhereOneOutputIsWanted) {
+    scratch_.write("list", "\n");
+    before_ = scratch_.list();
+    refuses({"--files-from", "list", "-o", "x.dds"}, "no input for -o: list names none");
+}
+
+TEST_P(EveryUsage, OnlyOneInputGoesToStandardOutput) {
+    refuses({"a.png", "b.png", "--name", "-", "--container", "dds"}, "-o - writes there");
+}
+
 TEST_P(EveryUsage, OutputsMustNotBeInputs) {
     refuses({"a.png", "-o", "a.png"}, "the output a.png is the input a.png");
     refuses({"a.png", "-o", "./folder/../a.png"}, "is the input a.png");
@@ -141,6 +152,10 @@ TEST_P(EveryUsage, OutputsMustNotBeInputs) {
     refuses({"a.png", "b.png", "--name", "{stem}.png"}, "is the input");
     refuses({"a.png", "-o", "x.dds", "--depfile", "a.png"}, "is the input");
     refuses({"a.png", "-o", "x.dds", "--depfile", "./x.dds"}, "--depfile: ./x.dds is an output");
+    scratch_.write("list.dds", "a.png\n");
+    before_ = scratch_.list();
+    refuses({"--files-from", "list.dds", "--name", "list.dds"}, "the output list.dds is the input list.dds");
+    refuses({"--files-from", "list.dds", "--name", "x.dds", "--depfile", "list.dds"}, "the output list.dds is the input list.dds");
 }
 
 TEST_P(EveryUsage, OutputsMustDiffer) {
@@ -148,6 +163,15 @@ TEST_P(EveryUsage, OutputsMustDiffer) {
     refuses({"a.png", "b.png", "--out-dir", "out", "--name", "all.dds"},
             "a.png and b.png have the same output out/all.dds");
     refuses({"a.png", "folder/../a.png", "--out-dir", "out", "--name", "{stem}.dds"}, "the same output");
+    // What links name need not be there yet.
+    std::filesystem::create_directory_symlink("folder", scratch_.path("link"));
+    for (const char* name : {"l1.dds", "l2.dds"}) std::filesystem::create_symlink("folder/new.dds", scratch_.path(name));
+    std::filesystem::create_symlink("l1.dds", scratch_.path("l3.dds"));
+    scratch_.write("l1.png", "");
+    scratch_.write("l2.png", "");
+    before_ = scratch_.list();
+    refuses({"l1.png", "l2.png", "--name", "{stem}.dds"}, "l1.png and l2.png have the same output l2.dds");
+    refuses({"a.png", "-o", "l3.dds", "--depfile", "link/new.dds"}, "--depfile: link/new.dds is an output");
 }
 
 }  // namespace tex::cli

@@ -2,14 +2,11 @@
 
 #include "cli/baseline.h"
 
-#include <cerrno>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "cli/json.h"
+#include "cli/text_file.h"
 
 namespace tex::cli {
 
@@ -19,9 +16,9 @@ Baseline::Key Baseline::key_of(const CheckReport& report, const Finding& finding
 }
 
 Result<Baseline> Baseline::read(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file) return Error{ErrorCode::io, path, std::strerror(errno)};
-    return parse(path, {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()});
+    const auto text = read_text_file(path);
+    if (!text) return text.error();
+    return parse(path, *text);
 }
 
 Result<Baseline> Baseline::parse(const std::string& path, const std::string& text) {
@@ -45,12 +42,8 @@ Result<Baseline> Baseline::parse(const std::string& path, const std::string& tex
     return baseline;
 }
 
-Baseline Baseline::of(const std::vector<CheckReport>& reports) {
-    Baseline baseline;
-    for (const CheckReport& report : reports) {
-        for (const Finding& finding : report.findings) baseline.known_.insert(key_of(report, finding));
-    }
-    return baseline;
+void Baseline::add(const CheckReport& report) {
+    for (const Finding& finding : report.findings) known_.insert(key_of(report, finding));
 }
 
 int Baseline::accept(CheckReport& report) const {

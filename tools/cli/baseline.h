@@ -21,8 +21,9 @@ public:
     [[nodiscard]] static Result<Baseline> read(const std::string& path);
     // The same from memory; `path` is for messages. Errors: bad_data.
     [[nodiscard]] static Result<Baseline> parse(const std::string& path, const std::string& text);
-    [[nodiscard]] static Baseline of(const std::vector<CheckReport>& reports);
 
+    // Makes the findings of the report known ones.
+    void add(const CheckReport& report);
     // Takes known findings out of the report; returns how many.
     int accept(CheckReport& report) const;
     [[nodiscard]] std::string text() const;

@@ -3,16 +3,13 @@
 #include "cli/check_config.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "cli/command.h"
 #include "cli/text.h"
+#include "cli/text_file.h"
 #include "cli/usage_error.h"
 
 // toml++ 3.3 asserts what a file can break (a table whose name begins with a colon), and in releases assumes it: here that is an error of the file.
@@ -96,11 +93,9 @@ private:
 }  // namespace
 
 Result<CheckConfig> read_check_config(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::string text;
-    if (file) text.assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
-    if (!file || file.bad()) return Error{ErrorCode::io, path, std::strerror(errno)};
-    return parse_check_config(path, text);
+    const auto text = read_text_file(path);
+    if (!text) return text.error();
+    return parse_check_config(path, *text);
 }
 
 CheckConfig parse_check_config(const std::string& path, const std::string& text) {

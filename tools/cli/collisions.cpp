@@ -2,6 +2,7 @@
 
 #include "cli/collisions.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -36,11 +37,18 @@ bool is_special(const std::string& path) {
            (stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode));
 }
 
-// One spelling for all the names of a path that need not exist.
+// One spelling for all the names of a path that need not exist. Through symbolic links, dangling ones too: what they name is written.
 std::string canonical(const std::string& path) {
     std::error_code error;
-    const fs::path folder = fs::weakly_canonical(fs::absolute(path, error).parent_path(), error);
-    return (folder / fs::path(path).filename()).string();
+    fs::path at = path;
+    constexpr int kMostLinks = 40;  // as the kernel; more are an error when the file is opened
+    for (int k = 0; k < kMostLinks; ++k) {
+        const fs::path target = fs::read_symlink(at, error);
+        if (error) break;
+        at = at.parent_path() / target;
+    }
+    const fs::path folder = fs::weakly_canonical(fs::absolute(at, error).parent_path(), error);
+    return (folder / at.filename()).string();
 }
 
 // The files that a task writes: many where each level has its own. As many as the largest extent
@@ -58,8 +66,9 @@ std::vector<std::string> files_of(const Task& task) {
 
 }  // namespace
 
-void check_collisions(const std::vector<Task>& tasks, const std::string& depfile) {
+void check_collisions(const std::vector<Task>& tasks, const std::string& depfile, const std::string& list) {
     std::map<Identity, std::string> inputs;
+    if (const auto file = identity(list)) inputs.emplace(*file, list);
     for (const Task& task : tasks) {
         if (const auto file = identity(task.input)) inputs.emplace(*file, task.input);
         for (const std::string& input : task.also) {
@@ -103,20 +112,25 @@ void check_collisions(const std::vector<Task>& tasks, const std::string& depfile
         throw UsageError(fmt::format("--depfile: {} is an output", printable(depfile)));
 }
 
-void check_document(const std::string& option, const std::string& path, const std::vector<std::string>& inputs,
-                    const std::vector<std::string>& others) {
+void check_document(const NamedFile& document, const std::vector<std::string>& inputs, const std::vector<NamedFile>& others) {
+    const auto& [option, path] = document;
     if (path.empty() || path == "-") throw UsageError(fmt::format("{} needs the name of a file", option));
-    if (path.ends_with('/') || fs::is_directory(path)) throw UsageError(fmt::format("{} {}: is a folder", option, printable(path)));
-    const auto same = [&, name = canonical(path), file = identity(path)](const std::string& other) {
+    if (is_folder(path)) throw UsageError(fmt::format("{} {}: is a folder", option, printable(path)));
+    if (is_special(path)) return;
+    const auto same = [name = canonical(path), file = identity(path)](const std::string& other) {
         return !other.empty() && other != "-" && (canonical(other) == name || (file && identity(other) == file));
     };
     for (const std::string& input : inputs) {
-        if (input == "-") throw UsageError(fmt::format("{} reads its inputs twice, which standard input does not allow", option));
         if (same(input)) throw UsageError(fmt::format("{}: {} is the input {}", option, printable(path), printable(input)));
     }
-    for (const std::string& other : others) {
-        if (same(other)) throw UsageError(fmt::format("{}: {} is {}, which another option names", option, printable(path), printable(other)));
+    for (const NamedFile& other : others) {
+        if (same(other.path)) throw UsageError(fmt::format("{}: {} is the file of {}", option, printable(path), other.option));
     }
+}
+
+void check_read_twice(const std::string& option, const std::vector<std::string>& inputs) {
+    if (std::find(inputs.begin(), inputs.end(), "-") == inputs.end()) return;
+    throw UsageError(fmt::format("{} reads its inputs twice, which standard input does not allow", option));
 }
 
 }  // namespace tex::cli

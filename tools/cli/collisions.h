@@ -10,13 +10,21 @@ namespace tex::cli {
 
 struct Task;
 
-// Throws UsageError where two tasks would write one file, or where an output or the depfile is an input: by
-// name, or through symbolic and hard links. Streams, FIFOs and devices are nobody's file.
-void check_collisions(const std::vector<Task>& tasks, const std::string& depfile);
+// Throws UsageError where two tasks would write one file, or where an output or the depfile is an input or the `list` of inputs (empty: there is
+// none): by name, or through symbolic and hard links. Streams, FIFOs and devices are nobody's file.
+void check_collisions(const std::vector<Task>& tasks, const std::string& depfile, const std::string& list);
 
-// Throws UsageError where `path`, the value of `option`, is not the name of a file, is an input, or is one of `others`, files that the run reads or writes
-// as well (empty names do not count). Inputs must be files: the option reads them a second time.
-void check_document(const std::string& option, const std::string& path, const std::vector<std::string>& inputs,
-                    const std::vector<std::string>& others);
+// A file that an option names.
+struct NamedFile {
+    std::string option;
+    std::string path;
+};
+
+// Throws UsageError where `document`, which is going to be written, is not the name of a file, is an input, or is one of `others`, files that the run
+// reads or writes as well (those without a name do not count).
+void check_document(const NamedFile& document, const std::vector<std::string>& inputs, const std::vector<NamedFile>& others);
+
+// Throws UsageError where an input is standard input: `option` reads inputs a second time.
+void check_read_twice(const std::string& option, const std::vector<std::string>& inputs);
 
 }  // namespace tex::cli

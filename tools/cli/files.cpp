@@ -3,20 +3,18 @@
 #include "cli/files.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
-#include <memory>
 #include <string_view>
 #include <system_error>
 
 #include <fmt/format.h>
 
+#include "base/system_error.h"
 #include "cli/collisions.h"
 #include "cli/name_pattern.h"
 #include "cli/stream.h"
 #include "cli/text.h"
+#include "cli/text_file.h"
 #include "cli/usage_error.h"
 
 namespace tex::cli {
@@ -29,21 +27,7 @@ bool is_block_encoding(Encoding encoding) {
 }
 
 // The names in a list: one on each line or, where the list holds a NUL, up to each NUL.
-Result<std::vector<std::string>> read_list(const std::string& path) {
-    const bool from_stdin = path == "-";
-    const std::unique_ptr<FILE, int (*)(FILE*)> opened(
-        from_stdin ? nullptr : std::fopen(path.c_str(), "rbe"),
-        [](FILE* file) { return file == nullptr ? 0 : std::fclose(file); });
-    FILE* file = from_stdin ? stdin : opened.get();
-    const auto failed = [&] {
-        return Error{ErrorCode::io, from_stdin ? "standard input" : path, std::strerror(errno)};
-    };
-    if (file == nullptr) return failed();
-    std::string text;
-    char buffer[65536];
-    while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, file)) text.append(buffer, count);
-    if (std::ferror(file) != 0) return failed();
-
+std::vector<std::string> names_in(const std::string& text) {
     const char separator = text.find('\0') == std::string::npos ? '\n' : '\0';
     std::vector<std::string> names;
     for (std::string_view rest = text; !rest.empty();) {
@@ -55,6 +39,11 @@ Result<std::vector<std::string>> read_list(const std::string& path) {
 }
 
 }  // namespace
+
+bool is_folder(const std::string& path) {
+    std::error_code error;
+    return path.ends_with('/') || fs::is_directory(path, error);
+}
 
 void FileOptions::add(Command& command) {
     command.group("Files");
@@ -85,7 +74,7 @@ void FileOptions::add(Command& command) {
         if (output == "-" && no_clobber) throw UsageError("-o - and --no-clobber contradict each other");
         if (output == "-" && !depfile.empty()) throw UsageError("--depfile has no name for standard output");
         if (depfile == "-") throw UsageError("--depfile: needs a file, not standard output");
-        if (output.ends_with('/') || (!output.empty() && fs::is_directory(output))) {
+        if (is_folder(output)) {
             throw UsageError(fmt::format("-o {}: is a folder; --out-dir writes into one", printable(output)));
         }
     });
@@ -117,9 +106,10 @@ void FileOptions::check_inputs(const Command& command) const {
 Result<std::vector<std::string>> FileOptions::list_inputs(const Command& command) const {
     std::vector<std::string> inputs = command.inputs();
     if (!files_from.empty()) {
-        auto listed = read_list(files_from);
-        if (!listed) return listed.error();
-        inputs.insert(inputs.end(), listed->begin(), listed->end());
+        const auto list = read_text_file(files_from);
+        if (!list) return list.error();
+        const std::vector<std::string> listed = names_in(*list);
+        inputs.insert(inputs.end(), listed.begin(), listed.end());
     }
     return inputs;
 }
@@ -149,6 +139,7 @@ std::string FileOptions::batch_name(const std::string& input, const OutputOption
 std::string FileOptions::place(const std::string& pattern, const NameFields& fields) const {
     const NamePattern parsed(pattern);
     const std::string file = parsed.expand(fields);
+    if (file == "-") throw UsageError("a name made of a pattern is -, which is standard output; -o - writes there");
     if (out_dir.empty()) return file;
     const fs::path dir = fs::path(fields.dir).lexically_normal();
     if (parsed.uses("dir") && (dir.is_absolute() || *dir.begin() == "..")) {
@@ -171,6 +162,8 @@ Result<std::vector<Task>> FileOptions::plan(const Command& command, const Output
         throw UsageError(
             fmt::format("-o takes one input, {} are given; --out-dir takes many", inputs->size()));
     }
+    if (!output.empty() && inputs->empty())
+        throw UsageError(fmt::format("no input for -o: {} names none", printable(files_from)));
     std::vector<Task> tasks;
     for (const std::string& input : *inputs) {
         Task task{input, output.empty() ? batch_name(input, output_options, defaults) : output,
@@ -181,18 +174,18 @@ Result<std::vector<Task>> FileOptions::plan(const Command& command, const Output
         if (amend) amend(task);
         tasks.push_back(std::move(task));
     }
-    check_collisions(tasks, depfile);
+    check_collisions(tasks, depfile, files_from);
     return tasks;
 }
 
 Result<void> FileOptions::create_folders(const std::vector<Task>& tasks) const {
     if (out_dir.empty()) return {};
     const auto failed = [](const fs::path& path, const std::error_code& error) {
-        return Error{ErrorCode::io, path.string(), "cannot create this folder: " + error.message()};
+        return Error{ErrorCode::io, path.string(), "cannot create this folder: " + system_reason(error.value())};
     };
     std::error_code error;
     fs::create_directory(fs::path(out_dir) / "", error);
-    if (error && !fs::is_directory(out_dir)) return failed(out_dir, error);
+    if (error && !is_folder(out_dir)) return failed(out_dir, error);
     for (const Task& task : tasks) {
         std::vector<std::string> outputs = task.beside;
         outputs.push_back(task.output);

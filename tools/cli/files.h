@@ -25,6 +25,9 @@ struct Task {
     std::vector<std::string> beside = {};  // further outputs, as `output`
 };
 
+// Whether `path` can only be a folder: it is one, or ends in a slash.
+[[nodiscard]] bool is_folder(const std::string& path);
+
 // Where outputs go whose name the user left to the command.
 struct OutputDefaults {
     std::optional<Container>

@@ -9,11 +9,19 @@
 #include <vector>
 
 #include <nlohmann/json.hpp>
+#include <tex/result.h>
 
 namespace tex::cli {
 
 using Json = nlohmann::basic_json<nlohmann::ordered_map, std::vector, std::string, bool, std::int64_t,
                                   std::uint64_t, float>;
+
+// What --json tells of a failure. The file is named where it is another one than `input`: another input, or an output.
+[[nodiscard]] inline Json error_json(const Error& error, const std::string& input) {
+    Json json = {{"code", name_of(kErrorCodeNames, error.code)}, {"reason", error.reason}};
+    if (!error.file.empty() && error.file != input) json["file"] = error.file;
+    return json;
+}
 
 // One line, with its line feed. File names are bytes: what is not UTF-8 in them becomes U+FFFD.
 [[nodiscard]] inline std::string to_line(const Json& json) {

@@ -48,10 +48,7 @@ void Reporter::tell_json(const Outcome& outcome) {
     Json line;
     line["input"] = outcome.input;
     if (outcome.error) {
-        line["error"] = {{"code", name_of(kErrorCodeNames, outcome.error->code)},
-                         {"reason", outcome.error->reason}};
-        const std::string& file = outcome.error->file;  // another input, or an output
-        if (!file.empty() && file != outcome.input) line["error"]["file"] = file;
+        line["error"] = error_json(*outcome.error, outcome.input);
     } else {
         if (outcome.has_levels) {
             line["output"] = outcome.outputs;

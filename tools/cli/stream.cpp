@@ -14,6 +14,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include "base/system_error.h"
 #include "cli/console.h"
 
 namespace tex::cli {
@@ -71,7 +72,7 @@ bool write_stdout(std::string_view text) {
 ExitCode print(std::string_view text) {
     if (write_stdout(text)) return ExitCode::done;
     const int reason = errno;
-    if (reason != EPIPE) print_error(std::string("standard output: ") + std::strerror(reason));
+    if (reason != EPIPE) print_error("standard output: " + system_reason(reason));
     return ExitCode::io;
 }
 

@@ -28,6 +28,23 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     return last[b.size()];
 }
 
+// The bytes of the character that `text` begins with, in UTF-8 and in its shortest form; 0 where there is none, or a control character.
+std::size_t character_length(std::string_view text) {
+    const auto byte = [&](std::size_t k) { return k < text.size() ? static_cast<unsigned char>(text[k]) : 0u; };
+    const unsigned first = byte(0);
+    if (first < 0x80) return first >= 0x20 && first != 0x7f ? 1 : 0;
+    const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+    if (first < 0xc2 || first > 0xf4) return 0;
+    char32_t code = first & (0x7fu >> length);
+    for (std::size_t k = 1; k < length; ++k) {
+        if ((byte(k) & 0xc0) != 0x80) return 0;
+        code = code << 6 | (byte(k) & 0x3f);
+    }
+    constexpr char32_t kLeast[] = {0, 0, 0xa0, 0x800, 0x10000};  // those of two bytes begin after the control characters
+    const bool is_surrogate = code >= 0xd800 && code < 0xe000;
+    return code >= kLeast[length] && code <= 0x10ffff && !is_surrogate ? length : 0;
+}
+
 }  // namespace
 
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
@@ -58,13 +75,15 @@ std::string join(const std::vector<std::string>& words, std::string_view between
 
 std::string printable(std::string_view text) {
     std::string safe;
-    for (const char c : text) {
-        const auto code = static_cast<unsigned char>(c);
-        if (code < 0x20 || code == 0x7f) {
-            safe += fmt::format("\\x{:02x}", code);
+    while (!text.empty()) {
+        const std::size_t whole = character_length(text);
+        const std::string_view bytes = text.substr(0, std::max<std::size_t>(whole, 1));
+        if (whole > 0) {
+            safe += bytes;
         } else {
-            safe += c;
+            safe += fmt::format("\\x{:02x}", static_cast<unsigned char>(bytes.front()));
         }
+        text.remove_prefix(bytes.size());
     }
     return safe;
 }
