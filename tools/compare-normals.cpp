@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 #include <tex/tex.h>
@@ -30,18 +31,23 @@ struct CompareNormals {
     std::string heat_map_path, page_path;
     std::optional<double> heat_map_scale;
     cli::RunOptions run;
+    std::set<std::string> warned_of;  // files
 
     CompareNormals();
     void check_documents() const;
     void add_limit(std::optional<double>& limit, const std::string& name, const std::string& what);
-    Result<std::vector<NormalMap>> read(const std::string& path, std::optional<YAxis> y) const;
+    [[nodiscard]] Execution execution() const {
+        return {run.threads, [](double) { return cli::caught_signal() == 0; }};
+    }
+    [[nodiscard]] Result<Texture> read_map(const std::string& path, std::optional<YAxis> y);
+    Result<std::vector<NormalMap>> read(const std::string& path, std::optional<YAxis> y);
     Result<cli::ExitCode> compare_files();
     [[nodiscard]] cli::ExitCode tell(const Error& error) const;
     [[nodiscard]] cli::ExitCode tell(int number, Extent extent, const AngularError& error) const;
     cli::ExitCode judge(int number, const AngularError& error) const;
     Result<void> write_heat_map(const Comparison& comparison) const;
-    [[nodiscard]] Result<cli::HtmlMap> draw_map(const std::string& path, std::optional<YAxis> y) const;
-    [[nodiscard]] Result<void> write_page(const std::vector<cli::ComparedLevel>& levels, const Plane<float>& degrees) const;
+    [[nodiscard]] Result<cli::HtmlMap> draw_map(const std::string& path, std::optional<YAxis> y);
+    [[nodiscard]] Result<void> write_page(const std::vector<cli::ComparedLevel>& levels, const Plane<float>& degrees);
 };
 
 CompareNormals::CompareNormals() {
@@ -100,16 +106,26 @@ void CompareNormals::add_limit(std::optional<double>& limit, const std::string& 
                    [&limit](const std::string& text) { limit = cli::parse_double(text, {0.0, 180.0}); });
 }
 
-Result<std::vector<NormalMap>> CompareNormals::read(const std::string& path, std::optional<YAxis> y) const {
+// The texture, with the swizzle that its texels show where it does not say its own, and with what the options say of y.
+Result<Texture> CompareNormals::read_map(const std::string& path, std::optional<YAxis> y) {
     auto texture = read_texture(path, run.read);
     if (!texture) return texture.error();
-    UnpackOptions options;
-    options.y_axis = y;
-    auto chain = unpack(*texture, options, {run.threads, [](double) { return cli::caught_signal() == 0; }});
+    const auto swizzle = guess_swizzle(*texture, execution());
+    if (!swizzle) return Error{swizzle.error().code, path, swizzle.error().reason};
+    if (*swizzle != texture->swizzle && warned_of.insert(path).second) {
+        cli::print_warning(fmt::format("{}: taken for {}, as the texels look", path, name_of(kSwizzleNames, *swizzle)));
+    }
+    texture->swizzle = *swizzle;
+    texture->y_axis = y.value_or(texture->y_axis);
+    return texture;
+}
+
+Result<std::vector<NormalMap>> CompareNormals::read(const std::string& path, std::optional<YAxis> y) {
+    const auto texture = read_map(path, y);
+    if (!texture) return texture.error();
+    auto chain = unpack(*texture, {}, execution());
     if (chain) return std::move(chain->levels);
-    Error error = chain.error();
-    error.file = path;
-    return error;
+    return Error{chain.error().code, path, chain.error().reason};
 }
 
 cli::ExitCode CompareNormals::tell(int number, Extent extent, const AngularError& e) const {
@@ -163,15 +179,13 @@ Result<void> CompareNormals::write_heat_map(const Comparison& comparison) const 
     return write_texture(heat_map_path, *picture);
 }
 
-Result<cli::HtmlMap> CompareNormals::draw_map(const std::string& path, std::optional<YAxis> y) const {
-    auto texture = read_texture(path, run.read);
+Result<cli::HtmlMap> CompareNormals::draw_map(const std::string& path, std::optional<YAxis> y) {
+    const auto texture = read_map(path, y);
     if (!texture) return texture.error();
-    texture->y_axis = y.value_or(texture->y_axis);
-    return cli::draw_html_map(path, *texture, texture->swizzle, cli::html_sizes(1),
-                              {run.threads, [](double) { return cli::caught_signal() == 0; }});
+    return cli::draw_html_map(path, *texture, texture->swizzle, cli::html_sizes(1), execution());
 }
 
-Result<void> CompareNormals::write_page(const std::vector<cli::ComparedLevel>& levels, const Plane<float>& degrees) const {
+Result<void> CompareNormals::write_page(const std::vector<cli::ComparedLevel>& levels, const Plane<float>& degrees) {
     auto a = draw_map(command.inputs()[0], y_a);
     if (!a) return a.error();
     auto b = draw_map(command.inputs()[1], y_b);
@@ -213,7 +227,7 @@ Result<cli::ExitCode> CompareNormals::compare_files() {
                          fmt::format("is {}x{} texels, {} is {}x{}", map_b.extent().width, map_b.extent().height, name_a,
                                      map_a.extent().width, map_a.extent().height)};
         }
-        auto comparison = compare(map_a, map_b, {run.threads, [](double) { return cli::caught_signal() == 0; }});
+        auto comparison = compare(map_a, map_b, execution());
         if (!comparison) return comparison.error();
         if (k == first && !run.json) {
             told = cli::print(fmt::format("{:>5} {:>11} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}  in degrees; largest at\n", "level", "texels",

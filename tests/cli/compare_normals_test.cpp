@@ -35,6 +35,20 @@ TEST_F(CompareNormals, OneMapInTwoConventionsIsZeroDegreesApart) {
     EXPECT_GT(nlohmann::json::parse(mistaken.out)["degrees"]["mean"], 5.0);
 }
 
+// As all other commands: a file of four channels is what its texels show.
+TEST_F(CompareNormals, LayoutsThatFilesDoNotNameAreToldFromTheTexels) {
+    make("ag.dds", {"--format", "ag8"});
+    make("ag.png", {"--format", "ag8"});
+    for (const char* file : {"ag.dds", "ag.png"}) {
+        const Ran ran = compare({"up.exr", file, "--max", "0.7"});
+        EXPECT_EQ(ran.code, 0) << file;
+        EXPECT_NE(ran.err.find(": taken for dxt5nm, as the texels look\n"), std::string::npos) << ran.err;
+    }
+    const Ran grey = compare({"up.exr", "waves.png"});
+    EXPECT_EQ(grey.code, 4);
+    EXPECT_EQ(grey.err, "compare-normals: error: waves.png: has one channel, which holds no normals (bake-normals reads heights)\n");
+}
+
 TEST_F(CompareNormals, LimitsFailWithTheReason) {
     EXPECT_EQ(compare({"up.exr", "waves.dds", "--max", "90", "--max-mean", "3", "--max-p999", "20"}).code, 0);
     const Ran over = compare({"up.exr", "waves.dds", "--max-mean", "0.001"});

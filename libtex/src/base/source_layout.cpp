@@ -2,6 +2,8 @@
 
 #include "base/source_layout.h"
 
+#include "base/unpack_rows.h"
+
 namespace tex {
 namespace {
 
@@ -49,7 +51,7 @@ UnpackOptions unpack_options(const Texture& head, const SourceInfo& info, const 
 
 Result<void> check_channels(const Texture& head) {
     if (format_info(head.format).channels > 1) return {};
-    return Error{ErrorCode::unsupported, {}, "has one channel, which holds no normals (bake-normals reads heights)"};
+    return Error{ErrorCode::unsupported, {}, kOneChannel};
 }
 
 }  // namespace tex

@@ -25,6 +25,7 @@ double length_error(double x, double y, double z, bool has_z) {
 Result<Sources> sources_of(const Swizzle& swizzle, unsigned available) {
     const Sources sources = {channel_of(swizzle, Component::x), channel_of(swizzle, Component::y),
                              channel_of(swizzle, Component::z)};
+    if (available == 1) return Error{ErrorCode::bad_option, {}, kOneChannel};
     const std::string name = to_string(swizzle);
     if (sources.x < 0) return Error{ErrorCode::bad_option, {}, "the swizzle " + name + " has no x"};
     if (sources.y < 0) return Error{ErrorCode::bad_option, {}, "the swizzle " + name + " has no y"};

@@ -21,6 +21,9 @@ struct Sources {
     int z = -1;
 };
 
+// Of a file with one channel.
+inline constexpr const char* kOneChannel = "has one channel, which holds no normals (bake-normals reads heights)";
+
 // `available` channels can be read: bit c for channel c. Errors: bad_option, as unpack().
 Result<Sources> sources_of(const Swizzle& swizzle, unsigned available);
 
