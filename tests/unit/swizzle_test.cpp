@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <filesystem>
+#include <initializer_list>
+#include <span>
 
 #include <gtest/gtest.h>
 #include <tex/container.h>
@@ -60,6 +62,23 @@ TEST(Swizzle, IsToldFromTheTexels) {
 TEST(Swizzle, OfFlatMapsIsToldFromTheirLength) {
     EXPECT_EQ(guess(unmarked(bumps({16, 16}, 0.0f), Encoding::dxt5nm)), "dxt5nm");
     EXPECT_EQ(guess(unmarked(bumps({16, 16}, 0.0f), Encoding::rgba8)), "rgb");
+}
+
+// No value of a flat map is negative, signed though it is.
+TEST(Swizzle, OfFlatFloatsIsToldFromBothReadings) {
+    const auto flat = [](std::initializer_list<float> texel) {
+        Texture texture;
+        texture.format = Format::rgba32_float;
+        texture.levels.push_back({{4, 4}, {}});
+        for (int k = 0; k < 16; ++k) {
+            const auto bytes = std::as_bytes(std::span(texel.begin(), texel.size()));
+            texture.levels[0].bytes.insert(texture.levels[0].bytes.end(), bytes.begin(), bytes.end());
+        }
+        return guess(texture);
+    };
+    EXPECT_EQ(flat({0.0f, 0.0f, 1.0f, 1.0f}), "rgb");
+    EXPECT_EQ(flat({0.5f, 0.5f, 1.0f, 1.0f}), "rgb");
+    EXPECT_EQ(flat({1.0f, 0.5f, 1.0f, 0.5f}), "dxt5nm");
 }
 
 TEST(Swizzle, OfRxgbIsToldFromTheUnitVectors) {

@@ -26,8 +26,8 @@ inline constexpr Named<Swizzle> kSwizzleNames[] = {
 // no choice (fewer than four channels); else the texels of the base level decide, up to about 2^20 of them,
 // spread over the map:
 //
-//   dxt5nm   R and B are constant (within 8/255), and A varies or R, G, B cannot be a unit vector; or A varies
-//            and R, G and B are equal (y in all three)
+//   dxt5nm   R and B are constant (within 8/255), and A varies or R, G, B cannot be a unit vector (of floats: neither as
+//            they are nor as (n + 1) / 2); or A varies and R, G and B are equal (y in all three)
 //   rxgb     R is constant, A is not, and A, G, B are nearer to unit vectors than R, G, B
 //   rgb      all others
 //

@@ -40,7 +40,8 @@ void SwizzleEvidence::Range::add(float value) {
 
 bool SwizzleEvidence::Range::is_constant() const { return !(greatest - least > kConstant); }
 
-SwizzleEvidence::SwizzleEvidence(Extent extent) : extent_(extent), step_(step_of(extent)) {}
+SwizzleEvidence::SwizzleEvidence(Extent extent, SampleKind sample)
+    : extent_(extent), is_float_(sample == SampleKind::floating), step_(step_of(extent)) {}
 
 void SwizzleEvidence::add_row(int j, const float* const (&channels)[4]) {
     if (j % step_ != 0) return;
@@ -68,7 +69,9 @@ Swizzle SwizzleEvidence::layout() const {
     const double rxgb_error = (is_signed ? signed_ : unsigned_).rxgb / count;
     const auto& [r, g, b, a] = channels_;
     constexpr double kNotUnit = 0.25;  // far beyond quantisation and filtering
-    if (r.is_constant() && b.is_constant() && (!a.is_constant() || rgb_error > kNotUnit)) return named("dxt5nm");
+    // Floats without a negative value may be signed all the same: a flat map is 0, 0, 1.
+    const bool is_unit = rgb_error <= kNotUnit || (is_float_ && signed_.rgb / count <= kNotUnit);
+    if (r.is_constant() && b.is_constant() && (!a.is_constant() || !is_unit)) return named("dxt5nm");
     constexpr double kGrey = 4.0 / 255.0;  // 5 and 6 bits of the same grey differ by so much
     if (!a.is_constant() && off_grey_ / count <= kGrey) return named("dxt5nm");
     if (r.is_constant() && !a.is_constant() && rxgb_error < rgb_error) return named("rxgb");

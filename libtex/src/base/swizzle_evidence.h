@@ -13,7 +13,7 @@ namespace tex {
 
 class SwizzleEvidence {
 public:
-    explicit SwizzleEvidence(Extent extent);
+    SwizzleEvidence(Extent extent, SampleKind sample);
 
     // Takes row j of the level, its channels R, G, B and A. Rows come in their order, each once; some are passed over.
     void add_row(int j, const float* const (&channels)[4]);
@@ -36,6 +36,7 @@ private:
     };
 
     const Extent extent_;
+    const bool is_float_;
     const int step_;  // between the texels that are looked at
     Range channels_[4];
     Errors signed_;
