@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/blur.h"
@@ -28,6 +29,12 @@ std::pair<int, int> first_invalid(const Plane<float>& heights) {
     }
 }
 
+// Flat texels stay flat under the greatest strength; infinity times their difference, 0, would be NaN.
+float finite(double strength) {
+    constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
+    return static_cast<float>(std::clamp(strength, -kMost, kMost));
+}
+
 }  // namespace
 
 Strength strength_from_world(Extent extent, double range, double width, double height) {
@@ -35,11 +42,11 @@ Strength strength_from_world(Extent extent, double range, double width, double h
            std::isfinite(height));
     const double x = range * extent.width / width;
     const double y = height > 0.0 ? range * extent.height / height : x;
-    return {static_cast<float>(x), static_cast<float>(y)};
+    return {finite(x), finite(y)};
 }
 
 Strength strength_from_uv(Extent extent, double r) {
-    const auto strength = static_cast<float>(r * extent.width);
+    const float strength = finite(r * extent.width);
     return {strength, strength};
 }
 

@@ -3,6 +3,8 @@
 
 #include <tex/height_field.h>
 
+#include <limits>
+
 #include <gtest/gtest.h>
 
 namespace {
@@ -28,6 +30,15 @@ TEST(Strength, WithoutAHeightTexelsAreSquare) {
 TEST(Strength, FromTextureWidthsIsColumns) {
     EXPECT_FLOAT_EQ(tex::strength_from_uv({512, 64}, 0.05).x, 25.6f);
     EXPECT_FLOAT_EQ(tex::strength_from_uv({512, 64}, 0.05).y, 25.6f);
+}
+
+// bake() wants it finite: infinity would make slopes of what is flat.
+TEST(Strength, IsFinite) {
+    constexpr float kMost = std::numeric_limits<float>::max();
+    EXPECT_EQ(tex::strength_from_uv({512, 64}, 1e308).x, kMost);
+    EXPECT_EQ(tex::strength_from_uv({512, 64}, -1e37).y, -kMost);
+    EXPECT_EQ(tex::strength_from_world({512, 256}, 1e308, 1e-300, 1e-300).y, kMost);
+    EXPECT_EQ(tex::strength_from_world({512, 256}, 0.0, 1e-300).x, 0.0f);
 }
 
 }  // namespace

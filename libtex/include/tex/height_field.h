@@ -51,10 +51,10 @@ struct Strength {
 
 // World units: value 1.0 is `range` high, the whole texture is `width` wide and `height` high, all in one unit (metres,
 // say). height = 0 means square texels. x = range * columns / width, y = range * rows / height: the same
-// surface at 512 and at 2048 texels gives the same normals. Precondition: width > 0, height >= 0, all finite.
+// surface at 512 and at 2048 texels gives the same normals. Limited to what a float holds. Precondition: width > 0, height >= 0, all finite.
 [[nodiscard]] Strength strength_from_world(Extent extent, double range, double width, double height = 0.0);
 
-// Value 1.0 is `r` texture widths high, texels are square: x = y = r * columns.
+// Value 1.0 is `r` texture widths high, texels are square: x = y = r * columns. Limited to what a float holds. Precondition: r is finite.
 [[nodiscard]] Strength strength_from_uv(Extent extent, double r);
 
 // Which value of a texel is its height.

@@ -235,7 +235,7 @@ Result<DdsTexels> texels_of(const DdsPixelFormat& pixel_format) {
         }
     }
     if (masked) return texels_of_masks(pixel_format);
-    return Error{ErrorCode::unsupported, {}, "pixel format " + code_text(pixel_format.four_cc)};
+    return Error{ErrorCode::unsupported, {}, "the pixel format " + code_text(pixel_format.four_cc) + " is not supported"};
 }
 
 Result<DdsTexels> texels_of_dxgi(std::uint32_t dxgi) {
@@ -251,7 +251,7 @@ Result<DdsTexels> texels_of_dxgi(std::uint32_t dxgi) {
         if (texels) texels->srgb = is_srgb(dxgi);
         return texels;
     }
-    return Error{ErrorCode::unsupported, {}, "DXGI format " + std::to_string(dxgi)};
+    return Error{ErrorCode::unsupported, {}, "DXGI format " + std::to_string(dxgi) + " is not supported"};
 }
 
 std::uint32_t dxgi_of(Format format) {
