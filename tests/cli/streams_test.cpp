@@ -110,6 +110,15 @@ TEST_F(Streams, PicturesGoThroughPipesAsIntoFiles) {
     }
 }
 
+// A file whose layout turns out to be another one than most such files have is read twice, and so is its output begun. Who reads from a FIFO sees one file.
+TEST_F(Streams, AFifoSeesOneFileWhereTheInputIsReadTwice) {
+    ASSERT_EQ(shell(scratch_, "bake-normals a.png -o n.png --format ag8 --bumpiness 4 && pack-normals n.png -o x.dds --quiet && mkfifo p.dds").code, 0);
+    for (int k = 0; k < 10; ++k) {
+        const Ran ran = shell(scratch_, "timeout 10 cat p.dds > y & timeout 10 pack-normals n.png -o p.dds --quiet && wait $! && cmp x.dds y");
+        ASSERT_EQ(ran.code, 0) << ran.err;
+    }
+}
+
 // One large file, in the middle of its stream: the first progress has been told, and the rest takes seconds.
 TEST_F(Streams, SignalsDuringALargeStreamLeaveNothing) {
     const std::string noise = "head -c $((3 * 2048 * 2048)) /dev/urandom";

@@ -3,6 +3,7 @@
 #include "pipeline/pack_stream.h"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -33,9 +34,9 @@ int levels_built(const MipOptions& options, Extent base) {
 class Attempt {
 public:
     Attempt(TextureRows& texture, const std::string& input, const std::string& output, Container container, const PackFileOptions& options,
-            const Execution& execution, const StreamSizes& sizes, const KnownLayout& known)
+            const Execution& execution, const StreamSizes& sizes, const KnownLayout& known, std::unique_ptr<StripWriter>& writer)
         : texture_(texture), input_(input), output_(output), container_(container), options_(options), execution_(execution), sizes_(sizes),
-          finder_(texture, options.source, known) {}
+          writer_(writer), finder_(texture, options.source, known) {}
 
     // Nothing in the result, but correction(), where the texels say that the assumption was wrong.
     Result<std::optional<PackFileReport>> run();
@@ -54,6 +55,7 @@ private:
     const PackFileOptions& options_;
     const Execution& execution_;
     const StreamSizes& sizes_;
+    std::unique_ptr<StripWriter>& writer_;  // that of the attempt before, until this one has its own
     LayoutFinder finder_;
     std::optional<KnownLayout> correction_;
     Sources sources_;
@@ -136,10 +138,12 @@ Result<std::optional<PackFileReport>> Attempt::run() {
         if (const Result<void> seen = look_at_base_level(); !seen) return named(input_, seen.error());
         if (correction_) return std::optional<PackFileReport>();
     }
-    const Result<std::unique_ptr<StripWriter>> opened =
+    Result<std::unique_ptr<StripWriter>> opened =
         StripWriter::open(output_, container_, report_.extent, report_.levels, report_.pack, options_.write);
     if (!opened) return opened.error();
-    StripWriter& writer = **opened;
+    // Not earlier: who reads from a FIFO takes its last writer's end for that of the file.
+    writer_ = std::move(*opened);
+    StripWriter& writer = *writer_;
     double texels = 0.0;
     for (std::size_t k = first_; k < end_; ++k) texels += static_cast<double>(rows(k).extent().texels());
     double done = 0.0;
@@ -187,8 +191,9 @@ Result<PackFileReport> pack_stream(InputFile& file, TextureRows texture, const s
         onward.progress = [&](double fraction) { return execution.progress(told = std::max(told, fraction)); };
     }
     KnownLayout known;
+    std::unique_ptr<StripWriter> writer;
     while (true) {
-        Attempt attempt(texture, file.path(), output, container, options, onward, sizes, known);
+        Attempt attempt(texture, file.path(), output, container, options, onward, sizes, known, writer);
         Result<std::optional<PackFileReport>> done = attempt.run();
         if (!done) return done.error();
         if (*done) return **done;
