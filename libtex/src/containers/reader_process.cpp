@@ -8,6 +8,7 @@
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/ioctl.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -104,11 +105,28 @@ int spawn(const std::string& program, std::vector<std::string> arguments, int re
 
 enum class News { strip, end, late };
 
+// Time has run out. But whoever waits may have come late, after long work on what was there: an end that came until now counts, and whatever the process
+// still says does not prolong it.
+News last_news(int progress) {
+    int there = 0;
+    if (ioctl(progress, FIONREAD, &there) != 0) return News::late;
+    char strips[256];
+    while (there > 0) {
+        const ssize_t n = read(progress, strips, std::min(sizeof strips, static_cast<std::size_t>(there)));
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) break;
+        there -= static_cast<int>(n);
+    }
+    pollfd poll_for{progress, POLLIN, 0};
+    const bool has_ended = poll(&poll_for, 1, 0) > 0 && (poll_for.revents & (POLLHUP | POLLIN)) == POLLHUP;
+    return has_ended ? News::end : News::late;
+}
+
 // Waits for word from the process: a strip of rows is there, or the pipe has ended, that is every process that holds it is gone, or time has run out.
 News wait_for_news(int progress, Clock::time_point deadline) {
     for (;;) {
         const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
-        if (left <= 0) return News::late;
+        if (left <= 0) return last_news(progress);
         pollfd poll_for{progress, POLLIN, 0};
         const int ready = poll(&poll_for, 1, static_cast<int>(std::min<long long>(left + 1, 60'000)));
         if (ready < 0 && errno != EINTR) return News::late;
