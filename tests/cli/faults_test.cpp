@@ -43,6 +43,24 @@ const Case kCases[] = {
 
 const std::string kOld = "the old file";
 
+// A copy of a command, with libtex where it is shared, in a folder of its own, whose reader process is the shell script `reader`: libtex looks for its reader beside
+// itself. Returns the path of the copy.
+std::string install(const Scratch& folder, const std::string& command, const std::string& reader) {
+    for (const char* name : {"bin", "lib", "libexec", "libexec/libtex"}) std::filesystem::create_directory(folder.path(name));
+    const std::string program = folder.path("bin/" + command), script = "libexec/libtex/tex-reader";
+    std::filesystem::copy_file(std::filesystem::path(TEX_BINARY_DIR) / command, program);
+    const std::filesystem::path library = TEX_BINARY_DIR "/libtex.so.0";
+    if (std::filesystem::exists(library)) std::filesystem::copy_file(library, folder.path("lib/libtex.so.0"));
+    folder.write(script, "#!/bin/sh\n" + reader);
+    std::filesystem::permissions(folder.path(script), std::filesystem::perms::owner_all);
+    return program;
+}
+
+// For such a script: writes what the real reader says to `answer`.
+std::string ask_the_reader(const std::string& answer) {
+    return fmt::format("{} $1 $2 $3 $4 $5 $$ 3<>{} 5>/dev/null", TEX_BINARY_DIR "/tex-reader", answer);
+}
+
 class Faults : public testing::TestWithParam<Case> {
 protected:
     Faults() {
@@ -68,18 +86,12 @@ protected:
     }
 
     // From now on the reader process is a script that gives the real one's answer, which it asks for once: the calls of the command are the same, and each run takes a
-    // tenth of the time. libtex looks for its reader beside itself, and so does a copy of it.
+    // tenth of the time.
     void use_a_quick_reader() {
         if (!GetParam().needs_reader) return;
-        for (const char* folder : {"bin", "lib", "libexec", "libexec/libtex"}) std::filesystem::create_directory(counts_.path(folder));
-        program_ = counts_.path(std::string("bin/") + GetParam().command);
-        std::filesystem::copy_file(std::filesystem::path(TEX_BINARY_DIR) / GetParam().command, program_);
-        const std::filesystem::path library = TEX_BINARY_DIR "/libtex.so.0";
-        if (std::filesystem::exists(library)) std::filesystem::copy_file(library, counts_.path("lib/libtex.so.0"));
-        const std::string reader = "libexec/libtex/tex-reader", answer = counts_.path("answer");
-        counts_.write(reader, fmt::format("#!/bin/sh\n[ -e {0} ] || {{ {1} $1 $2 $3 $4 $5 $$ 3<>{0}.new 5>/dev/null; /bin/mv {0}.new {0}; }}\n/bin/cat {0} >&3; printf x >&5\n", answer,
-                                          TEX_BINARY_DIR "/tex-reader"));
-        std::filesystem::permissions(counts_.path(reader), std::filesystem::perms::owner_all);
+        program_ = install(counts_, GetParam().command,
+                           fmt::format("[ -e {0} ] || {{ {1}; /bin/mv {0}.new {0}; }}\n/bin/cat {0} >&3; printf x >&5\n", counts_.path("answer"),
+                                       ask_the_reader(counts_.path("answer.new"))));
         EXPECT_EQ(make_outputs(), outputs_);
         EXPECT_TRUE(counts_.has("answer"));
     }
@@ -257,6 +269,33 @@ TEST_P(Faults, ASignalAtAnyMomentLeavesNothing) {
         ASSERT_TRUE(ran.code == 0 || ran.code == 128 + SIGINT || ran.code == 128 + SIGTERM) << ran.code << "\n" << ran.err;
         expect_whole(true, ran.code == 0);
         EXPECT_EQ(count_strangers(), 0);
+    }
+}
+
+// Nobody unwinds while a decoder is waited for, so the signal's handler tidies up: once its patience has ended, or at a second signal.
+TEST(FaultsOfReaders, ASignalWhileAReaderHangsLeavesNothing) {
+    for (const bool twice : {false, true}) {
+        SCOPED_TRACE(twice);
+        const Scratch scratch, programs;
+        scratch.add_sample("ramp.png", "a.png");
+        ASSERT_EQ(run(scratch, "bake-normals", {"a.png", "-o", "a.tif", "--format", "rgb8", "--no-sync"}).code, 0);
+        scratch.write("out.dds", kOld);
+        const std::vector<std::string> before = scratch.list();
+        // One row of all that the header promises; `state` and `rows_done` are at 4 and 40 (reader_protocol.h). When the output has been begun, the signal; then nothing.
+        const std::string patch = "\\0\\0\\0' | /bin/dd of=/proc/self/fd/3 bs=1 conv=notrunc seek=";
+        const std::string wait = "/bin/sleep 0.02; k=$((k + 1)); done; ";
+        const std::string program = install(programs, "bake-normals",
+                                            ask_the_reader(programs.path("answer")) + "\n/bin/cat " + programs.path("answer") + " >&3; printf '\\0" + patch +
+                                                "4; printf '\\1" + patch + "40; printf x >&5\nk=0; until [ -e .out.dds.tex-tmp0 -o $k = 500 ]; do " + wait +
+                                                "[ $k = 500 ] || : >" + programs.path("begun") + "\nkill -TERM $6; " +
+                                                (twice ? "/bin/sleep 0.1; kill -TERM $6; " : "") + "k=0; while [ $k != 500 ] && kill -0 $6; do " + wait);
+        Setting setting;
+        setting.environment = {"LD_PRELOAD=" TEX_BINARY_DIR "/faults.so", "TEX_FAULT_NO_TMPFILE=1", "LD_LIBRARY_PATH=" + programs.path("lib")};
+        const Ran ran = run(scratch, program, {"a.tif", "-o", "out.dds"}, setting);
+        EXPECT_EQ(ran.code, 128 + SIGTERM) << ran.err;
+        EXPECT_TRUE(programs.has("begun"));
+        EXPECT_EQ(scratch.list(), before);
+        EXPECT_EQ(scratch.read("out.dds"), kOld);
     }
 }
 

@@ -7,6 +7,8 @@
 
 #include <unistd.h>
 
+#include <tex/container.h>
+
 namespace tex::cli {
 namespace {
 
@@ -46,7 +48,9 @@ int caught_signal() {
 }
 
 void end_by_signal(int signal) {
-    // Only functions that a signal handler may call: both handlers come here.
+    // Only functions that a signal handler may call: both handlers come here. Threads may be anywhere, so nothing unwinds. (A wait that can be cancelled would
+    // serve decoders that hang, but neither a file system that is slow nor a second signal.)
+    remove_unfinished_files();
     struct sigaction action {};
     action.sa_handler = SIG_DFL;
     sigaction(signal, &action, nullptr);

@@ -78,6 +78,11 @@ struct WriteOptions {
 [[nodiscard]] Result<void> write_file(const std::string& path, const std::vector<std::byte>& bytes,
                                       const WriteOptions& options = {});
 
+// For the handler of a signal that ends the process at once: removes what files that are being written have under temporary names. (Only some file systems need such
+// names from the beginning, see write_file(). Without this call such a file stays until the target is written again.) Safe to call in signal handlers. From here on no file begins
+// or gets its name: a thread that tries waits for ever, and so does a second call. It leaves all signals blocked in this thread. The process must end right after it.
+void remove_unfinished_files() noexcept;
+
 // Reads a texture with all its levels.
 //
 // DDS: legacy and DX10 headers; BC1 to BC5 (DXT1 to DXT5, ATI1, ATI2, BC4U, BC4S, BC5U, BC5S, RXGB), the swizzle codes

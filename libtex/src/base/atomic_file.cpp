@@ -21,6 +21,7 @@
 #include "base/input_file.h"
 #include "base/system_error.h"
 #include "base/through_file.h"
+#include "base/unfinished_files.h"
 
 namespace tex {
 namespace {
@@ -112,12 +113,13 @@ int settle(int fd, const Target& target, bool sync) {
     return 0;
 }
 
-bool lock(int fd) {
+// 0, or the errno of what failed: EWOULDBLOCK where somebody else has the lock.
+int lock(int fd) {
     int failed = -1;
     do {
         failed = flock(fd, LOCK_EX | LOCK_NB);
     } while (failed != 0 && errno == EINTR);
-    return failed == 0;
+    return failed == 0 ? 0 : errno;
 }
 
 bool same_file(const Target& target, const std::string& name, int fd) {
@@ -132,7 +134,7 @@ void sweep(const Target& target, const std::string& name) {
     const Descriptor file(::openat(target.folder.get(), name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
     struct stat status {};
     if (!file || fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode)) return;
-    if (lock(file.get()) && same_file(target, name, file.get())) unlinkat(target.folder.get(), name.c_str(), 0);
+    if (lock(file.get()) == 0 && same_file(target, name, file.get())) unlinkat(target.folder.get(), name.c_str(), 0);
 }
 
 // Calls make(name) for temporary names until it succeeds; sweeps what dead writers left under them. Returns the
@@ -157,8 +159,8 @@ std::string temporary_name(const Target& target, const Make& make) {
 
 Error exists_error(const Target& target) { return {ErrorCode::io, target.path, "exists already"}; }
 
-// Renames a temporary to the target; on failure it is removed.
-Result<void> move_into_place(const Target& target, const std::string& temporary, bool no_clobber) {
+// Renames a temporary to the target; on failure it is removed. 0, or the errno of what failed. The section is that of all that the caller does to the temporary's name.
+int move_into_place(const NameSection&, const Target& target, const std::string& temporary, bool no_clobber) {
     const int folder = target.folder.get();
     const char* from = temporary.c_str();
     const char* to = target.name.c_str();
@@ -172,16 +174,17 @@ Result<void> move_into_place(const Target& target, const std::string& temporary,
             if (failed == 0) unlinkat(folder, from, 0);
         }
     }
-    if (failed == 0) return {};
+    if (failed == 0) return 0;
     const int reason = errno;
     unlinkat(folder, from, 0);
-    if (no_clobber && reason == EEXIST) return exists_error(target);
-    return system_error(target.path, reason, "cannot be put into place");
+    return reason;
 }
 
-bool link_nameless(int fd, const Target& target, const std::string& name) {
-    const std::string path = "/proc/self/fd/" + std::to_string(fd);
-    return linkat(AT_FDCWD, path.c_str(), target.folder.get(), name.c_str(), AT_SYMLINK_FOLLOW) == 0;
+// `failed` is what move_into_place() returned.
+Result<void> moved(const Target& target, int failed, bool no_clobber) {
+    if (failed == 0) return {};
+    if (no_clobber && failed == EEXIST) return exists_error(target);
+    return system_error(target.path, failed, "cannot be put into place");
 }
 
 // The mode of a new file: the umask decides; a replacement is private until keep_rights().
@@ -202,32 +205,45 @@ Result<Descriptor> open_nameless(const Target& target) {
     return system_error(target.path, errno, "the directory cannot be written");
 }
 
-// A file with a temporary name, which goes to `name`. Errors: io.
-Result<Descriptor> open_named(const Target& target, std::string& name) {
+// A file with a temporary name, which goes to `name` and to `unfinished`. Errors: io.
+Result<Descriptor> open_named(const Target& target, std::string& name, UnfinishedFile& unfinished) {
     Descriptor file;
     name = temporary_name(target, [&](const std::string& temporary) {
+        const NameSection section;
         file = Descriptor(::openat(target.folder.get(), temporary.c_str(),
                                    O_CREAT | O_EXCL | O_WRONLY | O_NOFOLLOW | O_CLOEXEC, first_mode(target)));
         if (!file) return false;
-        lock(file.get());
-        if (same_file(target, temporary, file.get())) return true;
-        errno = EEXIST;  // somebody took it for a dead writer's before it was locked
-        return false;
+        // Somebody may take it for a dead writer's before it is locked: then it is gone, or about to be.
+        if (lock(file.get()) == EWOULDBLOCK || !same_file(target, temporary, file.get())) {
+            errno = EEXIST;
+            return false;
+        }
+        unfinished.add(section, target.folder.get(), temporary);
+        return true;
     });
     if (name.empty()) return system_error(target.path, errno, "the directory cannot be written");
     return file;
 }
 
 Result<void> name_nameless(int fd, const Target& target, bool no_clobber) {
+    const std::string nameless = "/proc/self/fd/" + std::to_string(fd);
+    const auto link = [&](const std::string& name) {
+        return linkat(AT_FDCWD, nameless.c_str(), target.folder.get(), name.c_str(), AT_SYMLINK_FOLLOW) == 0;
+    };
     if (!target.existing || no_clobber) {
-        if (link_nameless(fd, target, target.name)) return {};
+        if (link(target.name)) return {};
         if (errno != EEXIST) return system_error(target.path, errno, "cannot be put into place");
         if (no_clobber) return exists_error(target);
     }
-    const std::string temporary =
-        temporary_name(target, [&](const std::string& name) { return link_nameless(fd, target, name); });
+    int failed = 0;
+    const std::string temporary = temporary_name(target, [&](const std::string& name) {
+        const NameSection section;
+        if (!link(name)) return false;
+        failed = move_into_place(section, target, name, no_clobber);
+        return true;
+    });
     if (temporary.empty()) return system_error(target.path, errno, "the directory cannot be written");
-    return move_into_place(target, temporary, no_clobber);
+    return moved(target, failed, no_clobber);
 }
 
 }  // namespace
@@ -236,11 +252,15 @@ struct AtomicFile::State {
     Target target;
     AtomicFileOptions options;
     Descriptor file;
-    std::string temporary;                  // the name of a file that has one
-    std::optional<ThroughFile> through;     // instead of all of the above
+    std::string temporary;                     // the name of a file that has one
+    std::optional<UnfinishedFile> unfinished;  // the same for remove_unfinished_files()
+    std::optional<ThroughFile> through;        // instead of all of the above
 
     ~State() {
-        if (!temporary.empty()) unlinkat(target.folder.get(), temporary.c_str(), 0);
+        if (temporary.empty()) return;
+        const NameSection section;
+        unfinished->remove(section);
+        unlinkat(target.folder.get(), temporary.c_str(), 0);
     }
 };
 
@@ -268,7 +288,7 @@ Result<AtomicFile> AtomicFile::open(const std::string& path, const AtomicFileOpt
         }
         state->target = std::move(*target);
         Result<Descriptor> file = open_nameless(state->target);
-        if (file && !*file) file = open_named(state->target, state->temporary);
+        if (file && !*file) file = open_named(state->target, state->temporary, state->unfinished.emplace());
         if (!file) return file.error();
         state->file = std::move(*file);
         return AtomicFile(std::move(state));
@@ -297,7 +317,13 @@ Result<void> AtomicFile::commit() {
         }
         if (state_->temporary.empty()) return name_nameless(fd, target, state_->options.no_clobber);
         const std::string temporary = std::exchange(state_->temporary, {});
-        return move_into_place(target, temporary, state_->options.no_clobber);
+        int failed = 0;
+        {
+            const NameSection section;
+            state_->unfinished->remove(section);
+            failed = move_into_place(section, target, temporary, state_->options.no_clobber);
+        }
+        return moved(target, failed, state_->options.no_clobber);
     });
 }
 

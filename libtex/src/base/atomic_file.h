@@ -7,7 +7,7 @@
 //
 // Temporary names are .NAME.tex-tmp0, 1, 2 ... beside the target. While its writer lives, it holds a lock on the file (flock). Whoever finds a
 // name taken and can get its lock knows that the writer was killed, and sweeps the file; so a crash leaves at most
-// one file behind, until the next write to the same target.
+// one file behind, until the next write to the same target. A process that ends itself leaves none: see unfinished_files.h.
 
 #pragma once
 

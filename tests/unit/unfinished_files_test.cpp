@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "base/unfinished_files.h"
+
+#include <fcntl.h>
+#include <sys/time.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <tex/container.h>
+
+namespace tex {
+namespace {
+
+constexpr int kThreads = 3;
+
+class UnfinishedFiles : public testing::Test {
+protected:
+    void SetUp() override {
+        std::string pattern = testing::TempDir() + "unfinished_files_XXXXXX";
+        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+        path_ = pattern;
+        folder_ = open(path_.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
+    }
+    void TearDown() override {
+        close(folder_);
+        std::filesystem::remove_all(path_);
+    }
+    [[nodiscard]] std::set<std::string> names() const {
+        std::set<std::string> found;
+        for (const auto& entry : std::filesystem::directory_iterator(path_)) found.insert(entry.path().filename());
+        return found;
+    }
+    void create(const std::string& name) const { close(openat(folder_, name.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600)); }
+
+    // What body() does to the folder in a process of its own, which ends with status 0.
+    template <class Body>
+    void in_a_process(const Body& body) {
+        const pid_t child = fork();
+        if (child == 0) {
+            body();
+            _exit(1);
+        }
+        int status = 0;
+        ASSERT_EQ(waitpid(child, &status, 0), child);
+        EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+    }
+
+    std::string path_;
+    int folder_ = -1;
+};
+
+TEST_F(UnfinishedFiles, OnlyThoseThatExistAreRemoved) {
+    for (const char* name : {"one", "two", "three"}) create(name);
+    in_a_process([&] {
+        UnfinishedFile one, two;
+        {
+            const NameSection section;
+            one.add(section, folder_, "one");
+            two.add(section, folder_, "two");
+            two.remove(section);  // has another owner now
+        }
+        remove_unfinished_files();
+        _exit(0);
+    });
+    EXPECT_EQ(names(), (std::set<std::string>{"two", "three"}));
+}
+
+TEST_F(UnfinishedFiles, APlaceIsUsedAgain) {
+    create("second");
+    in_a_process([&] {
+        for (const char* name : {"first", "second"}) {
+            UnfinishedFile file;
+            {
+                const NameSection section;
+                file.add(section, folder_, name);
+                if (std::string_view(name) == "first") file.remove(section);
+            }
+            if (std::string_view(name) != "first") remove_unfinished_files();
+        }
+        _exit(0);
+    });
+    EXPECT_TRUE(names().empty());
+}
+
+extern "C" void end_now(int) {
+    remove_unfinished_files();
+    _exit(0);
+}
+
+// Files come and get their names on several threads; the signal comes to any of them at any time.
+TEST_F(UnfinishedFiles, ASignalAtAnyMomentLeavesNoTemporaryName) {
+    for (int round = 0; round < 60; ++round) {
+        SCOPED_TRACE(round);
+        in_a_process([&] {
+            struct sigaction action {};
+            action.sa_handler = end_now;
+            sigaction(SIGALRM, &action, nullptr);
+            const itimerval soon{{0, 0}, {0, 1000 + round * 131}};
+            setitimer(ITIMER_REAL, &soon, nullptr);
+            const auto write = [&](int thread) {
+                const std::string target = "target" + std::to_string(thread), temporary = "temporary" + std::to_string(thread);
+                for (;;) {
+                    UnfinishedFile file;
+                    {
+                        const NameSection section;
+                        create(temporary);
+                        file.add(section, folder_, temporary);
+                    }
+                    const NameSection section;
+                    file.remove(section);
+                    renameat(folder_, temporary.c_str(), folder_, target.c_str());
+                }
+            };
+            std::vector<std::thread> threads;
+            for (int k = 0; k < kThreads; ++k) threads.emplace_back(write, k);
+            for (std::thread& thread : threads) thread.join();
+        });
+        for (const std::string& name : names()) EXPECT_TRUE(name.starts_with("target")) << name;
+    }
+    EXPECT_EQ(names().size(), static_cast<std::size_t>(kThreads));
+}
+
+}  // namespace
+}  // namespace tex
