@@ -61,7 +61,7 @@ struct WriteOptions {
 // normalYAxis = "up" or "down".
 //
 // Errors: unsupported  the container cannot hold the format (the reason says what it can)
-//         io           the reader process cannot be started
+//         io           the reader process cannot be started; bad_data where it crashed, or did not end in time
 //         out_of_memory
 [[nodiscard]] Result<std::vector<std::byte>> encode_file(const Texture& texture, Container container,
                                                          const WriteOptions& options = {});
@@ -74,7 +74,7 @@ struct WriteOptions {
 // a nameless temporary (O_TMPFILE) in the same directory, fdatasync, link and rename; symbolic links are followed, so that the link stays. The mode of an existing file is
 // kept, as far as this user may. Standard output ("-"), FIFOs and devices are written through.
 //
-// Errors: io  the directory does not exist or may not be written; the disk is full; the path is a directory; ...
+// Errors: io  the directory does not exist or may not be written; the disk is full; the path is a directory; ...; out_of_memory, also of descriptors
 [[nodiscard]] Result<void> write_file(const std::string& path, const std::vector<std::byte>& bytes,
                                       const WriteOptions& options = {});
 
@@ -91,7 +91,7 @@ void remove_unfinished_files() noexcept;
 // flags are overlooked; what was overlooked is in Texture::remarks. Cube maps, volumes and arrays are unsupported.
 // KTX2: the VkFormats of Format, without supercompression, one layer, one face, one depth.
 // ATI2 without a swizzle code holds y first (3Dc, ATI 2005); with 'A2XY' x is first.
-// Anything else is read as a picture: one level.
+// EXR: all levels of a mip-mapped file (but those rounded up). Anything else is read as a picture: one level.
 //
 // Every size computed from a header is checked against the file's length before memory is taken. Errors: as read_image().
 [[nodiscard]] Result<Texture> read_texture(const std::string& path, const ReadOptions& options = {});

@@ -33,7 +33,7 @@ inline constexpr Named<Swizzle> kSwizzleNames[] = {
 //
 // A texture without x or y in its own swizzle (one channel) keeps it: unpack() then says what is missing.
 //
-// Errors: out_of_memory, cancelled. The same result for every number of threads.
+// Precondition (asserted): there is a base level. Errors: out_of_memory, cancelled. The same result for every number of threads.
 [[nodiscard]] Result<Swizzle> guess_swizzle(const Texture& texture, const Execution& execution = {});
 
 }  // namespace tex

@@ -17,6 +17,7 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <tex/result.h>
 
 #if defined(__SANITIZE_THREAD__)
 #include <sanitizer/tsan_interface.h>
@@ -35,6 +36,9 @@ inline constexpr char join_moment = 0;
 inline void happens_before(char) {}
 inline void happens_after(char) {}
 #endif
+
+// Where fork_join() throws std::runtime_error, which is TBB's: the threads that could start a moment ago cannot any more.
+inline Error no_threads_error() { return {ErrorCode::out_of_memory, {}, "the system refuses threads"}; }
 
 // Whether the system gives this process `count` threads more, all at once: TBB throws where it is refused one, and has then lost count. Tries it, as often as
 // `count` grows.

@@ -91,8 +91,8 @@ Result<void> parallel_for(const Execution& execution, int count, int grain,
     } else {
         try {
             fork_join(threads, pieces, run);
-        } catch (const std::runtime_error&) {  // of TBB: the threads that could start a moment ago cannot any more
-            return Error{ErrorCode::out_of_memory, {}, "the system refuses threads"};
+        } catch (const std::runtime_error&) {
+            return no_threads_error();
         }
     }
     return ticker.result();

@@ -10,6 +10,7 @@
 #include <mutex>
 #include <new>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -199,8 +200,12 @@ Result<void> RowStream::run(NormalStage& stage, LevelStage& levels) {
     work.levels = &levels;
     const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
     const int threads = work.alone ? 1 : std::min(thread_count(work.execution), static_cast<int>(allowed));
-    convey<Batch>(threads, threads + 2, [&] { return work.read(); }, [&](Batch* batch) { work.store(*batch); },
-                  [&](Batch* batch) { work.make(*batch, stage); }, [&](Batch* batch) { work.write(*batch); });
+    try {
+        convey<Batch>(threads, threads + 2, [&] { return work.read(); }, [&](Batch* batch) { work.store(*batch); },
+                      [&](Batch* batch) { work.make(*batch, stage); }, [&](Batch* batch) { work.write(*batch); });
+    } catch (const std::runtime_error&) {
+        return no_threads_error();
+    }
     if (work.failure.error()) return *work.failure.error();
     if (const Result<void> sound = stage.check(); !sound) return sound;
     // Better no file than one with holes.
