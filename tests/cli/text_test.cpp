@@ -27,6 +27,7 @@ TEST(Text, PrintableTextCannotDriveATerminal) {
     EXPECT_EQ(printable("\x9b" "31m"), "\\x9b31m");            // and in one byte
     EXPECT_EQ(printable("a\xff\xe2\x82"), "a\\xff\\xe2\\x82");
     EXPECT_EQ(printable("\xc0\xaf\xed\xa0\x80\xf4\x90\x80\x80"), "\\xc0\\xaf\\xed\\xa0\\x80\\xf4\\x90\\x80\\x80");  // no UTF-8
+    EXPECT_EQ(printable("\xef\xbf\xbe\xef\xbf\xbd"), "\\xef\\xbf\\xbe\xef\xbf\xbd");  // no character, and one
 }
 
 TEST(Text, WrapsAtBlanks) {

@@ -6,13 +6,15 @@
 #include <filesystem>
 
 #include "cli/json.h"
+#include "cli/text.h"
 #include "cli/text_file.h"
 
 namespace tex::cli {
 
 Baseline::Key Baseline::key_of(const CheckReport& report, const Finding& finding) {
     const int level = finding.regions.empty() ? 0 : finding.regions.front().level;
-    return {std::filesystem::path(report.file).lexically_normal().generic_string(), std::string(finding.rule->id), level};
+    // Names may be any bytes, JSON's strings not.
+    return {printable(std::filesystem::path(report.file).lexically_normal().generic_string()), std::string(finding.rule->id), level};
 }
 
 Result<Baseline> Baseline::read(const std::string& path) {

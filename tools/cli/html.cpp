@@ -7,19 +7,10 @@
 #include "cli/text.h"
 
 namespace tex::cli {
-namespace {
-
-// Names of files may be any bytes: what is not UTF-8 becomes U+FFFD, by way of JSON's serialiser.
-std::string valid(const std::string& text) {
-    const Json json = text;
-    return Json::parse(json.dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
-}
-
-}  // namespace
 
 std::string html_text(std::string_view text) {
     std::string html;
-    for (const char c : valid(printable(text))) {
+    for (const char c : printable(text)) {
         switch (c) {
             case '&': html += "&amp;"; break;
             case '<': html += "&lt;"; break;

@@ -8,30 +8,29 @@
 #include <fmt/format.h>
 
 #include "cli/findings.h"
+#include "cli/text.h"
 
 namespace tex::cli {
 namespace {
 
-// Text for an attribute or an element. XML 1.0 has no way to write most control characters.
+// Text for an attribute or an element: lines that may hold any bytes. XML 1.0 has no way to write most control characters.
 std::string escaped(std::string_view text) {
     std::string xml;
-    for (const char c : text) {
-        switch (c) {
-            case '&': xml += "&amp;"; break;
-            case '<': xml += "&lt;"; break;
-            case '>': xml += "&gt;"; break;
-            case '"': xml += "&quot;"; break;
-            case '\n': xml += "&#10;"; break;
-            default: xml += static_cast<unsigned char>(c) < 0x20 ? '?' : c; break;
+    while (true) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        for (const char c : printable(text.substr(0, end))) {
+            switch (c) {
+                case '&': xml += "&amp;"; break;
+                case '<': xml += "&lt;"; break;
+                case '>': xml += "&gt;"; break;
+                case '"': xml += "&quot;"; break;
+                default: xml += c; break;
+            }
         }
+        if (end == text.size()) return xml;
+        xml += "&#10;";
+        text.remove_prefix(end + 1);
     }
-    return xml;
-}
-
-// Names of files may be any bytes: what is not UTF-8 becomes U+FFFD, by way of JSON's serialiser.
-std::string valid(const std::string& text) {
-    const Json json = text;
-    return Json::parse(json.dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
 }
 
 std::string test_case(const CheckReport& report, const Requirements& require, Severity fail_on) {
@@ -39,18 +38,18 @@ std::string test_case(const CheckReport& report, const Requirements& require, Se
     const auto fails = [&](const Finding& finding) { return finding.severity >= fail_on; };
     std::erase_if(failing.findings, [&](const Finding& finding) { return !fails(finding); });
     std::erase_if(other.findings, fails);
-    std::string xml = fmt::format("    <testcase classname=\"check-normals\" name=\"{}\">\n", escaped(valid(report.file)));
+    std::string xml = fmt::format("    <testcase classname=\"check-normals\" name=\"{}\">\n", escaped(report.file));
     if (report.error) {
         xml += fmt::format("      <error type=\"{}\" message=\"{}\"/>\n", name_of(kErrorCodeNames, report.error->code),
-                           escaped(valid(report.error->reason)));
+                           escaped(report.error->reason));
     } else if (!failing.findings.empty()) {
         const Finding& first = failing.findings.front();
         xml += fmt::format("      <failure type=\"{}\" message=\"{}\">{}</failure>\n", first.rule->id,
-                           escaped(valid(fmt::format("{} {}", first.rule->sentence, first.message))),
-                           escaped(valid(findings_text(failing, require))));
+                           escaped(fmt::format("{} {}", first.rule->sentence, first.message)),
+                           escaped(findings_text(failing, require)));
     }
     if (!other.findings.empty() && !report.error) {
-        xml += fmt::format("      <system-out>{}</system-out>\n", escaped(valid(findings_text(other, require))));
+        xml += fmt::format("      <system-out>{}</system-out>\n", escaped(findings_text(other, require)));
     }
     return xml + "    </testcase>\n";
 }

@@ -41,8 +41,8 @@ std::size_t character_length(std::string_view text) {
         code = code << 6 | (byte(k) & 0x3f);
     }
     constexpr char32_t kLeast[] = {0, 0, 0xa0, 0x800, 0x10000};  // those of two bytes begin after the control characters
-    const bool is_surrogate = code >= 0xd800 && code < 0xe000;
-    return code >= kLeast[length] && code <= 0x10ffff && !is_surrogate ? length : 0;
+    const bool is_character = (code < 0xd800 || code >= 0xe000) && code != 0xfffe && code != 0xffff;
+    return code >= kLeast[length] && code <= 0x10ffff && is_character ? length : 0;
 }
 
 }  // namespace
