@@ -42,10 +42,8 @@ Result<Image> read_image(InputFile& file, const ReadOptions& options) {
                               : is_exr(file.head())     ? read_exr(file, options)
                               : is_texture(file.head()) ? read_base_level(file, options)
                                                         : read_with_reader(file, options);
-        if (image || !image.error().file.empty()) return image;
-        Error error = image.error();
-        error.file = file.path();
-        return error;
+        if (!image) return image.error().of(file.path());
+        return image;
     });
 }
 

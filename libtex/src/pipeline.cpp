@@ -115,11 +115,7 @@ Result<BakeFileReport> bake_file(const std::string& input, const std::string& ou
             return bake_stream(**rows, input, output, container, options, execution);
         }
         Result<Image> image = *rows ? (*rows)->read_all() : read_image(*file, options.read);
-        if (!image) {
-            Error error = image.error();
-            if (error.file.empty()) error.file = input;
-            return error;
-        }
+        if (!image) return image.error().of(input);
         rows->reset();
         return bake_whole(std::move(*image), output, container, options, execution);
     });

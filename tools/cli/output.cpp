@@ -43,11 +43,7 @@ std::string containers_for(Encoding encoding) {
 Result<std::size_t> write_file_of(Job& job, const Texture& texture, const std::string& path, Container container,
                                   const WriteOptions& options) {
     auto bytes = encode_file(texture, container, options);
-    if (!bytes) {
-        Error error = bytes.error();
-        if (error.file.empty()) error.file = path;
-        return error;
-    }
+    if (!bytes) return bytes.error().of(path);
     if (auto written = write_file(path, *bytes, options); !written) return written.error();
     job.wrote(path);
     return bytes->size();

@@ -23,8 +23,7 @@ void Reporter::tell(const Outcome& outcome) {
         print_warning(fmt::format("{}: {}", outcome.input, warning));
     if (outcome.error) {
         if (outcome.error->code == ErrorCode::cancelled) return;
-        Error error = *outcome.error;
-        if (error.file.empty()) error.file = outcome.input;
+        const Error error = outcome.error->of(outcome.input);
         if (!outcome.is_silent) print_error(error.message());
         raise(outcome.is_bug ? ExitCode::bug : cli::exit_code(error.code));
     } else {

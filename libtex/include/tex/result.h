@@ -45,6 +45,9 @@ struct Error {
 
     // "FILE: reason", or just the reason where there is no file.
     [[nodiscard]] std::string message() const { return file.empty() ? reason : file + ": " + reason; }
+
+    // The same, of the file `path` where it names none.
+    [[nodiscard]] Error of(const std::string& path) const { return {code, file.empty() ? path : file, reason}; }
 };
 
 // A value or an Error. Test it, then use value() or error(); asking for the one that is not there is a

@@ -38,8 +38,8 @@ Result<std::unique_ptr<RowSource>> open_rows(InputFile& file, const ReadOptions&
     } else if (!is_dds(file.head().data(), file.head().size()) && !is_ktx2(file.head().data(), file.head().size())) {
         rows = open_reader_rows(file, options);
     }
-    if (rows || !rows.error().file.empty()) return rows;
-    return Error{rows.error().code, file.path(), rows.error().reason};
+    if (!rows) return rows.error().of(file.path());
+    return rows;
 }
 
 }  // namespace tex

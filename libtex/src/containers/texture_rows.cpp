@@ -25,15 +25,11 @@ bool is_texture(const InputFile& file) {
     return is_dds(file.head().data(), file.head().size()) || is_ktx2(file.head().data(), file.head().size());
 }
 
-Error named(const InputFile& file, const Error& error) {
-    return error.file.empty() ? Error{error.code, file.path(), error.reason} : error;
-}
-
 using Opened = Result<std::optional<TextureRows>>;
 
 // A picture, from its rows.
 Opened picture_rows(const InputFile& file, Result<std::unique_ptr<RowSource>> rows) {
-    if (!rows) return named(file, rows.error());
+    if (!rows) return rows.error().of(file.path());
     Result<PictureTexture> picture = picture_texture_of((*rows)->names(), (*rows)->sample(), (*rows)->bits());
     // What is wrong with a picture shows when it has been read.
     if (!picture || !(*rows)->is_sequential()) return std::optional<TextureRows>();
@@ -69,7 +65,7 @@ Opened level_rows(InputFile& file, const ReadOptions& options) {
 
 Opened exr_rows(InputFile& file, const ReadOptions& options) {
     Result<ExrTextureRows> rows = open_exr_texture_rows(file, options);
-    if (!rows) return named(file, rows.error());
+    if (!rows) return rows.error().of(file.path());
     TextureRows texture;
     texture.head = std::move(rows->head);
     texture.levels = std::move(rows->levels);
@@ -90,7 +86,7 @@ Result<Texture> read_texture(InputFile& file, const ReadOptions& options) {
         const Result<Image> image = is_png(file.head()) ? read_png(file, options) : read_with_reader(file, options);
         if (!image) return image.error();
         Result<Texture> texture = texture_of(*image);
-        if (!texture) return named(file, texture.error());
+        if (!texture) return texture.error().of(file.path());
         return texture;
     });
 }

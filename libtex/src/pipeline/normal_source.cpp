@@ -37,7 +37,7 @@ Result<Source> read_normals(InputFile& file, const SourceOptions& options, bool 
     Result<Texture> texture = read_texture(file, options.read);
     if (!texture) return texture.error();
     Result<Source> source = unpack_source(std::move(*texture), options, base_only, execution);
-    if (!source && source.error().file.empty()) return Error{source.error().code, file.path(), source.error().reason};
+    if (!source) return source.error().of(file.path());
     return source;
 }
 

@@ -20,10 +20,6 @@
 namespace tex {
 namespace {
 
-Error named(const std::string& input, const Error& error) {
-    return error.file.empty() ? Error{error.code, input, error.reason} : error;
-}
-
 // How many levels build_mip_chain() makes.
 int levels_built(const MipOptions& options, Extent base) {
     const int complete = level_count(base);
@@ -133,9 +129,9 @@ Result<void> Attempt::stream_level(std::size_t k, StripWriter& writer, const Exe
 }
 
 Result<std::optional<PackFileReport>> Attempt::run() {
-    if (const Result<void> ready = prepare(); !ready) return after_all_rows(rows(0), input_, named(input_, ready.error()));
+    if (const Result<void> ready = prepare(); !ready) return after_all_rows(rows(0), input_, ready.error().of(input_));
     if (first_ > 0 && finder_.depends_on_texels()) {
-        if (const Result<void> seen = look_at_base_level(); !seen) return named(input_, seen.error());
+        if (const Result<void> seen = look_at_base_level(); !seen) return seen.error().of(input_);
         if (correction_) return std::optional<PackFileReport>();
     }
     Result<std::unique_ptr<StripWriter>> opened =

@@ -24,11 +24,6 @@
 namespace tex {
 namespace {
 
-// Errors of reading name the file.
-Error of_input(const std::string& input, const Error& error) {
-    return error.file.empty() ? Error{error.code, input, error.reason} : error;
-}
-
 // Some rows on their way: as they were decoded, then the strips that they finished.
 struct Batch {
     int first = 0;
@@ -133,7 +128,7 @@ void RowStream::Work::decode(Batch& batch) {
         if (decoded && batch.first + batch.count == rows.extent().height) decoded = rows.finish();
         return decoded;
     });
-    if (!done) batch.error = of_input(input, done.error());
+    if (!done) batch.error = done.error().of(input);
 }
 
 void RowStream::Work::store(Batch& batch) {
@@ -221,7 +216,7 @@ Error after_all_rows(RowSource& rows, const std::string& input, const Error& err
         done = rows.decode(j, std::min(together, rows.extent().height - j), decoded.data());
     }
     if (done) done = rows.finish();
-    return done ? error : of_input(input, done.error());
+    return done ? error : done.error().of(input);
 }
 
 }  // namespace tex

@@ -82,7 +82,7 @@ public:
                 size_ = std::max(size_, static_cast<std::size_t>(offset) + bytes.size());
                 return bytes.empty() ? Result<void>() : file_.write_at(offset, bytes);
             });
-        if (!target) return named(target.error());
+        if (!target) return target.error().of(path_);
         target_ = std::move(*target);
         return {};
     }
@@ -92,8 +92,6 @@ public:
     [[nodiscard]] std::size_t file_bytes() const override { return size_; }
 
 private:
-    [[nodiscard]] Error named(const Error& error) const { return error.file.empty() ? Error{error.code, path_, error.reason} : error; }
-
     const std::string path_;
     AtomicFile file_;
     PackOptions pack_;
@@ -106,13 +104,13 @@ Result<void> PictureWriter::write(Strip& strip) {
         strip.bytes.resize(level_bytes(encoding_info(pack_.encoding).format, {strip.map.extent().width, strip.height}));
         pack_rows(strip.map, strip.height, pack_, 0, strip.height, strip.bytes.data());
         const Result<void> put = target_->put(strip.bytes.data(), strip.height);
-        return put ? put : Result<void>(named(put.error()));
+        return put ? put : Result<void>(put.error().of(path_));
     });
 }
 
 Result<void> PictureWriter::commit() {
     const Result<void> ended = guarded([&] { return target_->finish(); });
-    return ended ? file_.commit() : Result<void>(named(ended.error()));
+    return ended ? file_.commit() : Result<void>(ended.error().of(path_));
 }
 
 }  // namespace
