@@ -89,7 +89,7 @@ Result<void> BakeNormals::process(cli::Job& job) {
     options.write = output.write_options(job);
     options.slopes = run.json;
     const auto baked = bake_file(job.task.input, job.task.output, job.task.container, options, job.until(1.0));
-    if (!baked) return baked.error();
+    if (!baked) return cli::HeightReader::with_remedy(baked.error());
     reader.note(job, baked->heights);
     job.wrote(job.task.output);
     cli::report_texture(job, baked->extent, baked->levels, options.pack, baked->bytes);

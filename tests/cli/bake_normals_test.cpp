@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <cmath>
+#include <limits>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <tex/tex.h>
@@ -183,6 +185,28 @@ TEST_F(BakeNormals, TellsWhichWayAFileWent) {
     EXPECT_EQ(path_of({"bricks.png", "-o", "y.dds", "--fill-invalid"}), "whole");
     EXPECT_EQ(path_of({"bricks.png", "-o", "x.dds"}), "streamed");
     EXPECT_TRUE(scratch_.read("x.dds") == scratch_.read("y.dds"));
+}
+
+TEST_F(BakeNormals, HeightsThatAreInvalidNameTheirRemedy) {
+    const auto pfm = [&](const std::string& name, const std::vector<float>& heights) {
+        std::string text = fmt::format("Pf\n{} 1\n-1.0\n", heights.size());
+        text.append(reinterpret_cast<const char*>(heights.data()), heights.size() * sizeof(float));
+        scratch_.write(name, text);
+    };
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    pfm("some.pfm", {0.5f, 0.25f, nan, 0.75f, nan});
+    pfm("all.pfm", {nan, nan});
+    for (const std::string output : {"x.dds", "x.png", "x{level}.dds"}) {  // of a stream, of whole images, of levels
+        SCOPED_TRACE(output);
+        const std::vector<std::string> to = {"--name", output};
+        const Ran some = bake({"some.pfm", to[0], to[1]}), all = bake({"all.pfm", to[0], to[1]});
+        EXPECT_EQ(some.code, 4);
+        EXPECT_EQ(some.err, "bake-normals: error: some.pfm: 2 heights are NaN or infinite, the first at column 2, row 0; "
+                            "--fill-invalid fills in the nearest valid ones\n");
+        EXPECT_EQ(all.code, 4);
+        EXPECT_EQ(all.err, "bake-normals: error: all.pfm: no texel has a height: all are NaN or infinite\n");
+        EXPECT_EQ(bake({"some.pfm", to[0], to[1], "--fill-invalid"}).code, 0);
+    }
 }
 
 TEST_F(BakeNormals, ThreadsDoNotChangeTheBytes) {

@@ -168,6 +168,7 @@ TEST(HeightField, InvalidHeightsAreAnErrorThatNamesTheFirstAndTheCount) {
         ASSERT_FALSE(result);
         EXPECT_EQ(result.error().code, ErrorCode::bad_data);
         EXPECT_EQ(result.error().reason, "2 heights are NaN or infinite, the first at column 33, row 7");
+        EXPECT_TRUE(is_fillable(result.error()));
     }
 }
 
@@ -187,6 +188,7 @@ TEST(HeightField, APictureWithoutAnyHeightCannotBeFilled) {
     options.fill_invalid = true;
     const auto result = tex::height_field(grey_image(Plane<float>({5, 5}, kNan)), options);
     ASSERT_FALSE(result);
+    EXPECT_FALSE(is_fillable(result.error()));
     EXPECT_EQ(result.error().code, ErrorCode::bad_data);
 }
 

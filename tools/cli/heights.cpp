@@ -115,12 +115,17 @@ Result<HeightField> HeightReader::read(Job& job, Execution execution) {
     }
     HeightReport report;
     auto field = height_field(*image, heights.options, execution, &report);
-    if (!field) return field.error();
+    if (!field) return with_remedy(field.error());
     note(job, report);
     const Strength value = strength.strength(field->height.extent());
     field->bumpiness_x = value.x;
     field->bumpiness_y = value.y;
     return field;
+}
+
+Error HeightReader::with_remedy(const Error& error) {
+    if (!is_fillable(error)) return error;
+    return {error.code, error.file, error.reason + "; --fill-invalid fills in the nearest valid ones"};
 }
 
 void HeightReader::note(Job& job, const HeightReport& report) {

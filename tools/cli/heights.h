@@ -68,6 +68,9 @@ public:
     // The job's input as a height field; the job depends on the colour configuration too.
     [[nodiscard]] Result<HeightField> read(Job& job, Execution execution);
 
+    // `error`, of reading or baking heights, with the option that avoids it, where there is one.
+    [[nodiscard]] static Error with_remedy(const Error& error);
+
     // What the reading of a job's heights met, where somebody else has read them; the job depends on the colour configuration.
     void note(Job& job, const HeightReport& report);
 

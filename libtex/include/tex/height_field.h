@@ -116,5 +116,8 @@ struct HeightReport {
                                                const Execution& execution = {},
                                                HeightReport* report = nullptr);
 
+// Whether `error`, of height_field() or bake_file(), tells of invalid texels that fill_invalid replaces: some are invalid, others are not.
+[[nodiscard]] bool is_fillable(const Error& error);
+
 }  // namespace tex
 #pragma GCC visibility pop
