@@ -23,11 +23,6 @@
 namespace tex {
 namespace {
 
-bool can_stream(const RowSource* rows, Container container, const BakeFileOptions& options) {
-    return rows != nullptr && rows->is_sequential() && is_texture(container) && options.color.space.empty() &&
-           !options.heights.fill_invalid;
-}
-
 // One file that holds `texture`.
 Result<std::size_t> write_whole(Texture texture, const std::string& output, Container container, const WriteOptions& options) {
     auto bytes = encode_file(texture, container, options);
@@ -111,8 +106,8 @@ Result<BakeFileReport> bake_file(const std::string& input, const std::string& ou
         if (!file) return file.error();
         Result<std::unique_ptr<RowSource>> rows = open_rows(*file, options.read);
         if (!rows) return rows.error();
-        if (can_stream(rows->get(), container, options)) {
-            return bake_stream(**rows, input, output, container, options, execution);
+        if (*rows && can_stream(*file, **rows, container, options)) {
+            return bake_stream(*file, std::move(*rows), output, container, options, execution);
         }
         Result<Image> image = *rows ? (*rows)->read_all() : read_image(*file, options.read);
         if (!image) return image.error().of(input);

@@ -30,6 +30,7 @@ void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
 const Case kCases[] = {
     {"Texture", "bake-normals", {"a.png", "-o", "out.dds", "--threads", "2"}, ""},
+    {"Baked", "bake-normals", {"a.png", "-o", "out.png", "--threads", "2"}, ""},  // which is decoded twice
     {"Levels", "bake-normals", {"a.png", "--out-dir", ".", "--name", "out{level}.png", "--threads", "2", "--mips", "2"}, ""},
     {"Stream", "pack-normals", {"a.dds", "-o", "out.ktx2", "--format", "bc5", "--threads", "2"}, "a.dds"},
     {"Unpacked", "unpack-normals", {"a.dds", "-o", "out.png", "--threads", "2"}, "a.dds"},

@@ -90,9 +90,10 @@ protected:
                                   std::function<bool(double)> progress = {}) const {
         Result<InputFile> file = InputFile::open(input);
         if (!file) return file.error();
-        const auto rows = open_rows(*file, options_.read);
+        auto rows = open_rows(*file, options_.read);
         if (!rows) return rows.error();
-        return bake_stream(**rows, input, path("out"), container, options_, {threads, std::move(progress)}, sizes);
+        if (!can_stream(*file, **rows, container, options_)) return Error{ErrorCode::unsupported, input, "no stream"};
+        return bake_stream(*file, std::move(*rows), path("out"), container, options_, {threads, std::move(progress)}, sizes);
     }
 
     BakeFileOptions options_;
@@ -128,7 +129,12 @@ TEST_F(Pipeline, StreamsGiveTheBytesOfTheVerbs) {
         if (kind.channels >= 3) options_.heights.channel = any_of(kHeightChannelNames, random);
         if (kind.channels == 3 && options_.heights.channel == HeightChannel::a) options_.heights.channel = HeightChannel::b;
         if (options_.heights.channel == HeightChannel::y) options_.heights.channel = HeightChannel::max;
-        const Container container = one_in(2) ? Container::dds : Container::ktx2;
+        constexpr Container kContainers[] = {Container::dds, Container::ktx2, Container::png, Container::exr};
+        const Container container = kContainers[random() % 4];
+        if (container == Container::png || container == Container::exr) {
+            options_.mip.levels = 1;
+            while (!can_hold(container, options_.pack.encoding)) options_.pack.encoding = any_of(kEncodingNames, random);
+        }
         const std::string input = write("in.png", make_png(extent, kind, static_cast<unsigned>(random())));
         SlopeRange slopes;
         const Bytes expected = by_verbs(input, container, &slopes);
@@ -188,8 +194,14 @@ TEST_F(Pipeline, WhatCannotStreamGoesAsAWhole) {
     EXPECT_EQ(baked(plain, Container::dds), Path::whole);
     options_.color.space.clear();
     options_.pack.encoding = Encoding::rgb8;
-    EXPECT_EQ(baked(plain, Container::png), Path::whole);
+    EXPECT_EQ(baked(plain, Container::png), Path::streamed);
     EXPECT_EQ(read_image(path("out")).value().extent(), extent);
+    EXPECT_EQ(baked(plain, Container::tga), Path::whole);
+    EXPECT_EQ(read_image(path("out")).value().extent(), extent);
+    options_.pack.encoding = Encoding::half;
+    EXPECT_EQ(baked(plain, Container::exr), Path::whole);
+    options_.mip.levels = 1;
+    EXPECT_EQ(baked(plain, Container::exr), Path::streamed);
 }
 
 TEST_F(Pipeline, NormalsInAnInterlacedPictureGoAsAWhole) {
@@ -276,6 +288,12 @@ TEST_F(Pipeline, ExrStreamsWhateverItsRowsAreKeptIn) {
                 EXPECT_TRUE(bytes_of(path("out")) == expected);
             }
             EXPECT_EQ(bake_file(path("in.exr"), path("out"), Container::dds, options_).value().path, Path::streamed);
+            options_.mip.levels = 1;
+            options_.pack.encoding = Encoding::rgb8;
+            ASSERT_TRUE(stream(path("in.exr"), Container::png, 3, {256, 0}));
+            EXPECT_TRUE(bytes_of(path("out")) == by_verbs(path("in.exr"), Container::png));
+            options_.mip = {};
+            options_.pack.encoding = PackOptions().encoding;
             options_.heights.fill_invalid = true;
             EXPECT_EQ(bake_file(path("in.exr"), path("out"), Container::dds, options_).value().path, Path::whole);
             EXPECT_TRUE(bytes_of(path("out")) == expected);
@@ -287,8 +305,12 @@ TEST_F(Pipeline, ExrStreamsWhateverItsRowsAreKeptIn) {
 TEST_F(Pipeline, DamageIsTheSameErrorAndLeavesNothing) {
     make_exr(path("in.exr"), {200, 300}, {});
     for (const std::string& sound : {path("in.exr"), write("in.png", make_png({300, 500}, {1, 16}))}) {
-        expect_same_damage(sound, [](const std::string& input) { return read_image(input); },
-                           [&](const std::string& input, int threads) { return stream(input, Container::dds, threads, {2048, 0}); });
+        for (const Container container : {Container::dds, Container::png}) {
+            expect_same_damage(sound, [](const std::string& input) { return read_image(input); }, [&](const std::string& input, int threads) {
+                options_.pack.encoding = default_encoding(container);
+                return stream(input, container, threads, {2048, 0});
+            });
+        }
     }
     EXPECT_EQ(files(), 4u);
     // A picture that is damaged is damaged first, whatever else is wrong.
@@ -303,13 +325,18 @@ TEST_F(Pipeline, HeightsThatCannotBeUsedAreTheSameErrors) {
     EXPECT_EQ(bake_file(input, path("out"), Container::dds, options_).error().message(),
               height_field(image, options_.heights).error().message());
     options_.heights.channel = HeightChannel::r;
-    options_.heights.no_data = image.planes[0].at(7, 31);
-    for (const int threads : {1, 2}) {
-        EXPECT_EQ(stream(input, Container::dds, threads, {64, 0}).error().message(),
-                  height_field(image, options_.heights).error().message());
+    for (const Container container : {Container::dds, Container::png}) {
+        options_.pack.encoding = default_encoding(container);
+        for (const int row : {31, 0, 49}) {
+            options_.heights.no_data = image.planes[0].at(7, row);
+            for (const int threads : {1, 2}) {
+                EXPECT_EQ(stream(input, container, threads, {64, 0}).error().message(), height_field(image, options_.heights).error().message());
+            }
+        }
     }
     EXPECT_EQ(files(), 1u);
     options_.heights = {};
+    options_.pack.encoding = PackOptions().encoding;
     const auto report = bake_file(input, path("out"), Container::dds, options_);
     HeightReport counted;
     ASSERT_TRUE(height_field(image, options_.heights, {}, &counted));
@@ -344,6 +371,14 @@ TEST_F(Pipeline, CancellingLeavesNothing) {
         ASSERT_FALSE(report);
         EXPECT_EQ(report.error().code, ErrorCode::cancelled);
         EXPECT_EQ(calls, 10);
+        EXPECT_EQ(files(), 1u);
+    }
+    // While the last rows are looked for, and afterwards.
+    options_.pack.encoding = default_encoding(Container::png);
+    for (const int most : {10, 404}) {
+        int calls = 0;
+        EXPECT_EQ(stream(input, Container::png, 1, {2000, 0}, [&](double) { return ++calls < most; }).error().code, ErrorCode::cancelled);
+        EXPECT_EQ(calls, most);
         EXPECT_EQ(files(), 1u);
     }
 }

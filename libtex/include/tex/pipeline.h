@@ -59,8 +59,9 @@ struct BakeFileReport {
 
 // Bakes the height map `input` ("-" is standard input) and writes it to `output` as a file of the kind `container`.
 //
-// Streamed: PNG that is not interlaced, EXR, and what the reader process decodes (TIFF, TGA, JPEG ...), into DDS and KTX2, without fill_invalid and without a
-// colour space. Everything else takes the path of whole images. Pictures that hold one level get the base level.
+// Streamed: PNG that is not interlaced, EXR, and what the reader process decodes (TIFF, TGA, JPEG ...), into DDS, KTX2, PNG and EXR of one level, without fill_invalid and
+// without a colour space. PNG and EXR are written from the top: where the heights repeat from bottom to top, the last rows are decoded first (a PNG twice), and what the reader
+// process decodes takes the path of whole images, as everything else does. Pictures that hold one level get the base level.
 //
 // The output appears whole or not at all, see write_file(). What goes to standard output or a FIFO is held in memory until it is whole.
 //

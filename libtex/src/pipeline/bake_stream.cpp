@@ -10,6 +10,7 @@
 
 #include "kernels/bake.h"
 #include "pipeline/height_stage.h"
+#include "pipeline/last_rows.h"
 #include "pipeline/level_stage.h"
 #include "pipeline/strip_writer.h"
 
@@ -42,33 +43,57 @@ Slopes slopes_of(Extent extent, const BakeFileOptions& options) {
     return {strength.x, strength.y, options.heights.wrap_x, options.heights.wrap_y};
 }
 
+int levels_of(Extent extent, Container container, const BakeFileOptions& options) {
+    if (!can_hold_levels(container)) return 1;
+    const int complete = level_count(extent);
+    return options.mip.levels > 0 ? std::min(options.mip.levels, complete) : complete;
+}
+
+// What is written from the top cannot wait for the last rows to come.
+bool needs_last_rows(Container container, const BakeFileOptions& options) {
+    return !is_texture(container) && options.heights.wrap_y == Wrap::repeat;
+}
+
 }  // namespace
 
-Result<BakeFileReport> bake_stream(RowSource& rows, const std::string& input, const std::string& output, Container container,
-                                   const BakeFileOptions& options, const Execution& execution,
-                                   const StreamSizes& sizes) {
+bool can_stream(const InputFile& file, const RowSource& rows, Container container, const BakeFileOptions& options) {
+    if (!rows.is_sequential() || !options.color.space.empty() || options.heights.fill_invalid) return false;
+    if (!takes_strips(container, levels_of(rows.extent(), container, options))) return false;
+    return !needs_last_rows(container, options) || knows_last_rows(file, rows);
+}
+
+Result<BakeFileReport> bake_stream(InputFile& file, std::unique_ptr<RowSource> rows, const std::string& output, Container container,
+                                   const BakeFileOptions& options, const Execution& execution, const StreamSizes& sizes) {
+    const std::string& input = file.path();
+    const Extent extent = rows->extent();
     const std::optional<Error> wrong_blur = check_blur(options.heights);
-    const Result<HeightSource> source = find_height_source(rows.names(), options.heights.channel);
-    if (wrong_blur || !source) return after_all_rows(rows, input, wrong_blur ? *wrong_blur : source.error());
-    const int complete = level_count(rows.extent());
+    const Result<HeightSource> source = find_height_source(rows->names(), options.heights.channel);
+    if (wrong_blur || !source) return after_all_rows(*rows, input, wrong_blur ? *wrong_blur : source.error());
+    const Gradient gradient = gradient_of(options.bake);
+    std::optional<Image> last;
+    if (needs_last_rows(container, options)) {
+        const int count = std::min(HeightStage::reach(options.heights, gradient), extent.height);
+        Result<Image> known = last_rows(file, rows, options.read, count, execution);
+        if (!known) return known.error();
+        last = std::move(*known);
+    }
     BakeFileReport report;
     report.path = Path::streamed;
-    report.extent = rows.extent();
-    report.levels = options.mip.levels > 0 ? std::min(options.mip.levels, complete) : complete;
+    report.extent = extent;
+    report.levels = levels_of(extent, container, options);
     const Result<std::unique_ptr<StripWriter>> opened =
-        StripWriter::open(output, container, rows.extent(), report.levels, options.pack, options.write);
+        StripWriter::open(output, container, extent, report.levels, options.pack, options.write);
     if (!opened) return opened.error();
     StripWriter& writer = **opened;
-    RowStream stream(rows, input, 0, report.levels, writer, execution, sizes);
+    RowStream stream(*rows, input, 0, report.levels, writer, execution, sizes);
     SlopeCollector slopes;
     if (options.slopes) {
         stream.watch([&slopes](const Strip& strip) {
             if (strip.level == 0) slopes.add(strip);
         });
     }
-    const Gradient gradient = gradient_of(options.bake);
-    HeightStage heights(rows.extent(), *source, options.heights, gradient, slopes_of(rows.extent(), options), stream.sink());
-    LevelStage levels(rows.extent(), report.levels, heights.start(), options.mip, stream.strips());
+    HeightStage heights(extent, *source, options.heights, gradient, slopes_of(extent, options), stream.sink(), std::move(last));
+    LevelStage levels(extent, report.levels, heights.start(), options.mip, stream.strips());
     if (const Result<void> done = stream.run(heights, levels); !done) return done.error();
     if (const Result<void> done = writer.commit(); !done) return done.error();
     report.bytes = writer.file_bytes();

@@ -3,18 +3,22 @@
 
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include <tex/pipeline.h>
 
+#include "base/input_file.h"
 #include "containers/row_source.h"
 #include "pipeline/row_stream.h"
 
 namespace tex {
 
-// Precondition: rows.is_sequential(); `container` is dds or ktx2; neither a colour space nor fill_invalid. May throw std::bad_alloc.
-Result<BakeFileReport> bake_stream(RowSource& rows, const std::string& input, const std::string& output, Container container,
-                                   const BakeFileOptions& options, const Execution& execution,
-                                   const StreamSizes& sizes = {});
+// Whether bake_file() can write what it makes of the picture `rows` in `file` strip by strip.
+bool can_stream(const InputFile& file, const RowSource& rows, Container container, const BakeFileOptions& options);
+
+// `rows` is opened once more where its last rows are needed first. Precondition: can_stream(). May throw std::bad_alloc.
+Result<BakeFileReport> bake_stream(InputFile& file, std::unique_ptr<RowSource> rows, const std::string& output, Container container,
+                                   const BakeFileOptions& options, const Execution& execution, const StreamSizes& sizes = {});
 
 }  // namespace tex

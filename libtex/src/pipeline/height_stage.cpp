@@ -29,9 +29,9 @@ int first_row(int height, int start, int radius, Wrap wrap) {
 
 }  // namespace
 
-HeightWindow::HeightWindow(Extent extent, int start, int radius, Wrap wrap)
+HeightWindow::HeightWindow(Extent extent, int start, int radius, Wrap wrap, std::optional<int> first)
     : shelf(extent.height, start, rows_to_keep(extent.height, start, radius, wrap)), extent_(extent), wrap_(wrap),
-      start_(first_row(extent.height, start, radius, wrap)), next_(start_) {}
+      start_(first.value_or(first_row(extent.height, start, radius, wrap))), next_(start_) {}
 
 bool HeightWindow::has(int first, int end) const {
     for (int j = end - 1; j >= first; --j) {
@@ -44,9 +44,9 @@ bool HeightWindow::has(int first, int end) const {
 
 // Blurs along a row as soon as it is there, and down the columns when the window is complete.
 struct HeightStage::Blur {
-    Blur(Extent its_extent, const HeightOptions& options)
+    Blur(Extent its_extent, const HeightOptions& options, std::optional<int> first)
         : extent(its_extent), wrap_y(options.wrap_y), weights(gaussian_weights(static_cast<double>(options.blur_sigma))),
-          radius(static_cast<int>(weights.size()) - 1), window(extent, 0, radius, wrap_y), across(extent.width, 1),
+          radius(static_cast<int>(weights.size()) - 1), window(extent, 0, radius, wrap_y, first), across(extent.width, 1),
           extended(extent, [this](int) { return row; }, options.wrap_x, options.wrap_y, radius, 1),
           beyond(Extent{extent.width, wrap_y == Wrap::clamp ? 2 * radius + 1 : 1}), beyond_from(window.start() - radius),
           pointers(static_cast<std::size_t>(2 * radius + 1)) {}
@@ -78,13 +78,21 @@ struct HeightStage::Blur {
     std::vector<const float*> pointers;
 };
 
+int HeightStage::reach(const HeightOptions& options, const Gradient& gradient) {
+    const bool blurs = options.blur_sigma > 0.0f;
+    return gradient.radius + (blurs ? static_cast<int>(gaussian_weights(static_cast<double>(options.blur_sigma)).size()) - 1 : 0);
+}
+
 HeightStage::HeightStage(Extent extent, const HeightSource& source, const HeightOptions& options,
-                         const Gradient& gradient, const Slopes& slopes, NormalSink sink)
-    : extent_(extent), source_(source), options_(options), gradient_(gradient), sink_(std::move(sink)),
-      heights_(extent.width, 1) {
-    if (options.blur_sigma > 0.0f) blur_ = std::make_unique<Blur>(extent, options);
-    const int from = blur_ ? blur_->window.start() : 0;
-    window_ = std::make_unique<HeightWindow>(extent, from, gradient.radius, options.wrap_y);
+                         const Gradient& gradient, const Slopes& slopes, NormalSink sink, std::optional<Image> last)
+    : extent_(extent), source_(source), options_(options), gradient_(gradient), sink_(std::move(sink)), last_(std::move(last)),
+      known_(last_ ? std::min(reach(options, gradient), extent.height) : 0), heights_(extent.width, 1) {
+    // The gradient wants its last rows first as well: so that many are blurred before row 0.
+    const std::optional<int> before = known_ > 0 ? std::optional(-std::min(gradient.radius, extent.height)) : std::nullopt;
+    const std::optional<int> top = known_ > 0 ? std::optional(0) : std::nullopt;
+    if (options.blur_sigma > 0.0f) blur_ = std::make_unique<Blur>(extent, options, before);
+    const int from = blur_ && known_ == 0 ? blur_->window.start() : 0;
+    window_ = std::make_unique<HeightWindow>(extent, from, gradient.radius, options.wrap_y, top);
     const auto height = [this](int j) { return window_->shelf.at(j).planes[0]; };
     bake_ = std::make_unique<BakeRows>(extent, height, gradient_, slopes, window_->start());
 }
@@ -94,7 +102,18 @@ HeightStage::~HeightStage() = default;
 int HeightStage::start() const { return window_->start(); }
 
 void HeightStage::put(const Image& rows, int count) {
+    if (last_) begin_with(*std::exchange(last_, std::nullopt));
     for (int k = 0; k < count; ++k) put_row(rows, k);
+}
+
+// They are counted when they come again.
+void HeightStage::begin_with(const Image& last) {
+    std::vector<std::shared_ptr<Plane<float>>> rows;
+    for (int k = 0; k < known_ && !only_counts_; ++k) {
+        rows.push_back(heights_.make());
+        only_counts_ = take_heights(last, source_, options_, k, rows.back()->row(0)).invalid > 0;
+    }
+    for (int k = 0; k < known_ && !only_counts_; ++k) take_row(extent_.height - known_ + k, rows[static_cast<std::size_t>(k)]);
 }
 
 void HeightStage::put_row(const Image& rows, int k) {
@@ -103,9 +122,14 @@ void HeightStage::put_row(const Image& rows, int k) {
     counts_.luma += counts.luma;
     if (counts.invalid > 0 && counts_.invalid == 0) take_invalid(row->row(0));
     counts_.invalid += counts.invalid;
+    only_counts_ = only_counts_ || counts_.invalid > 0;
     const int j = row_++;
-    if (counts_.invalid > 0) return;
-    blur_ ? blur_row(j, row->row(0)) : put_height(j, {{row->row(0)}, row});
+    if (!only_counts_ && j < extent_.height - known_) take_row(j, row);
+}
+
+void HeightStage::take_row(int j, std::shared_ptr<Plane<float>> row) {
+    const float* const heights = row->row(0);
+    blur_ ? blur_row(j, heights) : put_height(j, {{heights}, std::move(row)});
 }
 
 void HeightStage::take_invalid(const float* row) {
@@ -141,7 +165,7 @@ void HeightStage::blur_column(int at) {
     smooth_column(blur.pointers.data(), blur.weights.data(), blur.radius, extent_.width, blurred->row(0));
     blur.window.advance();
     blur.window.shelf.release_before(blur.window.next() - blur.radius);
-    put_height(at % extent_.height, {{blurred->row(0)}, blurred});
+    put_height(wrap_around(at, extent_.height), {{blurred->row(0)}, blurred});
 }
 
 void HeightStage::put_height(int j, ShelfRow row) {

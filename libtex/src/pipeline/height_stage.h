@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <tex/height_field.h>
@@ -17,13 +18,14 @@
 namespace tex {
 
 // Rows through a filter that is 2 radius + 1 rows high. They come in the order of row_shelf.h; where they repeat, results come in that order too, from a
-// later start.
+// later start. But where the last rows come first, so that nothing has to wait, results may begin at `first`, 0 or a row before it.
 class HeightWindow {
 public:
-    HeightWindow(Extent extent, int start, int radius, Wrap wrap);
+    HeightWindow(Extent extent, int start, int radius, Wrap wrap, std::optional<int> first = {});
 
-    [[nodiscard]] int start() const { return start_; }    // the first row that is made
-    [[nodiscard]] int next() const { return next_; }      // the row that is made next, beyond the last one where they repeat
+    [[nodiscard]] int start() const { return start_; }  // the first row that is made
+    // The row that is made next, beyond the last one or before the first one where they repeat.
+    [[nodiscard]] int next() const { return next_; }
     [[nodiscard]] bool done() const { return next_ == start_ + extent_.height; }
     void advance() { ++next_; }
 
@@ -42,8 +44,12 @@ private:
 // The same bytes as height_field() without fill_invalid, and bake().
 class HeightStage final : public NormalStage {
 public:
+    // How many rows above and below its own a normal depends on.
+    static int reach(const HeightOptions& options, const Gradient& gradient);
+
+    // `last` are the last rows of a picture that repeats, reach() of them or all that there are: normals then come from the top.
     HeightStage(Extent extent, const HeightSource& source, const HeightOptions& options, const Gradient& gradient,
-                const Slopes& slopes, NormalSink sink);
+                const Slopes& slopes, NormalSink sink, std::optional<Image> last = {});
     ~HeightStage() override;
 
     // The row at which normals begin (see row_shelf.h).
@@ -57,7 +63,9 @@ public:
 
 private:
     struct Blur;
+    void begin_with(const Image& last);
     void put_row(const Image& rows, int k);
+    void take_row(int j, std::shared_ptr<Plane<float>> row);
     void take_invalid(const float* row);
     void blur_row(int j, const float* row);
     void blur_column(int j);
@@ -71,6 +79,9 @@ private:
     HeightCounts counts_;
     int first_invalid_[2] = {};  // column, row
     int row_ = 0;                // of the picture, the next one
+    std::optional<Image> last_;  // until the first row comes
+    int known_;                  // how many rows these were
+    bool only_counts_ = false;   // a height was invalid
     RowMaker heights_;
     std::unique_ptr<Blur> blur_;
     std::unique_ptr<HeightWindow> window_;  // of the gradient
