@@ -37,9 +37,9 @@ Result<NormalMap> bake(const HeightField& field, const BakeOptions& options, con
         NormalMap map(extent);
         const Gradient gradient = gradient_of(options);
         const auto heights = [&field](int j) { return field.height.row(j); };
-        const Slopes slopes{field.bumpiness_x, field.bumpiness_y, field.wrap_x, field.wrap_y};
+        const HeightFieldHead head{field.bumpiness_x, field.bumpiness_y, field.wrap_x, field.wrap_y};
         const auto body = [&](int begin, int end) {
-            BakeRows rows(extent, heights, gradient, slopes, begin);
+            BakeRows rows(extent, heights, gradient, head, begin);
             for (int j = begin; j < end; ++j) rows.bake(j, {map.x.row(j), map.y.row(j), map.z.row(j)});
         };
         const auto done =

@@ -46,10 +46,10 @@ Gradient gradient_of(const BakeOptions& options) {
     return {};
 }
 
-BakeRows::BakeRows(Extent extent, RowOf heights, const Gradient& gradient, const Slopes& slopes, int first)
-    : extent_(extent), gradient_(gradient), scale_x_(step(gradient) * bumpiness(slopes.bumpiness_x, extent.width)),
-      scale_y_(step(gradient) * bumpiness(slopes.bumpiness_y, extent.height)),
-      rows_(extent, std::move(heights), slopes.wrap_x, slopes.wrap_y, gradient.radius, 2 * gradient.radius + 1),
+BakeRows::BakeRows(Extent extent, RowOf heights, const Gradient& gradient, const HeightFieldHead& head, int first)
+    : extent_(extent), gradient_(gradient), scale_x_(step(gradient) * bumpiness(head.bumpiness_x, extent.width)),
+      scale_y_(step(gradient) * bumpiness(head.bumpiness_y, extent.height)),
+      rows_(extent, std::move(heights), head.wrap_x, head.wrap_y, gradient.radius, 2 * gradient.radius + 1),
       next_(first - gradient.radius) {
     if (gradient.is_difference()) return;
     const int window = 2 * gradient.radius + 1;

@@ -25,8 +25,8 @@ struct Gradient {
 
 Gradient gradient_of(const BakeOptions& options);
 
-// How steep heights are, and what lies beyond their border.
-struct Slopes {
+// A height field without its heights.
+struct HeightFieldHead {
     float bumpiness_x = 1.0f;
     float bumpiness_y = 1.0f;
     Wrap wrap_x = Wrap::repeat;
@@ -36,7 +36,7 @@ struct Slopes {
 class BakeRows {
 public:
     // `first` is the first row that will be baked. `heights` and `gradient` must outlive this.
-    BakeRows(Extent extent, RowOf heights, const Gradient& gradient, const Slopes& slopes, int first);
+    BakeRows(Extent extent, RowOf heights, const Gradient& gradient, const HeightFieldHead& head, int first);
 
     // Bakes row j into `out`, which has room for whole vectors. Rows follow one another, also past the last one where the heights repeat: row
     // `height` is row 0 again.

@@ -38,7 +38,7 @@ private:
     std::optional<SlopeRange> range_;
 };
 
-Slopes slopes_of(Extent extent, const BakeFileOptions& options) {
+HeightFieldHead head_of(Extent extent, const BakeFileOptions& options) {
     const Strength strength = options.strength ? options.strength(extent) : Strength();
     return {strength.x, strength.y, options.heights.wrap_x, options.heights.wrap_y};
 }
@@ -92,7 +92,7 @@ Result<BakeFileReport> bake_stream(InputFile& file, std::unique_ptr<RowSource> r
             if (strip.level == 0) slopes.add(strip);
         });
     }
-    HeightStage heights(extent, *source, options.heights, gradient, slopes_of(extent, options), stream.sink(), std::move(last));
+    HeightStage heights(extent, *source, options.heights, gradient, head_of(extent, options), stream.sink(), std::move(last));
     LevelStage levels(extent, report.levels, heights.start(), options.mip, stream.strips());
     if (const Result<void> done = stream.run(heights, levels); !done) return done.error();
     if (const Result<void> done = writer.commit(); !done) return done.error();

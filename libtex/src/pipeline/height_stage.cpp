@@ -84,7 +84,7 @@ int HeightStage::reach(const HeightOptions& options, const Gradient& gradient) {
 }
 
 HeightStage::HeightStage(Extent extent, const HeightSource& source, const HeightOptions& options,
-                         const Gradient& gradient, const Slopes& slopes, NormalSink sink, std::optional<Image> last)
+                         const Gradient& gradient, const HeightFieldHead& head, NormalSink sink, std::optional<Image> last)
     : extent_(extent), source_(source), options_(options), gradient_(gradient), sink_(std::move(sink)), last_(std::move(last)),
       known_(last_ ? std::min(reach(options, gradient), extent.height) : 0), heights_(extent.width, 1) {
     // The gradient wants its last rows first as well: so that many are blurred before row 0.
@@ -94,7 +94,7 @@ HeightStage::HeightStage(Extent extent, const HeightSource& source, const Height
     const int from = blur_ && known_ == 0 ? blur_->window.start() : 0;
     window_ = std::make_unique<HeightWindow>(extent, from, gradient.radius, options.wrap_y, top);
     const auto height = [this](int j) { return window_->shelf.at(j).planes[0]; };
-    bake_ = std::make_unique<BakeRows>(extent, height, gradient_, slopes, window_->start());
+    bake_ = std::make_unique<BakeRows>(extent, height, gradient_, head, window_->start());
 }
 
 HeightStage::~HeightStage() = default;

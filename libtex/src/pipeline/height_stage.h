@@ -49,7 +49,7 @@ public:
 
     // `last` are the last rows of a picture that repeats, reach() of them or all that there are: normals then come from the top.
     HeightStage(Extent extent, const HeightSource& source, const HeightOptions& options, const Gradient& gradient,
-                const Slopes& slopes, NormalSink sink, std::optional<Image> last = {});
+                const HeightFieldHead& head, NormalSink sink, std::optional<Image> last = {});
     ~HeightStage() override;
 
     // The row at which normals begin (see row_shelf.h).
