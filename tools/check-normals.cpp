@@ -163,6 +163,7 @@ Result<void> CheckNormals::prepare(const std::vector<cli::Task>& tasks) {
 // Every document is a file of its own; only the baseline that is written may be the one that is read.
 void CheckNormals::check_documents(const std::vector<cli::Task>& tasks) {
     std::vector<std::string> inputs;
+    inputs.reserve(tasks.size());
     for (const cli::Task& task : tasks) inputs.push_back(task.input);
     std::vector<cli::NamedFile> others = {{"--config", config}, {"--height", height_path}, {"--files-from", files.files_from}};
     for (const cli::NamedFile& document : std::initializer_list<cli::NamedFile>{

@@ -21,7 +21,7 @@ FormatInfo format_info(Format format) {
     constexpr SampleKind kFloat = SampleKind::floating;
     switch (format) {
         case Format::bc1_unorm: return block_info(kUnorm, 4, 8);
-        case Format::bc2_unorm: return block_info(kUnorm, 4, 16);
+        case Format::bc2_unorm:
         case Format::bc3_unorm: return block_info(kUnorm, 4, 16);
         case Format::bc4_unorm: return block_info(kUnorm, 1, 8);
         case Format::bc4_snorm: return block_info(kSnorm, 1, 8);

@@ -105,8 +105,9 @@ Result<bool> weigh_range(const Reader& reader, const Execution& execution) {
         Plane<float> scratch = make_scratch(extent);
         for (int strip = begin; strip < end && !negative; ++strip) {
             const StripRows strip_rows = reader.read(strip, scratch);
-            for (int r = 0; r < kStripRows && strip * kStripRows + r < extent.height; ++r) {
-                RangeEvidence& row = rows[static_cast<std::size_t>(strip * kStripRows + r)];
+            const int first = strip * kStripRows;
+            for (int r = 0; r < std::min(kStripRows, extent.height - first); ++r) {
+                RangeEvidence& row = rows[static_cast<std::size_t>(first) + static_cast<std::size_t>(r)];
                 row = weigh_row(strip_rows.component[0][r], strip_rows.component[1][r], strip_rows.component[2][r], extent.width);
                 if (row.negative) negative = true;
             }

@@ -30,6 +30,7 @@ bool is_option(std::string_view argument) {
 
 std::vector<std::string> names_of(const std::vector<Word>& words) {
     std::vector<std::string> names;
+    names.reserve(words.size());
     for (const Word& word : words) names.push_back(word.name);
     return names;
 }

@@ -91,19 +91,19 @@ public:
     Row& number(int& target, const std::string& names, std::string value, int least, int greatest,
                 std::string help);
     template <class E, std::size_t N>
-    Row& choice(E& target, const std::string& names, std::string value, const Named<E> (&table)[N],
-                std::string help) {
+    Row& choice(E& target, const std::string& names, const std::string& value, const Named<E> (&table)[N],
+                const std::string& help) {
         Row& row =
-            choice_row(names, std::move(value), std::move(help), words_of(table),
+            choice_row(names, value, help, words_of(table),
                        [&target, &table](const std::string& name) { target = *find_by_name(table, name); });
         row.preset = name_of(table, target);
         return row;
     }
     template <class E, std::size_t N>
-    Row& choice(std::optional<E>& target, const std::string& names, std::string value,
-                const Named<E> (&table)[N], std::string help) {
+    Row& choice(std::optional<E>& target, const std::string& names, const std::string& value,
+                const Named<E> (&table)[N], const std::string& help) {
         return choice_row(
-            names, std::move(value), std::move(help), words_of(table),
+            names, value, help, words_of(table),
             [&target, &table](const std::string& name) { target = *find_by_name(table, name); });
     }
 

@@ -138,7 +138,7 @@ std::string FileOptions::batch_name(const std::string& input, const OutputOption
 
 std::string FileOptions::place(const std::string& pattern, const NameFields& fields) const {
     const NamePattern parsed(pattern);
-    const std::string file = parsed.expand(fields);
+    std::string file = parsed.expand(fields);
     if (file == "-") throw UsageError("a name made of a pattern is -, which is standard output; -o - writes there");
     if (out_dir.empty()) return file;
     const fs::path dir = fs::path(fields.dir).lexically_normal();

@@ -107,7 +107,7 @@ Result<Plane<float>> read_channel(Job& job, const ChannelFile& source, const Exe
     return std::move(values->height);
 }
 
-Result<HeightField> HeightReader::read(Job& job, Execution execution) {
+Result<HeightField> HeightReader::read(Job& job, const Execution& execution) {
     auto image = read_image(job.task.input, job.read_options);
     if (!image) return image.error();
     if (color.is_given()) {

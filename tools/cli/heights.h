@@ -66,7 +66,7 @@ public:
     HeightGroup heights;
 
     // The job's input as a height field; the job depends on the colour configuration too.
-    [[nodiscard]] Result<HeightField> read(Job& job, Execution execution);
+    [[nodiscard]] Result<HeightField> read(Job& job, const Execution& execution);
 
     // `error`, of reading or baking heights, with the option that avoids it, where there is one.
     [[nodiscard]] static Error with_remedy(const Error& error);

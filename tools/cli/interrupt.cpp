@@ -58,7 +58,7 @@ void end_by_signal(int signal) {
     sigemptyset(&mask);
     sigaddset(&mask, signal);
     pthread_sigmask(SIG_UNBLOCK, &mask, nullptr);
-    raise(signal);
+    static_cast<void>(raise(signal));
     _exit(128 + signal);
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <tex/container.h>
@@ -49,7 +50,7 @@ public:
 
     void warn(std::string sentence) { warnings_.push_back(std::move(sentence)); }  // told after "FILE: "
     void depends_on(std::string path) { prerequisites_.push_back(std::move(path)); }
-    void say(std::string text) { text_ += text; }           // on standard output, unless --json is given
+    void say(std::string_view text) { text_ += text; }      // on standard output, unless --json is given
     void raise(ExitCode code) { code_ = std::max(code_, code); }  // the run ends with this code or a higher one
     void wrote(std::string path) { outputs_.push_back(std::move(path)); }
 

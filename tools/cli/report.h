@@ -18,7 +18,7 @@
 namespace tex::cli {
 
 // What became of one file.
-struct Outcome {
+struct Outcome {  // NOLINT(bugprone-exception-escape): reads into the noexcept constructor of a null Json, which throws for other values
     std::string input;
     std::optional<Error> error;
     bool is_bug = false;      // the error is ours

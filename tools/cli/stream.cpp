@@ -61,8 +61,8 @@ void secure_streams() {
             [[maybe_unused]] const int same = open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY);
         }
     }
-    std::signal(SIGPIPE, SIG_IGN);
-    std::signal(SIGXFSZ, SIG_IGN);
+    static_cast<void>(std::signal(SIGPIPE, SIG_IGN));
+    static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));
 }
 
 bool write_stdout(std::string_view text) {

@@ -74,7 +74,7 @@ int strip_rows(const OIIO::ImageSpec& spec, std::uint64_t bytes_of_row) {
     return static_cast<int>(std::clamp<std::uint64_t>(kStrip / bytes_of_row, 1, static_cast<std::uint64_t>(spec.height)));
 }
 
-bool read_strip(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, TypeDesc type, int begin, int end, void* to) {
+bool read_strip(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, const TypeDesc& type, int begin, int end, void* to) {
     const int y = spec.y + begin;
     const int y_end = spec.y + end;
     if (spec.tile_width > 0) {

@@ -94,7 +94,7 @@ std::string in_units(std::int64_t bytes) {
 int run(const std::string_view verb, const Task& task) {
     ReaderHeader header;
     try {
-        std::signal(SIGXFSZ, SIG_IGN);  // a result that is too large is an error of pwrite()
+        static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));  // a result that is too large is an error of pwrite()
         limit_process(task);
         calm_openimageio();
         header.landlock = static_cast<std::uint32_t>(landlock_version());
@@ -132,7 +132,7 @@ int main(int argc, char** argv) {
     Task task;
     if (argc != 7 || (verb != "decode" && verb != "encode" && verb != "describe") || !parse(argv[3], task.max_texels) ||
         !parse(argv[4], task.memory) || !parse(argv[5], task.seconds) || !parse(argv[6], task.parent)) {
-        std::fputs("tex-reader: started by libtex, not by hand\n", stderr);
+        static_cast<void>(std::fputs("tex-reader: started by libtex, not by hand\n", stderr));
         return 2;
     }
     task.format = argv[2];

@@ -16,6 +16,7 @@ namespace {
 // Coefficients (u, v) with 1 <= u + v <= 4: higher ones are mostly 0 after quantisation.
 constexpr int kHighest = 4;
 constexpr int kSide = kHighest + 1;
+constexpr std::size_t kCoefficients = std::size_t{kSide} * kSide;
 // The steps of those of luma at quality 50 (T.81, table K.1), [v][u].
 constexpr int kSteps[kSide][kSide] = {{16, 11, 10, 16, 24}, {12, 12, 14, 19, 26}, {14, 13, 16, 24, 40}, {14, 17, 22, 29, 51}, {18, 22, 37, 56, 68}};
 
@@ -23,6 +24,7 @@ constexpr int kFinest = 4;     // finer steps drown in the rounding of R, G and 
 constexpr int kCoarsest = 60;
 constexpr int kBins = 16;       // of a histogram, in 1
 constexpr int kRange = 512;     // magnitudes above are rare
+constexpr std::size_t kAllBins = std::size_t{kRange} * kBins;
 constexpr int kBlocks = 8192;   // are enough
 constexpr double kLeastCount = 12.0;      // coefficients that are not rounded to 0
 constexpr std::size_t kLeastCoefficients = 3;
@@ -30,6 +32,9 @@ constexpr double kAsStrong = 0.1;   // every multiple of 2q is one of q: the lar
 constexpr double kStrong = 0.6;
 
 using Histogram = std::vector<double>;
+
+// The place of coefficient (u, v) in [v][u].
+std::size_t place_of(int u, int v) { return static_cast<std::size_t>(v) * kSide + static_cast<std::size_t>(u); }
 
 // Row u of the cosine transform of 8 samples (T.81, A.3.3).
 struct CosineBasis {
@@ -43,7 +48,7 @@ struct CosineBasis {
 };
 
 // Adds the coefficients of the block at (x, y), in codes of 8 bits, to their histograms [v][u].
-void add_block(const Image& image, const CosineBasis& basis, int x, int y, std::array<Histogram, kSide * kSide>& histograms) {
+void add_block(const Image& image, const CosineBasis& basis, int x, int y, std::array<Histogram, kCoefficients>& histograms) {
     float half[8][kSide] = {};
     for (int j = 0; j < 8; ++j) {
         const float *r = image.planes[0].row(y + j) + x, *g = image.planes[1].row(y + j) + x, *b = image.planes[2].row(y + j) + x;
@@ -58,8 +63,8 @@ void add_block(const Image& image, const CosineBasis& basis, int x, int y, std::
             float value = 0.0f;
             for (int j = 0; j < 8; ++j) value += half[j][u] * basis.row[v][j];
             const float magnitude = std::abs(value) * static_cast<float>(kBins) + 0.5f;
-            if (!(magnitude < static_cast<float>(kRange * kBins))) continue;  // NaN too
-            histograms[static_cast<std::size_t>(v * kSide + u)][static_cast<std::size_t>(magnitude)] += 1.0;
+            if (!(magnitude < static_cast<float>(kAllBins))) continue;  // NaN too
+            histograms[place_of(u, v)][static_cast<std::size_t>(magnitude)] += 1.0;
         }
     }
 }
@@ -123,8 +128,8 @@ JpegTrace measure_jpeg(const Stored& stored) {
     std::int64_t blocks = 0;
     for (const Rect& window : windows) blocks += std::int64_t{window.width / 8} * (window.height / 8);
     const auto stride = static_cast<int>(std::max<std::int64_t>(1, blocks / kBlocks));
-    std::array<Histogram, kSide * kSide> histograms;
-    histograms.fill(Histogram(static_cast<std::size_t>(kRange * kBins)));
+    std::array<Histogram, kCoefficients> histograms;
+    histograms.fill(Histogram(kAllBins));
     const CosineBasis basis;
     for (const Rect& window : windows) {
         for (int y = 0; y + 8 <= window.height; y += 8) {
@@ -140,7 +145,7 @@ JpegTrace measure_jpeg(const Stored& stored) {
     std::vector<double> strengths, scales;
     for (int v = 0; v < kSide; ++v) {
         for (int u = 0; u < kSide; ++u) {
-            const Step step = step_of(histograms[static_cast<std::size_t>(v * kSide + u)]);
+            const Step step = step_of(histograms[place_of(u, v)]);
             if (step.step == 0) continue;
             strengths.push_back(step.strength);
             if (step.strength > kStrong) scales.push_back(static_cast<double>(step.step) / kSteps[v][u]);

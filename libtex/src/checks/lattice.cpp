@@ -76,7 +76,9 @@ Lattice measure_lattice(const Stored& stored) {
     }
     Lattice lattice;
     const std::vector<double> detail_p = detail_of(bins_p), detail_q = detail_of(bins_q);
-    for (double rate = kLeastRate; rate <= kMostRate; rate += kRateStep) {
+    constexpr int kRates = static_cast<int>((kMostRate - kLeastRate) / kRateStep) + 1;
+    for (int r = 0; r < kRates; ++r) {
+        const double rate = kLeastRate + r * kRateStep;
         // Combs stand with a tooth at 0: the cosine alone.
         double p = 0.0, q = 0.0;
         for (int k = 0; k < kBins; ++k) {

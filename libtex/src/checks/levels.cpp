@@ -55,8 +55,8 @@ void average_row(const LargerRows& larger, Extent to, int j, float* out) {
     const Extent from = larger.extent;
     if (from.width == 2 * to.width && from.height == 2 * to.height) {
         const float *upper = larger.row(2 * j), *lower = larger.row(2 * j + 1);
-        for (int i = 0; i < to.width; ++i) {
-            out[i] = (upper[2 * i] + upper[2 * i + 1] + lower[2 * i] + lower[2 * i + 1]) * 0.25f;
+        for (int i = 0; i < to.width; ++i, upper += 2, lower += 2) {
+            out[i] = (upper[0] + upper[1] + lower[0] + lower[1]) * 0.25f;
         }
         return;
     }

@@ -103,8 +103,8 @@ Slopes halved(const Slopes& slopes) {
     const auto reduce = [&](const Plane<float>& from, Plane<float>& to) {
         for (int j = 0; j < extent.height; ++j) {
             const float *upper = from.row(2 * j), *lower = from.row(2 * j + 1);
-            for (int i = 0; i < extent.width; ++i) {
-                to.at(i, j) = (upper[2 * i] + upper[2 * i + 1] + lower[2 * i] + lower[2 * i + 1]) * 0.25f;
+            for (int i = 0; i < extent.width; ++i, upper += 2, lower += 2) {
+                to.at(i, j) = (upper[0] + upper[1] + lower[0] + lower[1]) * 0.25f;
             }
         }
     };

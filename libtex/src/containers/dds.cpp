@@ -238,14 +238,14 @@ FileLayout dds_layout(const TextureHead& head, const WriteOptions& options) {
     writer.u32(pitch_or_size(head, layout.rearrange));
     writer.u32(0);  // depth
     writer.u32(static_cast<std::uint32_t>(head.levels));
-    writer.zeros(11 * 4);  // reserved: where tools sign
+    writer.zeros(11 * sizeof(std::uint32_t));  // reserved: where tools sign
     writer.u32(kPixelFormatBytes);
     writer.u32(pixel_format.flags);
     writer.u32(pixel_format.four_cc);
     writer.u32(pixel_format.bit_count);
     for (const std::uint32_t mask : pixel_format.masks) writer.u32(mask);
     writer.u32(kCapsTexture | (mips ? kCapsComplex | kCapsMipMap : 0));
-    writer.zeros(4 * 4);  // caps2 to caps4, reserved
+    writer.zeros(4 * sizeof(std::uint32_t));  // caps2 to caps4, reserved
     if (dx10) {
         const Component alpha = head.swizzle[3];
         const bool custom = alpha == Component::x || alpha == Component::y || alpha == Component::z;
@@ -316,7 +316,7 @@ Result<Texture> decode_dds(const std::byte* data, std::size_t size, const std::s
                            const ReadOptions& options) {
     Result<StoredTexture> stored = parse_dds(fetch_from(data), size, name, options);
     if (!stored) return stored.error();
-    return load_texture(std::move(*stored), data);
+    return load_texture(*stored, data);
 }
 
 }  // namespace tex

@@ -185,10 +185,10 @@ Result<Extent> check_header(const std::string& path, const Imf::Header& header, 
     if (header.hasType() && !Imf::isImage(header.type())) {
         return Error{ErrorCode::unsupported, path, "deep EXR data have no single value for a texel"};
     }
-    const Imath::Box2i window = header.dataWindow();
+    const Imath::Box2i& window = header.dataWindow();
     const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
     const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-    const Result<Extent> extent = claimed_extent(path, width, height, options);
+    Result<Extent> extent = claimed_extent(path, width, height, options);
     if (!extent) return extent;
 
     std::int64_t texel_bytes = 0;

@@ -357,7 +357,7 @@ Result<Texture> decode_ktx2(const std::byte* data, std::size_t size, const std::
                             const ReadOptions& options) {
     Result<StoredTexture> stored = parse_ktx2(fetch_from(data), size, name, options);
     if (!stored) return stored.error();
-    return load_texture(std::move(*stored), data);
+    return load_texture(*stored, data);
 }
 
 }  // namespace tex

@@ -43,7 +43,7 @@ private:
     }
     [[nodiscard]] Result<void> convert(int first, int count, std::byte* rows) const {
         std::vector<std::byte> stored(stored_pitch(*texture_, extent().width) * static_cast<std::size_t>(count));
-        if (const Result<void> fetched = fetch(first, count, stored.data()); !fetched) return fetched;
+        if (Result<void> fetched = fetch(first, count, stored.data()); !fetched) return fetched;
         convert_rows(*texture_, stored.data(), extent().width, count, rows);
         return {};
     }

@@ -121,7 +121,7 @@ public:
 
 private:
     Result<void> hand_on() {
-        const Result<void> written = write_(at_, writer_.bytes);
+        Result<void> written = write_(at_, writer_.bytes);
         at_ += writer_.bytes.size();
         writer_.bytes.clear();
         return written;
@@ -158,6 +158,7 @@ Result<std::vector<std::byte>> encode_png(const Texture& texture) {
 Result<std::vector<std::byte>> encode_indexed_png(const Level& indices, const std::vector<PngColor>& palette) {
     return guarded([&]() -> Result<std::vector<std::byte>> {
         std::vector<png_color> colors;
+        colors.reserve(palette.size());
         for (const PngColor& color : palette) colors.push_back({color.r, color.g, color.b});
         PngWriter writer;
         const Extent extent = indices.extent;

@@ -255,7 +255,7 @@ Result<Scale> ReaderRows::find_scale() {
 }
 
 Result<void> ReaderRows::decode(int first, int count, std::byte* rows) {
-    const Result<ReaderHeader> there = process_->wait_for_rows(static_cast<std::uint64_t>(first + count));
+    const Result<ReaderHeader> there = process_->wait_for_rows(static_cast<std::uint64_t>(first) + static_cast<std::uint64_t>(count));
     if (!there) return there.error();
     if (!fetch(first, count, rows)) return nonsense(file_.path());
     // What has been read need not stay in memory. Where that fails, it stays.

@@ -29,7 +29,7 @@ void convert_rows(const StoredTexture& texture, const std::byte* source, int wid
     rearrange_texels(format, texture.bgr ? Rearrange::bgr : Rearrange::none, source, bytes / format_info(format).block_bytes, target);
 }
 
-Texture load_texture(StoredTexture stored, const std::byte* data) {
+Texture load_texture(const StoredTexture& stored, const std::byte* data) {
     Texture texture = stored.head;
     const int block = format_info(texture.format).block;
     for (const StoredTexture::Place& place : stored.levels) {

@@ -41,6 +41,6 @@ struct StoredTexture {
 void convert_rows(const StoredTexture& texture, const std::byte* source, int width, int count, std::byte* target);
 
 // The whole texture, from all bytes of the file. May throw std::bad_alloc.
-[[nodiscard]] Texture load_texture(StoredTexture texture, const std::byte* data);
+[[nodiscard]] Texture load_texture(const StoredTexture& texture, const std::byte* data);
 
 }  // namespace tex

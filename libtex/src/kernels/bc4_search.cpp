@@ -25,7 +25,7 @@ using F = hn::Vec<Floats>;
 // G on a grid of 1/phases code: row r holds G(base + i + r / phases) from i = -16 on, and zeros outside the block's range. In units of 1/phases code.
 constexpr int kMaxPhases = 14;
 constexpr int kPad = 16;
-constexpr int kRow = kPad + 272 + kPad;
+constexpr std::ptrdiff_t kRow = kPad + 272 + kPad;
 
 struct Gains {
     HWY_ALIGN float rows[kMaxPhases * kRow];

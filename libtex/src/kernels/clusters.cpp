@@ -37,7 +37,7 @@ void sort16(F* v) {
 // The bounds of as many blocks as there are lanes: `texels` holds 16 rows of one value for each block.
 void bound_lanes(const float* texels, float* bounds) {
     const Floats d;
-    const int lanes = static_cast<int>(hn::Lanes(d));
+    const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
     F v[16];
     for (int k = 0; k < 16; ++k) v[k] = hn::Load(d, texels + k * lanes);
     sort16(v);

@@ -175,7 +175,7 @@ void DecodeBlocks(Format format, const std::byte* blocks, int count, const Chann
 
 void StoreBlock(const float* values, float* out, std::ptrdiff_t stride) {
     if (out == nullptr) return;
-    for (int k = 0; k < 4; ++k) std::memcpy(out + k * stride, values + 4 * k, 4 * sizeof(float));
+    for (std::ptrdiff_t k = 0; k < 4; ++k) std::memcpy(out + k * stride, values + 4 * k, 4 * sizeof(float));
 }
 
 void DecodeBlock(Format format, const std::byte* block, float channels[4][16]) {

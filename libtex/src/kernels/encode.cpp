@@ -87,7 +87,7 @@ void search_blocks(const Channel& channel, int first, bool six_values, int top, 
     if (count == 0) return;
     cluster_bounds(texels, count, bounds);
     search(texels, bounds, count, endpoints);
-    for (int k = 0; k < count; ++k) write(texels[k], endpoints[k], blocks + 16 * at[k]);
+    for (int k = 0; k < count; ++k) write(texels[k], endpoints[k], blocks + 16 * std::ptrdiff_t{at[k]});
 }
 
 void search_bc4(const Channel& channel, Bc4Codes codes, int first, bool six_values, std::byte* blocks) {
@@ -106,10 +106,10 @@ void for_each_run(const BlockRow& row, std::byte* blocks, Encode encode) {
         BlockRow run = row;
         run.width = std::min(row.width - 4 * first, 4 * kRun);
         for (int k = 0; k < 4; ++k) {
-            run.x[k] += 4 * first;
-            run.y[k] += 4 * first;
+            run.x[k] += 4 * std::ptrdiff_t{first};
+            run.y[k] += 4 * std::ptrdiff_t{first};
         }
-        encode(run, blocks + 16 * static_cast<std::ptrdiff_t>(first));
+        encode(run, blocks + 16 * std::ptrdiff_t{first});
     }
 }
 

@@ -209,7 +209,7 @@ HWY_INLINE BlockWords normal_green(const W* texels) {
 // Calls encode(rows of x, rows of y, blocks) for groups of lanes() blocks; the last ones in copies.
 template <class Encode>
 HWY_INLINE void for_each_group(const ChannelRows& x, const ChannelRows& y, int count, std::byte* blocks, Encode encode) {
-    int first = 0;
+    std::ptrdiff_t first = 0;
     for (; first + lanes() <= count; first += lanes()) {
         const float* from[2][4];
         for (int r = 0; r < 4; ++r) {
@@ -222,7 +222,7 @@ HWY_INLINE void for_each_group(const ChannelRows& x, const ChannelRows& y, int c
     float copies[2][4][4 * kLanes] = {};
     std::byte last[16 * kLanes];
     const float* from[2][4];
-    const auto rest = static_cast<std::size_t>(std::clamp(count - first, 0, kLanes));
+    const auto rest = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(count - first, 0, kLanes));
     for (int r = 0; r < 4; ++r) {
         std::memcpy(copies[0][r], x.rows[r] + 4 * first, rest * 4 * sizeof(float));
         std::memcpy(copies[1][r], y.rows[r] + 4 * first, rest * 4 * sizeof(float));

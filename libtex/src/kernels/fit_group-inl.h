@@ -205,7 +205,7 @@ struct BlockWords {
 // Blocks of two channels, 16 bytes each, one after the other.
 #if HWY_TARGET == HWY_SCALAR
 HWY_INLINE void store_blocks(const BlockWords& first, const BlockWords& second, std::byte* blocks) {
-    for (int k = 0; k < 4; ++k) {
+    for (std::ptrdiff_t k = 0; k < 4; ++k) {
         const std::uint16_t words[2] = {hn::GetLane(first.w[k]), hn::GetLane(second.w[k])};
         std::memcpy(blocks + 2 * k, words, 2);
         std::memcpy(blocks + 8 + 2 * k, words + 1, 2);

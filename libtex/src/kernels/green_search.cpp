@@ -53,13 +53,14 @@ void tabulate(const Block& block, Gains& gains) {
         v[k] = hn::Set(d, block.v[k] * 6.0f);
         total = hn::Add(total, v[k]);
     }
-    for (int i = 0; i <= 6 * block.length; i += lanes) {
+    const int end = 6 * block.length;
+    for (int i = 0; i <= end; i += lanes) {
         const F t = hn::Iota(d, static_cast<float>(i));
         F sum = hn::Max(v[0], t);
         for (int k = 1; k < 16; ++k) sum = hn::Add(sum, hn::Max(v[k], t));
         hn::Store(hn::Sub(sum, hn::Max(total, hn::Mul(t, hn::Set(d, 16.0f)))), d, gains + i);
     }
-    gains[6 * block.length] = 0.0f;
+    gains[end] = 0.0f;
 }
 
 I widen(I code) { return hn::Or(hn::ShiftLeft<2>(code), hn::ShiftRight<4>(code)); }

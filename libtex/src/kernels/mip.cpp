@@ -28,7 +28,7 @@ void FilterRows(const float* const* rows, const float* weights, int taps, int co
 }
 
 void SplitRow(const float* row, int count, float* even, float* odd) {
-    for (int i = 0; i < count; i += kLanes) {
+    for (std::ptrdiff_t i = 0; i < count; i += kLanes) {
         V a, b;
         hn::LoadInterleaved2(kD, row + 2 * i, a, b);
         hn::StoreU(a, kD, even + i);
@@ -67,7 +67,7 @@ void HalveRows(const float* upper, const float* lower, int count, float* out) {
     const Half d;
     const auto half = hn::Set(d, 0.5f);
     constexpr int kStep = static_cast<int>(hn::MaxLanes(Half()));
-    for (int i = 0; i < count; i += kStep) {
+    for (std::ptrdiff_t i = 0; i < count; i += kStep) {
         hn::Vec<Half> a, b, c, e;
         hn::LoadInterleaved2(d, upper + 2 * i, a, b);
         hn::LoadInterleaved2(d, lower + 2 * i, c, e);

@@ -13,7 +13,7 @@ namespace {
 Result<Swizzle> find_swizzle(const Texture& texture, const SourceOptions& options, const Execution& execution) {
     if (const std::optional<Swizzle> known = known_swizzle(texture, options)) return *known;
     const Execution silent{execution.threads, {}};
-    const Result<Swizzle> guess = guess_swizzle(texture, silent);
+    Result<Swizzle> guess = guess_swizzle(texture, silent);
     if (!guess) return guess;
     return guessed_swizzle(*guess, options);
 }

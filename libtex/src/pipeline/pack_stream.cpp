@@ -64,7 +64,7 @@ private:
 // What is to be read, and written. Errors are those of options that do not fit the file.
 Result<void> Attempt::prepare() {
     const Texture& head = texture_.head;
-    if (const Result<void> fit = check_channels(head); !fit) return fit;
+    if (Result<void> fit = check_channels(head); !fit) return fit;
     const FormatInfo info = format_info(head.format);
     const Result<Sources> sources = sources_of(finder_.layout().swizzle, (1u << info.channels) - 1);
     if (!sources) return sources.error();
@@ -95,7 +95,7 @@ Result<void> Attempt::look_at_base_level() {
     std::vector<std::byte> decoded(base.row_bytes() * static_cast<std::size_t>(step));
     for (int j = 0; j < base.extent().height; j += step) {
         const int count = std::min(step, base.extent().height - j);
-        if (const Result<void> done = base.decode(j, count, decoded.data()); !done) return done;
+        if (Result<void> done = base.decode(j, count, decoded.data()); !done) return done;
         base.store(decoded.data(), 0, count, image);
         for (int k = 0; k < count; ++k) {
             const float* channels[4] = {};
@@ -123,7 +123,7 @@ Result<void> Attempt::stream_level(std::size_t k, StripWriter& writer, const Exe
     UnpackStage normals(texture_, extent, sources_, rule_, options_.scale, finder, stream.sink());
     constexpr int kFromTheTop = 0;
     LevelStage mips(extent, levels, kFromTheTop, options_.mip.value_or(MipOptions()), stream.strips());
-    const Result<void> done = stream.run(normals, mips);
+    Result<void> done = stream.run(normals, mips);
     if (done && finder != nullptr) correction_ = finder->correction();
     return done;
 }

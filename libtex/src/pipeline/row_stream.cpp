@@ -152,7 +152,7 @@ void RowStream::Work::make(Batch& batch, NormalStage& stage) {
 void RowStream::Work::write_strips(Batch& batch) {
     for (std::shared_ptr<Strip>& strip : batch.strips) {
         failure.watch([&]() -> Result<void> {
-            if (const Result<void> written = writer.write(*strip); !written) return written;
+            if (Result<void> written = writer.write(*strip); !written) return written;
             if (seen) seen(*strip);
             return {};
         });
@@ -202,7 +202,7 @@ Result<void> RowStream::run(NormalStage& stage, LevelStage& levels) {
         return no_threads_error();
     }
     if (work.failure.error()) return *work.failure.error();
-    if (const Result<void> sound = stage.check(); !sound) return sound;
+    if (Result<void> sound = stage.check(); !sound) return sound;
     // Better no file than one with holes.
     if (work.strips.missing_rows() != 0) return Error{ErrorCode::unsupported, work.input, "rows are missing: this is a bug"};
     return {};

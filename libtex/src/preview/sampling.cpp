@@ -20,8 +20,9 @@ int wrapped(std::int64_t i, int n, Wrap wrap) {
         case Wrap::clamp:
             return static_cast<int>(std::clamp<std::int64_t>(i, 0, n - 1));
         case Wrap::mirror: {
-            const std::int64_t k = (i % (2 * n) + 2 * n) % (2 * n);
-            return static_cast<int>(k < n ? k : 2 * n - 1 - k);
+            const std::int64_t period = 2 * std::int64_t{n};
+            const std::int64_t k = (i % period + period) % period;
+            return static_cast<int>(k < n ? k : period - 1 - k);
         }
     }
     return 0;
