@@ -6,12 +6,14 @@
 #include <cassert>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <tex/swizzle.h>
 #include <tex/unpack.h>
 
 #include "base/guard.h"
+#include "base/unpack_rows.h"
 #include "checks/convention_rules.h"
 #include "checks/damage_rules.h"
 #include "checks/file_rules.h"
@@ -79,20 +81,17 @@ bool same_everywhere(const TexelCounts& counts, int channels) {
     return true;
 }
 
-bool holds_negative(const Image& image) {
-    for (const Plane<float>& plane : image.planes) {
-        for (int j = 0; j < plane.extent().height; ++j) {
-            const float* row = plane.row(j);
-            if (std::any_of(row, row + plane.extent().width, [](float v) { return v < 0.0f; })) return true;
-        }
+// Floats are read as unpack() reads them.
+bool is_signed(const Texture& texture, const Image& image, const Swizzle& swizzle) {
+    if (const std::optional<bool> known = is_unsigned(image.sample, range_of(texture.normal_encoding, {}))) return !*known;
+    const Result<Sources> sources = sources_of(swizzle, (1u << image.planes.size()) - 1);
+    if (!sources) return false;  // there are no vectors
+    const auto row = [&](int channel, int j) { return channel < 0 ? nullptr : image.planes[static_cast<std::size_t>(channel)].row(j); };
+    RangeEvidence evidence;
+    for (int j = 0; j < image.extent().height && !evidence.negative; ++j) {
+        evidence.add(weigh_row(row(sources->x, j), row(sources->y, j), row(sources->z, j), image.extent().width));
     }
-    return false;
-}
-
-// As unpack() reads floats: signed where the file says so or a value lies below 0.
-bool is_signed(const Texture& texture, const Image& image) {
-    if (image.sample != SampleKind::floating) return image.sample == SampleKind::snorm;
-    return texture.normal_encoding == "signed" || holds_negative(image);
+    return !evidence.says_unsigned();
 }
 
 Result<void> measure(Subject& subject) {
@@ -101,7 +100,7 @@ Result<void> measure(Subject& subject) {
     subject.base = std::move(*image);
     const auto swizzle = guess_swizzle(subject.texture, subject.execution);
     if (!swizzle) return swizzle.error();
-    subject.stored = {&subject.base, *swizzle, is_signed(subject.texture, subject.base)};
+    subject.stored = {&subject.base, *swizzle, is_signed(subject.texture, subject.base, *swizzle)};
     const Stored& stored = subject.stored;
     subject.has_vectors = stored.channel(Component::x) >= 0 && stored.channel(Component::y) >= 0;
     if (!subject.has_vectors) return {};

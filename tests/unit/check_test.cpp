@@ -225,6 +225,27 @@ TEST(Check, TexturesOfOneTexelAreChecked) {
     EXPECT_EQ(ids(reference::texture_of(reference::codes_of(bumps({3, 2})))), Ids{});
 }
 
+// As unpack() does: a map that leans to one side has no negative component, and is signed all the same.
+TEST(Check, FloatsWithoutANegativeValueAreReadByTheirLength) {
+    for (const Extent extent : {Extent{1, 1}, Extent{64, 64}}) {
+        NormalMap map = bumps(extent);
+        for (int j = 0; j < extent.height; ++j) {
+            for (int i = 0; i < extent.width; ++i) {
+                map.x.at(i, j) = std::abs(map.x.at(i, j));
+                map.y.at(i, j) = std::abs(map.y.at(i, j));
+            }
+        }
+        MipChain chain;
+        chain.levels.push_back(std::move(map));
+        for (const Encoding encoding : {Encoding::half, Encoding::float_}) {
+            auto texture = pack(chain, {encoding, YAxis::up, Effort::fast});
+            ASSERT_TRUE(texture);
+            texture->normal_encoding.clear();
+            EXPECT_FALSE(ids(*texture).contains("N201")) << extent.width;
+        }
+    }
+}
+
 TEST(CheckFile, UnreadableFilesAreFindings) {
     const std::string path = testing::TempDir() + "/check_test_not_a_picture.dds";
     std::ofstream(path) << "DDS nothing";
