@@ -65,7 +65,7 @@ TEST_P(EveryCommand, AFullDiskBehindStandardOutputIsAnError) {
     full.stdout_path = "/dev/full";
     const Ran help = run(scratch_, GetParam(), {"--help"}, full);
     EXPECT_EQ(help.code, 3);
-    EXPECT_NE(help.err.find("No space left on device"), std::string::npos);
+    EXPECT_NE(help.err.find("no space left on the disk"), std::string::npos);
 }
 
 TEST_P(EveryCommand, CompletionsAreSoundInTheirShells) {

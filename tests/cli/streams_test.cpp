@@ -46,7 +46,7 @@ TEST_F(Streams, AFullDiskLeavesTheOldFile) {
     full.stdout_path = "/dev/full";
     const Ran json = run(scratch_, "bake-normals", {"a.png", "-o", "a.dds", "--json"}, full);
     EXPECT_EQ(json.code, 3);
-    EXPECT_EQ(json.err, "bake-normals: error: standard output: No space left on device\n");
+    EXPECT_EQ(json.err, "bake-normals: error: standard output: no space left on the disk\n");
     const Ran data = run(scratch_, "bake-normals", {"a.png", "-o", "-"}, full);
     EXPECT_EQ(data.code, 3);
     EXPECT_EQ(lines_of(data.err).size(), 1u) << data.err;
