@@ -14,7 +14,7 @@ test_packages=(
     imagemagick openimageio-tools python3-jsonschema libxml2-utils mandoc shellcheck dpkg-dev file git strace zsh fish
 )
 # shellcheck disable=SC2034
-gate_packages=(clang-14 ccache libbenchmark-dev chromium)  # the browser takes 300 MB: elsewhere its tests say that they skipped
+gate_packages=(clang-14 clang-tidy-14 ccache libbenchmark-dev chromium)  # the browser takes 300 MB: elsewhere its tests say that they skipped
 
 as_root() {
     if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi

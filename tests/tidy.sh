@@ -4,11 +4,73 @@
 #
 #     tests/tidy.sh [FILE...]    all sources of libtex and tools, or those named
 #
-# Needs clang-tidy-14. The commands to compile are those of the preset `fuzz`, which is clang's and sees each kernel once. All files take about 11 minutes of a processor.
+# Needs clang-tidy-14. The commands to compile are those of the preset `fuzz`, which is clang's and sees each kernel once. The last line counts.
+#
+# clang-tidy spends nine tenths of its time in the headers of others. So sources are looked at many at a time, as one that includes them; those whose names clash
+# with names of others, and programs, come by themselves.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-files=("$@")
-if [ "${#files[@]}" -eq 0 ]; then mapfile -t files < <(find libtex/src tools -name '*.cpp' | sort); fi
-[ -e build/fuzz/compile_commands.json ] || cmake --preset fuzz >/dev/null
-# What it counts of headers of others goes to standard error.
-printf '%s\0' "${files[@]}" | xargs -0 -n 1 -P "$(nproc)" clang-tidy-14 --quiet -p build/fuzz 2>/dev/null || { echo "tidy: findings" >&2; exit 1; }
+together=64
+out=$PWD/build/tidy
+database=build/fuzz/compile_commands.json
+
+# What the preset compiles a source with, for a shell to read.
+flags() { sed -n "s|.*\"command\": \"[^ ]* \(.*\) -o [^ ]* -c $PWD/$1\",\?\$|\1|p" "$database" | sed 's|\\\(.\)|\1|g'; }
+
+# clashing FILE FLAG...: the lines of includes, but for the first, in which there are errors.
+clashing() { clang++-14 "${@:2}" -w -ferror-limit=0 -fsyntax-only "$1" 2>&1 | sed -n "s|^In file included from $1:\([0-9]*\):.*|\1|p" | sort -un | sed '/^1$/d'; }
+
+# look_at FLAGS SOURCE...: what is found goes to files in $out.
+look_at() {
+    local flags=$1 arguments all number clashing apart=()
+    eval "arguments=($flags)"
+    shift
+    all=$(mktemp "$out/XXXXXX.cpp")
+    printf "#include \"$PWD/%s\"  // NOLINT(bugprone-suspicious-include)\n" "$@" >"$all"
+    # Each line of $all that errors come from is a source that clashes with one before it. Without it others may.
+    while mapfile -t clashing < <(clashing "$all" "${arguments[@]}") && [ "${#clashing[@]}" -gt 0 ]; do
+        for number in "${clashing[@]}"; do apart+=("${!number}"); done
+        sed -i "$(printf '%ds|.*||;' "${clashing[@]}")" "$all"
+    done
+    if ! clang-tidy-14 --quiet "$all" -- "${arguments[@]}" -Wno-error >"$all.found" 2>"$all.log" && [ ! -s "$all.found" ]; then
+        { echo "$*: error: clang-tidy failed"; cat "$all.log"; } >"$all.found"
+    fi
+    [ "${#apart[@]}" -eq 0 ] || look_at "$flags" "${apart[@]}"
+}
+
+# As many beside one another as there are processors.
+start() {
+    while [ "$(jobs -rp | wc -l)" -ge "$(nproc)" ]; do wait -n || true; done
+    look_at "$@" &
+}
+
+sources=("$@")
+if [ "${#sources[@]}" -eq 0 ]; then mapfile -t sources < <(find libtex/src tools -name '*.cpp' | sort); fi
+rm -rf "$out"
+mkdir -p "$out"
+cmake --preset fuzz >"$out/configure.log" || { cat "$out/configure.log"; exit 1; }
+declare -A batches=()  # by what they are compiled with
+for source in "${sources[@]}"; do
+    key=$(flags "$source")
+    [ -n "$key" ] || { echo "tidy: the preset fuzz does not compile $source" >&2; exit 2; }
+    if grep -q '^int main' "$source"; then
+        start "$key" "$source"
+        continue
+    fi
+    batches[$key]+=" $source"
+    # shellcheck disable=SC2086  # names without spaces
+    if [ "$(wc -w <<<"${batches[$key]}")" -eq "$together" ]; then
+        start "$key" ${batches[$key]}
+        batches[$key]=
+    fi
+done
+for key in "${!batches[@]}"; do
+    [ -n "${batches[$key]}" ] || continue
+    # shellcheck disable=SC2086
+    start "$key" ${batches[$key]}
+done
+wait
+find "$out" -name '*.found' -exec cat {} + | sed "s|$PWD/||" | tee "$out/findings"
+count=$(sed -n '/: error: /p' "$out/findings" | sort -u | wc -l)
+echo "tidy: ${#sources[@]} sources, $count findings"
+[ "$count" -eq 0 ]
