@@ -18,7 +18,7 @@ Result<void> reopen(InputFile& file, std::unique_ptr<RowSource>& rows, const Rea
     const Extent extent = rows->extent();
     const std::vector<std::string> names = rows->names();
     rows.reset();
-    if (const Result<void> again = file.rewind(); !again) return again;
+    if (Result<void> again = file.rewind(); !again) return again;
     Result<std::unique_ptr<RowSource>> opened = open_rows(file, options);
     if (!opened) return opened.error();
     rows = std::move(*opened);
