@@ -242,7 +242,7 @@ TEST_F(PreviewNormals, RefusesMisuse) {
     refuses(with({"--shape", "tiled"}), "'tiled' is none of");
     refuses(with({"--size", "0"}), "--size: 0 is not at least 1");
     refuses(with({"--size", "10x"}), "--size");
-    refuses(with({"--light", "0,0,0"}), "0,0,0 is no direction");
+    refuses(with({"--light", "0,0,0"}), "0,0,0 is neither a direction nor a place beside the surface");
     refuses(with({"--light", "1,2"}), "'1,2' is not 3 numbers");
     refuses(with({"--light", "nan,0,1"}), "--light");
     refuses(with({"--tint", "1,2"}), "neither one value nor R,G,B");

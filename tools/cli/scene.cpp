@@ -133,7 +133,7 @@ void SceneOptions::add_light(Command& command) {
                 [&light](const std::string& text) {
                     const std::vector<float> v = parse_floats(text, 3, 3, {-1e6, 1e6});
                     if (v[0] == 0.0f && v[1] == 0.0f && v[2] == 0.0f)
-                        throw UsageError("0,0,0 is no direction");
+                        throw UsageError("0,0,0 is neither a direction nor a place beside the surface");
                     light.x = v[0];
                     light.y = v[1];
                     light.z = v[2];

@@ -32,7 +32,7 @@ int write_fully(int fd, std::uint64_t offset, std::span<const std::byte> bytes) 
     while (!bytes.empty()) {
         const ssize_t n = ::pwrite(fd, bytes.data(), std::min(bytes.size(), kMostAtOnce), static_cast<off_t>(offset));
         if (n < 0 && errno == EINTR) continue;
-        if (n < 0) return errno;
+        if (n <= 0) return n < 0 ? errno : EIO;
         bytes = bytes.subspan(static_cast<std::size_t>(n));
         offset += static_cast<std::uint64_t>(n);
     }

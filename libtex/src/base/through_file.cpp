@@ -26,7 +26,7 @@ int write_fully(int fd, std::span<const std::byte> bytes) {
     while (!bytes.empty()) {
         const ssize_t n = ::write(fd, bytes.data(), std::min(bytes.size(), kMostAtOnce));
         if (n < 0 && errno == EINTR) continue;
-        if (n < 0) return errno;
+        if (n <= 0) return n < 0 ? errno : EIO;
         bytes = bytes.subspan(static_cast<std::size_t>(n));
     }
     return 0;
