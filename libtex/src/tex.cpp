@@ -12,7 +12,11 @@ const char* version() { return TEX_VERSION; }
 
 Runtime runtime() {
     return {kernel_target_name(),
-            {{"highway", highway_version()}, {"libpng", png_version()}, {"opencolorio", opencolorio_version()}, {"openexr", exr_version()}}};
+            {{"highway", highway_version()},
+             {"libdeflate", inflater_version()},
+             {"libpng", png_version()},
+             {"opencolorio", opencolorio_version()},
+             {"openexr", exr_version()}}};
 }
 
 }  // namespace tex

@@ -23,6 +23,8 @@ bool is_exr(std::span<const std::byte> head);
 
 // Of the OpenEXR that libtex was built with.
 const char* exr_version();
+// Of the libdeflate that it was built with, which inflates ZIP.
+const char* inflater_version();
 
 // Reads an EXR as read_image() promises: the data window, at its largest level; of several parts the first. Planes R, G, B and A come first, then the
 // others by name. Half and float are as stored, uint is divided by 2^32 - 1.

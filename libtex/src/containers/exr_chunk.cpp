@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <new>
 
+#include "containers/exr.h"
+
 namespace tex {
 namespace {
 
@@ -42,6 +44,8 @@ std::size_t unrolled_size(std::span<const std::byte> runs) {
 }
 
 }  // namespace
+
+const char* inflater_version() { return LIBDEFLATE_VERSION_STRING; }
 
 int chunk_lines(Imf::Compression compression) {
     switch (compression) {
