@@ -20,14 +20,15 @@ namespace tex {
 //     fourth(item)           several at once
 //
 // A thread that is free does what stands nearest to the beginning of this list, so that first(), where the work comes in, never waits for a thread while another
-// station has one. At most `items` items are on their way. No function may throw. Uses up to `threads` threads.
+// station has one. Where first() costs nothing (`first_waits`) it does what stands nearest to the end: so most items stay with one thread, and in its processor's cache.
+// At most `items` items are on their way. No function may throw. Uses up to `threads` threads.
 //
 // Preconditions: items >= 1; 1 <= threads <= what tbb::global_control allows. With one thread everything runs in the caller's.
 template <class Item, class First, class Second, class Third, class Fourth>
 class Conveyor {
 public:
-    Conveyor(int threads, int items, const First& first, const Second& second, const Third& third, const Fourth& fourth)
-        : threads_(threads), first_(first), second_(second), third_(third), fourth_(fourth), places_(static_cast<std::size_t>(items)) {}
+    Conveyor(int threads, int items, bool first_waits, const First& first, const Second& second, const Third& third, const Fourth& fourth)
+        : threads_(threads), first_waits_(first_waits), first_(first), second_(second), third_(third), fourth_(fourth), places_(static_cast<std::size_t>(items)) {}
 
     void run() {
         if (threads_ > 1) {
@@ -65,27 +66,40 @@ private:
 
     // Does one thing at one station, unlocked meanwhile. False where there is none to do.
     bool step(std::unique_lock<std::mutex>& lock) {
+        if (first_waits_) return at_fourth(lock) || at_third(lock) || at_second(lock) || at_first(lock);
+        return at_first(lock) || at_second(lock) || at_third(lock) || at_fourth(lock);
+    }
+
+    bool at_first(std::unique_lock<std::mutex>& lock) {
         Place& next = place(begun_);
-        if (!first_busy_ && !ended_ && next.at == At::nowhere) {
-            first_busy_ = true;
-            next.item = unlocked(lock, [this] { return first_(); });
-            first_busy_ = false;
-            ended_ = next.item == nullptr;
-            if (ended_) return true;
-            next.at = At::second;
-            ++begun_;
-            return true;
-        }
+        if (first_busy_ || ended_ || next.at != At::nowhere) return false;
+        first_busy_ = true;
+        next.item = unlocked(lock, [this] { return first_(); });
+        first_busy_ = false;
+        ended_ = next.item == nullptr;
+        if (ended_) return true;
+        next.at = At::second;
+        ++begun_;
+        return true;
+    }
+
+    bool at_second(std::unique_lock<std::mutex>& lock) {
         for (std::size_t k = ordered_; k < begun_; ++k) {
             if (place(k).at == At::second) return visit(lock, place(k), second_, At::third);
         }
-        if (!third_busy_ && ordered_ < begun_ && place(ordered_).at == At::third) {
-            third_busy_ = true;
-            Place& here = place(ordered_++);
-            visit(lock, here, third_, At::fourth);
-            third_busy_ = false;
-            return true;
-        }
+        return false;
+    }
+
+    bool at_third(std::unique_lock<std::mutex>& lock) {
+        if (third_busy_ || ordered_ == begun_ || place(ordered_).at != At::third) return false;
+        third_busy_ = true;
+        Place& here = place(ordered_++);
+        visit(lock, here, third_, At::fourth);
+        third_busy_ = false;
+        return true;
+    }
+
+    bool at_fourth(std::unique_lock<std::mutex>& lock) {
         for (Place& here : places_) {
             if (here.at == At::fourth) return visit(lock, here, fourth_, At::nowhere);
         }
@@ -113,6 +127,7 @@ private:
     }
 
     const int threads_;
+    const bool first_waits_;
     const First& first_;
     const Second& second_;
     const Third& third_;
@@ -130,8 +145,8 @@ private:
 };
 
 template <class Item, class First, class Second, class Third, class Fourth>
-void convey(int threads, int items, const First& first, const Second& second, const Third& third, const Fourth& fourth) {
-    Conveyor<Item, First, Second, Third, Fourth>(threads, items, first, second, third, fourth).run();
+void convey(int threads, int items, bool first_waits, const First& first, const Second& second, const Third& third, const Fourth& fourth) {
+    Conveyor<Item, First, Second, Third, Fourth>(threads, items, first_waits, first, second, third, fourth).run();
 }
 
 }  // namespace tex

@@ -196,7 +196,7 @@ Result<void> RowStream::run(NormalStage& stage, LevelStage& levels) {
     const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
     const int threads = work.alone ? 1 : std::min(thread_count(work.execution), static_cast<int>(allowed));
     try {
-        convey<Batch>(threads, threads + 2, [&] { return work.read(); }, [&](Batch* batch) { work.store(*batch); },
+        convey<Batch>(threads, threads + 2, work.rows.is_random(), [&] { return work.read(); }, [&](Batch* batch) { work.store(*batch); },
                       [&](Batch* batch) { work.make(*batch, stage); }, [&](Batch* batch) { work.write(*batch); });
     } catch (const std::runtime_error&) {
         return no_threads_error();

@@ -21,7 +21,7 @@ namespace tex {
 
 // How a picture is cut up; the bytes do not depend on it.
 struct StreamSizes {
-    int strip_texels = 1 << 17;             // enough to pay for passing a strip on, few enough to stay in a cache
+    int strip_texels = 1 << 15;             // enough to pay for passing a strip on, few enough to stay in a cache
     std::int64_t worth_threads = 1 << 17;   // pictures of fewer texels are done before a second thread would have begun,
     int strip_texels_alone = 1 << 14;       // and in strips that stay in the cache of one processor
 };
