@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // Texels per second from heights to normals, on one thread. BakeCopy moves as many bytes as bake() does, 4
-// read and 12 written for each texel. See keep_memory.cpp.
+// read and 12 written for each texel.
 
-#include <cstring>
+#include <string>
 
 #include <benchmark/benchmark.h>
 
 #include <tex/bake.h>
 
+#include "bench/verb_bench.h"
 #include "kernels/bake.h"
 #include "unit/fields.h"
 
 namespace {
 
+using bench::copy_row;
+using bench::count_texels;
 using tex::Extent;
 using tex::GradientKernel;
 using tex::NormalMap;
@@ -22,30 +25,19 @@ tex::HeightField noise_field(int size) {
                                  [](int i, int j) { return tex::fields::noise(i, j); });
 }
 
-void count(benchmark::State& state, int size) {
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(size) * size);
-}
-
-void copy_rows(const tex::HeightField& field, NormalMap& map) {
-    for (int j = 0; j < map.extent().height; ++j) {
-        const auto bytes = static_cast<std::size_t>(map.extent().width) * sizeof(float);
-        std::memcpy(map.x.row(j), field.height.row(j), bytes);
-        std::memcpy(map.y.row(j), field.height.row(j), bytes);
-        std::memcpy(map.z.row(j), field.height.row(j), bytes);
-    }
-}
-
 void BakeCopy(benchmark::State& state) {
     const int size = static_cast<int>(state.range(0));
     const tex::HeightField field = noise_field(size);
     NormalMap map(Extent{size, size});
     for (auto _ : state) {
-        copy_rows(field, map);
+        for (int j = 0; j < size; ++j) {
+            for (tex::Plane<float>* plane : {&map.x, &map.y, &map.z}) copy_row(field.height, j, *plane, j);
+        }
         benchmark::ClobberMemory();
     }
-    count(state, size);
+    count_texels(state, {size, size});
 }
-BENCHMARK(BakeCopy)->Arg(512)->Arg(4096);
+BENCHMARK(BakeCopy)->ArgName("size")->Arg(512)->Arg(4096);
 
 // The kernel of central differences alone, from rows of the field to rows of a map that exists.
 void BakeRows(benchmark::State& state) {
@@ -60,9 +52,9 @@ void BakeRows(benchmark::State& state) {
         }
         benchmark::ClobberMemory();
     }
-    count(state, size);
+    count_texels(state, {size, size});
 }
-BENCHMARK(BakeRows)->Arg(512)->Arg(4096);
+BENCHMARK(BakeRows)->ArgName("size")->Arg(512)->Arg(4096);
 
 void Bake(benchmark::State& state) {
     const auto kernel = static_cast<GradientKernel>(state.range(0));
@@ -73,8 +65,8 @@ void Bake(benchmark::State& state) {
         auto map = tex::bake(field, {kernel, 1.0f}, {1, {}});
         benchmark::DoNotOptimize(map.value().x.row(0));
     }
-    count(state, size);
+    count_texels(state, {size, size});
 }
-BENCHMARK(Bake)->ArgsProduct({{0, 1, 2, 3, 4, 5, 6}, {512, 4096}});
+BENCHMARK(Bake)->ArgNames({"kernel", "size"})->ArgsProduct({{0, 1, 2, 3, 4, 5, 6}, {512, 4096}});
 
 }  // namespace

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Texels per second of a detail on a base of the same extent, on one thread: the kernel over strips that stay in the cache (BlendRows), and the verb
-// on whole maps (Blend). BlendCopy moves nearly as many bytes: 8 floats for each texel, where blending reads 6 and writes 3. See keep_memory.cpp.
+// on whole maps (Blend). BlendCopy moves nearly as many bytes: 8 floats for each texel, where blending reads 6 and writes 3.
 
-#include <cstring>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,37 +10,34 @@
 
 #include <tex/blend.h>
 
+#include "bench/verb_bench.h"
 #include "kernels/blend.h"
 #include "unit/fields.h"
 #include "unit/normal_maps.h"
 
 namespace {
 
+using bench::copy_row;
+using bench::count_texels;
 using tex::BlendMode;
-using tex::Extent;
 using tex::NormalMap;
-
-void count(benchmark::State& state, int size) {
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(size) * size);
-}
 
 void BlendCopy(benchmark::State& state) {
     const int size = static_cast<int>(state.range(0));
     const NormalMap from = tex::fields::noise_normals({size, size});
     NormalMap to = tex::fields::noise_normals({size, size});
-    const std::size_t bytes = static_cast<std::size_t>(size) * sizeof(float);
     for (auto _ : state) {
         for (int j = 0; j < size; ++j) {
-            std::memcpy(to.x.row(j), from.x.row(j), bytes);
-            std::memcpy(to.y.row(j), from.y.row(j), bytes);
-            std::memcpy(to.z.row(j), from.z.row(j), bytes);
-            std::memcpy(to.x.row(j), from.y.row(j), bytes);
+            copy_row(from.x, j, to.x, j);
+            copy_row(from.y, j, to.y, j);
+            copy_row(from.z, j, to.z, j);
+            copy_row(from.y, j, to.x, j);
         }
         benchmark::ClobberMemory();
     }
-    count(state, size);
+    count_texels(state, {size, size});
 }
-BENCHMARK(BlendCopy)->Arg(512)->Arg(4096);
+BENCHMARK(BlendCopy)->ArgName("size")->Arg(512)->Arg(2048);
 
 // In place, on rows that stay in the cache.
 void BlendRows(benchmark::State& state) {
@@ -58,9 +54,9 @@ void BlendRows(benchmark::State& state) {
         }
         benchmark::ClobberMemory();
     }
-    state.SetItemsProcessed(state.iterations() * std::int64_t{kWidth} * kHeight);
+    count_texels(state, {kWidth, kHeight});
 }
-BENCHMARK(BlendRows)->DenseRange(0, 5);
+BENCHMARK(BlendRows)->ArgName("mode")->DenseRange(0, 5);
 
 void Blend(benchmark::State& state) {
     tex::BlendOptions options;
@@ -77,8 +73,8 @@ void Blend(benchmark::State& state) {
         state.ResumeTiming();
         benchmark::DoNotOptimize(tex::blend(std::move(chain), std::move(layers), options, {1, {}}));
     }
-    count(state, size);
+    count_texels(state, {size, size});
 }
-BENCHMARK(Blend)->ArgsProduct({{0, 1, 2, 3, 4, 5}, {512, 2048}});
+BENCHMARK(Blend)->ArgNames({"mode", "size"})->ArgsProduct({{0, 1, 2, 3, 4, 5}, {512, 2048}});
 
 }  // namespace

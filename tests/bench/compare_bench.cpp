@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texels compared per second, on one thread. CompareCopy reads as many bytes, 24 for each texel, and writes 4. See keep_memory.cpp.
-
-#include <cstring>
+// Texels compared per second, on one thread. CompareCopy reads as many bytes, 24 for each texel, and writes 4.
 
 #include <benchmark/benchmark.h>
 
 #include <tex/compare.h>
 
+#include "bench/verb_bench.h"
 #include "kernels/angle.h"
 #include "unit/fields.h"
 
 namespace {
 
+using bench::copy_row;
+using bench::count_texels;
 using tex::Extent;
 using tex::NormalMap;
 using tex::Plane;
@@ -21,16 +22,12 @@ struct Pair {
     explicit Pair(int size) : a(tex::fields::noise_normals({size, size})), b(tex::fields::noise_normals({size, size})), degrees(Extent{size, size}) {
         // The second one is the first, a row further: other normals, of the same kind.
         for (Plane<float>* plane : {&b.x, &b.y, &b.z}) {
-            for (int j = 0; j + 1 < size; ++j) std::memcpy(plane->row(j), plane->row(j + 1), static_cast<std::size_t>(size) * sizeof(float));
+            for (int j = 0; j + 1 < size; ++j) copy_row(*plane, j + 1, *plane, j);
         }
     }
     NormalMap a, b;
     Plane<float> degrees;
 };
-
-void count(benchmark::State& state, int size) {
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(size) * size);
-}
 
 void CompareCopy(benchmark::State& state) {
     const int size = static_cast<int>(state.range(0));
@@ -38,16 +35,14 @@ void CompareCopy(benchmark::State& state) {
     for (auto _ : state) {
         for (int j = 0; j < size; ++j) {
             for (const NormalMap* map : {&pair.a, &pair.b}) {
-                for (const Plane<float>* plane : {&map->x, &map->y, &map->z}) {
-                    std::memcpy(pair.degrees.row(j), plane->row(j), static_cast<std::size_t>(size) * sizeof(float));
-                }
+                for (const Plane<float>* plane : {&map->x, &map->y, &map->z}) copy_row(*plane, j, pair.degrees, j);
             }
         }
         benchmark::ClobberMemory();
     }
-    count(state, size);
+    count_texels(state, {size, size});
 }
-BENCHMARK(CompareCopy)->Arg(512)->Arg(4096);
+BENCHMARK(CompareCopy)->ArgName("size")->Arg(512)->Arg(4096);
 
 // The kernel alone: angles in degrees.
 void CompareRows(benchmark::State& state) {
@@ -60,9 +55,9 @@ void CompareRows(benchmark::State& state) {
         }
         benchmark::ClobberMemory();
     }
-    count(state, size);
+    count_texels(state, {size, size});
 }
-BENCHMARK(CompareRows)->Arg(512)->Arg(4096);
+BENCHMARK(CompareRows)->ArgName("size")->Arg(512)->Arg(4096);
 
 // With the means, the largest and the exact percentiles.
 void Compare(benchmark::State& state) {
@@ -72,8 +67,8 @@ void Compare(benchmark::State& state) {
         auto comparison = tex::compare(pair.a, pair.b, {1, {}});
         benchmark::DoNotOptimize(comparison);
     }
-    count(state, size);
+    count_texels(state, {size, size});
 }
-BENCHMARK(Compare)->Arg(512)->Arg(4096);
+BENCHMARK(Compare)->ArgName("size")->Arg(512)->Arg(4096);
 
 }  // namespace

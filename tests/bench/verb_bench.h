@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// verb_bench.h: what the benchmarks of verbs share. Each registers its benchmarks with Google Benchmark; verb_main.cpp runs them and prints one table:
+// a row for each benchmark, a column for each size, texels per second, and the part of what copying reaches at that size. So each names its
+// argument "size" and has a benchmark whose name ends with "Copy", which moves as many bytes between planes that were touched before.
+
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+#include <benchmark/benchmark.h>
+
+#include <tex/image.h>
+
+namespace bench {
+
+inline void count_texels(benchmark::State& state, tex::Extent extent) {
+    state.SetItemsProcessed(state.iterations() * std::int64_t{extent.width} * extent.height);
+}
+
+// Copies row `from_row` of one plane to row `to_row` of another of the same width.
+inline void copy_row(const tex::Plane<float>& from, int from_row, tex::Plane<float>& to, int to_row) {
+    std::memcpy(to.row(to_row), from.row(from_row), static_cast<std::size_t>(from.extent().width) * sizeof(float));
+}
+
+}  // namespace bench
