@@ -93,10 +93,8 @@ public:
     void row(int j, NormalRow out) {
         near_.place(j);
         if (far_) far_->place(j);
-        component(&NormalMap::x, out.x);
-        component(&NormalMap::y, out.y);
-        component(&NormalMap::z, out.z);
-        scale_row(out.x, out.y, out.z, 1.0f, ScaleMode::slope, width_);
+        const VectorRow in{component(&NormalMap::x, out.x), component(&NormalMap::y, out.y), component(&NormalMap::z, out.z)};
+        scale_row(in, 1.0f, ScaleMode::slope, width_, out);
     }
 
 private:
@@ -104,11 +102,15 @@ private:
         return {source_.chain.levels[level].extent(), result, source_.map, source_.wrap_x, source_.wrap_y};
     }
 
-    void component(Plane<float> NormalMap::* plane, float* out) {
-        near_.sample(source_.chain.levels[source_.level].*plane, out);
-        if (!far_) return;
+    // One component of the samples: where nothing is between texels, those of the map, else in `row`.
+    const float* component(Plane<float> NormalMap::* plane, float* row) {
+        const Plane<float>& texels = source_.chain.levels[source_.level].*plane;
+        if (!far_ && near_.row_of(texels) != nullptr) return near_.row_of(texels);
+        near_.sample(texels, row);
+        if (!far_) return row;
         far_->sample(source_.chain.levels[source_.level + 1].*plane, scratch_.row(0));
-        mix_row(out, scratch_.row(0), source_.mix, width_);
+        mix_row(row, scratch_.row(0), source_.mix, width_);
+        return row;
     }
 
     const Source& source_;
@@ -138,7 +140,7 @@ public:
         const NormalRow detail{rows_.row(0), rows_.row(1), rows_.row(2)};
         const Layer& layer = placed_.layer;
         detail_.row(j, detail);
-        if (layer.scale != 1.0f) scale_row(detail.x, detail.y, detail.z, layer.scale, options_.scale_mode, width_);
+        if (layer.scale != 1.0f) scale_row(detail, layer.scale, options_.scale_mode, width_, detail);
         if (placed_.rotation.cosine != 1.0) {
             rotate_row(detail, static_cast<float>(placed_.rotation.cosine), static_cast<float>(placed_.rotation.sine), width_);
         }
@@ -203,7 +205,7 @@ Result<NormalMap> blend_layers(MipChain& base, std::vector<Layer>& layers, const
             const NormalRow row{result.x.row(j), result.y.row(j), result.z.row(j)};
             base_rows.row(j, row);
             if (options.base_scale != 1.0f) {
-                scale_row(row.x, row.y, row.z, options.base_scale, options.scale_mode, extent.width);
+                scale_row(row, options.base_scale, options.scale_mode, extent.width, row);
             }
             for (LayerRows& rows : layer_rows) rows.blend(j, row);
         }

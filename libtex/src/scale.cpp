@@ -18,7 +18,10 @@ Result<void> scale_rows(NormalMap& map, float scale, ScaleMode mode, const Execu
     const Extent extent = map.extent();
     const int grain = std::max(1, (1 << 16) / extent.width);
     return parallel_for(execution, extent.height, grain, [&](int begin, int end) {
-        for (int j = begin; j < end; ++j) scale_row(map.x.row(j), map.y.row(j), map.z.row(j), scale, mode, extent.width);
+        for (int j = begin; j < end; ++j) {
+            const NormalRow row{map.x.row(j), map.y.row(j), map.z.row(j)};
+            scale_row(row, scale, mode, extent.width, row);
+        }
     }, span);
 }
 

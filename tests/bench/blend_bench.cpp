@@ -58,23 +58,38 @@ void BlendRows(benchmark::State& state) {
 }
 BENCHMARK(BlendRows)->ArgName("mode")->DenseRange(0, 5);
 
-void Blend(benchmark::State& state) {
-    tex::BlendOptions options;
-    options.mode = static_cast<BlendMode>(state.range(0));
-    const int size = static_cast<int>(state.range(1));
+// Only what blend() does is timed: it takes its maps.
+void blend_again(benchmark::State& state, int size, const tex::BlendOptions& options, float tiling, float degrees) {
     const NormalMap base = tex::fields::noise_normals({size, size});
     const NormalMap detail = tex::wavy_map({size, size});
-    state.SetLabel(std::string(name_of(tex::kBlendModeNames, options.mode)));
     for (auto _ : state) {
-        state.PauseTiming();  // blend() takes its maps
+        state.PauseTiming();
         std::vector<tex::Layer> layers(1);
         layers.front().detail = tex::chain_from(tex::copy_of(detail));
+        layers.front().tiling_x = layers.front().tiling_y = tiling;
+        layers.front().rotation = degrees;
         tex::MipChain chain = tex::chain_from(tex::copy_of(base));
         state.ResumeTiming();
         benchmark::DoNotOptimize(tex::blend(std::move(chain), std::move(layers), options, {1, {}}));
     }
     count_texels(state, {size, size});
 }
+
+void Blend(benchmark::State& state) {
+    tex::BlendOptions options;
+    options.mode = static_cast<BlendMode>(state.range(0));
+    state.SetLabel(std::string(name_of(tex::kBlendModeNames, options.mode)));
+    blend_again(state, static_cast<int>(state.range(1)), options, 1.0f, 0.0f);
+}
 BENCHMARK(Blend)->ArgNames({"mode", "size"})->ArgsProduct({{0, 1, 2, 3, 4, 5}, {512, 2048}});
+
+// Whiteout of a detail that is repeated or turned: its levels are made, and two of them are sampled where neither fits.
+void BlendPlaced(benchmark::State& state) {
+    const float tiling = static_cast<float>(state.range(0)) / 10.0f;
+    const auto degrees = static_cast<float>(state.range(1));
+    state.SetLabel(std::to_string(tiling).substr(0, 3) + " times" + (degrees == 0.0f ? "" : ", turned"));
+    blend_again(state, static_cast<int>(state.range(2)), {}, tiling, degrees);
+}
+BENCHMARK(BlendPlaced)->ArgNames({"tenths", "degrees", "size"})->ArgsProduct({{40, 15}, {0}, {512, 2048}})->ArgsProduct({{10}, {30}, {512, 2048}});
 
 }  // namespace

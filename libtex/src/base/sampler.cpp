@@ -11,29 +11,6 @@
 namespace tex {
 namespace {
 
-// A coordinate in widths, moved by whole periods to where its texel index is a small number. Clamped axes are the same beyond
-// one width outside.
-double reduce(Wrap wrap, double u) {
-    switch (wrap) {
-        case Wrap::repeat: return u - std::floor(u);
-        case Wrap::mirror: return u - 2.0 * std::floor(u / 2.0);
-        case Wrap::clamp: return std::clamp(u, -1.0, 2.0);
-    }
-    return u;
-}
-
-struct Neighbours {
-    int first, second;
-    float weight;  // of the second
-};
-
-Neighbours neighbours(Wrap wrap, double u, int n) {
-    const double s = reduce(wrap, u) * n - 0.5;
-    const double whole = std::floor(s);
-    const int index = static_cast<int>(whole);
-    return {border_index(wrap, index, n), border_index(wrap, index + 1, n), static_cast<float>(s - whole)};
-}
-
 // Exactly a at 0 and b at 1.
 float mix(float a, float b, float t) { return a * (1.0f - t) + b * t; }
 
@@ -75,35 +52,43 @@ double texels_per_texel(const UvMap& map, Extent source) {
 }
 
 Sampler::Sampler(Extent source, Extent result, const UvMap& map, Wrap wrap_x, Wrap wrap_y)
-    : source_(source), result_(result), map_(map), wrap_x_(wrap_x), wrap_y_(wrap_y),
-      same_(source == result && map.u0 == 0.0 && map.v0 == 0.0 && map.uy == 0.0 && map.vx == 0.0 &&
-            map.ux == 1.0 / result.width && map.vy == 1.0 / result.height) {
-    if (!same_) taps_.resize(static_cast<std::size_t>(result.width));
+    : source_(source), result_(result), map_(map), wrap_x_(wrap_x), wrap_y_(wrap_y), kind_(Kind::any) {
+    if (map.uy == 0.0 && map.vx == 0.0) {
+        const bool same = source == result && map.u0 == 0.0 && map.v0 == 0.0 && map.ux == 1.0 / result.width && map.vy == 1.0 / result.height;
+        kind_ = same ? Kind::same : Kind::axes;
+    }
+    if (kind_ == Kind::same) return;
+    columns_ = Taps(result.width);
+    rows_ = Taps(kind_ == Kind::any ? result.width : 1);
+    if (kind_ == Kind::any) return;
+    tap_row(map.u0, map.ux, 0.0, wrap_x, source.width, columns_.padded(), columns_.row());
+    runs_ = Plane<std::int32_t>({columns_.padded(), 1});
+    find_runs(columns_.row(), columns_.padded(), aligned_count(source.width), runs_.row(0));
 }
 
 void Sampler::place(int j) {
     row_ = j;
-    if (same_) return;
     const double y = j + 0.5;
-    const bool level = map_.vx == 0.0;  // the whole row lies between two rows of the source
-    Neighbours rows = neighbours(wrap_y_, map_.v0 + map_.vy * y, source_.height);
-    for (int i = 0; i < result_.width; ++i) {
-        const double x = i + 0.5;
-        const Neighbours columns = neighbours(wrap_x_, map_.u0 + map_.ux * x + map_.uy * y, source_.width);
-        if (!level) rows = neighbours(wrap_y_, map_.v0 + map_.vx * x + map_.vy * y, source_.height);
-        taps_[static_cast<std::size_t>(i)] = {columns.first, columns.second, rows.first, rows.second, columns.weight, rows.weight};
-    }
+    if (kind_ == Kind::any) tap_row(map_.u0, map_.ux, map_.uy * y, wrap_x_, source_.width, columns_.padded(), columns_.row());
+    if (kind_ != Kind::same) tap_row(map_.v0, map_.vx, map_.vy * y, wrap_y_, source_.height, rows_.padded(), rows_.row());
 }
 
-void Sampler::sample(const Plane<float>& plane, float* out) const {
-    if (same_) {
-        std::memcpy(out, plane.row(row_), static_cast<std::size_t>(result_.width) * sizeof(float));
-        return;
+void Sampler::sample(const Plane<float>& plane, float* out) {
+    const TapRow columns = columns_.row();
+    const TapRow rows = rows_.row();
+    switch (kind_) {
+        case Kind::same: std::memcpy(out, plane.row(row_), static_cast<std::size_t>(result_.width) * sizeof(float)); return;
+        case Kind::axes:
+            bilinear_row(plane.row(rows.first[0]), plane.row(rows.second[0]), columns, runs_.row(0), rows.weight[0], result_.width, out);
+            return;
+        case Kind::any: break;
     }
-    for (const Tap& tap : taps_) {
-        const float* upper = plane.row(tap.upper);
-        const float* lower = plane.row(tap.lower);
-        *out++ = mix(mix(upper[tap.left], upper[tap.right], tap.x), mix(lower[tap.left], lower[tap.right], tap.x), tap.y);
+    for (int i = 0; i < result_.width; ++i) {
+        const float* upper = plane.row(rows.first[i]);
+        const float* lower = plane.row(rows.second[i]);
+        const int left = columns.first[i];
+        const int right = columns.second[i];
+        out[i] = mix(mix(upper[left], upper[right], columns.weight[i]), mix(lower[left], lower[right], columns.weight[i]), rows.weight[i]);
     }
 }
 

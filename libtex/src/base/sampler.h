@@ -3,11 +3,13 @@
 
 #pragma once
 
-#include <vector>
+#include <cstdint>
 
 #include <tex/blend.h>
 #include <tex/height_field.h>
 #include <tex/image.h>
+
+#include "kernels/bilinear.h"
 
 namespace tex {
 
@@ -27,20 +29,36 @@ struct UvMap {
 // How many texels of a source lie in one texel of the result, in the direction in which they are more.
 [[nodiscard]] double texels_per_texel(const UvMap& map, Extent source);
 
+// Taps that own their rows.
+class Taps {
+public:
+    Taps() = default;
+    explicit Taps(int count) : texels_({count, 2}), weights_({count, 1}) {}
+
+    [[nodiscard]] TapRow row() { return {texels_.row(0), texels_.row(1), weights_.row(0)}; }
+    [[nodiscard]] int padded() const { return static_cast<int>(texels_.stride()); }
+
+private:
+    Plane<std::int32_t> texels_;
+    Plane<float> weights_;
+};
+
 class Sampler {
 public:
     Sampler(Extent source, Extent result, const UvMap& map, Wrap wrap_x, Wrap wrap_y);
 
     // Goes to row j of the result.
     void place(int j);
-    // The samples of that row from a plane of the source's extent.
-    void sample(const Plane<float>& plane, float* out) const;
+    // The samples of that row from a plane of the source's extent. `out` has room for whole vectors.
+    void sample(const Plane<float>& plane, float* out);
+    // The same where they are a row of the plane as it is; null elsewhere.
+    [[nodiscard]] const float* row_of(const Plane<float>& plane) const { return kind_ == Kind::same ? plane.row(row_) : nullptr; }
 
 private:
-    // Between which texels the sample of a texel lies, and how near to the second ones.
-    struct Tap {
-        int left, right, upper, lower;
-        float x, y;
+    enum class Kind {
+        same,  // the source as it is
+        axes,  // its rows lie along those of the result: all have the same columns
+        any,
     };
 
     Extent source_;
@@ -48,9 +66,11 @@ private:
     UvMap map_;
     Wrap wrap_x_;
     Wrap wrap_y_;
-    bool same_;  // the source as it is
-    int row_ = 0;
-    std::vector<Tap> taps_;
+    Kind kind_;
+    int row_ = 0;  // of the source, where it is the same
+    Taps columns_;
+    Taps rows_;                 // one tap where rows lie along rows, else one for each sample
+    Plane<std::int32_t> runs_;  // of the columns, where rows lie along rows
 };
 
 }  // namespace tex

@@ -3,14 +3,9 @@
 
 #pragma once
 
-namespace tex {
+#include "kernels/normal_row.h"
 
-// Three rows of a normal map.
-struct VectorRow {
-    const float* x;
-    const float* y;
-    const float* z;
-};
+namespace tex {
 
 // degrees[i] = 2 asin(min(1, |a[i] - b[i]| / 2)), in degrees, for `count` texels. Rows are those of a Plane: whole vectors past
 // the last texel are read and written.

@@ -5,11 +5,19 @@
 
 namespace tex {
 
-// Rows may be read and written up to a whole vector (64 bytes) past their last texel.
+// Rows may be read and written up to a whole vector (64 bytes) past their last texel. One that is only read:
+struct VectorRow {
+    const float* x;
+    const float* y;
+    const float* z;
+};
+
 struct NormalRow {
     float* x;
     float* y;
     float* z;
+
+    operator VectorRow() const { return {x, y, z}; }
 };
 
 }  // namespace tex

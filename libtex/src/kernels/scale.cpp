@@ -16,18 +16,18 @@ namespace tex {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-void ScaleRow(float* x, float* y, float* z, float scale, ScaleMode mode, int count) {
+void ScaleRow(const VectorRow& in, float scale, ScaleMode mode, int count, const NormalRow& out) {
     const FloatTag d;
     const FloatVec s = hn::Set(d, scale);
     const FloatVec one = hn::Set(d, 1.0f);
     const auto end = static_cast<std::size_t>(count);
     for (std::size_t i = 0; i < end; i += hn::Lanes(d)) {
-        Vec3 n = {hn::Mul(s, hn::LoadU(d, x + i)), hn::Mul(s, hn::LoadU(d, y + i)), hn::LoadU(d, z + i)};
+        Vec3 n = {hn::Mul(s, hn::LoadU(d, in.x + i)), hn::Mul(s, hn::LoadU(d, in.y + i)), hn::LoadU(d, in.z + i)};
         if (mode == ScaleMode::xy) {
             const FloatVec squared = hn::Add(hn::Mul(n.x, n.x), hn::Mul(n.y, n.y));
             n.z = hn::Sqrt(hn::Sub(one, hn::Min(squared, one)));
         }
-        StoreVec3(d, NormaliseUpper(d, n), x + i, y + i, z + i);
+        StoreVec3(d, NormaliseUpper(d, n), out.x + i, out.y + i, out.z + i);
     }
 }
 
@@ -40,8 +40,8 @@ namespace tex {
 
 HWY_EXPORT(ScaleRow);
 
-void scale_row(float* x, float* y, float* z, float scale, ScaleMode mode, int count) {
-    HWY_DYNAMIC_DISPATCH(ScaleRow)(x, y, z, scale, mode, count);
+void scale_row(const VectorRow& in, float scale, ScaleMode mode, int count, const NormalRow& out) {
+    HWY_DYNAMIC_DISPATCH(ScaleRow)(in, scale, mode, count, out);
 }
 
 }  // namespace tex

@@ -5,10 +5,12 @@
 
 #include <tex/normal_map.h>
 
+#include "kernels/normal_row.h"
+
 namespace tex {
 
-// Scales `count` normals in place: see scale() in scale.h. Vectors need not have unit length in ScaleMode::slope; a scale of 1
+// Scales `count` normals, which may be those of `out`: see scale() in scale.h. Vectors need not have unit length in ScaleMode::slope; a scale of 1
 // normalises them. Rows are padded to whole vectors.
-void scale_row(float* x, float* y, float* z, float scale, ScaleMode mode, int count);
+void scale_row(const VectorRow& in, float scale, ScaleMode mode, int count, const NormalRow& out);
 
 }  // namespace tex

@@ -33,7 +33,7 @@ void UnpackStage::put_row(const Image& rows, int k) {
     const NormalRow out = sink_.place(j);
     const float* const z = sources_.z < 0 ? nullptr : channels[sources_.z];
     unpack_row(channels[sources_.x], channels[sources_.y], z, rule_, extent_.width, out.x, out.y, out.z);
-    if (scale_) scale_row(out.x, out.y, out.z, scale_->scale, scale_->mode, extent_.width);
+    if (scale_) scale_row(out, scale_->scale, scale_->mode, extent_.width, out);
     sink_.finish(j);
 }
 
