@@ -11,7 +11,7 @@
 namespace tex {
 
 // Hands out things; one that nobody holds any more waits for the next taker, in the state in which it was left. Any thread may take and let go.
-// What was handed out may outlive the pool.
+// What was handed out may outlive the pool; copies of a pool share what waits in it.
 template <class T>
 class Pool {
 public:

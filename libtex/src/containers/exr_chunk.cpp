@@ -4,7 +4,6 @@
 
 #include <libdeflate.h>
 
-#include <algorithm>
 #include <new>
 
 #include "containers/exr.h"

@@ -33,8 +33,8 @@ auto with_reader(const InputFile& file, const ExrReader& reader, const Body& bod
 
 class ExrRows final : public RowSource {
 public:
-    // Rows of a level; `reader` tells of it. Throws what OpenEXR throws. Precondition: the header has proved sound.
-    ExrRows(const InputFile& file, ExrReader& reader, const std::vector<ExrChannel>& channels, int level);
+    // Rows of a level; `reader`, one of `readers`, tells of it. Throws what OpenEXR throws. Precondition: the header has proved sound.
+    ExrRows(const InputFile& file, Pool<ExrReader> readers, ExrReader& reader, const std::vector<ExrChannel>& channels, int level);
 
     [[nodiscard]] int rows_together() const override { return rows_together_; }
     [[nodiscard]] bool is_random() const override { return true; }
@@ -48,10 +48,15 @@ private:
     int rows_together_ = 1;
     std::vector<ExrPlane> planes_;
     std::vector<bool> wanted_;
-    Pool<ExrReader> readers_;
+    Pool<ExrReader> readers_;  // those of all levels
 };
 
-ExrRows::ExrRows(const InputFile& file, ExrReader& reader, const std::vector<ExrChannel>& channels, int level) : file_(file), level_(level) {
+std::shared_ptr<ExrReader> take_reader(Pool<ExrReader>& readers, const InputFile& file) {
+    return readers.take([&file] { return std::make_unique<ExrReader>(file); });
+}
+
+ExrRows::ExrRows(const InputFile& file, Pool<ExrReader> readers, ExrReader& reader, const std::vector<ExrChannel>& channels, int level)
+    : file_(file), level_(level), readers_(std::move(readers)) {
     const Imf::Header& header = reader.header();
     const Imath::Box2i window = reader.window(level);
     const Extent extent{window.max.x - window.min.x + 1, window.max.y - window.min.y + 1};
@@ -76,7 +81,7 @@ ExrRows::ExrRows(const InputFile& file, ExrReader& reader, const std::vector<Exr
 }
 
 Result<void> ExrRows::decode(int first, int count, std::byte* rows) {
-    const std::shared_ptr<ExrReader> reader = readers_.take([this] { return std::make_unique<ExrReader>(file_); });
+    const std::shared_ptr<ExrReader> reader = take_reader(readers_, file_);
     return with_reader(file_, *reader, [&]() -> Result<void> {
         reader->read(level_, first, count, {planes_, rows, row_bytes()});
         return {};
@@ -104,17 +109,18 @@ void ExrRows::store(const std::byte* rows, int first, int end, Image& image) con
     }
 }
 
-// Opens the first part and runs body(reader, base).
+// Opens the first part and runs body(readers, reader, base). The reader has read the header, and is the first that decodes.
 template <class Body>
 auto with_part(InputFile& file, const ReadOptions& options, const Body& body) {
-    using Opened = decltype(body(std::declval<ExrReader&>(), Extent()));
+    using Opened = decltype(body(std::declval<Pool<ExrReader>&>(), std::declval<ExrReader&>(), Extent()));
     return guarded([&]() -> Opened {
         if (const Result<void> settled = file.settle(largest_file(options)); !settled) return settled.error();
-        ExrReader reader(file);
-        return with_reader(file, reader, [&]() -> Opened {
-            const Result<Extent> base = check_header(file.path(), reader.header(), *file.size(), options);
+        Pool<ExrReader> readers;
+        const std::shared_ptr<ExrReader> reader = take_reader(readers, file);
+        return with_reader(file, *reader, [&]() -> Opened {
+            const Result<Extent> base = check_header(file.path(), reader->header(), *file.size(), options);
             if (!base) return base.error();
-            return body(reader, *base);
+            return body(readers, *reader, *base);
         });
     });
 }
@@ -122,18 +128,18 @@ auto with_part(InputFile& file, const ReadOptions& options, const Body& body) {
 }  // namespace
 
 Result<std::unique_ptr<RowSource>> open_exr_rows(InputFile& file, const ReadOptions& options) {
-    return with_part(file, options, [&](ExrReader& reader, Extent) -> Result<std::unique_ptr<RowSource>> {
-        return std::unique_ptr<RowSource>(std::make_unique<ExrRows>(file, reader, channels_of(reader.header()), 0));
+    return with_part(file, options, [&](Pool<ExrReader>& readers, ExrReader& reader, Extent) -> Result<std::unique_ptr<RowSource>> {
+        return std::unique_ptr<RowSource>(std::make_unique<ExrRows>(file, readers, reader, channels_of(reader.header()), 0));
     });
 }
 
 Result<ExrTextureRows> open_exr_texture_rows(InputFile& file, const ReadOptions& options) {
-    return with_part(file, options, [&](ExrReader& reader, Extent base) -> Result<ExrTextureRows> {
+    return with_part(file, options, [&](Pool<ExrReader>& readers, ExrReader& reader, Extent base) -> Result<ExrTextureRows> {
         Result<ExrTexture> described = exr_texture_of(file.path(), reader.header(), base);
         if (!described) return std::move(described).error();
         ExrTextureRows texture{{}, std::move(described->head)};
         for (int level = 0; level < described->levels; ++level) {
-            texture.levels.push_back(std::make_unique<ExrRows>(file, reader, described->channels, level));
+            texture.levels.push_back(std::make_unique<ExrRows>(file, readers, reader, described->channels, level));
         }
         return texture;
     });
