@@ -40,9 +40,9 @@ inline float exr_value(int i, int j, int c) { return static_cast<float>(i * 3 - 
 
 // A file as OpenEXR writes it: channels of one type, a data window that begins at (-3, 5).
 inline std::vector<std::byte> exr_file(Extent extent, const std::vector<std::string>& names, Imf::PixelType type, Imf::Compression compression,
-               bool tiled = false) {
+               bool tiled = false, Imf::LineOrder order = Imf::DECREASING_Y) {
     const Imath::Box2i window({-3, 5}, {-3 + extent.width - 1, 5 + extent.height - 1});
-    Imf::Header header(window, window, 1.0f, {0, 0}, 1.0f, Imf::DECREASING_Y, compression);
+    Imf::Header header(window, window, 1.0f, {0, 0}, 1.0f, order, compression);
     Imf::FrameBuffer buffer;
     std::vector<std::vector<float>> floats(names.size());
     std::vector<std::vector<std::uint32_t>> integers(names.size());

@@ -5,11 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 #include <random>
 #include <vector>
 
 #include "containers/claims.h"
 #include "containers/exr.h"
+#include "containers/exr_chunk.h"
 #include "unit/exr_files.h"
 
 namespace tex {
@@ -56,6 +58,32 @@ TEST(ExrRows, AnyRowsAreThoseOfTheWholePicture) {
                 }
             }
         }
+    }
+}
+
+// OpenEXR finds lines that follow one another without the table of chunks, and others by it: a file must not be whole for one thread and damaged for two.
+TEST(ExrRows, ChunksAreWhereTheTableSaysInWhateverOrderTheyAreRead) {
+    for (const Imf::Compression compression : {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION, Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION}) {
+        SCOPED_TRACE(compression);
+        const int chunks = (97 + chunk_lines(compression) - 1) / chunk_lines(compression);
+        auto bytes = exr_file({5, 97}, {"G", "R"}, Imf::HALF, compression, false, Imf::INCREASING_Y);
+        const auto entry = [&](std::size_t at) {
+            std::uint64_t value = 0;
+            std::memcpy(&value, bytes.data() + at, sizeof value);
+            return value;
+        };
+        std::size_t table = 0;  // the chunks follow it
+        while (entry(table) != table + sizeof(std::uint64_t) * static_cast<std::size_t>(chunks)) ++table;
+        std::swap_ranges(bytes.begin() + static_cast<std::ptrdiff_t>(table + 8), bytes.begin() + static_cast<std::ptrdiff_t>(table + 16),
+                         bytes.begin() + static_cast<std::ptrdiff_t>(table + 16));
+        Result<InputFile> file = InputFile::from_memory("table.exr", bytes);
+        const Result<Image> whole = read_exr(*file, {});
+        ASSERT_FALSE(whole);
+        EXPECT_EQ(whole.error().code, ErrorCode::bad_data);
+        const auto rows = open_exr_rows(*file, {});
+        ASSERT_TRUE(rows);
+        std::vector<std::byte> some((*rows)->row_bytes() * 4);
+        EXPECT_FALSE((*rows)->decode(chunk_lines(compression), 1, some.data()));
     }
 }
 

@@ -131,6 +131,7 @@ ExrStream::ExrStream(const InputFile& file)
 bool ExrStream::read(char data[], int count) {
     const auto n = static_cast<std::size_t>(count);
     last_ = std::span(reinterpret_cast<const std::byte*>(data), count < 0 ? 0 : n);
+    last_place_ = at_;
     if (count < 0 || n > size_ || at_ > size_ - n) throw Iex::InputExc("the file ends too early");
     if (at_ >= buffered_from_ && at_ + n <= buffered_from_ + buffered_) {
         std::memcpy(data, buffer_.data() + (at_ - buffered_from_), n);
@@ -154,7 +155,7 @@ void ExrStream::fetch(std::byte* to, std::uint64_t at, std::size_t n) {
     if (!got || *got < n) throw Iex::InputExc("the file ends too early");
 }
 
-void check_attributes(ExrStream& stream) {
+std::optional<std::uint64_t> check_attributes(ExrStream& stream) {
     constexpr std::int32_t kManyParts = 0x1000;
     HeaderWalk walk(stream);
     walk.integer();  // the magic number
@@ -164,7 +165,9 @@ void check_attributes(ExrStream& stream) {
         for (; !walk.text().empty(); ++attributes) walk.attribute();
         if (attributes == 0) break;
     } while (many_parts);
+    const std::uint64_t end = stream.tellg();
     stream.seekg(0);
+    return many_parts ? std::nullopt : std::optional(end);
 }
 
 std::vector<ExrChannel> channels_of(const Imf::Header& header) {

@@ -39,8 +39,9 @@ public:
     void seekg(std::uint64_t at) override { at_ = at; }
     [[nodiscard]] std::uint64_t size() const { return size_; }
 
-    // Where the last read() put its bytes.
+    // Where the last read() put its bytes, and where in the file it began.
     [[nodiscard]] std::span<const std::byte> last_read() const { return last_; }
+    [[nodiscard]] std::uint64_t last_place() const { return last_place_; }
 
     // What the system said, where it was not the format that failed.
     [[nodiscard]] const std::optional<Error>& failure() const { return failure_; }
@@ -55,12 +56,13 @@ private:
     std::uint64_t buffered_from_ = 0;
     std::size_t buffered_ = 0;
     std::span<const std::byte> last_;
+    std::uint64_t last_place_ = 0;
     std::optional<Error> failure_;
 };
 
 // Walks the attributes of all headers, then goes back to the beginning: OpenEXR takes whatever memory an attribute claims, before it finds that the file
-// does not hold it. Throws Iex::InputExc.
-void check_attributes(ExrStream& stream);
+// does not hold it. Returns where the table of chunks begins, in a file of one part. Throws Iex::InputExc.
+std::optional<std::uint64_t> check_attributes(ExrStream& stream);
 
 struct ExrChannel {
     std::string name;

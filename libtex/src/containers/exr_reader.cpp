@@ -57,7 +57,7 @@ Imf::FrameBuffer buffer_of(const Imath::Box2i& window, int top, int count, const
 
 const Imf::Header& ExrReader::header() {
     if (!exr_) {
-        check_attributes(stream_);
+        table_ = check_attributes(stream_);
         constexpr int kNoThreads = 0;
         constexpr bool kKeepTable = false;  // a table that has to be guessed is damage
         exr_.emplace(stream_, kNoThreads, kKeepTable);
@@ -100,6 +100,7 @@ void ExrReader::read_lines(int first, int last, const ExrTarget& target) {
         const int begin = chunks.first_line(chunk);
         const int end = chunks.last_line(chunk);
         lines_->readPixels(std::max(begin, first), std::min(end, last));
+        check_place(chunk);
         check_chunk(width_of(chunks.window), end - begin + 1);
     }
 }
@@ -114,6 +115,7 @@ void ExrReader::unzip_lines(int first, int last, const ExrTarget& target) {
         const char* bytes = nullptr;
         int size = 0;
         lines_->rawPixelData(begin, bytes, size);
+        check_place(chunk);
         const std::span<const std::byte> packed(reinterpret_cast<const std::byte*>(bytes), static_cast<std::size_t>(size));
         const auto texels = unzipper_.texels(packed, pitch * static_cast<std::size_t>(end - begin + 1), pitch * static_cast<std::size_t>(chunks.lines));
         if (texels.empty()) throw Iex::InputExc("a chunk is damaged or ends too early");
@@ -141,6 +143,16 @@ void ExrReader::read_tiles(int level, int begin, int end, const ExrTarget& targe
             check_chunk(width_of(tile), tile.max.y - tile.min.y + 1);
         }
     }
+}
+
+// In a file of one part OpenEXR looks at the table only where lines do not follow those it read last. What is taken of a file must not depend on that.
+void ExrReader::check_place(int chunk) const {
+    if (!table_) return;
+    constexpr std::uint64_t kChunkHead = 8;  // the first line, the size
+    std::uint64_t place = 0;
+    const std::uint64_t entry = *table_ + sizeof place * static_cast<std::uint64_t>(chunk);
+    const Result<std::size_t> got = file_.read_at(static_cast<std::int64_t>(entry), reinterpret_cast<std::byte*>(&place), sizeof place);
+    if (!got || *got < sizeof place || place + kChunkHead != stream_.last_place()) throw Iex::InputExc("the table of chunks does not say where they are");
 }
 
 // OpenEXR reads a chunk's bytes with one call, after all else, and keeps them.

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -34,7 +35,7 @@ struct ExrTarget {
 // All but the constructor throw what OpenEXR throws, also for chunks that do not hold all of their texels, and std::bad_alloc.
 class ExrReader {
 public:
-    explicit ExrReader(const InputFile& file) : stream_(file) {}
+    explicit ExrReader(const InputFile& file) : file_(file), stream_(file) {}
 
     // The header, read when it is first asked for.
     const Imf::Header& header();
@@ -57,8 +58,12 @@ private:
     void read_tiles(int level, int begin, int end, const ExrTarget& target);
     // Makes sure that the chunk read last holds `width` x `height` texels.
     void check_chunk(int width, int height);
+    // Makes sure that it is the one that the table of chunks tells of.
+    void check_place(int chunk) const;
 
+    const InputFile& file_;
     ExrStream stream_;
+    std::optional<std::uint64_t> table_;  // of chunks, in a file of one part
     std::optional<Imf::MultiPartInputFile> exr_;
     std::optional<Imf::InputPart> lines_;
     std::optional<Imf::TiledInputPart> tiles_;
