@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A command line of any words is understood or refused with a usage error of one line; numbers that are taken are finite.
 //
-// Input: a line for each argument. Lines that begin with a byte of 128 and more name an option by its place in the table, and hold its value; the others are
-// arguments as they are.
+// Input: a byte that tells which command, then a line for each argument. Lines that begin with a byte of 128 and more name an option by its place in the table,
+// and hold its value; the others are arguments as they are.
 
 #include <cmath>
 #include <cstdint>
@@ -118,16 +118,22 @@ extern "C" int LLVMFuzzerInitialize(int*, char***) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     constexpr std::size_t kLongest = 4096;
-    if (size > kLongest) return 0;
-    Everything everything;
-    if (parse(everything.command, data, size)) {
+    if (size == 0 || size > kLongest) return 0;
+    const int choice = data[0] % 3;
+    ++data;
+    --size;
+    if (choice == 0) {
+        Everything everything;
+        if (!parse(everything.command, data, size)) return 0;
         const cli::StrengthOptions& strength = everything.reader.strength;
         if (!std::isfinite(strength.bumpiness)) std::abort();
         if (everything.run.read.max_texels < 1 || everything.run.threads < 0) std::abort();
+    } else if (choice == 1) {
+        Layers layers;
+        parse(layers.command, data, size);
+    } else {
+        Scene scene;
+        parse(scene.command, data, size);
     }
-    Layers layers;
-    parse(layers.command, data, size);
-    Scene scene;
-    parse(scene.command, data, size);
     return 0;
 }
