@@ -7,7 +7,6 @@
 #include "cli/batch.h"
 #include "cli/groups.h"
 #include "cli/heights.h"
-#include "cli/name_pattern.h"
 #include "cli/repack.h"
 #include "cli/usage_error.h"
 
@@ -31,9 +30,7 @@ struct BakeNormals {
     BakeNormals();
     void add_kernel();
     Result<void> process(cli::Job& job);
-    Result<void> process_levels(cli::Job& job);
     [[nodiscard]] Encoding encoding(const cli::Job& job) const;
-    static void report_way(cli::Job& job, const SlopeRange& slopes, Path path);
 };
 
 BakeNormals::BakeNormals() {
@@ -76,7 +73,6 @@ void BakeNormals::add_kernel() {
 }
 
 Result<void> BakeNormals::process(cli::Job& job) {
-    if (cli::has_level(job.task.output)) return process_levels(job);
     BakeFileOptions options;
     options.read = job.read_options;
     options.heights = reader.heights.options;
@@ -87,42 +83,21 @@ Result<void> BakeNormals::process(cli::Job& job) {
     options.mip.levels = mips.levels_for(job.task);
     options.pack = output.pack_options(encoding(job), output.y.value_or(YAxis::up));
     options.write = output.write_options(job);
+    options.level_names = cli::level_names(job.task);
     options.slopes = run.json;
     const auto baked = bake_file(job.task.input, job.task.output, job.task.container, options, job.until(1.0));
     if (!baked) return cli::HeightReader::with_remedy(baked.error());
     reader.note(job, baked->heights);
-    job.wrote(job.task.output);
+    cli::wrote_levels(job, baked->levels);
     cli::report_texture(job, baked->extent, baked->levels, options.pack, baked->bytes);
-    report_way(job, baked->slopes, baked->path);
-    return {};
-}
-
-// A file for each level: the chain is held as a whole.
-Result<void> BakeNormals::process_levels(cli::Job& job) {
-    auto field = reader.read(job, job.until(0.3));
-    if (!field) return field.error();
-    auto normals = tex::bake(*field, bake, job.until(0.4));
-    if (!normals) return normals.error();
-    field->height = {};
-    const SlopeRange slopes = run.json ? slope_range(*normals, job.until(0.45)) : SlopeRange{};
-
-    MipOptions mip = mips.mip;
-    mip.levels = mips.levels_for(job.task);
-    auto chain = build_mip_chain(std::move(*normals), mip, job.until(0.6));
-    if (!chain) return chain.error();
-    auto written = cli::write_chain(job, std::move(*chain), output, encoding(job), output.y.value_or(YAxis::up));
-    if (!written) return written.error();
-    report_way(job, slopes, Path::whole);
+    const SlopeRange& slopes = baked->slopes;
+    job.report["slopes"] = {{"x", {slopes.min_x, slopes.max_x}}, {"y", {slopes.min_y, slopes.max_y}}};
+    cli::report_path(job, baked->path);
     return {};
 }
 
 Encoding BakeNormals::encoding(const cli::Job& job) const {
     return output.format.value_or(default_encoding(job.task.container));
-}
-
-void BakeNormals::report_way(cli::Job& job, const SlopeRange& slopes, Path path) {
-    job.report["slopes"] = {{"x", {slopes.min_x, slopes.max_x}}, {"y", {slopes.min_y, slopes.max_y}}};
-    cli::report_path(job, path);
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 
 #include "cli/batch.h"
 #include "cli/groups.h"
-#include "cli/name_pattern.h"
 #include "cli/repack.h"
 #include "cli/source.h"
 
@@ -26,7 +25,6 @@ struct PackNormals {
 
     PackNormals();
     Result<void> process(cli::Job& job);
-    Result<void> process_levels(cli::Job& job);
 };
 
 PackNormals::PackNormals() {
@@ -47,7 +45,6 @@ PackNormals::PackNormals() {
 }
 
 Result<void> PackNormals::process(cli::Job& job) {
-    if (cli::has_level(job.task.output)) return process_levels(job);
     PackFileOptions options;
     if (!mips.keep && mips.levels) {
         options.mip = mips.mip;
@@ -55,25 +52,6 @@ Result<void> PackNormals::process(cli::Job& job) {
     }
     return cli::repack(job, source, output, options,
                        [&](const SourceInfo&) { return default_encoding(job.task.container); });
-}
-
-// A file for each level: the chain is held as a whole.
-Result<void> PackNormals::process_levels(cli::Job& job) {
-    const bool keeps = mips.keep || !mips.levels;
-    auto read = source.read(job, 0.4, !keeps);
-    if (!read) return read.error();
-    MipChain chain = std::move(read->chain);
-    if (!keeps) {
-        MipOptions options = mips.mip;
-        options.levels = *mips.levels;
-        auto built = build_mip_chain(std::move(chain.levels.front()), options, job.until(0.6));
-        if (!built) return built.error();
-        chain = std::move(*built);
-    }
-    const Encoding encoding = output.format.value_or(default_encoding(job.task.container));
-    auto written = cli::write_chain(job, std::move(chain), output, encoding, output.y.value_or(read->info.y_axis));
-    if (written) cli::report_path(job, Path::whole);
-    return written;
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <tex/tex.h>
 
 #include "cli/batch.h"
-#include "cli/name_pattern.h"
 #include "cli/repack.h"
 #include "cli/source.h"
 #include "cli/usage_error.h"
@@ -24,7 +23,6 @@ struct ScaleNormals {
 
     ScaleNormals();
     Result<void> process(cli::Job& job);
-    Result<void> process_levels(cli::Job& job);
 };
 
 ScaleNormals::ScaleNormals() {
@@ -50,23 +48,10 @@ ScaleNormals::ScaleNormals() {
 }
 
 Result<void> ScaleNormals::process(cli::Job& job) {
-    if (cli::has_level(job.task.output)) return process_levels(job);
     PackFileOptions options;
     options.scale = {scale, mode};
     return cli::repack(job, source, output, options,
                        [&](const SourceInfo& info) { return cli::encoding_of(info, job.task); });
-}
-
-// A file for each level: the chain is held as a whole.
-Result<void> ScaleNormals::process_levels(cli::Job& job) {
-    auto read = source.read(job, 0.4, false);
-    if (!read) return read.error();
-    auto scaled = tex::scale(std::move(read->chain), scale, mode, job.until(0.6));
-    if (!scaled) return scaled.error();
-    const Encoding encoding = output.format.value_or(cli::encoding_of(read->info, job.task));
-    auto written = cli::write_chain(job, std::move(*scaled), output, encoding, output.y.value_or(read->info.y_axis));
-    if (written) cli::report_path(job, Path::whole);
-    return written;
 }
 
 }  // namespace

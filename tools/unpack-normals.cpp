@@ -33,7 +33,6 @@ struct UnpackNormals {
     UnpackNormals();
     void check(const std::vector<cli::Task>& tasks) const;
     Result<void> process(cli::Job& job);
-    Result<void> process_levels(cli::Job& job);
     [[nodiscard]] Encoding encoding(const cli::Job& job) const;
 };
 
@@ -75,35 +74,10 @@ void UnpackNormals::check(const std::vector<cli::Task>& tasks) const {
 }
 
 Result<void> UnpackNormals::process(cli::Job& job) {
-    if (cli::has_level(job.task.output)) return process_levels(job);
     PackFileOptions options;
     if (!all_levels) options.level = level;
     if (command.given("--scale")) options.scale = {scale, scale_mode};
     return cli::repack(job, source, output, options, [&](const SourceInfo&) { return encoding(job); });
-}
-
-// A file for each level: the chain is held as a whole.
-Result<void> UnpackNormals::process_levels(cli::Job& job) {
-    auto read = source.read(job, 0.5, !all_levels && level == 0);
-    if (!read) return read.error();
-    MipChain chain = std::move(read->chain);
-    if (!all_levels) {
-        if (level >= static_cast<int>(chain.levels.size())) {
-            return Error{ErrorCode::bad_option, job.task.input,
-                         fmt::format("has no level {}, only {}", level, chain.levels.size())};
-        }
-        std::swap(chain.levels.front(), chain.levels[static_cast<std::size_t>(level)]);
-        chain.levels.resize(1);
-    }
-    if (command.given("--scale")) {
-        auto scaled = tex::scale(std::move(chain), scale, scale_mode, job.until(0.7));
-        if (!scaled) return scaled.error();
-        chain = std::move(*scaled);
-    }
-    auto written = cli::write_chain(job, std::move(chain), output, output.format.value_or(encoding(job)),
-                                    output.y.value_or(read->info.y_axis));
-    if (written) cli::report_path(job, Path::whole);
-    return written;
 }
 
 Encoding UnpackNormals::encoding(const cli::Job& job) const {

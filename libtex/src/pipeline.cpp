@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include <tex/image_io.h>
 
@@ -32,6 +33,21 @@ Result<std::size_t> write_whole(Texture texture, const std::string& output, Cont
     return bytes->size();
 }
 
+// The same, or a file for each level.
+Result<std::size_t> write_whole(Texture texture, const OutputNames& names, Container container, const WriteOptions& options) {
+    if (!names.of_level) return write_whole(std::move(texture), names.output, container, options);
+    std::size_t bytes = 0;
+    std::vector<Level> levels = std::exchange(texture.levels, {});
+    for (std::size_t k = 0; k < levels.size(); ++k) {
+        Texture one = texture;
+        one.levels.push_back(std::move(levels[k]));
+        const Result<std::size_t> written = write_whole(std::move(one), names.of_level(static_cast<int>(k)), container, options);
+        if (!written) return written.error();
+        bytes += *written;
+    }
+    return bytes;
+}
+
 Result<BakeFileReport> bake_whole(Image image, const std::string& output, Container container,
                                   const BakeFileOptions& options, const Execution& execution) {
     BakeFileReport report;
@@ -50,14 +66,14 @@ Result<BakeFileReport> bake_whole(Image image, const std::string& output, Contai
     field->height = {};
     if (options.slopes) report.slopes = slope_range(*normals, execution);
     MipOptions mip = options.mip;
-    if (!can_hold_levels(container)) mip.levels = 1;
+    if (!holds_levels(container, options.level_names)) mip.levels = 1;
     auto chain = build_mip_chain(std::move(*normals), mip, part_of(execution, 0.4, 0.6));
     if (!chain) return chain.error();
     auto texture = pack(*chain, options.pack, part_of(execution, 0.6, 0.95));
     if (!texture) return texture.error();
     chain->levels.clear();
     report.levels = static_cast<int>(texture->levels.size());
-    auto bytes = write_whole(std::move(*texture), output, container, options.write);
+    auto bytes = write_whole(std::move(*texture), {output, options.level_names}, container, options.write);
     if (!bytes) return bytes.error();
     report.bytes = *bytes;
     return report;
@@ -75,13 +91,13 @@ Result<PackFileReport> pack_whole(InputFile& file, const std::string& output, Co
     const auto first = static_cast<std::size_t>(options.level.value_or(0));
     if (first >= chain.levels.size()) return no_such_level(file.path(), *options.level, chain.levels.size());
     std::swap(chain.levels.front(), chain.levels[first]);
-    if (options.level || options.mip || !can_hold_levels(container)) chain.levels.resize(1);
+    if (options.level || options.mip || !holds_levels(container, options.level_names)) chain.levels.resize(1);
     if (options.scale) {
         auto scaled = scale(std::move(chain), options.scale->scale, options.scale->mode, part_of(execution, 0.4, 0.5));
         if (!scaled) return scaled.error();
         chain = std::move(*scaled);
     }
-    if (options.mip && can_hold_levels(container)) {
+    if (options.mip && holds_levels(container, options.level_names)) {
         auto built = build_mip_chain(std::move(chain.levels.front()), *options.mip, part_of(execution, 0.5, 0.6));
         if (!built) return built.error();
         chain = std::move(*built);
@@ -91,7 +107,7 @@ Result<PackFileReport> pack_whole(InputFile& file, const std::string& output, Co
     chain.levels.clear();
     report.extent = texture->extent();
     report.levels = static_cast<int>(texture->levels.size());
-    auto bytes = write_whole(std::move(*texture), output, container, options.write);
+    auto bytes = write_whole(std::move(*texture), {output, options.level_names}, container, options.write);
     if (!bytes) return bytes.error();
     report.bytes = *bytes;
     return report;
@@ -122,7 +138,7 @@ Result<PackFileReport> pack_file(const std::string& input, const std::string& ou
     return guarded([&]() -> Result<PackFileReport> {
         Result<InputFile> file = InputFile::open(input);
         if (!file) return file.error();
-        const bool builds = options.mip && options.mip->levels != 1;
+        const bool builds = options.mip && options.mip->levels != 1 && !options.level_names;
         if (takes_strips(container, builds ? 2 : 1)) {
             Result<std::optional<TextureRows>> texture = open_texture_rows(*file, options.source.read);
             if (!texture) return texture.error();

@@ -198,7 +198,11 @@ TEST_F(BakeNormals, TellsWhichWayAFileWent) {
     EXPECT_EQ(path_of({"bricks.png", "-o", "y.png"}), "streamed");
     EXPECT_TRUE(scratch_.read("y.png") == scratch_.read("z.png"));
     EXPECT_EQ(path_of({"bricks.png", "-o", "x.dds", "--color-space", "sRGB"}), "whole");
-    EXPECT_EQ(path_of({"bricks.png", "--name", "x{level}.dds"}), "whole");
+    for (const char* const name : {"x{level}.dds", "x{level}.ktx2", "x{level}.png", "x{level}.exr"}) {
+        EXPECT_EQ(path_of({"bricks.png", "--name", name}), "streamed") << name;
+        EXPECT_EQ(path_of({"bricks.png", "--name", name, "--fill-invalid"}), "whole") << name;
+    }
+    EXPECT_EQ(path_of({"bricks.png", "--name", "x{level}.tga"}), "whole");
     EXPECT_EQ(path_of({"bricks.png", "-o", "y.dds", "--fill-invalid"}), "whole");
     EXPECT_EQ(path_of({"bricks.png", "-o", "x.dds"}), "streamed");
     EXPECT_TRUE(scratch_.read("x.dds") == scratch_.read("y.dds"));

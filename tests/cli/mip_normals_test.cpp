@@ -132,7 +132,7 @@ TEST_F(MipNormals, TellsWhichWayAFileWent) {
     }
     EXPECT_EQ(path_of("mip-normals", {"n.png", "-o", "x.exr"}), "whole");
     EXPECT_EQ(path_of("unpack-normals", {"n.png", "-o", "x.tga"}), "whole");
-    EXPECT_EQ(path_of("mip-normals", {"n.png", "--name", "x{level}.dds"}), "whole");
+    EXPECT_EQ(path_of("mip-normals", {"n.png", "--name", "x{level}.dds"}), "streamed");
 }
 
 }  // namespace tex::cli

@@ -107,22 +107,6 @@ Result<Plane<float>> read_channel(Job& job, const ChannelFile& source, const Exe
     return std::move(values->height);
 }
 
-Result<HeightField> HeightReader::read(Job& job, const Execution& execution) {
-    auto image = read_image(job.task.input, job.read_options);
-    if (!image) return image.error();
-    if (color.is_given()) {
-        if (auto converted = to_linear(*image, color.color); !converted) return converted.error();
-    }
-    HeightReport report;
-    auto field = height_field(*image, heights.options, execution, &report);
-    if (!field) return with_remedy(field.error());
-    note(job, report);
-    const Strength value = strength.strength(field->height.extent());
-    field->bumpiness_x = value.x;
-    field->bumpiness_y = value.y;
-    return field;
-}
-
 Error HeightReader::with_remedy(const Error& error) {
     if (!is_fillable(error)) return error;
     return {error.code, error.file, error.reason + "; --fill-invalid fills in the nearest valid ones"};

@@ -58,20 +58,17 @@ struct ChannelFile {
 [[nodiscard]] ChannelFile parse_channel_file(const std::string& text);
 [[nodiscard]] Result<Plane<float>> read_channel(Job& job, const ChannelFile& source, const Execution& execution);
 
-// Reads the heights of jobs, as all of the groups above say.
+// How the heights of jobs are read: all of the groups above, and what is told of it.
 class HeightReader {
 public:
     StrengthOptions strength;
     ColorGroup color;
     HeightGroup heights;
 
-    // The job's input as a height field; the job depends on the colour configuration too.
-    [[nodiscard]] Result<HeightField> read(Job& job, const Execution& execution);
-
     // `error`, of reading or baking heights, with the option that avoids it, where there is one.
     [[nodiscard]] static Error with_remedy(const Error& error);
 
-    // What the reading of a job's heights met, where somebody else has read them; the job depends on the colour configuration.
+    // What the reading of a job's heights met; the job depends on the colour configuration.
     void note(Job& job, const HeightReport& report);
 
     // One warning for all files whose height had to be guessed from colours.

@@ -2,7 +2,10 @@
 
 #include "cli/repack.h"
 
+#include <string>
 #include <utility>
+
+#include "cli/name_pattern.h"
 
 namespace tex::cli {
 
@@ -13,14 +16,25 @@ Result<void> repack(Job& job, SourceOptions& source, const OutputOptions& output
         return output.pack_options(output.format ? *output.format : encoding(info), output.y.value_or(info.y_axis));
     };
     options.write = output.write_options(job);
+    options.level_names = level_names(job.task);
     const auto packed = pack_file(job.task.input, job.task.output, job.task.container, options, job.until(1.0));
     if (!packed) return packed.error();
     source.note(job, job.task.input, packed->source);
     report_source(job, packed->source);
-    job.wrote(job.task.output);
+    wrote_levels(job, packed->levels);
     report_texture(job, packed->extent, packed->levels, packed->pack, packed->bytes);
     report_path(job, packed->path);
     return {};
+}
+
+LevelNames level_names(const Task& task) {
+    if (!has_level(task.output)) return {};
+    return [name = task.output](int level) { return with_level(name, level); };
+}
+
+void wrote_levels(Job& job, int levels) {
+    const std::string& name = job.task.output;
+    for (int k = 0; k < (has_level(name) ? levels : 1); ++k) job.wrote(with_level(name, k));
 }
 
 void report_path(Job& job, Path path) { job.report["path"] = name_of(kPathNames, path); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// repack.h: the step of commands that read one normal map and write it in one file.
+// repack.h: the step of commands that read one normal map and write it, and what bake-normals shares with them.
 
 #pragma once
 
@@ -20,6 +20,12 @@ using EncodingOf = std::function<Encoding(const SourceInfo& source)>;
 // `source`'s and `output`'s.
 [[nodiscard]] Result<void> repack(Job& job, SourceOptions& source, const OutputOptions& output, PackFileOptions options,
                                   const EncodingOf& encoding);
+
+// The names of the task's files where each level has one of its own, else empty.
+[[nodiscard]] LevelNames level_names(const Task& task);
+
+// Tells the job that its output, of so many levels, has been written.
+void wrote_levels(Job& job, int levels);
 
 // Tells the job's report which way the file went.
 void report_path(Job& job, Path path);

@@ -35,6 +35,9 @@ inline constexpr Named<Path> kPathNames[] = {
     {Path::whole, "whole", "as a whole image"},
 };
 
+// The names of files that hold one level each, by the level. May throw std::bad_alloc only.
+using LevelNames = std::function<std::string(int level)>;
+
 // What bake_file() does: read_image(), to_linear() where color.space is not empty, height_field(), bake(), build_mip_chain(), pack(), write_texture().
 struct BakeFileOptions {
     ReadOptions read;
@@ -45,14 +48,15 @@ struct BakeFileOptions {
     MipOptions mip;
     PackOptions pack;
     WriteOptions write;
-    bool slopes = false;  // BakeFileReport::slopes is wanted
+    LevelNames level_names;  // a file for each level, and no `output`; empty: one file
+    bool slopes = false;     // BakeFileReport::slopes is wanted
 };
 
 struct BakeFileReport {
     Path path = Path::whole;
     Extent extent;          // of the base level
     int levels = 1;
-    std::size_t bytes = 0;  // of the output
+    std::size_t bytes = 0;  // of the output, of all its files
     HeightReport heights;
     SlopeRange slopes;      // where they were wanted, else zeros
 };
@@ -63,7 +67,8 @@ struct BakeFileReport {
 // without a colour space. PNG and EXR are written from the top: where the heights repeat from bottom to top, the last rows are decoded first (a PNG twice), and what the reader
 // process decodes takes the path of whole images, as everything else does. Pictures that hold one level get the base level.
 //
-// The output appears whole or not at all, see write_file(). What goes to standard output or a FIFO is held in memory until it is whole.
+// The output appears whole or not at all, see write_file(). Of files for each level none appears before all rows are done; then they do one after the other, up to one that
+// fails. What goes to standard output or a FIFO is held in memory until it is whole.
 //
 // Preconditions (asserted): as those of the verbs.
 // Errors: those of the verbs. `file` is empty where the heights are concerned, not a file. Of several errors (a damaged picture, a directory that is
@@ -83,13 +88,14 @@ struct PackFileOptions {
     // texels tell the swizzle, it may be called more than once; the last call counts.
     std::function<PackOptions(const SourceInfo&)> pack;
     WriteOptions write;
+    LevelNames level_names;  // as in BakeFileOptions
 };
 
 struct PackFileReport {
     Path path = Path::whole;
     Extent extent;          // of the base level that was written
     int levels = 1;
-    std::size_t bytes = 0;  // of the output
+    std::size_t bytes = 0;  // of the output, of all its files
     PackOptions pack;
     SourceInfo source;
 };
@@ -105,7 +111,7 @@ struct PackFileReport {
 // likeliest layout of the format is assumed: x, y, z in R, G, B; x in A and y in G in BC3; signed floats. Where the texels turn out to say otherwise, the
 // file is read once more, and nothing of the first attempt remains.
 //
-// The output appears whole or not at all, see write_file(). What goes to standard output or a FIFO is held in memory until it is whole.
+// The output appears whole or not at all, and files for each level as bake_file() says. What goes to standard output or a FIFO is held in memory until it is whole.
 //
 // Preconditions (asserted): as those of the verbs.
 // Errors: those of the verbs; bad_option where the source has no such level. Of several errors any may be told.

@@ -44,7 +44,7 @@ HeightFieldHead head_of(Extent extent, const BakeFileOptions& options) {
 }
 
 int levels_of(Extent extent, Container container, const BakeFileOptions& options) {
-    if (!can_hold_levels(container)) return 1;
+    if (!holds_levels(container, options.level_names)) return 1;
     const int complete = level_count(extent);
     return options.mip.levels > 0 ? std::min(options.mip.levels, complete) : complete;
 }
@@ -58,7 +58,7 @@ bool needs_last_rows(Container container, const BakeFileOptions& options) {
 
 bool can_stream(const InputFile& file, const RowSource& rows, Container container, const BakeFileOptions& options) {
     if (!rows.is_sequential() || !options.color.space.empty() || options.heights.fill_invalid) return false;
-    if (!takes_strips(container, levels_of(rows.extent(), container, options))) return false;
+    if (!takes_strips(container, options.level_names ? 1 : levels_of(rows.extent(), container, options))) return false;
     return !needs_last_rows(container, options) || knows_last_rows(file, rows);
 }
 
@@ -82,7 +82,7 @@ Result<BakeFileReport> bake_stream(InputFile& file, std::unique_ptr<RowSource> r
     report.extent = extent;
     report.levels = levels_of(extent, container, options);
     const Result<std::unique_ptr<StripWriter>> opened =
-        StripWriter::open(output, container, extent, report.levels, options.pack, options.write);
+        StripWriter::open({output, options.level_names}, container, extent, report.levels, options.pack, options.write);
     if (!opened) return opened.error();
     StripWriter& writer = **opened;
     RowStream stream(*rows, input, 0, report.levels, writer, execution, sizes);

@@ -76,12 +76,12 @@ Result<void> Attempt::prepare() {
     const std::size_t held = texture_.levels.size();
     first_ = static_cast<std::size_t>(options_.level.value_or(0));
     if (first_ >= held) return no_such_level(input_, *options_.level, held);
-    end_ = options_.level || options_.mip || !can_hold_levels(container_) ? first_ + 1 : held;
+    end_ = options_.level || options_.mip || !holds_levels(container_, options_.level_names) ? first_ + 1 : held;
     report_.path = Path::streamed;
     report_.extent = rows(first_).extent();
     report_.pack = pack_options(options_, container_, report_.source);
     report_.levels = static_cast<int>(end_ - first_);
-    if (options_.mip && can_hold_levels(container_)) {
+    if (options_.mip && holds_levels(container_, options_.level_names)) {
         report_.levels = levels_built(*options_.mip, report_.extent);
     }
     return {};
@@ -135,7 +135,7 @@ Result<std::optional<PackFileReport>> Attempt::run() {
         if (correction_) return std::optional<PackFileReport>();
     }
     Result<std::unique_ptr<StripWriter>> opened =
-        StripWriter::open(output_, container_, report_.extent, report_.levels, report_.pack, options_.write);
+        StripWriter::open({output_, options_.level_names}, container_, report_.extent, report_.levels, report_.pack, options_.write);
     if (!opened) return opened.error();
     // Not earlier: who reads from a FIFO takes its last writer's end for that of the file.
     writer_ = std::move(*opened);
@@ -167,8 +167,8 @@ PackOptions pack_options(const PackFileOptions& options, Container container, co
 
 bool can_stream(const TextureRows& texture, Container container, const PackFileOptions& options) {
     int levels = static_cast<int>(texture.levels.size());
-    if (options.level || options.mip) levels = 1;
-    if (options.mip) {
+    if (options.level || options.mip || options.level_names) levels = 1;
+    if (options.mip && !options.level_names) {
         const auto level = std::min(static_cast<std::size_t>(options.level.value_or(0)), texture.levels.size() - 1);
         levels = levels_built(*options.mip, texture.levels[level]->extent());
     }

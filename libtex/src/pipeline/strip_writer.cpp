@@ -3,51 +3,42 @@
 #include "pipeline/strip_writer.h"
 
 #include <algorithm>
+#include <map>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "base/atomic_file.h"
+#include <tex/mip_chain.h>
+
 #include "base/guard.h"
 #include "base/pack_rows.h"
 #include "containers/dds.h"
 #include "containers/file_layout.h"
 #include "containers/ktx2.h"
 #include "containers/row_target.h"
+#include "pipeline/output_file.h"
 
 namespace tex {
 namespace {
 
-// A file of at most so many bytes is put together in memory and written at once: a call of the system for each of its levels takes as long as they do.
-constexpr std::size_t kWrittenAtOnce = std::size_t{1} << 18;
-
 // DDS and KTX2: every level has its place from the start.
 class TextureWriter final : public StripWriter {
 public:
-    TextureWriter(AtomicFile file, FileLayout layout, const PackOptions& pack)
-        : file_(std::move(file)), layout_(std::move(layout)), pack_(pack),
-          whole_(layout_.size <= kWrittenAtOnce ? layout_.size : 0) {}
+    // `first` is the level that the file begins with.
+    TextureWriter(std::unique_ptr<OutputFile> file, FileLayout layout, const PackOptions& pack, int first)
+        : file_(std::move(file)), layout_(std::move(layout)), pack_(pack), first_(first) {}
 
-    Result<void> begin() { return put(0, layout_.head); }
+    Result<void> begin() { return file_->write_at(0, layout_.head); }
     [[nodiscard]] bool is_in_order() const override { return false; }
     Result<void> write(Strip& strip) override;
-    Result<void> commit() override {
-        const Result<void> written = whole_.empty() ? Result<void>() : file_.write_at(0, whole_);
-        return written ? file_.commit() : written;
-    }
+    Result<void> commit() override { return file_->commit(); }
     [[nodiscard]] std::size_t file_bytes() const override { return layout_.size; }
 
 private:
-    Result<void> put(std::uint64_t offset, std::span<const std::byte> bytes) {
-        if (whole_.empty()) return file_.write_at(offset, bytes);
-        std::copy(bytes.begin(), bytes.end(), whole_.begin() + static_cast<std::ptrdiff_t>(offset));
-        return {};
-    }
-
-    AtomicFile file_;
-    FileLayout layout_;
-    PackOptions pack_;
-    std::vector<std::byte> whole_;  // a small file
+    const std::unique_ptr<OutputFile> file_;
+    const FileLayout layout_;
+    const PackOptions pack_;
+    const int first_;
 };
 
 Result<void> TextureWriter::write(Strip& strip) {
@@ -67,20 +58,20 @@ Result<void> TextureWriter::write(Strip& strip) {
         }
         // Strips begin with whole rows of blocks.
         const std::size_t before = stored_level_bytes(format, {extent.width, strip.first}, layout_.rearrange);
-        return put(layout_.levels[static_cast<std::size_t>(strip.level)].offset + before, stored);
+        return file_->write_at(layout_.levels[static_cast<std::size_t>(strip.level - first_)].offset + before, stored);
     });
 }
 
-// Pictures, whose rows are compressed one after the other.
+// Pictures, whose rows are compressed one after the other. Strips that come before their turn wait, packed.
 class PictureWriter final : public StripWriter {
 public:
-    PictureWriter(std::string path, AtomicFile file, const PackOptions& pack) : path_(std::move(path)), file_(std::move(file)), pack_(pack) {}
+    PictureWriter(std::string path, std::unique_ptr<OutputFile> file, const PackOptions& pack) : path_(std::move(path)), file_(std::move(file)), pack_(pack) {}
 
     Result<void> begin(Container container, const TextureHead& head) {
         Result<std::unique_ptr<RowTarget>> target =
             open_row_target(container, head, [this](std::uint64_t offset, std::span<const std::byte> bytes) {
                 size_ = std::max(size_, static_cast<std::size_t>(offset) + bytes.size());
-                return bytes.empty() ? Result<void>() : file_.write_at(offset, bytes);
+                return bytes.empty() ? Result<void>() : file_->write_at(offset, bytes);
             });
         if (!target) return target.error().of(path_);
         target_ = std::move(*target);
@@ -92,48 +83,112 @@ public:
     [[nodiscard]] std::size_t file_bytes() const override { return size_; }
 
 private:
+    struct Packed {
+        int rows = 0;
+        std::vector<std::byte> bytes;
+    };
+    Result<void> put(const std::byte* rows, int count) {
+        next_ += count;
+        const Result<void> put = target_->put(rows, count);
+        return put ? put : Result<void>(put.error().of(path_));
+    }
+
     const std::string path_;
-    AtomicFile file_;
-    PackOptions pack_;
+    const std::unique_ptr<OutputFile> file_;
+    const PackOptions pack_;
     std::size_t size_ = 0;
     std::unique_ptr<RowTarget> target_;  // writes into the file
+    int next_ = 0;                       // the row that comes next
+    std::map<int, Packed> waiting_;      // by their first rows
 };
 
 Result<void> PictureWriter::write(Strip& strip) {
     return guarded([&]() -> Result<void> {
         strip.bytes.resize(level_bytes(encoding_info(pack_.encoding).format, {strip.map.extent().width, strip.height}));
         pack_rows(strip.map, strip.height, pack_, 0, strip.height, strip.bytes.data());
-        const Result<void> put = target_->put(strip.bytes.data(), strip.height);
-        return put ? put : Result<void>(put.error().of(path_));
+        if (strip.first != next_) {
+            waiting_[strip.first] = {strip.height, strip.bytes};
+            return {};
+        }
+        Result<void> done = put(strip.bytes.data(), strip.height);
+        while (done && !waiting_.empty() && waiting_.begin()->first == next_) {
+            const Packed packed = std::move(waiting_.extract(waiting_.begin()).mapped());
+            done = put(packed.bytes.data(), packed.rows);
+        }
+        return done;
     });
 }
 
 Result<void> PictureWriter::commit() {
     const Result<void> ended = guarded([&] { return target_->finish(); });
-    return ended ? file_.commit() : Result<void>(ended.error().of(path_));
+    return ended ? file_->commit() : Result<void>(ended.error().of(path_));
 }
 
-}  // namespace
+// A file for each level.
+class LevelWriter final : public StripWriter {
+public:
+    explicit LevelWriter(std::vector<std::unique_ptr<StripWriter>> levels) : levels_(std::move(levels)), in_order_(levels_.front()->is_in_order()) {}
 
-bool is_texture(Container container) { return container == Container::dds || container == Container::ktx2; }
+    [[nodiscard]] bool is_in_order() const override { return in_order_; }
+    Result<void> write(Strip& strip) override { return levels_[static_cast<std::size_t>(strip.level)]->write(strip); }
+    // One after the other, each closed before the next: those after one that fails do not appear.
+    Result<void> commit() override {
+        for (std::unique_ptr<StripWriter>& level : levels_) {
+            if (Result<void> done = level->commit(); !done) return done;
+            bytes_ += level->file_bytes();
+            level.reset();
+        }
+        return {};
+    }
+    [[nodiscard]] std::size_t file_bytes() const override { return bytes_; }
 
-bool takes_strips(Container container, int levels) { return is_texture(container) || takes_rows(container, levels); }
+private:
+    std::vector<std::unique_ptr<StripWriter>> levels_;
+    const bool in_order_;
+    std::size_t bytes_ = 0;
+};
 
-Result<std::unique_ptr<StripWriter>> StripWriter::open(const std::string& path, Container container, Extent extent, int levels,
-                                                       const PackOptions& pack, const WriteOptions& options) {
-    const EncodingInfo encoding = encoding_info(pack.encoding);
-    const TextureHead head{encoding.format, extent, levels, encoding.swizzle, true, pack.y_axis, true};
-    Result<AtomicFile> file = AtomicFile::open(path, {options.sync, options.no_clobber});
+using Opening = Result<std::unique_ptr<StripWriter>>;
+
+// One file, whose base level is level `first` of all.
+Opening open_file(const std::string& path, Container container, const TextureHead& head, int first, const PackOptions& pack, const WriteOptions& options) {
+    FileLayout layout;
+    if (is_texture(container)) layout = container == Container::dds ? dds_layout(head, options) : ktx2_layout(head);
+    const std::size_t bytes = is_texture(container) ? layout.size : level_bytes(head.format, head.extent);
+    Result<std::unique_ptr<OutputFile>> file =
+        OutputFile::open(path, bytes, first == 0 ? Opened::at_once : Opened::late, {options.sync, options.no_clobber});
     if (!file) return file.error();
     if (!is_texture(container)) {
         auto picture = std::make_unique<PictureWriter>(path, std::move(*file), pack);
         if (const Result<void> begun = picture->begin(container, head); !begun) return begun.error();
         return std::unique_ptr<StripWriter>(std::move(picture));
     }
-    FileLayout layout = container == Container::dds ? dds_layout(head, options) : ktx2_layout(head);
-    auto texture = std::make_unique<TextureWriter>(std::move(*file), std::move(layout), pack);
+    auto texture = std::make_unique<TextureWriter>(std::move(*file), std::move(layout), pack, first);
     if (const Result<void> begun = texture->begin(); !begun) return begun.error();
     return std::unique_ptr<StripWriter>(std::move(texture));
+}
+
+}  // namespace
+
+bool is_texture(Container container) { return container == Container::dds || container == Container::ktx2; }
+
+bool holds_levels(Container container, const LevelNames& names) { return names || can_hold_levels(container); }
+
+bool takes_strips(Container container, int levels) { return is_texture(container) || takes_rows(container, levels); }
+
+Opening StripWriter::open(const OutputNames& names, Container container, Extent extent, int levels, const PackOptions& pack, const WriteOptions& options) {
+    const EncodingInfo encoding = encoding_info(pack.encoding);
+    TextureHead head{encoding.format, extent, levels, encoding.swizzle, true, pack.y_axis, true};
+    if (!names.of_level) return open_file(names.output, container, head, 0, pack, options);
+    head.levels = 1;
+    std::vector<std::unique_ptr<StripWriter>> files;
+    for (int k = 0; k < levels; ++k) {
+        head.extent = level_extent(extent, k);
+        Opening file = open_file(names.of_level(k), container, head, k, pack, options);
+        if (!file) return file.error();
+        files.push_back(std::move(*file));
+    }
+    return std::unique_ptr<StripWriter>(std::make_unique<LevelWriter>(std::move(files)));
 }
 
 }  // namespace tex

@@ -8,10 +8,17 @@
 
 #include <tex/container.h>
 #include <tex/pack.h>
+#include <tex/pipeline.h>
 
 #include "pipeline/strips.h"
 
 namespace tex {
+
+// Where levels go: all into `output`, or where there is of_level, each into a file of its own.
+struct OutputNames {
+    const std::string& output;
+    const LevelNames& of_level;
+};
 
 class StripWriter {
 public:
@@ -20,18 +27,18 @@ public:
     StripWriter& operator=(const StripWriter&) = delete;
     virtual ~StripWriter() = default;
 
-    // Opens the output and writes what stands before the texels. Precondition: takes_strips(). Errors: io, out_of_memory; unsupported (the container cannot hold
-    // the encoding).
-    static Result<std::unique_ptr<StripWriter>> open(const std::string& path, Container container, Extent extent, int levels,
+    // Opens the output and writes what stands before the texels. Precondition: takes_strips(), of one level where each has a file. Errors: io, out_of_memory;
+    // unsupported (the container cannot hold the encoding).
+    static Result<std::unique_ptr<StripWriter>> open(const OutputNames& names, Container container, Extent extent, int levels,
                                                      const PackOptions& pack, const WriteOptions& options);
 
-    // Strips are to come from the top, one at a time; else in any order, from several threads at once.
+    // Strips are to come one at a time, best from the top; else in any order, from several threads at once.
     [[nodiscard]] virtual bool is_in_order() const = 0;
 
     // Packs a whole strip and puts it into its place. Errors: io, out_of_memory.
     virtual Result<void> write(Strip& strip) = 0;
 
-    // After the last strip: the file appears. Errors: io, out_of_memory.
+    // After the last strip: the file appears, or one after the other. Errors: io, out_of_memory.
     virtual Result<void> commit() = 0;
 
     [[nodiscard]] virtual std::size_t file_bytes() const = 0;
@@ -39,6 +46,9 @@ public:
 
 // DDS and KTX2, whose strips come in any order.
 [[nodiscard]] bool is_texture(Container container);
+
+// Whether all levels are written, or the base level alone.
+[[nodiscard]] bool holds_levels(Container container, const LevelNames& names);
 
 // Whether files of this kind, with so many levels, are written strip by strip: DDS, KTX2, and those that takes_rows() knows, in order.
 [[nodiscard]] bool takes_strips(Container container, int levels);
