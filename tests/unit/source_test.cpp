@@ -68,11 +68,20 @@ TEST_F(SourceFiles, ThatDoNotSayAreReadAsTheirTexelsLook) {
     EXPECT_EQ(read_normals(rgba, options).value().info.swizzle, *options.unpack.swizzle);
 }
 
-TEST_F(SourceFiles, OfSignedFloatsAreTakenAtTheirWord) {
+TEST_F(SourceFiles, OfFloatsKeepEveryBitOfAUnitVectorAndNormaliseOthers) {
     NormalMap map = wavy_map({9, 7});
-    map.x.at(3, 3) *= 0.5f;
-    const std::string path = write("a.exr", pack(chain_from(copy_of(map)), {Encoding::float_}).value());
-    EXPECT_TRUE(fields::same_bytes(read_normals(path).value().chain.levels.front(), map));
+    for (const char* name : {"a.exr", "a.dds", "a.ktx2"}) {
+        const std::string path = write(name, pack(chain_from(copy_of(map)), {Encoding::float_}).value());
+        EXPECT_TRUE(fields::same_bytes(read_normals(path).value().chain.levels.front(), map)) << name;
+    }
+    for (float* const component : {&map.x.at(3, 3), &map.y.at(3, 3), &map.z.at(3, 3)}) *component *= 0.5f;
+    const std::string path = write("short.exr", pack(chain_from(copy_of(map)), {Encoding::float_}).value());
+    const NormalMap read = std::move(read_normals(path).value().chain.levels.front());
+    const float x = read.x.at(3, 3), y = read.y.at(3, 3), z = read.z.at(3, 3);
+    EXPECT_NEAR(x * x + y * y + z * z, 1.0f, 1e-6f) << "the file says that it holds components; it does not say that they are of unit length";
+    SourceOptions options;
+    options.unpack.keep_length = true;
+    EXPECT_TRUE(fields::same_bytes(read_normals(path, options).value().chain.levels.front(), map));
 }
 
 TEST_F(SourceFiles, HaveTheBaseLevelAloneWhereThatIsAskedFor) {

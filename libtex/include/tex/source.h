@@ -21,8 +21,7 @@ namespace tex {
 struct SourceOptions {
     ReadOptions read;
 
-    // As for unpack(). Without a swizzle the file's own counts, and where it has none guess_swizzle(). Files of 32-bit floats that say that they hold
-    // the components of normals (Texture::normal_encoding "signed") are read with keep_length, so that a chain of commands gives the bytes of one.
+    // As for unpack(). Without a swizzle the file's own counts, and where it has none guess_swizzle().
     UnpackOptions unpack;
 
     std::optional<Swizzle> bc5_swizzle;  // of BC5 files, instead of their own; unpack.swizzle counts before it

@@ -46,7 +46,8 @@ struct UnpackOptions {
 // Normals from a texture, every level. unorm values become n = 2 c - 1; y is negated where it points down in the texture. Where
 // the swizzle holds z, vectors are normalised (shorter than 1e-6: (0, 0, 1); z below 0: as stored); where it holds x
 // and y only, z = reconstruct_z(x, y) and, where x^2 + y^2 is above 1, x and y are divided by their length, so that the
-// vector is of unit length. A vector that is not finite, or whose squared length is not, becomes (0, 0, 1).
+// vector is of unit length. A vector that is not finite, or whose squared length is not, becomes (0, 0, 1). 32-bit floats whose vector
+// is of unit length already (x^2 + y^2 + z^2 within 2^-20 of 1) stay as they are stored, so that a chain of commands gives the bytes of one.
 //
 // Floats in ValueRange::automatic are what Texture::normal_encoding says ("signed" or "unsigned"). Where it is empty the base level
 // decides for all: signed where a value of x, y or z lies below 0; else signed where that reading is nearer to unit

@@ -40,12 +40,10 @@ SourceInfo source_info(const Texture& head, const Swizzle& swizzle, const Source
     return info;
 }
 
-UnpackOptions unpack_options(const Texture& head, const SourceInfo& info, const SourceOptions& options) {
+UnpackOptions unpack_options(const SourceInfo& info, const SourceOptions& options) {
     UnpackOptions unpack = options.unpack;
     unpack.swizzle = info.swizzle;
     unpack.y_axis = info.y_axis;
-    const FormatInfo format = format_info(head.format);
-    if (format.sample == SampleKind::floating && format.bits == 32 && head.normal_encoding == "signed") unpack.keep_length = true;
     return unpack;
 }
 

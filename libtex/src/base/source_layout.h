@@ -19,7 +19,7 @@ Swizzle guessed_swizzle(const Swizzle& guess, const SourceOptions& options);
 SourceInfo source_info(const Texture& head, const Swizzle& swizzle, const SourceOptions& options);
 
 // How the file's values are unpacked.
-UnpackOptions unpack_options(const Texture& head, const SourceInfo& info, const SourceOptions& options);
+UnpackOptions unpack_options(const SourceInfo& info, const SourceOptions& options);
 
 // Errors: unsupported.
 Result<void> check_channels(const Texture& head);

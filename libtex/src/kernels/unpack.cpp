@@ -36,20 +36,33 @@ M IsFinite(D d, V value) {
     return hn::Lt(value, hn::Set(d, std::numeric_limits<float>::infinity()));
 }
 
-Vec3 Reconstruct(D d, V x, V y, bool keep_length) {
+// Of unit length, but for the rounding of a normalised vector's components (below 2^-21) and of this sum.
+M IsUnit(D d, V squared_length) {
+    return hn::Le(hn::Abs(hn::Sub(squared_length, hn::Set(d, 1.0f))), hn::Set(d, 0x1p-20f));
+}
+
+Vec3 Reconstruct(D d, V x, V y, const UnpackRule& rule) {
     const V one = hn::Set(d, 1.0f);
     const V squared = hn::Add(hn::Mul(x, x), hn::Mul(y, y));
     const V z = hn::Sqrt(hn::Sub(one, hn::Min(squared, one)));
     const M finite = IsFinite(d, squared);
-    if (keep_length) return FlatUnless(d, finite, {x, y, z});
+    if (rule.keep_length) return FlatUnless(d, finite, {x, y, z});
     // Dividing by 1 leaves a short vector as it is.
-    const V length = hn::Max(one, hn::Sqrt(squared));
+    V length = hn::Max(one, hn::Sqrt(squared));
+    if (rule.keep_unit) length = hn::IfThenElse(IsUnit(d, squared), one, length);
     return FlatUnless(d, finite, {hn::Div(x, length), hn::Div(y, length), z});
 }
 
-Vec3 Finish(D d, Vec3 n, bool keep_length) {
-    const M finite = IsFinite(d, SquaredLength(n));
-    return FlatUnless(d, finite, keep_length ? n : Normalise(d, n));
+Vec3 Finish(D d, Vec3 n, const UnpackRule& rule) {
+    const V squared = SquaredLength(n);
+    const M finite = IsFinite(d, squared);
+    if (rule.keep_length) return FlatUnless(d, finite, n);
+    Vec3 unit = Normalise(d, n);
+    if (rule.keep_unit) {
+        const M keep = IsUnit(d, squared);
+        unit = {hn::IfThenElse(keep, n.x, unit.x), hn::IfThenElse(keep, n.y, unit.y), hn::IfThenElse(keep, n.z, unit.z)};
+    }
+    return FlatUnless(d, finite, unit);
 }
 
 void UnpackRow(const float* x, const float* y, const float* z, const UnpackRule& rule, int count, float* out_x,
@@ -61,8 +74,8 @@ void UnpackRow(const float* x, const float* y, const float* z, const UnpackRule&
         V ny = Component(d, hn::LoadU(d, y + i), rule);
         if (rule.flip_y) ny = hn::Neg(ny);
         const Vec3 n = z == nullptr
-                           ? Reconstruct(d, nx, ny, rule.keep_length)
-                           : Finish(d, {nx, ny, Component(d, hn::LoadU(d, z + i), rule)}, rule.keep_length);
+                           ? Reconstruct(d, nx, ny, rule)
+                           : Finish(d, {nx, ny, Component(d, hn::LoadU(d, z + i), rule)}, rule);
         StoreVec3(d, n, out_x + i, out_y + i, out_z + i);
     }
 }

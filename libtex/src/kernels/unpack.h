@@ -10,6 +10,7 @@ struct UnpackRule {
     bool snap_flat = false;    // unsigned values from 127/255 to 128/255 are 0
     bool flip_y = false;
     bool keep_length = false;
+    bool keep_unit = false;    // leave vectors that are of unit length, but for rounding, as they are stored
 };
 
 // Normals of `count` texels from the values of their components; z may be null: it is reconstructed then. See unpack() in unpack.h for

@@ -25,7 +25,7 @@ Result<Source> unpack_source(Texture texture, const SourceOptions& options, bool
     if (!swizzle) return swizzle.error();
     Source source;
     source.info = source_info(texture, *swizzle, options);
-    Result<MipChain> chain = unpack(texture, unpack_options(texture, source.info, options), execution);
+    Result<MipChain> chain = unpack(texture, unpack_options(source.info, options), execution);
     if (!chain) return chain.error();
     source.chain = std::move(*chain);
     return source;

@@ -70,7 +70,7 @@ Result<void> Attempt::prepare() {
     if (!sources) return sources.error();
     sources_ = *sources;
     report_.source = source_info(head, finder_.layout().swizzle, options_.source);
-    rule_ = rule_of(unpack_options(head, report_.source, options_.source), info.sample, info.bits, report_.source.y_axis);
+    rule_ = rule_of(unpack_options(report_.source, options_.source), info.sample, info.bits, report_.source.y_axis);
     rule_.is_unsigned = finder_.layout().is_unsigned;
 
     const std::size_t held = texture_.levels.size();
