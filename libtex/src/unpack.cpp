@@ -8,6 +8,7 @@
 #include <cassert>
 #include <cstring>
 
+#include "base/channel_names.h"
 #include "base/guard.h"
 #include "base/parallel.h"
 #include "base/unpack_rows.h"
@@ -179,10 +180,8 @@ Result<Image> decode_level(const Texture& texture, const Level& level, const Exe
     image.sample = info.sample;
     image.bits = info.bits;
     image.normal_encoding = texture.normal_encoding;
-    for (int c = 0; c < info.channels; ++c) {
-        image.planes.emplace_back(level.extent);
-        image.names.emplace_back(kChannelNames[c]);
-    }
+    image.names = channel_names(texture);
+    for (int c = 0; c < info.channels; ++c) image.planes.emplace_back(level.extent);
     const Extent extent = level.extent;
     const auto decoded = parallel_for(execution, strips_of(extent), grain_of(extent), [&](int begin, int end) {
         Plane<float> scratch({(extent.width + 3) / 4 * 4, 4 * kStripRows});

@@ -301,6 +301,27 @@ TEST_F(BakeNormals, GuessedHeightsAreToldOnceWithCounts) {
     EXPECT_FALSE(scratch_.has("z.dds"));
 }
 
+// Textures of alpha alone, as engines keep masks and heights: their one channel is the height, and no normal map.
+TEST_F(BakeNormals, AlphaAloneIsAHeight) {
+    ASSERT_EQ(bake({"ramp.png", "-o", "rgba.dds", "--format", "rgba8", "--mips", "none"}).code, 0);
+    const auto heights = read_image(scratch_.path("ramp.png"));
+    ASSERT_TRUE(heights);
+    std::string alpha = scratch_.read("rgba.dds").substr(0, 128);
+    alpha.replace(80, 28, std::string("\x02\0\0\0" "\0\0\0\0" "\x08\0\0\0" "\0\0\0\0" "\0\0\0\0" "\0\0\0\0" "\xff\0\0\0", 28));  // DDPF_ALPHA, 8 bits
+    for (int j = 0; j < heights->extent().height; ++j) {
+        for (int i = 0; i < heights->extent().width; ++i) alpha += static_cast<char>(std::lround(heights->planes[0].at(i, j) * 255.0f));
+    }
+    scratch_.write("alpha.dds", alpha);
+    const std::string wanted = bytes_of({"ramp.png"});
+    EXPECT_TRUE(bytes_of({"alpha.dds"}) == wanted);
+    EXPECT_TRUE(bytes_of({"alpha.dds", "--channel", "a"}) == wanted);
+    for (const std::string command : {"pack-normals alpha.dds -o x.dds", "compare-normals alpha.dds alpha.dds", "preview-normals alpha.dds -o x.png"}) {
+        const Ran ran = shell(scratch_, command);
+        EXPECT_EQ(ran.code, 4) << command;
+        EXPECT_NE(ran.err.find("alpha.dds: has one channel, which holds no normals (bake-normals reads heights)\n"), std::string::npos) << ran.err;
+    }
+}
+
 TEST_F(BakeNormals, FilesThatClaimTooMuchAreRefused) {
     const Ran ran = bake({"bricks.png", "-o", "x.dds", "--max-texels", "1K"});
     EXPECT_EQ(ran.code, 4);

@@ -171,7 +171,7 @@ TEST(Dds, ReadsMasksOfAnyWidth) {
         {kDdpfLuminance, 8, 0xff, 0, 0, 0, 0x33, {0.2f}},
         {kDdpfLuminance, 16, 0xffff, 0, 0, 0, 0x3333, {0.2f}},
         {kDdpfLuminance | kDdpfAlphaPixels, 16, 0xff, 0, 0, 0xff00, 0x33ff, {1, 1, 1, 0.2f}},
-        {kDdpfAlpha, 8, 0, 0, 0, 0xff, 0x33, {0, 0, 0, 0.2f}},
+        {kDdpfAlpha, 8, 0, 0, 0, 0xff, 0x33, {0.2f}},
         {kDdpfBumpDudv, 16, 0xff, 0xff00, 0, 0, 0x7f80, {-1, 1}},
         {kDdpfBumpDudv, 32, 0xff, 0xff00, 0xff0000, 0xff000000, 0x0081007f, {1, 0, -1, 0}},
     };

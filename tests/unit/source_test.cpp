@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 
 #include <tex/container.h>
+#include <tex/image_io.h>
 #include <tex/mip.h>
 #include <tex/pack.h>
 
@@ -82,6 +85,34 @@ TEST_F(SourceFiles, OfFloatsKeepEveryBitOfAUnitVectorAndNormaliseOthers) {
     SourceOptions options;
     options.unpack.keep_length = true;
     EXPECT_TRUE(fields::same_bytes(read_normals(path, options).value().chain.levels.front(), map));
+}
+
+TEST_F(SourceFiles, OfAlphaAloneHoldNoNormals) {
+    const std::string path = write("a.dds", packed(Encoding::rgba8));
+    for (const bool dx10 : {false, true}) {
+        std::vector<char> bytes(148 + 20 * 12);
+        std::ifstream(path, std::ios::binary).read(bytes.data(), 128);
+        const auto set = [&](std::size_t offset, std::uint32_t value) { std::memcpy(bytes.data() + offset, &value, sizeof value); };
+        if (dx10) {
+            set(80, 4);  // DDPF_FOURCC
+            std::memcpy(bytes.data() + 84, "DX10", 4);
+            for (const auto& [offset, value] : {std::pair<std::size_t, std::uint32_t>{128, 65}, {132, 3}, {140, 1}}) set(offset, value);  // A8_UNORM
+        } else {
+            set(80, 2);  // DDPF_ALPHA
+            for (const auto& [offset, value] : {std::pair<std::size_t, std::uint32_t>{88, 8}, {92, 0}, {96, 0}, {100, 0}, {104, 0xff}}) set(offset, value);
+        }
+        const std::size_t head = dx10 ? 148 : 128;
+        for (std::size_t k = head; k < bytes.size(); ++k) bytes[k] = static_cast<char>(k * 7);
+        const std::string name = folder_ + "/alpha.dds";
+        std::ofstream(name, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(head + std::size_t{20} * 12));
+        const auto read = read_normals(name);
+        ASSERT_FALSE(read);
+        EXPECT_EQ(read.error().code, ErrorCode::unsupported);
+        EXPECT_EQ(read.error().message(), name + ": has one channel, which holds no normals (bake-normals reads heights)");
+        const Image image = std::move(read_image(name).value());
+        EXPECT_EQ(image.names, std::vector<std::string>{"A"});
+        EXPECT_EQ(image.planes.front().at(1, 0), static_cast<float>((head + 1) * 7 % 256) / 255.0f);
+    }
 }
 
 TEST_F(SourceFiles, HaveTheBaseLevelAloneWhereThatIsAskedFor) {

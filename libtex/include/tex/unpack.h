@@ -13,8 +13,8 @@
 #pragma GCC visibility push(default)
 namespace tex {
 
-// Decodes one level to float planes, one for each channel of the format, named R, G, B, A: [0, 1] for unorm, [-1, 1] for
-// snorm, as stored for floats. Block formats decode as described here, not as a particular GPU does: 5- and 6-bit endpoints are
+// Decodes one level to float planes, one for each channel of the format, named R, G, B, A (A alone where the swizzle says that the only
+// channel is alpha): [0, 1] for unorm, [-1, 1] for snorm, as stored for floats. Block formats decode as described here, not as a particular GPU does: 5- and 6-bit endpoints are
 // widened to 8 bits by bit replication, palettes interpolate with exact thirds, fifths and sevenths, and nothing
 // is rounded. The lowest snorm code is -1 as well.
 //

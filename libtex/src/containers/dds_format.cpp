@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "base/channel_names.h"
 #include "containers/bytes.h"
 
 namespace tex {
@@ -149,10 +150,14 @@ DdsTexels texels_in(Format format) {
     return texels;
 }
 
-Result<DdsTexels> texels_of_fields(const FieldLayout& layout) {
+Result<DdsTexels> texels_of_fields(FieldLayout layout) {
+    const auto& [red, green, blue, alpha] = layout.fields;
+    const bool alpha_alone = red == 0 && green == 0 && blue == 0 && alpha != 0;
+    if (alpha_alone) layout.fields = {alpha, 0, 0, 0};  // a format of one channel; its swizzle says which
     const std::optional<Format> format = format_of(layout);
     if (!format) return Error{ErrorCode::bad_data, {}, "the channel masks of the pixel format make no sense"};
     DdsTexels texels = texels_in(*format);
+    if (alpha_alone) texels.swizzle = kAlphaAlone;
     texels.fields = layout;
     return texels;
 }

@@ -5,13 +5,12 @@
 #include <utility>
 #include <vector>
 
+#include "base/channel_names.h"
 #include "containers/claims.h"
 #include "kernels/decode.h"
 
 namespace tex {
 namespace {
-
-constexpr const char* kChannelNames[] = {"R", "G", "B", "A"};
 
 class LevelRows final : public RowSource {
 public:
@@ -19,7 +18,7 @@ public:
         : file_(file), texture_(std::move(texture)), offset_(texture_->levels[k].offset), info_(format_info(texture_->head.format)) {
         const Extent extent = texture_->levels[k].extent;
         pitch_ = level_bytes(texture_->head.format, {extent.width, 1});
-        describe(extent, {kChannelNames, kChannelNames + info_.channels}, pitch_ / static_cast<std::size_t>(info_.block));
+        describe(extent, channel_names(texture_->head), pitch_ / static_cast<std::size_t>(info_.block));
         describe_samples(info_.sample, info_.bits);
     }
 
