@@ -36,17 +36,15 @@ struct CompareNormals {
     CompareNormals();
     void check_documents() const;
     void add_limit(std::optional<double>& limit, const std::string& name, const std::string& what);
-    [[nodiscard]] Execution execution() const {
-        return {run.threads, [](double) { return cli::caught_signal() == 0; }};
-    }
+    [[nodiscard]] Execution execution(double from, double to, const std::string& words) const;
     [[nodiscard]] Result<Texture> read_map(const std::string& path, std::optional<YAxis> y);
-    Result<std::vector<NormalMap>> read(const std::string& path, std::optional<YAxis> y);
+    Result<std::vector<NormalMap>> read(const std::string& path, std::optional<YAxis> y, double from, double to);
     Result<cli::ExitCode> compare_files();
     [[nodiscard]] cli::ExitCode tell(const Error& error) const;
     [[nodiscard]] cli::ExitCode tell(int number, Extent extent, const AngularError& error) const;
     cli::ExitCode judge(int number, const AngularError& error) const;
     Result<void> write_heat_map(const Comparison& comparison) const;
-    [[nodiscard]] Result<cli::HtmlMap> draw_map(const std::string& path, std::optional<YAxis> y);
+    [[nodiscard]] Result<cli::HtmlMap> draw_map(const std::string& path, std::optional<YAxis> y, double from, double to);
     [[nodiscard]] Result<void> write_page(const std::vector<cli::ComparedLevel>& levels, const Plane<float>& degrees);
 };
 
@@ -106,11 +104,21 @@ void CompareNormals::add_limit(std::optional<double>& limit, const std::string& 
                    [&limit](const std::string& text) { limit = cli::parse_double(text, {0.0, 180.0}); });
 }
 
+// What runs so is the run's progress from `from` to `to`; `words` stand beside the bar.
+Execution CompareNormals::execution(double from, double to, const std::string& words) const {
+    const bool shown = run.shows_progress();
+    if (shown) cli::draw_progress(from, words);
+    return {run.threads, [=](double done) {
+                if (shown) cli::draw_progress(from + (to - from) * done, words);
+                return cli::caught_signal() == 0;
+            }};
+}
+
 // The texture, with the swizzle that its texels show where it does not say its own, and with what the options say of y.
 Result<Texture> CompareNormals::read_map(const std::string& path, std::optional<YAxis> y) {
     auto texture = read_texture(path, run.read);
     if (!texture) return texture.error();
-    const auto swizzle = guess_swizzle(*texture, execution());
+    const auto swizzle = guess_swizzle(*texture, {run.threads, [](double) { return cli::caught_signal() == 0; }});
     if (!swizzle) return Error{swizzle.error().code, path, swizzle.error().reason};
     if (*swizzle != texture->swizzle && warned_of.insert(path).second) {
         cli::print_warning(fmt::format("{}: taken for {}, as the texels look", path, name_of(kSwizzleNames, *swizzle)));
@@ -120,15 +128,17 @@ Result<Texture> CompareNormals::read_map(const std::string& path, std::optional<
     return texture;
 }
 
-Result<std::vector<NormalMap>> CompareNormals::read(const std::string& path, std::optional<YAxis> y) {
+Result<std::vector<NormalMap>> CompareNormals::read(const std::string& path, std::optional<YAxis> y, double from, double to) {
+    const Execution shown = execution(from, to, path);
     const auto texture = read_map(path, y);
     if (!texture) return texture.error();
-    auto chain = unpack(*texture, {}, execution());
+    auto chain = unpack(*texture, {}, shown);
     if (chain) return std::move(chain->levels);
     return Error{chain.error().code, path, chain.error().reason};
 }
 
 cli::ExitCode CompareNormals::tell(int number, Extent extent, const AngularError& e) const {
+    cli::clear_progress();
     if (run.json) {
         const auto degrees = [](double angle) { return static_cast<float>(angle); };
         cli::Json line;
@@ -179,16 +189,17 @@ Result<void> CompareNormals::write_heat_map(const Comparison& comparison) const 
     return write_texture(heat_map_path, *picture);
 }
 
-Result<cli::HtmlMap> CompareNormals::draw_map(const std::string& path, std::optional<YAxis> y) {
+Result<cli::HtmlMap> CompareNormals::draw_map(const std::string& path, std::optional<YAxis> y, double from, double to) {
+    const Execution shown = execution(from, to, path);
     const auto texture = read_map(path, y);
     if (!texture) return texture.error();
-    return cli::draw_html_map(path, *texture, texture->swizzle, cli::html_sizes(1), execution());
+    return cli::draw_html_map(path, *texture, texture->swizzle, cli::html_sizes(1), shown);
 }
 
 Result<void> CompareNormals::write_page(const std::vector<cli::ComparedLevel>& levels, const Plane<float>& degrees) {
-    auto a = draw_map(command.inputs()[0], y_a);
+    auto a = draw_map(command.inputs()[0], y_a, 0.8, 0.9);
     if (!a) return a.error();
-    auto b = draw_map(command.inputs()[1], y_b);
+    auto b = draw_map(command.inputs()[1], y_b, 0.9, 1.0);
     if (!b) return b.error();
     auto entry = cli::compare_entry(levels, std::move(*a), std::move(*b), degrees, heat_map_scale);
     if (!entry) return entry.error();
@@ -203,9 +214,9 @@ Result<void> CompareNormals::write_page(const std::vector<cli::ComparedLevel>& l
 
 Result<cli::ExitCode> CompareNormals::compare_files() {
     const std::string &name_a = command.inputs()[0], &name_b = command.inputs()[1];
-    const auto a = read(name_a, y_a);
+    const auto a = read(name_a, y_a, 0.0, 0.3);
     if (!a) return a.error();
-    const auto b = read(name_b, y_b);
+    const auto b = read(name_b, y_b, 0.3, 0.6);
     if (!b) return b.error();
     const std::size_t first = all_levels ? 0 : static_cast<std::size_t>(level);
     const std::size_t end = all_levels ? std::min(a->size(), b->size()) : first + 1;
@@ -215,6 +226,7 @@ Result<cli::ExitCode> CompareNormals::compare_files() {
     cli::ExitCode code = cli::ExitCode::done, told = code;
     std::vector<cli::ComparedLevel> levels;  // of the page
     Plane<float> degrees;
+    const double until = page_path.empty() ? 1.0 : 0.8;  // of the progress: smaller levels take no time to speak of
     for (std::size_t k = first; k < end; ++k) {
         const auto lacks = [&](const std::string& name, std::size_t count) {
             return Error{ErrorCode::bad_option, name, fmt::format("has {} levels, so none of number {}", count, k)};
@@ -227,9 +239,10 @@ Result<cli::ExitCode> CompareNormals::compare_files() {
                          fmt::format("is {}x{} texels, {} is {}x{}", map_b.extent().width, map_b.extent().height, name_a,
                                      map_a.extent().width, map_a.extent().height)};
         }
-        auto comparison = compare(map_a, map_b, execution());
+        auto comparison = compare(map_a, map_b, execution(k == first ? 0.6 : until, until, fmt::format("level {}", k)));
         if (!comparison) return comparison.error();
         if (k == first && !run.json) {
+            cli::clear_progress();
             told = cli::print(fmt::format("{:>5} {:>11} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}  in degrees; largest at\n", "level", "texels",
                                           "mean", "rms", "p50", "p99", "p99.9", "max"));
         }
@@ -257,6 +270,7 @@ int main(int argc, char** argv) {
         if (const auto ended = self.command.parse(argc, argv)) return *ended;
         cli::catch_signals();
         const auto code = self.compare_files();
+        cli::clear_progress();
         if (const int signal = cli::caught_signal(); signal != 0) cli::end_by_signal(signal);
         if (code) return *code;
         return std::max(self.tell(code.error()), cli::exit_code(code.error().code));

@@ -35,6 +35,20 @@ TEST_F(CompareNormals, OneMapInTwoConventionsIsZeroDegreesApart) {
     EXPECT_GT(nlohmann::json::parse(mistaken.out)["degrees"]["mean"], 5.0);
 }
 
+TEST_F(CompareNormals, ShowsProgressWhereItIsAskedFor) {
+    const std::vector<std::string> files = {"up.exr", "down.exr", "--level", "all", "--report", "page.html"};
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), files.begin(), files.end());
+        return compare(more);
+    };
+    const Ran shown = with({"--progress", "always"});
+    EXPECT_NE(shown.err.find("[..............................]   0 % up.exr"), std::string::npos) << shown.err;
+    EXPECT_TRUE(shown.err.ends_with("\r\x1b[K")) << "the bar goes away";
+    EXPECT_EQ(shown.out, with({}).out);
+    EXPECT_EQ(with({}).err, "");
+    EXPECT_EQ(with({"--progress", "always", "--quiet"}).err, "");
+}
+
 // As all other commands: a file of four channels is what its texels show.
 TEST_F(CompareNormals, LayoutsThatFilesDoNotNameAreToldFromTheTexels) {
     make("ag.dds", {"--format", "ag8"});

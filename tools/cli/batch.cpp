@@ -52,8 +52,7 @@ public:
           run_(run),
           steps_(steps),
           reporter_(tasks.size(), run.json),
-          shows_progress_(!run.quiet && (run.progress == ShowProgress::always ||
-                                         (run.progress == ShowProgress::automatic && stderr_is_terminal()))) {
+          shows_progress_(run.shows_progress()) {
         write_options_.sync = !files.no_sync;
         write_options_.no_clobber = files.no_clobber;
         write_options_.reader = run.read;
@@ -158,6 +157,10 @@ ExitCode write_depfile(const std::string& path, const std::vector<Dependency>& d
 }
 
 }  // namespace
+
+bool RunOptions::shows_progress() const {
+    return !quiet && (progress == ShowProgress::always || (progress == ShowProgress::automatic && stderr_is_terminal()));
+}
 
 void RunOptions::add(Command& command) {
     command.group("Running");

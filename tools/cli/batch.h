@@ -30,6 +30,7 @@ struct RunOptions {
     ReadOptions read;
 
     void add(Command& command);
+    [[nodiscard]] bool shows_progress() const;
 };
 
 // What a command does.
