@@ -148,7 +148,7 @@ void PreviewNormals::check(const std::vector<cli::Task>& tasks) const {
 std::string PreviewNormals::caption(const std::vector<std::string>& names, std::size_t map, Show show) const {
     if (no_captions) return {};
     std::string text;
-    if (shows.size() > 1) text = name_of(kShowNames, show);  // first: names are cut where they are long
+    if (shows.size() > 1) text = name_of(kShowNames, show);
     if (names.size() > 1) {
         const cli::NameFields fields = cli::name_fields(names[map]);
         text += (text.empty() ? "" : ": ") + fields.stem + fields.ext;

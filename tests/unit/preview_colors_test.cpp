@@ -136,7 +136,9 @@ TEST(PreviewCanvas, DrawsLettersAndCutsWhatDoesNotFit) {
     EXPECT_TRUE(code_at(picture, 2, 3) == kInk);  // the stem of the I
     EXPECT_TRUE(code_at(picture, 0, 3) == (Code{}));
     EXPECT_EQ(fitted("normal", 1, 100), "normal");
-    EXPECT_EQ(fitted("normal", 1, 30), "nor..");
+    EXPECT_EQ(fitted("normal", 1, 30), "n..al");
+    EXPECT_EQ(fitted("lit: a_rather_long_name_of_a_wall_dxt5nm.dds", 1, 24 * 6), "lit: a_rath.._dxt5nm.dds") << "the end tells files apart";
+    EXPECT_LE(text_width(fitted("a_rather_long_name_of_a_wall_dxt5nm.dds", 2, 201), 2), 201);
     EXPECT_EQ(fitted("normal", 2, 10), "");
     EXPECT_EQ(text_width("normal", 1), 35);
 }

@@ -27,7 +27,7 @@ namespace tex {
 // A picture with a caption, a part of a sheet.
 struct Panel {
     Texture picture;
-    std::string caption;  // printable ASCII; other bytes show as a box; cut where it is too long
+    std::string caption;  // printable ASCII; other bytes show as a box; where it is too long, its middle is left out
 };
 
 // Panels in rows of `columns` (0: about as many rows as columns), on a dark ground, each with its caption below. Cells are as large as the largest

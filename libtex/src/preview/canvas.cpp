@@ -78,9 +78,12 @@ Texture Canvas::take() && {
 
 std::string fitted(std::string_view words, int scale, int width) {
     if (text_width(words, scale) <= width) return std::string(words);
-    const int letters = (width / scale + 1) / kGlyphAdvance - 2;
+    constexpr std::string_view kCut = "..";
+    const int letters = (width / scale + 1) / kGlyphAdvance - static_cast<int>(kCut.size());
     if (letters < 1) return {};
-    return std::string(words.substr(0, static_cast<std::size_t>(letters))) + "..";
+    const std::size_t first = static_cast<std::size_t>(letters) / 2;
+    const std::size_t last = static_cast<std::size_t>(letters) - first;
+    return std::string(words.substr(0, first)).append(kCut).append(words.substr(words.size() - last));
 }
 
 }  // namespace tex::render
