@@ -312,6 +312,15 @@ TEST(SlopeRange, FindsTheSteepestTexels) {
     EXPECT_FLOAT_EQ(range.min_y, -4.0f);
 }
 
+TEST(SlopeRange, OfACliffIsItsSlopeToo) {
+    for (const double height : {1e4, 1e12}) {
+        const tex::SlopeRange range =
+            tex::slope_range(baked(field_of({100, 50}, 1.0f, Wrap::clamp, [=](int i, int j) { return i == 60 && j == 20 ? height : 0.0; })));
+        EXPECT_FLOAT_EQ(range.max_x, static_cast<float>(height / 2));
+        EXPECT_FLOAT_EQ(range.min_y, static_cast<float>(-height / 2));
+    }
+}
+
 TEST(SlopeRange, OfAPlaneIsItsSlopeWhateverTheThreadsAndTargets) {
     const NormalMap map =
         baked(field_of({33, 700}, 1.0f, Wrap::clamp, [](int i, int j) { return 2.0 * i + 0.5 * j; }));

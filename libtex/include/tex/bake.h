@@ -59,7 +59,7 @@ struct BakeOptions {
                                      const Execution& execution = {});
 
 // The range of slopes in a normal map: rise per texel width to the right (x) and upwards (y), -n.x / n.z and
-// -n.y / n.z with z at least 1/256. For reports: a range beyond +-10 tells of a bumpiness that 8 bits hold badly.
+// -n.y / n.z with z at least 1e-16 (in maps that bake() did not make it may be 0 or below). For reports: a range beyond +-10 tells of a bumpiness that 8 bits hold badly.
 struct SlopeRange {
     float min_x = 0.0f, max_x = 0.0f;
     float min_y = 0.0f, max_y = 0.0f;

@@ -109,7 +109,7 @@ void NormalsBySmoothing(const float* const* du, const float* dv, const float* sm
 }
 
 void WidenSlopeBounds(const float* x, const float* y, const float* z, int count, SlopeBounds& bounds) {
-    const V least_z = hn::Set(kD, 1.0f / 256.0f);
+    const V least_z = hn::Set(kD, 1e-16f);
     const V zero = hn::Zero(kD);
     V min_x = hn::Set(kD, bounds.min_x), max_x = hn::Set(kD, bounds.max_x);
     V min_y = hn::Set(kD, bounds.min_y), max_y = hn::Set(kD, bounds.max_y);

@@ -47,7 +47,7 @@ void derive_column(const float* const* rows, const float* derivative, int radius
 void normals_by_smoothing(const float* const* du, const float* dv, const float* smoothing, int radius,
                           float scale_x, float scale_y, int count, NormalRow out);
 
-// The least and greatest slopes, -x/z and -y/z with z at least 1/256.
+// The least and greatest slopes, -x/z and -y/z with z at least 1e-16: no slope is infinite, and those of bake(), up to 1e15, are what they are.
 struct SlopeBounds {
     float min_x, max_x;
     float min_y, max_y;
