@@ -28,6 +28,12 @@ TEST_F(Streams, CommandsAreFilters) {
     EXPECT_EQ(shell(scratch_, "bake-normals a.png -o >(cat > pipe.dds) --container dds").code, 0);
 }
 
+TEST_F(Streams, AFifoThatWaitsForItsReaderIsInterruptedInOneLine) {
+    const Ran ran = shell(scratch_, "mkfifo p.dds; bake-normals a.png -o p.dds 2> err & sleep 0.5; kill -TERM $!; wait $!");
+    EXPECT_EQ(ran.code, 128 + SIGTERM);
+    EXPECT_EQ(scratch_.read("err"), "bake-normals: error: interrupted by SIGTERM; 0 of 1 files are done\n");
+}
+
 TEST_F(Streams, NothingIsSaidWhereNothingIsAsked) {
     const Ran ran = run(scratch_, "bake-normals", {"a.png", "-o", "a.dds"});
     EXPECT_EQ(ran.out, "");

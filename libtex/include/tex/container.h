@@ -74,7 +74,8 @@ struct WriteOptions {
 // a nameless temporary (O_TMPFILE) in the same directory, fdatasync, link and rename; symbolic links are followed, so that the link stays. The mode of an existing file is
 // kept, as far as this user may. Standard output ("-"), FIFOs and devices are written through.
 //
-// Errors: io  the directory does not exist or may not be written; the disk is full; the path is a directory; ...; out_of_memory, also of descriptors
+// Errors: io  the directory does not exist or may not be written; the disk is full; the path is a directory; ...; out_of_memory, also of descriptors;
+//         cancelled  the process caught a signal, without SA_RESTART, while a FIFO waited for its reader
 [[nodiscard]] Result<void> write_file(const std::string& path, const std::vector<std::byte>& bytes,
                                       const WriteOptions& options = {});
 

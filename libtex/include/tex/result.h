@@ -24,7 +24,7 @@ enum class ErrorCode {
     unsupported,    // a file is sound but of a kind that libtex does not handle
     bad_option,     // the options contradict each other or the data (a channel that the file does not have)
     out_of_memory,  // memory, threads or another resource of the system ran out
-    cancelled,      // the progress callback asked to stop
+    cancelled,      // the progress callback asked to stop, or a signal came while a FIFO waited for its reader
 };
 
 inline constexpr Named<ErrorCode> kErrorCodeNames[] = {

@@ -82,6 +82,8 @@ Result<std::optional<ThroughFile>> ThroughFile::open(const std::string& path) {
     if (S_ISDIR(status.st_mode)) return system_error(path, EISDIR);
     if (S_ISREG(status.st_mode)) return std::optional<ThroughFile>();
     Descriptor device(::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY));
+    // A FIFO waits here for its reader: whoever sends a signal meanwhile wants the wait to end.
+    if (!device && errno == EINTR) return Error{ErrorCode::cancelled, path, "interrupted while waiting for a reader"};
     if (!device) return system_error(path, errno);
     const int fd = device.get();
     return std::optional(ThroughFile(path, std::move(device), fd));

@@ -21,7 +21,7 @@ namespace tex {
 
 class ThroughFile {
 public:
-    // Nothing where `path` is, or will be, a regular file. Errors: io.
+    // Nothing where `path` is, or will be, a regular file. Errors: io; cancelled, see write_file().
     static Result<std::optional<ThroughFile>> open(const std::string& path);
 
     // Writes bytes behind those that are written already. Errors: io.
