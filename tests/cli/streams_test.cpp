@@ -28,6 +28,37 @@ TEST_F(Streams, CommandsAreFilters) {
     EXPECT_EQ(shell(scratch_, "bake-normals a.png -o >(cat > pipe.dds) --container dds").code, 0);
 }
 
+TEST_F(Streams, StandardOutputIsTheSameByAllItsNames) {
+    ASSERT_EQ(run(scratch_, "bake-normals", {"a.png", "-o", "a.dds"}).code, 0);
+    Setting full;
+    full.stdout_path = "/dev/full";
+    const Ran expected = run(scratch_, "bake-normals", {"a.png", "-o", "-"}, full);
+    for (const std::string name : {"/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"}) {
+        const Ran ran = run(scratch_, "bake-normals", {"a.png", "-o", name});
+        EXPECT_EQ(ran.code, 0) << ran.err;
+        EXPECT_EQ(ran.out, scratch_.read("a.dds")) << name;
+        EXPECT_EQ(run(scratch_, "bake-normals", {"a.png", "-o", name}, full).err, expected.err) << name;
+        for (const std::vector<std::string>& more : {std::vector<std::string>{"--json"}, {"--no-clobber"}, {"--depfile", "d"}}) {
+            std::vector<std::string> arguments = {"a.png", "-o", name};
+            arguments.insert(arguments.end(), more.begin(), more.end());
+            EXPECT_EQ(run(scratch_, "bake-normals", arguments).code, 2) << name << " " << more.front();
+        }
+        EXPECT_EQ(shell(scratch_, "preview-normals a.dds -o " + name + " > p.png && head -c 4 p.png | grep -q PNG").code, 0) << name;
+    }
+}
+
+// As by name (Files.AnOutputThatIsAnInputIsRefused): what the shell opened is the file all the same.
+TEST_F(Streams, TheFileBehindAStreamIsNoInputAndOutputAtOnce) {
+    const std::string before = scratch_.read("a.png");
+    for (const std::string script : {"bake-normals a.png -o - 1<>a.png", "bake-normals a.png -o - >> a.png", "bake-normals - -o a.png < a.png",
+                                     "bake-normals - -o /dev/stdout < a.png 1<>a.png", "check-normals - --sarif a.png < a.png"}) {
+        const Ran ran = shell(scratch_, script);
+        EXPECT_EQ(ran.code, 2) << script;
+        EXPECT_EQ(lines_of(ran.err).size(), 1u) << ran.err;
+        EXPECT_EQ(scratch_.read("a.png"), before) << script;
+    }
+}
+
 TEST_F(Streams, AFifoThatWaitsForItsReaderIsInterruptedInOneLine) {
     const Ran ran = shell(scratch_, "mkfifo p.dds; bake-normals a.png -o p.dds 2> err & sleep 0.5; kill -TERM $!; wait $!");
     EXPECT_EQ(ran.code, 128 + SIGTERM);

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <tex/mip_chain.h>
+#include <unistd.h>
 
 #include "cli/files.h"
 #include "cli/name_pattern.h"
@@ -24,12 +25,15 @@ namespace fs = std::filesystem;
 
 using Identity = std::pair<dev_t, ino_t>;
 
-// Which file an existing path is; nothing for streams, devices and paths that do not exist.
-std::optional<Identity> identity(const std::string& path) {
+// Which file an existing path is, and the one behind "-", which is this descriptor; nothing for pipes, devices and paths that do not exist.
+std::optional<Identity> identity(const std::string& path, int standard) {
     struct stat status {};
-    if (path == "-" || stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
+    const int failed = path == "-" ? fstat(standard, &status) : stat(path.c_str(), &status);
+    if (failed != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
     return Identity{status.st_dev, status.st_ino};
 }
+std::optional<Identity> input_identity(const std::string& path) { return identity(path, STDIN_FILENO); }
+std::optional<Identity> output_identity(const std::string& path) { return identity(path, STDOUT_FILENO); }
 
 bool is_special(const std::string& path) {
     struct stat status {};
@@ -68,15 +72,15 @@ std::vector<std::string> files_of(const Task& task) {
 
 void check_collisions(const std::vector<Task>& tasks, const std::string& depfile, const std::string& list) {
     std::map<Identity, std::string> inputs;
-    if (const auto file = identity(list)) inputs.emplace(*file, list);
+    if (const auto file = input_identity(list)) inputs.emplace(*file, list);
     for (const Task& task : tasks) {
-        if (const auto file = identity(task.input)) inputs.emplace(*file, task.input);
+        if (const auto file = input_identity(task.input)) inputs.emplace(*file, task.input);
         for (const std::string& input : task.also) {
-            if (const auto file = identity(input)) inputs.emplace(*file, input);
+            if (const auto file = input_identity(input)) inputs.emplace(*file, input);
         }
     }
     const auto check_not_an_input = [&](const std::string& path) {
-        const auto file = identity(path);
+        const auto file = output_identity(path);
         if (!file) return;
         const auto input = inputs.find(*file);
         if (input == inputs.end()) return;
@@ -88,11 +92,11 @@ void check_collisions(const std::vector<Task>& tasks, const std::string& depfile
     std::map<Identity, const Task*> by_identity;
     for (const Task& task : tasks) {
         for (const std::string& path : files_of(task)) {
-            if (is_special(path)) continue;
             check_not_an_input(path);
+            if (is_special(path)) continue;
             const auto [same, is_new] = by_name.emplace(canonical(path), &task);
             const Task* other = is_new ? nullptr : same->second;
-            if (const auto file = identity(path); file && other == nullptr) {
+            if (const auto file = output_identity(path); file && other == nullptr) {
                 const auto [linked, is_new_file] = by_identity.emplace(*file, &task);
                 if (!is_new_file) other = linked->second;
             }
@@ -117,8 +121,8 @@ void check_document(const NamedFile& document, const std::vector<std::string>& i
     if (path.empty() || path == "-") throw UsageError(fmt::format("{} needs the name of a file", option));
     if (is_folder(path)) throw UsageError(fmt::format("{} {}: is a folder", option, printable(path)));
     if (is_special(path)) return;
-    const auto same = [name = canonical(path), file = identity(path)](const std::string& other) {
-        return !other.empty() && other != "-" && (canonical(other) == name || (file && identity(other) == file));
+    const auto same = [name = canonical(path), file = output_identity(path)](const std::string& other) {
+        return !other.empty() && ((other != "-" && canonical(other) == name) || (file && input_identity(other) == file));
     };
     for (const std::string& input : inputs) {
         if (same(input)) throw UsageError(fmt::format("{}: {} is the input {}", option, printable(path), printable(input)));

@@ -11,7 +11,7 @@ namespace tex::cli {
 struct Task;
 
 // Throws UsageError where two tasks would write one file, or where an output or the depfile is an input or the `list` of inputs (empty: there is
-// none): by name, or through symbolic and hard links. Streams, FIFOs and devices are nobody's file.
+// none): by name, through symbolic and hard links, or as the file behind standard input or output. Pipes, FIFOs and devices are nobody's file.
 void check_collisions(const std::vector<Task>& tasks, const std::string& depfile, const std::string& list);
 
 // A file that an option names.

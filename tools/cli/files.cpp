@@ -8,8 +8,10 @@
 #include <system_error>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "base/system_error.h"
+#include "base/through_file.h"
 #include "cli/collisions.h"
 #include "cli/name_pattern.h"
 #include "cli/stream.h"
@@ -62,6 +64,7 @@ void FileOptions::add(Command& command) {
     command.flag(no_sync, "--no-sync", "do not wait until outputs are on the disk");
 
     command.check([this, &command] {
+        if (named_descriptor(output) == STDOUT_FILENO) output = "-";  // /dev/stdout and its other names
         if (!output.empty() && !out_dir.empty())
             throw UsageError("--output and --out-dir contradict each other");
         if (!output.empty() && !name.empty()) throw UsageError("--output and --name contradict each other");

@@ -10,9 +10,7 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <ctime>
-#include <string_view>
 #include <utility>
 
 #include "base/system_error.h"
@@ -57,21 +55,6 @@ private:
     sigset_t before_{};
     bool was_pending_ = false;
 };
-
-// The descriptor that "-", /dev/stdout, /dev/fd/N and /proc/self/fd/N stand for. They are written through even where a
-// file is behind them: the shell that opened it holds on to that file.
-std::optional<int> named_descriptor(std::string_view path) {
-    if (path == "-" || path == "/dev/stdout") return STDOUT_FILENO;
-    for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
-        if (!path.starts_with(folder)) continue;
-        path.remove_prefix(folder.size());
-        int fd = -1;
-        const auto [end, error] = std::from_chars(path.data(), path.data() + path.size(), fd);
-        if (error == std::errc() && end == path.data() + path.size()) return fd;
-        return std::nullopt;
-    }
-    return std::nullopt;
-}
 
 }  // namespace
 

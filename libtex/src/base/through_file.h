@@ -3,6 +3,9 @@
 
 #pragma once
 
+#include <unistd.h>
+
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -11,6 +14,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <tex/result.h>
@@ -18,6 +22,21 @@
 #include "base/input_file.h"
 
 namespace tex {
+
+// The descriptor that "-", /dev/stdout, /dev/fd/N and /proc/self/fd/N stand for. They are written through even where a
+// file is behind them: the shell that opened it holds on to that file. (Here, so that the commands have it too.)
+inline std::optional<int> named_descriptor(std::string_view path) {
+    if (path == "-" || path == "/dev/stdout") return STDOUT_FILENO;
+    for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
+        if (!path.starts_with(folder)) continue;
+        path.remove_prefix(folder.size());
+        int fd = -1;
+        const auto [end, error] = std::from_chars(path.data(), path.data() + path.size(), fd);
+        if (error == std::errc() && end == path.data() + path.size()) return fd;
+        return std::nullopt;
+    }
+    return std::nullopt;
+}
 
 class ThroughFile {
 public:
