@@ -302,9 +302,43 @@ TEST(FaultsOfReaders, ASignalWhileAReaderHangsLeavesNothing) {
 
 TEST_P(Faults, WithoutThreadsTheBytesAreTheSame) {
     put_old_files(true);
-    const Ran ran = run_with({"NO_THREADS=1"});
+    const Ran ran = run_with({"THREADS=0"});
     EXPECT_EQ(ran.code, 0) << ran.err;
     expect_whole(true, true);
+}
+
+// Threads that could start when the command tried, and are refused when TBB wants them (which throws): a limit of processes that others used up meanwhile.
+TEST(FaultsOfThreads, ThoseThatAreRefusedLaterAreOneSentence) {
+    const Scratch scratch;
+    for (const char* name : {"strip.png", "waves.png"}) scratch.add_sample(name, name);
+    ASSERT_EQ(shell(scratch, "bake-normals strip.png -o strip.dds --no-sync --effort fast").code, 0);
+    const std::vector<std::string> lines[] = {
+        {"bake-normals", "strip.png", "-o", "out.dds", "--effort", "fast"},                    // a stream
+        {"pack-normals", "strip.dds", "-o", "out.ktx2", "--effort", "fast"},                   // another
+        {"bake-normals", "strip.png", "-o", "out.dds", "--effort", "fast", "--fill-invalid"},  // the whole height map
+        {"bake-normals", "strip.png", "waves.png", "--name", "out.{stem}.dds", "--effort", "fast"},  // two files at once
+    };
+    for (const std::vector<std::string>& line : lines) {
+        std::vector<std::string> arguments(line.begin() + 1, line.end());
+        arguments.insert(arguments.end(), {"--no-sync", "--threads", "2"});
+        const std::vector<std::string> before = scratch.list();
+        int refused = 0;
+        for (int threads = 1, done = 0; done < 2; ++threads) {
+            SCOPED_TRACE(testing::Message() << line[0] << " " << line[3] << ", " << threads);
+            ASSERT_LT(threads, 4096);
+            Setting setting;
+            setting.environment = {"LD_PRELOAD=" TEX_BINARY_DIR "/faults.so", fmt::format("TEX_FAULT_THREADS={}", threads)};
+            const Ran ran = run(scratch, line[0], arguments, setting);
+            done = ran.code == 0 ? done + 1 : 0;
+            if (ran.code == 0) continue;
+            ++refused;
+            EXPECT_EQ(ran.code, 3);
+            EXPECT_TRUE(ran.err.find("the system refuses threads") != std::string::npos && std::count(ran.err.begin(), ran.err.end(), '\n') == 1) << ran.err;
+            EXPECT_EQ(scratch.list(), before);
+        }
+        EXPECT_GT(refused, 0) << line[0] << " " << line[3];
+        for (const char* name : {"out.dds", "out.ktx2", "out.strip.dds", "out.waves.dds"}) std::filesystem::remove(scratch.path(name));
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, Faults, testing::ValuesIn(kCases), [](const auto& test) { return std::string(test.param.name); });

@@ -8,7 +8,7 @@
 //     TEX_FAULT_SHORTEN=FILE   instead, FILE loses its second half before the call
 //     TEX_FAULT_REPLACE=FILE   instead, the file TEX_FAULT_BY takes the name of FILE before the call
 //     TEX_FAULT_NO_TMPFILE=1   the file system has no nameless files
-//     TEX_FAULT_NO_THREADS=1   no thread can be started
+//     TEX_FAULT_THREADS=N      only the first N threads can be started
 //
 // Calls that the C library makes for itself are not seen. Processes that the command starts have an empty environment: they are left alone.
 
@@ -35,7 +35,7 @@ struct Plan {
     int error = EIO;
     bool kill = false;
     bool no_tmpfile = false;
-    bool no_threads = false;
+    int threads = -1;  // any number
     const char* shorten = nullptr;
     const char* replace = nullptr;
     const char* by = nullptr;
@@ -65,7 +65,7 @@ Plan make_plan() {
     plan.error = number("TEX_FAULT_ERRNO", EIO);
     plan.kill = number("TEX_FAULT_KILL", 0) != 0;
     plan.no_tmpfile = number("TEX_FAULT_NO_TMPFILE", 0) != 0;
-    plan.no_threads = number("TEX_FAULT_NO_THREADS", 0) != 0;
+    plan.threads = number("TEX_FAULT_THREADS", -1);
     plan.shorten = getenv("TEX_FAULT_SHORTEN");
     plan.replace = getenv("TEX_FAULT_REPLACE");
     plan.by = getenv("TEX_FAULT_BY");
@@ -201,7 +201,8 @@ TEX_CALL(int, posix_spawn, pid_t* child, const char* path, const posix_spawn_fil
 }
 
 TEX_CALL(int, pthread_create, pthread_t* thread, const pthread_attr_t* attributes, void* (*body)(void*), void* argument) {
-    if (plan().no_threads) return EAGAIN;
+    static std::atomic<int> started{0};
+    if (plan().threads >= 0 && started++ >= plan().threads) return EAGAIN;
     static const auto real = reinterpret_cast<decltype(&pthread_create)>(dlsym(RTLD_NEXT, "pthread_create"));
     return real(thread, attributes, body, argument);
 }
