@@ -33,7 +33,7 @@ private:
 };
 
 // True where a chunk decodes to no fewer than `wanted` bytes, as far as OpenEXR does not check that itself: it does for PXR24, PIZ and B44, but for chunks
-// without a byte. (DWA is not checked: which of its buffers a channel comes from is said by rules in the chunk.) ZIP is `unzipper`'s: true here.
+// without a byte. ZIP is `Unzipper`'s, DWA dwa_is_whole()'s: true here.
 [[nodiscard]] bool chunk_is_whole(Imf::Compression compression, std::span<const std::byte> chunk, std::size_t wanted);
 
 }  // namespace tex

@@ -8,6 +8,8 @@
 #include <Iex.h>
 #include <ImfChannelList.h>
 
+#include "containers/exr_dwa.h"
+
 namespace tex {
 namespace {
 
@@ -159,7 +161,10 @@ void ExrReader::check_place(int chunk) const {
 void ExrReader::check_chunk(int width, int height) {
     const std::size_t texel = texel_bytes(header());
     const std::size_t wanted = size_of(width, height, texel);
-    bool whole = chunk_is_whole(header().compression(), stream_.last_read(), wanted);
+    const Imf::Compression compression = header().compression();
+    const bool is_dwa = compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION;
+    bool whole = chunk_is_whole(compression, stream_.last_read(), wanted);
+    if (whole && is_dwa && stream_.last_read().size() < wanted) whole = dwa_is_whole(stream_.last_read(), width, height, header().channels());
     if (whole && is_zip(header())) {
         const std::size_t most = tiles_ ? size_of(static_cast<int>(tiles_->tileXSize()), static_cast<int>(tiles_->tileYSize()), texel) : wanted;
         whole = !unzipper_.texels(stream_.last_read(), wanted, most).empty();

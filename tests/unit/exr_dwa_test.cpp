@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "containers/exr_dwa.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "containers/bytes.h"
+#include "containers/exr.h"
+#include "unit/exr_files.h"
+
+namespace tex {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+const std::vector<std::string> kChannels = {"A", "B", "G", "R", "Y", "depth", "two.B", "two.G", "two.R"};  // runs, cosine terms (three times), the rest
+
+Result<Image> read(const Bytes& bytes) {
+    Result<InputFile> opened = InputFile::from_memory("test.exr", bytes);
+    return read_exr(*opened, {});
+}
+
+std::uint64_t load_u64(const Bytes& bytes, std::size_t at) {
+    std::uint64_t value = 0;
+    std::memcpy(&value, bytes.data() + at, sizeof value);
+    return value;
+}
+
+// Where the head of the first chunk stands: version 2, and behind eleven numbers the rules, of which the first is for a channel called so.
+std::size_t first_chunk(const Bytes& bytes) {
+    for (std::size_t at = 0; at + 100 < bytes.size(); ++at) {
+        if (load_u64(bytes, at) == 2 && load_u64(bytes, at + 80) <= 1 && bytes[at + 90] == std::byte{'R'}) return at;
+    }
+    return 0;
+}
+
+TEST(ExrDwa, SoundFilesAreWhole) {
+    for (const Imf::Compression compression : {Imf::DWAA_COMPRESSION, Imf::DWAB_COMPRESSION}) {
+        for (const Imf::PixelType type : {Imf::HALF, Imf::FLOAT, Imf::UINT}) {
+            for (const bool tiled : {false, true}) {
+                for (const Extent extent : {Extent{1, 1}, {8, 8}, {9, 33}, {37, 41}, {257, 70}, {64, 300}}) {
+                    const auto image = read(exr_file(extent, kChannels, type, compression, tiled));
+                    EXPECT_TRUE(image) << compression << type << tiled << " " << extent.width << "x" << extent.height << ": " << image.error().message();
+                }
+            }
+        }
+    }
+}
+
+// OpenEXR reads all of these, and takes what is missing from memory that nobody has written.
+TEST(ExrDwa, ShortBuffersAreDamage) {
+    const Bytes sound = exr_file({64, 32}, kChannels, Imf::HALF, Imf::DWAA_COMPRESSION);
+    const std::size_t head = first_chunk(sound);
+    ASSERT_GT(head, 300u);
+    ASSERT_TRUE(read(sound));
+    enum : std::size_t { rest_bytes = 1, rest_packed, ac_packed, dc_packed, runs_packed, runs_bytes, runs_unrolled, ac_count, dc_count };
+    const auto changed = [&](std::initializer_list<std::pair<std::size_t, std::uint64_t>> numbers) {
+        Bytes bytes = sound;
+        for (const auto& [number, value] : numbers) std::memcpy(bytes.data() + head + 8 * number, &value, sizeof value);
+        return bytes;
+    };
+    const std::pair<const char*, Bytes> cases[] = {
+        {"no runs", changed({{runs_unrolled, 0}})},
+        {"nothing of the rest", changed({{rest_packed, 0}, {runs_packed, 0}, {runs_unrolled, 0}})},
+        {"no DC", changed({{dc_packed, 0}, {dc_count, 0}})},
+        {"no AC", changed({{ac_packed, 0}, {dc_packed, 0}, {dc_count, 0}})},
+    };
+    for (const auto& [name, bytes] : cases) {
+        const auto image = read(bytes);
+        ASSERT_FALSE(image) << name;
+        EXPECT_EQ(image.error().code, ErrorCode::bad_data) << name;
+    }
+}
+
+}  // namespace
+}  // namespace tex
