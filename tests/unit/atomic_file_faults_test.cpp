@@ -31,11 +31,13 @@ struct Faults {
     int fail_at = 0;           // the call that fails, counted from 1; 0: none
     int error = EIO;
     int calls = 0;
+    std::string order = {};    // w: bytes are written; s: they are brought to the disk; n: the file gets a name
 };
 thread_local Faults faults;
 
-// Whether this call fails.
-bool fails() {
+// Whether this call fails. `mark` stands for it in Faults::order.
+bool fails(const char* mark = "") {
+    if (faults.active) faults.order += mark;
     if (!faults.active || ++faults.calls != faults.fail_at) return false;
     if (faults.kill) {
         kill(getpid(), SIGKILL);
@@ -57,7 +59,7 @@ ssize_t pwrite(int fd, const void* data, std::size_t count, off_t offset) {
         }
         return syscall(SYS_pwrite64, fd, data, count > 7 ? 7 : count, offset);
     }
-    return fails() ? -1 : syscall(SYS_pwrite64, fd, data, count, offset);
+    return fails("w") ? -1 : syscall(SYS_pwrite64, fd, data, count, offset);
 }
 
 int openat(int folder, const char* path, int flags, ...) {
@@ -72,7 +74,7 @@ int openat(int folder, const char* path, int flags, ...) {
     return fails() ? -1 : static_cast<int>(syscall(SYS_openat, folder, path, flags, mode));
 }
 
-int fdatasync(int fd) { return fails() ? -1 : static_cast<int>(syscall(SYS_fdatasync, fd)); }
+int fdatasync(int fd) { return fails("s") ? -1 : static_cast<int>(syscall(SYS_fdatasync, fd)); }
 
 // Under another name here: <fcntl.h> has a struct flock.
 int flock_call(int fd, int operation) noexcept __asm__("flock");
@@ -81,15 +83,15 @@ int flock_call(int fd, int operation) noexcept { return fails() ? -1 : static_ca
 int fchmod(int fd, mode_t mode) noexcept { return fails() ? -1 : static_cast<int>(syscall(SYS_fchmod, fd, mode)); }
 
 int linkat(int from_folder, const char* from, int to_folder, const char* to, int flags) noexcept {
-    return fails() ? -1 : static_cast<int>(syscall(SYS_linkat, from_folder, from, to_folder, to, flags));
+    return fails("n") ? -1 : static_cast<int>(syscall(SYS_linkat, from_folder, from, to_folder, to, flags));
 }
 
 int renameat(int from_folder, const char* from, int to_folder, const char* to) noexcept {
-    return fails() ? -1 : static_cast<int>(syscall(SYS_renameat2, from_folder, from, to_folder, to, 0u));
+    return fails("n") ? -1 : static_cast<int>(syscall(SYS_renameat2, from_folder, from, to_folder, to, 0u));
 }
 
 int renameat2(int from_folder, const char* from, int to_folder, const char* to, unsigned flags) noexcept {
-    return fails() ? -1 : static_cast<int>(syscall(SYS_renameat2, from_folder, from, to_folder, to, flags));
+    return fails("n") ? -1 : static_cast<int>(syscall(SYS_renameat2, from_folder, from, to_folder, to, flags));
 }
 
 }  // extern "C"
@@ -134,8 +136,9 @@ protected:
         for (const auto& entry : std::filesystem::directory_iterator(folder_)) count += entry.path() != path_;
         return count;
     }
-    [[nodiscard]] Result<void> write_with(Faults plan) const {
+    [[nodiscard]] Result<void> write_with(Faults plan, bool sync = true) const {
         WriteOptions options;
+        options.sync = sync;
         options.no_clobber = no_clobber();
         plan.active = true;
         plan.no_nameless = no_nameless();
@@ -197,6 +200,20 @@ TEST_P(AtomicFileFaults, DeathAtAnyCallLeavesTheOldFileOrTheNewOne) {
         }
         EXPECT_EQ(content(path_), kNew);
         if (!WIFSIGNALED(status)) break;
+    }
+}
+
+// What the next power cut finds under the name is on the disk. (A temporary name may come earlier; the last step is the file's own.)
+TEST_P(AtomicFileFaults, BytesAreOnTheDiskBeforeTheyHaveTheName) {
+    for (const bool sync : {true, false}) {
+        prepare();
+        ASSERT_TRUE(write_with({}, sync));
+        const std::string& order = faults.order;
+        ASSERT_TRUE(order.starts_with("w") && order.ends_with("n")) << order;
+        EXPECT_EQ(order.find('s') == std::string::npos, !sync) << order;
+        if (!sync) continue;
+        EXPECT_LT(order.rfind('w'), order.find('s')) << order;
+        EXPECT_LT(order.rfind('s'), order.find('n')) << order;
     }
 }
 
