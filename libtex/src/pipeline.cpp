@@ -138,16 +138,11 @@ Result<PackFileReport> pack_file(const std::string& input, const std::string& ou
     return guarded([&]() -> Result<PackFileReport> {
         Result<InputFile> file = InputFile::open(input);
         if (!file) return file.error();
-        const bool builds = options.mip && options.mip->levels != 1 && !options.level_names;
-        if (takes_strips(container, builds ? 2 : 1)) {
+        if (takes_strips(container)) {
             Result<std::optional<TextureRows>> texture = open_texture_rows(*file, options.source.read);
             if (!texture) return texture.error();
-            if (*texture && can_stream(**texture, container, options)) {
-                return pack_stream(*file, std::move(**texture), output, container, options, execution);
-            }
             if (*texture) {
-                texture->reset();
-                if (const Result<void> again = file->rewind(); !again) return again.error();
+                return pack_stream(*file, std::move(**texture), output, container, options, execution);
             }
         }
         return pack_whole(*file, output, container, options, execution);

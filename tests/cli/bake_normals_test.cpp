@@ -193,7 +193,10 @@ TEST_F(BakeNormals, TellsWhichWayAFileWent) {
             }
         }
     }
-    EXPECT_EQ(path_of({"bricks.png", "-o", "y.exr", "--mips", "all"}), "whole");
+    EXPECT_EQ(path_of({"bricks.png", "-o", "y.exr", "--mips", "all"}), "streamed");
+    const std::string levels = scratch_.read("y.exr");
+    EXPECT_EQ(path_of({"bricks.png", "-o", "y.exr", "--mips", "all", "--fill-invalid"}), "whole");
+    EXPECT_TRUE(scratch_.read("y.exr") == levels);
     EXPECT_EQ(shell(scratch_, "cat bricks.png | bake-normals - -o - --container png > z.png").code, 0);
     EXPECT_EQ(path_of({"bricks.png", "-o", "y.png"}), "streamed");
     EXPECT_TRUE(scratch_.read("y.png") == scratch_.read("z.png"));

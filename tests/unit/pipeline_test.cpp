@@ -132,7 +132,7 @@ TEST_F(Pipeline, StreamsGiveTheBytesOfTheVerbs) {
         constexpr Container kContainers[] = {Container::dds, Container::ktx2, Container::png, Container::exr};
         const Container container = kContainers[random() % 4];
         if (container == Container::png || container == Container::exr) {
-            options_.mip.levels = 1;
+            options_.mip.levels = container == Container::exr && one_in(2) ? 0 : 1;  // EXR holds the base level or all
             while (!can_hold(container, options_.pack.encoding)) options_.pack.encoding = any_of(kEncodingNames, random);
         }
         const std::string input = write("in.png", make_png(extent, kind, static_cast<unsigned>(random())));
@@ -199,9 +199,11 @@ TEST_F(Pipeline, WhatCannotStreamGoesAsAWhole) {
     EXPECT_EQ(baked(plain, Container::tga), Path::whole);
     EXPECT_EQ(read_image(path("out")).value().extent(), extent);
     options_.pack.encoding = Encoding::half;
-    EXPECT_EQ(baked(plain, Container::exr), Path::whole);
-    options_.mip.levels = 1;
-    EXPECT_EQ(baked(plain, Container::exr), Path::streamed);
+    for (const int levels : {0, 1}) {
+        options_.mip.levels = levels;
+        EXPECT_EQ(baked(plain, Container::exr), Path::streamed);
+        EXPECT_TRUE(bytes_of(path("out")) == by_verbs(plain, Container::exr));
+    }
 }
 
 TEST_F(Pipeline, NormalsInAnInterlacedPictureGoAsAWhole) {
@@ -354,6 +356,12 @@ TEST_F(Pipeline, OutputsThatCannotBeWrittenAreErrors) {
     options_.write.no_clobber = true;
     ASSERT_TRUE(bake_file(input, path("out"), Container::dds, options_));
     EXPECT_EQ(bake_file(input, path("out"), Container::dds, options_).error().reason, "exists already");
+    EXPECT_EQ(files(), 2u);
+    options_.write.no_clobber = false;
+    options_.pack.encoding = Encoding::half;
+    options_.mip.levels = 2;
+    EXPECT_EQ(bake_file(input, path("out.exr"), Container::exr, options_).error().message(),
+              path("out.exr") + ": EXR holds the base level or all 7 mip levels, not 2");
     EXPECT_EQ(files(), 2u);
     EXPECT_EQ(bake_file(path("nothing.png"), path("out"), Container::dds, options_).error().code, ErrorCode::io);
 }

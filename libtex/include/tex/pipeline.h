@@ -63,9 +63,10 @@ struct BakeFileReport {
 
 // Bakes the height map `input` ("-" is standard input) and writes it to `output` as a file of the kind `container`.
 //
-// Streamed: PNG that is not interlaced, EXR, and what the reader process decodes (TIFF, TGA, JPEG ...), into DDS, KTX2, PNG and EXR of one level, without fill_invalid and
+// Streamed: PNG that is not interlaced, EXR, and what the reader process decodes (TIFF, TGA, JPEG ...), into DDS, KTX2, PNG and EXR, without fill_invalid and
 // without a colour space. PNG and EXR are written from the top: where the heights repeat from bottom to top, the last rows are decoded first (a PNG twice), and what the reader
-// process decodes takes the path of whole images, as everything else does. Pictures that hold one level get the base level.
+// process decodes takes the path of whole images, as everything else does. Pictures that hold one level get the base level. EXR
+// keeps the compressed tiles of smaller levels in memory until the base level is done.
 //
 // The output appears whole or not at all, see write_file(). Of files for each level none appears before all rows are done; then they do one after the other, up to one that
 // fails. What goes to standard output or a FIFO is held in memory until it is whole.
@@ -103,8 +104,8 @@ struct PackFileReport {
 // Reads the normal map `input` ("-" is standard input) and writes it to `output` as a file of the kind `container`, in another encoding, with levels built
 // of it, scaled, or one level of it.
 //
-// Streamed: DDS and KTX2, level by level, PNG that is not interlaced, EXR of one level, and what the reader process decodes (TIFF, TGA, JPEG ...), into DDS,
-// KTX2, PNG and EXR of one level. Everything else takes the path of whole images: the levels of an EXR stand in tiles, and the reader process encodes whole
+// Streamed: DDS, KTX2 and EXR, level by level, PNG that is not interlaced, and what the reader process decodes (TIFF, TGA, JPEG ...), into DDS, KTX2, PNG and
+// EXR, which keeps the compressed tiles of built levels in memory until the base level is done. Everything else takes the path of whole images: the reader process encodes whole
 // pictures. Pictures that hold one level get the base level.
 //
 // Streams cannot look at all texels before the first is written. Where these decide (four channels without a swizzle; floats without a range), the

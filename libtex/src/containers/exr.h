@@ -39,7 +39,8 @@ Result<Image> read_exr(InputFile& file, const ReadOptions& options);
 // Errors: as read_exr(); unsupported where more than four channels lack R, G, B.
 Result<Texture> read_exr_texture(InputFile& file, const ReadOptions& options);
 
-// Writes a half or float texture of one level row by row, with the bytes of encode_exr(). Errors: unsupported (another format), out_of_memory.
+// Writes a half or float texture row by row, with the bytes of encode_exr(). The tiles of smaller levels wait in memory, compressed, for the end of the larger ones. Errors:
+// those of encode_exr().
 Result<std::unique_ptr<RowTarget>> open_exr_target(const TextureHead& head, WriteBytes write);
 
 // Encodes a half or float texture: ZIP compression; tiles of 64x64 and mip levels where the texture has more than one level, else scanlines. Attributes:

@@ -99,24 +99,16 @@ Imf::FrameBuffer frame_buffer(const std::byte* texels, Extent extent, int first,
     return buffer;
 }
 
-Error cannot_write(const std::exception& thrown) {
-    return {ErrorCode::unsupported, {}, std::string("EXR cannot be written: ") + thrown.what()};
-}
-
-class ExrTarget final : public RowTarget {
+// What files of scanlines and of tiles have in common. `File` is OpenEXR's.
+template <class File>
+class ExrTargetOf : public RowTarget {
 public:
-    ExrTarget(const TextureHead& head, WriteBytes write) : head_(head), format_(format_info(head.format)), stream_(std::move(write)) {}
+    ExrTargetOf(const TextureHead& head, WriteBytes write) : head_(head), format_(format_info(head.format)), stream_(std::move(write)) {}
 
-    Result<void> begin() {
+    Result<void> begin(const Imf::Header& header) {
         return watched([&] {
-            file_.emplace(stream_, header_of(head_), kNoThreads);
+            file_.emplace(stream_, header, kNoThreads);
             stream_.pixels();
-        });
-    }
-    Result<void> put(const std::byte* rows, int count) override {
-        return watched([&] {
-            file_->setFrameBuffer(frame_buffer(rows, {head_.extent.width, count}, file_->currentScanLine(), format_));
-            file_->writePixels(count);
         });
     }
     Result<void> finish() override {
@@ -124,7 +116,7 @@ public:
         return stream_.finish();
     }
 
-private:
+protected:
     template <class Body>
     Result<void> watched(const Body& body) {
         try {
@@ -132,7 +124,7 @@ private:
         } catch (const std::bad_alloc&) {
             throw;
         } catch (const std::exception& thrown) {
-            return cannot_write(thrown);
+            return Error{ErrorCode::unsupported, {}, std::string("EXR cannot be written: ") + thrown.what()};
         }
         if (stream_.failure()) return *stream_.failure();
         return {};
@@ -141,36 +133,73 @@ private:
     const TextureHead head_;
     const FormatInfo format_;
     TargetStream stream_;
-    std::optional<Imf::OutputFile> file_;
+    std::optional<File> file_;
 };
 
-void write_levels(TargetStream& stream, const Texture& texture) {
-    const FormatInfo format = format_info(texture.format);
-    Imf::Header header = header_of(head_of(texture));
-    header.setTileDescription(Imf::TileDescription(kTileSize, kTileSize, Imf::MIPMAP_LEVELS, Imf::ROUND_DOWN));
-    Imf::TiledOutputFile file(stream, header, kNoThreads);
-    for (int level = 0; level < file.numLevels(); ++level) {
-        const Level& texels = texture.levels[static_cast<std::size_t>(level)];
-        file.setFrameBuffer(frame_buffer(texels.bytes.data(), texels.extent, 0, format));
-        file.writeTiles(0, file.numXTiles(level) - 1, 0, file.numYTiles(level) - 1, level);
+class LinesTarget final : public ExrTargetOf<Imf::OutputFile> {
+public:
+    using ExrTargetOf::ExrTargetOf;
+    Result<void> put(int, const std::byte* rows, int count) override {
+        return watched([&] {
+            file_->setFrameBuffer(frame_buffer(rows, {head_.extent.width, count}, file_->currentScanLine(), format_));
+            file_->writePixels(count);
+        });
     }
+};
+
+// All levels. OpenEXR keeps the compressed tiles of the smaller ones until those of the larger ones are in the file: so the order of its tiles is always the same, and a
+// third of what it holds is in memory. (With tiles in the order in which they come the bytes would depend on the path that a texture takes.)
+class TilesTarget final : public ExrTargetOf<Imf::TiledOutputFile> {
+public:
+    TilesTarget(const TextureHead& head, WriteBytes write) : ExrTargetOf(head, std::move(write)), levels_(static_cast<std::size_t>(head.levels)) {}
+
+    Result<void> put(int level, const std::byte* rows, int count) override;
+
+private:
+    // Rows of a row of tiles that is not whole yet.
+    struct Open {
+        int next = 0;  // the row of the level that comes next
+        std::vector<std::byte> rows;
+    };
+    // Rows [first, first + count) of a level, whole rows of tiles.
+    void write(int level, int first, int count, const std::byte* rows) {
+        file_->setFrameBuffer(frame_buffer(rows, {level_extent(head_.extent, level).width, count}, first, format_));
+        file_->writeTiles(0, file_->numXTiles(level) - 1, first / kTileSize, (first + count - 1) / kTileSize, level);
+    }
+
+    std::vector<Open> levels_;
+};
+
+Result<void> TilesTarget::put(int level, const std::byte* rows, int count) {
+    Open& open = levels_[static_cast<std::size_t>(level)];
+    const Extent extent = level_extent(head_.extent, level);
+    const std::size_t pitch = level_bytes(head_.format, {extent.width, 1});
+    return watched([&] {
+        while (count > 0) {
+            const int begin = open.next / kTileSize * kTileSize, end = std::min(begin + kTileSize, extent.height);
+            const int all = open.next + count == extent.height ? count : count / kTileSize * kTileSize;  // in whole rows of tiles
+            const bool whole = open.next == begin && all > 0;
+            const int taken = whole ? all : std::min(count, end - open.next);
+            if (whole) {
+                write(level, begin, taken, rows);
+            } else {
+                open.rows.insert(open.rows.end(), rows, rows + static_cast<std::size_t>(taken) * pitch);
+            }
+            open.next += taken;
+            rows += static_cast<std::size_t>(taken) * pitch;
+            count -= taken;
+            if (whole || open.next < end) continue;
+            write(level, begin, end - begin, open.rows.data());
+            open.rows.clear();
+        }
+    });
 }
 
-Result<std::vector<std::byte>> encode_levels(const Texture& texture) {
-    std::vector<std::byte> bytes;
-    TargetStream stream([&bytes](std::uint64_t, std::span<const std::byte> all) -> Result<void> {
-        bytes.assign(all.begin(), all.end());
-        return {};
-    });
-    try {
-        write_levels(stream, texture);
-    } catch (const std::bad_alloc&) {
-        throw;
-    } catch (const std::exception& thrown) {
-        return cannot_write(thrown);
-    }
-    if (const Result<void> done = stream.finish(); !done) return done.error();
-    return bytes;
+template <class Target>
+Result<std::unique_ptr<RowTarget>> open_target(const TextureHead& head, const Imf::Header& header, WriteBytes write) {
+    auto target = std::make_unique<Target>(head, std::move(write));
+    if (const Result<void> begun = target->begin(header); !begun) return begun.error();
+    return std::unique_ptr<RowTarget>(std::move(target));
 }
 
 }  // namespace
@@ -181,24 +210,20 @@ Result<std::unique_ptr<RowTarget>> open_exr_target(const TextureHead& head, Writ
             return Error{ErrorCode::unsupported, {},
                          "EXR holds half and float, not " + std::string(name_of(kFormatNames, head.format))};
         }
-        auto target = std::make_unique<ExrTarget>(head, std::move(write));
-        if (const Result<void> begun = target->begin(); !begun) return begun.error();
-        return std::unique_ptr<RowTarget>(std::move(target));
+        const int complete = level_count(head.extent);
+        if (head.levels != 1 && head.levels != complete) {
+            return Error{ErrorCode::unsupported, {},
+                         "EXR holds the base level or all " + std::to_string(complete) + " mip levels, not " + std::to_string(head.levels)};
+        }
+        Imf::Header header = header_of(head);
+        if (head.levels == 1) return open_target<LinesTarget>(head, header, std::move(write));
+        header.setTileDescription(Imf::TileDescription(kTileSize, kTileSize, Imf::MIPMAP_LEVELS, Imf::ROUND_DOWN));
+        return open_target<TilesTarget>(head, header, std::move(write));
     });
 }
 
 Result<std::vector<std::byte>> encode_exr(const Texture& texture) {
-    return guarded([&]() -> Result<std::vector<std::byte>> {
-        const auto levels = static_cast<int>(texture.levels.size());
-        const bool is_floating = format_info(texture.format).sample == SampleKind::floating;
-        if (levels <= 1 || !is_floating) return encode_rows(Container::exr, texture);
-        if (levels != level_count(texture.extent())) {
-            return Error{ErrorCode::unsupported, {},
-                         "EXR holds the base level or all " + std::to_string(level_count(texture.extent())) +
-                             " mip levels, not " + std::to_string(levels)};
-        }
-        return encode_levels(texture);
-    });
+    return guarded([&] { return encode_rows(Container::exr, texture); });
 }
 
 }  // namespace tex

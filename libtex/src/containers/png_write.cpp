@@ -110,7 +110,7 @@ public:
         if (!begin_rows(writer_, extent, color_type, bits, nullptr)) return writer_.error();
         return {};
     }
-    Result<void> put(const std::byte* rows, int count) override {
+    Result<void> put(int, const std::byte* rows, int count) override {
         if (!put_rows(writer_, rows, count, row_bytes_)) return writer_.error();
         return hand_on();
     }

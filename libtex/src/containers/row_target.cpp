@@ -11,9 +11,7 @@
 
 namespace tex {
 
-bool takes_rows(Container container, int levels) {
-    return container == Container::png || (container == Container::exr && levels == 1);
-}
+bool takes_rows(Container container) { return container == Container::png || container == Container::exr; }
 
 Result<std::unique_ptr<RowTarget>> open_row_target(Container container, const TextureHead& head, WriteBytes write) {
     return container == Container::png ? open_png_target(head, std::move(write)) : open_exr_target(head, std::move(write));
@@ -30,8 +28,11 @@ Result<std::vector<std::byte>> encode_rows(Container container, const Texture& t
     };
     const Result<std::unique_ptr<RowTarget>> target = open_row_target(container, head_of(texture), write);
     if (!target) return target.error();
-    const Level& level = texture.levels.front();
-    if (const Result<void> put = (*target)->put(level.bytes.data(), level.extent.height); !put) return put.error();
+    const std::size_t levels = can_hold_levels(container) ? texture.levels.size() : 1;
+    for (std::size_t k = 0; k < levels; ++k) {
+        const Level& level = texture.levels[k];
+        if (const Result<void> put = (*target)->put(static_cast<int>(k), level.bytes.data(), level.extent.height); !put) return put.error();
+    }
     if (const Result<void> done = (*target)->finish(); !done) return done.error();
     return file;
 }

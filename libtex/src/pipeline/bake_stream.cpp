@@ -58,7 +58,7 @@ bool needs_last_rows(Container container, const BakeFileOptions& options) {
 
 bool can_stream(const InputFile& file, const RowSource& rows, Container container, const BakeFileOptions& options) {
     if (!rows.is_sequential() || !options.color.space.empty() || options.heights.fill_invalid) return false;
-    if (!takes_strips(container, options.level_names ? 1 : levels_of(rows.extent(), container, options))) return false;
+    if (!takes_strips(container)) return false;
     return !needs_last_rows(container, options) || knows_last_rows(file, rows);
 }
 

@@ -165,16 +165,6 @@ PackOptions pack_options(const PackFileOptions& options, Container container, co
     return pack;
 }
 
-bool can_stream(const TextureRows& texture, Container container, const PackFileOptions& options) {
-    int levels = static_cast<int>(texture.levels.size());
-    if (options.level || options.mip || options.level_names) levels = 1;
-    if (options.mip && !options.level_names) {
-        const auto level = std::min(static_cast<std::size_t>(options.level.value_or(0)), texture.levels.size() - 1);
-        levels = levels_built(*options.mip, texture.levels[level]->extent());
-    }
-    return takes_strips(container, levels);
-}
-
 Error no_such_level(const std::string& input, int level, std::size_t levels) {
     return {ErrorCode::bad_option, input, "has no level " + std::to_string(level) + ", only " + std::to_string(levels)};
 }

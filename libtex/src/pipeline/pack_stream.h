@@ -19,10 +19,7 @@ PackOptions pack_options(const PackFileOptions& options, Container container, co
 // The error where the source has no level options.level.
 Error no_such_level(const std::string& input, int level, std::size_t levels);
 
-// Whether pack_file() can write what it makes of the texture strip by strip.
-bool can_stream(const TextureRows& texture, Container container, const PackFileOptions& options);
-
-// `texture` is that of `file`, which is opened once more where the first attempt fails (see pack_file()). Precondition: can_stream(). May throw
+// `texture` is that of `file`, which is opened once more where the first attempt fails (see pack_file()). Precondition: takes_strips(container). May throw
 // std::bad_alloc.
 Result<PackFileReport> pack_stream(InputFile& file, TextureRows texture, const std::string& output, Container container,
                                    const PackFileOptions& options, const Execution& execution, const StreamSizes& sizes = {});

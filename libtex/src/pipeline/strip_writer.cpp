@@ -65,7 +65,8 @@ Result<void> TextureWriter::write(Strip& strip) {
 // Pictures, whose rows are compressed one after the other. Strips that come before their turn wait, packed.
 class PictureWriter final : public StripWriter {
 public:
-    PictureWriter(std::string path, std::unique_ptr<OutputFile> file, const PackOptions& pack) : path_(std::move(path)), file_(std::move(file)), pack_(pack) {}
+    PictureWriter(std::string path, std::unique_ptr<OutputFile> file, const PackOptions& pack, int first)
+        : path_(std::move(path)), file_(std::move(file)), pack_(pack), first_(first) {}
 
     Result<void> begin(Container container, const TextureHead& head) {
         Result<std::unique_ptr<RowTarget>> target =
@@ -87,9 +88,13 @@ private:
         int rows = 0;
         std::vector<std::byte> bytes;
     };
-    Result<void> put(const std::byte* rows, int count) {
-        next_ += count;
-        const Result<void> put = target_->put(rows, count);
+    struct Level {
+        int next = 0;                   // the row that comes next
+        std::map<int, Packed> waiting;  // by their first rows
+    };
+    Result<void> put(int level, const std::byte* rows, int count) {
+        levels_[level].next += count;
+        const Result<void> put = target_->put(level, rows, count);
         return put ? put : Result<void>(put.error().of(path_));
     }
 
@@ -98,22 +103,24 @@ private:
     const PackOptions pack_;
     std::size_t size_ = 0;
     std::unique_ptr<RowTarget> target_;  // writes into the file
-    int next_ = 0;                       // the row that comes next
-    std::map<int, Packed> waiting_;      // by their first rows
+    const int first_;                    // the level that the file begins with
+    std::map<int, Level> levels_;
 };
 
 Result<void> PictureWriter::write(Strip& strip) {
     return guarded([&]() -> Result<void> {
         strip.bytes.resize(level_bytes(encoding_info(pack_.encoding).format, {strip.map.extent().width, strip.height}));
         pack_rows(strip.map, strip.height, pack_, 0, strip.height, strip.bytes.data());
-        if (strip.first != next_) {
-            waiting_[strip.first] = {strip.height, strip.bytes};
+        const int index = strip.level - first_;
+        Level& level = levels_[index];
+        if (strip.first != level.next) {
+            level.waiting[strip.first] = {strip.height, strip.bytes};
             return {};
         }
-        Result<void> done = put(strip.bytes.data(), strip.height);
-        while (done && !waiting_.empty() && waiting_.begin()->first == next_) {
-            const Packed packed = std::move(waiting_.extract(waiting_.begin()).mapped());
-            done = put(packed.bytes.data(), packed.rows);
+        Result<void> done = put(index, strip.bytes.data(), strip.height);
+        while (done && !level.waiting.empty() && level.waiting.begin()->first == level.next) {
+            const Packed packed = std::move(level.waiting.extract(level.waiting.begin()).mapped());
+            done = put(index, packed.bytes.data(), packed.rows);
         }
         return done;
     });
@@ -159,7 +166,7 @@ Opening open_file(const std::string& path, Container container, const TextureHea
         OutputFile::open(path, bytes, first == 0 ? Opened::at_once : Opened::late, {options.sync, options.no_clobber});
     if (!file) return file.error();
     if (!is_texture(container)) {
-        auto picture = std::make_unique<PictureWriter>(path, std::move(*file), pack);
+        auto picture = std::make_unique<PictureWriter>(path, std::move(*file), pack, first);
         if (const Result<void> begun = picture->begin(container, head); !begun) return begun.error();
         return std::unique_ptr<StripWriter>(std::move(picture));
     }
@@ -174,7 +181,7 @@ bool is_texture(Container container) { return container == Container::dds || con
 
 bool holds_levels(Container container, const LevelNames& names) { return names || can_hold_levels(container); }
 
-bool takes_strips(Container container, int levels) { return is_texture(container) || takes_rows(container, levels); }
+bool takes_strips(Container container) { return is_texture(container) || takes_rows(container); }
 
 Opening StripWriter::open(const OutputNames& names, Container container, Extent extent, int levels, const PackOptions& pack, const WriteOptions& options) {
     const EncodingInfo encoding = encoding_info(pack.encoding);

@@ -27,8 +27,8 @@ public:
     StripWriter& operator=(const StripWriter&) = delete;
     virtual ~StripWriter() = default;
 
-    // Opens the output and writes what stands before the texels. Precondition: takes_strips(), of one level where each has a file. Errors: io, out_of_memory;
-    // unsupported (the container cannot hold the encoding).
+    // Opens the output and writes what stands before the texels. Precondition: takes_strips(). Errors: io, out_of_memory;
+    // unsupported (the container cannot hold the encoding, or so many levels).
     static Result<std::unique_ptr<StripWriter>> open(const OutputNames& names, Container container, Extent extent, int levels,
                                                      const PackOptions& pack, const WriteOptions& options);
 
@@ -50,7 +50,7 @@ public:
 // Whether all levels are written, or the base level alone.
 [[nodiscard]] bool holds_levels(Container container, const LevelNames& names);
 
-// Whether files of this kind, with so many levels, are written strip by strip: DDS, KTX2, and those that takes_rows() knows, in order.
-[[nodiscard]] bool takes_strips(Container container, int levels);
+// Whether files of this kind are written strip by strip: DDS, KTX2, and those that takes_rows() knows, in order.
+[[nodiscard]] bool takes_strips(Container container);
 
 }  // namespace tex
