@@ -180,13 +180,12 @@ TEST_F(BakeNormals, TellsWhichWayAFileWent) {
         EXPECT_TRUE(scratch_.read("again.dds") == streamed) << name;
     }
     // Pictures are written from the top; where heights repeat, the last rows are decoded first.
-    for (const std::string name : {"ramp.exr", "ramp.tif"}) EXPECT_EQ(bake({"ramp.png", "-o", name}).code, 0);
-    for (const std::string input : {"ramp.png", "ramp.exr", "ramp.tif"}) {
+    for (const std::string name : {"ramp.exr", "ramp.tif", "ramp.tga"}) EXPECT_EQ(bake({"ramp.png", "-o", name}).code, 0);
+    for (const std::string input : {"ramp.png", "ramp.exr", "ramp.tif", "ramp.tga"}) {
         for (const std::string output : {"y.png", "y.exr"}) {
             for (const std::string wrap : {"repeat", "clamp"}) {
                 SCOPED_TRACE(input + " " + output + " " + wrap);
-                const std::string expected = input == "ramp.tif" && wrap == "repeat" ? "whole" : "streamed";
-                EXPECT_EQ(path_of({input, "-o", output, "--wrap", wrap, "--blur", "1"}), expected);
+                EXPECT_EQ(path_of({input, "-o", output, "--wrap", wrap, "--blur", "1"}), "streamed");
                 const std::string streamed = scratch_.read(output);
                 EXPECT_EQ(path_of({input, "-o", output, "--wrap", wrap, "--blur", "1", "--fill-invalid"}), "whole");
                 EXPECT_TRUE(scratch_.read(output) == streamed);

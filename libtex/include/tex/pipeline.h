@@ -64,8 +64,8 @@ struct BakeFileReport {
 // Bakes the height map `input` ("-" is standard input) and writes it to `output` as a file of the kind `container`.
 //
 // Streamed: PNG that is not interlaced, EXR, and what the reader process decodes (TIFF, TGA, JPEG ...), into DDS, KTX2, PNG and EXR, without fill_invalid and
-// without a colour space. PNG and EXR are written from the top: where the heights repeat from bottom to top, the last rows are decoded first (a PNG twice), and what the reader
-// process decodes takes the path of whole images, as everything else does. Pictures that hold one level get the base level. EXR
+// without a colour space. PNG and EXR are written from the top: where the heights repeat from bottom to top, the last rows are decoded first (a PNG twice; of what
+// the reader process decodes all rows wait, as they are stored). Everything else takes the path of whole images. Pictures that hold one level get the base level. EXR
 // keeps the compressed tiles of smaller levels in memory until the base level is done.
 //
 // The output appears whole or not at all, see write_file(). Of files for each level none appears before all rows are done; then they do one after the other, up to one that

@@ -175,6 +175,8 @@ public:
     Result<void> open(const ReadOptions& options);
 
     Result<void> decode(int first, int count, std::byte* rows) override;
+    [[nodiscard]] bool can_peek() const override { return true; }
+    Result<void> peek(int first, int count, std::byte* rows) override;
     Result<void> finish() override;
     void store(const std::byte* rows, int first, int end, Image& image) const override;
 
@@ -260,10 +262,16 @@ Result<Scale> ReaderRows::find_scale() {
     });
 }
 
-Result<void> ReaderRows::decode(int first, int count, std::byte* rows) {
+// Up to them all rows wait in memory as they were decoded.
+Result<void> ReaderRows::peek(int first, int count, std::byte* rows) {
     const Result<ReaderHeader> there = process_->wait_for_rows(static_cast<std::uint64_t>(first) + static_cast<std::uint64_t>(count));
     if (!there) return there.error();
     if (!fetch(first, count, rows)) return nonsense(file_.path());
+    return {};
+}
+
+Result<void> ReaderRows::decode(int first, int count, std::byte* rows) {
+    if (Result<void> there = peek(first, count, rows); !there) return there;
     // What has been read need not stay in memory. Where that fails, it stays.
     const auto page = static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
     const auto page_of = [&](int row) {  // begins at or before the row, but never in the header

@@ -48,6 +48,11 @@ public:
     // io, out_of_memory.
     virtual Result<void> decode(int first, int count, std::byte* rows) = 0;
 
+    // Whether rows may be looked at before decode() has come to them.
+    [[nodiscard]] virtual bool can_peek() const { return is_random(); }
+    // As decode(), of any rows; decode() gives them again. Precondition: can_peek(); no other thread decodes.
+    virtual Result<void> peek(int first, int count, std::byte* rows) { return decode(first, count, rows); }
+
     // Makes sure, after the last row, that the file ends as it should. Errors: as decode().
     virtual Result<void> finish() { return {}; }
 

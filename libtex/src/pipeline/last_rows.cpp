@@ -28,7 +28,7 @@ Result<void> reopen(InputFile& file, std::unique_ptr<RowSource>& rows, const Rea
 
 }  // namespace
 
-bool knows_last_rows(const InputFile& file, const RowSource& rows) { return rows.is_random() || is_png(file.head()); }
+bool knows_last_rows(const InputFile& file, const RowSource& rows) { return rows.can_peek() || is_png(file.head()); }
 
 Result<Image> last_rows(InputFile& file, std::unique_ptr<RowSource>& rows, const ReadOptions& options, int count, const Execution& execution) {
     const Extent extent = rows->extent();
@@ -36,10 +36,11 @@ Result<Image> last_rows(InputFile& file, std::unique_ptr<RowSource>& rows, const
     Image image = make_image({extent.width, (count + 3) / 4 * 4}, rows->names());
     const int held = (together + 3) / 4 * 4;
     std::vector<std::byte> decoded(rows->row_bytes() * static_cast<std::size_t>(held));
-    for (int j = rows->is_random() ? first / together * together : 0; j < extent.height; j += together) {
+    for (int j = rows->can_peek() ? first / together * together : 0; j < extent.height; j += together) {
         if (execution.progress && !execution.progress(0.0)) return Error{ErrorCode::cancelled, {}, "cancelled"};
         const int end = std::min(j + together, extent.height);
-        const Result<void> done = guarded([&] { return rows->decode(j, end - j, decoded.data()); });
+        const Result<void> done =
+            guarded([&] { return rows->can_peek() ? rows->peek(j, end - j, decoded.data()) : rows->decode(j, end - j, decoded.data()); });
         if (!done) return done.error().of(file.path());
         if (end <= first) continue;
         Image some = make_image({extent.width, held}, rows->names());
@@ -50,7 +51,7 @@ Result<Image> last_rows(InputFile& file, std::unique_ptr<RowSource>& rows, const
             }
         }
     }
-    if (!rows->is_random()) {
+    if (!rows->can_peek()) {
         if (const Result<void> again = reopen(file, rows, options); !again) return again.error();
     }
     return image;

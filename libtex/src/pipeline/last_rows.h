@@ -14,8 +14,7 @@
 
 namespace tex {
 
-// Whether last_rows() is worth its while: where any rows can be decoded at any time (EXR), and PNG, which decodes fast and is decoded twice. (The reader process
-// would have to start twice, and takes longer to start than most pictures take.)
+// Whether last_rows() knows a way: where rows can be looked at before their turn (EXR, and what the reader process decodes), and PNG, which decodes fast and is decoded twice.
 [[nodiscard]] bool knows_last_rows(const InputFile& file, const RowSource& rows);
 
 // The last `count` rows, as an image of that height or a little more. No row of `rows`, the picture in `file`, has been decoded, nor has one afterwards: where need be it is
