@@ -83,7 +83,7 @@ protected:
             {"empty", [=, this] { return open_with(file_, O_RDONLY | O_TRUNC) >= 0; }},
             {"link", [=, this] { return syscall(SYS_linkat, AT_FDCWD, file_.c_str(), AT_FDCWD, path("link").c_str(), 0) == 0; }},
             {"symbolic link", [=, this] { return syscall(SYS_symlinkat, file_.c_str(), AT_FDCWD, path("symbolic").c_str()) == 0; }},
-            {"rename", [=, this] { return syscall(SYS_renameat2, AT_FDCWD, path("link").c_str(), AT_FDCWD, path("other").c_str(), 0) == 0; }},
+            {"rename", [=] { return syscall(SYS_renameat2, AT_FDCWD, path("link").c_str(), AT_FDCWD, path("other").c_str(), 0) == 0; }},
             {"folder", [=] { return syscall(SYS_mkdirat, AT_FDCWD, path("folder").c_str(), 0700) == 0; }},
             {"mode", [=, this] { return syscall(SYS_fchmodat, AT_FDCWD, file_.c_str(), 0600) == 0; }},
             {"truncate", [=, this] { return syscall(SYS_truncate, file_.c_str(), 1) == 0; }},
