@@ -3,15 +3,20 @@
 // Where tests/golden/commands.txt is there, the files are those whose hashes it lists, so that compilers and machines are compared, too. That the bytes are right
 // is proved elsewhere.
 //
+// The largest sample and the height maps in ../shared/data (where they are there) take longer: with each instruction set once, with another number of threads each
+// time. They are baked row by row and as whole images, which --fill-invalid asks for: the same bytes.
+//
 //     TEX_GOLDEN_WRITE=1 build/release/cli_tests --gtest_filter='*Matrix*'
 //
 // writes the list (with the instruction set of the first test, on one thread); where bytes change on purpose, `git diff` tells whose did.
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>
 #include <map>
 #include <set>
+#include <span>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -53,6 +58,24 @@ const Line kLines[] = {
     {"compare", "compare-normals", {"maps/waves.png", "bake/waves.dds", "--json"}},
 };
 
+// Those of real height maps are REAL, without REAL and what follows it where there are none.
+const Line kLargeLines[] = {
+    {"large", "bake-normals", {"bricks.png", "--bumpiness", "12", "--effort", "fast", "REAL", "canyon_4096x4096_rgb8_equal.jpg", "dtm_283x259_f32_nodata-9999.tif", "reader_nan_inf_800x800.exr"}},
+    {"large-whole", "bake-normals", {"bricks.png", "--bumpiness", "12", "--effort", "fast", "--fill-invalid", "--no-data=-9999", "REAL", "canyon_4096x4096_rgb8_equal.jpg"}},
+    {"large-bake", "bake-normals", {"bricks.png", "--format", "float", "--container", "exr", "--bumpiness", "12"}},
+    {"large-mip", "mip-normals", {"large-bake/bricks.exr", "--format", "bc5", "--container", "dds", "--mip-filter", "kaiser"}},
+    {"large-pack", "pack-normals", {"large-bake/bricks.exr", "--container", "ktx2"}},
+    {"large-unpack", "unpack-normals", {"large/bricks.dds", "--container", "png"}},
+    {"large-scale", "scale-normals", {"large-bake/bricks.exr", "--scale", "0.3", "--format", "rgb16", "--container", "png"}},
+    {"large-blend", "blend-normals", {"large-bake/bricks.exr", "--detail", "maps/waves.png", "--tiling", "7", "--format", "rgb16", "--container", "png"}},
+    {"large-preview", "preview-normals", {"large/bricks.dds", "--shape", "sphere", "--size", "96"}},
+    {"large-check", "check-normals", {"large/bricks.dds", "--json"}},
+    {"large-compare", "compare-normals", {"large-bake/bricks.exr", "large/bricks.dds", "--json"}},
+};
+constexpr int kThreads[] = {1, 2, 3, 8};
+
+const fs::path kReal = fs::path(TEX_SOURCE_DIR) / ".." / "shared" / "data" / "height";
+
 std::string hash_of(const std::string& bytes) {  // FNV-1a
     std::uint64_t hash = 0xcbf29ce484222325u;
     for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
@@ -62,20 +85,42 @@ std::string hash_of(const std::string& bytes) {  // FNV-1a
 // Name of an output -> hash of its bytes, for all command lines.
 using Hashes = std::map<std::string, std::string>;
 
-Hashes run_lines(const std::string& target, int threads) {
+// All real height maps but those in `without`, in the order of their names.
+std::vector<std::string> real_heights(const std::vector<std::string>& without) {
+    std::vector<std::string> files;
+    if (!fs::exists(kReal)) return files;
+    for (const auto& entry : fs::directory_iterator(kReal)) {
+        if (std::find(without.begin(), without.end(), entry.path().filename()) == without.end()) files.push_back(fs::canonical(entry.path()));
+    }
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+std::vector<std::string> arguments_of(const Line& line) {
+    std::vector<std::string> arguments;
+    for (auto it = line.arguments.begin(); it != line.arguments.end(); ++it) {
+        std::vector<std::string> files = {*it};
+        if (*it == "HEIGHTS") files = kHeights;
+        if (*it == "MAPS") files = kMaps;
+        if (*it == "REAL") files = real_heights({it + 1, line.arguments.end()});
+        arguments.insert(arguments.end(), files.begin(), files.end());
+        if (*it == "REAL") break;
+    }
+    return arguments;
+}
+
+Hashes run_lines(const std::string& target, int threads, std::span<const Line> lines) {
     const Scratch scratch;
     for (const std::string& height : kHeights) scratch.add_sample(height, height);
+    scratch.add_sample("bricks.png", "bricks.png");
+    fs::create_directory(scratch.path("maps"));
+    if (lines.data() != kLines) {
+        const Ran ran = run(scratch, "bake-normals", {"waves.png", "-o", "maps/waves.png", "--format", "rgb16", "--bumpiness", "6", "--no-sync"});
+        EXPECT_EQ(ran.code, 0) << ran.err;
+    }
     Hashes hashes;
-    for (const Line& line : kLines) {
-        std::vector<std::string> arguments;
-        for (const std::string& argument : line.arguments) {
-            if (argument == "HEIGHTS" || argument == "MAPS") {
-                const auto& files = argument == "MAPS" ? kMaps : kHeights;
-                arguments.insert(arguments.end(), files.begin(), files.end());
-            } else {
-                arguments.push_back(argument);
-            }
-        }
+    for (const Line& line : lines) {
+        std::vector<std::string> arguments = arguments_of(line);
         const bool writes = std::string_view(line.command) != "check-normals" && std::string_view(line.command) != "compare-normals";
         if (writes) arguments.insert(arguments.end(), {"--out-dir", line.name, "--no-sync"});
         arguments.insert(arguments.end(), {"--threads", std::to_string(threads)});
@@ -93,11 +138,24 @@ Hashes run_lines(const std::string& target, int threads) {
     return hashes;
 }
 
-Hashes golden() {
+bool is_large(const std::string& name) { return name.starts_with("large"); }
+
+// Those of the list whose outputs are large, or are not.
+Hashes golden(bool large) {
     std::ifstream file(kList);
     Hashes hashes;
-    for (std::string hash, name; file >> hash >> name;) hashes[name] = hash;
+    for (std::string hash, name; file >> hash >> name;) {
+        if (is_large(name) == large) hashes[name] = hash;
+    }
     return hashes;
+}
+
+void expect_listed(const Hashes& hashes, const Hashes& wanted, int threads) {
+    for (const auto& [name, hash] : hashes) {
+        const auto golden_hash = wanted.find(name);
+        EXPECT_TRUE(golden_hash != wanted.end() && golden_hash->second == hash)
+            << name << " with " << threads << " threads has other bytes than tests/golden/commands.txt says, or than with one";
+    }
 }
 
 std::vector<std::string> targets() {
@@ -112,24 +170,42 @@ TEST_P(Matrix, EveryCommandMakesTheGoldenBytes) {
     if (std::getenv("TEX_GOLDEN_WRITE") != nullptr) {
         static bool written = false;
         if (written) return;
+        Hashes all = run_lines(GetParam(), 1, kLines);
+        all.merge(run_lines(GetParam(), 1, kLargeLines));
         std::ofstream file(kList);
-        for (const auto& [name, hash] : run_lines(GetParam(), 1)) file << hash << " " << name << "\n";
+        for (const auto& [name, hash] : all) file << hash << " " << name << "\n";
         written = true;
         return;
     }
-    const Hashes listed = golden();
-    static const Hashes first = run_lines(targets().front(), 1);
+    const Hashes listed = golden(false);
+    static const Hashes first = run_lines(targets().front(), 1, kLines);
     const Hashes& wanted = listed.empty() ? first : listed;
-    for (const int threads : {1, 2, 3, 8}) {
-        const Hashes hashes = run_lines(GetParam(), threads);
+    for (const int threads : kThreads) {
+        const Hashes hashes = run_lines(GetParam(), threads, kLines);
         EXPECT_EQ(hashes.size(), wanted.size());
-        for (const auto& [name, hash] : hashes) {
-            const auto golden_hash = wanted.find(name);
-            EXPECT_TRUE(golden_hash != wanted.end() && golden_hash->second == hash) << name << " with " << threads << " threads has other bytes than "
-                                                                          << (listed.empty() ? "with one" : "tests/golden/commands.txt says");
-        }
+        expect_listed(hashes, wanted, threads);
     }
 }
+
+#if !defined(__SANITIZE_ADDRESS__)  // under which they take minutes
+TEST_P(Matrix, LargeAndRealHeightMapsMakeTheGoldenBytes) {
+    if (std::getenv("TEX_GOLDEN_WRITE") != nullptr) return;
+    const auto all = targets();
+    const auto index = static_cast<std::size_t>(std::find(all.begin(), all.end(), GetParam()) - all.begin());
+    const int threads = kThreads[index % std::size(kThreads)];
+    const Hashes hashes = run_lines(GetParam(), threads, kLargeLines);
+    const Hashes wanted = golden(true);
+    if (!wanted.empty()) expect_listed(hashes, wanted, threads);
+    EXPECT_TRUE(hashes.size() == wanted.size() || !fs::exists(kReal)) << hashes.size();
+    int both_ways = 0;
+    for (const auto& [name, hash] : hashes) {
+        if (!name.starts_with("large/")) continue;
+        EXPECT_EQ(hashes.at("large-whole" + name.substr(5)), hash) << name << ": row by row and whole";
+        ++both_ways;
+    }
+    EXPECT_GE(both_ways, fs::exists(kReal) ? 18 : 1);
+}
+#endif
 
 INSTANTIATE_TEST_SUITE_P(Targets, Matrix, testing::ValuesIn(targets()));
 
