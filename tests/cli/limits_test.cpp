@@ -65,6 +65,7 @@ const Memory kMemories[] = {
     {"Whole", "bake-normals a.png -o out.exr --format half --fill-invalid", 16'000, 800},
     {"Levels", "mip-normals a.exr -o out.exr", 16'000, 800},
     {"Picture", "preview-normals a.dds -o out.png --size 64", 16'000, 800},
+    {"Blended", "blend-normals a.dds --detail a.exr -o out.dds", 16'000, 900},
     {"OtherReader", "bake-normals a.tif -o out.dds", 256'000, 40'000},
     {"OtherWriter", "unpack-normals a.dds -o out.tif", 256'000, 40'000},
 };
@@ -98,6 +99,42 @@ TEST_P(LittleMemory, IsOneSentence) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Commands, LittleMemory, testing::ValuesIn(kMemories), [](const auto& test) { return std::string(test.param.name); });
+
+// -- what files may claim, and what their decoders may take ---------------------------------------------------------
+
+TEST_F(Limits, MoreTexelsThanAllowedAreRefusedInEveryFormat) {
+    for (const std::string kind : {"ktx2", "tga", "jpg", "bmp"}) {
+        ASSERT_EQ(shell(scratch_, fmt::format("bake-normals a.png --no-sync --format {} -o a.{}", kind == "ktx2" ? "rgba8" : "rgb8", kind)).code, 0) << kind;
+    }
+    before_ = scratch_.list();
+    for (const std::string kind : {"png", "exr", "dds", "ktx2", "tif", "tga", "jpg", "bmp"}) {
+        for (const std::string command : {"bake-normals a.K -o out.dds", "pack-normals a.K -o out.dds", "preview-normals a.K -o out.png", "compare-normals a.K a.K"}) {
+            const bool is_read_whole = command.starts_with("preview") || command.starts_with("compare");
+            if (is_read_whole && kind != "png" && kind != "dds") continue;
+            std::string line = command;
+            for (std::size_t at = 0; (at = line.find('K', at)) != std::string::npos; at += kind.size()) line.replace(at, 1, kind);
+            SCOPED_TRACE(line);
+            const Ran refused = shell(scratch_, line + " --quiet --max-texels 16383");
+            EXPECT_EQ(refused.code, 4);
+            EXPECT_NE(refused.err.find("a." + kind + ": 128x128 texels are more than the limit of 16383\n"), std::string::npos) << refused.err;
+            EXPECT_EQ(lines_of(refused.err).size(), 1u) << refused.err;
+            EXPECT_EQ(scratch_.list(), before_);
+        }
+        if (kind != "png") continue;
+        EXPECT_EQ(shell(scratch_, "bake-normals a.png -o out.dds --no-sync --max-texels 16K").code, 0);  // exactly as many
+        fs::remove(scratch_.path("out.dds"));
+    }
+}
+
+#if !defined(__SANITIZE_ADDRESS__)  // which maps terabytes: the reader's memory is not limited under it
+TEST_F(Limits, AReaderHasTheMemoryThatItIsGiven) {
+    const Ran ran = shell(scratch_, "bake-normals a.tif -o out.dds --reader-memory 200M");
+    EXPECT_EQ(ran.code, 4);
+    EXPECT_EQ(ran.err, "bake-normals: error: a.tif: needs more memory than the 200 MiB that a decoder may have\n");
+    EXPECT_EQ(scratch_.list(), before_);
+    EXPECT_EQ(shell(scratch_, "bake-normals a.tif -o out.dds --no-sync --reader-memory 2G").code, 0);
+}
+#endif
 
 // -- threads, processes, sizes of files -----------------------------------------------------------------------------
 

@@ -3,6 +3,7 @@
 //
 //     tex-reader --version      OpenImageIO's version, and whether the kernel takes the restriction of files and the filter of system calls
 
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <OpenImageIO/imageio.h>
@@ -91,6 +92,22 @@ std::string in_units(std::int64_t bytes) {
     return bytes < kMany ? std::to_string(bytes >> 10) + " KiB" : std::to_string(bytes >> 20) + " MiB";
 }
 
+// The limit of --reader-memory, or a lower one that this process came with.
+void refuse_memory(ReaderHeader& header, const Task& task) {
+    const std::int64_t most = memory_limit();
+    refuse(header, most < task.memory ? ErrorCode::out_of_memory : ErrorCode::unsupported,
+           "needs more memory than the " + in_units(std::min(most, task.memory)) + " that a decoder may have");
+}
+
+// A thread is refused where there is no room for its stack, too, and the system's words for both are the same.
+bool has_room_for_a_thread() {
+    constexpr std::size_t kStack = std::size_t{9} << 20;
+    void* const stack = mmap(nullptr, kStack, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (stack == MAP_FAILED) return false;
+    munmap(stack, kStack);
+    return true;
+}
+
 int run(const std::string_view verb, const Task& task) {
     ReaderHeader header;
     try {
@@ -109,11 +126,9 @@ int run(const std::string_view verb, const Task& task) {
         header.state = ReaderState::done;
         put_header(header);
     } catch (const std::bad_alloc&) {
-        // The limit of --reader-memory, or a lower one that this process came with.
-        const std::int64_t most = memory_limit();
-        refuse(header, most < task.memory ? ErrorCode::out_of_memory : ErrorCode::unsupported,
-               "needs more memory than the " + in_units(std::min(most, task.memory)) + " that a decoder may have");
+        refuse_memory(header, task);
     } catch (const std::system_error& thrown) {  // of threads that are refused
+        if (!has_room_for_a_thread()) return refuse_memory(header, task), 0;
         refuse(header, ErrorCode::out_of_memory, std::string("the decoder gets no threads: ") + thrown.what());
     } catch (const std::exception& thrown) {
         refuse(header, ErrorCode::bad_data, thrown.what());
