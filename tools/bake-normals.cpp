@@ -44,6 +44,9 @@ BakeNormals::BakeNormals() {
     wrap.add(command, "what lies beyond the border, or for x and y apart");
     reader.heights.add(command);
     reader.color.add(command);
+    command.check([this] {
+        if (const std::string config = reader.color.config_file(); !config.empty()) files.shared = {config};
+    });
     output.add(command, cli::default_encodings(), "up");
     mips.add(command, false, "all in dds and ktx2, else none");
     run.add(command);

@@ -284,6 +284,9 @@ TEST_F(BakeNormals, TheColourConfigurationIsADependency) {
         {"ramp.png", "-o", "x.dds", "--color-space", "enc", "--ocio-config", "c.ocio", "--depfile", "d"});
     ASSERT_EQ(ran.code, 0) << ran.err;
     EXPECT_EQ(scratch_.read("d"), "x.dds: \\\n  ramp.png \\\n  c.ocio\n");
+    const std::string before = scratch_.read("c.ocio");
+    EXPECT_EQ(bake({"ramp.png", "-o", "x.dds", "--color-space", "enc", "--ocio-config", "c.ocio", "--depfile", "c.ocio"}).code, 2);
+    EXPECT_EQ(scratch_.read("c.ocio"), before) << "what is read is never written";
 }
 
 TEST_F(BakeNormals, GuessedHeightsAreToldOnceWithCounts) {
