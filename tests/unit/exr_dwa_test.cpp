@@ -15,6 +15,7 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 
+const std::vector<std::string> kColors = {"A", "B", "G", "R"};
 const std::vector<std::string> kChannels = {"A", "B", "G", "R", "Y", "depth", "two.B", "two.G", "two.R"};  // runs, cosine terms (three times), the rest
 
 Result<Image> read(const Bytes& bytes) {
@@ -49,28 +50,37 @@ TEST(ExrDwa, SoundFilesAreWhole) {
     }
 }
 
+TEST(ExrDwa, SoundColoursAndHeightsAreWhole) {
+    const std::vector<std::string> sets[] = {kColors, {"Y"}, {"R", "G"}, {"layer.red", "layer.green", "layer.blue"}, {"depth"}};
+    for (const std::vector<std::string>& names : sets) {
+        for (const Imf::PixelType type : {Imf::HALF, Imf::FLOAT}) EXPECT_TRUE(read(exr_file({70, 41}, names, type, Imf::DWAB_COMPRESSION))) << names[0];
+    }
+}
+
 // OpenEXR reads all of these, and takes what is missing from memory that nobody has written.
 TEST(ExrDwa, ShortBuffersAreDamage) {
-    const Bytes sound = exr_file({64, 32}, kChannels, Imf::HALF, Imf::DWAA_COMPRESSION);
-    const std::size_t head = first_chunk(sound);
-    ASSERT_GT(head, 300u);
-    ASSERT_TRUE(read(sound));
-    enum : std::size_t { rest_bytes = 1, rest_packed, ac_packed, dc_packed, runs_packed, runs_bytes, runs_unrolled, ac_count, dc_count };
-    const auto changed = [&](std::initializer_list<std::pair<std::size_t, std::uint64_t>> numbers) {
-        Bytes bytes = sound;
-        for (const auto& [number, value] : numbers) std::memcpy(bytes.data() + head + 8 * number, &value, sizeof value);
-        return bytes;
-    };
-    const std::pair<const char*, Bytes> cases[] = {
-        {"no runs", changed({{runs_unrolled, 0}})},
-        {"nothing of the rest", changed({{rest_packed, 0}, {runs_packed, 0}, {runs_unrolled, 0}})},
-        {"no DC", changed({{dc_packed, 0}, {dc_count, 0}})},
-        {"no AC", changed({{ac_packed, 0}, {dc_packed, 0}, {dc_count, 0}})},
-    };
-    for (const auto& [name, bytes] : cases) {
-        const auto image = read(bytes);
-        ASSERT_FALSE(image) << name;
-        EXPECT_EQ(image.error().code, ErrorCode::bad_data) << name;
+    for (const std::vector<std::string>& names : {kChannels, kColors}) {
+        const Bytes sound = exr_file({64, 32}, names, Imf::HALF, Imf::DWAA_COMPRESSION);
+        const std::size_t head = first_chunk(sound);
+        ASSERT_GT(head, 300u);
+        ASSERT_TRUE(read(sound));
+        enum : std::size_t { rest_bytes = 1, rest_packed, ac_packed, dc_packed, runs_packed, runs_bytes, runs_unrolled, ac_count, dc_count };
+        const auto changed = [&](std::initializer_list<std::pair<std::size_t, std::uint64_t>> numbers) {
+            Bytes bytes = sound;
+            for (const auto& [number, value] : numbers) std::memcpy(bytes.data() + head + 8 * number, &value, sizeof value);
+            return bytes;
+        };
+        const std::pair<const char*, Bytes> cases[] = {
+            {"no runs", changed({{runs_unrolled, 0}})},
+            {"nothing of the rest", changed({{rest_packed, 0}, {runs_packed, 0}, {runs_unrolled, 0}})},
+            {"no DC", changed({{dc_packed, 0}, {dc_count, 0}})},
+            {"no AC", changed({{ac_packed, 0}, {dc_packed, 0}, {dc_count, 0}})},
+        };
+        for (const auto& [name, bytes] : cases) {
+            const auto image = read(bytes);
+            ASSERT_FALSE(image) << name;
+            EXPECT_EQ(image.error().code, ErrorCode::bad_data) << name;
+        }
     }
 }
 

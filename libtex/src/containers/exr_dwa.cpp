@@ -25,12 +25,15 @@ struct Head {
     std::uint64_t version, rest_bytes, rest_packed, ac_packed, dc_packed, runs_packed, runs_bytes, runs_unrolled, ac_count, dc_count, ac_coding;
 };
 
+constexpr int kNoColor = -1;  // else 0, 1, 2: red, green and blue of one layer are decoded together
+
 // How a chunk codes channels whose name ends so and whose values have this type. `any_case` compares small letters.
 struct Rule {
     std::string suffix;
     Scheme scheme = Scheme::rest;
     int type = 0;
     bool any_case = false;
+    int color = kNoColor;
 };
 
 // Reads on, as long as there is something; what is not there is nothing.
@@ -64,14 +67,15 @@ std::string small_letters(std::string text) {
 // Those of chunks that bring none (versions 0 and 1).
 std::vector<Rule> first_rules() {
     std::vector<Rule> rules;
-    for (const char* name : {"r", "red", "g", "grn", "green", "b", "blu", "blue", "y", "by", "ry"}) {
-        for (const int type : {Imf::HALF, Imf::FLOAT}) rules.push_back({name, Scheme::cosine, type, true});
+    for (const std::string name : {"r", "red", "g", "grn", "green", "b", "blu", "blue", "y", "by", "ry"}) {
+        const auto color = name.ends_with('y') ? std::string::npos : std::string("rgb").find(name[0]);
+        for (const int type : {Imf::HALF, Imf::FLOAT}) rules.push_back({name, Scheme::cosine, type, true, static_cast<int>(color)});
     }
     for (const int type : {Imf::UINT, Imf::HALF, Imf::FLOAT}) rules.push_back({"a", Scheme::runs, type, true});
     return rules;
 }
 
-// Each a name that ends with a zero, a byte with the scheme in bits 2 and 3 and `any_case` in bit 0, and a byte with the type.
+// Each a name that ends with a zero, a byte with the colour and 1 in bits 4 to 7, the scheme in 2 and 3 and `any_case` in bit 0, and a byte with the type.
 std::optional<std::vector<Rule>> read_rules(Cursor& chunk) {
     std::uint16_t bytes = 0;  // with these two
     if (!chunk.read(bytes) || bytes < sizeof bytes) return std::nullopt;
@@ -87,20 +91,51 @@ std::optional<std::vector<Rule>> read_rules(Cursor& chunk) {
         if (!in.read(bits) || !in.read(type)) return std::nullopt;
         rule.scheme = static_cast<Scheme>(bits >> 2 & 3);
         rule.any_case = (bits & 1) != 0;
+        rule.color = (bits >> 4) - 1;
         rule.type = type;
         rules.push_back(std::move(rule));
     }
     return rules;
 }
 
-// The last rule that fits counts.
-Scheme scheme_of(const std::vector<Rule>& rules, const std::string& name, Imf::PixelType type) {
-    const std::string suffix = name.substr(name.find_last_of('.') + 1);
+// What the rules say of one channel. The last one that fits counts.
+struct Coding {
     Scheme scheme = Scheme::rest;
+    int rules = 0;  // that fit
+    int color = kNoColor;
+    std::string layer;
+};
+
+Coding coding_of(const std::vector<Rule>& rules, const std::string& name, Imf::PixelType type) {
+    const std::size_t suffix_at = name.find_last_of('.') + 1;
+    const std::string suffix = name.substr(suffix_at);
+    Coding coding;
+    coding.layer = name.substr(0, suffix_at);
     for (const Rule& rule : rules) {
-        if (rule.type == type && rule.suffix == (rule.any_case ? small_letters(suffix) : suffix)) scheme = rule.scheme;
+        if (rule.type != type || rule.suffix != (rule.any_case ? small_letters(suffix) : suffix)) continue;
+        coding.scheme = rule.scheme;
+        coding.color = rule.color;
+        ++coding.rules;
     }
-    return scheme;
+    return coding;
+}
+
+// Whether all cosine terms of the chunk are decoded at once: of one channel, or of the three colours of a layer. Of only the first decoder OpenEXR knows where its
+// terms end.
+bool are_decoded_at_once(const std::vector<Coding>& codings) {
+    std::vector<const Coding*> cosine;
+    std::size_t colors = 0;
+    for (const Coding& coding : codings) {
+        if (coding.rules > 1) return false;
+        if (coding.scheme == Scheme::cosine) cosine.push_back(&coding);
+        colors += coding.color != kNoColor;
+    }
+    if (cosine.size() == 1) return true;
+    unsigned seen = 0;
+    for (const Coding* coding : cosine) {
+        if (coding->color >= 0 && coding->layer == cosine[0]->layer) seen |= 1u << coding->color;
+    }
+    return cosine.size() == 3 && colors == 3 && seen == 7;
 }
 
 // What zlib has packed: the first `most` bytes; nothing where it is damaged.
@@ -229,10 +264,12 @@ bool dwa_is_whole(std::span<const std::byte> chunk, int width, int height, const
 
     const auto blocks_of = [](int texels) { return (static_cast<std::uint64_t>(texels) + 7) / 8; };
     std::uint64_t rest_bytes = 0, runs_bytes = 0, blocks = 0;
+    std::vector<Coding> codings;
     for (auto it = channels.begin(); it != channels.end(); ++it) {
         const Imf::PixelType type = it.channel().type;
         const std::uint64_t bytes = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) * (type == Imf::HALF ? 2 : 4);
-        switch (scheme_of(*rules, it.name(), type)) {
+        codings.push_back(coding_of(*rules, it.name(), type));
+        switch (codings.back().scheme) {
             case Scheme::rest: rest_bytes += bytes; break;
             case Scheme::runs: runs_bytes += bytes; break;
             case Scheme::cosine: blocks += blocks_of(width) * blocks_of(height); break;
@@ -240,7 +277,7 @@ bool dwa_is_whole(std::span<const std::byte> chunk, int width, int height, const
     }
     // OpenEXR checks that there are as many values of DC and of runs as the chunk claims, but of the rest and of AC takes the claim for it.
     if (head.dc_count < blocks || head.runs_unrolled < runs_bytes) return false;
-    if (blocks > 0 && !ac_is_whole(head, *ac, blocks)) return false;
+    if (blocks > 0 && (ac->empty() || !(are_decoded_at_once(codings) || ac_is_whole(head, *ac, blocks)))) return false;
     if (rest_bytes == 0) return true;
     const auto stored = inflated(*rest, rest_bytes);
     return stored && stored->size() == rest_bytes;
