@@ -86,12 +86,12 @@ Result<void> BakeNormals::process(cli::Job& job) {
     options.mip.levels = mips.levels_for(job.task);
     options.pack = output.pack_options(encoding(job), output.y.value_or(YAxis::up));
     options.write = output.write_options(job);
-    options.level_names = cli::level_names(job.task);
+    options.level_names = cli::level_names(job.task.output);
     options.slopes = run.json;
     const auto baked = bake_file(job.task.input, job.task.output, job.task.container, options, job.until(1.0));
     if (!baked) return cli::HeightReader::with_remedy(baked.error());
     reader.note(job, baked->heights);
-    cli::wrote_levels(job, baked->levels);
+    cli::wrote_levels(job, job.task.output, baked->levels);
     cli::report_texture(job, baked->extent, baked->levels, options.pack, baked->bytes);
     const SlopeRange& slopes = baked->slopes;
     job.report["slopes"] = {{"x", {slopes.min_x, slopes.max_x}}, {"y", {slopes.min_y, slopes.max_y}}};

@@ -33,7 +33,6 @@ struct MipNormals {
     MipNormals();
     void check(const std::vector<cli::Task>& tasks) const;
     Result<void> process(cli::Job& job);
-    Result<void> process_chain(cli::Job& job);
 };
 
 MipNormals::MipNormals() {
@@ -69,30 +68,12 @@ void MipNormals::check(const std::vector<cli::Task>& tasks) const {
 }
 
 Result<void> MipNormals::process(cli::Job& job) {
-    if (roughness.is_given()) return process_chain(job);
     PackFileOptions options;
     options.mip = mips.mip;
     options.mip->levels = mips.levels.value_or(0);
-    return cli::repack(job, source, output, options,
-                       [&](const SourceInfo&) { return default_encoding(job.task.container); });
-}
-
-// Roughness is made of the normals: the chain is held as a whole.
-Result<void> MipNormals::process_chain(cli::Job& job) {
-    auto read = source.read(job, 0.4, true);
-    if (!read) return read.error();
-    MipOptions options = mips.mip;
-    options.levels = mips.levels.value_or(0);
-    NormalMap& base = read->chain.levels.front();
-    auto rougher = roughness.build(job, base, options, job.until(0.5));
-    if (!rougher) return rougher.error();
-    auto chain = build_mip_chain(std::move(base), options, job.until(0.6));
-    if (!chain) return chain.error();
-    const Encoding encoding = output.format.value_or(default_encoding(job.task.container));
-    auto written = cli::write_chain(job, std::move(*chain), output, encoding, output.y.value_or(read->info.y_axis));
-    if (!written) return written;
-    cli::report_path(job, Path::whole);
-    return roughness.write(job, *rougher, output, job.until(0.99));
+    if (roughness.is_given()) options.roughness = roughness.file(job, output.effort);
+    return cli::repack(job, source, output, options, [&](const SourceInfo&) { return default_encoding(job.task.container); },
+                       [&](const PackFileReport& packed) { roughness.tell(job, packed); });
 }
 
 }  // namespace

@@ -79,6 +79,16 @@ Result<BakeFileReport> bake_whole(Image image, const std::string& output, Contai
     return report;
 }
 
+Result<Texture> roughness_whole(const NormalMap& base, const RoughnessFile& file, MipOptions mip, const Execution& execution) {
+    const Execution silent{execution.threads, {}};
+    Result<Plane<float>> own = file.map ? file.map() : Plane<float>(base.extent(), file.own);
+    if (!own) return own.error();
+    if (!holds_levels(file.container, file.level_names)) mip.levels = 1;
+    const Result<RoughnessChain> chain = build_roughness_chain(base, *own, file.model, mip, silent);
+    if (!chain) return chain.error();
+    return pack_roughness(*chain, file.format, file.effort, silent);
+}
+
 Result<PackFileReport> pack_whole(InputFile& file, const std::string& output, Container container, const PackFileOptions& options,
                                   const Execution& execution) {
     const bool base_only = options.level ? *options.level == 0 : options.mip.has_value();
@@ -97,6 +107,14 @@ Result<PackFileReport> pack_whole(InputFile& file, const std::string& output, Co
         if (!scaled) return scaled.error();
         chain = std::move(*scaled);
     }
+    std::optional<Texture> roughness;
+    if (options.roughness) {
+        MipOptions mip = *options.mip;
+        if (!holds_levels(container, options.level_names)) mip.levels = 1;
+        auto made = roughness_whole(chain.levels.front(), *options.roughness, mip, execution);
+        if (!made) return made.error();
+        roughness = std::move(*made);
+    }
     if (options.mip && holds_levels(container, options.level_names)) {
         auto built = build_mip_chain(std::move(chain.levels.front()), *options.mip, part_of(execution, 0.5, 0.6));
         if (!built) return built.error();
@@ -110,7 +128,18 @@ Result<PackFileReport> pack_whole(InputFile& file, const std::string& output, Co
     auto bytes = write_whole(std::move(*texture), {output, options.level_names}, container, options.write);
     if (!bytes) return bytes.error();
     report.bytes = *bytes;
+    if (roughness) {
+        const RoughnessFile& rough = *options.roughness;
+        auto beside = write_whole(std::move(*roughness), {rough.output, rough.level_names}, rough.container, options.write);
+        if (!beside) return beside.error();
+        report.roughness_bytes = *beside;
+    }
     return report;
+}
+
+// Whether the roughness, where there is any, streams.
+bool roughness_streams(const PackFileOptions& options) {
+    return !options.roughness || (!options.roughness->map && takes_strips(options.roughness->container));
 }
 
 }  // namespace
@@ -135,10 +164,11 @@ Result<BakeFileReport> bake_file(const std::string& input, const std::string& ou
 Result<PackFileReport> pack_file(const std::string& input, const std::string& output, Container container,
                                  const PackFileOptions& options, const Execution& execution) {
     assert(!options.level || *options.level >= 0);
+    assert(!options.roughness || options.mip);
     return guarded([&]() -> Result<PackFileReport> {
         Result<InputFile> file = InputFile::open(input);
         if (!file) return file.error();
-        if (takes_strips(container)) {
+        if (takes_strips(container) && roughness_streams(options)) {
             Result<std::optional<TextureRows>> texture = open_texture_rows(*file, options.source.read);
             if (!texture) return texture.error();
             if (*texture) {

@@ -37,7 +37,7 @@ const Case kCases[] = {
     {"Floats", "unpack-normals", {"a.dds", "-o", "out.exr", "--threads", "2"}, "a.dds"},
     {"Report", "bake-normals", {"a.png", "b.png", "--out-dir", ".", "--name", "out_{stem}.ktx2", "--json"}, ""},
     {"Picture", "preview-normals", {"a.dds", "-o", "out.png", "--size", "32"}, "a.dds"},
-    {"Exr", "mip-normals", {"a.exr", "-o", "out.exr"}, "a.exr"},
+    {"Exr", "mip-normals", {"a.exr", "-o", "out.exr", "--roughness-out", "rough.dds"}, "a.exr"},
     {"OtherReader", "bake-normals", {"a.tif", "-o", "out.dds"}, "a.tif", true},
     {"OtherWriter", "unpack-normals", {"a.dds", "-o", "out.tif"}, "a.dds", true},
 };

@@ -133,6 +133,12 @@ TEST_F(MipNormals, TellsWhichWayAFileWent) {
     EXPECT_EQ(path_of("mip-normals", {"n.png", "-o", "x.exr"}), "streamed");
     EXPECT_EQ(path_of("unpack-normals", {"x.exr", "-o", "y.exr", "--level", "all"}), "streamed");
     EXPECT_EQ(path_of("unpack-normals", {"n.png", "-o", "x.tga"}), "whole");
+    for (const std::string rough : {"r.dds", "r.exr", "r{level}.png"}) {
+        EXPECT_EQ(path_of("mip-normals", {"n.png", "-o", "x.dds", "--roughness-out", rough}), "streamed") << rough;
+        EXPECT_EQ(path_of("mip-normals", {"n.png", "--name", "x{level}.png", "--roughness-out", rough}), "streamed") << rough;
+    }
+    EXPECT_EQ(path_of("mip-normals", {"n.png", "-o", "x.dds", "--roughness-out", "r.dds", "--roughness-in", "h.png"}), "whole");
+    EXPECT_EQ(path_of("mip-normals", {"n.png", "-o", "x.dds", "--roughness-out", "r{level}.tga"}), "whole");
     EXPECT_EQ(path_of("mip-normals", {"n.png", "--name", "x{level}.dds"}), "streamed");
 }
 

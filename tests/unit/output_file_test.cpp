@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A file for each level, from streams.
+// A file for each level, and files of roughness, from streams.
 
 #include "pipeline/output_file.h"
 
@@ -134,6 +134,56 @@ TEST_F(OutputFiles, LevelsOfRepackedMapsHaveTheBytesOfTheVerbs) {
         ASSERT_TRUE(report) << report.error().message();
         expect_files(chain, container, report->bytes);
         remove_outputs();
+    }
+}
+
+// Roughness beside the normals, of values and of maps, streamed and not.
+TEST_F(OutputFiles, RoughnessHasTheBytesOfTheVerbs) {
+    constexpr Format kFormats[] = {Format::bc4_unorm, Format::r8_unorm, Format::r16_unorm, Format::r16_float, Format::r32_float};
+    constexpr Container kRough[] = {Container::dds, Container::ktx2, Container::exr, Container::png};
+    std::mt19937 random(10);
+    for (int round = 0; round < 150; ++round) {
+        const Extent extent{kSides[random() % 11], kSides[random() % 11]};
+        SCOPED_TRACE(testing::Message() << "round " << round << ", " << extent.width << "x" << extent.height);
+        draw(random, Container::dds);
+        pack_.level_names = {};
+        pack_.mip = bake_.mip;
+        RoughnessFile file;
+        file.output = path("rough");
+        file.container = kRough[random() % 4];
+        file.format = kFormats[file.container == Container::exr ? 3 + random() % 2 : file.container == Container::png ? 1 + random() % 2 : random() % 5];
+        if (file.container == Container::exr) pack_.mip->levels = random() % 2 == 0 ? 0 : 1;
+        file.effort = Effort::fast;
+        file.model = any_of(kRoughnessModelNames, random);
+        file.own = static_cast<float>(random() % 5) / 4.0f;
+        pack_.roughness = file;
+        const std::string input = write_map(extent, 1, Container::png);
+
+        const NormalMap base = std::move(read_normals(input).value().chain.levels.front());
+        MipOptions mip = *pack_.mip;
+        if (file.container == Container::png) mip.levels = 1;
+        const Plane<float> own(extent, file.own);
+        const RoughnessChain chain = build_roughness_chain(base, own, file.model, mip).value();
+        const Bytes expected = encode_file(pack_roughness(chain, file.format, file.effort).value(), file.container, pack_.write).value();
+
+        Result<InputFile> opened = InputFile::open(input);
+        Result<std::optional<TextureRows>> texture = open_texture_rows(*opened, {});
+        const StreamSizes sizes{1 << (2 + random() % 10), 0};
+        const auto report = pack_stream(*opened, std::move(**texture), path("out"), Container::dds, pack_, {1 + static_cast<int>(random() % 3), {}}, sizes);
+        ASSERT_TRUE(report) << report.error().message();
+        ASSERT_TRUE(bytes_of(path("rough")) == expected);
+        EXPECT_EQ(report->roughness_bytes, expected.size());
+        const Bytes normals = bytes_of(path("out"));
+        pack_.roughness->map = [&]() -> Result<Plane<float>> { return Plane<float>(extent, file.own); };
+        const auto whole = pack_file(input, path("out"), Container::dds, pack_);
+        ASSERT_TRUE(whole) << whole.error().message();
+        EXPECT_EQ(whole->path, Path::whole);
+        EXPECT_EQ(whole->roughness_bytes, expected.size());
+        EXPECT_TRUE(bytes_of(path("rough")) == expected);
+        EXPECT_TRUE(bytes_of(path("out")) == normals);
+        pack_.roughness.reset();
+        ASSERT_TRUE(pack_file(input, path("out"), Container::dds, pack_));
+        EXPECT_TRUE(bytes_of(path("out")) == normals);
     }
 }
 

@@ -48,6 +48,8 @@ public:
         return advance_(fraction);
     }
 
+    [[nodiscard]] int threads() const { return threads_; }
+
     void warn(std::string sentence) { warnings_.push_back(std::move(sentence)); }  // told after "FILE: "
     void depends_on(std::string path) { prerequisites_.push_back(std::move(path)); }
     void say(std::string_view text) { text_ += text; }      // on standard output, unless --json is given

@@ -49,6 +49,23 @@ Result<std::size_t> write_file_of(Job& job, const Texture& texture, const std::s
     return bytes->size();
 }
 
+// Writes `texture` to `name` as a `container`: one file, or one for each level where the name has {level}. Returns the bytes of all.
+Result<std::size_t> write_levels(Job& job, Texture texture, const std::string& name, Container container,
+                                 const OutputOptions& options) {
+    const WriteOptions write = options.write_options(job);
+    if (!has_level(name)) return write_file_of(job, texture, name, container, write);
+    std::size_t bytes = 0;
+    std::vector<Level> levels = std::exchange(texture.levels, {});
+    for (std::size_t k = 0; k < levels.size(); ++k) {
+        texture.levels.clear();
+        texture.levels.push_back(std::move(levels[k]));
+        auto size = write_file_of(job, texture, with_level(name, static_cast<int>(k)), container, write);
+        if (!size) return size.error();
+        bytes += *size;
+    }
+    return bytes;
+}
+
 }  // namespace
 
 std::string default_encodings() {
@@ -120,22 +137,6 @@ WriteOptions OutputOptions::write_options(const Job& job) const {
     write.dds_header = dds_header;
     write.dds_mark = dds_mark;
     return write;
-}
-
-Result<std::size_t> write_levels(Job& job, Texture texture, const std::string& name, Container container,
-                                 const OutputOptions& options) {
-    const WriteOptions write = options.write_options(job);
-    if (!has_level(name)) return write_file_of(job, texture, name, container, write);
-    std::size_t bytes = 0;
-    std::vector<Level> levels = std::exchange(texture.levels, {});
-    for (std::size_t k = 0; k < levels.size(); ++k) {
-        texture.levels.clear();
-        texture.levels.push_back(std::move(levels[k]));
-        auto size = write_file_of(job, texture, with_level(name, static_cast<int>(k)), container, write);
-        if (!size) return size.error();
-        bytes += *size;
-    }
-    return bytes;
 }
 
 void report_texture(Job& job, Extent extent, int levels, const PackOptions& pack, std::size_t bytes) {

@@ -48,10 +48,6 @@ struct OutputOptions {
 // ".dds" for Container::dds: the first of its extensions.
 [[nodiscard]] std::string extension_of(Container container);
 
-// Writes `texture` to `name` as a `container`: one file, or one for each level where the name has {level}. Returns the bytes of all.
-[[nodiscard]] Result<std::size_t> write_levels(Job& job, Texture texture, const std::string& name,
-                                               Container container, const OutputOptions& options);
-
 // Tells the job's report extent, levels, format, y and bytes.
 void report_texture(Job& job, Extent extent, int levels, const PackOptions& pack, std::size_t bytes);
 

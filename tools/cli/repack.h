@@ -17,15 +17,15 @@ namespace tex::cli {
 using EncodingOf = std::function<Encoding(const SourceInfo& source)>;
 
 // pack_file() of the job's input, and what there is to tell of it. `options` says what happens on the way (level, scale, mip); all else is
-// `source`'s and `output`'s.
+// `source`'s and `output`'s. `also_tell` comes last, where all went well.
 [[nodiscard]] Result<void> repack(Job& job, SourceOptions& source, const OutputOptions& output, PackFileOptions options,
-                                  const EncodingOf& encoding);
+                                  const EncodingOf& encoding, const std::function<void(const PackFileReport&)>& also_tell = {});
 
-// The names of the task's files where each level has one of its own, else empty.
-[[nodiscard]] LevelNames level_names(const Task& task);
+// The names of files that each hold a level, where `name` has {level}, else empty.
+[[nodiscard]] LevelNames level_names(const std::string& name);
 
-// Tells the job that its output, of so many levels, has been written.
-void wrote_levels(Job& job, int levels);
+// Tells the job that `name`, of so many levels, has been written.
+void wrote_levels(Job& job, const std::string& name, int levels);
 
 // Tells the job's report which way the file went.
 void report_path(Job& job, Path path);

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "cli/name_pattern.h"
+#include "cli/repack.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "cli/value.h"
@@ -118,38 +119,39 @@ void RoughnessOptions::check(const std::vector<Task>& tasks, int levels) const {
     }
 }
 
-Result<RoughnessChain> RoughnessOptions::build(Job& job, const NormalMap& base, const MipOptions& mip,
-                                               const Execution& execution) const {
-    if (input_.file.empty())
-        return build_roughness_chain(base, Plane<float>(base.extent(), value_), model_, mip, execution);
-    const ChannelFile source = input_of(job.task);
-    job.depends_on(source.file);
-    auto roughness = read_channel(job, source, {execution.threads, {}});
-    if (!roughness) return roughness.error();
-    return build_roughness_chain(base, *roughness, model_, mip, execution);
+RoughnessFile RoughnessOptions::file(Job& job, Effort effort) const {
+    RoughnessFile file;
+    file.output = output_of(job.task);
+    file.level_names = level_names(file.output);
+    file.container = container_for(file.output);
+    file.format = format_in(file.container);
+    file.effort = effort;
+    file.model = model_;
+    file.own = value_;
+    if (input_.file.empty()) return file;
+    file.map = [this, &job]() -> Result<Plane<float>> {
+        const ChannelFile source = input_of(job.task);
+        job.depends_on(source.file);
+        return read_channel(job, source, {job.threads(), {}});
+    };
+    return file;
 }
 
-Result<void> RoughnessOptions::write(Job& job, const RoughnessChain& chain, const OutputOptions& options,
-                                     const Execution& execution) const {
+void RoughnessOptions::tell(Job& job, const PackFileReport& packed) const {
+    if (!is_given()) return;
     const std::string path = output_of(job.task);
-    const Container container = container_for(path);
-    const Format format = format_in(container);
-    auto texture = pack_roughness(chain, format, options.effort, execution);
-    if (!texture) return texture.error();
     const std::vector<std::string> normals = job.outputs();
     if (has_level(job.task.output)) job.report["output"] = normals;
-    auto bytes = write_levels(job, std::move(*texture), path, container, options);
-    if (!bytes) return bytes.error();
+    wrote_levels(job, path, packed.levels);
     const std::vector<std::string> written(job.outputs().begin() + static_cast<std::ptrdiff_t>(normals.size()),
                                            job.outputs().end());
     Json report;
     if (has_level(path)) report["output"] = written;
     else report["output"] = path;
-    report["format"] = name_of(kRoughnessFormatNames, format);
+    report["format"] = name_of(kRoughnessFormatNames, format_in(container_for(path)));
     report["model"] = name_of(kRoughnessModelNames, model_);
-    report["bytes"] = *bytes;
+    report["bytes"] = packed.roughness_bytes;
     job.report["roughness"] = std::move(report);
-    return {};
 }
 
 }  // namespace tex::cli

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <tex/pipeline.h>
 #include <tex/roughness.h>
 
 #include "cli/command.h"
@@ -36,12 +37,10 @@ public:
     // Throws UsageError where an output cannot hold the levels. `levels` are those asked for, 0 for all.
     void check(const std::vector<Task>& tasks, int levels) const;
 
-    // Reads what --roughness-in names and builds the roughness of every level.
-    [[nodiscard]] Result<RoughnessChain> build(Job& job, const NormalMap& base, const MipOptions& mip,
-                                               const Execution& execution) const;
-    // Writes it, after the normal map. Tells the job's report.
-    [[nodiscard]] Result<void> write(Job& job, const RoughnessChain& chain, const OutputOptions& options,
-                                     const Execution& execution) const;
+    // What the library makes of them; it reads what --roughness-in names when it needs it. The job must outlive it.
+    [[nodiscard]] RoughnessFile file(Job& job, Effort effort) const;
+    // Tells the job's report of a map that has been written after the normals; nothing where none was asked for.
+    void tell(Job& job, const PackFileReport& packed) const;
 
 private:
     void take_input(const std::string& text);

@@ -21,6 +21,7 @@
 #include <tex/names.h>
 #include <tex/pack.h>
 #include <tex/result.h>
+#include <tex/roughness.h>
 #include <tex/scale.h>
 #include <tex/source.h>
 
@@ -78,6 +79,18 @@ struct BakeFileReport {
 [[nodiscard]] Result<BakeFileReport> bake_file(const std::string& input, const std::string& output, Container container,
                                                const BakeFileOptions& options = {}, const Execution& execution = {});
 
+// A map of roughness beside the normals: build_roughness_chain() of the base level, with as many levels (one, where the file holds one), pack_roughness(), write_texture().
+struct RoughnessFile {
+    std::string output;
+    LevelNames level_names;  // as in BakeFileOptions
+    Container container = Container::dds;
+    Format format = Format::bc4_unorm;
+    Effort effort = Effort::normal;
+    RoughnessModel model = RoughnessModel::toksvig;
+    float own = 0.0f;  // the material's roughness, the same everywhere,
+    std::function<Result<Plane<float>>()> map;  // or what this reads
+};
+
 // What pack_file() does: read_normals(), scale() where there is a scale, build_mip_chain() where there is `mip`, pack(), write_texture().
 struct PackFileOptions {
     SourceOptions source;
@@ -90,6 +103,7 @@ struct PackFileOptions {
     std::function<PackOptions(const SourceInfo&)> pack;
     WriteOptions write;
     LevelNames level_names;  // as in BakeFileOptions
+    std::optional<RoughnessFile> roughness;  // only where there is `mip`
 };
 
 struct PackFileReport {
@@ -97,6 +111,7 @@ struct PackFileReport {
     Extent extent;          // of the base level that was written
     int levels = 1;
     std::size_t bytes = 0;  // of the output, of all its files
+    std::size_t roughness_bytes = 0;
     PackOptions pack;
     SourceInfo source;
 };
@@ -106,7 +121,8 @@ struct PackFileReport {
 //
 // Streamed: DDS, KTX2 and EXR, level by level, PNG that is not interlaced, and what the reader process decodes (TIFF, TGA, JPEG ...), into DDS, KTX2, PNG and
 // EXR, which keeps the compressed tiles of built levels in memory until the base level is done. Everything else takes the path of whole images: the reader process encodes whole
-// pictures. Pictures that hold one level get the base level.
+// pictures. Pictures that hold one level get the base level. A map of roughness
+// streams beside the normals where both files do and RoughnessFile::map is empty; its file appears after theirs.
 //
 // Streams cannot look at all texels before the first is written. Where these decide (four channels without a swizzle; floats without a range), the
 // likeliest layout of the format is assumed: x, y, z in R, G, B; x in A and y in G in BC3; signed floats. Where the texels turn out to say otherwise, the

@@ -75,6 +75,9 @@ struct RoughnessChain {
                                                            const MipOptions& options = {},
                                                            const Execution& execution = {});
 
+// The roughness is in the first channel, and that of no normal.
+inline constexpr Swizzle kRoughnessSwizzle = {Component::other, Component::zero, Component::zero, Component::one};
+
 // Packs a chain as a texture of one channel: bc4_unorm (with the same promises as pack()), r8_unorm, r16_unorm (codes rounded as in
 // format.h, of the value instead of (n + 1) / 2), r16_float or r32_float. Other formats give bad_option.
 //

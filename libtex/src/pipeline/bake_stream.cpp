@@ -82,7 +82,7 @@ Result<BakeFileReport> bake_stream(InputFile& file, std::unique_ptr<RowSource> r
     report.extent = extent;
     report.levels = levels_of(extent, container, options);
     const Result<std::unique_ptr<StripWriter>> opened =
-        StripWriter::open({output, options.level_names}, container, extent, report.levels, options.pack, options.write);
+        StripWriter::open({output, options.level_names}, container, packing_of(options.pack, extent, report.levels), options.write);
     if (!opened) return opened.error();
     StripWriter& writer = **opened;
     RowStream stream(*rows, input, 0, report.levels, writer, execution, sizes);

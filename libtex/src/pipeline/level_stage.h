@@ -8,7 +8,7 @@
 
 #include <tex/mip.h>
 
-#include "base/mip_rows.h"
+#include "pipeline/level_step.h"
 #include "pipeline/row_shelf.h"
 #include "pipeline/strips.h"
 
@@ -19,19 +19,17 @@ class LevelStage {
 public:
     // Rows of the base level will come in the order that row_shelf.h describes. `levels` is at least 1 and at most level_count(base).
     LevelStage(Extent base, int levels, int start, const MipOptions& options, Strips& strips);
-    ~LevelStage();
 
     // Row j of the base level is finished; it stays as it is while `owner` lives. Makes all rows of other levels that can be made with it.
     void put(int j, const NormalRow& row, std::shared_ptr<const void> owner);
 
 private:
-    struct Step;
     void put_row(std::size_t step, int j, ShelfRow row);
     void make_row(std::size_t step);
 
     const MipOptions options_;
     Strips& strips_;
-    std::vector<std::unique_ptr<Step>> steps_;  // [k] makes level k + 1 of level k
+    std::vector<std::unique_ptr<LevelStep>> steps_;  // [k] makes level k + 1 of level k
     std::unique_ptr<RowMaker> slopes_;          // of the base level, in the slope domain
     int width_;
 };

@@ -41,7 +41,11 @@ public:
 private:
     Result<void> prepare();
     Result<void> look_at_base_level();
+    Result<std::unique_ptr<StripWriter>> open_writer() const;
     Result<void> stream_level(std::size_t k, StripWriter& writer, const Execution& execution);
+    [[nodiscard]] int roughness_levels() const {
+        return holds_levels(options_.roughness->container, options_.roughness->level_names) ? report_.levels : 1;
+    }
     [[nodiscard]] RowSource& rows(std::size_t k) const { return *texture_.levels[k]; }
 
     TextureRows& texture_;
@@ -107,6 +111,18 @@ Result<void> Attempt::look_at_base_level() {
     return {};
 }
 
+Result<std::unique_ptr<StripWriter>> Attempt::open_writer() const {
+    const StripPacking packing = packing_of(report_.pack, report_.extent, report_.levels);
+    Result<std::unique_ptr<StripWriter>> normals = StripWriter::open({output_, options_.level_names}, container_, packing, options_.write);
+    if (!normals || !options_.roughness) return normals;
+    const RoughnessFile& file = *options_.roughness;
+    const StripPacking rough = packing_of(file, report_.extent, roughness_levels());
+    Result<std::unique_ptr<StripWriter>> roughness =
+        StripWriter::open({file.output, file.level_names}, file.container, rough, options_.write, Opened::late);
+    if (!roughness) return roughness;
+    return StripWriter::pair(std::move(*normals), std::move(*roughness));
+}
+
 // Level k, and what is built of it.
 Result<void> Attempt::stream_level(std::size_t k, StripWriter& writer, const Execution& execution) {
     const Extent extent = rows(k).extent();
@@ -123,7 +139,12 @@ Result<void> Attempt::stream_level(std::size_t k, StripWriter& writer, const Exe
     UnpackStage normals(texture_, extent, sources_, rule_, options_.scale, finder, stream.sink());
     constexpr int kFromTheTop = 0;
     LevelStage mips(extent, levels, kFromTheTop, options_.mip.value_or(MipOptions()), stream.strips());
-    Result<void> done = stream.run(normals, mips);
+    std::optional<RoughnessStage> roughness;
+    if (options_.roughness) {
+        const RoughnessFile& file = *options_.roughness;
+        roughness.emplace(extent, roughness_levels(), *options_.mip, file.model, file.own, stream.roughness_strips(roughness_levels()));
+    }
+    Result<void> done = stream.run(normals, mips, roughness ? &*roughness : nullptr);
     if (done && finder != nullptr) correction_ = finder->correction();
     return done;
 }
@@ -134,8 +155,7 @@ Result<std::optional<PackFileReport>> Attempt::run() {
         if (const Result<void> seen = look_at_base_level(); !seen) return seen.error().of(input_);
         if (correction_) return std::optional<PackFileReport>();
     }
-    Result<std::unique_ptr<StripWriter>> opened =
-        StripWriter::open({output_, options_.level_names}, container_, report_.extent, report_.levels, report_.pack, options_.write);
+    Result<std::unique_ptr<StripWriter>> opened = open_writer();
     if (!opened) return opened.error();
     // Not earlier: who reads from a FIFO takes its last writer's end for that of the file.
     writer_ = std::move(*opened);
@@ -152,6 +172,7 @@ Result<std::optional<PackFileReport>> Attempt::run() {
     }
     if (const Result<void> committed = writer.commit(); !committed) return committed.error();
     report_.bytes = writer.file_bytes();
+    report_.roughness_bytes = writer.roughness_bytes();
     return std::optional(report_);
 }
 

@@ -21,7 +21,7 @@ namespace tex {
 
 // The planes of a row, as many as there are, and whoever owns them.
 struct ShelfRow {
-    const float* planes[3] = {};
+    const float* planes[4] = {};
     std::shared_ptr<const void> owner;
 };
 

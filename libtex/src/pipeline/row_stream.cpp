@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <iterator>
 #include <mutex>
 #include <new>
 #include <optional>
@@ -65,7 +66,8 @@ struct RowStream::Work {
     Work(RowSource& its_rows, const std::string& its_input, int first, int level_total, StripWriter& its_writer, const Execution& its_execution,
          const StreamSizes& sizes)
         : rows(its_rows), input(its_input), writer(its_writer), execution(its_execution), alone(rows.extent().texels() < sizes.worth_threads),
-          strips(rows.extent(), level_total, alone ? std::min(sizes.strip_texels, sizes.strip_texels_alone) : sizes.strip_texels, first),
+          strip_texels(alone ? std::min(sizes.strip_texels, sizes.strip_texels_alone) : sizes.strip_texels),
+          strips(rows.extent(), level_total, strip_texels, first),
           batch_rows(rows_of_batch(rows, strips)) {}
 
     // Those of a strip, and whole groups of what the file holds together.
@@ -78,7 +80,7 @@ struct RowStream::Work {
     void decode(Batch& batch);
     void store(Batch& batch);
     void make(Batch& batch, NormalStage& stage);
-    void write_strips(Batch& batch);
+    void write_strips(Batch& batch, bool in_order);
     void write(Batch& batch);
 
     RowSource& rows;
@@ -86,8 +88,11 @@ struct RowStream::Work {
     StripWriter& writer;
     const Execution& execution;
     const bool alone;  // one thread is enough
+    const int strip_texels;
     Strips strips;
+    std::optional<Strips> beside;  // of roughness
     LevelStage* levels = nullptr;
+    RoughnessStage* roughness = nullptr;
     Strips::Place place;  // of the row that the stage makes
     std::function<void(const Strip&)> seen;
     Pool<Batch> batches;
@@ -142,15 +147,21 @@ void RowStream::Work::make(Batch& batch, NormalStage& stage) {
         if (batch.error) return *batch.error;  // the first of them, whatever the threads do
         stage.put(batch.image, batch.count);
         batch.strips = strips.take_whole();
-        if (writer.is_in_order()) write_strips(batch);
+        if (beside) {
+            std::vector<std::shared_ptr<Strip>> more = beside->take_whole();
+            batch.strips.insert(batch.strips.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+        }
+        write_strips(batch, true);
         const double fraction = static_cast<double>(batch.first + batch.count) / rows.extent().height;
         if (execution.progress && !execution.progress(fraction)) return Error{ErrorCode::cancelled, {}, "cancelled"};
         return {};
     });
 }
 
-void RowStream::Work::write_strips(Batch& batch) {
+// Those that are to come in order, or the others.
+void RowStream::Work::write_strips(Batch& batch, bool in_order) {
     for (std::shared_ptr<Strip>& strip : batch.strips) {
+        if (!strip || writer.is_in_order(*strip) != in_order) continue;
         failure.watch([&]() -> Result<void> {
             if (Result<void> written = writer.write(*strip); !written) return written;
             if (seen) seen(*strip);
@@ -158,11 +169,11 @@ void RowStream::Work::write_strips(Batch& batch) {
         });
         strip.reset();
     }
-    batch.strips.clear();
 }
 
 void RowStream::Work::write(Batch& batch) {
-    write_strips(batch);
+    write_strips(batch, false);
+    batch.strips.clear();
     const std::shared_ptr<Batch> done = std::move(batch.self);
 }
 
@@ -174,6 +185,10 @@ RowStream::~RowStream() = default;
 
 Strips& RowStream::strips() { return work_->strips; }
 
+Strips& RowStream::roughness_strips(int levels) {
+    return work_->beside.emplace(work_->rows.extent(), levels, work_->strip_texels, 0, Content::roughness);
+}
+
 void RowStream::watch(std::function<void(const Strip&)> seen) { work_->seen = std::move(seen); }
 
 NormalSink RowStream::sink() {
@@ -184,15 +199,17 @@ NormalSink RowStream::sink() {
     };
     const auto finish = [work](int j) {
         work->levels->put(j, work->place.row, work->place.strip);
+        if (work->roughness != nullptr) work->roughness->put(j, work->place.row, work->place.strip);
         work->place = {};
         work->strips.finish(0, j);
     };
     return {place, finish};
 }
 
-Result<void> RowStream::run(NormalStage& stage, LevelStage& levels) {
+Result<void> RowStream::run(NormalStage& stage, LevelStage& levels, RoughnessStage* roughness) {
     Work& work = *work_;
     work.levels = &levels;
+    work.roughness = roughness;
     const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
     const int threads = work.alone ? 1 : std::min(thread_count(work.execution), static_cast<int>(allowed));
     try {
@@ -204,7 +221,7 @@ Result<void> RowStream::run(NormalStage& stage, LevelStage& levels) {
     if (work.failure.error()) return *work.failure.error();
     if (Result<void> sound = stage.check(); !sound) return sound;
     // Better no file than one with holes.
-    if (work.strips.missing_rows() != 0) return Error{ErrorCode::unsupported, work.input, "rows are missing: this is a bug"};
+    if (work.strips.missing_rows() != 0 || (work.beside && work.beside->missing_rows() != 0)) return Error{ErrorCode::unsupported, work.input, "rows are missing: this is a bug"};
     return {};
 }
 

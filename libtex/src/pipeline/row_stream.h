@@ -14,6 +14,7 @@
 #include "containers/row_source.h"
 #include "pipeline/level_stage.h"
 #include "pipeline/normal_stage.h"
+#include "pipeline/roughness_stage.h"
 #include "pipeline/strip_writer.h"
 #include "pipeline/strips.h"
 
@@ -37,12 +38,14 @@ public:
     [[nodiscard]] NormalSink sink();
     // Where the levels below the picture go.
     [[nodiscard]] Strips& strips();
+    // Where the roughness of so many levels goes, where there is any. To be called once.
+    [[nodiscard]] Strips& roughness_strips(int levels);
     // Is shown each strip when it has been written; several threads may call at once. May throw std::bad_alloc.
     void watch(std::function<void(const Strip& strip)> seen);
 
-    // Brings all rows to `stage`, what it makes to `levels`, and the strips of all to the writer. Errors: those of reading, which name the file; the stage's;
+    // Brings all rows to `stage`, what it makes to `levels` and to `roughness` (which may be null), and the strips of all to the writer. Errors: those of reading, which name the file; the stage's;
     // those of writing; cancelled.
-    Result<void> run(NormalStage& stage, LevelStage& levels);
+    Result<void> run(NormalStage& stage, LevelStage& levels, RoughnessStage* roughness = nullptr);
 
 private:
     struct Work;

@@ -12,11 +12,11 @@
 
 #include "base/guard.h"
 #include "base/pack_rows.h"
+#include "base/roughness_rows.h"
 #include "containers/dds.h"
 #include "containers/file_layout.h"
 #include "containers/ktx2.h"
 #include "containers/row_target.h"
-#include "pipeline/output_file.h"
 
 namespace tex {
 namespace {
@@ -25,11 +25,11 @@ namespace {
 class TextureWriter final : public StripWriter {
 public:
     // `first` is the level that the file begins with.
-    TextureWriter(std::unique_ptr<OutputFile> file, FileLayout layout, const PackOptions& pack, int first)
-        : file_(std::move(file)), layout_(std::move(layout)), pack_(pack), first_(first) {}
+    TextureWriter(std::unique_ptr<OutputFile> file, FileLayout layout, StripPacking packing, int first)
+        : file_(std::move(file)), layout_(std::move(layout)), packing_(std::move(packing)), first_(first) {}
 
     Result<void> begin() { return file_->write_at(0, layout_.head); }
-    [[nodiscard]] bool is_in_order() const override { return false; }
+    [[nodiscard]] bool is_in_order(const Strip&) const override { return false; }
     Result<void> write(Strip& strip) override;
     Result<void> commit() override { return file_->commit(); }
     [[nodiscard]] std::size_t file_bytes() const override { return layout_.size; }
@@ -37,19 +37,19 @@ public:
 private:
     const std::unique_ptr<OutputFile> file_;
     const FileLayout layout_;
-    const PackOptions pack_;
+    const StripPacking packing_;
     const int first_;
 };
 
 Result<void> TextureWriter::write(Strip& strip) {
     return guarded([&]() -> Result<void> {
-        const Format format = encoding_info(pack_.encoding).format;
+        const Format format = packing_.head.format;
         const Extent extent{strip.map.extent().width, strip.height};
         const std::size_t size = level_bytes(format, extent);
         const std::size_t stored_size = stored_level_bytes(format, extent, layout_.rearrange);
         const bool rearranged = layout_.rearrange != Rearrange::none;
         strip.bytes.resize(size + (rearranged ? stored_size : 0));
-        pack_rows(strip.map, strip.height, pack_, 0, strip.height, strip.bytes.data());
+        packing_.pack(strip, strip.bytes.data());
         std::span<const std::byte> stored(strip.bytes.data(), size);
         if (rearranged) {
             std::byte* target = strip.bytes.data() + size;
@@ -65,8 +65,8 @@ Result<void> TextureWriter::write(Strip& strip) {
 // Pictures, whose rows are compressed one after the other. Strips that come before their turn wait, packed.
 class PictureWriter final : public StripWriter {
 public:
-    PictureWriter(std::string path, std::unique_ptr<OutputFile> file, const PackOptions& pack, int first)
-        : path_(std::move(path)), file_(std::move(file)), pack_(pack), first_(first) {}
+    PictureWriter(std::string path, std::unique_ptr<OutputFile> file, StripPacking packing, int first)
+        : path_(std::move(path)), file_(std::move(file)), packing_(std::move(packing)), first_(first) {}
 
     Result<void> begin(Container container, const TextureHead& head) {
         Result<std::unique_ptr<RowTarget>> target =
@@ -78,7 +78,7 @@ public:
         target_ = std::move(*target);
         return {};
     }
-    [[nodiscard]] bool is_in_order() const override { return true; }
+    [[nodiscard]] bool is_in_order(const Strip&) const override { return true; }
     Result<void> write(Strip& strip) override;
     Result<void> commit() override;
     [[nodiscard]] std::size_t file_bytes() const override { return size_; }
@@ -100,7 +100,7 @@ private:
 
     const std::string path_;
     const std::unique_ptr<OutputFile> file_;
-    const PackOptions pack_;
+    const StripPacking packing_;
     std::size_t size_ = 0;
     std::unique_ptr<RowTarget> target_;  // writes into the file
     const int first_;                    // the level that the file begins with
@@ -109,8 +109,8 @@ private:
 
 Result<void> PictureWriter::write(Strip& strip) {
     return guarded([&]() -> Result<void> {
-        strip.bytes.resize(level_bytes(encoding_info(pack_.encoding).format, {strip.map.extent().width, strip.height}));
-        pack_rows(strip.map, strip.height, pack_, 0, strip.height, strip.bytes.data());
+        strip.bytes.resize(level_bytes(packing_.head.format, {strip.map.extent().width, strip.height}));
+        packing_.pack(strip, strip.bytes.data());
         const int index = strip.level - first_;
         Level& level = levels_[index];
         if (strip.first != level.next) {
@@ -134,9 +134,9 @@ Result<void> PictureWriter::commit() {
 // A file for each level.
 class LevelWriter final : public StripWriter {
 public:
-    explicit LevelWriter(std::vector<std::unique_ptr<StripWriter>> levels) : levels_(std::move(levels)), in_order_(levels_.front()->is_in_order()) {}
+    explicit LevelWriter(std::vector<std::unique_ptr<StripWriter>> levels) : levels_(std::move(levels)) {}
 
-    [[nodiscard]] bool is_in_order() const override { return in_order_; }
+    [[nodiscard]] bool is_in_order(const Strip& strip) const override { return levels_[static_cast<std::size_t>(strip.level)]->is_in_order(strip); }
     Result<void> write(Strip& strip) override { return levels_[static_cast<std::size_t>(strip.level)]->write(strip); }
     // One after the other, each closed before the next: those after one that fails do not appear.
     Result<void> commit() override {
@@ -151,26 +151,51 @@ public:
 
 private:
     std::vector<std::unique_ptr<StripWriter>> levels_;
-    const bool in_order_;
+    std::size_t bytes_ = 0;
+};
+
+// Normals, and roughness beside them.
+class PairWriter final : public StripWriter {
+public:
+    PairWriter(std::unique_ptr<StripWriter> normals, std::unique_ptr<StripWriter> roughness)
+        : normals_(std::move(normals)), roughness_(std::move(roughness)) {}
+
+    [[nodiscard]] bool is_in_order(const Strip& strip) const override { return of(strip).is_in_order(strip); }
+    Result<void> write(Strip& strip) override { return of(strip).write(strip); }
+    Result<void> commit() override {
+        if (Result<void> done = normals_->commit(); !done) return done;
+        bytes_ = normals_->file_bytes();
+        normals_.reset();
+        return roughness_->commit();
+    }
+    [[nodiscard]] std::size_t file_bytes() const override { return bytes_; }
+    [[nodiscard]] std::size_t roughness_bytes() const override { return roughness_->file_bytes(); }
+
+private:
+    [[nodiscard]] StripWriter& of(const Strip& strip) const { return strip.content == Content::roughness ? *roughness_ : *normals_; }
+
+    std::unique_ptr<StripWriter> normals_;
+    const std::unique_ptr<StripWriter> roughness_;
     std::size_t bytes_ = 0;
 };
 
 using Opening = Result<std::unique_ptr<StripWriter>>;
 
 // One file, whose base level is level `first` of all.
-Opening open_file(const std::string& path, Container container, const TextureHead& head, int first, const PackOptions& pack, const WriteOptions& options) {
+Opening open_file(const std::string& path, Container container, const StripPacking& packing, int first, Opened when, const WriteOptions& options) {
+    const TextureHead& head = packing.head;
     FileLayout layout;
     if (is_texture(container)) layout = container == Container::dds ? dds_layout(head, options) : ktx2_layout(head);
     const std::size_t bytes = is_texture(container) ? layout.size : level_bytes(head.format, head.extent);
     Result<std::unique_ptr<OutputFile>> file =
-        OutputFile::open(path, bytes, first == 0 ? Opened::at_once : Opened::late, {options.sync, options.no_clobber});
+        OutputFile::open(path, bytes, when, {options.sync, options.no_clobber});
     if (!file) return file.error();
     if (!is_texture(container)) {
-        auto picture = std::make_unique<PictureWriter>(path, std::move(*file), pack, first);
+        auto picture = std::make_unique<PictureWriter>(path, std::move(*file), packing, first);
         if (const Result<void> begun = picture->begin(container, head); !begun) return begun.error();
         return std::unique_ptr<StripWriter>(std::move(picture));
     }
-    auto texture = std::make_unique<TextureWriter>(std::move(*file), std::move(layout), pack, first);
+    auto texture = std::make_unique<TextureWriter>(std::move(*file), std::move(layout), packing, first);
     if (const Result<void> begun = texture->begin(); !begun) return begun.error();
     return std::unique_ptr<StripWriter>(std::move(texture));
 }
@@ -183,19 +208,37 @@ bool holds_levels(Container container, const LevelNames& names) { return names |
 
 bool takes_strips(Container container) { return is_texture(container) || takes_rows(container); }
 
-Opening StripWriter::open(const OutputNames& names, Container container, Extent extent, int levels, const PackOptions& pack, const WriteOptions& options) {
-    const EncodingInfo encoding = encoding_info(pack.encoding);
-    TextureHead head{encoding.format, extent, levels, encoding.swizzle, true, pack.y_axis, true};
-    if (!names.of_level) return open_file(names.output, container, head, 0, pack, options);
-    head.levels = 1;
+StripPacking packing_of(const PackOptions& options, Extent extent, int levels) {
+    const EncodingInfo encoding = encoding_info(options.encoding);
+    return {{encoding.format, extent, levels, encoding.swizzle, true, options.y_axis, true}, [options](const Strip& strip, std::byte* out) {
+                pack_rows(strip.map, strip.height, options, 0, strip.height, out);
+            }};
+}
+
+StripPacking packing_of(const RoughnessFile& options, Extent extent, int levels) {
+    TextureHead head{options.format, extent, levels};
+    head.swizzle = kRoughnessSwizzle;
+    return {head, [format = options.format, effort = options.effort](const Strip& strip, std::byte* out) {
+                pack_roughness_rows(strip.map.x, strip.height, format, effort, 0, strip.height, out);
+            }};
+}
+
+Opening StripWriter::open(const OutputNames& names, Container container, StripPacking packing, const WriteOptions& options, Opened when) {
+    if (!names.of_level) return open_file(names.output, container, packing, 0, when, options);
+    const Extent extent = packing.head.extent;
+    const int levels = std::exchange(packing.head.levels, 1);
     std::vector<std::unique_ptr<StripWriter>> files;
     for (int k = 0; k < levels; ++k) {
-        head.extent = level_extent(extent, k);
-        Opening file = open_file(names.of_level(k), container, head, k, pack, options);
+        packing.head.extent = level_extent(extent, k);
+        Opening file = open_file(names.of_level(k), container, packing, k, k == 0 ? when : Opened::late, options);
         if (!file) return file.error();
         files.push_back(std::move(*file));
     }
     return std::unique_ptr<StripWriter>(std::make_unique<LevelWriter>(std::move(files)));
+}
+
+std::unique_ptr<StripWriter> StripWriter::pair(std::unique_ptr<StripWriter> normals, std::unique_ptr<StripWriter> roughness) {
+    return std::make_unique<PairWriter>(std::move(normals), std::move(roughness));
 }
 
 }  // namespace tex

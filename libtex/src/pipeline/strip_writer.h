@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -10,6 +12,8 @@
 #include <tex/pack.h>
 #include <tex/pipeline.h>
 
+#include "containers/file_layout.h"
+#include "pipeline/output_file.h"
 #include "pipeline/strips.h"
 
 namespace tex {
@@ -20,6 +24,14 @@ struct OutputNames {
     const LevelNames& of_level;
 };
 
+// How strips become texels.
+struct StripPacking {
+    TextureHead head;
+    std::function<void(const Strip& strip, std::byte* out)> pack;
+};
+StripPacking packing_of(const PackOptions& options, Extent extent, int levels);
+StripPacking packing_of(const RoughnessFile& options, Extent extent, int levels);
+
 class StripWriter {
 public:
     StripWriter() = default;
@@ -29,11 +41,14 @@ public:
 
     // Opens the output and writes what stands before the texels. Precondition: takes_strips(). Errors: io, out_of_memory;
     // unsupported (the container cannot hold the encoding, or so many levels).
-    static Result<std::unique_ptr<StripWriter>> open(const OutputNames& names, Container container, Extent extent, int levels,
-                                                     const PackOptions& pack, const WriteOptions& options);
+    static Result<std::unique_ptr<StripWriter>> open(const OutputNames& names, Container container, StripPacking packing, const WriteOptions& options,
+                                                     Opened when = Opened::at_once);
 
-    // Strips are to come one at a time, best from the top; else in any order, from several threads at once.
-    [[nodiscard]] virtual bool is_in_order() const = 0;
+    // Gives strips to one or the other, by their content; files of roughness appear after those of normals.
+    static std::unique_ptr<StripWriter> pair(std::unique_ptr<StripWriter> normals, std::unique_ptr<StripWriter> roughness);
+
+    // Strips of its kind and level are to come one at a time, best from the top; else in any order, from several threads at once.
+    [[nodiscard]] virtual bool is_in_order(const Strip& strip) const = 0;
 
     // Packs a whole strip and puts it into its place. Errors: io, out_of_memory.
     virtual Result<void> write(Strip& strip) = 0;
@@ -42,6 +57,7 @@ public:
     virtual Result<void> commit() = 0;
 
     [[nodiscard]] virtual std::size_t file_bytes() const = 0;
+    [[nodiscard]] virtual std::size_t roughness_bytes() const { return 0; }
 };
 
 // DDS and KTX2, whose strips come in any order.

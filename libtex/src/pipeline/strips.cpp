@@ -8,8 +8,8 @@
 #include <tex/mip_chain.h>
 
 namespace tex {
-Strips::Strips(Extent base, int levels, int strip_texels, int first)
-    : first_(first), levels_(static_cast<std::size_t>(levels)) {
+Strips::Strips(Extent base, int levels, int strip_texels, int first, Content content)
+    : first_(first), content_(content), levels_(static_cast<std::size_t>(levels)) {
     for (int k = 0; k < levels; ++k) {
         Level& level = levels_[static_cast<std::size_t>(k)];
         level.extent = level_extent(base, k);
@@ -24,9 +24,11 @@ Strips::Place Strips::place(int level_index, int j) {
     std::shared_ptr<Strip>& strip = level.open[j / level.rows];
     if (!strip) {
         const Extent extent{level.extent.width, std::min(level.rows, (level.extent.height + 3) / 4 * 4)};
-        strip = level.pool.take([extent] {
+        strip = level.pool.take([extent, this] {
             auto made = std::make_unique<Strip>();
-            made->map = NormalMap(extent);
+            made->content = content_;
+            if (content_ == Content::normals) made->map = NormalMap(extent);
+            else made->map.x = Plane<float>(extent);
             return made;
         });
         strip->level = first_ + level_index;
@@ -35,6 +37,7 @@ Strips::Place Strips::place(int level_index, int j) {
         strip->filled = 0;
     }
     const int row = j - strip->first;
+    if (content_ == Content::roughness) return {{strip->map.x.row(row), nullptr, nullptr}, strip};
     return {{strip->map.x.row(row), strip->map.y.row(row), strip->map.z.row(row)}, strip};
 }
 

@@ -16,13 +16,16 @@
 
 namespace tex {
 
+enum class Content { normals, roughness };
+
 // Some rows of a level, from the row `first`, a multiple of 4, on: as many as a strip has, or those up to the level's end.
 struct Strip {
+    Content content = Content::normals;
     int level = 0;                 // of the file
     int first = 0;
     int height = 0;
     int filled = 0;                // rows that are finished
-    NormalMap map;                 // `height` rows of it
+    NormalMap map;                 // `height` rows of it; roughness has x alone
     std::vector<std::byte> bytes;  // room for whoever packs it
 };
 
@@ -30,9 +33,9 @@ struct Strip {
 class Strips {
 public:
     // A strip of the base level has about `strip_texels` texels, and at least a row of blocks. The base level is level `first` of the file.
-    Strips(Extent base, int levels, int strip_texels, int first = 0);
+    Strips(Extent base, int levels, int strip_texels, int first = 0, Content content = Content::normals);
 
-    // Where row j of a level goes, and who owns the place.
+    // Where row j of a level goes, and who owns the place. Roughness goes to x.
     struct Place {
         NormalRow row;
         std::shared_ptr<Strip> strip;
@@ -57,6 +60,7 @@ private:
         Pool<Strip> pool;
     };
     const int first_;
+    const Content content_;
     std::vector<Level> levels_;
     std::int64_t missing_ = 0;
     std::vector<std::shared_ptr<Strip>> whole_;
