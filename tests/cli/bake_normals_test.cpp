@@ -181,8 +181,8 @@ TEST_F(BakeNormals, TellsWhichWayAFileWent) {
         EXPECT_TRUE(scratch_.read("again.dds") == streamed) << name;
     }
     // Pictures are written from the top; where heights repeat, the last rows are decoded first.
-    for (const std::string name : {"ramp.exr", "ramp.tif", "ramp.tga"}) EXPECT_EQ(bake({"ramp.png", "-o", name}).code, 0);
-    for (const std::string input : {"ramp.png", "ramp.exr", "ramp.tif", "ramp.tga"}) {
+    for (const std::string name : {"ramp.exr", "ramp.tif"}) EXPECT_EQ(bake({"ramp.png", "-o", name}).code, 0);
+    for (const std::string input : {"ramp.png", "ramp.exr", "ramp.tif"}) {
         for (const std::string output : {"y.png", "y.exr"}) {
             for (const std::string wrap : {"repeat", "clamp"}) {
                 SCOPED_TRACE(input + " " + output + " " + wrap);
@@ -193,19 +193,19 @@ TEST_F(BakeNormals, TellsWhichWayAFileWent) {
             }
         }
     }
-    EXPECT_EQ(path_of({"waves.png", "-o", "y.exr", "--mips", "all"}), "streamed");
+    EXPECT_EQ(path_of({"ramp.png", "-o", "y.exr", "--mips", "all"}), "streamed");
     const std::string levels = scratch_.read("y.exr");
-    EXPECT_EQ(path_of({"waves.png", "-o", "y.exr", "--mips", "all", "--fill-invalid"}), "whole");
+    EXPECT_EQ(path_of({"ramp.png", "-o", "y.exr", "--mips", "all", "--fill-invalid"}), "whole");
     EXPECT_TRUE(scratch_.read("y.exr") == levels);
     EXPECT_EQ(shell(scratch_, "cat waves.png | bake-normals - -o - --container png > z.png").code, 0);
     EXPECT_EQ(path_of({"waves.png", "-o", "y.png"}), "streamed");
     EXPECT_TRUE(scratch_.read("y.png") == scratch_.read("z.png"));
     EXPECT_EQ(path_of({"waves.png", "-o", "x.dds", "--color-space", "sRGB"}), "whole");
     for (const char* const name : {"x{level}.dds", "x{level}.ktx2", "x{level}.png", "x{level}.exr"}) {
-        EXPECT_EQ(path_of({"waves.png", "--name", name}), "streamed") << name;
-        EXPECT_EQ(path_of({"waves.png", "--name", name, "--fill-invalid"}), "whole") << name;
+        EXPECT_EQ(path_of({"ramp.png", "--name", name}), "streamed") << name;
+        EXPECT_EQ(path_of({"ramp.png", "--name", name, "--fill-invalid"}), "whole") << name;
     }
-    EXPECT_EQ(path_of({"waves.png", "--name", "x{level}.tga"}), "whole");
+    EXPECT_EQ(path_of({"ramp.png", "--name", "x{level}.tga", "--mips", "2"}), "whole");
     EXPECT_EQ(path_of({"waves.png", "-o", "y.dds", "--fill-invalid"}), "whole");
     EXPECT_EQ(path_of({"waves.png", "-o", "x.dds"}), "streamed");
     EXPECT_TRUE(scratch_.read("x.dds") == scratch_.read("y.dds"));
