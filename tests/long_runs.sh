@@ -22,6 +22,7 @@ inputs=("$samples"/{hemisphere,ramp,strip,waves}.png)
 mkdir in out
 for ((k = 0; k < textures; ++k)); do ln -s "${inputs[k % ${#inputs[@]}]}" "in/$k.png"; done
 (cd in && printf 'in/%s\n' *) >list
+: >report  # which is looked at before the process may have begun
 "$build/bake-normals" --files-from list --out-dir out --threads 2 --no-sync --json --quiet >report &
 process=$!
 while [ -r "/proc/$process/status" ]; do
