@@ -87,6 +87,31 @@ TEST(ExrRows, ChunksAreWhereTheTableSaysInWhateverOrderTheyAreRead) {
     }
 }
 
+// OpenEXR does not look at the attribute `tiles` of a part of scan lines, so it may say anything: writers leave it behind when they convert a tiled file.
+TEST(ExrRows, ScanLinesIgnoreALeftoverTileDescription) {
+    const auto plain = exr_file({37, 41}, {"B", "G", "R"}, Imf::HALF, Imf::ZIP_COMPRESSION);
+    Result<InputFile> plain_file = InputFile::from_memory("lines.exr", plain);
+    const Result<Image> whole = read_exr(*plain_file, {});
+    ASSERT_TRUE(whole);
+    for (const std::uint32_t size : {0u, 1u, 64u, 0x7fffffffu, 0xffffffffu}) {
+        for (const char mode : {0, 1, 2, 0x11, 0x7f}) {
+            SCOPED_TRACE(testing::Message() << size << " mode " << int{mode});
+            const auto bytes = with_attribute(plain, "tiles", "tiledesc", tile_description(64, size, mode));
+            Result<InputFile> file = InputFile::from_memory("tiles.exr", bytes);
+            const Result<Image> image = read_exr(*file, {});
+            ASSERT_TRUE(image) << image.error().message();
+            expect_same(*image, *whole, 0);
+            const auto rows = open_exr_rows(*file, {});
+            ASSERT_TRUE(rows);
+            EXPECT_EQ((*rows)->rows_together(), 16);
+            expect_same(some_rows(**rows, 3, 20), *whole, 3);
+            const auto texture = open_exr_texture_rows(*file, {});
+            ASSERT_TRUE(texture) << texture.error().message();
+            EXPECT_EQ(texture->levels.size(), 1u);
+        }
+    }
+}
+
 TEST(ExrRows, PlanesThatNobodyWantsStayAsTheyWere) {
     Result<InputFile> file = InputFile::from_memory("rows.exr", exr_file({5, 4}, {"G", "R"}, Imf::FLOAT, Imf::ZIP_COMPRESSION, false));
     const auto rows = open_exr_rows(*file, {});

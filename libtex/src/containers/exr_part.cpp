@@ -183,6 +183,12 @@ std::vector<ExrChannel> channels_of(const Imf::Header& header) {
     return channels;
 }
 
+std::optional<Imf::TileDescription> tiles_of(const Imf::Header& header) {
+    // OpenEXR sets the type of a file of one part by its version field.
+    if (!header.hasType() || !Imf::isTiled(header.type()) || !header.hasTileDescription()) return std::nullopt;
+    return header.tileDescription();
+}
+
 Result<Extent> check_header(const std::string& path, const Imf::Header& header, std::int64_t file_size,
                             const ReadOptions& options) {
     if (header.hasType() && !Imf::isImage(header.type())) {
@@ -207,8 +213,8 @@ Result<Extent> check_header(const std::string& path, const Imf::Header& header, 
     const double decoded = static_cast<double>(extent->texels()) * static_cast<double>(texel_bytes);
     const Result<void> claim = check_claim(path, *extent, decoded, file_size, best_ratio(header.compression()));
     if (!claim) return claim.error();
-    if (header.hasTileDescription()) {  // OpenEXR takes memory for a whole tile, however small the picture
-        const std::uint64_t tile = std::uint64_t{header.tileDescription().xSize} * header.tileDescription().ySize;
+    if (const auto tiles = tiles_of(header)) {  // OpenEXR takes memory for a whole tile, however small the picture
+        const std::uint64_t tile = std::uint64_t{tiles->xSize} * tiles->ySize;
         constexpr std::int64_t kSmall = std::int64_t{1} << 20;
         if (tile > static_cast<std::uint64_t>(std::max(kSmall, 4 * extent->texels()))) {
             return Error{ErrorCode::bad_data, path, "damaged EXR: the tiles are much larger than the picture"};

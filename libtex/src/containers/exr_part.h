@@ -14,6 +14,7 @@
 #include <ImfHeader.h>
 #include <ImfIO.h>
 #include <ImfPixelType.h>
+#include <ImfTileDescription.h>
 
 #include <tex/image.h>
 #include <tex/image_io.h>
@@ -71,6 +72,10 @@ struct ExrChannel {
 
 // The channels of a part: R, G, B, A first, then the others by name, as the header lists them.
 std::vector<ExrChannel> channels_of(const Imf::Header& header);
+
+// The tiles of a part that is stored in tiles. A part stored in scan lines may carry the attribute `tiles` too, which then means nothing (and is not checked by
+// OpenEXR: its sizes may be 0).
+std::optional<Imf::TileDescription> tiles_of(const Imf::Header& header);
 
 // The extent of a part. Refuses, before a pixel is read, what is not handled and what cannot be true. Errors: unsupported (deep data, subsampled channels, too
 // large), bad_data.

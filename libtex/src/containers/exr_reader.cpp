@@ -69,7 +69,7 @@ const Imf::Header& ExrReader::header() {
 
 void ExrReader::open_part() {
     if (tiles_ || lines_) return;
-    header().hasTileDescription() ? void(tiles_.emplace(*exr_, 0)) : void(lines_.emplace(*exr_, 0));
+    tiles_of(header()) ? void(tiles_.emplace(*exr_, 0)) : void(lines_.emplace(*exr_, 0));
 }
 
 Imath::Box2i ExrReader::window(int level) {

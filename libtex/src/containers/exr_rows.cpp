@@ -60,7 +60,8 @@ ExrRows::ExrRows(const InputFile& file, Pool<ExrReader> readers, ExrReader& read
     const Imf::Header& header = reader.header();
     const Imath::Box2i window = reader.window(level);
     const Extent extent{window.max.x - window.min.x + 1, window.max.y - window.min.y + 1};
-    rows_together_ = header.hasTileDescription() ? static_cast<int>(header.tileDescription().ySize) : chunk_lines(header.compression());
+    const std::optional<Imf::TileDescription> tiles = tiles_of(header);
+    rows_together_ = tiles ? static_cast<int>(tiles->ySize) : chunk_lines(header.compression());
     rows_together_ = std::min(rows_together_, extent.height);
     std::vector<std::string> names;
     std::size_t bytes = 0;

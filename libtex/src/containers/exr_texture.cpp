@@ -52,12 +52,11 @@ void describe_normals(const Imf::Header& header, std::size_t channels, Texture& 
 
 // How many levels of a part follow our rule.
 int usable_levels(const Imf::Header& header, Extent base, std::vector<std::string>& remarks) {
-    if (!header.hasTileDescription()) return 1;
-    const Imf::TileDescription& tiles = header.tileDescription();
-    if (tiles.mode == Imf::ONE_LEVEL) return 1;
-    if (tiles.mode == Imf::MIPMAP_LEVELS) {
+    const std::optional<Imf::TileDescription> tiles = tiles_of(header);
+    if (!tiles || tiles->mode == Imf::ONE_LEVEL) return 1;
+    if (tiles->mode == Imf::MIPMAP_LEVELS) {
         const auto power = [](int n) { return (n & (n - 1)) == 0; };
-        if (tiles.roundingMode == Imf::ROUND_DOWN || (power(base.width) && power(base.height))) return level_count(base);
+        if (tiles->roundingMode == Imf::ROUND_DOWN || (power(base.width) && power(base.height))) return level_count(base);
         remarks.emplace_back("mip levels with extents rounded up are left out");
     } else {
         remarks.emplace_back("ripmap levels are left out");
