@@ -43,8 +43,12 @@ struct Maker {
         fail(bytes.error());
         return std::vector<std::byte>(256);
     }
-    void png(const std::string& name, const Codes& codes) { write(name + ".png", encoded(texture_of(codes), Container::png)); }
-    void dds(const std::string& name, const Texture& texture) { write(name + ".dds", encoded(texture, Container::dds)); }
+    void png(const std::string& name, const Codes& codes) {
+        write(name + ".png", encoded(texture_of(codes), Container::png));
+    }
+    void dds(const std::string& name, const Texture& texture) {
+        write(name + ".dds", encoded(texture, Container::dds));
+    }
 
     [[nodiscard]] Codes codes() const { return codes_of(base); }
     [[nodiscard]] NormalMap part(int width, int height) const { return crop(base, 0, 0, {width, height}); }
@@ -68,7 +72,8 @@ Codes dotted(Codes codes, int step, int r, int g, int b) {
     const int texels = static_cast<int>(codes.extent.texels());
     for (int k = 0; k < texels; k += step) {
         const int color[3] = {r, g, b};
-        for (int c = 0; c < 3; ++c) codes.at(k % codes.extent.width, k / codes.extent.width, c) = static_cast<unsigned char>(color[c]);
+        for (int c = 0; c < 3; ++c)
+            codes.at(k % codes.extent.width, k / codes.extent.width, c) = static_cast<unsigned char>(color[c]);
     }
     return codes;
 }
@@ -110,7 +115,8 @@ void Maker::files() {
     write("N104-trailing-bytes.dds", bytes);
     png("N105-not-power-of-two", codes_of(part(96, 64)));
     dds("N106-not-multiple-of-4", packed(part(66, 64), Encoding::bc5));
-    for (const char* name : {"N107-too-large", "N108-wrong-format", "N109-wrong-levels", "N110-wrong-extent"}) png(name, codes_of(part(64, 64)));
+    for (const char* name : {"N107-too-large", "N108-wrong-format", "N109-wrong-levels", "N110-wrong-extent"})
+        png(name, codes_of(part(64, 64)));
     WriteOptions dx10;
     dx10.dds_header = DdsHeader::dx10;
     bytes = encoded(packed(part(64, 64), Encoding::rgba8), Container::dds, dx10);
@@ -127,7 +133,8 @@ void Maker::values() {
     png("N201-not-unit-length", codes_of(shorter));
     png("N202-z-below-zero", dotted(codes(), 101, 248, 128, 89));
     Texture texture = packed(part(128, 128), Encoding::rg8);
-    for (std::size_t k = 0; k < texture.levels[0].bytes.size(); k += 202) texture.levels[0].bytes[k] = texture.levels[0].bytes[k + 1] = std::byte{250};
+    for (std::size_t k = 0; k < texture.levels[0].bytes.size(); k += 202)
+        texture.levels[0].bytes[k] = texture.levels[0].bytes[k + 1] = std::byte{250};
     dds("N203-beyond-unit", texture);
     texture = packed(part(64, 64), Encoding::float_);
     const float nan = std::numeric_limits<float>::quiet_NaN();
@@ -136,7 +143,9 @@ void Maker::values() {
     png("N205-null-vector", dotted(codes(), 101, 128, 128, 128));
     png("N206-constant", dotted(codes_of(part(32, 32)), 1, 140, 120, 254));
     png("N207-leaning", codes_of(changed(base, [](int, int, double& p, double&) { p += 0.4; })));
-    png("N208-biased-flat", codes_of(changed(base, [](int i, int, double& p, double& q) { if (i < 64) p = q = 0.0; })));
+    png("N208-biased-flat", codes_of(changed(base, [](int i, int, double& p, double& q) {
+            if (i < 64) p = q = 0.0;
+        })));
     Codes filled = codes(), grey = codes();
     for (int k = 0; k < 128 * 128; ++k) {
         filled.at(k % 128, k / 128, 2) = 255;
@@ -196,12 +205,14 @@ void Maker::levels() {
     const NormalMap steep = changed(base, [](int, int, double& p, double& q) { p *= 2.0, q *= 2.0; });
     dds("N501-level-not-unit", texture_of(chain_of(steep, ChainFault::not_normalised)));
     auto chain = chain_of(base, ChainFault::none);
-    const auto other = chain_of(changed(base, [](int, int, double& p, double& q) { std::swap(p, q), p = -p; }), ChainFault::none);
+    const auto other =
+        chain_of(changed(base, [](int, int, double& p, double& q) { std::swap(p, q), p = -p; }), ChainFault::none);
     for (std::size_t k = 1; k < chain.size(); ++k) chain[k] = other[k];
     dds("N502-level-unrelated", texture_of(chain));
     dds("N503-level-shifted", texture_of(chain_of(base, ChainFault::shifted)));
     chain = chain_of(base, ChainFault::none);
-    const auto faded = chain_of(changed(base, [](int, int, double& p, double& q) { p *= 0.4, q *= 0.4; }), ChainFault::none);
+    const auto faded =
+        chain_of(changed(base, [](int, int, double& p, double& q) { p *= 0.4, q *= 0.4; }), ChainFault::none);
     for (std::size_t k = 2; k < chain.size(); ++k) chain[k] = faded[k];
     dds("N504-fade-unfinished", texture_of(chain));
     const Codes right = codes();

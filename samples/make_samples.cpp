@@ -8,7 +8,8 @@
 //     bricks.png      512x512, 16 bits   a brick wall with worn edges and mortar; tiles (11 bits used: a smaller file)
 //     ramp.png         64x64,   8 bits   four codes a column: a constant slope
 //
-// Only + - * / and sqrt in double, so that every machine writes the same bytes; a test compares them with the committed files.
+// Only + - * / and sqrt in double, so that every machine writes the same bytes; a test compares them with the committed
+// files.
 
 #include <png.h>
 

@@ -46,7 +46,7 @@ for source in libtex/src/*.cpp; do
     need "libtex/include/tex/$name.h" "$source has no public header"
     need "tests/unit/${name}_test.cpp" "$source has no unit test"
 done
-for source in $(select_files '^libtex/src/[a-z]+/[a-z0-9_]+\.cpp$'); do
+for source in $(select_files '^libtex/src/[a-z]+/([a-z0-9]+/)?[a-z0-9_]+\.cpp$'); do
     [ -e "${source%.cpp}.h" ] || [ -e "${source%_*}.h" ] || complain "$source has no header"
 done
 # A kernel, a block codec or a container is tested under its own name, by a test that includes its header, or through a
@@ -64,7 +64,7 @@ tested() {
     done
     return 1
 }
-for source in $(select_files '^libtex/src/(blocks|containers|kernels)/[a-z0-9_]+\.cpp$'); do
+for source in $(select_files '^libtex/src/(blocks|formats|kernels)/([a-z0-9]+/)?[a-z0-9_]+\.cpp$'); do
     tested "$source" 3 || complain "$source has no unit test"
 done
 for source in $(select_files '^tools/[a-z]+-normals\.cpp$'); do
@@ -99,11 +99,11 @@ mapfile -t library < <(select_files '^libtex/src/.*\.(cpp|h)$')
 mapfile -t public < <(select_files '^libtex/include/')
 mapfile -t outside_kernels < <(printf '%s\n' "${library[@]}" | grep -v '/kernels/' || true)
 mapfile -t outside_color < <(printf '%s\n' "${library[@]}" | grep -v '/color\.' || true)
-mapfile -t outside_containers < <(printf '%s\n' "${library[@]}" | grep -v '/containers/\|/image_io\.' || true)
+mapfile -t outside_formats < <(printf '%s\n' "${library[@]}" | grep -v '/formats/' || true)
 mapfile -t outside_reader < <(select_files '^(libtex|tools)/.*\.(cpp|h)$' | grep -v '^tools/reader/' || true)
 ban '#include [<"]hwy/' 'only kernels/ knows Highway' "${outside_kernels[@]}"
 ban '#include <OpenColorIO' 'only color knows OpenColorIO' "${outside_color[@]}"
-ban '#include <(png\.h|OpenEXR/|Imf)' 'only containers/ knows libpng and OpenEXR' "${outside_containers[@]}"
+ban '#include <(png\.h|OpenEXR/|Imf)' 'only formats/ knows libpng and OpenEXR' "${outside_formats[@]}"
 ban '#include <OpenImageIO' 'only the reader knows OpenImageIO' "${outside_reader[@]}"
 ban '#include ("|<(hwy|png|OpenEXR|Imath|Imf|OpenColorIO|OpenImageIO|tbb|fmt))' 'a public header shows a private name' "${public[@]}"
 ban 'std::(cout|cerr|clog|exit|abort|getenv)|[^a-z_](fprintf|puts|perror|getenv|setlocale) ?\(' 'libtex is silent' "${library[@]}"

@@ -4,21 +4,20 @@
 #include <fmt/format.h>
 #include <tex/tex.h>
 
-#include "cli/batch.h"
-#include "cli/groups.h"
-#include "cli/heights.h"
-#include "cli/repack.h"
+#include "batch/batch.h"
+#include "batch/repack.h"
 #include "cli/usage_error.h"
+#include "options/groups.h"
+#include "options/heights.h"
 
 namespace {
 
 using namespace tex;
 
 struct BakeNormals {
-    cli::Command command{
-        "bake-normals",
-        "Turns height maps into tangent-space normal maps: bakes the normals, builds the mip chain, "
-        "packs and writes it."};
+    cli::Command command{"bake-normals",
+                         "Turns height maps into tangent-space normal maps: bakes the normals, builds the mip chain, "
+                         "packs and writes it."};
     cli::FileOptions files;
     cli::HeightReader reader;
     cli::WrapOptions wrap;
@@ -50,25 +49,22 @@ BakeNormals::BakeNormals() {
     output.add(command, cli::default_encodings(), "up");
     mips.add(command, false, "all in dds and ktx2, else none");
     run.add(command);
-    command.example("bake-normals bricks.png -o bricks.dds --bumpiness 8",
-                    "A DXT5nm texture with all its mip levels.");
+    command.example("bake-normals bricks.png -o bricks.dds --bumpiness 8", "A DXT5nm texture with all its mip levels.");
     command.example("bake-normals rock.exr -o rock.ktx2 --format bc5 --height-range 0.15 --size 2 --y down",
                     "A rock face 2 m wide with 15 cm of relief, as BC5 for a renderer with green down.");
-    command.example("bake-normals maps/*.png --out-dir out --kernel scharr --json",
-                    "A folder at once, with a report.");
+    command.example("bake-normals maps/*.png --out-dir out --kernel scharr --json", "A folder at once, with a report.");
 }
 
 void BakeNormals::add_kernel() {
-    cli::Row& row =
-        command.option("--kernel", "K", "how slopes are measured", [this](const std::string& text) {
-            const auto [name, sigma] = cli::cut(text, ':');
-            bake.kernel = cli::parse_word(name, kGradientKernelNames);
-            if (text.find(':') == std::string::npos) return;
-            if (bake.kernel != GradientKernel::gaussian) {
-                throw cli::UsageError(fmt::format("{} takes no sigma, only gaussian does", name));
-            }
-            bake.gaussian_sigma = cli::parse_float(sigma, {0.0, kMaxGaussianSigma, false});
-        });
+    cli::Row& row = command.option("--kernel", "K", "how slopes are measured", [this](const std::string& text) {
+        const auto [name, sigma] = cli::cut(text, ':');
+        bake.kernel = cli::parse_word(name, kGradientKernelNames);
+        if (text.find(':') == std::string::npos) return;
+        if (bake.kernel != GradientKernel::gaussian) {
+            throw cli::UsageError(fmt::format("{} takes no sigma, only gaussian does", name));
+        }
+        bake.gaussian_sigma = cli::parse_float(sigma, {0.0, kMaxGaussianSigma, false});
+    });
     row.words = cli::words_of(kGradientKernelNames);
     row.completes = cli::Completes::words;
     row.preset = name_of(kGradientKernelNames, bake.kernel);

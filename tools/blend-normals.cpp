@@ -4,21 +4,20 @@
 #include <fmt/format.h>
 #include <tex/tex.h>
 
-#include "cli/batch.h"
-#include "cli/groups.h"
-#include "cli/layers.h"
-#include "cli/source.h"
+#include "batch/batch.h"
 #include "cli/usage_error.h"
+#include "options/groups.h"
+#include "options/layers.h"
+#include "options/source.h"
 
 namespace {
 
 using namespace tex;
 
 struct BlendNormals {
-    cli::Command command{
-        "blend-normals",
-        "Blends detail normal maps on base normal maps, as a shader does, and builds the mip chain of "
-        "the result."};
+    cli::Command command{"blend-normals",
+                         "Blends detail normal maps on base normal maps, as a shader does, and builds the mip chain of "
+                         "the result."};
     cli::FileOptions files;
     BlendOptions blend;
     cli::LayerOptions layers;
@@ -39,8 +38,7 @@ struct BlendNormals {
 BlendNormals::BlendNormals() {
     command.usage("BASE DETAIL... -o FILE");
     command.usage("BASE... --detail FILE --out-dir DIR");
-    command.input("BASE DETAIL...",
-                  "normal maps, the base first; with --detail all are bases; - is standard input");
+    command.input("BASE DETAIL...", "normal maps, the base first; with --detail all are bases; - is standard input");
     files.joins = true;
     files.add(command);
     add_blend();
@@ -50,8 +48,7 @@ BlendNormals::BlendNormals() {
     mips.add(command, false, "all in dds and ktx2, else none");
     wrap.add(command, "what lies beyond the base's border, or for x and y apart");
     run.add(command);
-    command.example("blend-normals wall.png grain.png -o wall.dds --tiling 8",
-                    "Grain on a wall, eight times across.");
+    command.example("blend-normals wall.png grain.png -o wall.dds --tiling 8", "Grain on a wall, eight times across.");
     command.example(
         "blend-normals rock.dds moss.dds cracks.dds -o out.dds --mode rnm --mask moss.png:a --strength 0.8 "
         "--strength 1",
@@ -63,16 +60,14 @@ BlendNormals::BlendNormals() {
 void BlendNormals::add_blend() {
     command.group("Blend");
     command.choice(blend.mode, "--mode", "M", kBlendModeNames, "how two normals become one");
-    command.number(blend.base_scale, "--base-scale", "S", {-kMaxScale, kMaxScale},
-                   "make the base steeper or flatter");
+    command.number(blend.base_scale, "--base-scale", "S", {-kMaxScale, kMaxScale}, "make the base steeper or flatter");
     command.choice(blend.scale_mode, "--scale-mode", "M", kScaleModeNames, "how normals are scaled");
     command
-        .option(
-            "--extent", "WxH", "the size of the result in texels",
-            [this](const std::string& text) {
-                const auto [width, height] = cli::cut(text, 'x');
-                blend.extent = {cli::parse_int(width, 1, kMaxExtent), cli::parse_int(height, 1, kMaxExtent)};
-            })
+        .option("--extent", "WxH", "the size of the result in texels",
+                [this](const std::string& text) {
+                    const auto [width, height] = cli::cut(text, 'x');
+                    blend.extent = {cli::parse_int(width, 1, kMaxExtent), cli::parse_int(height, 1, kMaxExtent)};
+                })
         .preset = "the base's";
     command.check([this] {
         files.joins = layers.details().empty();

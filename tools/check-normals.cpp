@@ -9,18 +9,18 @@
 #include <fmt/format.h>
 #include <tex/tex.h>
 
-#include "cli/baseline.h"
-#include "cli/batch.h"
-#include "cli/check_config.h"
-#include "cli/collisions.h"
+#include "batch/batch.h"
+#include "batch/collisions.h"
 #include "cli/console.h"
-#include "cli/findings.h"
-#include "cli/html_report.h"
-#include "cli/junit.h"
-#include "cli/sarif.h"
 #include "cli/stream.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "reports/baseline.h"
+#include "reports/check_config.h"
+#include "reports/findings.h"
+#include "reports/html_report.h"
+#include "reports/junit.h"
+#include "reports/sarif.h"
 
 namespace {
 
@@ -33,7 +33,9 @@ struct Totals {
 };
 
 struct CheckNormals {
-    cli::Command command{"check-normals", "Checks normal maps: the file, the vectors, traces of damage, the direction of green, the mip levels."};
+    cli::Command command{
+        "check-normals",
+        "Checks normal maps: the file, the vectors, traces of damage, the direction of green, the mip levels."};
     cli::FileOptions files;
     cli::RunOptions run;
     CheckOptions options;
@@ -47,7 +49,7 @@ struct CheckNormals {
     std::optional<HeightField> height;
     std::mutex mutex;
     cli::HtmlReport page{"check-normals", cli::check_columns()};
-    cli::HtmlSizes sizes;  // of the page's pictures
+    cli::HtmlSizes sizes;                        // of the page's pictures
     std::map<std::string, CheckReport> reports;  // by file: the documents do not depend on which ended first
     Totals totals;
 
@@ -80,9 +82,12 @@ CheckNormals::CheckNormals() {
                     "What a build wants of its normal maps.");
     command.example("check-normals --config normals.toml --sarif findings.sarif --junit findings.xml --files-from list",
                     "In continuous integration.");
-    command.example("check-normals art/**/*_n.dds --report report.html", "A page with pictures, on which the light can be moved.");
-    command.example("check-normals --baseline-write known.json old/*.dds", "Accepts what is wrong today; --baseline known.json then tells what is new.");
-    command.example("check-normals bricks_n.png --height bricks_h.png", "Whether a normal map belongs to a height map.");
+    command.example("check-normals art/**/*_n.dds --report report.html",
+                    "A page with pictures, on which the light can be moved.");
+    command.example("check-normals --baseline-write known.json old/*.dds",
+                    "Accepts what is wrong today; --baseline known.json then tells what is new.");
+    command.example("check-normals bricks_n.png --height bricks_h.png",
+                    "Whether a normal map belongs to a height map.");
 }
 
 void CheckNormals::add_rules() {
@@ -93,37 +98,56 @@ void CheckNormals::add_rules() {
         throw cli::UsageError(fmt::format("there is no rule '{}'{}", name, cli::did_you_mean(name, names)));
     };
     command.group("Rules");
-    command.option("--require", "KEY[=VALUE]", "demand something of every file", [this](const std::string& text) {
-        if (auto added = add_requirement(options.require, text); !added) throw cli::UsageError(added.error().reason);
-        required_texts.push_back(text);
-    }).repeatable = true;
-    command.option("--enable", "ID", "check a rule (id or name) that is off by default", [this, rule_name](const std::string& text) {
-        options.enable.push_back(rule_name(text));
-    }).repeatable = true;
-    command.option("--disable", "ID", "leave a rule out", [this, rule_name](const std::string& text) {
-        options.disable.push_back(rule_name(text));
-    }).repeatable = true;
-    command.option("--severity", "ID=SEVERITY", "take a rule as error, warning or note", [this, rule_name](const std::string& text) {
-        const auto [name, severity] = cli::cut(text, '=');
-        options.severity.emplace_back(rule_name(name), cli::parse_word(severity, kSeverityNames));
-    }).repeatable = true;
-    command.text(config, "--config", "FILE", "read requirements, rules and severities from a TOML file").completes = cli::Completes::files;
-    command.choice(fail_on, "--fail-on", "SEVERITY", kSeverityNames, "the least severity of a finding that makes the command fail (exit 1)");
-    command.text(height_path, "--height", "FILE", "the height map that the (single) input was made from: check that it follows").completes =
+    command
+        .option("--require", "KEY[=VALUE]", "demand something of every file",
+                [this](const std::string& text) {
+                    if (auto added = add_requirement(options.require, text); !added)
+                        throw cli::UsageError(added.error().reason);
+                    required_texts.push_back(text);
+                })
+        .repeatable = true;
+    command
+        .option("--enable", "ID", "check a rule (id or name) that is off by default",
+                [this, rule_name](const std::string& text) { options.enable.push_back(rule_name(text)); })
+        .repeatable = true;
+    command
+        .option("--disable", "ID", "leave a rule out",
+                [this, rule_name](const std::string& text) { options.disable.push_back(rule_name(text)); })
+        .repeatable = true;
+    command
+        .option("--severity", "ID=SEVERITY", "take a rule as error, warning or note",
+                [this, rule_name](const std::string& text) {
+                    const auto [name, severity] = cli::cut(text, '=');
+                    options.severity.emplace_back(rule_name(name), cli::parse_word(severity, kSeverityNames));
+                })
+        .repeatable = true;
+    command.text(config, "--config", "FILE", "read requirements, rules and severities from a TOML file").completes =
         cli::Completes::files;
+    command.choice(fail_on, "--fail-on", "SEVERITY", kSeverityNames,
+                   "the least severity of a finding that makes the command fail (exit 1)");
+    command
+        .text(height_path, "--height", "FILE",
+              "the height map that the (single) input was made from: check that it follows")
+        .completes = cli::Completes::files;
     command.flag(list, "--list", "list all rules and end");
-    command.option("--explain", "ID", "tell all about a rule and end", [this, rule_name](const std::string& text) { explain = rule_name(text); });
+    command.option("--explain", "ID", "tell all about a rule and end",
+                   [this, rule_name](const std::string& text) { explain = rule_name(text); });
 }
 
 void CheckNormals::add_documents() {
     command.group("Documents");
-    command.text(page_path, "--report", "FILE", "write a page with the findings and pictures, on which the light can be moved").completes =
-        cli::Completes::files;
+    command
+        .text(page_path, "--report", "FILE",
+              "write a page with the findings and pictures, on which the light can be moved")
+        .completes = cli::Completes::files;
     command.text(sarif, "--sarif", "FILE", "write the findings as SARIF 2.1.0").completes = cli::Completes::files;
     command.text(junit, "--junit", "FILE", "write the findings as JUnit XML").completes = cli::Completes::files;
-    command.text(baseline_path, "--baseline", "FILE", "accept the findings that this file lists").completes = cli::Completes::files;
-    command.text(baseline_written, "--baseline-write", "FILE", "write such a file with all findings, and do not fail for them").completes =
+    command.text(baseline_path, "--baseline", "FILE", "accept the findings that this file lists").completes =
         cli::Completes::files;
+    command
+        .text(baseline_written, "--baseline-write", "FILE",
+              "write such a file with all findings, and do not fail for them")
+        .completes = cli::Completes::files;
 }
 
 Result<void> CheckNormals::prepare(const std::vector<cli::Task>& tasks) {
@@ -133,12 +157,15 @@ Result<void> CheckNormals::prepare(const std::vector<cli::Task>& tasks) {
         // The file's words come first, so that the command line's win.
         CheckOptions merged = read->options;
         for (const std::string& text : required_texts) (void)add_requirement(merged.require, text);
-        const auto append = [](auto& list_of, const auto& more) { list_of.insert(list_of.end(), more.begin(), more.end()); };
+        const auto append = [](auto& list_of, const auto& more) {
+            list_of.insert(list_of.end(), more.begin(), more.end());
+        };
         append(merged.enable, options.enable);
         append(merged.severity, options.severity);
         // A rule may be called by its id in one place and by its name in the other.
         for (const std::string& name : options.enable) {
-            std::erase_if(merged.disable, [&](const std::string& other) { return find_rule(other) == find_rule(name); });
+            std::erase_if(merged.disable,
+                          [&](const std::string& other) { return find_rule(other) == find_rule(name); });
         }
         append(merged.disable, options.disable);
         options = std::move(merged);
@@ -165,9 +192,13 @@ void CheckNormals::check_documents(const std::vector<cli::Task>& tasks) {
     std::vector<std::string> inputs;
     inputs.reserve(tasks.size());
     for (const cli::Task& task : tasks) inputs.push_back(task.input);
-    std::vector<cli::NamedFile> others = {{"--config", config}, {"--height", height_path}, {"--files-from", files.files_from}};
-    for (const cli::NamedFile& document : std::initializer_list<cli::NamedFile>{
-             {"--baseline-write", baseline_written}, {"--baseline", baseline_path}, {"--report", page_path}, {"--sarif", sarif}, {"--junit", junit}}) {
+    std::vector<cli::NamedFile> others = {
+        {"--config", config}, {"--height", height_path}, {"--files-from", files.files_from}};
+    for (const cli::NamedFile& document : std::initializer_list<cli::NamedFile>{{"--baseline-write", baseline_written},
+                                                                                {"--baseline", baseline_path},
+                                                                                {"--report", page_path},
+                                                                                {"--sarif", sarif},
+                                                                                {"--junit", junit}}) {
         if (!document.path.empty() && document.option != "--baseline") cli::check_document(document, inputs, others);
         others.push_back(document);
     }
@@ -183,8 +214,10 @@ Result<void> CheckNormals::add_to_page(cli::Job& job, const CheckReport& report)
         if (!texture) return texture.error();
         auto drawn = cli::draw_html_map(job.task.input, *texture, report.swizzle, sizes, job.until(1.0));
         // What holds no normals has findings, and no pictures.
-        if (drawn) map = std::move(*drawn);
-        else if (drawn.error().code != ErrorCode::bad_option) return drawn.error();
+        if (drawn)
+            map = std::move(*drawn);
+        else if (drawn.error().code != ErrorCode::bad_option)
+            return drawn.error();
     }
     page.add(job.task.input, cli::check_entry(report, options.require, map ? &*map : nullptr));
     return {};
@@ -194,8 +227,9 @@ Result<void> CheckNormals::add_to_page(cli::Job& job, const CheckReport& report)
 std::string pair_text(const CheckReport& report) {
     if (!report.pair) return {};
     const PairEvidence& pair = *report.pair;
-    return fmt::format("{}: fits the height map with correlation {:.2f}, strength {:.2f}, y {}, offset {}, {}\n", cli::printable(report.file), pair.correlation,
-                       pair.strength, name_of(kYAxisNames, pair.y), pair.offset_x, pair.offset_y);
+    return fmt::format("{}: fits the height map with correlation {:.2f}, strength {:.2f}, y {}, offset {}, {}\n",
+                       cli::printable(report.file), pair.correlation, pair.strength, name_of(kYAxisNames, pair.y),
+                       pair.offset_x, pair.offset_y);
 }
 
 Result<void> CheckNormals::process(cli::Job& job) {

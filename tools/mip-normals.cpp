@@ -4,24 +4,23 @@
 #include <fmt/format.h>
 #include <tex/tex.h>
 
-#include "cli/batch.h"
-#include "cli/groups.h"
-#include "cli/name_pattern.h"
-#include "cli/repack.h"
-#include "cli/roughness.h"
-#include "cli/source.h"
+#include "batch/batch.h"
+#include "batch/name_pattern.h"
+#include "batch/repack.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "options/groups.h"
+#include "options/roughness.h"
+#include "options/source.h"
 
 namespace {
 
 using namespace tex;
 
 struct MipNormals {
-    cli::Command command{
-        "mip-normals",
-        "Builds the mip chain of normal maps: every level is filtered from the true average of the "
-        "one before and renormalised."};
+    cli::Command command{"mip-normals",
+                         "Builds the mip chain of normal maps: every level is filtered from the true average of the "
+                         "one before and renormalised."};
     cli::FileOptions files;
     cli::SourceOptions source;
     cli::WrapOptions wrap;
@@ -72,8 +71,9 @@ Result<void> MipNormals::process(cli::Job& job) {
     options.mip = mips.mip;
     options.mip->levels = mips.levels.value_or(0);
     if (roughness.is_given()) options.roughness = roughness.file(job, output.effort);
-    return cli::repack(job, source, output, options, [&](const SourceInfo&) { return default_encoding(job.task.container); },
-                       [&](const PackFileReport& packed) { roughness.tell(job, packed); });
+    return cli::repack(
+        job, source, output, options, [&](const SourceInfo&) { return default_encoding(job.task.container); },
+        [&](const PackFileReport& packed) { roughness.tell(job, packed); });
 }
 
 }  // namespace

@@ -3,19 +3,18 @@
 
 #include <tex/tex.h>
 
-#include "cli/batch.h"
-#include "cli/groups.h"
-#include "cli/repack.h"
-#include "cli/source.h"
+#include "batch/batch.h"
+#include "batch/repack.h"
+#include "options/groups.h"
+#include "options/source.h"
 
 namespace {
 
 using namespace tex;
 
 struct PackNormals {
-    cli::Command command{
-        "pack-normals",
-        "Stores normal maps in another encoding or kind of file, with the levels that they have."};
+    cli::Command command{"pack-normals",
+                         "Stores normal maps in another encoding or kind of file, with the levels that they have."};
     cli::FileOptions files;
     cli::SourceOptions source;
     cli::WrapOptions wrap;
@@ -38,8 +37,7 @@ PackNormals::PackNormals() {
     wrap.add(command, "what lies beyond the border of levels that are built, or for x and y apart");
     run.add(command);
     command.example("pack-normals bricks_n.png -o bricks.dds --mips all", "DXT5nm with all levels.");
-    command.example("pack-normals bricks.dds -o bricks_bc5.ktx2 --format bc5",
-                    "Another encoding, the same levels.");
+    command.example("pack-normals bricks.dds -o bricks_bc5.ktx2 --format bc5", "Another encoding, the same levels.");
     command.example("pack-normals directx/*.png --out-dir opengl --format rgb8 --y-in down --y up",
                     "Pictures from one convention to the other.");
 }

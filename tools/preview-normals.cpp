@@ -7,12 +7,12 @@
 #include <fmt/format.h>
 #include <tex/tex.h>
 
-#include "cli/batch.h"
-#include "cli/name_pattern.h"
-#include "cli/scene.h"
-#include "cli/source.h"
+#include "batch/batch.h"
+#include "batch/name_pattern.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "options/scene.h"
+#include "options/source.h"
 
 namespace {
 
@@ -42,12 +42,10 @@ struct PreviewNormals {
     void check(const std::vector<cli::Task>& tasks) const;
     Result<void> process(cli::Job& job);
     Result<Texture> draw(const std::vector<std::string>& names, const std::vector<cli::SampledMap>& maps,
-                         const cli::SceneFiles& with, const PreviewOptions& options,
-                         const Execution& execution) const;
+                         const cli::SceneFiles& with, const PreviewOptions& options, const Execution& execution) const;
     Result<Texture> draw_difference(const std::string& name, const NormalMap& a, const NormalMap& b,
                                     const Execution& execution) const;
-    [[nodiscard]] std::string caption(const std::vector<std::string>& names, std::size_t map,
-                                      Show show) const;
+    [[nodiscard]] std::string caption(const std::vector<std::string>& names, std::size_t map, Show show) const;
 };
 
 // How step `k` of `count` equal ones runs.
@@ -55,8 +53,7 @@ Execution step(const Execution& whole, std::size_t k, std::size_t count) {
     Execution one;
     one.threads = whole.threads;
     one.progress = [&whole, k, count](double done) {
-        return !whole.progress ||
-               whole.progress((static_cast<double>(k) + done) / static_cast<double>(count));
+        return !whole.progress || whole.progress((static_cast<double>(k) + done) / static_cast<double>(count));
     };
     return one;
 }
@@ -76,9 +73,8 @@ PreviewNormals::PreviewNormals() {
     scene.add(command);
     run.add(command);
     command.example("preview-normals bricks.dds -o bricks.png", "The map under a light from the upper left.");
-    command.example(
-        "preview-normals bricks.dds -o sphere.png --shape sphere --detail grain.dds --detail-tiling 8",
-        "On a sphere, with detail blended in.");
+    command.example("preview-normals bricks.dds -o sphere.png --shape sphere --detail grain.dds --detail-tiling 8",
+                    "On a sphere, with detail blended in.");
     command.example("preview-normals *.dds -o sheet.png --show lit,normals,tilt,curl",
                     "A contact sheet, a row for each map.");
     command.example("preview-normals before.dds after.dds -o split.png --split --difference",
@@ -108,8 +104,7 @@ void PreviewNormals::add_picture() {
     command.number(columns, "--columns", "N", 0, 1000, "pictures in a row of a sheet").preset =
         "the number of --show, else as many as rows";
     command.flag(split, "--split", "two maps: the left half of one picture and the right half of the other");
-    command.flag(difference, "--difference",
-                 "two maps of one size: the angles between them, in false colours");
+    command.flag(difference, "--difference", "two maps of one size: the angles between them, in false colours");
     command
         .number(turntable, "--turntable", "N", 0, 1000,
                 "an animated PNG of N pictures in which the shape, or over a plane the light, turns once")
@@ -138,8 +133,7 @@ void PreviewNormals::check(const std::vector<cli::Task>& tasks) const {
         }
         const std::size_t maps = 1 + task.also.size() - files.shared.size();
         if ((split || difference) && maps != 2) {
-            throw cli::UsageError(fmt::format("{} takes two maps and -o, {} given",
-                                              split ? "--split" : "--difference",
+            throw cli::UsageError(fmt::format("{} takes two maps and -o, {} given", split ? "--split" : "--difference",
                                               maps == 1 ? "one is" : fmt::format("{} are", maps)));
         }
     }
@@ -157,24 +151,22 @@ std::string PreviewNormals::caption(const std::vector<std::string>& names, std::
 }
 
 // The heat map that compare-normals writes.
-Result<Texture> PreviewNormals::draw_difference(const std::string& name, const NormalMap& a,
-                                                const NormalMap& b, const Execution& execution) const {
-    if (a.extent() != b.extent())
-        return Error{ErrorCode::bad_option, name, "is not as large as the other map"};
+Result<Texture> PreviewNormals::draw_difference(const std::string& name, const NormalMap& a, const NormalMap& b,
+                                                const Execution& execution) const {
+    if (a.extent() != b.extent()) return Error{ErrorCode::bad_option, name, "is not as large as the other map"};
     const auto compared = compare(a, b, execution);
     if (!compared) return compared.error();
     constexpr double kScales[] = {0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 45.0, 90.0, 180.0};
     double scale = std::min(static_cast<double>(scene.preview.maximum), 180.0);
-    if (!(scale > 0.0))
-        scale = *std::lower_bound(std::begin(kScales), std::end(kScales) - 1, compared->error.p999);
+    if (!(scale > 0.0)) scale = *std::lower_bound(std::begin(kScales), std::end(kScales) - 1, compared->error.p999);
     const auto map = heat_map(compared->degrees, scale, execution);
     if (!map) return map.error();
     return picture_of(*map);
 }
 
-Result<Texture> PreviewNormals::draw(const std::vector<std::string>& names,
-                                     const std::vector<cli::SampledMap>& maps, const cli::SceneFiles& with,
-                                     const PreviewOptions& base, const Execution& execution) const {
+Result<Texture> PreviewNormals::draw(const std::vector<std::string>& names, const std::vector<cli::SampledMap>& maps,
+                                     const cli::SceneFiles& with, const PreviewOptions& base,
+                                     const Execution& execution) const {
     PreviewOptions options = base;
     if (options.size == Extent{} && !split && (maps.size() * shows.size() > 1 || difference))
         options.size = {kPanelSize, 0};
@@ -182,8 +174,8 @@ Result<Texture> PreviewNormals::draw(const std::vector<std::string>& names,
     for (std::size_t k = 0; k < maps.size(); ++k) {
         for (const Show show : shows) {
             options.show = show;
-            auto picture = preview(with.with(maps[k]), options,
-                                   step(execution, panels.size(), maps.size() * shows.size()));
+            auto picture =
+                preview(with.with(maps[k]), options, step(execution, panels.size(), maps.size() * shows.size()));
             if (!picture) return Error{picture.error().code, names[k], picture.error().reason};
             panels.push_back({std::move(*picture), caption(names, k, show)});
         }
@@ -198,15 +190,12 @@ Result<Texture> PreviewNormals::draw(const std::vector<std::string>& names,
         panels = std::move(halves);
     }
     if (difference) {
-        auto angles =
-            draw_difference(names[1], maps[0].chain.levels.front(), maps[1].chain.levels.front(), execution);
+        auto angles = draw_difference(names[1], maps[0].chain.levels.front(), maps[1].chain.levels.front(), execution);
         if (!angles) return angles.error();
         panels.push_back({std::move(*angles), no_captions ? "" : "difference, degrees"});
     }
     if (panels.size() == 1) return std::move(panels.front().picture);
-    const int row = columns > 0                       ? columns
-                    : shows.size() > 1 && !difference ? static_cast<int>(shows.size())
-                                                      : 0;
+    const int row = columns > 0 ? columns : shows.size() > 1 && !difference ? static_cast<int>(shows.size()) : 0;
     return contact_sheet(panels, row);
 }
 
@@ -218,9 +207,9 @@ Result<void> PreviewNormals::process(cli::Job& job) {
 
     std::vector<cli::SampledMap> maps;
     for (std::size_t k = 0; k < names.size(); ++k) {
-        auto map = cli::read_sampled_map(
-            job, names[k], source, {false, false, {}, !difference}, scene.preview,
-            job.until(0.4 * static_cast<double>(k + 1) / static_cast<double>(names.size())));
+        auto map =
+            cli::read_sampled_map(job, names[k], source, {false, false, {}, !difference}, scene.preview,
+                                  job.until(0.4 * static_cast<double>(k + 1) / static_cast<double>(names.size())));
         if (!map) return map.error();
         maps.push_back(std::move(*map));
     }
@@ -237,11 +226,10 @@ Result<void> PreviewNormals::process(cli::Job& job) {
         frames.push_back(std::move(*picture));
     }
     const Extent extent = frames.front().extent();
-    auto bytes = turntable > 0 ? encode_animation(frames)
-                               : encode_file(frames.front(), job.task.container, job.write_options);
+    auto bytes =
+        turntable > 0 ? encode_animation(frames) : encode_file(frames.front(), job.task.container, job.write_options);
     if (!bytes) return Error{bytes.error().code, job.task.output, bytes.error().reason};
-    if (auto written = write_file(job.task.output, *bytes, job.write_options); !written)
-        return written.error();
+    if (auto written = write_file(job.task.output, *bytes, job.write_options); !written) return written.error();
     job.wrote(job.task.output);
     job.report["maps"] = names;
     job.report["extent"] = {extent.width, extent.height};

@@ -3,10 +3,10 @@
 
 #include <tex/tex.h>
 
-#include "cli/batch.h"
-#include "cli/repack.h"
-#include "cli/source.h"
+#include "batch/batch.h"
+#include "batch/repack.h"
 #include "cli/usage_error.h"
+#include "options/source.h"
 
 namespace {
 

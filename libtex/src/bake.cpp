@@ -9,10 +9,10 @@
 #include <limits>
 #include <mutex>
 
-#include "base/bake_rows.h"
-#include "base/guard.h"
-#include "base/parallel.h"
 #include "kernels/bake.h"
+#include "rows/bake_rows.h"
+#include "threads/guard.h"
+#include "threads/parallel.h"
 
 namespace tex {
 namespace {
@@ -28,8 +28,7 @@ int strip_rows(int width, int overlap) {
 
 Result<NormalMap> bake(const HeightField& field, const BakeOptions& options, const Execution& execution) {
     const Extent extent = field.height.extent();
-    assert(extent.width >= 1 && extent.width <= kMaxExtent && extent.height >= 1 &&
-           extent.height <= kMaxExtent);
+    assert(extent.width >= 1 && extent.width <= kMaxExtent && extent.height >= 1 && extent.height <= kMaxExtent);
     assert(std::isfinite(field.bumpiness_x) && std::isfinite(field.bumpiness_y));
     assert(options.kernel != GradientKernel::gaussian ||
            (options.gaussian_sigma > 0.0f && options.gaussian_sigma <= kMaxGaussianSigma));
@@ -42,8 +41,7 @@ Result<NormalMap> bake(const HeightField& field, const BakeOptions& options, con
             BakeRows rows(extent, heights, gradient, head, begin);
             for (int j = begin; j < end; ++j) rows.bake(j, {map.x.row(j), map.y.row(j), map.z.row(j)});
         };
-        const auto done =
-            parallel_for(execution, extent.height, strip_rows(extent.width, 2 * gradient.radius), body);
+        const auto done = parallel_for(execution, extent.height, strip_rows(extent.width, 2 * gradient.radius), body);
         if (!done) return done.error();
         return map;
     });
@@ -61,8 +59,8 @@ SlopeRange slope_range(const NormalMap& map, const Execution& execution) {
         }
         // Least and greatest do not depend on the order of the threads.
         const std::lock_guard lock(merging);
-        all = {std::min(all.min_x, bounds.min_x), std::max(all.max_x, bounds.max_x),
-               std::min(all.min_y, bounds.min_y), std::max(all.max_y, bounds.max_y)};
+        all = {std::min(all.min_x, bounds.min_x), std::max(all.max_x, bounds.max_x), std::min(all.min_y, bounds.min_y),
+               std::max(all.max_y, bounds.max_y)};
     };
     const Execution silent{execution.threads, {}};
     const auto done = parallel_for(silent, extent.height, strip_rows(extent.width, 1), body);

@@ -11,12 +11,12 @@
 
 #include <tex/mip.h>
 
-#include "base/guard.h"
-#include "base/math.h"
-#include "base/parallel.h"
-#include "base/sampler.h"
 #include "kernels/blend.h"
 #include "kernels/scale.h"
+#include "rows/math.h"
+#include "rows/sampler.h"
+#include "threads/guard.h"
+#include "threads/parallel.h"
 
 namespace tex {
 namespace {
@@ -93,7 +93,8 @@ public:
     void row(int j, NormalRow out) {
         near_.place(j);
         if (far_) far_->place(j);
-        const VectorRow in{component(&NormalMap::x, out.x), component(&NormalMap::y, out.y), component(&NormalMap::z, out.z)};
+        const VectorRow in{component(&NormalMap::x, out.x), component(&NormalMap::y, out.y),
+                           component(&NormalMap::z, out.z)};
         scale_row(in, 1.0f, ScaleMode::slope, width_, out);
     }
 
@@ -103,7 +104,7 @@ private:
     }
 
     // One component of the samples: where nothing is between texels, those of the map, else in `row`.
-    const float* component(Plane<float> NormalMap::* plane, float* row) {
+    const float* component(Plane<float> NormalMap::*plane, float* row) {
         const Plane<float>& texels = source_.chain.levels[source_.level].*plane;
         if (!far_ && near_.row_of(texels) != nullptr) return near_.row_of(texels);
         near_.sample(texels, row);
@@ -131,7 +132,8 @@ struct Placed {
 class LayerRows {
 public:
     LayerRows(const Placed& placed, const BlendOptions& options, Extent result)
-        : placed_(placed), options_(options), width_(result.width), detail_(placed.source, result), rows_({result.width, 4}) {
+        : placed_(placed), options_(options), width_(result.width), detail_(placed.source, result),
+          rows_({result.width, 4}) {
         const Plane<float>& mask = placed.layer.mask;
         if (!mask.empty()) mask_.emplace(mask.extent(), result, stretch(result), Wrap::clamp, Wrap::clamp);
     }
@@ -142,7 +144,8 @@ public:
         detail_.row(j, detail);
         if (layer.scale != 1.0f) scale_row(detail, layer.scale, options_.scale_mode, width_, detail);
         if (placed_.rotation.cosine != 1.0) {
-            rotate_row(detail, static_cast<float>(placed_.rotation.cosine), static_cast<float>(placed_.rotation.sine), width_);
+            rotate_row(detail, static_cast<float>(placed_.rotation.cosine), static_cast<float>(placed_.rotation.sine),
+                       width_);
         }
         blend_row(options_.mode, base, detail, weights(j), width_);
     }
@@ -175,8 +178,8 @@ private:
     const auto tiling = [](float t) { return t > 0.0f && t <= kMaxTiling; };
     const auto offset = [](float o) { return std::abs(o) <= kMaxTiling; };
     return !layer.detail.levels.empty() && std::abs(layer.scale) <= kMaxScale && tiling(layer.tiling_x) &&
-           tiling(layer.tiling_y) && offset(layer.offset_x) && offset(layer.offset_y) && std::isfinite(layer.rotation) &&
-           layer.strength >= 0.0f && layer.strength <= 1.0f;
+           tiling(layer.tiling_y) && offset(layer.offset_x) && offset(layer.offset_y) &&
+           std::isfinite(layer.rotation) && layer.strength >= 0.0f && layer.strength <= 1.0f;
 }
 
 Result<NormalMap> blend_layers(MipChain& base, std::vector<Layer>& layers, const BlendOptions& options,
@@ -216,7 +219,8 @@ Result<NormalMap> blend_layers(MipChain& base, std::vector<Layer>& layers, const
 
 }  // namespace
 
-Result<NormalMap> blend(MipChain base, std::vector<Layer> layers, const BlendOptions& options, const Execution& execution) {
+Result<NormalMap> blend(MipChain base, std::vector<Layer> layers, const BlendOptions& options,
+                        const Execution& execution) {
     assert(!base.levels.empty() && std::abs(options.base_scale) <= kMaxScale);
     assert(std::all_of(layers.begin(), layers.end(), in_range));
     return guarded([&] { return blend_layers(base, layers, options, execution); });

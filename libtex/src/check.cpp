@@ -12,8 +12,6 @@
 #include <tex/swizzle.h>
 #include <tex/unpack.h>
 
-#include "base/guard.h"
-#include "base/unpack_rows.h"
 #include "checks/convention_rules.h"
 #include "checks/damage_rules.h"
 #include "checks/file_rules.h"
@@ -22,6 +20,8 @@
 #include "checks/pair_rules.h"
 #include "checks/rules.h"
 #include "checks/value_rules.h"
+#include "rows/unpack_rows.h"
+#include "threads/guard.h"
 
 namespace tex {
 namespace {
@@ -37,7 +37,8 @@ Error bad_option(std::string reason) { return {ErrorCode::bad_option, {}, std::m
 std::optional<int> parse_count(std::string_view text) {
     int value = 0;
     const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (end.ec != std::errc() || end.ptr != text.data() + text.size() || value < 1 || value > kMaxExtent) return std::nullopt;
+    if (end.ec != std::errc() || end.ptr != text.data() + text.size() || value < 1 || value > kMaxExtent)
+        return std::nullopt;
     return value;
 }
 
@@ -83,10 +84,13 @@ bool same_everywhere(const TexelCounts& counts, int channels) {
 
 // Floats are read as unpack() reads them.
 bool is_signed(const Texture& texture, const Image& image, const Swizzle& swizzle) {
-    if (const std::optional<bool> known = is_unsigned(image.sample, range_of(texture.normal_encoding, {}))) return !*known;
+    if (const std::optional<bool> known = is_unsigned(image.sample, range_of(texture.normal_encoding, {})))
+        return !*known;
     const Result<Sources> sources = sources_of(swizzle, (1u << image.planes.size()) - 1);
     if (!sources) return false;  // there are no vectors
-    const auto row = [&](int channel, int j) { return channel < 0 ? nullptr : image.planes[static_cast<std::size_t>(channel)].row(j); };
+    const auto row = [&](int channel, int j) {
+        return channel < 0 ? nullptr : image.planes[static_cast<std::size_t>(channel)].row(j);
+    };
     RangeEvidence evidence;
     for (int j = 0; j < image.extent().height && !evidence.negative; ++j) {
         evidence.add(weigh_row(row(sources->x, j), row(sources->y, j), row(sources->z, j), image.extent().width));
@@ -114,8 +118,8 @@ Result<void> measure(Subject& subject) {
     subject.curl = measure_curl(stored);
     subject.y.correlation = subject.curl.correlation;
     subject.y.confidence = subject.curl.confidence;
-    const bool decided = std::abs(subject.curl.correlation) >= kLeastCorrelation && subject.curl.confidence >= kLeastConfidence &&
-                         subject.curl.usable >= kLeastUsable;
+    const bool decided = std::abs(subject.curl.correlation) >= kLeastCorrelation &&
+                         subject.curl.confidence >= kLeastConfidence && subject.curl.usable >= kLeastUsable;
     if (decided) subject.y.y = subject.curl.correlation > 0.0 ? YAxis::up : YAxis::down;
     return {};
 }
@@ -134,7 +138,8 @@ Result<void> add_requirement(Requirements& requirements, std::string_view text) 
     }
     const bool has_no_value = *key == RequirementKey::pow2 || *key == RequirementKey::tiles;
     if (has_no_value != (equals == std::string_view::npos)) {
-        return bad_option(std::string(name) + (has_no_value ? " takes no value" : " needs a value: " + std::string(name) + "=..."));
+        return bad_option(std::string(name) +
+                          (has_no_value ? " takes no value" : " needs a value: " + std::string(name) + "=..."));
     }
     switch (*key) {
         case RequirementKey::format: return require_format(requirements, value);

@@ -11,9 +11,9 @@
 
 #include <OpenColorIO/OpenColorIO.h>
 
-#include "base/guard.h"
-#include "base/input_file.h"
-#include "base/math.h"
+#include "files/input_file.h"
+#include "rows/math.h"
+#include "threads/guard.h"
 
 namespace tex {
 namespace {
@@ -75,7 +75,8 @@ bool is_word(std::string_view text, std::string_view lower) {
 Result<void> convert_built_in(const std::vector<Plane<float>*>& planes, const Image& image, const std::string& space) {
     if (is_word(space, "linear")) return {};
     if (!is_word(space, "srgb")) {
-        return Error{ErrorCode::bad_option, {},
+        return Error{ErrorCode::bad_option,
+                     {},
                      "no colour space \"" + space + "\": without a configuration there are sRGB and linear"};
     }
     constexpr int kMostBitsOfTable = 16;
@@ -167,7 +168,8 @@ Result<void> to_linear(Image& image, const ColorOptions& options) {
         if (planes.empty()) {
             return Error{ErrorCode::bad_option, {}, "a colour space needs the channels R, G and B, or a single one"};
         }
-        return options.config.empty() ? convert_built_in(planes, image, options.space) : convert_by_config(planes, options);
+        return options.config.empty() ? convert_built_in(planes, image, options.space)
+                                      : convert_by_config(planes, options);
     });
 }
 

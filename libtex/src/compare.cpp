@@ -10,9 +10,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "base/guard.h"
-#include "base/parallel.h"
 #include "kernels/angle.h"
+#include "threads/guard.h"
+#include "threads/parallel.h"
 
 namespace tex {
 namespace {
@@ -73,8 +73,9 @@ std::uint32_t find_bin(const std::vector<std::int64_t>& bins, std::int64_t& rank
     return bin;
 }
 
-// The values of 1-based ranks, exact and without sorting. The bits of floats that are not negative are in the order of their values: a histogram of the upper
-// halves finds each rank's bin, histograms of the lower halves in those bins find the value.
+// The values of 1-based ranks, exact and without sorting. The bits of floats that are not negative are in the order of
+// their values: a histogram of the upper halves finds each rank's bin, histograms of the lower halves in those bins
+// find the value.
 Ranked values_at(const Plane<float>& values, Ranks ranks) {
     // Two tables in turn: neighbours often fall into one bin, and each would wait for the last.
     std::vector<std::int64_t> upper(std::size_t{1} << 15), other(upper.size());
@@ -92,7 +93,8 @@ Ranked values_at(const Plane<float>& values, Ranks ranks) {
         }
     });
     Ranked found{};
-    for (std::size_t k = 0; k < kRanks; ++k) found[k] = std::bit_cast<float>(bins[k] << 16 | find_bin(lower[k], ranks[k]));
+    for (std::size_t k = 0; k < kRanks; ++k)
+        found[k] = std::bit_cast<float>(bins[k] << 16 | find_bin(lower[k], ranks[k]));
     return found;
 }
 
@@ -118,7 +120,8 @@ AngularError summarise(const Plane<float>& degrees, const std::vector<RowSum>& r
     error.mean = sum / count;
     error.rms = std::sqrt(squares / count);
     error.max = max;
-    const Ranked ranked = values_at(degrees, {rank_of(error.texels, 500), rank_of(error.texels, 990), rank_of(error.texels, 999)});
+    const Ranked ranked =
+        values_at(degrees, {rank_of(error.texels, 500), rank_of(error.texels, 990), rank_of(error.texels, 999)});
     error.p50 = ranked[0];
     error.p99 = ranked[1];
     error.p999 = ranked[2];
@@ -137,8 +140,8 @@ Result<Comparison> compare(const NormalMap& a, const NormalMap& b, const Executi
         const auto body = [&](int begin, int end) {
             for (int j = begin; j < end; ++j) {
                 float* degrees = comparison.degrees.row(j);
-                angle_row({a.x.row(j), a.y.row(j), a.z.row(j)}, {b.x.row(j), b.y.row(j), b.z.row(j)},
-                          extent.width, degrees);
+                angle_row({a.x.row(j), a.y.row(j), a.z.row(j)}, {b.x.row(j), b.y.row(j), b.z.row(j)}, extent.width,
+                          degrees);
                 rows[static_cast<std::size_t>(j)] = sum_row(degrees, extent.width);
             }
         };

@@ -6,14 +6,14 @@
 #include <cctype>
 #include <string>
 
-#include "base/guard.h"
-#include "base/input_file.h"
-#include "containers/dds.h"
-#include "containers/exr.h"
-#include "containers/ktx2.h"
-#include "containers/png.h"
-#include "containers/reader.h"
-#include "containers/texture_rows.h"
+#include "files/input_file.h"
+#include "formats/dds/dds.h"
+#include "formats/exr/exr.h"
+#include "formats/ktx2/ktx2.h"
+#include "formats/png/png.h"
+#include "formats/reader/reader.h"
+#include "formats/texture_rows.h"
+#include "threads/guard.h"
 
 namespace tex {
 namespace {
@@ -24,9 +24,9 @@ struct ExtensionRow {
 };
 
 constexpr ExtensionRow kExtensions[] = {
-    {"dds", Container::dds},   {"ktx2", Container::ktx2}, {"png", Container::png}, {"exr", Container::exr},
-    {"tif", Container::tiff},  {"tiff", Container::tiff}, {"tga", Container::tga}, {"bmp", Container::bmp},
-    {"jpg", Container::jpeg},  {"jpeg", Container::jpeg},
+    {"dds", Container::dds},  {"ktx2", Container::ktx2}, {"png", Container::png}, {"exr", Container::exr},
+    {"tif", Container::tiff}, {"tiff", Container::tiff}, {"tga", Container::tga}, {"bmp", Container::bmp},
+    {"jpg", Container::jpeg}, {"jpeg", Container::jpeg},
 };
 
 // The letters behind the last dot of the path's last part, in lower case; without one the text is empty.
@@ -62,8 +62,8 @@ bool can_hold(Container container, Encoding encoding) {
         case Container::png: return among({Encoding::rgb8, Encoding::rgba8, Encoding::rgb16, Encoding::ag8});
         case Container::exr: return among({Encoding::half, Encoding::float_});
         case Container::tiff:
-            return among({Encoding::rgb8, Encoding::rgba8, Encoding::rgb16, Encoding::ag8, Encoding::half,
-                          Encoding::float_});
+            return among(
+                {Encoding::rgb8, Encoding::rgba8, Encoding::rgb16, Encoding::ag8, Encoding::half, Encoding::float_});
         case Container::tga: return among({Encoding::rgb8, Encoding::rgba8, Encoding::ag8});
         case Container::bmp:
         case Container::jpeg: return among({Encoding::rgb8});
@@ -85,8 +85,7 @@ Encoding default_encoding(Container container) {
     }
 }
 
-Result<std::vector<std::byte>> encode_file(const Texture& texture, Container container,
-                                           const WriteOptions& options) {
+Result<std::vector<std::byte>> encode_file(const Texture& texture, Container container, const WriteOptions& options) {
     return guarded([&]() -> Result<std::vector<std::byte>> {
         switch (container) {
             case Container::dds: return assemble(texture, dds_layout(head_of(texture), options));

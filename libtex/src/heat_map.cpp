@@ -6,10 +6,10 @@
 #include <cassert>
 #include <cstddef>
 
-#include "base/guard.h"
-#include "base/parallel.h"
 #include "preview/colormap.h"
 #include "preview/legend.h"
+#include "threads/guard.h"
+#include "threads/parallel.h"
 
 namespace tex {
 namespace {
@@ -22,7 +22,8 @@ void copy(const Level& picture, Image& image, int top) {
     const std::byte* code = picture.bytes.data();
     for (int j = 0; j < picture.extent.height; ++j) {
         for (int i = 0; i < picture.extent.width; ++i) {
-            for (Plane<float>& plane : image.planes) plane.at(i, top + j) = static_cast<float>(std::to_integer<int>(*code++)) / 255.0f;
+            for (Plane<float>& plane : image.planes)
+                plane.at(i, top + j) = static_cast<float>(std::to_integer<int>(*code++)) / 255.0f;
         }
     }
 }

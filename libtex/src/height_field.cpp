@@ -10,11 +10,11 @@
 #include <limits>
 #include <utility>
 
-#include "base/blur.h"
-#include "base/guard.h"
-#include "base/height_source.h"
-#include "base/nearest.h"
-#include "base/parallel.h"
+#include "rows/blur.h"
+#include "rows/height_source.h"
+#include "rows/nearest.h"
+#include "threads/guard.h"
+#include "threads/parallel.h"
 
 namespace tex {
 namespace {
@@ -38,8 +38,7 @@ float finite(double strength) {
 }  // namespace
 
 Strength strength_from_world(Extent extent, double range, double width, double height) {
-    assert(width > 0.0 && height >= 0.0 && std::isfinite(range) && std::isfinite(width) &&
-           std::isfinite(height));
+    assert(width > 0.0 && height >= 0.0 && std::isfinite(range) && std::isfinite(width) && std::isfinite(height));
     const double x = range * extent.width / width;
     const double y = height > 0.0 ? range * extent.height / height : x;
     return {finite(x), finite(y)};
@@ -75,21 +74,20 @@ Result<HeightField> height_field(const Image& image, const HeightOptions& option
             invalid_texels += all.invalid;
         };
         const int strip = std::max(1, (1 << 16) / extent.width);
-        if (auto done = parallel_for(execution, extent.height, strip, take, {0.0, taken}); !done)
-            return done.error();
+        if (auto done = parallel_for(execution, extent.height, strip, take, {0.0, taken}); !done) return done.error();
 
         if (invalid_texels > 0) {
             if (!options.fill_invalid || invalid_texels == extent.texels()) {
                 const auto [column, row] = first_invalid(field.height);
                 return invalid_heights(invalid_texels, column, row, extent, options);
             }
-            auto done = fill_from_nearest(field.height.view(), options.wrap_x, options.wrap_y, execution,
-                                          {taken, filled});
+            auto done =
+                fill_from_nearest(field.height.view(), options.wrap_x, options.wrap_y, execution, {taken, filled});
             if (!done) return done.error();
         }
         if (options.blur_sigma > 0.0f) {
-            auto done = blur(field.height, static_cast<double>(options.blur_sigma), options.wrap_x,
-                             options.wrap_y, execution, {filled, 1.0});
+            auto done = blur(field.height, static_cast<double>(options.blur_sigma), options.wrap_x, options.wrap_y,
+                             execution, {filled, 1.0});
             if (!done) return done.error();
         }
         if (report != nullptr) *report = {luma_texels, invalid_texels};

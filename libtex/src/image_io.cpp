@@ -7,12 +7,12 @@
 #include <tex/container.h>
 #include <tex/unpack.h>
 
-#include "base/guard.h"
-#include "base/input_file.h"
-#include "containers/exr.h"
-#include "containers/png.h"
-#include "containers/reader.h"
-#include "containers/row_source.h"
+#include "files/input_file.h"
+#include "formats/exr/exr.h"
+#include "formats/png/png.h"
+#include "formats/reader/reader.h"
+#include "formats/row_source.h"
+#include "threads/guard.h"
 
 namespace tex {
 namespace {

@@ -13,12 +13,12 @@
 #include <utility>
 #include <vector>
 
-#include "base/axis_filter.h"
-#include "base/border.h"
-#include "base/guard.h"
-#include "base/mip_rows.h"
-#include "base/parallel.h"
 #include "kernels/mip.h"
+#include "rows/axis_filter.h"
+#include "rows/border.h"
+#include "rows/mip_rows.h"
+#include "threads/guard.h"
+#include "threads/parallel.h"
 
 namespace tex {
 namespace {
@@ -78,9 +78,7 @@ public:
     }
 
 private:
-    [[nodiscard]] int inside(int j) const {
-        return border_index(step_.options.wrap_y, j, step_.from.extent().height);
-    }
+    [[nodiscard]] int inside(int j) const { return border_index(step_.options.wrap_y, j, step_.from.extent().height); }
 
     const Step& step_;
     const bool converts_;
@@ -113,12 +111,10 @@ void halve_strip(const Step& step, int begin, int end) {
     for (int j = begin; j < end; ++j) {
         source.prepare(2 * j);
         for (int plane = 0; plane < step.planes(); ++plane) {
-            halve_rows(source.row(plane, 2 * j), source.row(plane, 2 * j + 1), count,
-                       plane_of(step.to, plane).row(j));
+            halve_rows(source.row(plane, 2 * j), source.row(plane, 2 * j + 1), count, plane_of(step.to, plane).row(j));
         }
         if (!step.from_base()) {
-            finish_rows(step.from, step.options.domain, fade_at(step.options.fade, step.level), 2 * j,
-                        2 * j + 2);
+            finish_rows(step.from, step.options.domain, fade_at(step.options.fade, step.level), 2 * j, 2 * j + 2);
         }
     }
 }
@@ -162,7 +158,11 @@ Step make_step(MipChain& chain, int level, const MipOptions& options) {
     NormalMap& from = chain.levels[static_cast<std::size_t>(level)];
     NormalMap& to = chain.levels[static_cast<std::size_t>(level) + 1];
     const Extent extent = from.extent();
-    return {from, to, level, options, make_axis_filter(options.filter, extent.width),
+    return {from,
+            to,
+            level,
+            options,
+            make_axis_filter(options.filter, extent.width),
             make_axis_filter(options.filter, extent.height)};
 }
 
@@ -196,9 +196,8 @@ Result<MipChain> build_mip_chain(NormalMap base, const MipOptions& options, cons
             // Three quarters of what is left, as each level has a quarter of the texels of the one before.
             const double next = done + (1.0 - done) * 0.75;
             const std::vector<Step> halving = halving_steps(chain, k, options);
-            const auto made = halving.empty()
-                                  ? filter_level(make_step(chain, k, options), execution, {done, next})
-                                  : halve_levels(halving, execution, {done, next});
+            const auto made = halving.empty() ? filter_level(make_step(chain, k, options), execution, {done, next})
+                                              : halve_levels(halving, execution, {done, next});
             if (!made) return made.error();
             k += halving.empty() ? 1 : static_cast<int>(halving.size());
             done = next;

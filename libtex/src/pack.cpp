@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "base/guard.h"
-#include "base/pack_rows.h"
-#include "base/parallel.h"
 #include "kernels/encode.h"
+#include "rows/pack_rows.h"
+#include "threads/guard.h"
+#include "threads/parallel.h"
 
 namespace tex {
 namespace {
@@ -46,10 +46,7 @@ Result<Texture> pack_chain(const MipChain& chain, const PackOptions& options, co
         span.to = fraction();
         const Result<void> result = parallel_for(
             execution, extent.height, grain,
-            [&](int begin, int end) {
-                pack_rows(map, extent.height, options, begin, end, packed.bytes.data());
-            },
-            span);
+            [&](int begin, int end) { pack_rows(map, extent.height, options, begin, end, packed.bytes.data()); }, span);
         if (!result) return result.error();
         texture.levels.push_back(std::move(packed));
     }
@@ -63,7 +60,8 @@ Result<Texture> pack(const MipChain& chain, const PackOptions& options, const Ex
     return guarded([&]() -> Result<Texture> { return pack_chain(chain, options, execution); });
 }
 
-void encode_blocks(PlaneView<const float> x, PlaneView<const float> y, const PackOptions& options, std::byte* blocks, std::size_t pitch) {
+void encode_blocks(PlaneView<const float> x, PlaneView<const float> y, const PackOptions& options, std::byte* blocks,
+                   std::size_t pitch) {
     const Extent extent = x.extent;
     assert(extent == y.extent && extent.width >= 1 && extent.height >= 1);
     assert(pitch >= (static_cast<std::size_t>(extent.width) + 3) / 4 * 16);

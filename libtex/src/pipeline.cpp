@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which path a file takes, and the path of whole images; pipeline/bake_stream.cpp and pipeline/pack_stream.cpp are the other one.
+// Which path a file takes, and the path of whole images; pipeline/bake_stream.cpp and pipeline/pack_stream.cpp are the
+// other one.
 
 #include <tex/pipeline.h>
 
@@ -11,21 +12,22 @@
 
 #include <tex/image_io.h>
 
-#include "base/guard.h"
-#include "base/input_file.h"
-#include "base/parallel.h"
-#include "containers/row_source.h"
-#include "containers/texture_rows.h"
-#include "pipeline/bake_stream.h"
-#include "pipeline/normal_source.h"
-#include "pipeline/pack_stream.h"
-#include "pipeline/strip_writer.h"
+#include "files/input_file.h"
+#include "formats/row_source.h"
+#include "formats/texture_rows.h"
+#include "stream/bake_stream.h"
+#include "stream/normal_source.h"
+#include "stream/pack_stream.h"
+#include "stream/strip_writer.h"
+#include "threads/guard.h"
+#include "threads/parallel.h"
 
 namespace tex {
 namespace {
 
 // One file that holds `texture`.
-Result<std::size_t> write_whole(Texture texture, const std::string& output, Container container, const WriteOptions& options) {
+Result<std::size_t> write_whole(Texture texture, const std::string& output, Container container,
+                                const WriteOptions& options) {
     auto bytes = encode_file(texture, container, options);
     if (!bytes) return Error{bytes.error().code, output, bytes.error().reason};
     texture.levels.clear();
@@ -34,14 +36,16 @@ Result<std::size_t> write_whole(Texture texture, const std::string& output, Cont
 }
 
 // The same, or a file for each level.
-Result<std::size_t> write_whole(Texture texture, const OutputNames& names, Container container, const WriteOptions& options) {
+Result<std::size_t> write_whole(Texture texture, const OutputNames& names, Container container,
+                                const WriteOptions& options) {
     if (!names.of_level) return write_whole(std::move(texture), names.output, container, options);
     std::size_t bytes = 0;
     std::vector<Level> levels = std::exchange(texture.levels, {});
     for (std::size_t k = 0; k < levels.size(); ++k) {
         Texture one = texture;
         one.levels.push_back(std::move(levels[k]));
-        const Result<std::size_t> written = write_whole(std::move(one), names.of_level(static_cast<int>(k)), container, options);
+        const Result<std::size_t> written =
+            write_whole(std::move(one), names.of_level(static_cast<int>(k)), container, options);
         if (!written) return written.error();
         bytes += *written;
     }
@@ -79,7 +83,8 @@ Result<BakeFileReport> bake_whole(Image image, const std::string& output, Contai
     return report;
 }
 
-Result<Texture> roughness_whole(const NormalMap& base, const RoughnessFile& file, MipOptions mip, const Execution& execution) {
+Result<Texture> roughness_whole(const NormalMap& base, const RoughnessFile& file, MipOptions mip,
+                                const Execution& execution) {
     const Execution silent{execution.threads, {}};
     Result<Plane<float>> own = file.map ? file.map() : Plane<float>(base.extent(), file.own);
     if (!own) return own.error();
@@ -89,8 +94,8 @@ Result<Texture> roughness_whole(const NormalMap& base, const RoughnessFile& file
     return pack_roughness(*chain, file.format, file.effort, silent);
 }
 
-Result<PackFileReport> pack_whole(InputFile& file, const std::string& output, Container container, const PackFileOptions& options,
-                                  const Execution& execution) {
+Result<PackFileReport> pack_whole(InputFile& file, const std::string& output, Container container,
+                                  const PackFileOptions& options, const Execution& execution) {
     const bool base_only = options.level ? *options.level == 0 : options.mip.has_value();
     auto source = read_normals(file, options.source, base_only, part_of(execution, 0.0, 0.4));
     if (!source) return source.error();
@@ -130,7 +135,8 @@ Result<PackFileReport> pack_whole(InputFile& file, const std::string& output, Co
     report.bytes = *bytes;
     if (roughness) {
         const RoughnessFile& rough = *options.roughness;
-        auto beside = write_whole(std::move(*roughness), {rough.output, rough.level_names}, rough.container, options.write);
+        auto beside =
+            write_whole(std::move(*roughness), {rough.output, rough.level_names}, rough.container, options.write);
         if (!beside) return beside.error();
         report.roughness_bytes = *beside;
     }

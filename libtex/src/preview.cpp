@@ -11,11 +11,11 @@
 
 #include <tex/sheet.h>
 
-#include "base/guard.h"
 #include "preview/canvas.h"
 #include "preview/measures.h"
 #include "preview/progress.h"
 #include "preview/surfaces.h"
+#include "threads/guard.h"
 
 namespace tex {
 namespace {
@@ -26,30 +26,24 @@ constexpr int kLargestDefault = 1024;
 constexpr int kDefaultSize = 512;
 constexpr int kLargestSize = 16384;
 
-Error bad(std::string reason) {
-    return {ErrorCode::bad_option, {}, std::move(reason)};
-}
+Error bad(std::string reason) { return {ErrorCode::bad_option, {}, std::move(reason)}; }
 
 bool finite(std::initializer_list<float> values) {
     return std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
 }
 
-bool not_negative(const Rgb& c) {
-    return finite({c.r, c.g, c.b}) && c.r >= 0.0f && c.g >= 0.0f && c.b >= 0.0f;
-}
+bool not_negative(const Rgb& c) { return finite({c.r, c.g, c.b}) && c.r >= 0.0f && c.g >= 0.0f && c.b >= 0.0f; }
 
 Result<void> check_light(const PreviewOptions& o) {
     if (!finite({o.light.x, o.light.y, o.light.z})) return bad("the light is not finite");
-    if (o.light.kind == LightKind::directional && o.light.x == 0.0f && o.light.y == 0.0f &&
-        o.light.z == 0.0f) {
+    if (o.light.kind == LightKind::directional && o.light.x == 0.0f && o.light.y == 0.0f && o.light.z == 0.0f) {
         return bad("the direction to the light has no length");
     }
     if (!not_negative(o.light.color) || !not_negative(o.ambient) || !not_negative(o.material.albedo) ||
         !not_negative(o.material.specular)) {
         return bad("a colour is below 0 or not finite");
     }
-    if (!(o.material.shininess > 0.0f) || !finite({o.material.shininess}))
-        return bad("the shininess must be above 0");
+    if (!(o.material.shininess > 0.0f) || !finite({o.material.shininess})) return bad("the shininess must be above 0");
     return {};
 }
 
@@ -64,8 +58,7 @@ Result<void> check_geometry(const PreviewOptions& o) {
     if (outside(o.parallax.steps, 0, 1024)) return bad("parallax takes 0 to 1024 steps");
     if (!finite({o.parallax.amount, o.parallax.limit}) || o.parallax.limit < 0.0f)
         return bad("parallax is not finite, or its limit below 0");
-    if (!finite({o.bump_scale, o.maximum, o.spin}) || o.maximum < 0.0f)
-        return bad("a scale is not finite or below 0");
+    if (!finite({o.bump_scale, o.maximum, o.spin}) || o.maximum < 0.0f) return bad("a scale is not finite or below 0");
     const Detail& d = o.detail;
     if (!finite({d.tiling_x, d.tiling_y, d.offset_x, d.offset_y, d.scale}))
         return bad("the detail's tiling, offset or scale is not finite");
@@ -73,8 +66,7 @@ Result<void> check_geometry(const PreviewOptions& o) {
     const Camera& c = *o.camera;
     if (!finite({c.yaw, c.pitch, c.field_of_view}) || std::abs(c.pitch) > 89.0f)
         return bad("the camera's pitch is -89 to 89 degrees");
-    if (c.field_of_view < 0.0f || c.field_of_view > 120.0f)
-        return bad("the field of view is 0 to 120 degrees");
+    if (c.field_of_view < 0.0f || c.field_of_view > 120.0f) return bad("the field of view is 0 to 120 degrees");
     return {};
 }
 
@@ -88,9 +80,7 @@ Extent size_of(const PreviewOptions& options, Extent map) {
     }
     if (options.size.width > 0) longer = options.size.width;
     const double scale = longer / std::max(w, h);
-    const auto rounded = [&](double side) {
-        return std::max(1, static_cast<int>(std::floor(side * scale + 0.5)));
-    };
+    const auto rounded = [&](double side) { return std::max(1, static_cast<int>(std::floor(side * scale + 0.5))); };
     return {rounded(w), rounded(h)};
 }
 
@@ -115,8 +105,7 @@ Result<Texture> show_lit(const Job& job) {
     if (job.options.show != Show::world_normals) {
         return render::render(
             job.stage, Space::linear,
-            [&](const Hit& hit, const Footprint& footprint) { return surface.linear_light(hit, footprint); },
-            drawing);
+            [&](const Hit& hit, const Footprint& footprint) { return surface.linear_light(hit, footprint); }, drawing);
     }
     return render::render(
         job.stage, Space::display,
@@ -154,8 +143,7 @@ Result<Texture> show_plane(const Job& job, PlaneView<const float> values, const 
 }
 
 Result<Texture> show_measure(const Job& job) {
-    const auto found =
-        measure(job.options.show, job.base(), job.options.maximum, part(job.execution, 0.0, 0.3));
+    const auto found = measure(job.options.show, job.base(), job.options.maximum, part(job.execution, 0.0, 0.3));
     if (!found) return found.error();
     return show_plane(job, found->values.view(), found->scale, part(job.execution, 0.3, 1.0));
 }
@@ -192,18 +180,16 @@ Result<Texture> show_height(const Job& job) {
 }
 
 void draw_level(Canvas& canvas, int x, int y, const NormalMap& level) {
-    const auto code = [](float component) {
-        return display_code((static_cast<double>(component) + 1.0) * 0.5);
-    };
+    const auto code = [](float component) { return display_code((static_cast<double>(component) + 1.0) * 0.5); };
     for (int j = 0; j < level.extent().height; ++j) {
         for (int i = 0; i < level.extent().width; ++i) {
-            canvas.set(x + i, y + j,
-                       {code(level.x.at(i, j)), code(level.y.at(i, j)), code(level.z.at(i, j))});
+            canvas.set(x + i, y + j, {code(level.x.at(i, j)), code(level.y.at(i, j)), code(level.z.at(i, j))});
         }
     }
 }
 
-// The first level that fits into the picture's size on the left, the others in a column beside it, a line of text below.
+// The first level that fits into the picture's size on the left, the others in a column beside it, a line of text
+// below.
 Result<Texture> show_mips(const Job& job) {
     constexpr int kGap = 4;
     constexpr int kLine = 18;
@@ -219,8 +205,7 @@ Result<Texture> show_mips(const Job& job) {
         column = std::max(column, levels[k].extent().width);
         below += levels[k].extent().height + kGap;
     }
-    const int width = largest.width + (column > 0 ? kGap + column : 0),
-              height = std::max(largest.height, below - kGap);
+    const int width = largest.width + (column > 0 ? kGap + column : 0), height = std::max(largest.height, below - kGap);
     const int scale = text_scale(width);
     Canvas canvas({width, height + (job.options.legend ? kLine * scale : 0)});
     draw_level(canvas, 0, 0, levels[first]);
@@ -232,10 +217,9 @@ Result<Texture> show_mips(const Job& job) {
     const auto name = [&](std::size_t k) {
         return std::to_string(levels[k].extent().width) + "x" + std::to_string(levels[k].extent().height);
     };
-    const std::string words = "levels " + std::to_string(first) + " to " + std::to_string(levels.size() - 1) +
-                              ": " + name(first) + " to " + name(levels.size() - 1);
-    if (job.options.legend)
-        canvas.text(kGap, height + 5 * scale, scale, fitted(words, scale, width - 2 * kGap));
+    const std::string words = "levels " + std::to_string(first) + " to " + std::to_string(levels.size() - 1) + ": " +
+                              name(first) + " to " + name(levels.size() - 1);
+    if (job.options.legend) canvas.text(kGap, height + 5 * scale, scale, fitted(words, scale, width - 2 * kGap));
     return std::move(canvas).take();
 }
 
@@ -243,25 +227,18 @@ Result<Texture> show(const Job& job) {
     switch (job.options.show) {
         case Show::lit:
         case Show::plain:
-        case Show::world_normals:
-            return show_lit(job);
-        case Show::normals:
-            return show_colors(job);
-        case Show::channels:
-            return show_channels(job);
-        case Show::mips:
-            return show_mips(job);
-        case Show::height:
-            return show_height(job);
-        default:
-            return show_measure(job);
+        case Show::world_normals: return show_lit(job);
+        case Show::normals: return show_colors(job);
+        case Show::channels: return show_channels(job);
+        case Show::mips: return show_mips(job);
+        case Show::height: return show_height(job);
+        default: return show_measure(job);
     }
 }
 
 }  // namespace
 
-Result<Texture> preview(const PreviewScene& scene, const PreviewOptions& options,
-                        const Execution& execution) {
+Result<Texture> preview(const PreviewScene& scene, const PreviewOptions& options, const Execution& execution) {
     assert(scene.map != nullptr && !scene.map->levels.empty());
     return guarded([&]() -> Result<Texture> {
         if (const auto sound = check_light(options); !sound) return sound.error();

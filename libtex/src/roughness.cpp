@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory and threads; kernels/roughness.cpp computes, and the filters are those of mip.cpp. Beside its result the chain keeps the averages of two levels.
+// Memory and threads; kernels/roughness.cpp computes, and the filters are those of mip.cpp. Beside its result the chain
+// keeps the averages of two levels.
 
 #include <tex/roughness.h>
 
@@ -9,14 +10,14 @@
 #include <utility>
 #include <vector>
 
-#include "base/axis_filter.h"
-#include "base/border.h"
-#include "base/guard.h"
-#include "base/parallel.h"
-#include "base/roughness_rows.h"
-#include "base/sampler.h"
 #include "kernels/mip.h"
 #include "kernels/roughness.h"
+#include "rows/axis_filter.h"
+#include "rows/border.h"
+#include "rows/roughness_rows.h"
+#include "rows/sampler.h"
+#include "threads/guard.h"
+#include "threads/parallel.h"
 
 namespace tex {
 namespace {
@@ -81,8 +82,8 @@ Result<BaseLevel> clean_level(const Plane<float>& roughness, const Execution& ex
 }
 
 // The alpha^2 of another extent: halved while it is twice as large, then sampled.
-Result<Plane<float>> stretched(Plane<float> alpha2, Extent extent, const MipOptions& options, const Execution& execution,
-                               ProgressSpan span) {
+Result<Plane<float>> stretched(Plane<float> alpha2, Extent extent, const MipOptions& options,
+                               const Execution& execution, ProgressSpan span) {
     const ProgressSpan start{span.from, span.from};
     while (alpha2.extent().width >= 2 * extent.width && alpha2.extent().height >= 2 * extent.height) {
         const Extent from = alpha2.extent();
@@ -116,7 +117,8 @@ Result<BaseLevel> base_level(const Plane<float>& roughness, Extent extent, const
     auto alpha2 = stretched(std::move(level->alpha2), extent, options, execution, {middle, span.to});
     if (!alpha2) return alpha2.error();
     BaseLevel result{Plane<float>(extent), std::move(*alpha2)};
-    for (int j = 0; j < extent.height; ++j) roughness_of_alpha2(result.alpha2.row(j), extent.width, result.roughness.row(j));
+    for (int j = 0; j < extent.height; ++j)
+        roughness_of_alpha2(result.alpha2.row(j), extent.width, result.roughness.row(j));
     return result;
 }
 
@@ -142,8 +144,8 @@ Result<RoughnessChain> build_chain(const NormalMap& base, const Plane<float>& ro
         const auto strip = [&](int begin, int end) {
             for (std::size_t plane = 0; plane < to.size(); ++plane) filter.run(from[plane], to[plane], begin, end);
             for (int j = begin; j < end; ++j) {
-                roughness_of_averages(model, to[0].row(j), to[1].row(j), to[2].row(j), to[kAlpha2].row(j), smaller.width,
-                                      rougher.row(j));
+                roughness_of_averages(model, to[0].row(j), to[1].row(j), to[2].row(j), to[kAlpha2].row(j),
+                                      smaller.width, rougher.row(j));
             }
         };
         const double next = level + 1 < count ? done + (1.0 - done) * 0.75 : 1.0;
@@ -166,10 +168,12 @@ Result<Texture> pack_chain(const RoughnessChain& chain, Format format, Effort ef
         const bool last = &plane == &chain.levels.back();
         const double next = last ? 1.0 : done + (1.0 - done) * 0.75;
         const int grain = (strip_rows(plane.extent()) + 3) / 4 * 4;  // whole rows of blocks
-        const auto packed = parallel_for(
-            execution, plane.extent().height, grain,
-            [&](int begin, int end) { pack_roughness_rows(plane, plane.extent().height, format, effort, begin, end, level.bytes.data()); },
-            {done, next});
+        const auto packed = parallel_for(execution, plane.extent().height, grain,
+                                         [&](int begin, int end) {
+                                             pack_roughness_rows(plane, plane.extent().height, format, effort, begin,
+                                                                 end, level.bytes.data());
+                                         },
+                                         {done, next});
         if (!packed) return packed.error();
         texture.levels.push_back(std::move(level));
         done = next;
@@ -191,8 +195,10 @@ Result<Texture> pack_roughness(const RoughnessChain& chain, Format format, Effor
     assert(!chain.levels.empty());
     return guarded([&]() -> Result<Texture> {
         if (std::find(std::begin(kFormats), std::end(kFormats), format) == std::end(kFormats)) {
-            return Error{ErrorCode::bad_option, {},
-                         "roughness goes into formats of one channel, not " + std::string(name_of(kFormatNames, format))};
+            return Error{
+                ErrorCode::bad_option,
+                {},
+                "roughness goes into formats of one channel, not " + std::string(name_of(kFormatNames, format))};
         }
         return pack_chain(chain, format, effort, execution);
     });

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <utility>
 
-#include "base/guard.h"
-#include "base/parallel.h"
 #include "kernels/scale.h"
+#include "threads/guard.h"
+#include "threads/parallel.h"
 
 namespace tex {
 namespace {
@@ -17,12 +17,15 @@ namespace {
 Result<void> scale_rows(NormalMap& map, float scale, ScaleMode mode, const Execution& execution, ProgressSpan span) {
     const Extent extent = map.extent();
     const int grain = std::max(1, (1 << 16) / extent.width);
-    return parallel_for(execution, extent.height, grain, [&](int begin, int end) {
-        for (int j = begin; j < end; ++j) {
-            const NormalRow row{map.x.row(j), map.y.row(j), map.z.row(j)};
-            scale_row(row, scale, mode, extent.width, row);
-        }
-    }, span);
+    return parallel_for(
+        execution, extent.height, grain,
+        [&](int begin, int end) {
+            for (int j = begin; j < end; ++j) {
+                const NormalRow row{map.x.row(j), map.y.row(j), map.z.row(j)};
+                scale_row(row, scale, mode, extent.width, row);
+            }
+        },
+        span);
 }
 
 [[maybe_unused]] bool is_scale(float scale) { return std::abs(scale) <= kMaxScale; }  // NaN is none
@@ -45,7 +48,8 @@ Result<MipChain> scale(MipChain chain, float scale, ScaleMode mode, const Execut
         double done = 0.0;
         for (NormalMap& level : chain.levels) {
             const double next = std::min(1.0, done + static_cast<double>(level.extent().texels()) / texels);
-            if (const auto scaled = scale_rows(level, scale, mode, execution, {done, next}); !scaled) return scaled.error();
+            if (const auto scaled = scale_rows(level, scale, mode, execution, {done, next}); !scaled)
+                return scaled.error();
             done = next;
         }
         return std::move(chain);

@@ -8,10 +8,10 @@
 #include <set>
 #include <utility>
 
-#include "base/guard.h"
-#include "containers/apng.h"
-#include "containers/png.h"
+#include "formats/png/apng.h"
+#include "formats/png/png.h"
 #include "preview/canvas.h"
+#include "threads/guard.h"
 
 namespace tex {
 namespace {
@@ -29,8 +29,7 @@ int columns_for(std::size_t count) {
 }
 
 bool without_captions(const std::vector<Panel>& panels) {
-    return std::all_of(panels.begin(), panels.end(),
-                       [](const Panel& panel) { return panel.caption.empty(); });
+    return std::all_of(panels.begin(), panels.end(), [](const Panel& panel) { return panel.caption.empty(); });
 }
 
 }  // namespace
@@ -46,9 +45,7 @@ Result<Texture> picture_of(const Image& image) {
         Canvas canvas(image.extent());
         for (int j = 0; j < image.extent().height; ++j) {
             for (int i = 0; i < image.extent().width; ++i) {
-                const auto code = [&](int c) {
-                    return render::display_code(static_cast<double>(planes[c]->at(i, j)));
-                };
+                const auto code = [&](int c) { return render::display_code(static_cast<double>(planes[c]->at(i, j))); };
                 canvas.set(i, j, {code(0), code(1), code(2)});
             }
         }
@@ -143,8 +140,7 @@ Result<Texture> split_view(const Panel& left, const Panel& right) {
 
 Result<std::vector<std::byte>> encode_animation(const std::vector<Texture>& pictures, int frames_per_second) {
     return guarded([&]() -> Result<std::vector<std::byte>> {
-        if (pictures.empty())
-            return Error{ErrorCode::bad_option, {}, "an animation needs at least one picture"};
+        if (pictures.empty()) return Error{ErrorCode::bad_option, {}, "an animation needs at least one picture"};
         std::vector<std::vector<std::byte>> frames;
         for (const Texture& picture : pictures) {
             auto frame = encode_png(picture);

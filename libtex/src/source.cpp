@@ -2,13 +2,14 @@
 
 #include <tex/source.h>
 
-#include "base/guard.h"
-#include "base/input_file.h"
-#include "pipeline/normal_source.h"
+#include "files/input_file.h"
+#include "stream/normal_source.h"
+#include "threads/guard.h"
 
 namespace tex {
 
-Result<Source> read_normals(const std::string& path, const SourceOptions& options, bool base_only, const Execution& execution) {
+Result<Source> read_normals(const std::string& path, const SourceOptions& options, bool base_only,
+                            const Execution& execution) {
     return guarded([&]() -> Result<Source> {
         Result<InputFile> file = InputFile::open(path);
         if (!file) return file.error();

@@ -4,8 +4,8 @@
 
 #include <tex/unpack.h>
 
-#include "base/guard.h"
-#include "base/swizzle_evidence.h"
+#include "rows/swizzle_evidence.h"
+#include "threads/guard.h"
 
 namespace tex {
 

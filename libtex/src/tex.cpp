@@ -2,8 +2,8 @@
 
 #include <tex/tex.h>
 
-#include "containers/exr.h"
-#include "containers/png.h"
+#include "formats/exr/exr.h"
+#include "formats/png/png.h"
 #include "kernels/target.h"
 
 namespace tex {

@@ -8,12 +8,12 @@
 #include <cassert>
 #include <cstring>
 
-#include "base/channel_names.h"
-#include "base/guard.h"
-#include "base/parallel.h"
-#include "base/unpack_rows.h"
+#include "formats/channel_names.h"
 #include "kernels/decode.h"
 #include "kernels/unpack.h"
+#include "rows/unpack_rows.h"
+#include "threads/guard.h"
+#include "threads/parallel.h"
 
 namespace tex {
 namespace {
@@ -23,13 +23,14 @@ constexpr int kStripRows = 4;  // of a block format: one row of blocks
 
 int strips_of(Extent extent) { return (extent.height + kStripRows - 1) / kStripRows; }
 
-// Decodes the rows of strip `strip` to `rows`, whose rows lie `stride` apart and must have room for kStripRows rows of the width
-// rounded up to 4.
+// Decodes the rows of strip `strip` to `rows`, whose rows lie `stride` apart and must have room for kStripRows rows of
+// the width rounded up to 4.
 void decode_strip(Format format, const Level& level, int strip, const ChannelRows& rows, std::ptrdiff_t stride) {
     const int width = level.extent.width;
     const std::size_t pitch = level_bytes(format, {width, 1});  // of a row of blocks, where there are blocks
     if (format_info(format).block > 1) {
-        decode_blocks(format, level.bytes.data() + static_cast<std::size_t>(strip) * pitch, (width + 3) / 4, rows, stride);
+        decode_blocks(format, level.bytes.data() + static_cast<std::size_t>(strip) * pitch, (width + 3) / 4, rows,
+                      stride);
         return;
     }
     const int first = strip * kStripRows;
@@ -109,7 +110,8 @@ Result<bool> weigh_range(const Reader& reader, const Execution& execution) {
             const int first = strip * kStripRows;
             for (int r = 0; r < std::min(kStripRows, extent.height - first); ++r) {
                 RangeEvidence& row = rows[static_cast<std::size_t>(first) + static_cast<std::size_t>(r)];
-                row = weigh_row(strip_rows.component[0][r], strip_rows.component[1][r], strip_rows.component[2][r], extent.width);
+                row = weigh_row(strip_rows.component[0][r], strip_rows.component[1][r], strip_rows.component[2][r],
+                                extent.width);
                 if (row.negative) negative = true;
             }
         }
@@ -132,17 +134,20 @@ Result<void> unpack_rows(const Reader& reader, const UnpackRule& rule, NormalMap
                          ProgressSpan span) {
     const Extent extent = reader.extent();
     map = NormalMap(extent);
-    return parallel_for(execution, strips_of(extent), grain_of(extent), [&](int begin, int end) {
-        Plane<float> scratch = make_scratch(extent);
-        for (int strip = begin; strip < end; ++strip) {
-            const StripRows rows = reader.read(strip, scratch);
-            for (int r = 0; r < kStripRows && strip * kStripRows + r < extent.height; ++r) {
-                const int j = strip * kStripRows + r;
-                unpack_row(rows.component[0][r], rows.component[1][r], rows.component[2][r], rule, extent.width,
-                           map.x.row(j), map.y.row(j), map.z.row(j));
+    return parallel_for(
+        execution, strips_of(extent), grain_of(extent),
+        [&](int begin, int end) {
+            Plane<float> scratch = make_scratch(extent);
+            for (int strip = begin; strip < end; ++strip) {
+                const StripRows rows = reader.read(strip, scratch);
+                for (int r = 0; r < kStripRows && strip * kStripRows + r < extent.height; ++r) {
+                    const int j = strip * kStripRows + r;
+                    unpack_row(rows.component[0][r], rows.component[1][r], rows.component[2][r], rule, extent.width,
+                               map.x.row(j), map.y.row(j), map.z.row(j));
+                }
             }
-        }
-    }, span);
+        },
+        span);
 }
 
 // The planes that stand for R, G, B and A; null for those that are not there.
@@ -192,7 +197,8 @@ Result<Image> decode_level(const Texture& texture, const Level& level, const Exe
             for (int c = 0; c < info.channels; ++c) {
                 for (int r = 0; r < kStripRows && strip * kStripRows + r < extent.height; ++r) {
                     std::memcpy(image.planes[static_cast<std::size_t>(c)].row(strip * kStripRows + r),
-                                scratch.row(c * kStripRows + r), static_cast<std::size_t>(extent.width) * sizeof(float));
+                                scratch.row(c * kStripRows + r),
+                                static_cast<std::size_t>(extent.width) * sizeof(float));
                 }
             }
         }
@@ -203,8 +209,7 @@ Result<Image> decode_level(const Texture& texture, const Level& level, const Exe
 
 Result<MipChain> unpack_levels(const Texture& texture, const UnpackOptions& options, const Execution& execution) {
     const FormatInfo info = format_info(texture.format);
-    const Result<Sources> sources =
-        sources_of(options.swizzle.value_or(texture.swizzle), (1u << info.channels) - 1);
+    const Result<Sources> sources = sources_of(options.swizzle.value_or(texture.swizzle), (1u << info.channels) - 1);
     if (!sources) return sources.error();
     UnpackRule rule = rule_of(options, info.sample, info.bits, options.y_axis.value_or(texture.y_axis));
     const ValueRange range = range_of(texture.normal_encoding, options);

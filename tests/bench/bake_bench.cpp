@@ -47,8 +47,8 @@ void BakeRows(benchmark::State& state) {
     for (auto _ : state) {
         for (int j = 1; j < size - 1; ++j) {
             const float* row = field.height.row(j);
-            tex::normals_by_difference(row - 1, row + 1, field.height.row(j + 1), field.height.row(j - 1),
-                                       4.0f, 4.0f, size, {map.x.row(j), map.y.row(j), map.z.row(j)});
+            tex::normals_by_difference(row - 1, row + 1, field.height.row(j + 1), field.height.row(j - 1), 4.0f, 4.0f,
+                                       size, {map.x.row(j), map.y.row(j), map.z.row(j)});
         }
         benchmark::ClobberMemory();
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texels per second of a detail on a base of the same extent, on one thread: the kernel over strips that stay in the cache (BlendRows), and the verb
-// on whole maps (Blend). BlendCopy moves nearly as many bytes: 8 floats for each texel, where blending reads 6 and writes 3.
+// Texels per second of a detail on a base of the same extent, on one thread: the kernel over strips that stay in the
+// cache (BlendRows), and the verb on whole maps (Blend). BlendCopy moves nearly as many bytes: 8 floats for each texel,
+// where blending reads 6 and writes 3.
 
 #include <string>
 #include <utility>
@@ -49,8 +50,8 @@ void BlendRows(benchmark::State& state) {
     state.SetLabel(std::string(name_of(tex::kBlendModeNames, mode)));
     for (auto _ : state) {
         for (int j = 0; j < kHeight; ++j) {
-            tex::blend_row(mode, {base.x.row(j), base.y.row(j), base.z.row(j)}, {detail.x.row(j), detail.y.row(j), detail.z.row(j)},
-                           nullptr, kWidth);
+            tex::blend_row(mode, {base.x.row(j), base.y.row(j), base.z.row(j)},
+                           {detail.x.row(j), detail.y.row(j), detail.z.row(j)}, nullptr, kWidth);
         }
         benchmark::ClobberMemory();
     }
@@ -90,6 +91,9 @@ void BlendPlaced(benchmark::State& state) {
     state.SetLabel(std::to_string(tiling).substr(0, 3) + " times" + (degrees == 0.0f ? "" : ", turned"));
     blend_again(state, static_cast<int>(state.range(2)), {}, tiling, degrees);
 }
-BENCHMARK(BlendPlaced)->ArgNames({"tenths", "degrees", "size"})->ArgsProduct({{40, 15}, {0}, {512, 2048}})->ArgsProduct({{10}, {30}, {512, 2048}});
+BENCHMARK(BlendPlaced)
+    ->ArgNames({"tenths", "degrees", "size"})
+    ->ArgsProduct({{40, 15}, {0}, {512, 2048}})
+    ->ArgsProduct({{10}, {30}, {512, 2048}});
 
 }  // namespace

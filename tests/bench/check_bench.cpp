@@ -3,7 +3,8 @@
 //
 //     check_bench [SIDE]        a DXT5nm of SIDE x SIDE texels (4096) with all mip levels
 //
-// Both in turn, with all threads: medians of seven rounds, of wall-clock time and of the ratio within a round. The table of planted damages is printed where
+// Both in turn, with all threads: medians of seven rounds, of wall-clock time and of the ratio within a round. The
+// table of planted damages is printed where
 // ../shared/data is.
 
 #include <algorithm>

@@ -19,7 +19,9 @@ using tex::Plane;
 
 // Two maps of noise.
 struct Pair {
-    explicit Pair(int size) : a(tex::fields::noise_normals({size, size})), b(tex::fields::noise_normals({size, size})), degrees(Extent{size, size}) {
+    explicit Pair(int size)
+        : a(tex::fields::noise_normals({size, size})), b(tex::fields::noise_normals({size, size})),
+          degrees(Extent{size, size}) {
         // The second one is the first, a row further: other normals, of the same kind.
         for (Plane<float>* plane : {&b.x, &b.y, &b.z}) {
             for (int j = 0; j + 1 < size; ++j) copy_row(*plane, j + 1, *plane, j);
@@ -50,8 +52,8 @@ void CompareRows(benchmark::State& state) {
     Pair pair(size);
     for (auto _ : state) {
         for (int j = 0; j < size; ++j) {
-            tex::angle_row({pair.a.x.row(j), pair.a.y.row(j), pair.a.z.row(j)}, {pair.b.x.row(j), pair.b.y.row(j), pair.b.z.row(j)}, size,
-                           pair.degrees.row(j));
+            tex::angle_row({pair.a.x.row(j), pair.a.y.row(j), pair.a.z.row(j)},
+                           {pair.b.x.row(j), pair.b.y.row(j), pair.b.z.row(j)}, size, pair.degrees.row(j));
         }
         benchmark::ClobberMemory();
     }

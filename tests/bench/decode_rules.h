@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// decode_rules.h: how processors return DXT5nm, at 8 bits, and the least squared error that any block can have with such a rule: an exhaustive search.
+// decode_rules.h: how processors return DXT5nm, at 8 bits, and the least squared error that any block can have with
+// such a rule: an exhaustive search.
 //
 // Where two codes are mixed, with k of n parts of the second one:
 //
 //     AMD                 (64 - w) a + w b + 32 >> 6, w = 64 k / n rounded: 21 and 43 of green
 //     Intel               (256 - w) a + w b + 128 >> 8, w = 256 k / n rounded
-//     NVIDIA              green: 256 a + d / 4 + 128 + 80 d, divided by 256, d = b - a, both towards zero, a being the nearer code;
+//     NVIDIA              green: 256 a + d / 4 + 128 + 80 d, divided by 256, d = b - a, both towards zero, a being the
+//     nearer code;
 //                         alpha: the nearest code
 //     Mesa and libsquish  (n - k) a + k b divided by n, rounded down
 //
-// What is known: the greens of AMD and NVIDIA are those that rgbcx encodes for (Geldreich, bc7enc_rdo, rgbcx.h: bc1_approx_mode, interp_5_6_amd and
-// interp_6_nv; measured by Castano, "GPU DXT Decompression", 2009); AMD's and Intel's mixes, of green and alpha alike, are those of Giesen ("GPU BCn
-// decoding", 2021), who found expressions that match all three vendors to the last bit. What is assumed: NVIDIA's alpha. rgbcx has one BC4 for all
-// processors, sevenths and fifths rounded down, and no formula was found elsewhere; here it is the nearest code.
-// Processors return BC4 and BC5 with more bits than 8: these rules are for BC3.
+// What is known: the greens of AMD and NVIDIA are those that rgbcx encodes for (Geldreich, bc7enc_rdo, rgbcx.h:
+// bc1_approx_mode, interp_5_6_amd and interp_6_nv; measured by Castano, "GPU DXT Decompression", 2009); AMD's and
+// Intel's mixes, of green and alpha alike, are those of Giesen ("GPU BCn decoding", 2021), who found expressions that
+// match all three vendors to the last bit. What is assumed: NVIDIA's alpha. rgbcx has one BC4 for all processors,
+// sevenths and fifths rounded down, and no formula was found elsewhere; here it is the nearest code. Processors return
+// BC4 and BC5 with more bits than 8: these rules are for BC3.
 
 #pragma once
 
@@ -33,7 +36,8 @@ inline int mix(Rule rule, int a, int b, int k, int n) {
         case Rule::intel: return ((256 - weight(256)) * a + weight(256) * b + 128) >> 8;
         case Rule::nvidia: {
             const int d = k == 1 ? b - a : a - b;
-            return n == 3 ? (256 * (k == 1 ? a : b) + d / 4 + 128 + 80 * d) / 256 : (2 * ((n - k) * a + k * b) + n) / (2 * n);
+            return n == 3 ? (256 * (k == 1 ? a : b) + d / 4 + 128 + 80 * d) / 256
+                          : (2 * ((n - k) * a + k * b) + n) / (2 * n);
         }
         case Rule::truncating: break;
     }
@@ -59,7 +63,8 @@ inline Palette green_palette(Rule rule, int c0, int c1) {  // 6 bits each
     return {4, {a, b, mix(rule, a, b, 1, 3), mix(rule, a, b, 2, 3)}};
 }
 
-// The squared errors of a block's 16 texels, in codes: as it is written, and with the nearest values (or any number from `limit` on).
+// The squared errors of a block's 16 texels, in codes: as it is written, and with the nearest values (or any number
+// from `limit` on).
 inline double written_error(const Palette& palette, std::uint64_t indices, int bits, const float texels[16]) {
     double sum = 0;
     for (int k = 0; k < 16; ++k) {
@@ -84,14 +89,16 @@ inline float nearest_error(const Palette& palette, const float texels[16], float
 inline float least_alpha_error(Rule rule, const float texels[16]) {
     float least = 1e9f;
     for (int e0 = 0; e0 < 256; ++e0) {
-        for (int e1 = 0; e1 < 256; ++e1) least = std::min(least, nearest_error(alpha_palette(rule, e0, e1), texels, least));
+        for (int e1 = 0; e1 < 256; ++e1)
+            least = std::min(least, nearest_error(alpha_palette(rule, e0, e1), texels, least));
     }
     return least;
 }
 inline float least_green_error(Rule rule, const float texels[16]) {
     float least = 1e9f;
     for (int c0 = 0; c0 < 64; ++c0) {
-        for (int c1 = 0; c1 < 64; ++c1) least = std::min(least, nearest_error(green_palette(rule, c0, c1), texels, least));
+        for (int c1 = 0; c1 < 64; ++c1)
+            least = std::min(least, nearest_error(green_palette(rule, c0, c1), texels, least));
     }
     return least;
 }
@@ -102,7 +109,8 @@ inline std::uint64_t bytes(const std::byte* from, int count) {
     return value;
 }
 inline double alpha_error(Rule rule, const std::byte* block, const float texels[16]) {
-    return written_error(alpha_palette(rule, std::to_integer<int>(block[0]), std::to_integer<int>(block[1])), bytes(block + 2, 6), 3, texels);
+    return written_error(alpha_palette(rule, std::to_integer<int>(block[0]), std::to_integer<int>(block[1])),
+                         bytes(block + 2, 6), 3, texels);
 }
 inline double green_error(Rule rule, const std::byte* block, const float texels[16]) {
     const auto colors = static_cast<int>(bytes(block + 8, 4));

@@ -7,14 +7,15 @@
 //
 //     extern "C" void encode(const uint8_t* rgba, int width, int height, size_t pitch, uint8_t* blocks)
 //
-// and gets R = 255, G = y, B = 0, A = x in 8 bits. libsquish is always beside ours. One thread, processor time, the median of several runs;
-// our encoders read strips of float rows that stay in the second-level cache. Errors are those of our decode, divided by those of
-// `best`, which is the optimum of the squared error in both channels. Maps are cut to whole blocks. "pooled" is the sum over the maps divided by the
-// sum over the optima.
+// and gets R = 255, G = y, B = 0, A = x in 8 bits. libsquish is always beside ours. One thread, processor time, the
+// median of several runs; our encoders read strips of float rows that stay in the second-level cache. Errors are those
+// of our decode, divided by those of `best`, which is the optimum of the squared error in both channels. Maps are cut
+// to whole blocks. "pooled" is the sum over the maps divided by the sum over the optima.
 
 //
-// Then, under the rules by which processors return 8 bits (decode_rules.h), the errors on a sample of blocks divided by the least that any blocks of
-// DXT5nm have under the same rule; how two threads scale, beside a loop that only counts; and the pooled figures as README.md shows them.
+// Then, under the rules by which processors return 8 bits (decode_rules.h), the errors on a sample of blocks divided by
+// the least that any blocks of DXT5nm have under the same rule; how two threads scale, beside a loop that only counts;
+// and the pooled figures as README.md shows them.
 
 #include <algorithm>
 #include <chrono>
@@ -58,7 +59,7 @@ struct Map {
 };
 
 struct Quality {
-    double green = 0, alpha = 0;          // mean squared errors, in codes squared
+    double green = 0, alpha = 0;                 // mean squared errors, in codes squared
     double mean = 0, most_999 = 0, largest = 0;  // angles in degrees
 };
 
@@ -94,7 +95,8 @@ Quality measure(const Map& map, const std::vector<std::byte>& blocks) {
             const double pz = std::sqrt(1.0 - std::min(1.0, p[0] * p[0] + p[1] * p[1]));
             const double ez = std::sqrt(1.0 - std::min(1.0, e[0] * e[0] + e[1] * e[1]));
             const double cross = std::hypot(p[1] * ez - pz * e[1], pz * e[0] - p[0] * ez, p[0] * e[1] - p[1] * e[0]);
-            angles.push_back(static_cast<float>(std::atan2(cross, p[0] * e[0] + p[1] * e[1] + pz * ez) * 57.29577951308232));
+            angles.push_back(
+                static_cast<float>(std::atan2(cross, p[0] * e[0] + p[1] * e[1] + pz * ez) * 57.29577951308232));
             q.mean += angles.back();
         }
     }
@@ -148,7 +150,8 @@ double median(std::vector<double> values) {
 }
 
 // Ours: rows of blocks, each several times in a row, so that its texels are in the cache.
-double encode_ours(const Map& map, tex::Effort effort, std::vector<std::byte>& blocks, tex::Metric metric = tex::Metric::component) {
+double encode_ours(const Map& map, tex::Effort effort, std::vector<std::byte>& blocks,
+                   tex::Metric metric = tex::Metric::component) {
     const int repeats = effort == tex::Effort::best ? 1 : effort == tex::Effort::normal ? 2 : 8;
     std::vector<double> seconds;
     for (int run = 0; run < (effort == tex::Effort::best ? 1 : 3); ++run) {
@@ -192,8 +195,10 @@ void add_map(const fs::path& path, std::vector<Map>& maps) {
     Map map{path.filename().string(), std::move(*normals), 0, 0, {}};
     map.width = map.normals.extent().width / 4 * 4;
     map.height = map.normals.extent().height / 4 * 4;
-    if (!map.name.starts_with("normal")) map.name = path.stem().string();
-    else map.name = path.parent_path().filename().string() + "/" + path.stem().string();
+    if (!map.name.starts_with("normal"))
+        map.name = path.stem().string();
+    else
+        map.name = path.parent_path().filename().string() + "/" + path.stem().string();
     // x and y as stored: unpack() normalises, so they are taken from the picture.
     for (int j = 0; j < map.height; ++j) {
         for (int i = 0; i < map.width; ++i) {
@@ -213,42 +218,63 @@ void add_directory(const fs::path& directory, std::vector<Map>& maps) {
         const bool pair = path.string().find("/pairs/") != std::string::npos;
         const bool eight_bits = path.extension() != ".exr";
         const bool copy = path.parent_path().filename() == "derived";
-        if (entry.is_regular_file() && eight_bits && !copy && (!pair || path.filename().string().starts_with("normal"))) paths.push_back(path);
+        if (entry.is_regular_file() && eight_bits && !copy && (!pair || path.filename().string().starts_with("normal")))
+            paths.push_back(path);
     }
     std::sort(paths.begin(), paths.end());
     for (const fs::path& path : paths) add_map(path, maps);
 }
 
 void print(const std::string& map, const Encoder& encoder, double speed, const Quality& q, const Quality& best) {
-    const auto ratio = [](double value, double least) { return least > 0 ? value / least : value > 0 ? HUGE_VAL : 1.0; };
-    std::printf("%-28s %-22s %9.2f %8.3f %8.3f %8.3f %8.3f %8.3f\n", map.c_str(), encoder.name.c_str(), speed, ratio(q.mean, best.mean),
-                ratio(q.green, best.green), ratio(q.alpha, best.alpha), ratio(q.most_999, best.most_999), ratio(q.largest, best.largest));
+    const auto ratio = [](double value, double least) {
+        return least > 0 ? value / least : value > 0 ? HUGE_VAL : 1.0;
+    };
+    std::printf("%-28s %-22s %9.2f %8.3f %8.3f %8.3f %8.3f %8.3f\n", map.c_str(), encoder.name.c_str(), speed,
+                ratio(q.mean, best.mean), ratio(q.green, best.green), ratio(q.alpha, best.alpha),
+                ratio(q.most_999, best.most_999), ratio(q.largest, best.largest));
     std::fflush(stdout);
 }
 
 std::vector<Encoder> our_encoders() {
     std::vector<Encoder> encoders;
-    encoders.push_back({"best", [](const Map& map, auto& blocks) { return encode_ours(map, tex::Effort::best, blocks); }, {}, 0, {}});
     encoders.push_back(
-        {"best, angle", [](const Map& map, auto& blocks) { return encode_ours(map, tex::Effort::best, blocks, tex::Metric::angle); }, {}, 0, {}});
+        {"best", [](const Map& map, auto& blocks) { return encode_ours(map, tex::Effort::best, blocks); }, {}, 0, {}});
+    encoders.push_back(
+        {"best, angle",
+         [](const Map& map, auto& blocks) { return encode_ours(map, tex::Effort::best, blocks, tex::Metric::angle); },
+         {},
+         0,
+         {}});
     for (const tex::Effort effort : {tex::Effort::normal, tex::Effort::fast}) {
         for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-            const std::string name = std::string(tex::name_of(tex::kEffortNames, effort)) + " " + hwy::TargetName(target);
-            encoders.push_back({name, [effort, target](const Map& map, auto& blocks) {
+            const std::string name =
+                std::string(tex::name_of(tex::kEffortNames, effort)) + " " + hwy::TargetName(target);
+            encoders.push_back({name,
+                                [effort, target](const Map& map, auto& blocks) {
                                     hwy::SetSupportedTargetsForTest(target);
                                     const double seconds = encode_ours(map, effort, blocks);
                                     hwy::SetSupportedTargetsForTest(0);
                                     return seconds;
-                                }, {}, 0, {}});
+                                },
+                                {},
+                                0,
+                                {}});
         }
     }
     for (const int flag : {squish::kColourRangeFit, squish::kColourClusterFit}) {
         encoders.push_back({flag == squish::kColourRangeFit ? "libsquish range" : "libsquish cluster",
                             [flag](const Map& map, auto& blocks) {
-                                return encode_others(map, blocks, [flag](const Map& m, std::uint8_t* out) {
-                                    squish::CompressImage(m.rgba8.data(), m.width, m.height, out, squish::kDxt5 | flag);
-                                }, 1);
-                            }, {}, 0, {}});
+                                return encode_others(
+                                    map, blocks,
+                                    [flag](const Map& m, std::uint8_t* out) {
+                                        squish::CompressImage(m.rgba8.data(), m.width, m.height, out,
+                                                              squish::kDxt5 | flag);
+                                    },
+                                    1);
+                            },
+                            {},
+                            0,
+                            {}});
     }
     return encoders;
 }
@@ -279,8 +305,9 @@ void print_threads(const Map& map) {
             encode_ours(map, effort, blocks);
         };
         const double encoding = 2 * wall_seconds(1, encode) / wall_seconds(2, encode);
-        std::printf("two threads, %s: %.2f of one (counting alone: %.2f, ratio %.2f)\n", std::string(tex::name_of(tex::kEffortNames, effort)).c_str(),
-                    encoding, counting, encoding / counting);
+        std::printf("two threads, %s: %.2f of one (counting alone: %.2f, ratio %.2f)\n",
+                    std::string(tex::name_of(tex::kEffortNames, effort)).c_str(), encoding, counting,
+                    encoding / counting);
     }
 }
 
@@ -290,19 +317,22 @@ void print_rules(const std::vector<Encoder>& encoders, const RuleErrors& least) 
     for (const Encoder& encoder : encoders) {
         std::printf("\n%-22s", encoder.name.c_str());
         for (int r = 0; r < 4; ++r) {
-            std::printf("   %6.3f %6.3f", encoder.under_rules.green[r] / least.green[r], encoder.under_rules.alpha[r] / least.alpha[r]);
+            std::printf("   %6.3f %6.3f", encoder.under_rules.green[r] / least.green[r],
+                        encoder.under_rules.alpha[r] / least.alpha[r]);
         }
     }
     std::printf("\n\n");
 }
 
 void print_markdown(const std::vector<Encoder>& encoders, double texels) {
-    std::printf("\n| encoder | Mtexel/s | mean angle | p99.9 angle | green MSE | alpha MSE |\n|---|---|---|---|---|---|\n");
+    std::printf(
+        "\n| encoder | Mtexel/s | mean angle | p99.9 angle | green MSE | alpha MSE |\n|---|---|---|---|---|---|\n");
     const Quality& best = encoders.front().sum;
     for (const Encoder& encoder : encoders) {
         const double speed = texels / encoder.seconds * 1e-6;
-        std::printf("| %s | %.*f | %.3f | %.3f | %.3f | %.3f |\n", encoder.name.c_str(), speed < 20 ? 1 : 0, speed, encoder.sum.mean / best.mean,
-                    encoder.sum.most_999 / best.most_999, encoder.sum.green / best.green, encoder.sum.alpha / best.alpha);
+        std::printf("| %s | %.*f | %.3f | %.3f | %.3f | %.3f |\n", encoder.name.c_str(), speed < 20 ? 1 : 0, speed,
+                    encoder.sum.mean / best.mean, encoder.sum.most_999 / best.most_999, encoder.sum.green / best.green,
+                    encoder.sum.alpha / best.alpha);
     }
 }
 
@@ -321,11 +351,19 @@ int main(int argc, char** argv) {
                 std::fprintf(stderr, "encode_bench: %s\n", dlerror());
                 return 3;
             }
-            encoders.push_back({path.stem().string(), [encode](const Map& map, auto& blocks) {
-                                    return encode_others(map, blocks, [encode](const Map& m, std::uint8_t* out) {
-                                        encode(m.rgba8.data(), m.width, m.height, static_cast<std::size_t>(4 * m.width), out);
-                                    }, 3);
-                                }, {}, 0, {}});
+            encoders.push_back({path.stem().string(),
+                                [encode](const Map& map, auto& blocks) {
+                                    return encode_others(
+                                        map, blocks,
+                                        [encode](const Map& m, std::uint8_t* out) {
+                                            encode(m.rgba8.data(), m.width, m.height,
+                                                   static_cast<std::size_t>(4 * m.width), out);
+                                        },
+                                        3);
+                                },
+                                {},
+                                0,
+                                {}});
         } else if (fs::is_directory(path)) {
             add_directory(path, maps);
         } else {
@@ -334,10 +372,12 @@ int main(int argc, char** argv) {
     }
     if (maps.empty()) {
         for (const char* folder : {"/../shared/data/normal", "/../shared/data/pairs"}) {
-            if (fs::is_directory(std::string(TEX_SOURCE_DIR) + folder)) add_directory(std::string(TEX_SOURCE_DIR) + folder, maps);
+            if (fs::is_directory(std::string(TEX_SOURCE_DIR) + folder))
+                add_directory(std::string(TEX_SOURCE_DIR) + folder, maps);
         }
     }
-    std::printf("%-28s %-22s %9s %8s %8s %8s %8s %8s\n", "map", "encoder", "Mtexel/s", "mean", "green", "alpha", "p99.9", "largest");
+    std::printf("%-28s %-22s %9s %8s %8s %8s %8s %8s\n", "map", "encoder", "Mtexel/s", "mean", "green", "alpha",
+                "p99.9", "largest");
     double texels = 0;
     RuleErrors least;
     for (const Map& map : maps) {
@@ -352,12 +392,14 @@ int main(int argc, char** argv) {
             add_rule_errors(map, blocks, encoder.under_rules);
             print(map.name, encoder, 16.0 * map.blocks() / seconds * 1e-6, q, best);
             encoder.seconds += seconds;
-            for (double Quality::*field : {&Quality::green, &Quality::alpha, &Quality::mean, &Quality::most_999, &Quality::largest}) {
+            for (double Quality::*field :
+                 {&Quality::green, &Quality::alpha, &Quality::mean, &Quality::most_999, &Quality::largest}) {
                 encoder.sum.*field += q.*field;
             }
         }
     }
-    for (const Encoder& encoder : encoders) print("pooled", encoder, texels / encoder.seconds * 1e-6, encoder.sum, encoders.front().sum);
+    for (const Encoder& encoder : encoders)
+        print("pooled", encoder, texels / encoder.seconds * 1e-6, encoder.sum, encoders.front().sum);
     print_rules(encoders, least);
     if (!maps.empty()) print_threads(maps.front());
     print_markdown(encoders, texels);

@@ -21,7 +21,8 @@
 
 namespace bench {
 
-// Texels after which the heights repeat: farther than the 32 KB that deflate looks back, as in a photograph, also in rows of the smallest maps.
+// Texels after which the heights repeat: farther than the 32 KB that deflate looks back, as in a photograph, also in
+// rows of the smallest maps.
 inline constexpr int kPeriod = 4096;
 
 // Of each octave to the one before: 8-bit files of 4096x4096 have 3 MB, 16-bit ones 23 MB.
@@ -49,7 +50,8 @@ inline double fractal(int i, int j, int octaves = 9) {
         const auto y = static_cast<std::uint32_t>(j / cell) % cells;
         const auto octave = static_cast<std::uint32_t>(k);
         const double top = lattice(x, y, octave) * (1.0 - su) + lattice((x + 1) % cells, y, octave) * su;
-        const double low = lattice(x, (y + 1) % cells, octave) * (1.0 - su) + lattice((x + 1) % cells, (y + 1) % cells, octave) * su;
+        const double low =
+            lattice(x, (y + 1) % cells, octave) * (1.0 - su) + lattice((x + 1) % cells, (y + 1) % cells, octave) * su;
         sum += amplitude * (top * (1.0 - sv) + low * sv);
     }
     return sum / most;
@@ -75,8 +77,8 @@ inline void write_png(const std::string& path, int width, int height_of, int bit
     png_init_io(png, file);
     png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
     png_set_compression_level(png, 6);
-    png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height_of), bits, PNG_COLOR_TYPE_GRAY,
-                 PNG_INTERLACE_NONE, 0, 0);
+    png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height_of), bits,
+                 PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, 0, 0);
     png_write_info(png, info);
     std::vector<png_byte> row(static_cast<std::size_t>(width * bits / 8));
     for (int j = 0; j < height_of; ++j) {
@@ -94,7 +96,8 @@ inline void write_png(const std::string& path, int width, int height_of, int bit
 }
 
 // Half.
-inline void write_exr(const std::string& path, int width, int height_of, Imf::Compression compression = Imf::ZIP_COMPRESSION) {
+inline void write_exr(const std::string& path, int width, int height_of,
+                      Imf::Compression compression = Imf::ZIP_COMPRESSION) {
     Imf::Header header(width, height_of);
     header.compression() = compression;
     header.channels().insert("Y", Imf::Channel(Imf::HALF));

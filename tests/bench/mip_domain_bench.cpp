@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// mip_domain_bench: what the levels of either mip domain miss. Prints, for each level of a pattern of waves, the angles in degrees between the normals
-// that build_mip_chain() makes and those of the slopes averaged over what a texel covers, supersampled.
+// mip_domain_bench: what the levels of either mip domain miss. Prints, for each level of a pattern of waves, the angles
+// in degrees between the normals that build_mip_chain() makes and those of the slopes averaged over what a texel
+// covers, supersampled.
 
 #include <algorithm>
 #include <array>
@@ -25,7 +26,8 @@ using tex::reference::Vector;
 constexpr int kWaveSize = 256;
 constexpr int kSamples = 8;  // of the truth along a side of a texel of the base level
 
-// The slope of three crossing waves 11 to 37 texels long, less than 60 degrees steep. x runs to the right and y up, both from 0 to 1.
+// The slope of three crossing waves 11 to 37 texels long, less than 60 degrees steep. x runs to the right and y up,
+// both from 0 to 1.
 Vector wave_slope(double x, double y) {
     struct Wave {
         int across, along;  // crests over the map: it tiles
@@ -115,7 +117,7 @@ int main() {
     const WaveErrors errors = wave_errors();
     std::printf("| level | vector, mean | slope, mean | vector, largest | slope, largest |\n|---|---|---|---|---|\n");
     for (std::size_t level = 0; level < errors[0].size(); ++level) {
-        std::printf("| %zu | %.3f | %.3f | %.3f | %.3f |\n", level, errors[0][level].mean, errors[1][level].mean, errors[0][level].largest,
-                    errors[1][level].largest);
+        std::printf("| %zu | %.3f | %.3f | %.3f | %.3f |\n", level, errors[0][level].mean, errors[1][level].mean,
+                    errors[0][level].largest, errors[1][level].largest);
     }
 }

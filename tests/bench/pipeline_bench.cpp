@@ -3,9 +3,9 @@
 //
 //     ninja -C build/release pipeline_bench bake-normals && build/release/pipeline_bench [--runs N] [--large] [FOLDER]
 //
-// Prints tables in Markdown. Each row is the median of N (at least 7) pairs of runs that alternate, the command and its baseline; ratios are those of the
-// pairs. The commands are those beside this program. Height maps go to FOLDER (default /tmp/pipeline_bench) and stay there. --large adds the memory of
-// 16384x16384 and 65536x4096 texels.
+// Prints tables in Markdown. Each row is the median of N (at least 7) pairs of runs that alternate, the command and its
+// baseline; ratios are those of the pairs. The commands are those beside this program. Height maps go to FOLDER
+// (default /tmp/pipeline_bench) and stay there. --large adds the memory of 16384x16384 and 65536x4096 texels.
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -45,7 +45,8 @@ struct Bench {
     }
 
     // One row: command against baseline; `scale` is what one baseline counts.
-    void row(const std::string& work, const Command& command, const Command& baseline, double target, double scale = 1.0) const {
+    void row(const std::string& work, const Command& command, const Command& baseline, double target,
+             double scale = 1.0) const {
         if (only_makes) return;
         std::vector<Measured> ours, theirs;
         std::vector<double> ratios;
@@ -57,8 +58,8 @@ struct Bench {
         }
         const Measured us = bench::median_of(ours);
         const Measured them = bench::median_of(theirs);
-        std::printf("| %s | %.3f | %.3f | %.3f | %.0f | %.3f | %.3f | %.2f | %s |\n", work.c_str(), us.wall, us.user, us.system,
-                    us.memory, them.wall * scale, (them.user + them.system) * scale, bench::median(ratios),
+        std::printf("| %s | %.3f | %.3f | %.3f | %.0f | %.3f | %.3f | %.2f | %s |\n", work.c_str(), us.wall, us.user,
+                    us.system, us.memory, them.wall * scale, (them.user + them.system) * scale, bench::median(ratios),
                     target > 0.0 ? (std::to_string(target).substr(0, 4)).c_str() : "");
         std::fflush(stdout);
     }
@@ -70,8 +71,8 @@ struct Bench {
         bench::run(command);
         for (int k = 0; k < times; ++k) ours.push_back(bench::run(command));
         const Measured us = bench::median_of(ours);
-        std::printf("| %s | %.1f | %.1f | %.1f | %.1f | %s |\n", work.c_str(), us.wall * 1e3, us.user * 1e3, us.system * 1e3,
-                    us.memory, target.c_str());
+        std::printf("| %s | %.1f | %.1f | %.1f | %.1f | %s |\n", work.c_str(), us.wall * 1e3, us.user * 1e3,
+                    us.system * 1e3, us.memory, target.c_str());
         std::fflush(stdout);
     }
 };
@@ -110,8 +111,11 @@ void print_against_decoders(const Bench& b) {
     const Command drop8 = {own_path(), "--decode-png", png8};
     const Command drop16 = {own_path(), "--decode-png", png16};
     const Command read_exr = {own_path(), "--decode-exr", exr};
-    std::printf("4096x4096 heights to DXT5nm DDS with all levels, 2 threads; the baseline decodes the file and throws the rows away\n\n"
-                "| work | wall, s | user, s | system, s | peak, MB | baseline, s | its user and system, s | ratio | target |\n|---|---|---|---|---|---|---|---|---|\n");
+    std::printf(
+        "4096x4096 heights to DXT5nm DDS with all levels, 2 threads; the baseline decodes the file and throws the rows "
+        "away\n\n"
+        "| work | wall, s | user, s | system, s | peak, MB | baseline, s | its user and system, s | ratio | target "
+        "|\n|---|---|---|---|---|---|---|---|---|\n");
     b.row("8-bit PNG, fast, --no-sync", bake(png8, out, {"--effort", "fast", "--no-sync"}), drop8, 1.3);
     b.row("8-bit PNG, fast", bake(png8, out, {"--effort", "fast"}), drop8, 0.0);
     b.row("16-bit PNG, fast, --no-sync", bake(png16, out, {"--effort", "fast", "--no-sync"}), drop16, 1.12);
@@ -125,7 +129,8 @@ void print_against_decoders(const Bench& b) {
     if (is_installed("convert")) {
         b.row("8-bit PNG, ImageMagick (BC3 with levels, no normals)",
               {"convert", png8, "-define", "dds:compression=dxt5", "-define", "dds:fast-mipmaps=true", "-define",
-               "dds:cluster-fit=false", out}, drop8, 0.0);
+               "dds:cluster-fit=false", out},
+              drop8, 0.0);
     }
     if (is_installed("maketx")) {
         b.row("8-bit PNG, maketx --bumpslopes (EXR, no blocks)",
@@ -148,19 +153,31 @@ void print_many(const Bench& b) {
         const std::string memory = "/dev/shm/pipeline_bench";
         for (const std::string& out : {memory, b.file("many_out")}) {
             std::filesystem::create_directories(out);
-            Command command = {beside("bake-normals"), "--out-dir", out, "--bumpiness", "12", "--threads", "2", "--effort", "fast", "--no-sync"};
+            Command command = {beside("bake-normals"),
+                               "--out-dir",
+                               out,
+                               "--bumpiness",
+                               "12",
+                               "--threads",
+                               "2",
+                               "--effort",
+                               "fast",
+                               "--no-sync"};
             command.insert(command.end(), files.begin(), files.end());
             const double target = bits == 8 ? 2.5 : 1.7;
-            b.row("1000 PNGs of 256x256, " + std::to_string(bits) + " bits, fast, --no-sync, into " + out + "; baseline: half of decoding them", command, drop,
-                  out == memory ? target : 0.0, 0.5);
+            b.row("1000 PNGs of 256x256, " + std::to_string(bits) + " bits, fast, --no-sync, into " + out +
+                      "; baseline: half of decoding them",
+                  command, drop, out == memory ? target : 0.0, 0.5);
             std::filesystem::remove_all(out);
         }
     }
 }
 
-// Nothing to inflate: encoding is what takes time. Outputs do not exist before: to free the pages of one that is replaced takes one thread, and as long as to encode a tenth of it.
+// Nothing to inflate: encoding is what takes time. Outputs do not exist before: to free the pages of one that is
+// replaced takes one thread, and as long as to encode a tenth of it.
 void print_scaling_of(const Bench& b, int size) {
-    const std::string raw = b.need(std::to_string(size) + "_raw.exr", [&](const std::string& p) { bench::write_exr(p, size, size, Imf::NO_COMPRESSION); });
+    const std::string raw = b.need(std::to_string(size) + "_raw.exr",
+                                   [&](const std::string& p) { bench::write_exr(p, size, size, Imf::NO_COMPRESSION); });
     if (b.only_makes) return;
     const auto time = [&](const Command& command) {
         std::filesystem::remove(b.file("scaled.dds"));
@@ -178,29 +195,39 @@ void print_scaling_of(const Bench& b, int size) {
         ideal.push_back(time({own_path(), "--spin", "1"}) / time({own_path(), "--spin", "2"}));
     }
     std::filesystem::remove(b.file("scaled.dds"));
-    std::printf("| %dx%d | %.3f | %.3f | %.2f | %.2f | %.2f | 0.95 |\n", size, size, bench::median(ones), bench::median(twos), bench::median(ours),
-                bench::median(ideal), bench::median(ours) / bench::median(ideal));
+    std::printf("| %dx%d | %.3f | %.3f | %.2f | %.2f | %.2f | 0.95 |\n", size, size, bench::median(ones),
+                bench::median(twos), bench::median(ours), bench::median(ideal),
+                bench::median(ours) / bench::median(ideal));
 }
 
 void print_scaling(const Bench& b) {
     if (!b.only_makes) {
-        std::printf("\n| uncompressed half EXR, normal | 1 thread, s | 2 threads, s | ratio | of a loop of arithmetic | of that | target |\n|---|---|---|---|---|---|---|\n");
+        std::printf(
+            "\n| uncompressed half EXR, normal | 1 thread, s | 2 threads, s | ratio | of a loop of arithmetic | of "
+            "that | target |\n|---|---|---|---|---|---|---|\n");
     }
     for (const int size : {4096, 16384}) print_scaling_of(b, size);
 }
 
 void print_start(const Bench& b) {
     const std::string small = b.need("64.png", [](const std::string& p) { bench::write_png(p, 64, 64, 8); });
-    std::printf("\n| start to finish | wall, ms | user, ms | system, ms | peak, MB | target |\n|---|---|---|---|---|---|\n");
-    b.plain_row("64x64 PNG to DDS", {beside("bake-normals"), small, "-o", b.file("out.dds"), "--no-sync"}, "14 ms, 24 MB", 31);
+    std::printf(
+        "\n| start to finish | wall, ms | user, ms | system, ms | peak, MB | target |\n|---|---|---|---|---|---|\n");
+    b.plain_row("64x64 PNG to DDS", {beside("bake-normals"), small, "-o", b.file("out.dds"), "--no-sync"},
+                "14 ms, 24 MB", 31);
     b.plain_row("--version", {beside("bake-normals"), "--version"}, "8 ms", 31);
-    b.plain_row("4096x4096 8-bit PNG, fast", bake(b.file("4096_8.png"), b.file("out.dds"), {"--effort", "fast", "--no-sync"}), "64 MB", 3);
-    b.plain_row("4096x4096 half EXR, fast", bake(b.file("4096.exr"), b.file("out.dds"), {"--effort", "fast", "--no-sync"}), "64 MB", 3);
+    b.plain_row("4096x4096 8-bit PNG, fast",
+                bake(b.file("4096_8.png"), b.file("out.dds"), {"--effort", "fast", "--no-sync"}), "64 MB", 3);
+    b.plain_row("4096x4096 half EXR, fast",
+                bake(b.file("4096.exr"), b.file("out.dds"), {"--effort", "fast", "--no-sync"}), "64 MB", 3);
     if (!b.large) return;
-    for (const auto& [width, height, target] : {std::tuple(16384, 16384, "160 MB"), std::tuple(65536, 4096, "400 MB")}) {
+    for (const auto& [width, height, target] :
+         {std::tuple(16384, 16384, "160 MB"), std::tuple(65536, 4096, "400 MB")}) {
         const std::string name = std::to_string(width) + "x" + std::to_string(height);
-        const std::string path = b.need(name + ".png", [w = width, h = height](const std::string& p) { bench::write_png(p, w, h, 8); });
-        b.plain_row(name + " 8-bit PNG, fast", bake(path, b.file("out.dds"), {"--effort", "fast", "--no-sync"}), target, 1);
+        const std::string path =
+            b.need(name + ".png", [w = width, h = height](const std::string& p) { bench::write_png(p, w, h, 8); });
+        b.plain_row(name + " 8-bit PNG, fast", bake(path, b.file("out.dds"), {"--effort", "fast", "--no-sync"}), target,
+                    1);
     }
 }
 

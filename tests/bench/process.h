@@ -19,7 +19,7 @@
 namespace bench {
 
 struct Measured {
-    double wall = 0.0;    // seconds
+    double wall = 0.0;  // seconds
     double user = 0.0;
     double system = 0.0;
     double memory = 0.0;  // MB, the peak of the largest process
@@ -46,8 +46,11 @@ inline Measured run(const std::vector<std::string>& command) {
         std::fprintf(stderr, "failed: %s\n", line.c_str());
         std::exit(1);
     }
-    const auto seconds = [](timeval t) { return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6; };
-    return {wall.count(), seconds(usage.ru_utime), seconds(usage.ru_stime), static_cast<double>(usage.ru_maxrss) / 1024.0};
+    const auto seconds = [](timeval t) {
+        return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6;
+    };
+    return {wall.count(), seconds(usage.ru_utime), seconds(usage.ru_stime),
+            static_cast<double>(usage.ru_maxrss) / 1024.0};
 }
 
 inline double median(std::vector<double> values) {
@@ -58,7 +61,7 @@ inline double median(std::vector<double> values) {
 
 // The median of each figure apart.
 inline Measured median_of(const std::vector<Measured>& runs) {
-    const auto of = [&](double Measured::* figure) {
+    const auto of = [&](double Measured::*figure) {
         std::vector<double> values;
         for (const Measured& run : runs) values.push_back(run.*figure);
         return median(std::move(values));
@@ -66,7 +69,8 @@ inline Measured median_of(const std::vector<Measured>& runs) {
     return {of(&Measured::wall), of(&Measured::user), of(&Measured::system), of(&Measured::memory)};
 }
 
-// Runs body() in a process of its own: what it holds would otherwise count as the memory of all that are started later. False where it failed.
+// Runs body() in a process of its own: what it holds would otherwise count as the memory of all that are started later.
+// False where it failed.
 template <class Body>
 bool run_apart(const Body& body) {
     const pid_t child = fork();

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // repack_bench: whole processes that read normal maps, from file to file: mip-, pack- and unpack-normals.
 //
-//     ninja -C build/release repack_bench bake-normals mip-normals pack-normals unpack-normals && build/release/repack_bench [--runs N] [FOLDER]
+//     ninja -C build/release repack_bench bake-normals mip-normals pack-normals unpack-normals &&
+//     build/release/repack_bench [--runs N] [FOLDER]
 //
-// Prints a table in Markdown: medians of N (at least 7) pairs of runs that alternate, the command and its baseline; ratios are those of the pairs. The
-// baseline of PNG is libpng, which decodes the input and throws the rows away; reading DDS costs nothing beside that. Files go to FOLDER (default
-// /tmp/pipeline_bench, where pipeline_bench has the same height map) and stay there.
+// Prints a table in Markdown: medians of N (at least 7) pairs of runs that alternate, the command and its baseline;
+// ratios are those of the pairs. The baseline of PNG is libpng, which decodes the input and throws the rows away;
+// reading DDS costs nothing beside that. Files go to FOLDER (default /tmp/pipeline_bench, where pipeline_bench has the
+// same height map) and stay there.
 
 #include <cstring>
 #include <filesystem>
@@ -37,7 +39,8 @@ std::string need(const std::string& name, const Command& options) {
     return file(name);
 }
 
-void row(const std::string& work, const std::string& program, const std::string& input, const std::string& output, const Command& options) {
+void row(const std::string& work, const std::string& program, const std::string& input, const std::string& output,
+         const Command& options) {
     Command command = {beside(program), input, "-o", file(output), "--no-sync", "--quiet", "--threads", "2"};
     command.insert(command.end(), options.begin(), options.end());
     const bool has_baseline = input.ends_with(".png");
@@ -51,7 +54,8 @@ void row(const std::string& work, const std::string& program, const std::string&
     }
     const Measured us = bench::median_of(ours);
     std::printf("| %s | %.3f | %.3f | %.0f |", work.c_str(), us.wall, us.user + us.system, us.memory);
-    has_baseline ? std::printf(" %.3f | %.2f |\n", bench::median_of(theirs).wall, bench::median(ratios)) : std::printf(" | |\n");
+    has_baseline ? std::printf(" %.3f | %.2f |\n", bench::median_of(theirs).wall, bench::median(ratios))
+                 : std::printf(" | |\n");
     std::fflush(stdout);
 }
 
@@ -70,11 +74,14 @@ int main(int argc, char** argv) {
     const std::string rgb8 = need("normals_8.png", {"--format", "rgb8"});
     const std::string rgb16 = need("normals_16.png", {"--format", "rgb16"});
     const std::string dxt5nm = need("normals.dds", {});
-    std::printf("4096x4096 normals, --no-sync, 2 threads\n\n| work | wall, s | user and system, s | peak, MB | reading alone, s | ratio |\n"
-                "|---|---|---|---|---|---|\n");
+    std::printf(
+        "4096x4096 normals, --no-sync, 2 threads\n\n| work | wall, s | user and system, s | peak, MB | reading alone, "
+        "s | ratio |\n"
+        "|---|---|---|---|---|---|\n");
     row("mip-normals, 8-bit PNG to DXT5nm, fast", "mip-normals", rgb8, "repacked.dds", {"--effort", "fast"});
     row("mip-normals, 16-bit PNG to DXT5nm", "mip-normals", rgb16, "repacked.dds", {});
-    row("pack-normals, DXT5nm in DDS with levels to BC5 in KTX2", "pack-normals", dxt5nm, "repacked.ktx2", {"--format", "bc5"});
+    row("pack-normals, DXT5nm in DDS with levels to BC5 in KTX2", "pack-normals", dxt5nm, "repacked.ktx2",
+        {"--format", "bc5"});
     row("unpack-normals, DXT5nm in DDS to 8-bit PNG", "unpack-normals", dxt5nm, "repacked.png", {});
     row("unpack-normals, DXT5nm in DDS to half EXR", "unpack-normals", dxt5nm, "repacked.exr", {});
     return 0;

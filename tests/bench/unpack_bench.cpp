@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texels per second from a texture of one level to normals, on one thread. UnpackCopy moves as many bytes as the result has, 12 for each texel,
-// between planes that were touched before.
+// Texels per second from a texture of one level to normals, on one thread. UnpackCopy moves as many bytes as the result
+// has, 12 for each texel, between planes that were touched before.
 
 #include <string>
 #include <utility>

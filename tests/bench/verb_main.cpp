@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs the benchmarks of a verb and prints them as a table in Markdown (verb_bench.h). Seven repetitions of each, in random order, so that a busy
-// machine slows all of them alike; the figures are the medians. Options of Google Benchmark are taken: --benchmark_filter=Bake/ runs some.
+// Runs the benchmarks of a verb and prints them as a table in Markdown (verb_bench.h). Seven repetitions of each, in
+// random order, so that a busy machine slows all of them alike; the figures are the medians. Options of Google
+// Benchmark are taken: --benchmark_filter=Bake/ runs some.
 //
-// Memory that was freed is kept for the next iteration. Otherwise a benchmark of whole images measures page faults: the system takes
-// longer to clear a fresh page than a kernel to fill it.
+// Memory that was freed is kept for the next iteration. Otherwise a benchmark of whole images measures page faults: the
+// system takes longer to clear a fresh page than a kernel to fill it.
 
 #include <algorithm>
 #include <cstdint>
@@ -51,7 +52,8 @@ void Table::add(const Run& run) {
     if (run.run_type != Run::RT_Aggregate || run.aggregate_name != "median") return;
     const auto speed = run.counters.find("items_per_second");
     if (speed == run.counters.end()) return;
-    const std::string name = run.report_label.empty() ? run.run_name.function_name : run.run_name.function_name + ", " + run.report_label;
+    const std::string name =
+        run.report_label.empty() ? run.run_name.function_name : run.run_name.function_name + ", " + run.report_label;
     const std::int64_t order = run.family_index * 1000 + run.per_family_instance_index;
     auto row = std::find_if(rows_.begin(), rows_.end(), [&](const Row& known) { return known.name == name; });
     if (row == rows_.end()) row = rows_.insert(row, {name, order, {}});
@@ -72,7 +74,8 @@ std::string Table::cells(const Row& row, const Sizes& columns, const Sizes& copi
         const auto copy = copies.find(size);
         speed == row.speeds.end() ? void(text += " |") : cell(" %.0f |", speed->second / 1e6);
         if (size == kNoSize) continue;
-        speed == row.speeds.end() || copy == copies.end() ? void(text += " |") : cell(" %.2f |", speed->second / copy->second);
+        speed == row.speeds.end() || copy == copies.end() ? void(text += " |")
+                                                          : cell(" %.2f |", speed->second / copy->second);
     }
     return text;
 }
@@ -97,7 +100,8 @@ int main(int argc, char** argv) {
     mallopt(M_MMAP_MAX, 0);
     mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
     // What the command line says comes later, and wins.
-    std::vector<std::string> words = {argv[0], "--benchmark_repetitions=7", "--benchmark_enable_random_interleaving=true", "--benchmark_min_time=0.1"};
+    std::vector<std::string> words = {argv[0], "--benchmark_repetitions=7",
+                                      "--benchmark_enable_random_interleaving=true", "--benchmark_min_time=0.1"};
     words.insert(words.end(), argv + 1, argv + argc);
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());

@@ -45,11 +45,24 @@ std::string Browser::program() {
 
 Browser::Browser(const std::string& folder) {
     // No network, no first-run pages, and WebGL in software. The sandbox does not work for root and in containers.
-    const std::vector<std::string> arguments = {
-        program(), "--headless", "--no-sandbox", "--disable-gpu", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-        "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync", "--disable-quic",
-        "--disable-dev-shm-usage", "--force-color-profile=srgb", "--hide-scrollbars", "--remote-debugging-pipe", "--user-data-dir=" + folder,
-        "about:blank"};
+    const std::vector<std::string> arguments = {program(),
+                                                "--headless",
+                                                "--no-sandbox",
+                                                "--disable-gpu",
+                                                "--use-gl=angle",
+                                                "--use-angle=swiftshader",
+                                                "--enable-unsafe-swiftshader",
+                                                "--no-first-run",
+                                                "--disable-background-networking",
+                                                "--disable-component-update",
+                                                "--disable-sync",
+                                                "--disable-quic",
+                                                "--disable-dev-shm-usage",
+                                                "--force-color-profile=srgb",
+                                                "--hide-scrollbars",
+                                                "--remote-debugging-pipe",
+                                                "--user-data-dir=" + folder,
+                                                "about:blank"};
     std::vector<char*> argv;
     for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);
@@ -61,7 +74,8 @@ Browser::Browser(const std::string& folder) {
     if (process_ == 0) {
         setpgid(0, 0);
         // By way of numbers above 9, since the pipes' own may be 3 and 4.
-        const int in = fcntl(there[0], F_DUPFD, 10), out = fcntl(back[1], F_DUPFD, 10), nothing = ::open("/dev/null", O_RDWR);
+        const int in = fcntl(there[0], F_DUPFD, 10), out = fcntl(back[1], F_DUPFD, 10),
+                  nothing = ::open("/dev/null", O_RDWR);
         dup2(in, 3);
         dup2(out, 4);
         for (const int stream : {0, 1, 2}) dup2(nothing, stream);
@@ -74,7 +88,8 @@ Browser::Browser(const std::string& folder) {
     to_ = there[1];
     from_ = back[0];
     const Json target = exchange({{"method", "Target.createTarget"}, {"params", {{"url", "about:blank"}}}});
-    const Json attached = exchange({{"method", "Target.attachToTarget"}, {"params", {{"targetId", target.value("targetId", "")}, {"flatten", true}}}});
+    const Json attached = exchange({{"method", "Target.attachToTarget"},
+                                    {"params", {{"targetId", target.value("targetId", "")}, {"flatten", true}}}});
     session_ = attached.value("sessionId", "");
     for (const char* domain : {"Page.enable", "Runtime.enable", "Log.enable", "Network.enable"}) call(domain);
 }
@@ -105,7 +120,9 @@ Browser::Json Browser::receive() {
 void Browser::note(const Json& event) {
     const std::string method = event.value("method", "");
     const Json parameters = event.value("params", Json::object());
-    const auto complain = [&](const Json& about) { complaints_.push_back(method + ": " + about.dump().substr(0, 500)); };
+    const auto complain = [&](const Json& about) {
+        complaints_.push_back(method + ": " + about.dump().substr(0, 500));
+    };
     if (method == "Page.loadEventFired") loaded_ = true;
     if (method == "Runtime.exceptionThrown") complain(parameters);
     if (method == "Runtime.consoleAPICalled" && parameters.value("type", "") != "log") complain(parameters);
@@ -113,7 +130,8 @@ void Browser::note(const Json& event) {
         const std::string level = parameters["entry"].value("level", "");
         // Software GL tells of its own speed, and the canvas of the test's reading it.
         const std::string text = parameters["entry"].value("text", "");
-        const bool is_speed = text.find("GL Driver Message") != std::string::npos || text.find("Multiple readback operations") != std::string::npos;
+        const bool is_speed = text.find("GL Driver Message") != std::string::npos ||
+                              text.find("Multiple readback operations") != std::string::npos;
         if (level == "error" || (level == "warning" && !is_speed)) complain(parameters);
     }
     if (method == "Network.requestWillBeSent") {
@@ -139,7 +157,8 @@ Browser::Json Browser::exchange(const Json& request) {
     }
     for (;;) {
         const Json answer = receive();
-        if (!answer.is_object()) return ADD_FAILURE() << "the browser does not answer " << message.dump().substr(0, 200), Json::object();
+        if (!answer.is_object())
+            return ADD_FAILURE() << "the browser does not answer " << message.dump().substr(0, 200), Json::object();
         if (answer.value("id", 0) != id) {
             note(answer);
             continue;
@@ -166,8 +185,10 @@ double Browser::open(const std::string& path) {
 }
 
 Browser::Json Browser::evaluate(const std::string& expression) {
-    const Json result = call("Runtime.evaluate", {{"expression", expression}, {"awaitPromise", true}, {"returnByValue", true}});
-    if (result.contains("exceptionDetails")) ADD_FAILURE() << expression << ": " << result["exceptionDetails"].dump().substr(0, 500);
+    const Json result =
+        call("Runtime.evaluate", {{"expression", expression}, {"awaitPromise", true}, {"returnByValue", true}});
+    if (result.contains("exceptionDetails"))
+        ADD_FAILURE() << expression << ": " << result["exceptionDetails"].dump().substr(0, 500);
     return result.contains("result") ? result["result"].value("value", Json()) : Json();
 }
 
@@ -181,7 +202,8 @@ bool Browser::wait_for(const std::string& expression) {
 }
 
 void Browser::set_viewport(int width, int height) {
-    call("Emulation.setDeviceMetricsOverride", {{"width", width}, {"height", height}, {"deviceScaleFactor", 1}, {"mobile", false}});
+    call("Emulation.setDeviceMetricsOverride",
+         {{"width", width}, {"height", height}, {"deviceScaleFactor", 1}, {"mobile", false}});
 }
 
 void Browser::move_mouse(double x, double y, bool held) {

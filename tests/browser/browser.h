@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
 #include <sys/types.h>
+#include <nlohmann/json.hpp>
 
 namespace tex::browser {
 
@@ -27,7 +27,8 @@ public:
     // Calls a method of the page's session and returns its result.
     Json call(const std::string& method, const Json& parameters = Json::object());
 
-    // Opens a file and waits until it is loaded. Returns the milliseconds from the beginning of navigation to the load event, as the page measured.
+    // Opens a file and waits until it is loaded. Returns the milliseconds from the beginning of navigation to the load
+    // event, as the page measured.
     double open(const std::string& path);
 
     // The value of a JavaScript expression; promises are awaited.
@@ -45,7 +46,8 @@ public:
     // PNG of the window.
     std::string screenshot();
 
-    // Errors and warnings of the console, exceptions, dialogs, and requests for anything but the file itself and data, since the last open().
+    // Errors and warnings of the console, exceptions, dialogs, and requests for anything but the file itself and data,
+    // since the last open().
     const std::vector<std::string>& complaints() const { return complaints_; }
 
 private:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page of --report, opened in Chromium: its light against that of preview-normals, its words, and what it does not do.
+// The page of --report, opened in Chromium: its light against that of preview-normals, its words, and what it does not
+// do.
 
 #include <algorithm>
 #include <array>
@@ -18,8 +19,9 @@
 namespace tex::browser {
 namespace {
 
-// Codes of 255 between the canvas and preview-normals, and the share of pixels that must keep to them. The GPU filters 8-bit texels with weights of 8 bits and
-// returns BC3 rounded to 8 bits, where preview-normals computes in double from exact palettes.
+// Codes of 255 between the canvas and preview-normals, and the share of pixels that must keep to them. The GPU filters
+// 8-bit texels with weights of 8 bits and returns BC3 rounded to 8 bits, where preview-normals computes in double from
+// exact palettes.
 constexpr int kCodes = 3;
 constexpr double kShare = 0.999;
 
@@ -43,33 +45,45 @@ protected:
     }
     double open(const std::string& page) { return browser_->open(scratch_.path(page)); }
     Browser::Json js(const std::string& expression) { return browser_->evaluate(expression); }
-    std::string text(const std::string& selector) { return js("document.querySelector('" + selector + "').textContent").get<std::string>(); }
+    std::string text(const std::string& selector) {
+        return js("document.querySelector('" + selector + "').textContent").get<std::string>();
+    }
 
     // The first stage, in view and drawn.
     void wait_for_light() {
         js("document.querySelector('.stage').scrollIntoView({behavior: 'instant', block: 'start'})");
-        EXPECT_TRUE(browser_->wait_for("!!document.querySelector('.stage canvas') && !document.querySelector('.stage .view').hidden && "
-                                       "document.querySelector('.stage .command').textContent !== ''"));
+        EXPECT_TRUE(browser_->wait_for(
+            "!!document.querySelector('.stage canvas') && !document.querySelector('.stage .view').hidden && "
+            "document.querySelector('.stage .command').textContent !== ''"));
     }
     // Waits until the canvas shows what the controls say: the command line is written after the picture.
-    void settle() { js("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 30))))"); }
+    void settle() {
+        js("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 30))))");
+    }
 
     // The mouse to a place of the canvas, 0 to 1 from its upper left corner.
     void point_at(double x, double y, bool held = false) {
-        const Browser::Json box = js("(() => { const b = document.querySelector('.stage canvas').getBoundingClientRect(); return [b.x, b.y, b.width, b.height]; })()");
-        browser_->move_mouse(box[0].get<double>() + x * box[2].get<double>(), box[1].get<double>() + y * box[3].get<double>(), held);
+        const Browser::Json box =
+            js("(() => { const b = document.querySelector('.stage canvas').getBoundingClientRect(); return [b.x, b.y, "
+               "b.width, b.height]; })()");
+        browser_->move_mouse(box[0].get<double>() + x * box[2].get<double>(),
+                             box[1].get<double>() + y * box[3].get<double>(), held);
         settle();
     }
 
     // The canvas's red channel, row by row, and its extent.
     std::vector<int> canvas(Extent& extent) {
-        const Browser::Json got = js("(() => { const c = document.querySelector('.stage canvas'), d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;"
-                                     " let t = ''; for (let k = 0; k < d.length; k += 4) t += String.fromCharCode(97 + (d[k] >> 4), 97 + (d[k] & 15));"
-                                     " return [c.width, c.height, t]; })()");
+        const Browser::Json got =
+            js("(() => { const c = document.querySelector('.stage canvas'), d = c.getContext('2d').getImageData(0, 0, "
+               "c.width, c.height).data;"
+               " let t = ''; for (let k = 0; k < d.length; k += 4) t += String.fromCharCode(97 + (d[k] >> 4), 97 + "
+               "(d[k] & 15));"
+               " return [c.width, c.height, t]; })()");
         extent = {got[0].get<int>(), got[1].get<int>()};
         const auto letters = got[2].get<std::string>();
         std::vector<int> codes;
-        for (std::size_t k = 0; k + 1 < letters.size(); k += 2) codes.push_back((letters[k] - 97) << 4 | (letters[k + 1] - 97));
+        for (std::size_t k = 0; k + 1 < letters.size(); k += 2)
+            codes.push_back((letters[k] - 97) << 4 | (letters[k + 1] - 97));
         return codes;
     }
 
@@ -87,7 +101,8 @@ protected:
         double sum = 0.0;
         for (int j = 0; j < extent.height; ++j) {
             for (int i = 0; i < extent.width; ++i) {
-                const int code = codes[static_cast<std::size_t>(j) * static_cast<std::size_t>(extent.width) + static_cast<std::size_t>(i)];
+                const int code = codes[static_cast<std::size_t>(j) * static_cast<std::size_t>(extent.width) +
+                                       static_cast<std::size_t>(i)];
                 const int difference = std::abs(code - static_cast<int>(image->planes[0].at(i, j) * 255.0f + 0.5f));
                 within += difference <= kCodes ? 1 : 0;
                 most = std::max(most, difference);
@@ -95,8 +110,8 @@ protected:
             }
         }
         const double share = static_cast<double>(within) / static_cast<double>(extent.texels());
-        std::cout << what << ": " << text(".stage .panel > .remark") << " within " << kCodes << " codes: " << share << ", most " << most << ", mean "
-                  << sum / static_cast<double>(extent.texels()) << "\n";
+        std::cout << what << ": " << text(".stage .panel > .remark") << " within " << kCodes << " codes: " << share
+                  << ", most " << most << ", mean " << sum / static_cast<double>(extent.texels()) << "\n";
         EXPECT_GE(share, kShare) << what << ": " << command;
     }
 
@@ -105,9 +120,13 @@ protected:
 };
 
 TEST_F(ReportPage, LightsMapsAsPreviewNormalsDoes) {
-    shell("bake-normals bricks.png -o dxt5nm.dds --bumpiness 6; bake-normals bricks.png -o bc5.dds --format bc5 --bumpiness 6 --y down --dds-header dx10;"
-          "bake-normals waves.png -o rgb.png --bumpiness 6; bake-normals waves.png -o snorm.ktx2 --format bc5-snorm --bumpiness 6;"
-          "convert waves.png -crop 100x60+3+5 +repage odd.png; bake-normals odd.png -o odd.dds --bumpiness 6 --wrap clamp");
+    shell(
+        "bake-normals bricks.png -o dxt5nm.dds --bumpiness 6; bake-normals bricks.png -o bc5.dds --format bc5 "
+        "--bumpiness 6 --y down --dds-header dx10;"
+        "bake-normals waves.png -o rgb.png --bumpiness 6; bake-normals waves.png -o snorm.ktx2 --format bc5-snorm "
+        "--bumpiness 6;"
+        "convert waves.png -crop 100x60+3+5 +repage odd.png; bake-normals odd.png -o odd.dds --bumpiness 6 --wrap "
+        "clamp");
     for (const char* map : {"dxt5nm.dds", "bc5.dds", "rgb.png", "snorm.ktx2", "odd.dds"}) {
         shell(std::string("check-normals ") + map + " --report page.html");
         open("page.html");
@@ -136,7 +155,8 @@ TEST_F(ReportPage, ObeysTheKeyboard) {
     EXPECT_NE(text(".stage [role=status]").find("green down"), std::string::npos);
     EXPECT_NE(canvas(extent), before);
     expect_picture_of_command("after seven keys");
-    js("(() => { const s = document.querySelector('.stage select[name=tiles]'); s.value = '4'; s.dispatchEvent(new Event('change')); })()");
+    js("(() => { const s = document.querySelector('.stage select[name=tiles]'); s.value = '4'; s.dispatchEvent(new "
+       "Event('change')); })()");
     settle();
     expect_picture_of_command("4 x 4 tiles");
     browser_->press_key("Home");
@@ -158,8 +178,10 @@ TEST_F(ReportPage, SplitsTwoMaps) {
     int wrong = 0;
     for (int j = 0; j < extent.height; j += 1) {
         for (const auto& [image, i] : {std::pair{&*a, extent.width / 4}, {&*b, extent.width * 3 / 4}}) {
-            const int code = half[static_cast<std::size_t>(j) * static_cast<std::size_t>(extent.width) + static_cast<std::size_t>(i)];
-            if (scale == 1 && std::abs(code - static_cast<int>(image->planes[0].at(i, j) * 255.0f + 0.5f)) > kCodes) ++wrong;
+            const int code = half[static_cast<std::size_t>(j) * static_cast<std::size_t>(extent.width) +
+                                  static_cast<std::size_t>(i)];
+            if (scale == 1 && std::abs(code - static_cast<int>(image->planes[0].at(i, j) * 255.0f + 0.5f)) > kCodes)
+                ++wrong;
         }
     }
     EXPECT_LE(wrong, extent.height / 100);
@@ -176,7 +198,8 @@ TEST_F(ReportPage, TakesNamesAsText) {
     // A name cannot hold a slash, so "</script>" comes by way of a folder.
     shell("mkdir '<' && cp map.png '</script><script>window.broken=1.png'");
     std::filesystem::copy_file(scratch_.path("map.png"), scratch_.path(name));
-    const cli::Ran ran = cli::run(scratch_, "check-normals", {name, "</script><script>window.broken=1.png", "map.png", "--report", "page.html"});
+    const cli::Ran ran = cli::run(scratch_, "check-normals",
+                                  {name, "</script><script>window.broken=1.png", "map.png", "--report", "page.html"});
     ASSERT_LE(ran.code, 1) << ran.err;
     open("page.html");
     wait_for_light();
@@ -184,7 +207,8 @@ TEST_F(ReportPage, TakesNamesAsText) {
     EXPECT_EQ(js("document.querySelectorAll('img[src=x]').length").get<int>(), 0);
     EXPECT_EQ(js("document.querySelectorAll('section.file').length").get<int>(), 3);
     EXPECT_NE(text("#files tbody").find("</script><script>window.broken=1.png"), std::string::npos);
-    EXPECT_NE(text("#files tbody").find("<script>window.broken=1<!-- \"><img src=x onerror=window.broken=1>';${1}"), std::string::npos);
+    EXPECT_NE(text("#files tbody").find("<script>window.broken=1<!-- \"><img src=x onerror=window.broken=1>';${1}"),
+              std::string::npos);
 }
 
 TEST_F(ReportPage, IsReadableWithoutJavaScript) {
@@ -193,13 +217,17 @@ TEST_F(ReportPage, IsReadableWithoutJavaScript) {
     open("page.html");
     EXPECT_EQ(js("document.querySelectorAll('canvas, button, input').length").get<int>(), 0);
     EXPECT_GE(js("document.images.length").get<int>(), 5);
-    EXPECT_TRUE(browser_->wait_for("[...document.images].every(i => { i.loading = 'eager'; return i.complete && i.naturalWidth === Number(i.getAttribute('width')); })"));
+    EXPECT_TRUE(
+        browser_->wait_for("[...document.images].every(i => { i.loading = 'eager'; return i.complete && i.naturalWidth "
+                           "=== Number(i.getAttribute('width')); })"));
     EXPECT_TRUE(js("[...document.querySelectorAll('figure img')].every(i => i.alt.startsWith('map.dds'))").get<bool>());
     EXPECT_NE(text(".facts").find("dxt5nm"), std::string::npos);
 }
 
 TEST_F(ReportPage, FiltersAndSortsManyFiles) {
-    shell("for n in 1 2 3 4 5 6 7 8 9; do bake-normals ramp.png -o r$n.png --bumpiness $n; done; bake-normals waves.png -o w.dds --bumpiness 6; echo no > bad.dds");
+    shell(
+        "for n in 1 2 3 4 5 6 7 8 9; do bake-normals ramp.png -o r$n.png --bumpiness $n; done; bake-normals waves.png "
+        "-o w.dds --bumpiness 6; echo no > bad.dds");
     EXPECT_GE(cli::shell(scratch_, "check-normals r[0-9].png w.dds bad.dds --report page.html").code, 1);
     open("page.html");
     wait_for_light();
@@ -209,23 +237,28 @@ TEST_F(ReportPage, FiltersAndSortsManyFiles) {
     EXPECT_GE(js(shown).get<int>(), 1);
     EXPECT_LT(js(shown).get<int>(), 11);
     js("document.querySelector('[data-word=\"\"]').click()");
-    js("(() => { const i = document.querySelector('input[type=search]'); i.value = 'bc3'; i.dispatchEvent(new Event('input')); })()");
+    js("(() => { const i = document.querySelector('input[type=search]'); i.value = 'bc3'; i.dispatchEvent(new "
+       "Event('input')); })()");
     EXPECT_EQ(js(shown).get<int>(), 1);
-    js("(() => { const i = document.querySelector('input[type=search]'); i.value = ''; i.dispatchEvent(new Event('input')); })()");
+    js("(() => { const i = document.querySelector('input[type=search]'); i.value = ''; i.dispatchEvent(new "
+       "Event('input')); })()");
     js("[0, 1].forEach(() => document.querySelector('#files thead button').click())");
     EXPECT_EQ(js("document.querySelector('#files tbody th').textContent").get<std::string>(), "w.dds");
 }
 
 // With TEX_SCREENSHOTS set to a folder, pictures of the page are left there.
 TEST_F(ReportPage, HasTwoThemesAndFitsNarrowWindows) {
-    shell("bake-normals bricks.png -o bricks_n.dds --bumpiness 12 --y down; bake-normals waves.png -o waves_n.png --bumpiness 8;"
-          "check-normals bricks_n.dds waves_n.png --require y=up --report page.html");
+    shell(
+        "bake-normals bricks.png -o bricks_n.dds --bumpiness 12 --y down; bake-normals waves.png -o waves_n.png "
+        "--bumpiness 8;"
+        "check-normals bricks_n.dds waves_n.png --require y=up --report page.html");
     double brightness[2] = {};
     for (const int width : {1160, 390}) {
         for (const char* theme : {"light", "dark"}) {
             const bool dark = std::string(theme) == "dark";
             browser_->set_viewport(width, width > 1000 ? 980 : 844);
-            browser_->call("Emulation.setEmulatedMedia", {{"features", {{{"name", "prefers-color-scheme"}, {"value", theme}}}}});
+            browser_->call("Emulation.setEmulatedMedia",
+                           {{"features", {{{"name", "prefers-color-scheme"}, {"value", theme}}}}});
             open("page.html");
             wait_for_light();
             EXPECT_LE(js("document.documentElement.scrollWidth").get<int>(), width) << "nothing hangs over";
@@ -237,7 +270,9 @@ TEST_F(ReportPage, HasTwoThemesAndFitsNarrowWindows) {
             ASSERT_TRUE(image);
             EXPECT_EQ(image->extent().width, width);
             brightness[dark ? 1 : 0] = static_cast<double>(image->planes[0].at(3, 3));
-            if (const char* folder = std::getenv("TEX_SCREENSHOTS")) std::filesystem::copy_file(scratch_.path(picture), std::filesystem::path(folder) / picture, std::filesystem::copy_options::overwrite_existing);
+            if (const char* folder = std::getenv("TEX_SCREENSHOTS"))
+                std::filesystem::copy_file(scratch_.path(picture), std::filesystem::path(folder) / picture,
+                                           std::filesystem::copy_options::overwrite_existing);
         }
         EXPECT_GT(brightness[0], 0.8);
         EXPECT_LT(brightness[1], 0.2);
@@ -246,7 +281,10 @@ TEST_F(ReportPage, HasTwoThemesAndFitsNarrowWindows) {
 
 TEST_F(ReportPage, HoldsManyRealMaps) {
     if (!std::filesystem::exists(TEX_SOURCE_DIR "/../shared/data")) GTEST_SKIP() << "../shared/data is not here";
-    EXPECT_LE(cli::shell(scratch_, "check-normals " TEX_SOURCE_DIR "/../shared/data/normal/* " TEX_SOURCE_DIR "/../shared/data/dds/*.dds --report page.html").code, 4);
+    EXPECT_LE(cli::shell(scratch_, "check-normals " TEX_SOURCE_DIR "/../shared/data/normal/* " TEX_SOURCE_DIR
+                                   "/../shared/data/dds/*.dds --report page.html")
+                  .code,
+              4);
     const auto size = std::filesystem::file_size(scratch_.path("page.html"));
     EXPECT_LT(size, 20'000'000u);
     const double milliseconds = open("page.html");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that every command must survive: missing, damaged, lying, and outputs that cannot be written. The documented exit
-// code, one sentence, nothing half-written.
+// Files that every command must survive: missing, damaged, lying, and outputs that cannot be written. The documented
+// exit code, one sentence, nothing half-written.
 
 #include <algorithm>
 #include <map>
@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <tex/tex.h>
+#include <nlohmann/json.hpp>
 
 #include "cli/program.h"
 
@@ -68,8 +68,8 @@ protected:
     void add_liars() {
         const std::string zero(4, '\0'), many = big_endian(100000);
         const std::string many_little(many.rbegin(), many.rend());
-        add("zero.dds", patched("dds", 16, zero));                          // 0x64
-        add("huge.dds", patched("dds", 12, many_little + many_little));     // 100000x100000
+        add("zero.dds", patched("dds", 16, zero));                       // 0x64
+        add("huge.dds", patched("dds", 12, many_little + many_little));  // 100000x100000
         add("zero.ktx2", patched("ktx2", 20, zero));
         add("huge.ktx2", patched("ktx2", 20, many_little + many_little));
         // The checksum of the header is left wrong: a reader that looks at sizes first must refuse as well.
@@ -94,7 +94,8 @@ INSTANTIATE_TEST_SUITE_P(Cli, EveryBadInput, testing::ValuesIn(writers()), [](co
 TEST_P(EveryBadInput, IsRefusedWithASentenceAndAnExitCode) {
     add_liars();
     std::vector<std::string> arguments = names_;
-    arguments.insert(arguments.end(), {"in/missing.png", "in", "--out-dir", "out", "--name", "{stem}_{ext}.png", "--json"});
+    arguments.insert(arguments.end(),
+                     {"in/missing.png", "in", "--out-dir", "out", "--name", "{stem}_{ext}.png", "--json"});
     const Ran ran = go(arguments);
     EXPECT_EQ(ran.code, 4) << ran.err;
     const auto told = lines_of(ran.out), said = lines_of(ran.err);
@@ -133,7 +134,8 @@ TEST_P(EveryBadInput, TruncatedFilesAreRefusedOrReadAsFarAsTheyGo) {
         }
     }
     std::set<std::string> there;
-    for (const auto& entry : std::filesystem::directory_iterator(scratch_.path("out"))) there.insert(entry.path().filename());
+    for (const auto& entry : std::filesystem::directory_iterator(scratch_.path("out")))
+        there.insert(entry.path().filename());
     EXPECT_EQ(there, written);
 }
 

@@ -44,15 +44,13 @@ TEST_P(RealHeights, AreBakedOrRefusedWithASentence) {
     const Scratch scratch;
     const std::string input = (kHeights / GetParam()).string();
     for (const std::string& output : kOutputs) {
-        const Ran ran =
-            run(scratch, "bake-normals", {input, "-o", output, "--effort", "fast", "--no-sync", "--quiet"});
+        const Ran ran = run(scratch, "bake-normals", {input, "-o", output, "--effort", "fast", "--no-sync", "--quiet"});
         const bool holds_nan = GetParam().find("nan_inf") != std::string::npos;
         EXPECT_EQ(ran.code, holds_nan ? 4 : 0) << output << ": " << ran.err;
         EXPECT_EQ(lines_of(ran.err).size(), holds_nan ? 1u : 0u) << ran.err;
         EXPECT_EQ(scratch.has(output), !holds_nan);
         if (!holds_nan) continue;
-        EXPECT_EQ(
-            run(scratch, "bake-normals", {input, "-o", output, "--fill-invalid", "--effort", "fast"}).code, 0)
+        EXPECT_EQ(run(scratch, "bake-normals", {input, "-o", output, "--fill-invalid", "--effort", "fast"}).code, 0)
             << output;
     }
 }

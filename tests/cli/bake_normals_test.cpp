@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <tex/tex.h>
+#include <nlohmann/json.hpp>
 
 #include "cli/program.h"
 
@@ -68,9 +68,9 @@ TEST_F(BakeNormals, MakesThePictureOfTheReadme) {
 }
 
 TEST_F(BakeNormals, TheExtensionDecidesTheEncoding) {
-    const std::pair<const char*, const char*> expected[] = {
-        {"ktx2", "dxt5nm"}, {"png", "rgb8"}, {"exr", "half"}, {"tif", "rgb16"},
-        {"tga", "rgb8"},    {"bmp", "rgb8"}, {"jpg", "rgb8"}, {"PNG", "rgb8"}};
+    const std::pair<const char*, const char*> expected[] = {{"ktx2", "dxt5nm"}, {"png", "rgb8"}, {"exr", "half"},
+                                                            {"tif", "rgb16"},   {"tga", "rgb8"}, {"bmp", "rgb8"},
+                                                            {"jpg", "rgb8"},    {"PNG", "rgb8"}};
     for (const auto& [extension, encoding] : expected) {
         const Ran ran = bake({"ramp.png", "-o", std::string("x.") + extension, "--json"});
         ASSERT_EQ(ran.code, 0) << extension << ": " << ran.err;
@@ -84,8 +84,7 @@ TEST_F(BakeNormals, TheExtensionDecidesTheEncoding) {
 TEST_F(BakeNormals, EveryEncodingGoesIntoDdsAndKtx2) {
     for (const Named<Encoding>& row : kEncodingNames) {
         for (const std::string name : {"x.dds", "x.ktx2"}) {
-            const Ran ran =
-                bake({"ramp.png", "-o", name, "--format", std::string(row.name), "--effort", "fast"});
+            const Ran ran = bake({"ramp.png", "-o", name, "--format", std::string(row.name), "--effort", "fast"});
             EXPECT_EQ(ran.code, 0) << row.name << ": " << ran.err;
             EXPECT_TRUE(read_texture(scratch_.path(name))) << row.name;
         }
@@ -94,8 +93,7 @@ TEST_F(BakeNormals, EveryEncodingGoesIntoDdsAndKtx2) {
 
 TEST_F(BakeNormals, StrengthsAreOneOfThree) {
     refuses({"--bumpiness", "1", "--uv-height", "2"}, "--bumpiness and --uv-height contradict each other");
-    refuses({"--bumpiness", "1", "--height-range", "2", "--size", "1"},
-            "--bumpiness and --height-range contradict");
+    refuses({"--bumpiness", "1", "--height-range", "2", "--size", "1"}, "--bumpiness and --height-range contradict");
     refuses({"--size", "2"}, "--size does nothing without --height-range");
     refuses({"--height-range", "2"}, "--height-range needs --size");
     refuses({"--height-range", "2", "--size", "0"}, "--size: 0 is not greater than 0");
@@ -132,10 +130,8 @@ TEST_F(BakeNormals, LevelsGoOnlyWhereTheyFit) {
     EXPECT_NE(png.err.find("a png file holds one level"), std::string::npos) << png.err;
     EXPECT_EQ(bake({"ramp.png", "-o", "x.png", "--mips", "none"}).code, 0);
     EXPECT_EQ(bake({"ramp.png", "-o", "x.png", "--mips", "1"}).code, 0);
-    EXPECT_EQ(
-        nlohmann::json::parse(bake({"ramp.png", "-o", "x.exr", "--mips", "all", "--json"}).out)["levels"], 7);
-    EXPECT_EQ(
-        nlohmann::json::parse(bake({"ramp.png", "-o", "x.dds", "--mips", "99", "--json"}).out)["levels"], 7);
+    EXPECT_EQ(nlohmann::json::parse(bake({"ramp.png", "-o", "x.exr", "--mips", "all", "--json"}).out)["levels"], 7);
+    EXPECT_EQ(nlohmann::json::parse(bake({"ramp.png", "-o", "x.dds", "--mips", "99", "--json"}).out)["levels"], 7);
 }
 
 TEST_F(BakeNormals, OptionsChangeTheResult) {
@@ -172,7 +168,8 @@ TEST_F(BakeNormals, TellsWhichWayAFileWent) {
     };
     scratch_.add_sample("waves.png", "waves.png");
     EXPECT_EQ(path_of({"waves.png", "-o", "x.dds"}), "streamed");
-    EXPECT_EQ(path_of({"waves.png", "-o", "x.ktx2", "--blur", "2", "--kernel", "scharr", "--mip-filter", "kaiser"}), "streamed");
+    EXPECT_EQ(path_of({"waves.png", "-o", "x.ktx2", "--blur", "2", "--kernel", "scharr", "--mip-filter", "kaiser"}),
+              "streamed");
     for (const std::string name : {"x.exr", "x.tif", "x.tga", "x.bmp", "x.jpg"}) {
         EXPECT_EQ(path_of({"waves.png", "-o", name, "--bumpiness", "9"}), name == "x.exr" ? "streamed" : "whole");
         EXPECT_EQ(path_of({name, "-o", "again.dds"}), "streamed") << name;
@@ -225,8 +222,9 @@ TEST_F(BakeNormals, HeightsThatAreInvalidNameTheirRemedy) {
         const std::vector<std::string> to = {"--name", output};
         const Ran some = bake({"some.pfm", to[0], to[1]}), all = bake({"all.pfm", to[0], to[1]});
         EXPECT_EQ(some.code, 4);
-        EXPECT_EQ(some.err, "bake-normals: error: some.pfm: 2 heights are NaN or infinite, the first at column 2, row 0; "
-                            "--fill-invalid fills in the nearest valid ones\n");
+        EXPECT_EQ(some.err,
+                  "bake-normals: error: some.pfm: 2 heights are NaN or infinite, the first at column 2, row 0; "
+                  "--fill-invalid fills in the nearest valid ones\n");
         EXPECT_EQ(all.code, 4);
         EXPECT_EQ(all.err, "bake-normals: error: all.pfm: no texel has a height: all are NaN or infinite\n");
         EXPECT_EQ(bake({"some.pfm", to[0], to[1], "--fill-invalid"}).code, 0);
@@ -235,8 +233,7 @@ TEST_F(BakeNormals, HeightsThatAreInvalidNameTheirRemedy) {
 
 TEST_F(BakeNormals, ThreadsDoNotChangeTheBytes) {
     const std::string one = bytes_of({"bricks.png", "--threads", "1"});
-    for (const std::string count : {"2", "3", "16"})
-        EXPECT_TRUE(bytes_of({"bricks.png", "--threads", count}) == one);
+    for (const std::string count : {"2", "3", "16"}) EXPECT_TRUE(bytes_of({"bricks.png", "--threads", count}) == one);
 }
 
 TEST_F(BakeNormals, OneThreadMeansNoOther) {
@@ -253,8 +250,7 @@ TEST_F(BakeNormals, OpenImageIOIsNotLoadedWhereItIsNotNeeded) {
     const Ran linked = shell(scratch_, "ldd $(command -v bake-normals)");
     EXPECT_EQ(linked.out.find("OpenImageIO"), std::string::npos) << linked.out;
     for (const std::string line : {"bake-normals --version", "bake-normals ramp.png -o ramp.dds"}) {
-        const Ran traced =
-            shell(scratch_, "LD_DEBUG=files LD_DEBUG_OUTPUT=loaded " + line + " && cat loaded.*");
+        const Ran traced = shell(scratch_, "LD_DEBUG=files LD_DEBUG_OUTPUT=loaded " + line + " && cat loaded.*");
         EXPECT_EQ(traced.code, 0);
         EXPECT_NE(traced.out.find("libtbb"), std::string::npos);
         EXPECT_EQ(traced.out.find("OpenImageIO"), std::string::npos) << line;
@@ -265,8 +261,7 @@ TEST_F(BakeNormals, OpenImageIOIsNotLoadedWhereItIsNotNeeded) {
 TEST_F(BakeNormals, ColourSpacesAreCheckedBeforeAnyWork) {
     refuses({"--color-space", "chartreuse"}, "--color-space: ");
     refuses({"--ocio-config", "x.ocio"}, "--ocio-config does nothing without --color-space");
-    EXPECT_EQ(
-        bake({"ramp.png", "-o", "x.dds", "--color-space", "sRGB", "--ocio-config", "missing.ocio"}).code, 3);
+    EXPECT_EQ(bake({"ramp.png", "-o", "x.dds", "--color-space", "sRGB", "--ocio-config", "missing.ocio"}).code, 3);
     EXPECT_FALSE(scratch_.has("x.dds"));
     Setting configured;
     configured.environment = {"OCIO=" + scratch_.path("missing.ocio")};
@@ -275,18 +270,20 @@ TEST_F(BakeNormals, ColourSpacesAreCheckedBeforeAnyWork) {
 }
 
 TEST_F(BakeNormals, TheColourConfigurationIsADependency) {
-    scratch_.write(
-        "c.ocio",
-        "ocio_profile_version: 2\nroles: {scene_linear: lin, default: lin}\n"
-        "displays: {d: [!<View> {name: v, colorspace: lin}]}\nactive_displays: []\nactive_views: []\n"
-        "colorspaces:\n  - !<ColorSpace> {name: lin}\n  - !<ColorSpace> {name: enc, to_scene_reference: "
-        "!<ExponentTransform> {value: [2.2, 2.2, 2.2, 1]}}\n");
-    const Ran ran = bake(
-        {"ramp.png", "-o", "x.dds", "--color-space", "enc", "--ocio-config", "c.ocio", "--depfile", "d"});
+    scratch_.write("c.ocio",
+                   "ocio_profile_version: 2\nroles: {scene_linear: lin, default: lin}\n"
+                   "displays: {d: [!<View> {name: v, colorspace: lin}]}\nactive_displays: []\nactive_views: []\n"
+                   "colorspaces:\n  - !<ColorSpace> {name: lin}\n  - !<ColorSpace> {name: enc, to_scene_reference: "
+                   "!<ExponentTransform> {value: [2.2, 2.2, 2.2, 1]}}\n");
+    const Ran ran =
+        bake({"ramp.png", "-o", "x.dds", "--color-space", "enc", "--ocio-config", "c.ocio", "--depfile", "d"});
     ASSERT_EQ(ran.code, 0) << ran.err;
     EXPECT_EQ(scratch_.read("d"), "x.dds: \\\n  ramp.png \\\n  c.ocio\n");
     const std::string before = scratch_.read("c.ocio");
-    EXPECT_EQ(bake({"ramp.png", "-o", "x.dds", "--color-space", "enc", "--ocio-config", "c.ocio", "--depfile", "c.ocio"}).code, 2);
+    EXPECT_EQ(
+        bake({"ramp.png", "-o", "x.dds", "--color-space", "enc", "--ocio-config", "c.ocio", "--depfile", "c.ocio"})
+            .code,
+        2);
     EXPECT_EQ(scratch_.read("c.ocio"), before) << "what is read is never written";
 }
 
@@ -313,18 +310,30 @@ TEST_F(BakeNormals, AlphaAloneIsAHeight) {
     const auto heights = read_image(scratch_.path("ramp.png"));
     ASSERT_TRUE(heights);
     std::string alpha = scratch_.read("rgba.dds").substr(0, 128);
-    alpha.replace(80, 28, std::string("\x02\0\0\0" "\0\0\0\0" "\x08\0\0\0" "\0\0\0\0" "\0\0\0\0" "\0\0\0\0" "\xff\0\0\0", 28));  // DDPF_ALPHA, 8 bits
+    alpha.replace(80, 28,
+                  std::string("\x02\0\0\0"
+                              "\0\0\0\0"
+                              "\x08\0\0\0"
+                              "\0\0\0\0"
+                              "\0\0\0\0"
+                              "\0\0\0\0"
+                              "\xff\0\0\0",
+                              28));  // DDPF_ALPHA, 8 bits
     for (int j = 0; j < heights->extent().height; ++j) {
-        for (int i = 0; i < heights->extent().width; ++i) alpha += static_cast<char>(std::lround(heights->planes[0].at(i, j) * 255.0f));
+        for (int i = 0; i < heights->extent().width; ++i)
+            alpha += static_cast<char>(std::lround(heights->planes[0].at(i, j) * 255.0f));
     }
     scratch_.write("alpha.dds", alpha);
     const std::string wanted = bytes_of({"ramp.png"});
     EXPECT_TRUE(bytes_of({"alpha.dds"}) == wanted);
     EXPECT_TRUE(bytes_of({"alpha.dds", "--channel", "a"}) == wanted);
-    for (const std::string command : {"pack-normals alpha.dds -o x.dds", "compare-normals alpha.dds alpha.dds", "preview-normals alpha.dds -o x.png"}) {
+    for (const std::string command : {"pack-normals alpha.dds -o x.dds", "compare-normals alpha.dds alpha.dds",
+                                      "preview-normals alpha.dds -o x.png"}) {
         const Ran ran = shell(scratch_, command);
         EXPECT_EQ(ran.code, 4) << command;
-        EXPECT_NE(ran.err.find("alpha.dds: has one channel, which holds no normals (bake-normals reads heights)\n"), std::string::npos) << ran.err;
+        EXPECT_NE(ran.err.find("alpha.dds: has one channel, which holds no normals (bake-normals reads heights)\n"),
+                  std::string::npos)
+            << ran.err;
     }
 }
 

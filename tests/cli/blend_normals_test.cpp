@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <tex/tex.h>
+#include <nlohmann/json.hpp>
 
 #include "cli/program.h"
 
@@ -58,20 +58,16 @@ TEST_F(BlendNormals, AFlatDetailLeavesTheBase) {
 
 TEST_F(BlendNormals, LayersTakeTheirOwnOptionsOrShareOne) {
     does("blend-normals", {"base.exr", "detail.exr", "flat.exr", "-o", "one.exr", "--tiling", "4"});
-    does("blend-normals",
-         {"base.exr", "detail.exr", "flat.exr", "-o", "each.exr", "--tiling", "4", "--tiling", "2,3"});
+    does("blend-normals", {"base.exr", "detail.exr", "flat.exr", "-o", "each.exr", "--tiling", "4", "--tiling", "2,3"});
     EXPECT_LT(angle("one.exr", "each.exr"), 1e-4);
     does("blend-normals",
          {"base.exr", "detail.exr", "detail.exr", "-o", "none.exr", "--strength", "0", "--strength", "0"});
     EXPECT_LT(angle("none.exr", "base.exr"), 1e-4);
-    refuses(
-        {"base.exr", "detail.exr", "flat.exr", "flat.exr", "-o", "x.exr", "--tiling", "4", "--tiling", "2"},
-        "--tiling is given 2 times for 3 details");
+    refuses({"base.exr", "detail.exr", "flat.exr", "flat.exr", "-o", "x.exr", "--tiling", "4", "--tiling", "2"},
+            "--tiling is given 2 times for 3 details");
     for (const std::string option :
          {"--tiling", "--detail-scale", "--rotate", "--strength", "--detail-wrap", "--offset"}) {
-        const std::string value = option == "--detail-wrap" ? "clamp"
-                                  : option == "--offset"    ? "0.25,0.5"
-                                                            : "0.5";
+        const std::string value = option == "--detail-wrap" ? "clamp" : option == "--offset" ? "0.25,0.5" : "0.5";
         does("blend-normals", {"base.exr", "detail.exr", "-o", "x.exr", "--tiling", "2"});
         std::vector<std::string> arguments = {"base.exr", "detail.exr", "-o", "changed.exr", option, value};
         if (option != "--tiling") arguments.insert(arguments.end(), {"--tiling", "2"});
@@ -84,25 +80,21 @@ TEST_F(BlendNormals, MasksChooseWhereDetailShows) {
     does("blend-normals", {"base.exr", "detail.exr", "-o", "masked.exr", "--mask", "bricks.png:r"});
     EXPECT_GT(angle("masked.exr", "base.exr"), 1.0);
     scratch_.write("not:a:picture", "");
-    EXPECT_EQ(go("blend-normals", {"base.exr", "detail.exr", "-o", "x.exr", "--mask", "not:a:picture"}).code,
-              4);
-    EXPECT_EQ(go("blend-normals", {"base.exr", "detail.exr", "-o", "x.exr", "--mask", "missing.png:a"}).code,
-              3);
+    EXPECT_EQ(go("blend-normals", {"base.exr", "detail.exr", "-o", "x.exr", "--mask", "not:a:picture"}).code, 4);
+    EXPECT_EQ(go("blend-normals", {"base.exr", "detail.exr", "-o", "x.exr", "--mask", "missing.png:a"}).code, 3);
 }
 
 TEST_F(BlendNormals, OneDetailGoesOnManyBases) {
-    does("blend-normals",
-         {"base.exr", "detail.exr", "-o", "single.dds", "--tiling", "4", "--effort", "fast"});
+    does("blend-normals", {"base.exr", "detail.exr", "-o", "single.dds", "--tiling", "4", "--effort", "fast"});
     does("bake-normals", {"bricks.png", "-o", "other.exr", "--bumpiness", "2", "--format", "float"});
     const Ran ran =
-        go("blend-normals", {"base.exr", "other.exr", "--detail", "detail.exr", "--tiling", "4", "--out-dir",
-                             "out", "--name", "{stem}.dds", "--effort", "fast", "--json", "--depfile", "d"});
+        go("blend-normals", {"base.exr", "other.exr", "--detail", "detail.exr", "--tiling", "4", "--out-dir", "out",
+                             "--name", "{stem}.dds", "--effort", "fast", "--json", "--depfile", "d"});
     EXPECT_EQ(ran.code, 0) << ran.err;
     EXPECT_EQ(lines_of(ran.out).size(), 2u);
     EXPECT_TRUE(scratch_.read("out/base.dds") == scratch_.read("single.dds"));
-    EXPECT_EQ(
-        scratch_.read("d"),
-        "out/base.dds: \\\n  base.exr \\\n  detail.exr\nout/other.dds: \\\n  other.exr \\\n  detail.exr\n");
+    EXPECT_EQ(scratch_.read("d"),
+              "out/base.dds: \\\n  base.exr \\\n  detail.exr\nout/other.dds: \\\n  other.exr \\\n  detail.exr\n");
 }
 
 TEST_F(BlendNormals, WhatADetailSaysOfItsYCountsBeforeThatOfTheBase) {

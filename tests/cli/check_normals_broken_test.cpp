@@ -9,8 +9,8 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <tex/tex.h>
+#include <nlohmann/json.hpp>
 
 #include "cli/program.h"
 
@@ -19,8 +19,12 @@ namespace tex::cli {
 class CheckNormalsBroken : public testing::Test {
 protected:
     CheckNormalsBroken() {
-        EXPECT_EQ(shell(scratch_, "cp -r " TEX_SOURCE_DIR "/samples/broken . && cp " TEX_SOURCE_DIR "/samples/waves.png .").code, 0);
-        for (const std::string& line : lines_of(scratch_.read("broken/options.txt"))) options_[line.substr(0, 4)] = line.substr(5);
+        EXPECT_EQ(
+            shell(scratch_, "cp -r " TEX_SOURCE_DIR "/samples/broken . && cp " TEX_SOURCE_DIR "/samples/waves.png .")
+                .code,
+            0);
+        for (const std::string& line : lines_of(scratch_.read("broken/options.txt")))
+            options_[line.substr(0, 4)] = line.substr(5);
         for (const auto& entry : std::filesystem::directory_iterator(scratch_.path("broken"))) {
             const std::string name = entry.path().filename().string();
             if (name != "options.txt") names_.push_back(name);
@@ -52,13 +56,16 @@ TEST_F(CheckNormalsBroken, EveryRuleHasAFileThatTriggersItAlone) {
 }
 
 std::string with(std::string text, const std::string& word, const std::string& by) {
-    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + by.size())) text.replace(at, word.size(), by);
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + by.size()))
+        text.replace(at, word.size(), by);
     return text;
 }
 
-// The command that a finding suggests runs as it is printed (words that stand for other files and numbers filled in), and its output no longer has the finding.
+// The command that a finding suggests runs as it is printed (words that stand for other files and numbers filled in),
+// and its output no longer has the finding.
 TEST_F(CheckNormalsBroken, EveryFixRepairsItsFinding) {
-    ASSERT_EQ(run(scratch_, "bake-normals", {"waves.png", "-o", "source.exr", "--bumpiness", "8", "--no-sync"}).code, 0);
+    ASSERT_EQ(run(scratch_, "bake-normals", {"waves.png", "-o", "source.exr", "--bumpiness", "8", "--no-sync"}).code,
+              0);
     std::size_t repaired = 0;
     for (const std::string& name : names_) {
         const std::string id = name.substr(0, 4);

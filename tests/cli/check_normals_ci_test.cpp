@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files of samples/ci, run as far as that goes without their servers: the commands that they hold, on files that are right and wrong.
+// The files of samples/ci, run as far as that goes without their servers: the commands that they hold, on files that
+// are right and wrong.
 
 #include <fstream>
 #include <iterator>
@@ -15,11 +16,16 @@ class CheckNormalsCi : public testing::Test {
 protected:
     CheckNormalsCi() {
         scratch_.add_sample("waves.png", "waves.png");
-        EXPECT_EQ(shell(scratch_, "mkdir -p art samples/ci && cp " TEX_SOURCE_DIR "/samples/ci/* samples/ci && git init -q . && "
-                                  "git config user.email a@b.c && git config user.name a").code, 0);
+        EXPECT_EQ(shell(scratch_,
+                        "mkdir -p art samples/ci && cp " TEX_SOURCE_DIR "/samples/ci/* samples/ci && git init -q . && "
+                        "git config user.email a@b.c && git config user.name a")
+                      .code,
+                  0);
     }
     void bake(const std::string& output, const std::string& y) {
-        EXPECT_EQ(run(scratch_, "bake-normals", {"waves.png", "-o", output, "--bumpiness", "8", "--y", y, "--no-sync"}).code, 0);
+        EXPECT_EQ(
+            run(scratch_, "bake-normals", {"waves.png", "-o", output, "--bumpiness", "8", "--y", y, "--no-sync"}).code,
+            0);
     }
     // The lines of a workflow that find files and check them.
     std::string steps(const std::string& file) {
@@ -36,7 +42,8 @@ protected:
 };
 
 TEST_F(CheckNormalsCi, WorkflowsPassAndFail) {
-    for (const auto& [file, document] : {std::pair<const char*, const char*>{"github.yml", "normals.sarif"}, {"gitlab.yml", "normals.xml"}}) {
+    for (const auto& [file, document] :
+         {std::pair<const char*, const char*>{"github.yml", "normals.sarif"}, {"gitlab.yml", "normals.xml"}}) {
         bake("art/a_n.dds", "up");
         const Ran good = shell(scratch_, steps(file));
         EXPECT_EQ(good.code, 0) << file << good.out << good.err;
@@ -57,7 +64,8 @@ TEST_F(CheckNormalsCi, HookRefusesWhatIsStaged) {
     const Ran refused = shell(scratch_, "git add art && git commit -qm wrong");
     EXPECT_NE(refused.code, 0);
     EXPECT_NE((refused.out + refused.err).find("N401"), std::string::npos) << refused.out << refused.err;
-    EXPECT_EQ(shell(scratch_, "git reset -q && echo text > readme && git add readme && git commit -qm 'no maps'").code, 0);
+    EXPECT_EQ(shell(scratch_, "git reset -q && echo text > readme && git add readme && git commit -qm 'no maps'").code,
+              0);
 }
 
 }  // namespace tex::cli

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <tex/tex.h>
+#include <nlohmann/json.hpp>
 
 #include "cli/program.h"
 
@@ -20,7 +20,8 @@ protected:
         bake("down.dds", {"--y", "down"});
     }
     void bake(const std::string& output, std::vector<std::string> arguments) {
-        arguments.insert(arguments.end(), {"bricks.png", "-o", output, "--bumpiness", "12", "--effort", "fast", "--no-sync"});
+        arguments.insert(arguments.end(),
+                         {"bricks.png", "-o", output, "--bumpiness", "12", "--effort", "fast", "--no-sync"});
         const Ran ran = run(scratch_, "bake-normals", arguments);
         EXPECT_EQ(ran.code, 0) << ran.err;
     }
@@ -29,8 +30,8 @@ protected:
 };
 
 TEST_F(CheckNormals, OurOwnTexturesAreClean) {
-    const Ran ran = check({"good.dds", "--require", "format=dxt5nm", "--require", "mips=full", "--require", "y=up", "--require", "tiles",
-                           "--require", "pow2", "--fail-on", "warning"});
+    const Ran ran = check({"good.dds", "--require", "format=dxt5nm", "--require", "mips=full", "--require", "y=up",
+                           "--require", "tiles", "--require", "pow2", "--fail-on", "warning"});
     EXPECT_EQ(ran.code, 0) << ran.out;
     EXPECT_NE(ran.out.find("1 file: 0 errors, 0 warnings"), std::string::npos) << ran.out;
     EXPECT_EQ(ran.err, "");
@@ -60,12 +61,15 @@ TEST_F(CheckNormals, SeverityDecidesWhetherItFails) {
 }
 
 TEST_F(CheckNormals, ConfigurationIsReadAndTheCommandLineWins) {
-    scratch_.write("normals.toml", "require = [\"y=up\", \"mips=full\"]\nfail-on = \"error\"\n[severity]\nwrong-y = \"warning\"\n");
+    scratch_.write("normals.toml",
+                   "require = [\"y=up\", \"mips=full\"]\nfail-on = \"error\"\n[severity]\nwrong-y = \"warning\"\n");
     EXPECT_EQ(check({"down.dds", "--config", "normals.toml"}).code, 0);
     EXPECT_EQ(check({"down.dds", "--config", "normals.toml", "--fail-on", "warning"}).code, 1);
     EXPECT_EQ(check({"down.dds", "--config", "normals.toml", "--severity", "N401=error"}).code, 1);
-    EXPECT_EQ(check({"good.dds", "--config", "normals.toml", "--require", "y=down", "--severity", "N401=error"}).code, 1);
-    for (const char* text : {"require = 3", "require = [\"y=left\"]", "requires = []", "[severity]\nN999 = \"error\"", "fail-on = \"fatal\"", "x = ["}) {
+    EXPECT_EQ(check({"good.dds", "--config", "normals.toml", "--require", "y=down", "--severity", "N401=error"}).code,
+              1);
+    for (const char* text : {"require = 3", "require = [\"y=left\"]", "requires = []", "[severity]\nN999 = \"error\"",
+                             "fail-on = \"fatal\"", "x = ["}) {
         scratch_.write("bad.toml", text);
         const Ran ran = check({"good.dds", "--config", "bad.toml"});
         EXPECT_EQ(ran.code, 2) << text;
@@ -88,7 +92,8 @@ TEST_F(CheckNormals, BaselineAcceptsWhatIsKnown) {
     EXPECT_EQ(check({"good.dds", "--require", "y=down", "--baseline", "known.json"}).code, 1);
     scratch_.write("known.json", "[]");
     EXPECT_EQ(check({"good.dds", "--baseline", "known.json"}).code, 4);
-    for (const char* text : {R"({"version": "1", "findings": []})", R"({"version": 1, "findings": [{"file": "a", "id": "N201", "level": 4294967296}]})"}) {
+    for (const char* text : {R"({"version": "1", "findings": []})",
+                             R"({"version": 1, "findings": [{"file": "a", "id": "N201", "level": 4294967296}]})"}) {
         scratch_.write("known.json", text);
         EXPECT_EQ(check({"good.dds", "--baseline", "known.json"}).code, 4) << text;
     }
@@ -132,11 +137,16 @@ TEST_F(CheckNormals, JUnitCountsAndEscapes) {
     EXPECT_NE(xml.find("name=\"a&lt;&amp;&quot;b.dds\""), std::string::npos);
 }
 
-// SARIF by a closed schema after the OASIS standard, JUnit's XML by one of what its readers take. The files are broken in every way that a rule knows, missing,
-// and named so that names must be escaped.
+// SARIF by a closed schema after the OASIS standard, JUnit's XML by one of what its readers take. The files are broken
+// in every way that a rule knows, missing, and named so that names must be escaped.
 TEST_F(CheckNormals, DocumentsFollowTheirSchemas) {
-    ASSERT_EQ(shell(scratch_, "cp " TEX_SOURCE_DIR "/samples/broken/N* . && cp N401-wrong-y.png $'a \\xff<&\">%.png'").code, 0);
-    ASSERT_EQ(shell(scratch_, "check-normals --require y=up --require pow2 --require tiles --require mips=full --sarif out.sarif --junit out.xml N* a* gone.dds").code,
+    ASSERT_EQ(
+        shell(scratch_, "cp " TEX_SOURCE_DIR "/samples/broken/N* . && cp N401-wrong-y.png $'a \\xff<&\">%.png'").code,
+        0);
+    ASSERT_EQ(shell(scratch_,
+                    "check-normals --require y=up --require pow2 --require tiles --require mips=full --sarif out.sarif "
+                    "--junit out.xml N* a* gone.dds")
+                  .code,
               4);
     const Ran sarif = shell(scratch_, R"(/usr/bin/python3 -c '
 import json, jsonschema, sys
@@ -151,7 +161,8 @@ jsonschema.Draft7Validator(schema).validate(json.load(open("out.sarif")))
 }
 
 TEST_F(CheckNormals, DocumentsDoNotDependOnThreads) {
-    const std::vector<std::string> files = {"good.dds", "down.dds", "bricks.png", "--require", "y=up", "--sarif", "out.sarif", "--junit", "out.xml"};
+    const std::vector<std::string> files = {"good.dds", "down.dds",  "bricks.png", "--require", "y=up",
+                                            "--sarif",  "out.sarif", "--junit",    "out.xml"};
     const auto documents = [&](const std::string& threads) {
         auto arguments = files;
         arguments.insert(arguments.end(), {"--threads", threads});
@@ -170,7 +181,8 @@ TEST_F(CheckNormals, HeightMapsAreComparedWithTheirNormals) {
     EXPECT_NEAR(own["pair"]["strength"].get<double>(), 12.0, 1.0);
     EXPECT_EQ(own["pair"]["y"], "up");
     EXPECT_EQ(own["findings"].size(), 0u);
-    EXPECT_NE(check({"good.dds", "--height", "bricks.png"}).out.find("good.dds: fits the height map with correlation "), std::string::npos);
+    EXPECT_NE(check({"good.dds", "--height", "bricks.png"}).out.find("good.dds: fits the height map with correlation "),
+              std::string::npos);
     scratch_.add_sample("waves.png", "waves.png");
     EXPECT_EQ(report("waves.png")["findings"][0]["id"], "N601");
     EXPECT_EQ(check({"good.dds", "down.dds", "--height", "bricks.png"}).code, 2);
@@ -189,7 +201,8 @@ TEST_F(CheckNormals, DocumentsNeverReplaceWhatIsRead) {
         refuses({"good.dds", option, "good.dds"}, "good.dds is the input good.dds");
         refuses({"good.dds", option, "list", "--files-from", "list"}, "list is the file of --files-from");
         refuses({"good.dds", option, "bricks.png", "--height", "bricks.png"}, "bricks.png is the file of --height");
-        refuses({"good.dds", option, "normals.toml", "--config", "./normals.toml"}, "normals.toml is the file of --config");
+        refuses({"good.dds", option, "normals.toml", "--config", "./normals.toml"},
+                "normals.toml is the file of --config");
         refuses({"good.dds", option, "-"}, "needs the name of a file");
         refuses({"good.dds", option, "."}, "is a folder");
     }
@@ -206,17 +219,21 @@ TEST_F(CheckNormals, DocumentsNeverReplaceWhatIsRead) {
 TEST_F(CheckNormals, ABaselineIsRenewedWithAllFindings) {
     ASSERT_EQ(check({"down.dds", "--require", "y=up", "--baseline-write", "known.json"}).code, 0);
     const std::string before = scratch_.read("known.json");
-    EXPECT_EQ(check({"down.dds", "--require", "y=up", "--baseline", "known.json", "--baseline-write", "known.json"}).code, 0);
+    EXPECT_EQ(
+        check({"down.dds", "--require", "y=up", "--baseline", "known.json", "--baseline-write", "known.json"}).code, 0);
     EXPECT_EQ(scratch_.read("known.json"), before);
     EXPECT_EQ(check({"down.dds", "--require", "y=up", "--baseline", "known.json"}).code, 0);
 }
 
 TEST_F(CheckNormals, ABaselineKnowsNamesOfAnyBytes) {
     ASSERT_EQ(shell(scratch_, R"(mv down.dds $'d\xff\x01\xef\xbf\xbe\n.dds')").code, 0);
-    const Ran ran = shell(scratch_, R"(check-normals d* --require y=up --baseline-write k.json --junit k.xml && check-normals d* --require y=up --baseline k.json)");
+    const Ran ran = shell(
+        scratch_,
+        R"(check-normals d* --require y=up --baseline-write k.json --junit k.xml && check-normals d* --require y=up --baseline k.json)");
     EXPECT_EQ(ran.code, 0) << ran.out;
     EXPECT_TRUE(ran.out.ends_with("1 known and accepted\n")) << ran.out;
-    EXPECT_EQ(shell(scratch_, "/usr/bin/python3 -c 'import xml.dom.minidom as x; x.parse(\"k.xml\")'").code, 0) << scratch_.read("k.xml");
+    EXPECT_EQ(shell(scratch_, "/usr/bin/python3 -c 'import xml.dom.minidom as x; x.parse(\"k.xml\")'").code, 0)
+        << scratch_.read("k.xml");
 }
 
 TEST_F(CheckNormals, AnEmptyListHasItsDocuments) {

@@ -51,8 +51,11 @@ TEST_P(EveryCommand, VersionIsOneLineOrJson) {
     EXPECT_EQ(json["program"], GetParam());
     EXPECT_EQ(json["version"], TEX_VERSION);
     EXPECT_EQ(json["libtex"], TEX_VERSION);
-    for (const char* name : {"cli11", "fmt", "highway", "libdeflate", "libpng", "nlohmann-json", "onetbb", "opencolorio", "openexr", "openimageio"}) {
-        EXPECT_TRUE(json["dependencies"].contains(name) && std::isdigit(static_cast<unsigned char>(json["dependencies"][name].get<std::string>().at(0))) != 0) << name;
+    for (const char* name : {"cli11", "fmt", "highway", "libdeflate", "libpng", "nlohmann-json", "onetbb",
+                             "opencolorio", "openexr", "openimageio"}) {
+        EXPECT_TRUE(json["dependencies"].contains(name) &&
+                    std::isdigit(static_cast<unsigned char>(json["dependencies"][name].get<std::string>().at(0))) != 0)
+            << name;
     }
     EXPECT_EQ(json["reader"]["system_calls"], "filtered");
     EXPECT_EQ(json["reader"]["files"], json["reader"]["landlock"].get<int>() > 0 ? "restricted" : "not restricted");
@@ -84,8 +87,8 @@ TEST_P(EveryCommand, CompletionsAreSoundInTheirShells) {
 TEST_P(EveryCommand, BashCompletesOptionsAndTheirWords) {
     const std::string function = std::regex_replace("_" + GetParam(), std::regex("-"), "_");
     const std::string prelude = "compopt() { :; }; source <(" + GetParam() + " --completion bash); ";
-    const Ran options = shell(scratch_, prelude + "COMP_WORDS=(x --qui); COMP_CWORD=1; " + function +
-                                            "; printf '%s\\n' \"${COMPREPLY[@]}\"");
+    const Ran options = shell(
+        scratch_, prelude + "COMP_WORDS=(x --qui); COMP_CWORD=1; " + function + "; printf '%s\\n' \"${COMPREPLY[@]}\"");
     EXPECT_EQ(options.out, "--quiet\n") << options.err;
     const Ran words = shell(scratch_, prelude + "COMP_WORDS=(x --progress a); COMP_CWORD=2; " + function +
                                           "; printf '%s\\n' \"${COMPREPLY[@]}\"");

@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <tex/tex.h>
+#include <nlohmann/json.hpp>
 
 #include "cli/program.h"
 
@@ -60,7 +60,9 @@ TEST_F(CompareNormals, LayoutsThatFilesDoNotNameAreToldFromTheTexels) {
     }
     const Ran grey = compare({"up.exr", "waves.png"});
     EXPECT_EQ(grey.code, 4);
-    EXPECT_EQ(grey.err, "compare-normals: error: waves.png: has one channel, which holds no normals (bake-normals reads heights)\n");
+    EXPECT_EQ(
+        grey.err,
+        "compare-normals: error: waves.png: has one channel, which holds no normals (bake-normals reads heights)\n");
 }
 
 TEST_F(CompareNormals, LimitsFailWithTheReason) {

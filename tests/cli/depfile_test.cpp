@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cli/depfile.h"
+#include "batch/depfile.h"
 #include "cli/program.h"
 
 namespace tex::cli {
@@ -13,16 +13,14 @@ TEST(Depfile, OneRuleForEachOutput) {
 }
 
 TEST(Depfile, WhatHasNoNameIsLeftOut) {
-    EXPECT_EQ(depfile_text({{{"a.dds"}, {"-"}}, {{"-"}, {"a.png"}}, {{"two\nlines.dds"}, {"a.png"}}}),
-              "a.dds:\n");
+    EXPECT_EQ(depfile_text({{{"a.dds"}, {"-"}}, {{"-"}, {"a.png"}}, {{"two\nlines.dds"}, {"a.png"}}}), "a.dds:\n");
 }
 
 // Names that Make would take for something else, all of them at once: Make must build the output after the
 // input was touched, and leave it alone otherwise.
 TEST(Depfile, MakeReadsEveryName) {
-    for (const std::string name :
-         {"plain", "with blank", "dollar$", "hash#", "colon:", "back\\slash", "back\\ blank", "per%cent~",
-          "trailing\\", "Gel\xc3\xa4nde", "quote's", "amper&sand"}) {
+    for (const std::string name : {"plain", "with blank", "dollar$", "hash#", "colon:", "back\\slash", "back\\ blank",
+                                   "per%cent~", "trailing\\", "Gel\xc3\xa4nde", "quote's", "amper&sand"}) {
         const Scratch scratch;
         const std::string input = name + ".png", output = name + ".dds";
         scratch.write(input, "");
@@ -42,10 +40,9 @@ TEST(Depfile, NinjaRebuildsOnlyWhatChanged) {
     const Scratch scratch;
     scratch.add_sample("ramp.png", "one map.png");
     scratch.add_sample("hemisphere.png", "two.png");
-    scratch.write(
-        "build.ninja",
-        "rule bake\n  command = bake-normals $in -o $out --depfile $out.d --quiet\n  depfile = $out.d\n"
-        "build one.dds: bake one$ map.png\nbuild two.dds: bake two.png\n");
+    scratch.write("build.ninja",
+                  "rule bake\n  command = bake-normals $in -o $out --depfile $out.d --quiet\n  depfile = $out.d\n"
+                  "build one.dds: bake one$ map.png\nbuild two.dds: bake two.png\n");
     EXPECT_EQ(shell(scratch, "ninja").code, 0);
     EXPECT_NE(shell(scratch, "ninja").out.find("no work to do"), std::string::npos);
     const Ran again = shell(scratch, "sleep 0.01; touch two.png; ninja -v");

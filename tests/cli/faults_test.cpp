@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whatever fails while a command runs, at whatever moment: each output is the old file or the new one, whole, and nothing else stays behind. The commands run under
-// tests/preload/faults.cpp. To have another way of writing tested, add its command line to kCases.
+// Whatever fails while a command runs, at whatever moment: each output is the old file or the new one, whole, and
+// nothing else stays behind. The commands run under tests/preload/faults.cpp. To have another way of writing tested,
+// add its command line to kCases.
 
 #include <algorithm>
 #include <array>
@@ -23,15 +24,18 @@ struct Case {
     const char* name;
     const char* command;
     std::vector<std::string> arguments;
-    const char* input;                  // that is made first: besides a.png and b.png
-    bool needs_reader = false;          // whose start takes long
+    const char* input;          // that is made first: besides a.png and b.png
+    bool needs_reader = false;  // whose start takes long
 };
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
 const Case kCases[] = {
     {"Texture", "bake-normals", {"a.png", "-o", "out.dds", "--threads", "2"}, ""},
     {"Baked", "bake-normals", {"a.png", "-o", "out.png", "--threads", "2"}, ""},  // which is decoded twice
-    {"Levels", "bake-normals", {"a.png", "--out-dir", ".", "--name", "out{level}.png", "--threads", "2", "--mips", "2"}, ""},
+    {"Levels",
+     "bake-normals",
+     {"a.png", "--out-dir", ".", "--name", "out{level}.png", "--threads", "2", "--mips", "2"},
+     ""},
     {"Stream", "pack-normals", {"a.dds", "-o", "out.ktx2", "--format", "bc5", "--threads", "2"}, "a.dds"},
     {"Unpacked", "unpack-normals", {"a.dds", "-o", "out.png", "--threads", "2"}, "a.dds"},
     {"Floats", "unpack-normals", {"a.dds", "-o", "out.exr", "--threads", "2"}, "a.dds"},
@@ -44,10 +48,11 @@ const Case kCases[] = {
 
 const std::string kOld = "the old file";
 
-// A copy of a command, with libtex where it is shared, in a folder of its own, whose reader process is the shell script `reader`: libtex looks for its reader beside
-// itself. Returns the path of the copy.
+// A copy of a command, with libtex where it is shared, in a folder of its own, whose reader process is the shell script
+// `reader`: libtex looks for its reader beside itself. Returns the path of the copy.
 std::string install(const Scratch& folder, const std::string& command, const std::string& reader) {
-    for (const char* name : {"bin", "lib", "libexec", "libexec/libtex"}) std::filesystem::create_directory(folder.path(name));
+    for (const char* name : {"bin", "lib", "libexec", "libexec/libtex"})
+        std::filesystem::create_directory(folder.path(name));
     const std::string program = folder.path("bin/" + command), script = "libexec/libtex/tex-reader";
     std::filesystem::copy_file(std::filesystem::path(TEX_BINARY_DIR) / command, program);
     const std::filesystem::path library = TEX_BINARY_DIR "/libtex.so.0";
@@ -72,7 +77,8 @@ protected:
     }
 
     void make_input(const std::string& from, const std::string& to) {
-        const Ran ran = run(scratch_, "bake-normals", {from, "-o", to, "--format", to.ends_with(".exr") ? "half" : "rgb8", "--no-sync"});
+        const Ran ran = run(scratch_, "bake-normals",
+                            {from, "-o", to, "--format", to.ends_with(".exr") ? "half" : "rgb8", "--no-sync"});
         if (ran.code != 0) throw std::runtime_error(ran.err);
     }
     // What an undisturbed run makes.
@@ -86,13 +92,14 @@ protected:
         return made;
     }
 
-    // From now on the reader process is a script that gives the real one's answer, which it asks for once: the calls of the command are the same, and each run takes a
-    // tenth of the time.
+    // From now on the reader process is a script that gives the real one's answer, which it asks for once: the calls of
+    // the command are the same, and each run takes a tenth of the time.
     void use_a_quick_reader() {
         if (!GetParam().needs_reader) return;
-        program_ = install(counts_, GetParam().command,
-                           fmt::format("[ -e {0} ] || {{ {1}; /bin/mv {0}.new {0}; }}\n/bin/cat {0} >&3; printf x >&5\n", counts_.path("answer"),
-                                       ask_the_reader(counts_.path("answer.new"))));
+        program_ =
+            install(counts_, GetParam().command,
+                    fmt::format("[ -e {0} ] || {{ {1}; /bin/mv {0}.new {0}; }}\n/bin/cat {0} >&3; printf x >&5\n",
+                                counts_.path("answer"), ask_the_reader(counts_.path("answer.new"))));
         EXPECT_EQ(make_outputs(), outputs_);
         EXPECT_TRUE(counts_.has("answer"));
     }
@@ -101,7 +108,8 @@ protected:
     Ran run_with(const std::vector<std::string>& variables, int kill_after_us = -1, int signal = SIGKILL) {
         counts_.write("calls", std::string(sizeof(int), '\0'));
         Setting setting;
-        setting.environment = {"LD_PRELOAD=" TEX_BINARY_DIR "/faults.so", "TEX_FAULT_COUNT=" + counts_.path("calls"), "LD_LIBRARY_PATH=" + counts_.path("lib")};
+        setting.environment = {"LD_PRELOAD=" TEX_BINARY_DIR "/faults.so", "TEX_FAULT_COUNT=" + counts_.path("calls"),
+                               "LD_LIBRARY_PATH=" + counts_.path("lib")};
         for (const std::string& variable : variables) setting.environment.push_back("TEX_FAULT_" + variable);
         if (kill_after_us >= 0) {
             setting.signal = signal;
@@ -121,12 +129,15 @@ protected:
         }
     }
 
-    static bool is_argument(const std::string& name) { return std::find(GetParam().arguments.begin(), GetParam().arguments.end(), name) != GetParam().arguments.end(); }
+    static bool is_argument(const std::string& name) {
+        return std::find(GetParam().arguments.begin(), GetParam().arguments.end(), name) != GetParam().arguments.end();
+    }
 
     // How many files there are that should not be.
     int count_strangers() {
         int strangers = 0;
-        for (const std::string& name : scratch_.list()) strangers += !inputs_.contains(name) && !outputs_.contains(name);
+        for (const std::string& name : scratch_.list())
+            strangers += !inputs_.contains(name) && !outputs_.contains(name);
         return strangers;
     }
 
@@ -153,7 +164,8 @@ TEST_P(Faults, AFailureAtAnyCallLosesNothing) {
             const int error = n % 2 == 0 ? EIO : exist ? ENOSPC : EDQUOT;
             SCOPED_TRACE(testing::Message() << "call " << n << ", " << strerror(error) << ", outputs exist: " << exist);
             put_old_files(exist);
-            const Ran ran = run_with({fmt::format("AT={}", n), fmt::format("ERRNO={}", error), fmt::format("NO_TMPFILE={}", n / 2 % 2)});
+            const Ran ran = run_with(
+                {fmt::format("AT={}", n), fmt::format("ERRNO={}", error), fmt::format("NO_TMPFILE={}", n / 2 % 2)});
             const bool reached = calls() >= n;
             ASSERT_TRUE(ran.code == 0 || ran.code == 3 || (reached && ran.code == 4)) << ran.code << "\n" << ran.err;
             expect_whole(exist, ran.code == 0);
@@ -186,7 +198,8 @@ TEST_P(Faults, DeathAtAnyCallLosesNothing) {
     EXPECT_EQ(count_strangers(), 0);
 }
 
-// An input that somebody shortens while it is read is damaged, or was read before: never a signal, never half an output.
+// An input that somebody shortens while it is read is damaged, or was read before: never a signal, never half an
+// output.
 TEST_P(Faults, AnInputThatShrinksWhileItIsReadIsAnError) {
     const bool is_read_by_reader = std::string_view(GetParam().input) == "a.tif";
     if (!is_read_by_reader) use_a_quick_reader();
@@ -211,7 +224,8 @@ TEST_P(Faults, AnInputThatShrinksWhileItIsReadIsAnError) {
 TEST_P(Faults, AnInputThatIsReplacedIsTheOldOneOrTheNewOne) {
     const std::string input = GetParam().arguments[0];
     scratch_.add_sample("hemisphere.png", "dome.png");
-    input == "a.png" ? scratch_.add_sample("hemisphere.png", "new") : make_input("dome.png", scratch_.path("new." + input));
+    input == "a.png" ? scratch_.add_sample("hemisphere.png", "new")
+                     : make_input("dome.png", scratch_.path("new." + input));
     const std::string made = input == "a.png" ? "new" : "new." + input;
     const std::string old_text = inputs_[input], new_text = scratch_.read(made);
     for (const std::string& name : {made, std::string("dome.png")}) std::filesystem::remove(scratch_.path(name));
@@ -224,7 +238,8 @@ TEST_P(Faults, AnInputThatIsReplacedIsTheOldOneOrTheNewOne) {
         put_old_files(false);
         scratch_.write(input, old_text);
         counts_.write("by", new_text);
-        const Ran ran = run_with({fmt::format("AT={}", n), "REPLACE=" + scratch_.path(input), "BY=" + counts_.path("by")});
+        const Ran ran =
+            run_with({fmt::format("AT={}", n), "REPLACE=" + scratch_.path(input), "BY=" + counts_.path("by")});
         ASSERT_EQ(ran.code, 0) << ran.err;
         std::map<std::string, std::string> outputs;
         for (const std::string& name : scratch_.list()) {
@@ -240,7 +255,8 @@ TEST_P(Faults, AnInputThatIsReplacedIsTheOldOneOrTheNewOne) {
 TEST_P(Faults, DeathAtAnyMomentLosesNothing) {
     const auto start = std::chrono::steady_clock::now();
     ASSERT_EQ(run_with({}).code, 0);
-    const auto whole = std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - start).count();
+    const auto whole =
+        std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - start).count();
     std::minstd_rand random(11);
     const int rounds = GetParam().needs_reader ? 10 : 40;  // 200 and more together
     for (int round = 0; round < rounds; ++round) {
@@ -259,7 +275,8 @@ TEST_P(Faults, DeathAtAnyMomentLosesNothing) {
 TEST_P(Faults, ASignalAtAnyMomentLeavesNothing) {
     const auto start = std::chrono::steady_clock::now();
     ASSERT_EQ(run_with({}).code, 0);
-    const auto whole = std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - start).count();
+    const auto whole =
+        std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - start).count();
     std::minstd_rand random(12);
     const int rounds = GetParam().needs_reader ? 2 : 10;
     for (int round = 0; round < rounds; ++round) {
@@ -267,13 +284,15 @@ TEST_P(Faults, ASignalAtAnyMomentLeavesNothing) {
         put_old_files(true);
         const auto after = static_cast<int>(random() % static_cast<unsigned long>(whole));
         const Ran ran = run_with({"NO_TMPFILE=1"}, after, round % 4 < 2 ? SIGINT : SIGTERM);
-        ASSERT_TRUE(ran.code == 0 || ran.code == 128 + SIGINT || ran.code == 128 + SIGTERM) << ran.code << "\n" << ran.err;
+        ASSERT_TRUE(ran.code == 0 || ran.code == 128 + SIGINT || ran.code == 128 + SIGTERM) << ran.code << "\n"
+                                                                                            << ran.err;
         expect_whole(true, ran.code == 0);
         EXPECT_EQ(count_strangers(), 0);
     }
 }
 
-// Nobody unwinds while a decoder is waited for, so the signal's handler tidies up: once its patience has ended, or at a second signal.
+// Nobody unwinds while a decoder is waited for, so the signal's handler tidies up: once its patience has ended, or at a
+// second signal.
 TEST(FaultsOfReaders, ASignalWhileAReaderHangsLeavesNothing) {
     for (const bool twice : {false, true}) {
         SCOPED_TRACE(twice);
@@ -282,16 +301,21 @@ TEST(FaultsOfReaders, ASignalWhileAReaderHangsLeavesNothing) {
         ASSERT_EQ(run(scratch, "bake-normals", {"a.png", "-o", "a.tif", "--format", "rgb8", "--no-sync"}).code, 0);
         scratch.write("out.dds", kOld);
         const std::vector<std::string> before = scratch.list();
-        // One row of all that the header promises; `state` and `rows_done` are at 4 and 40 (reader_protocol.h). When the output has been begun, the signal; then nothing.
+        // One row of all that the header promises; `state` and `rows_done` are at 4 and 40 (reader_protocol.h). When
+        // the output has been begun, the signal; then nothing.
         const std::string patch = "\\0\\0\\0' | /bin/dd of=/proc/self/fd/3 bs=1 conv=notrunc seek=";
         const std::string wait = "/bin/sleep 0.02; k=$((k + 1)); done; ";
-        const std::string program = install(programs, "bake-normals",
-                                            ask_the_reader(programs.path("answer")) + "\n/bin/cat " + programs.path("answer") + " >&3; printf '\\0" + patch +
-                                                "4; printf '\\1" + patch + "40; printf x >&5\nk=0; until [ -e .out.dds.tex-tmp0 -o $k = 500 ]; do " + wait +
-                                                "[ $k = 500 ] || : >" + programs.path("begun") + "\nkill -TERM $6; " +
-                                                (twice ? "/bin/sleep 0.1; kill -TERM $6; " : "") + "k=0; while [ $k != 500 ] && kill -0 $6; do " + wait);
+        const std::string program =
+            install(programs, "bake-normals",
+                    ask_the_reader(programs.path("answer")) + "\n/bin/cat " + programs.path("answer") +
+                        " >&3; printf '\\0" + patch + "4; printf '\\1" + patch +
+                        "40; printf x >&5\nk=0; until [ -e .out.dds.tex-tmp0 -o $k = 500 ]; do " + wait +
+                        "[ $k = 500 ] || : >" + programs.path("begun") + "\nkill -TERM $6; " +
+                        (twice ? "/bin/sleep 0.1; kill -TERM $6; " : "") +
+                        "k=0; while [ $k != 500 ] && kill -0 $6; do " + wait);
         Setting setting;
-        setting.environment = {"LD_PRELOAD=" TEX_BINARY_DIR "/faults.so", "TEX_FAULT_NO_TMPFILE=1", "LD_LIBRARY_PATH=" + programs.path("lib")};
+        setting.environment = {"LD_PRELOAD=" TEX_BINARY_DIR "/faults.so", "TEX_FAULT_NO_TMPFILE=1",
+                               "LD_LIBRARY_PATH=" + programs.path("lib")};
         const Ran ran = run(scratch, program, {"a.tif", "-o", "out.dds"}, setting);
         EXPECT_EQ(ran.code, 128 + SIGTERM) << ran.err;
         EXPECT_TRUE(programs.has("begun"));
@@ -307,7 +331,8 @@ TEST_P(Faults, WithoutThreadsTheBytesAreTheSame) {
     expect_whole(true, true);
 }
 
-// Threads that could start when the command tried, and are refused when TBB wants them (which throws): a limit of processes that others used up meanwhile.
+// Threads that could start when the command tried, and are refused when TBB wants them (which throws): a limit of
+// processes that others used up meanwhile.
 TEST(FaultsOfThreads, ThoseThatAreRefusedLaterAreOneSentence) {
     const Scratch scratch;
     for (const char* name : {"strip.png", "waves.png"}) scratch.add_sample(name, name);
@@ -316,7 +341,8 @@ TEST(FaultsOfThreads, ThoseThatAreRefusedLaterAreOneSentence) {
         {"bake-normals", "strip.png", "-o", "out.dds", "--effort", "fast"},                    // a stream
         {"pack-normals", "strip.dds", "-o", "out.ktx2", "--effort", "fast"},                   // another
         {"bake-normals", "strip.png", "-o", "out.dds", "--effort", "fast", "--fill-invalid"},  // the whole height map
-        {"bake-normals", "strip.png", "waves.png", "--name", "out.{stem}.dds", "--effort", "fast"},  // two files at once
+        {"bake-normals", "strip.png", "waves.png", "--name", "out.{stem}.dds", "--effort",
+         "fast"},  // two files at once
     };
     for (const std::vector<std::string>& line : lines) {
         std::vector<std::string> arguments(line.begin() + 1, line.end());
@@ -327,21 +353,26 @@ TEST(FaultsOfThreads, ThoseThatAreRefusedLaterAreOneSentence) {
             SCOPED_TRACE(testing::Message() << line[0] << " " << line[3] << ", " << threads);
             ASSERT_LT(threads, 4096);
             Setting setting;
-            setting.environment = {"LD_PRELOAD=" TEX_BINARY_DIR "/faults.so", fmt::format("TEX_FAULT_THREADS={}", threads)};
+            setting.environment = {"LD_PRELOAD=" TEX_BINARY_DIR "/faults.so",
+                                   fmt::format("TEX_FAULT_THREADS={}", threads)};
             const Ran ran = run(scratch, line[0], arguments, setting);
             done = ran.code == 0 ? done + 1 : 0;
             if (ran.code == 0) continue;
             ++refused;
             EXPECT_EQ(ran.code, 3);
-            EXPECT_TRUE(ran.err.find("the system refuses threads") != std::string::npos && std::count(ran.err.begin(), ran.err.end(), '\n') == 1) << ran.err;
+            EXPECT_TRUE(ran.err.find("the system refuses threads") != std::string::npos &&
+                        std::count(ran.err.begin(), ran.err.end(), '\n') == 1)
+                << ran.err;
             EXPECT_EQ(scratch.list(), before);
         }
         EXPECT_GT(refused, 0) << line[0] << " " << line[3];
-        for (const char* name : {"out.dds", "out.ktx2", "out.strip.dds", "out.waves.dds"}) std::filesystem::remove(scratch.path(name));
+        for (const char* name : {"out.dds", "out.ktx2", "out.strip.dds", "out.waves.dds"})
+            std::filesystem::remove(scratch.path(name));
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, Faults, testing::ValuesIn(kCases), [](const auto& test) { return std::string(test.param.name); });
+INSTANTIATE_TEST_SUITE_P(Cases, Faults, testing::ValuesIn(kCases),
+                         [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
 }  // namespace tex::cli

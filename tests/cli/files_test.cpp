@@ -45,8 +45,7 @@ TEST_F(Files, ManyInputsAreReportedInTheirOrder) {
     for (std::size_t k = 0; k < 40; ++k) {
         EXPECT_EQ(objects[k]["input"], fmt::format("m{}.png", k));
         EXPECT_EQ(objects[k]["output"], fmt::format("out/m{}.dds", k));
-        EXPECT_EQ(objects[k]["bytes"],
-                  std::filesystem::file_size(scratch_.path(fmt::format("out/m{}.dds", k))));
+        EXPECT_EQ(objects[k]["bytes"], std::filesystem::file_size(scratch_.path(fmt::format("out/m{}.dds", k))));
     }
 }
 
@@ -73,16 +72,13 @@ TEST_F(Files, OneFailureDoesNotStopTheOthersAndTheHighestCodeCounts) {
 TEST_F(Files, NamesAreMadeFromPatterns) {
     std::filesystem::create_directories(scratch_.path("maps/deep"));
     scratch_.add_sample("ramp.png", "maps/deep/d.png");
-    EXPECT_EQ(
-        bake({"maps/deep/d.png", "a.png", "--out-dir", "out", "--name", "{dir}/{stem}_{format}.dds"}).code,
-        0);
+    EXPECT_EQ(bake({"maps/deep/d.png", "a.png", "--out-dir", "out", "--name", "{dir}/{stem}_{format}.dds"}).code, 0);
     EXPECT_TRUE(scratch_.has("out/maps/deep/d_dxt5nm.dds"));
     EXPECT_TRUE(scratch_.has("out/a_dxt5nm.dds"));
     EXPECT_EQ(bake({"maps/deep/d.png", "--name", "{dir}/{stem}_n{ext}"}).code, 0);
     EXPECT_TRUE(scratch_.has("maps/deep/d_n.png"));
     EXPECT_EQ(bake({"a.png", "--out-dir", "out", "--format", "rgb8"}).code, 0);
-    EXPECT_TRUE(
-        scratch_.has("out/a.png"));  // the input's extension, where nothing block-compressed is written
+    EXPECT_TRUE(scratch_.has("out/a.png"));  // the input's extension, where nothing block-compressed is written
     EXPECT_EQ(bake({"a.png", "--out-dir", "out", "--container", "ktx2"}).code, 0);
     EXPECT_TRUE(scratch_.has("out/a.ktx2"));
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that were made, or found, to break readers of pictures: every command tells what is wrong with them in one sentence, or reads them.
+// Files that were made, or found, to break readers of pictures: every command tells what is wrong with them in one
+// sentence, or reads them.
 
 #include <algorithm>
 #include <chrono>
@@ -60,7 +61,9 @@ Took measure(const Scratch& scratch, std::vector<std::string> words, const std::
     rusage usage{};
     wait4(child, &took.status, 0, &usage);
     close(handle);
-    const auto seconds = [](timeval time) { return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) * 1e-6; };
+    const auto seconds = [](timeval time) {
+        return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) * 1e-6;
+    };
     took.seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
     took.kib = usage.ru_maxrss;
     return took;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The pieces of a page: text that stays text, bytes, and a size that has an end.
 
-#include "cli/html.h"
+#include "reports/html.h"
 
 #include <algorithm>
 #include <string>
@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cli/html_report.h"
+#include "reports/html_report.h"
 
 namespace tex::cli {
 namespace {
@@ -28,8 +28,13 @@ TEST(HtmlText, CanNeitherBeginATagNorEndAnAttribute) {
 }
 
 TEST(Base64, IsThatOfRfc4648) {
-    const std::pair<const char*, const char*> examples[] = {{"", ""},         {"f", "Zg=="},         {"fo", "Zm8="},        {"foo", "Zm9v"},
-                                                            {"foob", "Zm9vYg=="}, {"fooba", "Zm9vYmE="}, {"foobar", "Zm9vYmFy"}};
+    const std::pair<const char*, const char*> examples[] = {{"", ""},
+                                                            {"f", "Zg=="},
+                                                            {"fo", "Zm8="},
+                                                            {"foo", "Zm9v"},
+                                                            {"foob", "Zm9vYg=="},
+                                                            {"fooba", "Zm9vYmE="},
+                                                            {"foobar", "Zm9vYmFy"}};
     for (const auto& [text, code] : examples) EXPECT_EQ(base64(bytes_of(text)), code);
     EXPECT_EQ(base64(bytes_of("\xfb\xff\xfe")), "+//+");
 }
@@ -42,7 +47,9 @@ HtmlEntry entry(const std::string& name, int side) {
     map.file = name;
     map.extent = {side, side};
     map.lit.png = bytes_of("lit");
-    for (int n = side; n >= 1; n /= 2) map.decoded.levels.push_back({{n, n}, std::vector<std::byte>(static_cast<std::size_t>(n) * static_cast<std::size_t>(n) * 3)});
+    for (int n = side; n >= 1; n /= 2)
+        map.decoded.levels.push_back(
+            {{n, n}, std::vector<std::byte>(static_cast<std::size_t>(n) * static_cast<std::size_t>(n) * 3)});
     made.maps.push_back(std::move(map));
     return made;
 }
@@ -71,7 +78,8 @@ TEST(HtmlReport, HasNoMarksLeft) {
     HtmlReport report("check-normals", check_columns());
     report.add("<!--data-->", entry("<!--data-->", 4));
     const std::string page = report.page("<!--table-->");
-    for (const char* mark : {"<!--data-->", "<!--table-->", "<!--title-->", "<!--script-->", "<!--sections-->", "<!--version-->"}) {
+    for (const char* mark :
+         {"<!--data-->", "<!--table-->", "<!--title-->", "<!--script-->", "<!--sections-->", "<!--version-->"}) {
         EXPECT_EQ(page.find(mark), std::string::npos) << mark;
     }
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Commands that may have little memory, no threads, small files or no rights, and targets of every kind: an exit code and one sentence, and nothing is lost.
+// Commands that may have little memory, no threads, small files or no rights, and targets of every kind: an exit code
+// and one sentence, and nothing is lost.
 
 #include <filesystem>
 #include <set>
@@ -23,7 +24,10 @@ protected:
     Limits() {
         scratch_.add_sample("waves.png", "a.png");
         for (const std::string made : {"a.dds", "a.exr", "a.tif"}) {
-            EXPECT_EQ(run(scratch_, "bake-normals", {"a.png", "-o", made, "--format", made == "a.exr" ? "half" : "rgb8", "--no-sync"}).code, 0);
+            EXPECT_EQ(run(scratch_, "bake-normals",
+                          {"a.png", "-o", made, "--format", made == "a.exr" ? "half" : "rgb8", "--no-sync"})
+                          .code,
+                      0);
         }
         before_ = scratch_.list();
     }
@@ -37,7 +41,8 @@ protected:
     void expect_refused(const Ran& ran, const std::string& command) const {
         EXPECT_EQ(ran.code, 3) << ran.err;
         const auto lines = lines_of(ran.err);
-        EXPECT_TRUE(lines.size() == 1 && lines[0].starts_with(command.substr(0, command.find(' ')) + ": error: ")) << ran.err;
+        EXPECT_TRUE(lines.size() == 1 && lines[0].starts_with(command.substr(0, command.find(' ')) + ": error: "))
+            << ran.err;
         EXPECT_EQ(scratch_.list(), before_);
     }
 
@@ -45,10 +50,13 @@ protected:
     std::vector<std::string> before_;
 };
 
-// As somebody without rights over the files of others, where this runs as root; such a one may still enter the folders of the programs.
+// As somebody without rights over the files of others, where this runs as root; such a one may still enter the folders
+// of the programs.
 std::string as_nobody(const std::string& capability = "dac_read_search") {
     if (geteuid() != 0) return {};
-    return fmt::format("setpriv --reuid=65534 --regid=65534 --clear-groups --inh-caps=-all,+{0} --ambient-caps=-all,+{0} ", capability);
+    return fmt::format(
+        "setpriv --reuid=65534 --regid=65534 --clear-groups --inh-caps=-all,+{0} --ambient-caps=-all,+{0} ",
+        capability);
 }
 
 // -- memory ----------------------------------------------------------------------------------------------------
@@ -83,7 +91,8 @@ TEST_P(LittleMemory, IsOneSentence) {
         SCOPED_TRACE(testing::Message() << limit << " KiB");
         ASSERT_LT(limit, 4'000'000);
         scratch_.write(output, kOld);
-        const Ran ran = run_after(fmt::format("ulimit -v {}", limit), fmt::format("{} --no-sync --quiet", memory.command));
+        const Ran ran =
+            run_after(fmt::format("ulimit -v {}", limit), fmt::format("{} --no-sync --quiet", memory.command));
         if (ran.code == 127 && refused + done == 0) continue;
         if (ran.code == 0) {
             EXPECT_EQ(scratch_.read(output), whole);
@@ -98,30 +107,40 @@ TEST_P(LittleMemory, IsOneSentence) {
     EXPECT_GE(refused, 3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Commands, LittleMemory, testing::ValuesIn(kMemories), [](const auto& test) { return std::string(test.param.name); });
+INSTANTIATE_TEST_SUITE_P(Commands, LittleMemory, testing::ValuesIn(kMemories),
+                         [](const auto& test) { return std::string(test.param.name); });
 
 // -- what files may claim, and what their decoders may take ---------------------------------------------------------
 
 TEST_F(Limits, MoreTexelsThanAllowedAreRefusedInEveryFormat) {
     for (const std::string kind : {"ktx2", "tga", "jpg", "bmp"}) {
-        ASSERT_EQ(shell(scratch_, fmt::format("bake-normals a.png --no-sync --format {} -o a.{}", kind == "ktx2" ? "rgba8" : "rgb8", kind)).code, 0) << kind;
+        ASSERT_EQ(shell(scratch_, fmt::format("bake-normals a.png --no-sync --format {} -o a.{}",
+                                              kind == "ktx2" ? "rgba8" : "rgb8", kind))
+                      .code,
+                  0)
+            << kind;
     }
     before_ = scratch_.list();
     for (const std::string kind : {"png", "exr", "dds", "ktx2", "tif", "tga", "jpg", "bmp"}) {
-        for (const std::string command : {"bake-normals a.K -o out.dds", "pack-normals a.K -o out.dds", "preview-normals a.K -o out.png", "compare-normals a.K a.K"}) {
+        for (const std::string command : {"bake-normals a.K -o out.dds", "pack-normals a.K -o out.dds",
+                                          "preview-normals a.K -o out.png", "compare-normals a.K a.K"}) {
             const bool is_read_whole = command.starts_with("preview") || command.starts_with("compare");
             if (is_read_whole && kind != "png" && kind != "dds") continue;
             std::string line = command;
-            for (std::size_t at = 0; (at = line.find('K', at)) != std::string::npos; at += kind.size()) line.replace(at, 1, kind);
+            for (std::size_t at = 0; (at = line.find('K', at)) != std::string::npos; at += kind.size())
+                line.replace(at, 1, kind);
             SCOPED_TRACE(line);
             const Ran refused = shell(scratch_, line + " --quiet --max-texels 16383");
             EXPECT_EQ(refused.code, 4);
-            EXPECT_NE(refused.err.find("a." + kind + ": 128x128 texels are more than the limit of 16383\n"), std::string::npos) << refused.err;
+            EXPECT_NE(refused.err.find("a." + kind + ": 128x128 texels are more than the limit of 16383\n"),
+                      std::string::npos)
+                << refused.err;
             EXPECT_EQ(lines_of(refused.err).size(), 1u) << refused.err;
             EXPECT_EQ(scratch_.list(), before_);
         }
         if (kind != "png") continue;
-        EXPECT_EQ(shell(scratch_, "bake-normals a.png -o out.dds --no-sync --max-texels 16K").code, 0);  // exactly as many
+        EXPECT_EQ(shell(scratch_, "bake-normals a.png -o out.dds --no-sync --max-texels 16K").code,
+                  0);  // exactly as many
         fs::remove(scratch_.path("out.dds"));
     }
 }
@@ -146,12 +165,14 @@ TEST_F(Limits, WithoutThreadsTheBytesAreTheSame) {
     EXPECT_EQ(ran.err, "");
     EXPECT_EQ(scratch_.read("one.dds"), scratch_.read("four.dds"));
     before_ = scratch_.list();
-    expect_refused(shell(scratch_, nobody + "bash -c 'ulimit -u 1; exec bake-normals a.tif -o out.dds'"), "bake-normals");
+    expect_refused(shell(scratch_, nobody + "bash -c 'ulimit -u 1; exec bake-normals a.tif -o out.dds'"),
+                   "bake-normals");
 }
 
 TEST_F(Limits, SmallFilesAreOneSentence) {
-    for (const std::string command : {"bake-normals a.png -o out.dds", "bake-normals a.tif -o out.dds", "unpack-normals a.dds -o out.tif",
-                                      "mip-normals a.exr -o out.exr", "preview-normals a.dds -o out.png", "check-normals a.dds --report out.html"}) {
+    for (const std::string command : {"bake-normals a.png -o out.dds", "bake-normals a.tif -o out.dds",
+                                      "unpack-normals a.dds -o out.tif", "mip-normals a.exr -o out.exr",
+                                      "preview-normals a.dds -o out.png", "check-normals a.dds --report out.html"}) {
         SCOPED_TRACE(command);
         expect_refused(run_after("ulimit -f 2", command), command);
     }
@@ -163,9 +184,12 @@ TEST_F(Limits, FilesOfOthersAndFoldersThatAreClosedStayAsTheyAre) {
     fs::create_directory(scratch_.path("open"));
     fs::create_directory(scratch_.path("closed"));
     const std::vector<std::pair<std::string, std::string>> cases = {
-        {"bake-normals a.png -o ", "out.dds"},  {"bake-normals a.png -o ", "out.png"},
-        {"mip-normals a.exr -o ", "out.exr"},   {"unpack-normals a.dds -o ", "out.tif"},
-        {"bake-normals a.png -o open/d.dds --depfile ", "out.d"}, {"check-normals a.dds --report ", "out.html"}};
+        {"bake-normals a.png -o ", "out.dds"},
+        {"bake-normals a.png -o ", "out.png"},
+        {"mip-normals a.exr -o ", "out.exr"},
+        {"unpack-normals a.dds -o ", "out.tif"},
+        {"bake-normals a.png -o open/d.dds --depfile ", "out.d"},
+        {"check-normals a.dds --report ", "out.html"}};
     for (const auto& [command, output] : cases) {
         for (const char* folder : {"open", "closed"}) {
             scratch_.write(folder + ("/" + output), kOld);
@@ -180,30 +204,40 @@ TEST_F(Limits, FilesOfOthersAndFoldersThatAreClosedStayAsTheyAre) {
             const Ran ran = shell(scratch_, fmt::format("{}bash -c 'exec {}{}'", as_nobody(), command, target));
             EXPECT_EQ(ran.code, 3) << ran.err;
             const auto lines = lines_of(ran.err);
-            EXPECT_TRUE(lines.size() == 1 && lines[0].find(target) != std::string::npos && lines[0].find("permission denied") != std::string::npos) << ran.err;
+            EXPECT_TRUE(lines.size() == 1 && lines[0].find(target) != std::string::npos &&
+                        lines[0].find("permission denied") != std::string::npos)
+                << ran.err;
             EXPECT_EQ(scratch_.read(target), scratch_.has(target) ? kOld : "");
         }
     }
-    EXPECT_EQ(std::distance(fs::directory_iterator(scratch_.path("closed")), {}), static_cast<std::ptrdiff_t>(cases.size()));
+    EXPECT_EQ(std::distance(fs::directory_iterator(scratch_.path("closed")), {}),
+              static_cast<std::ptrdiff_t>(cases.size()));
     chmod(scratch_.path("closed").c_str(), 0755);
 }
 
 // -- targets ---------------------------------------------------------------------------------------------------
 
 TEST_F(Limits, TargetsOfEveryKindGetTheSameBytes) {
-    const std::pair<std::string, std::string> lines[] = {
-        {"bake-normals a.png", "dds"}, {"bake-normals a.png", "ktx2"}, {"preview-normals a.dds", "png"}, {"mip-normals a.exr", "exr"}, {"unpack-normals a.dds", "tif"}};
+    const std::pair<std::string, std::string> lines[] = {{"bake-normals a.png", "dds"},
+                                                         {"bake-normals a.png", "ktx2"},
+                                                         {"preview-normals a.dds", "png"},
+                                                         {"mip-normals a.exr", "exr"},
+                                                         {"unpack-normals a.dds", "tif"}};
     for (const auto& [command, kind] : lines) {
         SCOPED_TRACE(command);
         ASSERT_EQ(shell(scratch_, fmt::format("{} -o file.{}", command, kind)).code, 0);
         const std::string whole = scratch_.read("file." + kind);
         const std::string container = kind == "tif" ? "tiff" : kind;
         // What stands for O is the target; got.KIND is where its bytes are to be found.
-        for (const std::string script : {"mkfifo O; cat O > got & C -o O; code=$?; wait; rm O; exit $code", "C -o /dev/stdout --container K > got", "C -o - --container K | cat > got",
-                                         "C -o /dev/fd/3 --container K 3> got", "touch got; ln -s got O; C -o O && test -L O && rm O", "ln -s got O; C -o O && test -L O && rm O"}) {
+        for (const std::string script :
+             {"mkfifo O; cat O > got & C -o O; code=$?; wait; rm O; exit $code", "C -o /dev/stdout --container K > got",
+              "C -o - --container K | cat > got", "C -o /dev/fd/3 --container K 3> got",
+              "touch got; ln -s got O; C -o O && test -L O && rm O", "ln -s got O; C -o O && test -L O && rm O"}) {
             std::string line = "set -o pipefail; " + script;
-            for (const auto& [mark, text] : {std::pair<std::string, std::string>{"O", "o." + kind}, {"C", command}, {"K", container}}) {
-                for (std::size_t at = 0; (at = line.find(mark, at)) != std::string::npos; at += text.size()) line.replace(at, 1, text);
+            for (const auto& [mark, text] :
+                 {std::pair<std::string, std::string>{"O", "o." + kind}, {"C", command}, {"K", container}}) {
+                for (std::size_t at = 0; (at = line.find(mark, at)) != std::string::npos; at += text.size())
+                    line.replace(at, 1, text);
             }
             const Ran ran = shell(scratch_, line);
             EXPECT_EQ(ran.code, 0) << line << "\n" << ran.err;
@@ -231,7 +265,8 @@ TEST_F(Limits, ProcessesThatWriteOneOutputLeaveOneWholeFile) {
     for (int round = 0; round < 6; ++round) {
         SCOPED_TRACE(round);
         if (round % 3 == 0) fs::remove(scratch_.path("out.dds"));
-        const Ran ran = shell(scratch_, (round % 2 == 0 ? "" : without_nameless) + all + "for job in $(jobs -p); do wait $job || exit; done");
+        const Ran ran = shell(scratch_, (round % 2 == 0 ? "" : without_nameless) + all +
+                                            "for job in $(jobs -p); do wait $job || exit; done");
         EXPECT_EQ(ran.code, 0) << ran.err;
         EXPECT_EQ(ran.err, "");
         EXPECT_TRUE(wholes.contains(scratch_.read("out.dds")));

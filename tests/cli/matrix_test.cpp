@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same bytes everywhere: every command, on every instruction set that this processor has, with 1, 2, 3 and 8 threads, makes the same files from the samples.
-// Where tests/golden/commands.txt is there, the files are those whose hashes it lists, so that compilers and machines are compared, too. That the bytes are right
-// is proved elsewhere.
+// The same bytes everywhere: every command, on every instruction set that this processor has, with 1, 2, 3 and 8
+// threads, makes the same files from the samples. Where tests/golden/commands.txt is there, the files are those whose
+// hashes it lists, so that compilers and machines are compared, too. That the bytes are right is proved elsewhere.
 //
-// The largest sample and the height maps in ../shared/data (where they are there) take longer: with each instruction set once, with another number of threads each
-// time. They are baked row by row and as whole images, which --fill-invalid asks for: the same bytes.
+// The largest sample and the height maps in ../shared/data (where they are there) take longer: with each instruction
+// set once, with another number of threads each time. They are baked row by row and as whole images, which
+// --fill-invalid asks for: the same bytes.
 //
 //     TEX_GOLDEN_WRITE=1 build/release/cli_tests --gtest_filter='*Matrix*'
 //
-// writes the list (with the instruction set of the first test, on one thread); where bytes change on purpose, `git diff` tells whose did.
+// writes the list (with the instruction set of the first test, on one thread); where bytes change on purpose, `git
+// diff` tells whose did.
 
 #include <algorithm>
 #include <cstdint>
@@ -44,15 +46,26 @@ const std::vector<std::string> kMaps = {"maps/hemisphere.png", "maps/ramp.png", 
 const Line kLines[] = {
     {"maps", "bake-normals", {"HEIGHTS", "--format", "rgb16", "--container", "png", "--bumpiness", "6"}},
     {"bake", "bake-normals", {"HEIGHTS", "--bumpiness", "6"}},
-    {"bake-best", "bake-normals", {"HEIGHTS", "--effort", "best", "--kernel", "scharr", "--wrap", "mirror", "--blur", "2"}},
-    {"bake-bc5", "bake-normals", {"HEIGHTS", "--format", "bc5", "--container", "ktx2", "--effort", "fast", "--kernel", "gaussian:2", "--wrap", "clamp"}},
-    {"bake-exr", "bake-normals", {"HEIGHTS", "--format", "half", "--container", "exr", "--mips", "all", "--kernel", "sobel5"}},
+    {"bake-best",
+     "bake-normals",
+     {"HEIGHTS", "--effort", "best", "--kernel", "scharr", "--wrap", "mirror", "--blur", "2"}},
+    {"bake-bc5",
+     "bake-normals",
+     {"HEIGHTS", "--format", "bc5", "--container", "ktx2", "--effort", "fast", "--kernel", "gaussian:2", "--wrap",
+      "clamp"}},
+    {"bake-exr",
+     "bake-normals",
+     {"HEIGHTS", "--format", "half", "--container", "exr", "--mips", "all", "--kernel", "sobel5"}},
     {"bake-snorm", "bake-normals", {"waves.png", "--format", "bc5-snorm", "--mip-filter", "kaiser"}},
-    {"mip", "mip-normals", {"MAPS", "--format", "float", "--container", "dds", "--mip-filter", "lanczos3", "--fade", "2,5"}},
+    {"mip",
+     "mip-normals",
+     {"MAPS", "--format", "float", "--container", "dds", "--mip-filter", "lanczos3", "--fade", "2,5"}},
     {"pack", "pack-normals", {"MAPS", "--format", "rg8", "--container", "ktx2", "--y", "down", "--mips", "3"}},
     {"unpack", "unpack-normals", {"bake/hemisphere.dds", "bake-bc5/waves.ktx2", "--container", "png"}},
     {"scale", "scale-normals", {"MAPS", "--scale", "1.7", "--format", "rgba8"}},
-    {"blend", "blend-normals", {"maps/waves.png", "maps/hemisphere.png", "--detail", "maps/ramp.png", "--tiling", "3", "--rotate", "30"}},
+    {"blend",
+     "blend-normals",
+     {"maps/waves.png", "maps/hemisphere.png", "--detail", "maps/ramp.png", "--tiling", "3", "--rotate", "30"}},
     {"preview", "preview-normals", {"maps/waves.png", "maps/hemisphere.png", "--size", "96"}},
     {"check", "check-normals", {"MAPS", "bake/hemisphere.dds", "--json"}},
     {"compare", "compare-normals", {"maps/waves.png", "bake/waves.dds", "--json"}},
@@ -60,14 +73,27 @@ const Line kLines[] = {
 
 // Those of real height maps are REAL, without REAL and what follows it where there are none.
 const Line kLargeLines[] = {
-    {"large", "bake-normals", {"bricks.png", "--bumpiness", "12", "--effort", "fast", "REAL", "canyon_4096x4096_rgb8_equal.jpg", "dtm_283x259_f32_nodata-9999.tif", "reader_nan_inf_800x800.exr"}},
-    {"large-whole", "bake-normals", {"bricks.png", "--bumpiness", "12", "--effort", "fast", "--fill-invalid", "--no-data=-9999", "REAL", "canyon_4096x4096_rgb8_equal.jpg"}},
+    {"large",
+     "bake-normals",
+     {"bricks.png", "--bumpiness", "12", "--effort", "fast", "REAL", "canyon_4096x4096_rgb8_equal.jpg",
+      "dtm_283x259_f32_nodata-9999.tif", "reader_nan_inf_800x800.exr"}},
+    {"large-whole",
+     "bake-normals",
+     {"bricks.png", "--bumpiness", "12", "--effort", "fast", "--fill-invalid", "--no-data=-9999", "REAL",
+      "canyon_4096x4096_rgb8_equal.jpg"}},
     {"large-bake", "bake-normals", {"bricks.png", "--format", "float", "--container", "exr", "--bumpiness", "12"}},
-    {"large-mip", "mip-normals", {"large-bake/bricks.exr", "--format", "bc5", "--container", "dds", "--mip-filter", "kaiser"}},
+    {"large-mip",
+     "mip-normals",
+     {"large-bake/bricks.exr", "--format", "bc5", "--container", "dds", "--mip-filter", "kaiser"}},
     {"large-pack", "pack-normals", {"large-bake/bricks.exr", "--container", "ktx2"}},
     {"large-unpack", "unpack-normals", {"large/bricks.dds", "--container", "png"}},
-    {"large-scale", "scale-normals", {"large-bake/bricks.exr", "--scale", "0.3", "--format", "rgb16", "--container", "png"}},
-    {"large-blend", "blend-normals", {"large-bake/bricks.exr", "--detail", "maps/waves.png", "--tiling", "7", "--format", "rgb16", "--container", "png"}},
+    {"large-scale",
+     "scale-normals",
+     {"large-bake/bricks.exr", "--scale", "0.3", "--format", "rgb16", "--container", "png"}},
+    {"large-blend",
+     "blend-normals",
+     {"large-bake/bricks.exr", "--detail", "maps/waves.png", "--tiling", "7", "--format", "rgb16", "--container",
+      "png"}},
     {"large-preview", "preview-normals", {"large/bricks.dds", "--shape", "sphere", "--size", "96"}},
     {"large-check", "check-normals", {"large/bricks.dds", "--json"}},
     {"large-compare", "compare-normals", {"large-bake/bricks.exr", "large/bricks.dds", "--json"}},
@@ -90,7 +116,8 @@ std::vector<std::string> real_heights(const std::vector<std::string>& without) {
     std::vector<std::string> files;
     if (!fs::exists(kReal)) return files;
     for (const auto& entry : fs::directory_iterator(kReal)) {
-        if (std::find(without.begin(), without.end(), entry.path().filename()) == without.end()) files.push_back(fs::canonical(entry.path()));
+        if (std::find(without.begin(), without.end(), entry.path().filename()) == without.end())
+            files.push_back(fs::canonical(entry.path()));
     }
     std::sort(files.begin(), files.end());
     return files;
@@ -115,13 +142,16 @@ Hashes run_lines(const std::string& target, int threads, std::span<const Line> l
     scratch.add_sample("bricks.png", "bricks.png");
     fs::create_directory(scratch.path("maps"));
     if (lines.data() != kLines) {
-        const Ran ran = run(scratch, "bake-normals", {"waves.png", "-o", "maps/waves.png", "--format", "rgb16", "--bumpiness", "6", "--no-sync"});
+        const Ran ran =
+            run(scratch, "bake-normals",
+                {"waves.png", "-o", "maps/waves.png", "--format", "rgb16", "--bumpiness", "6", "--no-sync"});
         EXPECT_EQ(ran.code, 0) << ran.err;
     }
     Hashes hashes;
     for (const Line& line : lines) {
         std::vector<std::string> arguments = arguments_of(line);
-        const bool writes = std::string_view(line.command) != "check-normals" && std::string_view(line.command) != "compare-normals";
+        const bool writes =
+            std::string_view(line.command) != "check-normals" && std::string_view(line.command) != "compare-normals";
         if (writes) arguments.insert(arguments.end(), {"--out-dir", line.name, "--no-sync"});
         arguments.insert(arguments.end(), {"--threads", std::to_string(threads)});
         Setting setting;
@@ -154,13 +184,15 @@ void expect_listed(const Hashes& hashes, const Hashes& wanted, int threads) {
     for (const auto& [name, hash] : hashes) {
         const auto golden_hash = wanted.find(name);
         EXPECT_TRUE(golden_hash != wanted.end() && golden_hash->second == hash)
-            << name << " with " << threads << " threads has other bytes than tests/golden/commands.txt says, or than with one";
+            << name << " with " << threads
+            << " threads has other bytes than tests/golden/commands.txt says, or than with one";
     }
 }
 
 std::vector<std::string> targets() {
     std::vector<std::string> names;
-    for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) names.emplace_back(hwy::TargetName(left & -left));
+    for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1)
+        names.emplace_back(hwy::TargetName(left & -left));
     return names;
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <tex/tex.h>
+#include <nlohmann/json.hpp>
 
 #include "cli/program.h"
 
@@ -36,12 +36,20 @@ const Steps kSteps[] = {
     {{}, {}, {}, {}},
     {{"--y", "down"}, {}, {}, {"--dds-mark"}},  // y goes along with the files
     {{"--kernel", "sobel"}, {"--mip-filter", "triangle"}, {"--wrap", "clamp"}, {"--format", "bc5"}},
-    {{"--kernel", "gaussian:1.5", "--invert"}, {"--mip-filter", "mitchell", "--mip-domain", "slope"}, {"--wrap", "mirror"},
+    {{"--kernel", "gaussian:1.5", "--invert"},
+     {"--mip-filter", "mitchell", "--mip-domain", "slope"},
+     {"--wrap", "mirror"},
      {"--dds-header", "dx10"}},
     {{"--kernel", "forward"}, {"--mip-filter", "lanczos3", "--fade", "0,3"}, {"--wrap", "repeat,clamp"}, {}, ".ktx2"},
-    {{"--kernel", "scharr", "--y", "down"}, {"--mip-filter", "catmull-rom", "--mip-domain", "slope", "--fade", "2,5"},
-     {"--wrap", "mirror,repeat"}, {"--format", "bc5-snorm"}, ".ktx2"},
-    {{"--kernel", "prewitt", "--blur", "1"}, {"--mip-filter", "kaiser"}, {"--wrap", "clamp,mirror"}, {"--format", "rgba8"}},
+    {{"--kernel", "scharr", "--y", "down"},
+     {"--mip-filter", "catmull-rom", "--mip-domain", "slope", "--fade", "2,5"},
+     {"--wrap", "mirror,repeat"},
+     {"--format", "bc5-snorm"},
+     ".ktx2"},
+    {{"--kernel", "prewitt", "--blur", "1"},
+     {"--mip-filter", "kaiser"},
+     {"--wrap", "clamp,mirror"},
+     {"--format", "rgba8"}},
     {{"--kernel", "sobel5", "--y", "down"}, {"--mip-domain", "slope"}, {}, {"--format", "rgb16"}},
     {{}, {"--fade", "1,4"}, {}, {"--format", "half"}, ".exr"},
     {{}, {"--mip-filter", "kaiser", "--mip-domain", "slope"}, {}, {"--format", "ag8"}},
@@ -66,10 +74,13 @@ TEST_F(MipNormals, ThreeCommandsGiveTheBytesOfOne) {
             const std::string whole = "whole" + steps.kind, packed = "packed" + steps.kind;
             std::vector<std::string> pack = steps.pack;
             pack.insert(pack.end(), {"--effort", "fast"});
-            does("bake-normals", joined({{heights, "-o", whole, "--mips", "all", "--bumpiness", "7"}, steps.bake, steps.mip,
-                                         steps.both, pack}));
-            does("bake-normals", joined({{heights, "-o", "n.exr", "--bumpiness", "7", "--format", "float"}, steps.bake,
-                                         steps.both}));
+            does("bake-normals", joined({{heights, "-o", whole, "--mips", "all", "--bumpiness", "7"},
+                                         steps.bake,
+                                         steps.mip,
+                                         steps.both,
+                                         pack}));
+            does("bake-normals",
+                 joined({{heights, "-o", "n.exr", "--bumpiness", "7", "--format", "float"}, steps.bake, steps.both}));
             does("mip-normals", joined({{"n.exr", "-o", "chain.exr", "--format", "float"}, steps.mip, steps.both}));
             does("pack-normals", joined({{"chain.exr", "-o", packed}, pack}));
             EXPECT_TRUE(scratch_.read(packed) == scratch_.read(whole)) << heights << " " << &steps - kSteps;
@@ -135,9 +146,11 @@ TEST_F(MipNormals, TellsWhichWayAFileWent) {
     EXPECT_EQ(path_of("unpack-normals", {"n.png", "-o", "x.tga"}), "whole");
     for (const std::string rough : {"r.dds", "r.exr", "r{level}.png"}) {
         EXPECT_EQ(path_of("mip-normals", {"n.png", "-o", "x.dds", "--roughness-out", rough}), "streamed") << rough;
-        EXPECT_EQ(path_of("mip-normals", {"n.png", "--name", "x{level}.png", "--roughness-out", rough}), "streamed") << rough;
+        EXPECT_EQ(path_of("mip-normals", {"n.png", "--name", "x{level}.png", "--roughness-out", rough}), "streamed")
+            << rough;
     }
-    EXPECT_EQ(path_of("mip-normals", {"n.png", "-o", "x.dds", "--roughness-out", "r.dds", "--roughness-in", "h.png"}), "whole");
+    EXPECT_EQ(path_of("mip-normals", {"n.png", "-o", "x.dds", "--roughness-out", "r.dds", "--roughness-in", "h.png"}),
+              "whole");
     EXPECT_EQ(path_of("mip-normals", {"n.png", "-o", "x.dds", "--roughness-out", "r{level}.tga"}), "whole");
     EXPECT_EQ(path_of("mip-normals", {"n.png", "--name", "x{level}.dds"}), "streamed");
 }

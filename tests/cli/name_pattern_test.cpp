@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cli/name_pattern.h"
+#include "batch/name_pattern.h"
 #include "cli/usage_error.h"
 
 namespace tex::cli {

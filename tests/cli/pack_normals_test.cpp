@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <tex/tex.h>
+#include <nlohmann/json.hpp>
 
 #include "cli/program.h"
 
@@ -18,8 +18,7 @@ protected:
         arguments.insert(arguments.end(), {"--no-sync"});
         return run(scratch_, command, arguments);
     }
-    void does(const std::string& command, const std::vector<std::string>& arguments,
-              const std::string& said = {}) {
+    void does(const std::string& command, const std::vector<std::string>& arguments, const std::string& said = {}) {
         const Ran ran = go(command, arguments);
         EXPECT_EQ(ran.code, 0) << command << " " << arguments[0] << ": " << ran.err;
         if (said.empty()) {

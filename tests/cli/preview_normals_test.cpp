@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <tex/tex.h>
+#include <nlohmann/json.hpp>
 
 #include "cli/program.h"
 
@@ -63,34 +63,31 @@ TEST_F(PreviewNormals, LightsAMapInItsOwnSize) {
 TEST_F(PreviewNormals, ShowsEverythingThatHasAName) {
     for (const auto& row : kShowNames) {
         const std::string name = "show_" + std::string(row.name) + ".png";
-        const Ran ran = preview({"bricks.dds", "-o", name, "--show", std::string(row.name), "--height",
-                                 "height.png", "--size", "64"});
+        const Ran ran = preview(
+            {"bricks.dds", "-o", name, "--show", std::string(row.name), "--height", "height.png", "--size", "64"});
         ASSERT_EQ(ran.code, 0) << row.name << ": " << ran.err;
         EXPECT_GE(extent_of(name).width, 64) << row.name;
     }
 }
 
 TEST_F(PreviewNormals, PutsMapsInRowsOfASheet) {
-    ASSERT_EQ(preview({"bricks.dds", "small.png.dds", "-o", "sheet.png", "--show", "lit,normals,plain",
-                       "--size", "50"})
-                  .code,
-              0);
+    ASSERT_EQ(
+        preview({"bricks.dds", "small.png.dds", "-o", "sheet.png", "--show", "lit,normals,plain", "--size", "50"}).code,
+        0);
     EXPECT_EQ(extent_of("sheet.png"), (Extent{3 * 50 + 4 * 8, 2 * (50 + 14) + 3 * 8}));
-    ASSERT_EQ(preview({"bricks.dds", "small.png.dds", "-o", "bare.png", "--size", "50", "--columns", "1",
-                       "--no-captions"})
-                  .code,
-              0);
+    ASSERT_EQ(
+        preview({"bricks.dds", "small.png.dds", "-o", "bare.png", "--size", "50", "--columns", "1", "--no-captions"})
+            .code,
+        0);
     EXPECT_EQ(extent_of("bare.png"), (Extent{50 + 16, 2 * 50 + 24}));
 }
 
 TEST_F(PreviewNormals, MakesAPictureOfEachMapInAFolder) {
-    const Ran ran =
-        preview({"bricks.dds", "small.png.dds", "--out-dir", "out", "--size", "40", "--depfile", "d"});
+    const Ran ran = preview({"bricks.dds", "small.png.dds", "--out-dir", "out", "--size", "40", "--depfile", "d"});
     ASSERT_EQ(ran.code, 0) << ran.err;
     EXPECT_EQ(extent_of("out/bricks.png"), (Extent{40, 40}));
     EXPECT_TRUE(scratch_.has("out/small.png.png"));
-    EXPECT_EQ(scratch_.read("d"),
-              "out/bricks.png: \\\n  bricks.dds\nout/small.png.png: \\\n  small.png.dds\n");
+    EXPECT_EQ(scratch_.read("d"), "out/bricks.png: \\\n  bricks.dds\nout/small.png.png: \\\n  small.png.dds\n");
 }
 
 TEST_F(PreviewNormals, GreenThatIsUpsideDownChangesThePictureUntilItIsTold) {
@@ -119,7 +116,10 @@ TEST_F(PreviewNormals, GreenThatIsUpsideDownChangesThePictureUntilItIsTold) {
 
 TEST_F(PreviewNormals, ReadsMapsAsTheOtherCommandsDo) {
     const auto bake_as = [&](const std::string& to, const std::string& format) {
-        EXPECT_EQ(run(scratch_, "bake-normals", {"small.png", "-o", to, "--format", format, "--bumpiness", "60", "--no-sync"}).code, 0);
+        EXPECT_EQ(
+            run(scratch_, "bake-normals", {"small.png", "-o", to, "--format", format, "--bumpiness", "60", "--no-sync"})
+                .code,
+            0);
     };
     const auto bytes = [&](std::vector<std::string> arguments, const std::string& warning = "") {
         arguments.insert(arguments.end(), {"-o", "x.png", "--size", "48"});
@@ -160,8 +160,8 @@ TEST_F(PreviewNormals, SplitsAndComparesTwoMaps) {
 }
 
 TEST_F(PreviewNormals, TurnsATurntable) {
-    const Ran ran = preview(
-        {"bricks.dds", "-o", "turn.png", "--shape", "cube", "--turntable", "3", "--size", "48", "--json"});
+    const Ran ran =
+        preview({"bricks.dds", "-o", "turn.png", "--shape", "cube", "--turntable", "3", "--size", "48", "--json"});
     ASSERT_EQ(ran.code, 0) << ran.err;
     EXPECT_EQ(nlohmann::json::parse(ran.out)["frames"], 3);
     const std::string file = scratch_.read("turn.png");

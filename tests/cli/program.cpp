@@ -56,20 +56,14 @@ Scratch::~Scratch() {
     fs::remove_all(folder_, ignored);
 }
 
-std::string Scratch::path(const std::string& name) const {
-    return (name.empty() ? folder_ : folder_ / name).string();
-}
+std::string Scratch::path(const std::string& name) const { return (name.empty() ? folder_ : folder_ / name).string(); }
 
 void Scratch::add_sample(const std::string& sample, const std::string& name) const {
     fs::copy_file(fs::path(TEX_SOURCE_DIR) / "samples" / sample, folder_ / name);
 }
 
-void Scratch::write(const std::string& name, const std::string& text) const {
-    spill(folder_ / name, text);
-}
-std::string Scratch::read(const std::string& name) const {
-    return slurp(folder_ / name);
-}
+void Scratch::write(const std::string& name, const std::string& text) const { spill(folder_ / name, text); }
+std::string Scratch::read(const std::string& name) const { return slurp(folder_ / name); }
 
 std::vector<std::string> Scratch::list() const {
     std::vector<std::string> names;
@@ -92,24 +86,23 @@ Ran run(const Scratch& scratch, const std::string& program, const std::vector<st
     posix_spawn_file_actions_addopen(&actions, 2, streams.path("err").c_str(), O_WRONLY | O_CREAT, 0600);
     posix_spawn_file_actions_addchdir_np(&actions, scratch.path().c_str());
 
-    std::vector<std::string> words = {program.find('/') == std::string::npos ? TEX_BINARY_DIR "/" + program
-                                                                             : program};
+    std::vector<std::string> words = {program.find('/') == std::string::npos ? TEX_BINARY_DIR "/" + program : program};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<std::string> environment = setting.environment;
     for (char** variable = environ; *variable != nullptr; ++variable) {
         const std::string name = std::string(*variable).substr(0, std::string_view(*variable).find('=') + 1);
         const auto is_set = [&](const std::string& other) { return other.starts_with(name); };
-        if (name == "OCIO=" || std::any_of(setting.environment.begin(), setting.environment.end(), is_set))
-            continue;
+        if (name == "OCIO=" || std::any_of(setting.environment.begin(), setting.environment.end(), is_set)) continue;
         environment.emplace_back(*variable);
     }
     pid_t child = 0;
-    const int failed = posix_spawn(&child, words[0].c_str(), &actions, nullptr, pointers(words).data(),
-                                   pointers(environment).data());
+    const int failed =
+        posix_spawn(&child, words[0].c_str(), &actions, nullptr, pointers(words).data(), pointers(environment).data());
     posix_spawn_file_actions_destroy(&actions);
     if (failed != 0) throw std::runtime_error("cannot start " + words[0]);
     if (setting.signal != 0) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(setting.interrupt_after_ms) + std::chrono::microseconds(setting.interrupt_after_us));
+        std::this_thread::sleep_for(std::chrono::milliseconds(setting.interrupt_after_ms) +
+                                    std::chrono::microseconds(setting.interrupt_after_us));
         kill(child, setting.signal);
     }
     int status = 0;
@@ -117,7 +110,9 @@ Ran run(const Scratch& scratch, const std::string& program, const std::vector<st
     wait4(child, &status, 0, &usage);
     Ran ran;
     ran.peak_bytes = std::int64_t{usage.ru_maxrss} * 1024;
-    const auto seconds = [](const timeval& time) { return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) * 1e-6; };
+    const auto seconds = [](const timeval& time) {
+        return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) * 1e-6;
+    };
     ran.cpu_seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
     ran.code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
     if (setting.stdout_path.empty()) ran.out = streams.read("out");
@@ -128,8 +123,7 @@ Ran run(const Scratch& scratch, const std::string& program, const std::vector<st
 Ran shell(const Scratch& scratch, const std::string& script) {
     const char* path = std::getenv("PATH");
     Setting setting;
-    setting.environment = {std::string("PATH=" TEX_BINARY_DIR ":") +
-                           (path == nullptr ? "/usr/bin:/bin" : path)};
+    setting.environment = {std::string("PATH=" TEX_BINARY_DIR ":") + (path == nullptr ? "/usr/bin:/bin" : path)};
     return run(scratch, "/bin/bash", {"-c", script}, setting);
 }
 

@@ -15,12 +15,17 @@ class Report : public testing::Test {
 protected:
     Report() {
         scratch_.add_sample("waves.png", "waves.png");
-        EXPECT_EQ(shell(scratch_, "bake-normals waves.png -o up.dds --bumpiness 6 --no-sync && "
-                                  "bake-normals waves.png -o down.png --bumpiness 6 --y down --no-sync").code, 0);
+        EXPECT_EQ(shell(scratch_,
+                        "bake-normals waves.png -o up.dds --bumpiness 6 --no-sync && "
+                        "bake-normals waves.png -o down.png --bumpiness 6 --y down --no-sync")
+                      .code,
+                  0);
     }
     Ran check(const std::vector<std::string>& arguments) { return run(scratch_, "check-normals", arguments); }
     Ran compare(const std::vector<std::string>& arguments) { return run(scratch_, "compare-normals", arguments); }
-    [[nodiscard]] bool page_has(const std::string& text) const { return scratch_.read("page.html").find(text) != std::string::npos; }
+    [[nodiscard]] bool page_has(const std::string& text) const {
+        return scratch_.read("page.html").find(text) != std::string::npos;
+    }
     Scratch scratch_;
 };
 
@@ -28,8 +33,8 @@ TEST_F(Report, HoldsFilesFindingsFiguresAndFixes) {
     scratch_.write("bad.dds", "DDS nonsense");
     const Ran ran = check({"up.dds", "down.png", "bad.dds", "--require", "y=up", "--report", "page.html"});
     EXPECT_EQ(ran.code, 4) << ran.err;
-    for (const char* text : {"<!doctype html>", "N401 wrong-y", "Fix: <code>", "up.dds", "bad.dds", "N101", "dxt5nm", "alt=\"down.png: lit from the upper left\"",
-                             "id=\"map-1\"", "</html>"}) {
+    for (const char* text : {"<!doctype html>", "N401 wrong-y", "Fix: <code>", "up.dds", "bad.dds", "N101", "dxt5nm",
+                             "alt=\"down.png: lit from the upper left\"", "id=\"map-1\"", "</html>"}) {
         EXPECT_TRUE(page_has(text)) << text;
     }
     EXPECT_FALSE(page_has(scratch_.path())) << "no path beyond what was given";

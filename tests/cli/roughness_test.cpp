@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <tex/tex.h>
+#include <nlohmann/json.hpp>
 
 #include "cli/program.h"
 
@@ -82,16 +82,16 @@ TEST_F(RoughnessOut, HasTheLevelsOfTheNormalsAndGetsRougher) {
 TEST_F(RoughnessOut, ModelsDifferAsTheyPromise) {
     // alpha^2 of the last level, on a mirror; exactly, from floats.
     const auto last = [&](const std::string& model) {
-        does("mip-normals", {"n.png", "-o", "n.dds", "--effort", "fast", "--roughness-model", model,
-                             "--roughness-out", "r.exr", "--roughness-format", "float"});
+        does("mip-normals", {"n.png", "-o", "n.dds", "--effort", "fast", "--roughness-model", model, "--roughness-out",
+                             "r.exr", "--roughness-format", "float"});
         return std::pow(mean("r.exr", static_cast<int>(texture("r.exr").levels.size()) - 1), 4.0);
     };
     const double toksvig = last("toksvig"), vmf = last("vmf");
     const double q = toksvig / (1.0 - toksvig);  // q / (m + q) = toksvig with q = 2 (1 - m)
     const double m = 2.0 / (2.0 + q);
     EXPECT_NEAR(vmf, (1.0 - m * m) / (2.0 * (3.0 * m - m * m * m)), 1e-5);
-    does("mip-normals", {"n.png", "-o", "n.dds", "--effort", "fast", "--roughness-out", "default.exr",
-                         "--roughness-format", "float"});
+    does("mip-normals",
+         {"n.png", "-o", "n.dds", "--effort", "fast", "--roughness-out", "default.exr", "--roughness-format", "float"});
     EXPECT_NEAR(std::pow(mean("default.exr", 9), 4.0), toksvig, 1e-6);
 }
 
@@ -103,10 +103,12 @@ TEST_F(RoughnessOut, FollowsTheExtensionAndTheFormat) {
         EXPECT_EQ(texture(name).levels.size(), texture("n.dds").levels.size()) << name;
         EXPECT_FALSE(texture(name).swizzle_known) << name;
     }
-    for (const auto& [word, format] : {std::pair{"r8", Format::r8_unorm}, {"r16", Format::r16_unorm},
-                                       {"half", Format::r16_float}, {"float", Format::r32_float}}) {
-        does("mip-normals", {"n.png", "-o", "n.dds", "--effort", "fast", "--roughness-out", "r.dds",
-                             "--roughness-format", word});
+    for (const auto& [word, format] : {std::pair{"r8", Format::r8_unorm},
+                                       {"r16", Format::r16_unorm},
+                                       {"half", Format::r16_float},
+                                       {"float", Format::r32_float}}) {
+        does("mip-normals",
+             {"n.png", "-o", "n.dds", "--effort", "fast", "--roughness-out", "r.dds", "--roughness-format", word});
         EXPECT_EQ(texture("r.dds").format, format) << word;
     }
     does("mip-normals", {"n.png", "-o", "n.dds", "--mips", "none", "--roughness-in", "1", "--roughness-out", "r.png"});
@@ -117,8 +119,8 @@ TEST_F(RoughnessOut, FollowsTheExtensionAndTheFormat) {
 }
 
 TEST_F(RoughnessOut, StretchesMapsOfOtherSizes) {
-    does("mip-normals", {"n.png", "-o", "n.dds", "--effort", "fast", "--roughness-in", "waves.png", "--roughness-out", "r.dds",
-                         "--roughness-format", "float"});
+    does("mip-normals", {"n.png", "-o", "n.dds", "--effort", "fast", "--roughness-in", "waves.png", "--roughness-out",
+                         "r.dds", "--roughness-format", "float"});
     EXPECT_EQ(texture("r.dds").extent(), (Extent{512, 512}));
     EXPECT_NEAR(mean("r.dds", 0), mean("waves.png", 0), 0.01);
 }
@@ -128,8 +130,8 @@ TEST_F(RoughnessOut, GoesWithEachInputOfMany) {
     std::filesystem::create_directory(scratch_.path("rough"));
     std::filesystem::copy_file(scratch_.path("h.png"), scratch_.path("rough/n.png"));
     std::filesystem::copy_file(scratch_.path("waves.png"), scratch_.path("rough/w.png"));
-    const auto out = does("mip-normals", {"n.png", "w.png", "--out-dir", "out", "--effort", "fast", "--json", "--depfile", "d",
-                                          "--roughness-in", "{dir}/rough/{stem}.png:r",
+    const auto out = does("mip-normals", {"n.png", "w.png", "--out-dir", "out", "--effort", "fast", "--json",
+                                          "--depfile", "d", "--roughness-in", "{dir}/rough/{stem}.png:r",
                                           "--roughness-out", "{stem}_{format}_{level}{ext}"});
     EXPECT_TRUE(scratch_.has("out/n.dds"));
     EXPECT_TRUE(scratch_.has("out/w_r8_0.png"));
@@ -154,7 +156,8 @@ TEST_F(RoughnessOut, MisuseIsRefused) {
     refuses({"--roughness-out", "r_{level}.png", "--roughness-format", "bc4"}, 2, "cannot hold roughness as bc4");
     refuses({"--roughness-out", "r_{stm}.png"}, 2, "did you mean stem?");
     refuses({"--roughness-out", "x.dds"}, 2, "two outputs of n.png are one file, x.dds");
-    refuses({"--roughness-out", "h.png", "--mips", "none", "--roughness-in", "h.png"}, 2, "the output h.png is the input h.png");
+    refuses({"--roughness-out", "h.png", "--mips", "none", "--roughness-in", "h.png"}, 2,
+            "the output h.png is the input h.png");
     refuses({"--roughness-out", "r.dds", "--depfile", "r.dds"}, 2, "r.dds is an output");
     refuses({"--roughness-out", "r.dds", "--roughness-in", "1.5"}, 2, "1.5");
     refuses({"--roughness-out", "r.dds", "--roughness-in", "nan.png"}, 3, "nan.png: ");

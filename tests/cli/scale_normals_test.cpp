@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <tex/tex.h>
+#include <nlohmann/json.hpp>
 
 #include "cli/program.h"
 
@@ -26,11 +26,8 @@ protected:
 };
 
 TEST_F(ScaleNormals, ScalingABakeIsBakingWithScaledBumpiness) {
-    ASSERT_EQ(go("bake-normals", {"waves.png", "-o", "n.exr", "--bumpiness", "4", "--format", "float"}).code,
-              0);
-    ASSERT_EQ(
-        go("bake-normals", {"waves.png", "-o", "strong.exr", "--bumpiness", "10", "--format", "float"}).code,
-        0);
+    ASSERT_EQ(go("bake-normals", {"waves.png", "-o", "n.exr", "--bumpiness", "4", "--format", "float"}).code, 0);
+    ASSERT_EQ(go("bake-normals", {"waves.png", "-o", "strong.exr", "--bumpiness", "10", "--format", "float"}).code, 0);
     ASSERT_EQ(go("scale-normals", {"n.exr", "-o", "scaled.exr", "--scale", "2.5"}).code, 0);
     const auto error = compare(map_of("strong.exr"), map_of("scaled.exr"));
     ASSERT_TRUE(error);
@@ -44,16 +41,12 @@ TEST_F(ScaleNormals, KindEncodingAndLevelsStay) {
         EXPECT_EQ(ran.code, 0) << ran.err;
         return nlohmann::json::parse(ran.out);
     };
-    for (const std::string encoding :
-         {"dxt5nm", "bc5", "bc5-snorm", "rgb8", "rg8", "rg16", "half", "float"}) {
-        ASSERT_EQ(
-            go("bake-normals", {"waves.png", "-o", "n.dds", "--bumpiness", "4", "--format", encoding}).code,
-            0);
+    for (const std::string encoding : {"dxt5nm", "bc5", "bc5-snorm", "rgb8", "rg8", "rg16", "half", "float"}) {
+        ASSERT_EQ(go("bake-normals", {"waves.png", "-o", "n.dds", "--bumpiness", "4", "--format", encoding}).code, 0);
         EXPECT_EQ(report({"n.dds", "-o", "x.dds"})["format"], encoding);
         EXPECT_EQ(report({"n.dds", "-o", "x.dds"})["levels"], 8);
     }
-    ASSERT_EQ(go("bake-normals", {"waves.png", "-o", "n.png", "--bumpiness", "4", "--format", "rgb16"}).code,
-              0);
+    ASSERT_EQ(go("bake-normals", {"waves.png", "-o", "n.png", "--bumpiness", "4", "--format", "rgb16"}).code, 0);
     EXPECT_EQ(report({"n.png", "--out-dir", "out"})["output"], "out/n.png");
     EXPECT_EQ(report({"n.png", "-o", "x.png"})["format"], "rgb16");
     EXPECT_EQ(report({"n.png", "-o", "x.dds"})["format"], "dxt5nm");  // a picture becomes a texture

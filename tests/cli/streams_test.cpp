@@ -38,20 +38,24 @@ TEST_F(Streams, StandardOutputIsTheSameByAllItsNames) {
         EXPECT_EQ(ran.code, 0) << ran.err;
         EXPECT_EQ(ran.out, scratch_.read("a.dds")) << name;
         EXPECT_EQ(run(scratch_, "bake-normals", {"a.png", "-o", name}, full).err, expected.err) << name;
-        for (const std::vector<std::string>& more : {std::vector<std::string>{"--json"}, {"--no-clobber"}, {"--depfile", "d"}}) {
+        for (const std::vector<std::string>& more :
+             {std::vector<std::string>{"--json"}, {"--no-clobber"}, {"--depfile", "d"}}) {
             std::vector<std::string> arguments = {"a.png", "-o", name};
             arguments.insert(arguments.end(), more.begin(), more.end());
             EXPECT_EQ(run(scratch_, "bake-normals", arguments).code, 2) << name << " " << more.front();
         }
-        EXPECT_EQ(shell(scratch_, "preview-normals a.dds -o " + name + " > p.png && head -c 4 p.png | grep -q PNG").code, 0) << name;
+        EXPECT_EQ(
+            shell(scratch_, "preview-normals a.dds -o " + name + " > p.png && head -c 4 p.png | grep -q PNG").code, 0)
+            << name;
     }
 }
 
 // As by name (Files.AnOutputThatIsAnInputIsRefused): what the shell opened is the file all the same.
 TEST_F(Streams, TheFileBehindAStreamIsNoInputAndOutputAtOnce) {
     const std::string before = scratch_.read("a.png");
-    for (const std::string script : {"bake-normals a.png -o - 1<>a.png", "bake-normals a.png -o - >> a.png", "bake-normals - -o a.png < a.png",
-                                     "bake-normals - -o /dev/stdout < a.png 1<>a.png", "check-normals - --sarif a.png < a.png"}) {
+    for (const std::string script :
+         {"bake-normals a.png -o - 1<>a.png", "bake-normals a.png -o - >> a.png", "bake-normals - -o a.png < a.png",
+          "bake-normals - -o /dev/stdout < a.png 1<>a.png", "check-normals - --sarif a.png < a.png"}) {
         const Ran ran = shell(scratch_, script);
         EXPECT_EQ(ran.code, 2) << script;
         EXPECT_EQ(lines_of(ran.err).size(), 1u) << ran.err;
@@ -60,7 +64,8 @@ TEST_F(Streams, TheFileBehindAStreamIsNoInputAndOutputAtOnce) {
 }
 
 TEST_F(Streams, AFifoThatWaitsForItsReaderIsInterruptedInOneLine) {
-    const Ran ran = shell(scratch_, "mkfifo p.dds; bake-normals a.png -o p.dds 2> err & sleep 0.5; kill -TERM $!; wait $!");
+    const Ran ran =
+        shell(scratch_, "mkfifo p.dds; bake-normals a.png -o p.dds 2> err & sleep 0.5; kill -TERM $!; wait $!");
     EXPECT_EQ(ran.code, 128 + SIGTERM);
     EXPECT_EQ(scratch_.read("err"), "bake-normals: error: interrupted by SIGTERM; 0 of 1 files are done\n");
 }
@@ -74,8 +79,7 @@ TEST_F(Streams, NothingIsSaidWhereNothingIsAsked) {
 TEST_F(Streams, ProgressIsForTerminalsUnlessAskedFor) {
     EXPECT_NE(run(scratch_, "bake-normals", {"a.png", "-o", "a.dds", "--progress", "always"}).err.find('%'),
               std::string::npos);
-    EXPECT_EQ(run(scratch_, "bake-normals", {"a.png", "-o", "a.dds", "--progress", "always", "--quiet"}).err,
-              "");
+    EXPECT_EQ(run(scratch_, "bake-normals", {"a.png", "-o", "a.dds", "--progress", "always", "--quiet"}).err, "");
 }
 
 TEST_F(Streams, AFullDiskLeavesTheOldFile) {
@@ -89,8 +93,7 @@ TEST_F(Streams, AFullDiskLeavesTheOldFile) {
     EXPECT_EQ(lines_of(data.err).size(), 1u) << data.err;
     // A limit on the size of files is the nearest to a full disk that needs no mount.
     scratch_.write("a.dds", "old");
-    const Ran limited =
-        shell(scratch_, "ulimit -f 1; bake-normals a.png -o a.dds --format float");
+    const Ran limited = shell(scratch_, "ulimit -f 1; bake-normals a.png -o a.dds --format float");
     EXPECT_EQ(limited.code, 3);
     EXPECT_EQ(lines_of(limited.err).size(), 1u) << limited.err;
     EXPECT_EQ(scratch_.read("a.dds"), "old");
@@ -141,17 +144,25 @@ TEST_F(Streams, SignalsEndTheRunAndLeaveNothing) {
 TEST_F(Streams, PicturesGoThroughPipesAsIntoFiles) {
     ASSERT_EQ(shell(scratch_, "bake-normals a.png -o a.dds").code, 0);
     for (const std::string kind : {"png", "exr"}) {
-        const Ran ran = shell(scratch_, "unpack-normals a.dds -o x." + kind + " && unpack-normals a.dds -o - --container " + kind +
-                                            " | cat > y && cmp x." + kind + " y");
+        const Ran ran =
+            shell(scratch_, "unpack-normals a.dds -o x." + kind + " && unpack-normals a.dds -o - --container " + kind +
+                                " | cat > y && cmp x." + kind + " y");
         EXPECT_EQ(ran.code, 0) << ran.err;
     }
 }
 
-// A file whose layout turns out to be another one than most such files have is read twice, and so is its output begun. Who reads from a FIFO sees one file.
+// A file whose layout turns out to be another one than most such files have is read twice, and so is its output begun.
+// Who reads from a FIFO sees one file.
 TEST_F(Streams, AFifoSeesOneFileWhereTheInputIsReadTwice) {
-    ASSERT_EQ(shell(scratch_, "bake-normals a.png -o n.png --format ag8 --bumpiness 4 && pack-normals n.png -o x.dds --quiet && mkfifo p.dds").code, 0);
+    ASSERT_EQ(shell(scratch_,
+                    "bake-normals a.png -o n.png --format ag8 --bumpiness 4 && pack-normals n.png -o x.dds --quiet && "
+                    "mkfifo p.dds")
+                  .code,
+              0);
     for (int k = 0; k < 10; ++k) {
-        const Ran ran = shell(scratch_, "timeout 10 cat p.dds > y & timeout 10 pack-normals n.png -o p.dds --quiet && wait $! && cmp x.dds y");
+        const Ran ran = shell(
+            scratch_,
+            "timeout 10 cat p.dds > y & timeout 10 pack-normals n.png -o p.dds --quiet && wait $! && cmp x.dds y");
         ASSERT_EQ(ran.code, 0) << ran.err;
     }
 }
@@ -163,9 +174,12 @@ TEST_F(Streams, SignalsDuringALargeStreamLeaveNothing) {
     for (const std::string command : {"bake-normals", "mip-normals"}) {
         for (const auto& [name, number] : {std::pair{"INT", SIGINT}, std::pair{"TERM", SIGTERM}}) {
             // Job control, as a shell without it lets its background ignore SIGINT.
-            const Ran ran = shell(scratch_, "set -m; " + command + " in.ppm -o out.dds --effort best --metric angle --progress always 2>err & "
-                                            "for k in {1..3000}; do grep -q % err 2>/dev/null && break; sleep 0.01; done; "
-                                            "kill -" + name + " $!; wait $!; exit $?");
+            const Ran ran =
+                shell(scratch_, "set -m; " + command +
+                                    " in.ppm -o out.dds --effort best --metric angle --progress always 2>err & "
+                                    "for k in {1..3000}; do grep -q % err 2>/dev/null && break; sleep 0.01; done; "
+                                    "kill -" +
+                                    name + " $!; wait $!; exit $?");
             EXPECT_EQ(ran.code, 128 + number) << command << scratch_.read("err");
             EXPECT_EQ(scratch_.list(), (std::vector<std::string>{"a.png", "err", "in.ppm"})) << command << name;
             std::filesystem::remove(scratch_.path("err"));
@@ -174,8 +188,7 @@ TEST_F(Streams, SignalsDuringALargeStreamLeaveNothing) {
 }
 
 TEST_F(Streams, ABlockedReadCanBeInterrupted) {
-    const Ran ran =
-        shell(scratch_, "sleep 5 | timeout -s TERM 0.2 bake-normals - -o a.dds & wait $!; echo done");
+    const Ran ran = shell(scratch_, "sleep 5 | timeout -s TERM 0.2 bake-normals - -o a.dds & wait $!; echo done");
     EXPECT_EQ(ran.out, "done\n");
     EXPECT_FALSE(scratch_.has("a.dds"));
 }

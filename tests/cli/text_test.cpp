@@ -7,8 +7,7 @@
 namespace tex::cli {
 
 TEST(Text, NearestFindsWhatWasMeant) {
-    const std::vector<std::string> kernels = {"forward", "central", "sobel",   "scharr",
-                                              "prewitt", "sobel5",  "gaussian"};
+    const std::vector<std::string> kernels = {"forward", "central", "sobel", "scharr", "prewitt", "sobel5", "gaussian"};
     EXPECT_EQ(nearest("sobbel", kernels), "sobel");
     EXPECT_EQ(nearest("cnetral", kernels), "central");  // a transposition counts once
     EXPECT_EQ(nearest("gauss", kernels), "gaussian");
@@ -23,10 +22,15 @@ TEST(Text, PrintableTextCannotDriveATerminal) {
     EXPECT_EQ(printable("a\nb\x1b[31m\x7f"), "a\\x0ab\\x1b[31m\\x7f");
     EXPECT_EQ(printable("Gelände.png"), "Gelände.png");
     EXPECT_EQ(printable("\xe2\x82\xac \xf0\x9f\xa7\xb1"), "\xe2\x82\xac \xf0\x9f\xa7\xb1");
-    EXPECT_EQ(printable("\xc2\x9b" "31m"), "\\xc2\\x9b31m");  // CSI in one character
-    EXPECT_EQ(printable("\x9b" "31m"), "\\x9b31m");            // and in one byte
+    EXPECT_EQ(printable("\xc2\x9b"
+                        "31m"),
+              "\\xc2\\x9b31m");  // CSI in one character
+    EXPECT_EQ(printable("\x9b"
+                        "31m"),
+              "\\x9b31m");  // and in one byte
     EXPECT_EQ(printable("a\xff\xe2\x82"), "a\\xff\\xe2\\x82");
-    EXPECT_EQ(printable("\xc0\xaf\xed\xa0\x80\xf4\x90\x80\x80"), "\\xc0\\xaf\\xed\\xa0\\x80\\xf4\\x90\\x80\\x80");  // no UTF-8
+    EXPECT_EQ(printable("\xc0\xaf\xed\xa0\x80\xf4\x90\x80\x80"),
+              "\\xc0\\xaf\\xed\\xa0\\x80\\xf4\\x90\\x80\\x80");                       // no UTF-8
     EXPECT_EQ(printable("\xef\xbf\xbe\xef\xbf\xbd"), "\\xef\\xbf\\xbe\xef\xbf\xbd");  // no character, and one
 }
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <tex/tex.h>
+#include <nlohmann/json.hpp>
 
 #include "cli/program.h"
 
@@ -30,8 +30,7 @@ std::vector<std::string> textures() {
 int largest_difference(const Plane<float>& a, const Plane<float>& b) {
     float largest = 0.0f;
     for (int j = 0; j < a.extent().height; ++j) {
-        for (int i = 0; i < a.extent().width; ++i)
-            largest = std::max(largest, std::abs(a.at(i, j) - b.at(i, j)));
+        for (int i = 0; i < a.extent().width; ++i) largest = std::max(largest, std::abs(a.at(i, j) - b.at(i, j)));
     }
     return static_cast<int>(std::lround(largest * 255.0f));
 }
@@ -61,13 +60,12 @@ TEST_F(UnpackNormals, EveryRealTextureUnpacksOrIsRefused) {
 // Layouts as ../shared/data/SOURCES.md states them.
 TEST_F(UnpackNormals, LayoutsOfRealTexturesAreRecognised) {
     if (textures().empty()) GTEST_SKIP() << "no ../shared/data";
-    const std::pair<const char*, const char*> layouts[] = {
-        {"torque_TP_Ryder_DXT5nm_256_mips9_nvtt.dds", "dxt5nm"},
-        {"torque_Grenade2_DXT5nm_GGGR_512_mips10.dds", "dxt5nm"},
-        {"torque_rock_DXT5nm_GGGR_256_mips9.dds", "dxt5nm"},
-        {"fieldstone_ATI2_512_mips10.dds", "gr"},
-        {"amd_wood_ATI2_A2XY_512_mips10.dds", "rg"},
-        {"d3d_dwarf_armor_RGBA8_512_mips10.dds", "rgb"}};
+    const std::pair<const char*, const char*> layouts[] = {{"torque_TP_Ryder_DXT5nm_256_mips9_nvtt.dds", "dxt5nm"},
+                                                           {"torque_Grenade2_DXT5nm_GGGR_512_mips10.dds", "dxt5nm"},
+                                                           {"torque_rock_DXT5nm_GGGR_256_mips9.dds", "dxt5nm"},
+                                                           {"fieldstone_ATI2_512_mips10.dds", "gr"},
+                                                           {"amd_wood_ATI2_A2XY_512_mips10.dds", "rg"},
+                                                           {"d3d_dwarf_armor_RGBA8_512_mips10.dds", "rgb"}};
     for (const auto& [name, layout] : layouts) {
         const Ran ran = go("unpack-normals", {(kTextures / name).string(), "-o", "x.png", "--json"});
         ASSERT_EQ(ran.code, 0) << name;
@@ -92,8 +90,7 @@ TEST_F(UnpackNormals, AgreesWithAnotherDecoderWithinOneCode) {
 TEST_F(UnpackNormals, PicturesComeBack) {
     scratch_.add_sample("waves.png", "waves.png");
     ASSERT_EQ(go("bake-normals", {"waves.png", "-o", "n.png", "--bumpiness", "8"}).code, 0);
-    ASSERT_EQ(go("bake-normals", {"waves.png", "-o", "n.dds", "--bumpiness", "8", "--format", "rgb8"}).code,
-              0);
+    ASSERT_EQ(go("bake-normals", {"waves.png", "-o", "n.dds", "--bumpiness", "8", "--format", "rgb8"}).code, 0);
     ASSERT_EQ(go("unpack-normals", {"n.dds", "-o", "again.png", "--keep-length"}).code, 0);
     EXPECT_TRUE(scratch_.read("n.png") == scratch_.read("again.png"));
 }
@@ -117,10 +114,10 @@ TEST_F(UnpackNormals, LevelsAreChosen) {
 TEST_F(UnpackNormals, ScaleModeXyIsUnpackScaleNormal) {
     scratch_.add_sample("waves.png", "waves.png");
     ASSERT_EQ(go("bake-normals", {"waves.png", "-o", "n.dds", "--bumpiness", "8"}).code, 0);
-    ASSERT_EQ(go("unpack-normals",
-                 {"n.dds", "-o", "x.exr", "--format", "float", "--scale", "0.5", "--scale-mode", "xy"})
-                  .code,
-              0);
+    ASSERT_EQ(
+        go("unpack-normals", {"n.dds", "-o", "x.exr", "--format", "float", "--scale", "0.5", "--scale-mode", "xy"})
+            .code,
+        0);
     const auto texture = read_texture(scratch_.path("n.dds"));
     const auto stored = decode(*texture, 0);
     const auto ours = read_image(scratch_.path("x.exr"));
@@ -131,8 +128,7 @@ TEST_F(UnpackNormals, ScaleModeXyIsUnpackScaleNormal) {
             const float y = (2.0f * stored->planes[1].at(i, j) - 1.0f) * 0.5f;
             EXPECT_NEAR(ours->planes[static_cast<std::size_t>(ours->find("R"))].at(i, j), x, 1e-6f);
             EXPECT_NEAR(ours->planes[static_cast<std::size_t>(ours->find("G"))].at(i, j), y, 1e-6f);
-            EXPECT_NEAR(ours->planes[static_cast<std::size_t>(ours->find("B"))].at(i, j), reconstruct_z(x, y),
-                        1e-6f);
+            EXPECT_NEAR(ours->planes[static_cast<std::size_t>(ours->find("B"))].at(i, j), reconstruct_z(x, y), 1e-6f);
         }
     }
 }

@@ -37,8 +37,7 @@ protected:
     }
 
     [[nodiscard]] bool has_option(const std::string& name) const {
-        return run(scratch_, GetParam(), {"--list-options"}).out.find("\n" + name + "\t") !=
-               std::string::npos;
+        return run(scratch_, GetParam(), {"--list-options"}).out.find("\n" + name + "\t") != std::string::npos;
     }
     // Whether -o takes many inputs, which become one output.
     [[nodiscard]] bool joins() const {
@@ -123,8 +122,7 @@ TEST_P(EveryUsage, OutputsNeedAKnownKind) {
     refuses({"a.png", "-o", "a.foo"}, ".dds, .ktx2, .png, .exr, .tif, .tiff, .tga, .bmp, .jpg, .jpeg");
     refuses({"a.png", "-o", "noextension"}, "a name without an extension");
     refuses({"a.png", "-o", "a.dds", "--container", "ktx2"}, "a.dds says dds, --container says ktx2");
-    if (has_option("--format"))
-        refuses({"a.png", "-o", "n.png", "--format", "bc5"}, "bc5 goes into .dds, .ktx2");
+    if (has_option("--format")) refuses({"a.png", "-o", "n.png", "--format", "bc5"}, "bc5 goes into .dds, .ktx2");
 }
 
 TEST_P(EveryUsage, NamePatternsAreChecked) {
@@ -155,7 +153,8 @@ TEST_P(EveryUsage, OutputsMustNotBeInputs) {
     scratch_.write("list.dds", "a.png\n");
     before_ = scratch_.list();
     refuses({"--files-from", "list.dds", "--name", "list.dds"}, "the output list.dds is the input list.dds");
-    refuses({"--files-from", "list.dds", "--name", "x.dds", "--depfile", "list.dds"}, "the output list.dds is the input list.dds");
+    refuses({"--files-from", "list.dds", "--name", "x.dds", "--depfile", "list.dds"},
+            "the output list.dds is the input list.dds");
 }
 
 TEST_P(EveryUsage, OutputsMustDiffer) {
@@ -165,7 +164,8 @@ TEST_P(EveryUsage, OutputsMustDiffer) {
     refuses({"a.png", "folder/../a.png", "--out-dir", "out", "--name", "{stem}.dds"}, "the same output");
     // What links name need not be there yet.
     std::filesystem::create_directory_symlink("folder", scratch_.path("link"));
-    for (const char* name : {"l1.dds", "l2.dds"}) std::filesystem::create_symlink("folder/new.dds", scratch_.path(name));
+    for (const char* name : {"l1.dds", "l2.dds"})
+        std::filesystem::create_symlink("folder/new.dds", scratch_.path(name));
     std::filesystem::create_symlink("l1.dds", scratch_.path("l3.dds"));
     scratch_.write("l1.png", "");
     scratch_.write("l2.png", "");

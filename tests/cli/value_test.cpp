@@ -37,8 +37,7 @@ TEST(Value, CountsHaveSuffixes) {
     for (const char* text : {"", "M", "0", "-1", "1.5G", "1MB", "9999999T"}) {
         EXPECT_THROW((void)parse_count(text), UsageError) << text;
     }
-    for (const std::int64_t count :
-         {std::int64_t{1}, std::int64_t{1000}, std::int64_t{65536}, std::int64_t{3} << 30}) {
+    for (const std::int64_t count : {std::int64_t{1}, std::int64_t{1000}, std::int64_t{65536}, std::int64_t{3} << 30}) {
         EXPECT_EQ(parse_count(count_text(count)), count);
     }
     EXPECT_EQ(count_text(std::int64_t{4} << 30), "4G");

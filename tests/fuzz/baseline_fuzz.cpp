@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "cli/baseline.h"
+#include "reports/baseline.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const auto baseline = tex::cli::Baseline::parse("base.json", {reinterpret_cast<const char*>(data), size});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texels and blocks of any bytes, in every format, decode to finite-or-stored values without reading or writing beside them; the kernels' blocks are those of
-// blocks/, bit for bit; what is unpacked can be packed in every encoding.
+// Texels and blocks of any bytes, in every format, decode to finite-or-stored values without reading or writing beside
+// them; the kernels' blocks are those of blocks/, bit for bit; what is unpacked can be packed in every encoding.
 //
 // Input: format, width, height, encoding, effort, then the bytes of the level, repeated as far as they are needed.
 
@@ -77,7 +77,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     tex::PackOptions options;
     options.encoding = tex::kEncodingNames[data[3] % std::size(tex::kEncodingNames)].value;
     options.effort = tex::kEffortNames[data[4] % std::size(tex::kEffortNames)].value;
-    // The best fit is slow under sanitizers; others fit groups of up to 16 blocks that stand side by side. A second row of blocks stands for all others.
+    // The best fit is slow under sanitizers; others fit groups of up to 16 blocks that stand side by side. A second row
+    // of blocks stands for all others.
     const tex::Extent most = options.effort == tex::Effort::best ? tex::Extent{6, 6} : tex::Extent{72, 5};
     const tex::Extent extent{data[1] % most.width + 1, data[2] % most.height + 1};
     texture.levels.push_back({extent, std::vector<std::byte>(tex::level_bytes(texture.format, extent))});

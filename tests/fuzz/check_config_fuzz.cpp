@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "cli/check_config.h"
 #include "cli/usage_error.h"
+#include "reports/check_config.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     try {

@@ -1,36 +1,63 @@
 // SPDX-License-Identifier: Apache-2.0
 // A DDS file of any bytes is read or refused; what is read is whole, and can be unpacked and written again.
 //
-// Mutations of single bits hardly ever leave a header that is believed: half of them choose fields from values that real files have, and give the file the length
-// that it then claims, or nearly so.
+// Mutations of single bits hardly ever leave a header that is believed: half of them choose fields from values that
+// real files have, and give the file the length that it then claims, or nearly so.
 
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <random>
 
-#include "containers/dds.h"
+#include "formats/dds/dds.h"
 #include "fuzz/whole_texture.h"
 
 namespace {
 
 // Offsets in the file, and what is likely to stand there.
-constexpr std::size_t kFlags = 8, kHeight = 12, kWidth = 16, kMipCount = 28, kFormatFlags = 80, kFourCc = 84, kBitCount = 88, kMasks = 92, kCaps2 = 112,
-                      kDxgi = 128, kMiscFlag = 136, kArraySize = 140, kHeader = 128, kHeader10 = 148;
+constexpr std::size_t kFlags = 8, kHeight = 12, kWidth = 16, kMipCount = 28, kFormatFlags = 80, kFourCc = 84,
+                      kBitCount = 88, kMasks = 92, kCaps2 = 112, kDxgi = 128, kMiscFlag = 136, kArraySize = 140,
+                      kHeader = 128, kHeader10 = 148;
 constexpr std::uint32_t four_cc(const char (&text)[5]) {
-    return static_cast<std::uint32_t>(text[0]) | static_cast<std::uint32_t>(text[1]) << 8 | static_cast<std::uint32_t>(text[2]) << 16 |
-           static_cast<std::uint32_t>(text[3]) << 24;
+    return static_cast<std::uint32_t>(text[0]) | static_cast<std::uint32_t>(text[1]) << 8 |
+           static_cast<std::uint32_t>(text[2]) << 16 | static_cast<std::uint32_t>(text[3]) << 24;
 }
-constexpr std::uint32_t kFourCcs[] = {four_cc("DXT1"), four_cc("DXT2"), four_cc("DXT3"), four_cc("DXT4"), four_cc("DXT5"), four_cc("ATI1"), four_cc("ATI2"),
-                                      four_cc("BC4U"), four_cc("BC4S"), four_cc("BC5U"), four_cc("BC5S"), four_cc("RXGB"), four_cc("DX10"), four_cc("A2XY"),
-                                      36, 110, 111, 112, 113, 114, 115, 116, 117};
-constexpr std::uint32_t kFormatFlagValues[] = {0x1, 0x2, 0x4, 0x40, 0x41, 0x20000, 0x20001, 0x80000, 0x80000004, 0x80000};
-constexpr std::uint32_t kMaskValues[] = {0, 0xff, 0xff00, 0xff0000, 0xff000000, 0xffff, 0xffff0000, 0x7c00, 0x3e0, 0x1f, 0x8000, 0xf800, 0x7e0, 0x3ff, 0xffc00};
+constexpr std::uint32_t kFourCcs[] = {four_cc("DXT1"),
+                                      four_cc("DXT2"),
+                                      four_cc("DXT3"),
+                                      four_cc("DXT4"),
+                                      four_cc("DXT5"),
+                                      four_cc("ATI1"),
+                                      four_cc("ATI2"),
+                                      four_cc("BC4U"),
+                                      four_cc("BC4S"),
+                                      four_cc("BC5U"),
+                                      four_cc("BC5S"),
+                                      four_cc("RXGB"),
+                                      four_cc("DX10"),
+                                      four_cc("A2XY"),
+                                      36,
+                                      110,
+                                      111,
+                                      112,
+                                      113,
+                                      114,
+                                      115,
+                                      116,
+                                      117};
+constexpr std::uint32_t kFormatFlagValues[] = {0x1,     0x2,     0x4,     0x40,       0x41,
+                                               0x20000, 0x20001, 0x80000, 0x80000004, 0x80000};
+constexpr std::uint32_t kMaskValues[] = {0,     0xff, 0xff00, 0xff0000, 0xff000000, 0xffff, 0xffff0000, 0x7c00,
+                                         0x3e0, 0x1f, 0x8000, 0xf800,   0x7e0,      0x3ff,  0xffc00};
 
-void put(std::uint8_t* data, std::size_t offset, std::uint32_t value) { std::memcpy(data + offset, &value, sizeof value); }
+void put(std::uint8_t* data, std::size_t offset, std::uint32_t value) {
+    std::memcpy(data + offset, &value, sizeof value);
+}
 
 template <std::size_t N>
-std::uint32_t one_of(const std::uint32_t (&values)[N], std::minstd_rand& random) { return values[random() % N]; }
+std::uint32_t one_of(const std::uint32_t (&values)[N], std::minstd_rand& random) {
+    return values[random() % N];
+}
 
 void change_a_field(std::uint8_t* data, std::size_t size, std::minstd_rand& random) {
     switch (random() % 10) {
@@ -47,7 +74,8 @@ void change_a_field(std::uint8_t* data, std::size_t size, std::minstd_rand& rand
     if (size < kHeader10) return;
     put(data, kFourCc, four_cc("DX10"));
     put(data, kFormatFlags, 0x4);
-    if (random() % 8 == 0) return put(data, random() % 2 == 0 ? kMiscFlag : kArraySize, static_cast<std::uint32_t>(random() % 8));
+    if (random() % 8 == 0)
+        return put(data, random() % 2 == 0 ? kMiscFlag : kArraySize, static_cast<std::uint32_t>(random() % 8));
     put(data, kDxgi, static_cast<std::uint32_t>(random() % 132));
 }
 
@@ -65,7 +93,8 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
     change_a_field(data, size, random);
     // A new end: sizes are multiples of blocks. What is added is what was there.
     if (random() % 4 == 0) {
-        const std::size_t wanted = std::min<std::size_t>(most, kHeader + random() % 600 * 16 + random() % 2 * (kHeader10 - kHeader));
+        const std::size_t wanted =
+            std::min<std::size_t>(most, kHeader + random() % 600 * 16 + random() % 2 * (kHeader10 - kHeader));
         for (std::size_t k = size; k < wanted; ++k) data[k] = data[kHeader + (k - kHeader) % (size - kHeader)];
         return std::max<std::size_t>(wanted, kHeader10);
     }

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "containers/ktx2.h"
+#include "formats/ktx2/ktx2.h"
 #include "fuzz/whole_texture.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "cli/name_pattern.h"
+#include "batch/name_pattern.h"
 #include "cli/usage_error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

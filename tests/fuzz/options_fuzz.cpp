@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A command line of any words is understood or refused with a usage error of one line; numbers that are taken are finite.
+// A command line of any words is understood or refused with a usage error of one line; numbers that are taken are
+// finite.
 //
-// Input: a byte that tells which command, then a line for each argument. Lines that begin with a byte of 128 and more name an option by its place in the table,
-// and hold its value; the others are arguments as they are.
+// Input: a byte that tells which command, then a line for each argument. Lines that begin with a byte of 128 and more
+// name an option by its place in the table, and hold its value; the others are arguments as they are.
 
 #include <cmath>
 #include <cstdint>
@@ -13,13 +14,13 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "cli/batch.h"
-#include "cli/groups.h"
-#include "cli/heights.h"
-#include "cli/layers.h"
-#include "cli/scene.h"
-#include "cli/source.h"
+#include "batch/batch.h"
 #include "cli/usage_error.h"
+#include "options/groups.h"
+#include "options/heights.h"
+#include "options/layers.h"
+#include "options/scene.h"
+#include "options/source.h"
 
 namespace {
 

@@ -57,7 +57,8 @@ inline PngBytes png_file(const std::vector<PngChunk>& chunks) {
         const std::size_t summed = bytes.size();
         bytes.insert(bytes.end(), chunk.type.begin(), chunk.type.end());
         bytes.insert(bytes.end(), chunk.data.begin(), chunk.data.end());
-        append_big_endian(bytes, static_cast<std::uint32_t>(crc32(0, bytes.data() + summed, static_cast<uInt>(bytes.size() - summed))));
+        append_big_endian(bytes, static_cast<std::uint32_t>(
+                                     crc32(0, bytes.data() + summed, static_cast<uInt>(bytes.size() - summed))));
     }
     return bytes;
 }
@@ -75,9 +76,11 @@ inline PngChunk png_chunk(const PngHeader& header) {
     return chunk;
 }
 
-// Where the rows that IDAT holds begin, each with the number of its filter, and after them where the last one ends. Not beyond `most` bytes.
+// Where the rows that IDAT holds begin, each with the number of its filter, and after them where the last one ends. Not
+// beyond `most` bytes.
 inline std::vector<std::size_t> png_rows(const PngHeader& header, std::size_t most) {
-    constexpr std::uint32_t kPasses[7][4] = {{0, 0, 8, 8}, {4, 0, 8, 8}, {0, 4, 4, 8}, {2, 0, 4, 4}, {0, 2, 2, 4}, {1, 0, 2, 2}, {0, 1, 1, 2}};  // x, y, steps
+    constexpr std::uint32_t kPasses[7][4] = {{0, 0, 8, 8}, {4, 0, 8, 8}, {0, 4, 4, 8}, {2, 0, 4, 4},
+                                             {0, 2, 2, 4}, {1, 0, 2, 2}, {0, 1, 1, 2}};  // x, y, steps
     constexpr std::uint32_t kWhole[1][4] = {{0, 0, 1, 1}};
     constexpr std::size_t kChannels[8] = {1, 1, 3, 1, 2, 1, 4, 1};
     const std::size_t bits = header.bit_depth * kChannels[header.color_type % 8];
@@ -87,7 +90,8 @@ inline std::vector<std::size_t> png_rows(const PngHeader& header, std::size_t mo
         if (header.width <= x || header.height <= y) continue;
         const std::size_t width = (std::size_t{header.width} - x + step_x - 1) / step_x;
         const std::size_t row = 1 + (width * bits + 7) / 8;
-        for (std::uint32_t j = y; j < header.height && begins.back() + row <= most; j += step_y) begins.push_back(begins.back() + row);
+        for (std::uint32_t j = y; j < header.height && begins.back() + row <= most; j += step_y)
+            begins.push_back(begins.back() + row);
     }
     return begins;
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A PNG of any bytes is read or refused; what is read has the extent, planes and bits that a PNG can have, and is the same when its rows come a few at a time.
+// A PNG of any bytes is read or refused; what is read has the extent, planes and bits that a PNG can have, and is the
+// same when its rows come a few at a time.
 //
-// Mutations of bytes end at the sums of chunks: three of four change chunks, the header or the texels under the compression, and mend lengths and sums. libpng is
-// not instrumented, so what it says of a file counts as coverage.
+// Mutations of bytes end at the sums of chunks: three of four change chunks, the header or the texels under the
+// compression, and mend lengths and sums. libpng is not instrumented, so what it says of a file counts as coverage.
 
 #include <algorithm>
 #include <cstdint>
@@ -14,8 +15,8 @@
 #include <string>
 #include <utility>
 
-#include "containers/claims.h"
-#include "containers/png.h"
+#include "formats/claims.h"
+#include "formats/png/png.h"
 #include "fuzz/png_chunks.h"
 
 // Of libFuzzer; programs that replay the corpus do not have it, and do not mutate.
@@ -48,8 +49,9 @@ void change_header(PngChunk& chunk, Random& random) {
         case 2: header.interlace ^= 1; break;
         case 3: mutate(chunk.data, 0); return;
         default: {
-            constexpr std::pair<std::uint8_t, std::uint8_t> kKinds[] = {{1, 0}, {2, 0}, {4, 0}, {8, 0}, {16, 0}, {8, 2}, {16, 2}, {1, 3},
-                                                                        {2, 3}, {4, 3}, {8, 3}, {8, 4}, {16, 4}, {8, 6}, {16, 6}};
+            constexpr std::pair<std::uint8_t, std::uint8_t> kKinds[] = {{1, 0}, {2, 0},  {4, 0},  {8, 0}, {16, 0},
+                                                                        {8, 2}, {16, 2}, {1, 3},  {2, 3}, {4, 3},
+                                                                        {8, 3}, {8, 4},  {16, 4}, {8, 6}, {16, 6}};
             const auto [bits, color_type] = one_of(kKinds, random);
             header.bit_depth = bits;
             header.color_type = color_type;
@@ -67,17 +69,21 @@ void change_texels(std::vector<PngChunk>& chunks, Random& random) {
     PngBytes texels = inflated(packed, kMostTexelBytes);
     if (below(3, random) == 0) mutate(texels, 8);
     if (below(8, random) != 0) {
-        const std::vector<std::size_t> rows = png_rows(chunks.empty() ? PngHeader{} : png_header(chunks[0].data), kMostTexelBytes);
+        const std::vector<std::size_t> rows =
+            png_rows(chunks.empty() ? PngHeader{} : png_header(chunks[0].data), kMostTexelBytes);
         while (texels.size() < rows.back()) texels.push_back(static_cast<std::uint8_t>(random()));
         texels.resize(rows.back());
-        for (std::size_t k = 0; k + 1 < rows.size(); ++k) texels[rows[k]] = static_cast<std::uint8_t>(texels[rows[k]] % 5);
+        for (std::size_t k = 0; k + 1 < rows.size(); ++k)
+            texels[rows[k]] = static_cast<std::uint8_t>(texels[rows[k]] % 5);
     }
     packed = deflated(texels, static_cast<int>(below(10, random)));
     // In place of the first IDAT, in one piece or two.
-    const auto first = std::find_if(chunks.begin(), chunks.end(), [](const PngChunk& chunk) { return chunk.is("IDAT"); });
+    const auto first =
+        std::find_if(chunks.begin(), chunks.end(), [](const PngChunk& chunk) { return chunk.is("IDAT"); });
     auto at = chunks.begin() + std::min<std::ptrdiff_t>(first - chunks.begin(), std::ssize(chunks));
     std::vector<PngChunk> changed(chunks.begin(), at);
-    const auto cut = packed.begin() + static_cast<std::ptrdiff_t>(below(2, random) == 0 ? 0 : below(packed.size() + 1, random));
+    const auto cut =
+        packed.begin() + static_cast<std::ptrdiff_t>(below(2, random) == 0 ? 0 : below(packed.size() + 1, random));
     changed.push_back({{'I', 'D', 'A', 'T'}, {packed.begin(), cut}});
     changed.push_back({{'I', 'D', 'A', 'T'}, {cut, packed.end()}});
     for (; at != chunks.end(); ++at) {
@@ -89,9 +95,10 @@ void change_texels(std::vector<PngChunk>& chunks, Random& random) {
 void insert_chunk(std::vector<PngChunk>& chunks, Random& random) {
     // With a length that the chunk may have; of those that libtex wants libpng to skip as well.
     constexpr std::pair<const char*, std::size_t> kChunks[] = {
-        {"PLTE", 3},  {"PLTE", 48}, {"PLTE", 768}, {"tRNS", 1}, {"tRNS", 2}, {"tRNS", 6}, {"tRNS", 16}, {"tRNS", 256}, {"IEND", 0},  {"IDAT", 4},
-        {"gAMA", 4},  {"sRGB", 1},  {"sBIT", 3},   {"iCCP", 24}, {"cHRM", 32}, {"bKGD", 6}, {"hIST", 32}, {"pHYs", 9},   {"eXIf", 12}, {"tEXt", 12},
-        {"zTXt", 20}, {"iTXt", 20}, {"sPLT", 20},  {"tIME", 7}, {"acTL", 8}, {"fcTL", 26}, {"CRIT", 5},  {"priv", 5}};
+        {"PLTE", 3},   {"PLTE", 48}, {"PLTE", 768}, {"tRNS", 1}, {"tRNS", 2},  {"tRNS", 6},  {"tRNS", 16},
+        {"tRNS", 256}, {"IEND", 0},  {"IDAT", 4},   {"gAMA", 4}, {"sRGB", 1},  {"sBIT", 3},  {"iCCP", 24},
+        {"cHRM", 32},  {"bKGD", 6},  {"hIST", 32},  {"pHYs", 9}, {"eXIf", 12}, {"tEXt", 12}, {"zTXt", 20},
+        {"iTXt", 20},  {"sPLT", 20}, {"tIME", 7},   {"acTL", 8}, {"fcTL", 26}, {"CRIT", 5},  {"priv", 5}};
     const auto& [name, length] = one_of(kChunks, random);
     PngChunk chunk;
     std::copy_n(name, chunk.type.size(), chunk.type.begin());
@@ -179,7 +186,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         count_refused(image.error().reason);
         return 0;
     }
-    if (image->extent().texels() > options.max_texels || image->planes.empty() || image->planes.size() > 4) std::abort();
+    if (image->extent().texels() > options.max_texels || image->planes.empty() || image->planes.size() > 4)
+        std::abort();
     if (image->names.size() != image->planes.size() || image->bits < 1 || image->bits > 16) std::abort();
     for (const auto& plane : image->planes) {
         for (int j = 0; j < plane.extent().height; ++j) {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What libtex does with the answers of its reader process: whatever that hands over, at whatever moment and however it ends, becomes a picture or one sentence.
+// What libtex does with the answers of its reader process: whatever that hands over, at whatever moment and however it
+// ends, becomes a picture or one sentence.
 //
 // No process is started: the system calls that libtex makes for one are defined here, and a script plays it.
 //
-// Input: 12 bytes, which choose a header that is nearly sound (see Script), then steps of the process, of 4 bytes and more: what it does, the offset (2 bytes),
-// a length, and for those that write that many bytes. A step is taken each time that libtex waits.
+// Input: 12 bytes, which choose a header that is nearly sound (see Script), then steps of the process, of 4 bytes and
+// more: what it does, the offset (2 bytes), a length, and for those that write that many bytes. A step is taken each
+// time that libtex waits.
 
 #include <fcntl.h>
 #include <poll.h>
@@ -21,9 +23,9 @@
 #include <string>
 #include <vector>
 
-#include "containers/reader.h"
-#include "containers/reader_protocol.h"
-#include "containers/reader_rows.h"
+#include "formats/reader/reader.h"
+#include "formats/reader/reader_protocol.h"
+#include "formats/reader/reader_rows.h"
 
 namespace {
 
@@ -80,7 +82,9 @@ bool take_step() {
     switch ((step[0] & 0x7f) % 5) {
         case 0: script.put(offset % sizeof(tex::ReaderHeader), script.take(count), count); break;
         case 1: script.put(tex::kReaderDataOffset + offset, script.take(count), count); break;
-        case 2: static_cast<void>(!ftruncate(script.result, static_cast<off_t>(offset * 8))); break;  // larger: it cannot shrink
+        case 2:
+            static_cast<void>(!ftruncate(script.result, static_cast<off_t>(offset * 8)));
+            break;  // larger: it cannot shrink
         case 3: {
             const std::uint64_t rows = step[3];
             script.put(offsetof(tex::ReaderHeader, rows_done), &rows, sizeof rows);
@@ -106,7 +110,8 @@ TEX_CALL(int, posix_spawn_file_actions_adddup2, posix_spawn_file_actions_t*, int
 }
 TEX_CALL(int, posix_spawn_file_actions_addclosefrom_np, posix_spawn_file_actions_t*, int) { return 0; }
 
-TEX_CALL(int, posix_spawn, pid_t* child, const char*, const posix_spawn_file_actions_t*, const posix_spawnattr_t*, char* const*, char* const*) {
+TEX_CALL(int, posix_spawn, pid_t* child, const char*, const posix_spawn_file_actions_t*, const posix_spawnattr_t*,
+         char* const*, char* const*) {
     script.result = fcntl(script.result, F_DUPFD_CLOEXEC, 0);
     script.progress = fcntl(script.progress, F_DUPFD_CLOEXEC, 0);
     script.active = true;
@@ -152,7 +157,9 @@ void check_decoding(const tex::ReadOptions& options) {
     if (!file) std::abort();
     const auto image = tex::read_with_reader(*file, options);
     if (!image) return check_error(image.error());
-    if (image->extent().texels() > options.max_texels || image->planes.empty() || image->planes.size() != image->names.size()) std::abort();
+    if (image->extent().texels() > options.max_texels || image->planes.empty() ||
+        image->planes.size() != image->names.size())
+        std::abort();
     for (const std::string& name : image->names) {
         if (name.empty()) std::abort();
     }
@@ -171,8 +178,10 @@ void check_encoding(const tex::ReadOptions& options) {
     texture.format = tex::Format::rgba8_unorm;
     texture.levels.push_back({{2, 2}, std::vector<std::byte>(16)});
     const auto bytes = tex::encode_with_reader(texture, tex::Container::tiff, options);
-    if (!bytes) check_error(bytes.error());
-    else if (bytes->size() > 1 << 20) std::abort();  // more than any script makes
+    if (!bytes)
+        check_error(bytes.error());
+    else if (bytes->size() > 1 << 20)
+        std::abort();  // more than any script makes
 }
 
 }  // namespace

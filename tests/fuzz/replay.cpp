@@ -3,8 +3,8 @@
 //
 //     dds_fuzz FILE|FOLDER...
 //
-// Folders are searched with all below them. Exit code 77 (skipped) where none of the arguments is there, 1 where a file cannot be read;
-// a target that finds a bug ends the process itself.
+// Folders are searched with all below them. Exit code 77 (skipped) where none of the arguments is there, 1 where a file
+// cannot be read; a target that finds a bug ends the process itself.
 
 #include <cstddef>
 #include <cstdint>

@@ -7,8 +7,8 @@
 namespace peers {
 namespace {
 
-// BlendNormals of Unity's shader library, on maps that a shader samples at uv * _ST.xy + _ST.zw. The level is that of the OpenGL
-// specification (4.6, 8.14.1), written out: llvmpipe's own has a logarithm that is off by up to 0.09.
+// BlendNormals of Unity's shader library, on maps that a shader samples at uv * _ST.xy + _ST.zw. The level is that of
+// the OpenGL specification (4.6, 8.14.1), written out: llvmpipe's own has a logarithm that is off by up to 0.09.
 constexpr const char* kFragmentShader = R"(#version 330 core
 uniform sampler2D base, detail;
 uniform vec2 extent, tiling, offset;

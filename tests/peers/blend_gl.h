@@ -17,8 +17,8 @@ struct GlBlend {
     float base_scale = 1.0f, detail_scale = 1.0f;
 };
 
-// x, y, z and 1 of each texel of the base, rows from the top. Both maps are RGBA32F, repeated and sampled trilinearly. Empty where OpenGL
-// reported an error.
+// x, y, z and 1 of each texel of the base, rows from the top. Both maps are RGBA32F, repeated and sampled trilinearly.
+// Empty where OpenGL reported an error.
 std::vector<float> draw_whiteout(const GlBlend& blend);
 
 }  // namespace peers

@@ -39,18 +39,18 @@ TEST(MesaBlend, GivesTheWhiteoutShadersNormals) {
     ASSERT_TRUE(peers::software_gl_works());
     const Case cases[] = {
         {{64, 64}, {64, 64}, 1, 1, 0, 0, 1, 1},
-        {{128, 64}, {32, 32}, 2, 2, 0, 0, 1, 0.5f},           // magnified
+        {{128, 64}, {32, 32}, 2, 2, 0, 0, 1, 0.5f},  // magnified
         {{64, 64}, {16, 32}, 3.5f, 1.5f, 0.3f, -0.7f, 1.5f, 1},
-        {{64, 48}, {61, 37}, 1, 1, 0.125f, 0.4f, 1, 2},       // odd
-        {{64, 64}, {64, 64}, 2, 2, 0, 0, 1, 1},               // exactly level 1
-        {{64, 64}, {64, 64}, 1.5f, 1.5f, 0.1f, 0.2f, 1, 1},   // between levels 0 and 1
-        {{64, 64}, {128, 128}, 3, 1, 0, 0, 1, 1},             // longer one way than the other
+        {{64, 48}, {61, 37}, 1, 1, 0.125f, 0.4f, 1, 2},      // odd
+        {{64, 64}, {64, 64}, 2, 2, 0, 0, 1, 1},              // exactly level 1
+        {{64, 64}, {64, 64}, 1.5f, 1.5f, 0.1f, 0.2f, 1, 1},  // between levels 0 and 1
+        {{64, 64}, {128, 128}, 3, 1, 0, 0, 1, 1},            // longer one way than the other
     };
     for (const Case& c : cases) {
         const tex::MipChain base = waves(c.base, 0.0);
         const tex::MipChain detail = waves(c.detail, 1.0);
-        const std::vector<float> theirs = peers::draw_whiteout({&base, &detail, c.tiling_x, c.tiling_y, c.offset_x, c.offset_y,
-                                                                c.base_scale, c.detail_scale});
+        const std::vector<float> theirs = peers::draw_whiteout(
+            {&base, &detail, c.tiling_x, c.tiling_y, c.offset_x, c.offset_y, c.base_scale, c.detail_scale});
         ASSERT_FALSE(theirs.empty());
         tex::Layer layer;
         layer.detail = waves(c.detail, 1.0);
@@ -76,8 +76,8 @@ TEST(MesaBlend, GivesTheWhiteoutShadersNormals) {
         }
         const auto difference = tex::compare(*ours, shader);
         ASSERT_TRUE(difference);
-        EXPECT_LE(difference->error.max, 0.05) << c.detail.width << "x" << c.detail.height << " tiled " << c.tiling_x << "x" << c.tiling_y
-                                               << ", mean " << difference->error.mean;
+        EXPECT_LE(difference->error.max, 0.05) << c.detail.width << "x" << c.detail.height << " tiled " << c.tiling_x
+                                               << "x" << c.tiling_y << ", mean " << difference->error.mean;
     }
 }
 

@@ -49,7 +49,8 @@ TEST(ImageMagick, ReadsUncompressedTexturesAsWeDecodeThem) {
         const auto ours = tex::decode(texture, 0);
         ASSERT_EQ(theirs->extent(), ours->extent());
         for (std::size_t c = 0; c < ours->planes.size(); ++c) {
-            for (int i = 0; i < 5; ++i) ASSERT_EQ(theirs->planes[c].at(i, 6), ours->planes[c].at(i, 6)) << "channel " << c;
+            for (int i = 0; i < 5; ++i)
+                ASSERT_EQ(theirs->planes[c].at(i, 6), ours->planes[c].at(i, 6)) << "channel " << c;
         }
     }
 }

@@ -30,18 +30,21 @@ std::vector<tex::Level> levels_of_dds(const std::vector<std::byte>& file, tex::F
     std::vector<tex::Level> levels;
     for (std::uint32_t k = 0; k < word(28); ++k) {
         const tex::Extent extent{std::max(1, base.width >> k), std::max(1, base.height >> k)};
-        const auto blocks = static_cast<std::size_t>((extent.width + 3) / 4) * static_cast<std::size_t>((extent.height + 3) / 4);
+        const auto blocks =
+            static_cast<std::size_t>((extent.width + 3) / 4) * static_cast<std::size_t>((extent.height + 3) / 4);
         const std::size_t size = blocks * tex::format_info(format).block_bytes;
         if (offset + size > file.size()) return {};
-        levels.push_back({extent, {file.begin() + static_cast<std::ptrdiff_t>(offset),
-                                   file.begin() + static_cast<std::ptrdiff_t>(offset + size)}});
+        levels.push_back({extent,
+                          {file.begin() + static_cast<std::ptrdiff_t>(offset),
+                           file.begin() + static_cast<std::ptrdiff_t>(offset + size)}});
         offset += size;
     }
     EXPECT_EQ(offset, file.size()) << "bytes behind the last level";
     return levels;
 }
 
-// GL reads (r, g, b, a) of formats with fewer channels as 0, 0, 1 for what is missing: only stored channels are compared.
+// GL reads (r, g, b, a) of formats with fewer channels as 0, 0, 1 for what is missing: only stored channels are
+// compared.
 void expect_same_texels(tex::Extent extent, tex::Encoding encoding, tex::DdsHeader header) {
     const tex::Texture texture = peers::bumpy_texture(extent, encoding);
     tex::WriteOptions options;

@@ -32,10 +32,10 @@ struct Pair {
 constexpr Pair kPairTable[] = {
     {"oiio_bump", "height_half.exr", tex::HeightChannel::automatic, false, "normal_YDOWN_half.exr", tex::YAxis::down,
      tex::GradientKernel::central, 0.3},
-    {"d3d_pom_rocks", "normal_rgb_height_a.tga", tex::HeightChannel::a, false, "normal_rgb_height_a.tga", tex::YAxis::up,
-     tex::GradientKernel::sobel, 2.6},
-    {"d3d_pom_bump", "normal_rgb_height_a.tga", tex::HeightChannel::a, false, "normal_rgb_height_a.tga", tex::YAxis::down,
-     tex::GradientKernel::sobel, 2.6},
+    {"d3d_pom_rocks", "normal_rgb_height_a.tga", tex::HeightChannel::a, false, "normal_rgb_height_a.tga",
+     tex::YAxis::up, tex::GradientKernel::sobel, 2.6},
+    {"d3d_pom_bump", "normal_rgb_height_a.tga", tex::HeightChannel::a, false, "normal_rgb_height_a.tga",
+     tex::YAxis::down, tex::GradientKernel::sobel, 2.6},
     {"godot_cheese", "height_INVERTED.png", tex::HeightChannel::automatic, true, "normal_GL.png", tex::YAxis::up,
      tex::GradientKernel::sobel, 2.6},
 };
@@ -98,7 +98,8 @@ TEST(Pairs, BakesGiveTheNormalsThatOthersMadeFromTheirHeights) {
         const Fit fit = fit_strength(*field, *normals, pair.kernel);
         unpack_options.y_axis = pair.y_axis == tex::YAxis::up ? tex::YAxis::down : tex::YAxis::up;
         const Fit flipped = fit_strength(*field, *tex::unpack(*picture, unpack_options), pair.kernel);
-        std::printf("| %s | %s | %s | %.3g | %.2f | %.2f |\n", pair.name, tex::name_of(tex::kGradientKernelNames, pair.kernel).data(),
+        std::printf("| %s | %s | %s | %.3g | %.2f | %.2f |\n", pair.name,
+                    tex::name_of(tex::kGradientKernelNames, pair.kernel).data(),
                     tex::name_of(tex::kYAxisNames, pair.y_axis).data(), fit.bumpiness, fit.degrees, flipped.degrees);
         EXPECT_LE(fit.degrees, pair.limit) << pair.name;
         EXPECT_GT(flipped.degrees, fit.degrees * 1.5) << pair.name << ": the other y fits as well";

@@ -70,8 +70,12 @@ float largest_difference(const tex::Image& ours, int channel, const std::vector<
     for (int j = 0; j < extent.height; ++j) {
         const float* row = ours.planes[static_cast<std::size_t>(channel)].row(j);
         for (int i = 0; i < extent.width; ++i) {
-            const auto texel = static_cast<std::size_t>(j) * static_cast<std::size_t>(extent.width) + static_cast<std::size_t>(i);
-            largest = std::max(largest, std::abs(row[i] - theirs[texel * static_cast<std::size_t>(channels) + static_cast<std::size_t>(channel)]));
+            const auto texel =
+                static_cast<std::size_t>(j) * static_cast<std::size_t>(extent.width) + static_cast<std::size_t>(i);
+            largest = std::max(
+                largest,
+                std::abs(row[i] -
+                         theirs[texel * static_cast<std::size_t>(channels) + static_cast<std::size_t>(channel)]));
         }
     }
     return largest;

@@ -11,10 +11,18 @@ namespace peers {
 namespace {
 
 bool make_context() {
-    // Shortcuts in llvmpipe: 8-bit ones would round what the shader reads, others mix less of the next mip level than they should.
+    // Shortcuts in llvmpipe: 8-bit ones would round what the shader reads, others mix less of the next mip level than
+    // they should.
     setenv("GALLIVM_PERF", "no_aos_sampling,no_brilinear,no_rho_approx,no_quad_lod", 1);
-    const int attributes[] = {OSMESA_FORMAT, OSMESA_RGBA, OSMESA_PROFILE, OSMESA_CORE_PROFILE,
-                              OSMESA_CONTEXT_MAJOR_VERSION, 3, OSMESA_CONTEXT_MINOR_VERSION, 3, 0};
+    const int attributes[] = {OSMESA_FORMAT,
+                              OSMESA_RGBA,
+                              OSMESA_PROFILE,
+                              OSMESA_CORE_PROFILE,
+                              OSMESA_CONTEXT_MAJOR_VERSION,
+                              3,
+                              OSMESA_CONTEXT_MINOR_VERSION,
+                              3,
+                              0};
     static std::array<unsigned char, 4 * 16 * 16> buffer;
     OSMesaContext context = OSMesaCreateContextAttribs(attributes, nullptr);
     return context != nullptr && OSMesaMakeCurrent(context, buffer.data(), GL_UNSIGNED_BYTE, 16, 16) == GL_TRUE;
@@ -59,7 +67,8 @@ const Gl& software_gl() {
 GLuint make_program(const char* vertex_shader, const char* fragment_shader) {
     const Gl& gl = software_gl();
     const GLuint program = gl.CreateProgram();
-    for (const auto& [kind, source] : {std::pair{GL_VERTEX_SHADER, vertex_shader}, std::pair{GL_FRAGMENT_SHADER, fragment_shader}}) {
+    for (const auto& [kind, source] :
+         {std::pair{GL_VERTEX_SHADER, vertex_shader}, std::pair{GL_FRAGMENT_SHADER, fragment_shader}}) {
         const GLuint shader = gl.CreateShader(static_cast<GLenum>(kind));
         gl.ShaderSource(shader, 1, &source, nullptr);
         gl.CompileShader(shader);
@@ -83,7 +92,8 @@ GLuint upload_map(const tex::MipChain& map, const std::function<Rgba(float, floa
                 rgba.insert(rgba.end(), values.begin(), values.end());
             }
         }
-        software_gl().TexImage2D(GL_TEXTURE_2D, static_cast<GLint>(k), GL_RGBA32F, extent.width, extent.height, 0, GL_RGBA, GL_FLOAT, rgba.data());
+        software_gl().TexImage2D(GL_TEXTURE_2D, static_cast<GLint>(k), GL_RGBA32F, extent.width, extent.height, 0,
+                                 GL_RGBA, GL_FLOAT, rgba.data());
     }
     set_filters(map.levels.size());
     return texture;
@@ -99,7 +109,8 @@ GLuint upload_plane(const tex::Plane<float>& plane) {
     return texture;
 }
 
-std::vector<float> draw(GLuint program, tex::Extent extent, int vertices, const std::function<void(const Place&)>& set_uniforms) {
+std::vector<float> draw(GLuint program, tex::Extent extent, int vertices,
+                        const std::function<void(const Place&)>& set_uniforms) {
     const Gl& gl = software_gl();
     gl.ActiveTexture(GL_TEXTURE2);  // 0 and 1 hold the maps
     const GLuint target = bind_new_texture();

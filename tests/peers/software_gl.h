@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// software_gl.h: an OpenGL driver that nobody here wrote (Mesa's llvmpipe, off screen), and what every drawing with it needs.
+// software_gl.h: an OpenGL driver that nobody here wrote (Mesa's llvmpipe, off screen), and what every drawing with it
+// needs.
 
 #pragma once
 
@@ -72,18 +73,20 @@ extern const char* const kWholeTarget;
 // 0 where the shaders do not compile or link.
 GLuint make_program(const char* vertex_shader, const char* fragment_shader);
 
-// A texture of floats, bound to the active unit, its rows from the bottom, as v grows; repeated, sampled with linear filters, also between
-// levels where there are several. `texel` gives the RGBA of a normal.
+// A texture of floats, bound to the active unit, its rows from the bottom, as v grows; repeated, sampled with linear
+// filters, also between levels where there are several. `texel` gives the RGBA of a normal.
 using Rgba = std::array<float, 4>;
 GLuint upload_map(const tex::MipChain& map, const std::function<Rgba(float x, float y, float z)>& texel);
 
 // The same of one plane, in the red channel.
 GLuint upload_plane(const tex::Plane<float>& plane);
 
-// Draws `vertices` of a triangle strip with the program, whose uniforms set_uniforms(place) sets, over a cleared RGBA32F target. Returns RGBA
-// of each texel, rows from the bottom of the target; empty where OpenGL reported an error since the last drawing. Textures stay bound.
+// Draws `vertices` of a triangle strip with the program, whose uniforms set_uniforms(place) sets, over a cleared
+// RGBA32F target. Returns RGBA of each texel, rows from the bottom of the target; empty where OpenGL reported an error
+// since the last drawing. Textures stay bound.
 using Place = std::function<GLint(const char* uniform)>;
-std::vector<float> draw(GLuint program, tex::Extent target, int vertices, const std::function<void(const Place&)>& set_uniforms);
+std::vector<float> draw(GLuint program, tex::Extent target, int vertices,
+                        const std::function<void(const Place&)>& set_uniforms);
 
 // Rows of RGBA, the last first.
 std::vector<float> flipped(const std::vector<float>& rgba, tex::Extent extent);

@@ -9,8 +9,9 @@
 namespace peers {
 namespace {
 
-// "Lighting of Bumpy Surfaces" (fragWithAmbient) and "Projection of Bumpy Surfaces" of the wikibook, in GLSL 3.30; the model matrix is the
-// identity. Only the places of the four corners, the camera as vectors instead of a matrix, and the sRGB curve at the end are ours.
+// "Lighting of Bumpy Surfaces" (fragWithAmbient) and "Projection of Bumpy Surfaces" of the wikibook, in GLSL 3.30; the
+// model matrix is the identity. Only the places of the four corners, the camera as vectors instead of a matrix, and the
+// sRGB curve at the end are ours.
 constexpr const char* kVertexShader = R"(#version 330 core
 uniform vec3 eye, right, up, toward, tangent;
 uniform float slope, aspect, half_width, tangent_w;
@@ -105,8 +106,11 @@ std::vector<float> draw_wikibook_plane(const GlScene& scene) {
     const GLuint height = scene.height != nullptr ? upload_plane(*scene.height) : 0;
     gl.ActiveTexture(GL_TEXTURE0);
     // As DXT5nm decodes: x in alpha, y in green.
-    const GLuint map = upload_map(*scene.map, [](float x, float y, float) { return Rgba{1.0f, (y + 1.0f) / 2.0f, 1.0f, (x + 1.0f) / 2.0f}; });
-    const std::vector<float> rgba = draw(program, scene.picture, 4, [&](const Place& place) { set_uniforms(gl, place, scene); });
+    const GLuint map = upload_map(*scene.map, [](float x, float y, float) {
+        return Rgba{1.0f, (y + 1.0f) / 2.0f, 1.0f, (x + 1.0f) / 2.0f};
+    });
+    const std::vector<float> rgba =
+        draw(program, scene.picture, 4, [&](const Place& place) { set_uniforms(gl, place, scene); });
     for (const GLuint texture : {height, map}) gl.DeleteTextures(1, &texture);
     gl.DeleteProgram(program);
     return flipped(rgba, scene.picture);

@@ -14,7 +14,7 @@ using Vec3 = std::array<float, 3>;
 
 struct GlScene {
     tex::Extent picture;
-    const tex::MipChain* map = nullptr;  // x in alpha and y in green, as Unity stores them; 32-bit floats
+    const tex::MipChain* map = nullptr;         // x in alpha and y in green, as Unity stores them; 32-bit floats
     const tex::Plane<float>* height = nullptr;  // or none: no parallax
     float parallax = 0.0f, parallax_limit = 0.0f;
     Vec3 eye, right, up, toward;  // the camera looks along -toward
@@ -28,7 +28,8 @@ struct GlScene {
     float shininess = 10.0f;
 };
 
-// RGBA of the picture, rows from the top: sRGB values, and 1 in A where the plane was drawn. Empty where OpenGL reported an error.
+// RGBA of the picture, rows from the top: sRGB values, and 1 in A where the plane was drawn. Empty where OpenGL
+// reported an error.
 std::vector<float> draw_wikibook_plane(const GlScene& scene);
 
 }  // namespace peers

@@ -23,8 +23,7 @@ tex::Plane<float> bumpy_heights(tex::Extent extent) {
     std::mt19937 engine(21);
     for (int j = 0; j < extent.height; ++j) {
         for (int i = 0; i < extent.width; ++i) {
-            const double u = 2.0 * 180.0 * kDegree * i / extent.width,
-                         v = 2.0 * 180.0 * kDegree * j / extent.height;
+            const double u = 2.0 * 180.0 * kDegree * i / extent.width, v = 2.0 * 180.0 * kDegree * j / extent.height;
             const double grain = static_cast<double>(engine() >> 8) / 16777216.0;
             height.at(i, j) = static_cast<float>(0.5 + 0.2 * std::sin(3.0 * u) * std::cos(2.0 * v) +
                                                  0.15 * std::sin(7.0 * v + u) + 0.01 * grain);
@@ -59,13 +58,12 @@ Comparison compare_pictures(const tex::Texture& ours, const std::vector<float>& 
                 for (int a = -1; a <= 1; ++a) inside = inside && drawn(i + a, j + b);
             }
             if (!inside) continue;
-            const std::size_t at = static_cast<std::size_t>(j) * static_cast<std::size_t>(extent.width) +
-                                   static_cast<std::size_t>(i);
+            const std::size_t at =
+                static_cast<std::size_t>(j) * static_cast<std::size_t>(extent.width) + static_cast<std::size_t>(i);
             int worst = 0;
             for (std::size_t c = 0; c < 3; ++c) {
                 const int theirs = static_cast<int>(std::floor(gl[at * 4 + c] * 255.0f + 0.5f));
-                worst = std::max(worst,
-                                 std::abs(std::to_integer<int>(ours.levels[0].bytes[at * 3 + c]) - theirs));
+                worst = std::max(worst, std::abs(std::to_integer<int>(ours.levels[0].bytes[at * 3 + c]) - theirs));
             }
             ++result.compared;
             over += worst > kCodes ? 1 : 0;
@@ -88,11 +86,9 @@ struct View {
 // The same scene for OpenGL; the camera is placed by the corners of the plane.
 peers::GlScene gl_scene(const View& view, const tex::PreviewOptions& options) {
     const double yaw = view.camera.yaw * kDegree, pitch = view.camera.pitch * kDegree;
-    const double toward[3] = {std::sin(yaw) * std::cos(pitch), std::sin(pitch),
-                              std::cos(yaw) * std::cos(pitch)};
+    const double toward[3] = {std::sin(yaw) * std::cos(pitch), std::sin(pitch), std::cos(yaw) * std::cos(pitch)};
     const double right[3] = {std::cos(yaw), 0.0, -std::sin(yaw)};
-    const double up[3] = {-std::sin(yaw) * std::sin(pitch), std::cos(pitch),
-                          -std::cos(yaw) * std::sin(pitch)};
+    const double up[3] = {-std::sin(yaw) * std::sin(pitch), std::cos(pitch), -std::cos(yaw) * std::sin(pitch)};
     const double slope = std::tan(view.camera.field_of_view * kDegree / 2.0);
     const double half_width = static_cast<double>(view.map.width) / view.map.height;
     const double aspect = static_cast<double>(view.picture.width) / view.picture.height;
@@ -105,8 +101,7 @@ peers::GlScene gl_scene(const View& view, const tex::PreviewOptions& options) {
         }
     }
     const auto vec = [](const double(&v)[3], double s) {
-        return peers::Vec3{static_cast<float>(v[0] * s), static_cast<float>(v[1] * s),
-                           static_cast<float>(v[2] * s)};
+        return peers::Vec3{static_cast<float>(v[0] * s), static_cast<float>(v[1] * s), static_cast<float>(v[2] * s)};
     };
     const auto rgb = [](const tex::Rgb& c) { return peers::Vec3{c.r, c.g, c.b}; };
     peers::GlScene scene;
@@ -168,13 +163,11 @@ TEST_P(Wikibook, LightsAPlaneAsWeDo) {
     gl.map = scene.map;
     gl.height = scene.height;
     const std::vector<float> theirs = peers::draw_wikibook_plane(gl);
-    ASSERT_EQ(theirs.size(), static_cast<std::size_t>(view.picture.texels()) * 4)
-        << "OpenGL refused the drawing";
+    ASSERT_EQ(theirs.size(), static_cast<std::size_t>(view.picture.texels()) * 4) << "OpenGL refused the drawing";
     const Comparison compared = compare_pictures(*ours, theirs);
     RecordProperty("largest", compared.largest);
     EXPECT_GT(compared.compared, view.picture.texels() / 4);
-    EXPECT_LE(compared.over, kFraction)
-        << compared.largest << " codes at most, of " << compared.compared << " pixels";
+    EXPECT_LE(compared.over, kFraction) << compared.largest << " codes at most, of " << compared.compared << " pixels";
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// faults: loaded before a command (LD_PRELOAD), makes one of its system calls fail, or the last thing that it does. Variables of the environment:
+// faults: loaded before a command (LD_PRELOAD), makes one of its system calls fail, or the last thing that it does.
+// Variables of the environment:
 //
 //     TEX_FAULT_COUNT=FILE     where calls are counted: 4 bytes, which the test makes and reads afterwards
 //     TEX_FAULT_AT=N           the call that fails, counted from 1; without it none does
@@ -10,7 +11,8 @@
 //     TEX_FAULT_NO_TMPFILE=1   the file system has no nameless files
 //     TEX_FAULT_THREADS=N      only the first N threads can be started
 //
-// Calls that the C library makes for itself are not seen. Processes that the command starts have an empty environment: they are left alone.
+// Calls that the C library makes for itself are not seen. Processes that the command starts have an empty environment:
+// they are left alone.
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -50,8 +52,10 @@ int number(const char* name, int otherwise) {
 // syscall() takes registers: an int must not come with whatever the upper half of one held.
 template <class T>
 auto wide(T argument) {
-    if constexpr (std::is_integral_v<T>) return static_cast<long>(argument);
-    else return argument;
+    if constexpr (std::is_integral_v<T>)
+        return static_cast<long>(argument);
+    else
+        return argument;
 }
 
 template <class... Arguments>
@@ -119,22 +123,24 @@ int open_file(int folder, const char* path, int flags, mode_t mode) {
     return static_cast<int>(call(SYS_openat, folder, path, flags, mode));
 }
 
-mode_t mode_of(int flags, va_list list) { return (flags & O_CREAT) != 0 || (flags & __O_TMPFILE) == __O_TMPFILE ? va_arg(list, mode_t) : 0; }
+mode_t mode_of(int flags, va_list list) {
+    return (flags & O_CREAT) != 0 || (flags & __O_TMPFILE) == __O_TMPFILE ? va_arg(list, mode_t) : 0;
+}
 
 }  // namespace
 
 // Under names of their own here: headers declare some of them otherwise.
-#define TEX_CALL(result, name, ...)                      \
+#define TEX_CALL(result, name, ...)                           \
     extern "C" result tex_##name(__VA_ARGS__) __asm__(#name); \
     extern "C" result tex_##name(__VA_ARGS__)
 
-#define TEX_OPEN(name)                                         \
-    TEX_CALL(int, name, const char* path, int flags, ...) {    \
-        va_list list;                                          \
-        va_start(list, flags);                                 \
-        const mode_t mode = mode_of(flags, list);              \
-        va_end(list);                                          \
-        return open_file(AT_FDCWD, path, flags, mode);         \
+#define TEX_OPEN(name)                                      \
+    TEX_CALL(int, name, const char* path, int flags, ...) { \
+        va_list list;                                       \
+        va_start(list, flags);                              \
+        const mode_t mode = mode_of(flags, list);           \
+        va_end(list);                                       \
+        return open_file(AT_FDCWD, path, flags, mode);      \
     }
 #define TEX_OPENAT(name)                                                \
     TEX_CALL(int, name, int folder, const char* path, int flags, ...) { \
@@ -157,17 +163,31 @@ TEX_CALL(int, __openat64_2, int folder, const char* path, int flags) { return op
 TEX_CALL(ssize_t, read, int fd, void* data, size_t count) { return call(SYS_read, fd, data, count); }
 TEX_CALL(ssize_t, __read_chk, int fd, void* data, size_t count, size_t) { return call(SYS_read, fd, data, count); }
 TEX_CALL(ssize_t, pread, int fd, void* data, size_t count, off_t at) { return call(SYS_pread64, fd, data, count, at); }
-TEX_CALL(ssize_t, pread64, int fd, void* data, size_t count, off_t at) { return call(SYS_pread64, fd, data, count, at); }
-TEX_CALL(ssize_t, __pread_chk, int fd, void* data, size_t count, off_t at, size_t) { return call(SYS_pread64, fd, data, count, at); }
-TEX_CALL(ssize_t, __pread64_chk, int fd, void* data, size_t count, off_t at, size_t) { return call(SYS_pread64, fd, data, count, at); }
+TEX_CALL(ssize_t, pread64, int fd, void* data, size_t count, off_t at) {
+    return call(SYS_pread64, fd, data, count, at);
+}
+TEX_CALL(ssize_t, __pread_chk, int fd, void* data, size_t count, off_t at, size_t) {
+    return call(SYS_pread64, fd, data, count, at);
+}
+TEX_CALL(ssize_t, __pread64_chk, int fd, void* data, size_t count, off_t at, size_t) {
+    return call(SYS_pread64, fd, data, count, at);
+}
 TEX_CALL(ssize_t, write, int fd, const void* data, size_t count) { return call(SYS_write, fd, data, count); }
-TEX_CALL(ssize_t, pwrite, int fd, const void* data, size_t count, off_t at) { return call(SYS_pwrite64, fd, data, count, at); }
-TEX_CALL(ssize_t, pwrite64, int fd, const void* data, size_t count, off_t at) { return call(SYS_pwrite64, fd, data, count, at); }
+TEX_CALL(ssize_t, pwrite, int fd, const void* data, size_t count, off_t at) {
+    return call(SYS_pwrite64, fd, data, count, at);
+}
+TEX_CALL(ssize_t, pwrite64, int fd, const void* data, size_t count, off_t at) {
+    return call(SYS_pwrite64, fd, data, count, at);
+}
 
 TEX_CALL(int, ftruncate, int fd, off_t size) { return static_cast<int>(call(SYS_ftruncate, fd, size)); }
 TEX_CALL(int, ftruncate64, int fd, off_t size) { return static_cast<int>(call(SYS_ftruncate, fd, size)); }
-TEX_CALL(int, fallocate, int fd, int mode, off_t at, off_t size) { return static_cast<int>(call(SYS_fallocate, fd, mode, at, size)); }
-TEX_CALL(int, posix_fallocate, int fd, off_t at, off_t size) { return call(SYS_fallocate, fd, 0, at, size) == 0 ? 0 : errno; }
+TEX_CALL(int, fallocate, int fd, int mode, off_t at, off_t size) {
+    return static_cast<int>(call(SYS_fallocate, fd, mode, at, size));
+}
+TEX_CALL(int, posix_fallocate, int fd, off_t at, off_t size) {
+    return call(SYS_fallocate, fd, 0, at, size) == 0 ? 0 : errno;
+}
 TEX_CALL(int, fsync, int fd) { return static_cast<int>(call(SYS_fsync, fd)); }
 TEX_CALL(int, fdatasync, int fd) { return static_cast<int>(call(SYS_fdatasync, fd)); }
 TEX_CALL(int, fchmod, int fd, mode_t mode) { return static_cast<int>(call(SYS_fchmod, fd, mode)); }
@@ -183,24 +203,29 @@ TEX_CALL(int, renameat, int from_folder, const char* from, int to_folder, const 
 TEX_CALL(int, renameat2, int from_folder, const char* from, int to_folder, const char* to, unsigned flags) {
     return static_cast<int>(call(SYS_renameat2, from_folder, from, to_folder, to, flags));
 }
-TEX_CALL(int, memfd_create, const char* name, unsigned flags) { return static_cast<int>(call(SYS_memfd_create, name, flags)); }
+TEX_CALL(int, memfd_create, const char* name, unsigned flags) {
+    return static_cast<int>(call(SYS_memfd_create, name, flags));
+}
 TEX_CALL(int, pipe2, int* ends, int flags) { return static_cast<int>(call(SYS_pipe2, ends, flags)); }
 
 TEX_CALL(void*, mmap, void* at, size_t size, int protection, int flags, int fd, off_t offset) {
-    return fails() ? MAP_FAILED : reinterpret_cast<void*>(wide_syscall(SYS_mmap, at, size, protection, flags, fd, offset));
+    return fails() ? MAP_FAILED
+                   : reinterpret_cast<void*>(wide_syscall(SYS_mmap, at, size, protection, flags, fd, offset));
 }
 TEX_CALL(void*, mmap64, void* at, size_t size, int protection, int flags, int fd, off_t offset) {
-    return fails() ? MAP_FAILED : reinterpret_cast<void*>(wide_syscall(SYS_mmap, at, size, protection, flags, fd, offset));
+    return fails() ? MAP_FAILED
+                   : reinterpret_cast<void*>(wide_syscall(SYS_mmap, at, size, protection, flags, fd, offset));
 }
 
-TEX_CALL(int, posix_spawn, pid_t* child, const char* path, const posix_spawn_file_actions_t* actions, const posix_spawnattr_t* attributes,
-         char* const* argv, char* const* environment) {
+TEX_CALL(int, posix_spawn, pid_t* child, const char* path, const posix_spawn_file_actions_t* actions,
+         const posix_spawnattr_t* attributes, char* const* argv, char* const* environment) {
     if (fails()) return errno;
     static const auto real = reinterpret_cast<decltype(&posix_spawn)>(dlsym(RTLD_NEXT, "posix_spawn"));
     return real(child, path, actions, attributes, argv, environment);
 }
 
-TEX_CALL(int, pthread_create, pthread_t* thread, const pthread_attr_t* attributes, void* (*body)(void*), void* argument) {
+TEX_CALL(int, pthread_create, pthread_t* thread, const pthread_attr_t* attributes, void* (*body)(void*),
+         void* argument) {
     static std::atomic<int> started{0};
     if (plan().threads >= 0 && started++ >= plan().threads) return EAGAIN;
     static const auto real = reinterpret_cast<decltype(&pthread_create)>(dlsym(RTLD_NEXT, "pthread_create"));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// target: loaded before a command (LD_PRELOAD), lets its kernels use one instruction set alone: TEX_TARGET, as Highway names it ("SSE2"). A processor that does not
-// have it ends the process with status 99.
+// target: loaded before a command (LD_PRELOAD), lets its kernels use one instruction set alone: TEX_TARGET, as Highway
+// names it ("SSE2"). A processor that does not have it ends the process with status 99.
 
 #include <hwy/targets.h>
 

@@ -51,8 +51,7 @@ Kernel kernel_of(const BakeOptions& options) {
         case GradientKernel::scharr: return {{-0.5, 0, 0.5}, {3 / 16.0, 10 / 16.0, 3 / 16.0}};
         case GradientKernel::prewitt: return {{-0.5, 0, 0.5}, {1 / 3.0, 1 / 3.0, 1 / 3.0}};
         case GradientKernel::sobel5:
-            return {{-1 / 8.0, -2 / 8.0, 0, 2 / 8.0, 1 / 8.0},
-                    {1 / 16.0, 4 / 16.0, 6 / 16.0, 4 / 16.0, 1 / 16.0}};
+            return {{-1 / 8.0, -2 / 8.0, 0, 2 / 8.0, 1 / 8.0}, {1 / 16.0, 4 / 16.0, 6 / 16.0, 4 / 16.0, 1 / 16.0}};
         case GradientKernel::gaussian: return gaussian(static_cast<double>(options.gaussian_sigma));
     }
     return {};
@@ -64,8 +63,7 @@ double clamped_slope(double slope) { return std::fmin(std::fmax(slope, -1e15), 1
 
 double height_at(const Grid<double>& heights, Wrap wrap_x, Wrap wrap_y, int i, int j) {
     const auto in_row = [&](int row) {
-        return along_axis([&](int column) { return heights.at(column, row); }, wrap_x, heights.extent.width,
-                          i);
+        return along_axis([&](int column) { return heights.at(column, row); }, wrap_x, heights.extent.width, i);
     };
     return along_axis(in_row, wrap_y, heights.extent.height, j);
 }

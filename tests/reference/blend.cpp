@@ -74,8 +74,9 @@ Grid<Vector> blend(const Grid<Vector>& base, const std::vector<Grid<Vector>>& de
     const auto place = [&](double x, double y) {  // texels from the middle, y upwards
         const double turned_x = c * x + s * y;
         const double turned_y = c * y - s * x;
-        return Vector{(turned_x / width + 0.5) * static_cast<double>(layer.tiling_x) + static_cast<double>(layer.offset_x),
-                      (turned_y / height + 0.5) * static_cast<double>(layer.tiling_y) + static_cast<double>(layer.offset_y), 0};
+        return Vector{
+            (turned_x / width + 0.5) * static_cast<double>(layer.tiling_x) + static_cast<double>(layer.offset_x),
+            (turned_y / height + 0.5) * static_cast<double>(layer.tiling_y) + static_cast<double>(layer.offset_y), 0};
     };
     // The level, from the distance that a step of one texel makes in the detail.
     const auto step = [&](double x, double y) {
@@ -83,7 +84,8 @@ Grid<Vector> blend(const Grid<Vector>& base, const std::vector<Grid<Vector>>& de
         const Vector to = place(x, y);
         return std::hypot((to.x - from.x) * detail[0].extent.width, (to.y - from.y) * detail[0].extent.height);
     };
-    const double level = std::clamp(std::log2(std::max(step(1, 0), step(0, 1))), 0.0, static_cast<double>(detail.size() - 1));
+    const double level =
+        std::clamp(std::log2(std::max(step(1, 0), step(0, 1))), 0.0, static_cast<double>(detail.size() - 1));
     const auto lower = static_cast<std::size_t>(level);
     const std::size_t upper = std::min(lower + 1, detail.size() - 1);
 

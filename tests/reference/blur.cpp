@@ -20,8 +20,7 @@ Grid<double> blur(const Grid<double>& heights, double sigma, Wrap wrap_x, Wrap w
         for (int j = 0; j < in.extent.height; ++j) {
             for (int i = 0; i < in.extent.width; ++i) {
                 for (int k = -radius; k <= radius; ++k) {
-                    out.at(i, j) +=
-                        g(k) / sum * height_at(in, wrap_x, wrap_y, i + k * step_x, j + k * step_y);
+                    out.at(i, j) += g(k) / sum * height_at(in, wrap_x, wrap_y, i + k * step_x, j + k * step_y);
                 }
             }
         }

@@ -25,18 +25,21 @@ Codes map_codes(const Codes& codes, Curve&& curve) {
 
 using Complex = std::complex<double>;
 
-// The discrete Fourier transform along both axes, by its definition; sign -1 forward, +1 back (and divided by the count).
+// The discrete Fourier transform along both axes, by its definition; sign -1 forward, +1 back (and divided by the
+// count).
 std::vector<Complex> transform(std::vector<Complex> data, Extent extent, double sign) {
     const auto pass = [&](int count, int lines, auto index) {
         std::vector<Complex> roots(static_cast<std::size_t>(count)), line(static_cast<std::size_t>(count));
-        for (int k = 0; k < count; ++k) roots[static_cast<std::size_t>(k)] = std::polar(1.0, sign * 2.0 * kPi * k / count);
+        for (int k = 0; k < count; ++k)
+            roots[static_cast<std::size_t>(k)] = std::polar(1.0, sign * 2.0 * kPi * k / count);
         std::vector<Complex> samples(static_cast<std::size_t>(count));
         for (int l = 0; l < lines; ++l) {
             for (int n = 0; n < count; ++n) samples[static_cast<std::size_t>(n)] = data[index(n, l)];
             for (int k = 0; k < count; ++k) {
                 double real = 0.0, imaginary = 0.0;  // operator* would look for infinities each time
                 for (int n = 0; n < count; ++n) {
-                    const Complex a = samples[static_cast<std::size_t>(n)], b = roots[static_cast<std::size_t>(static_cast<long>(k) * n % count)];
+                    const Complex a = samples[static_cast<std::size_t>(n)],
+                                  b = roots[static_cast<std::size_t>(static_cast<long>(k) * n % count)];
                     real += a.real() * b.real() - a.imag() * b.imag();
                     imaginary += a.real() * b.imag() + a.imag() * b.real();
                 }
@@ -71,23 +74,27 @@ void cosine_transform(double (&block)[8][8], bool back) {
     double half[8][8] = {};
     for (int j = 0; j < 8; ++j) {
         for (int u = 0; u < 8; ++u) {
-            for (int x = 0; x < 8; ++x) half[j][u] += block[j][x] * basis[static_cast<std::size_t>(back ? x * 8 + u : u * 8 + x)];
+            for (int x = 0; x < 8; ++x)
+                half[j][u] += block[j][x] * basis[static_cast<std::size_t>(back ? x * 8 + u : u * 8 + x)];
         }
     }
     for (int v = 0; v < 8; ++v) {
         for (int u = 0; u < 8; ++u) {
             block[v][u] = 0.0;
-            for (int y = 0; y < 8; ++y) block[v][u] += half[y][u] * basis[static_cast<std::size_t>(back ? y * 8 + v : v * 8 + y)];
+            for (int y = 0; y < 8; ++y)
+                block[v][u] += half[y][u] * basis[static_cast<std::size_t>(back ? y * 8 + v : v * 8 + y)];
         }
     }
 }
 
-constexpr int kLuminance[64] = {16, 11, 10, 16, 24, 40, 51, 61, 12, 12, 14, 19, 26, 58, 60, 55, 14, 13, 16, 24, 40, 57,
-                                69, 56, 14, 17, 22, 29, 51, 87, 80, 62, 18, 22, 37, 56, 68, 109, 103, 77, 24, 35, 55, 64,
-                                81, 104, 113, 92, 49, 64, 78, 87, 103, 121, 120, 101, 72, 92, 95, 98, 112, 100, 103, 99};
-constexpr int kChrominance[64] = {17, 18, 24, 47, 99, 99, 99, 99, 18, 21, 26, 66, 99, 99, 99, 99, 24, 26, 56, 99, 99, 99,
-                                  99, 99, 47, 66, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99,
-                                  99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99};
+constexpr int kLuminance[64] = {16, 11, 10, 16, 24,  40,  51,  61,  12, 12, 14, 19, 26,  58,  60,  55,
+                                14, 13, 16, 24, 40,  57,  69,  56,  14, 17, 22, 29, 51,  87,  80,  62,
+                                18, 22, 37, 56, 68,  109, 103, 77,  24, 35, 55, 64, 81,  104, 113, 92,
+                                49, 64, 78, 87, 103, 121, 120, 101, 72, 92, 95, 98, 112, 100, 103, 99};
+constexpr int kChrominance[64] = {17, 18, 24, 47, 99, 99, 99, 99, 18, 21, 26, 66, 99, 99, 99, 99,
+                                  24, 26, 56, 99, 99, 99, 99, 99, 47, 66, 99, 99, 99, 99, 99, 99,
+                                  99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99,
+                                  99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99};
 
 // Quantises a plane of samples (0 to 255) in place, block by block; blocks over the border repeat the last sample.
 void quantise(std::vector<double>& plane, Extent extent, const int (&table)[64], int quality) {
@@ -109,7 +116,8 @@ void quantise(std::vector<double>& plane, Extent extent, const int (&table)[64],
             }
             cosine_transform(block, true);
             for (int j = 0; j < 8 && y + j < extent.height; ++j) {
-                for (int i = 0; i < 8 && x + i < extent.width; ++i) at(x + i, y + j) = std::clamp(block[j][i] + 128.0, 0.0, 255.0);
+                for (int i = 0; i < 8 && x + i < extent.width; ++i)
+                    at(x + i, y + j) = std::clamp(block[j][i] + 128.0, 0.0, 255.0);
             }
         }
     }
@@ -172,7 +180,8 @@ Codes exchange(const Codes& codes, int a, int b) {
 }
 
 Codes srgb_encode(const Codes& codes) {
-    return map_codes(codes, [](double v) { return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1.0 / 2.4) - 0.055; });
+    return map_codes(codes,
+                     [](double v) { return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1.0 / 2.4) - 0.055; });
 }
 
 Codes srgb_decode(const Codes& codes) {
@@ -203,7 +212,8 @@ Codes jpeg(const Codes& codes, int quality) {
         for (int i = 0; i < full.width; ++i) {
             const double r = codes.at(i, j, 0), g = codes.at(i, j, 1), b = codes.at(i, j, 2);
             luma.push_back(0.299 * r + 0.587 * g + 0.114 * b);
-            const auto k = static_cast<std::size_t>(j / 2) * static_cast<std::size_t>(half.width) + static_cast<std::size_t>(i / 2);
+            const auto k = static_cast<std::size_t>(j / 2) * static_cast<std::size_t>(half.width) +
+                           static_cast<std::size_t>(i / 2);
             blue[k] += 128.0 - 0.168736 * r - 0.331264 * g + 0.5 * b;
             red[k] += 128.0 + 0.5 * r - 0.418688 * g - 0.081312 * b;
             weight[k] += 1.0;
@@ -219,8 +229,10 @@ Codes jpeg(const Codes& codes, int quality) {
     Codes result = codes;
     for (int j = 0; j < full.height; ++j) {
         for (int i = 0; i < full.width; ++i) {
-            const double y = luma[static_cast<std::size_t>(j) * static_cast<std::size_t>(full.width) + static_cast<std::size_t>(i)];
-            const auto k = static_cast<std::size_t>(j / 2) * static_cast<std::size_t>(half.width) + static_cast<std::size_t>(i / 2);
+            const double y =
+                luma[static_cast<std::size_t>(j) * static_cast<std::size_t>(full.width) + static_cast<std::size_t>(i)];
+            const auto k = static_cast<std::size_t>(j / 2) * static_cast<std::size_t>(half.width) +
+                           static_cast<std::size_t>(i / 2);
             const double cb = blue[k] - 128.0, cr = red[k] - 128.0;
             result.at(i, j, 0) = rounded(y + 1.402 * cr);
             result.at(i, j, 1) = rounded(y - 0.344136 * cb - 0.714136 * cr);
@@ -238,7 +250,9 @@ Codes bc1(const Codes& codes) {
             double low[3] = {255.0, 255.0, 255.0}, high[3] = {};
             for (int j = y; j < bottom; ++j) {
                 for (int i = x; i < right; ++i) {
-                    for (int c = 0; c < 3; ++c) low[c] = std::min<double>(low[c], codes.at(i, j, c)), high[c] = std::max<double>(high[c], codes.at(i, j, c));
+                    for (int c = 0; c < 3; ++c)
+                        low[c] = std::min<double>(low[c], codes.at(i, j, c)),
+                        high[c] = std::max<double>(high[c], codes.at(i, j, c));
                 }
             }
             double palette[4][3];
@@ -253,11 +267,13 @@ Codes bc1(const Codes& codes) {
                 for (int i = x; i < right; ++i) {
                     const auto distance = [&](const double* color) {
                         double sum = 0.0;
-                        for (int c = 0; c < 3; ++c) sum += (color[c] - codes.at(i, j, c)) * (color[c] - codes.at(i, j, c));
+                        for (int c = 0; c < 3; ++c)
+                            sum += (color[c] - codes.at(i, j, c)) * (color[c] - codes.at(i, j, c));
                         return sum;
                     };
-                    const auto* best = std::min_element(std::begin(palette), std::end(palette),
-                                                        [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+                    const auto* best =
+                        std::min_element(std::begin(palette), std::end(palette),
+                                         [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
                     for (int c = 0; c < 3; ++c) result.at(i, j, c) = rounded((*best)[c]);
                 }
             }
@@ -342,7 +358,8 @@ std::vector<Codes> chain_of(const NormalMap& map, ChainFault fault) {
         const auto mean = [&](const Plane<float>& plane, int i, int j) {
             double sum = 0.0;
             for (int k = 0; k < 4; ++k) {
-                sum += plane.at((2 * i + k % 2 - shift + from.width) % from.width, (2 * j + k / 2 - shift + from.height) % from.height);
+                sum += plane.at((2 * i + k % 2 - shift + from.width) % from.width,
+                                (2 * j + k / 2 - shift + from.height) % from.height);
             }
             return static_cast<float>(sum / 4.0);
         };
@@ -359,7 +376,8 @@ std::vector<Codes> chain_of(const NormalMap& map, ChainFault fault) {
                 const bool turned = fault == ChainFault::other_image;
                 const int si = turned ? to.width - 1 - i : i, sj = turned ? to.height - 1 - j : j;
                 const double x = next.x.at(si, sj), y = next.y.at(si, sj), z = next.z.at(si, sj);
-                const double length = fault == ChainFault::not_normalised ? 1.0 : std::max(1e-6, std::sqrt(x * x + y * y + z * z));
+                const double length =
+                    fault == ChainFault::not_normalised ? 1.0 : std::max(1e-6, std::sqrt(x * x + y * y + z * z));
                 stored.x.at(i, j) = static_cast<float>(x / length);
                 stored.y.at(i, j) = static_cast<float>(y / length);
                 stored.z.at(i, j) = static_cast<float>(z / length);

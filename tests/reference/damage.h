@@ -17,8 +17,10 @@ struct Codes {
     int channels = 3;
     std::vector<unsigned char> values;
     [[nodiscard]] unsigned char& at(int i, int j, int c) {
-        return values[(static_cast<std::size_t>(j) * static_cast<std::size_t>(extent.width) + static_cast<std::size_t>(i)) *
-                          static_cast<std::size_t>(channels) + static_cast<std::size_t>(c)];
+        return values[(static_cast<std::size_t>(j) * static_cast<std::size_t>(extent.width) +
+                       static_cast<std::size_t>(i)) *
+                          static_cast<std::size_t>(channels) +
+                      static_cast<std::size_t>(c)];
     }
     [[nodiscard]] unsigned char at(int i, int j, int c) const { return const_cast<Codes*>(this)->at(i, j, c); }
 };
@@ -35,7 +37,8 @@ Codes srgb_encode(const Codes& codes);             // the curve applied once too
 Codes srgb_decode(const Codes& codes);
 // With an alpha of smooth blobs, 0 to 1; straight (the same RGB) or multiplied into R, G and B.
 Codes with_alpha(const Codes& codes, bool premultiplied);
-// What a JPEG of this quality leaves: YCbCr, chroma at half size, the tables of ITU-T T.81 annex K scaled as libjpeg scales them.
+// What a JPEG of this quality leaves: YCbCr, chroma at half size, the tables of ITU-T T.81 annex K scaled as libjpeg
+// scales them.
 Codes jpeg(const Codes& codes, int quality);
 
 // What BC1 leaves: 5:6:5 endpoints at the corners of each 4x4 block's box of colours, and two colours between them.

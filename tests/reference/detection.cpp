@@ -68,8 +68,8 @@ std::string line_of(const std::string& name, const std::array<Score, 2>& halves)
     char line[160];
     int length = std::snprintf(line, sizeof line, "%-28s", name.c_str());
     for (const Score& s : halves) {
-        length += std::snprintf(line + length, sizeof line - static_cast<std::size_t>(length), "   %4d/%-4d %6d %5d/%-4d", s.detected, s.planted,
-                                s.hidden, s.alarms, s.intact);
+        length += std::snprintf(line + length, sizeof line - static_cast<std::size_t>(length),
+                                "   %4d/%-4d %6d %5d/%-4d", s.detected, s.planted, s.hidden, s.alarms, s.intact);
     }
     return std::string(line) + "\n";
 }
@@ -86,8 +86,9 @@ void Score::add(const Score& other) {
 
 std::string Detection::text() const {
     char head[256];
-    std::snprintf(head, sizeof head, "%-28s   %-27s   %-27s\n%-28s   %9s %6s %10s   %9s %6s %10s\n", "", "half that set thresholds", "half held out",
-                  "damage", "detected", "hidden", "alarms", "detected", "hidden", "alarms");
+    std::snprintf(head, sizeof head, "%-28s   %-27s   %-27s\n%-28s   %9s %6s %10s   %9s %6s %10s\n", "",
+                  "half that set thresholds", "half held out", "damage", "detected", "hidden", "alarms", "detected",
+                  "hidden", "alarms");
     std::string text = head;
     for (const auto& [damage, halves] : by_damage) text += line_of(damage, halves);
     text += line_of("all", total);

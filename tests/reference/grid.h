@@ -32,8 +32,7 @@ struct Grid {
 
 private:
     [[nodiscard]] std::size_t index(int i, int j) const {
-        return static_cast<std::size_t>(j) * static_cast<std::size_t>(extent.width) +
-               static_cast<std::size_t>(i);
+        return static_cast<std::size_t>(j) * static_cast<std::size_t>(extent.width) + static_cast<std::size_t>(i);
     }
 };
 

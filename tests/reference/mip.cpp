@@ -13,12 +13,9 @@ double sinc(double x) { return x == 0.0 ? 1.0 : std::sin(std::numbers::pi * x) /
 
 double mitchell_netravali(double x, double b, double c) {
     x = std::fabs(x);
-    if (x < 1.0)
-        return ((12 - 9 * b - 6 * c) * x * x * x + (-18 + 12 * b + 6 * c) * x * x + (6 - 2 * b)) / 6.0;
+    if (x < 1.0) return ((12 - 9 * b - 6 * c) * x * x * x + (-18 + 12 * b + 6 * c) * x * x + (6 - 2 * b)) / 6.0;
     if (x < 2.0) {
-        return ((-b - 6 * c) * x * x * x + (6 * b + 30 * c) * x * x + (-12 * b - 48 * c) * x +
-                (8 * b + 24 * c)) /
-               6.0;
+        return ((-b - 6 * c) * x * x * x + (6 * b + 30 * c) * x * x + (-12 * b - 48 * c) * x + (8 * b + 24 * c)) / 6.0;
     }
     return 0.0;
 }
@@ -60,8 +57,8 @@ Grid<Vector> next_level(const Grid<Vector>& level, const MipOptions& options) {
             Vector sum;
             for (int b = 0; b < static_cast<int>(down.weights.size()); ++b) {
                 for (int a = 0; a < static_cast<int>(across.weights.size()); ++a) {
-                    const double w = down.weights[static_cast<std::size_t>(b)] *
-                                     across.weights[static_cast<std::size_t>(a)];
+                    const double w =
+                        down.weights[static_cast<std::size_t>(b)] * across.weights[static_cast<std::size_t>(a)];
                     const Vector v = level.at(inside(options.wrap_x, across.first + a, from.width),
                                               inside(options.wrap_y, down.first + b, from.height));
                     sum = {sum.x + w * v.x, sum.y + w * v.y, sum.z + w * v.z};
@@ -104,9 +101,7 @@ std::vector<Grid<Vector>> mip_averages(const Grid<Vector>& base, const MipOption
             v = {v.x / z, v.y / z, 0.0};
         }
     }
-    const auto wanted = [&] {
-        return options.levels == 0 || static_cast<int>(levels.size()) < options.levels;
-    };
+    const auto wanted = [&] { return options.levels == 0 || static_cast<int>(levels.size()) < options.levels; };
     while (wanted() && (levels.back().extent.width > 1 || levels.back().extent.height > 1)) {
         levels.push_back(next_level(levels.back(), options));
     }

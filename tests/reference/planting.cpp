@@ -55,7 +55,8 @@ double shortest_average(const NormalMap& map) {
     return least;
 }
 
-// The mean step across the border over the mean step inside, as SOURCES.md measures tiling; the larger one of x and y, columns and rows.
+// The mean step across the border over the mean step inside, as SOURCES.md measures tiling; the larger one of x and y,
+// columns and rows.
 double border_ratio(const NormalMap& map) {
     const Extent e = map.extent();
     double worst = 0.0;
@@ -92,8 +93,8 @@ void plant_seam(const NormalMap& whole, std::vector<Planted>& all) {
                                    {std::max(1, e.width * part.size / 16), std::max(1, e.height * part.size / 16)});
         const bool visible = border_ratio(cut) >= kVisibleSeam;
         if (!visible && part.begin != 5) continue;
-        all.push_back({"seam", "N307", texture_of(codes_of(cut)), std::make_shared<const Texture>(texture_of(codes_of(whole))), std::nullopt, true,
-                       visible});
+        all.push_back({"seam", "N307", texture_of(codes_of(cut)),
+                       std::make_shared<const Texture>(texture_of(codes_of(whole))), std::nullopt, true, visible});
         return;
     }
 }
@@ -102,13 +103,15 @@ void plant_seam(const NormalMap& whole, std::vector<Planted>& all) {
 
 std::vector<Planted> plant_all(const NormalMap& whole, std::optional<YAxis> y, bool tiles, bool blocks) {
     std::vector<Planted> all;
-    const NormalMap map = crop(whole, 0, 0, {std::min(whole.extent().width, kMost), std::min(whole.extent().height, kMost)});
+    const NormalMap map =
+        crop(whole, 0, 0, {std::min(whole.extent().width, kMost), std::min(whole.extent().height, kMost)});
     const Codes codes = codes_of(map);
     const auto share = [](Texture texture) { return std::make_shared<const Texture>(std::move(texture)); };
     const auto plain = share(texture_of(codes));
-    const auto add = [&](std::string damage, std::string rules, Texture damaged, std::shared_ptr<const Texture> intact) -> Planted& {
-        return all.emplace_back(
-            Planted{std::move(damage), std::move(rules), std::move(damaged), std::move(intact), std::nullopt, false, true});
+    const auto add = [&](std::string damage, std::string rules, Texture damaged,
+                         std::shared_ptr<const Texture> intact) -> Planted& {
+        return all.emplace_back(Planted{std::move(damage), std::move(rules), std::move(damaged), std::move(intact),
+                                        std::nullopt, false, true});
     };
     if (y) {
         add("green swapped", "N401", texture_of(flip_green(codes)), plain).y = y;
@@ -133,12 +136,14 @@ std::vector<Planted> plant_all(const NormalMap& whole, std::optional<YAxis> y, b
     const Heights heights = integrate(part);
     const auto baked = share(texture_of(codes_of(from_heights(heights, 0))));
     const auto shows = [&](int levels) { return heights.slope_step(levels) >= kVisibleStep; };
-    add("banding of 8-bit heights", "N305", texture_of(codes_of(from_heights(heights, kGreyLevels))), baked).visible = shows(kGreyLevels);
+    add("banding of 8-bit heights", "N305", texture_of(codes_of(from_heights(heights, kGreyLevels))), baked).visible =
+        shows(kGreyLevels);
     if (!shows(kGreyLevels)) {
         // The same heights in the largest part of the 8 bits whose steps show.
         int levels = kGreyLevels / 2;
         while (!shows(levels) && levels > kFewestLevels) levels /= 2;
-        add("banding, part of 8 bits", "N305", texture_of(codes_of(from_heights(heights, levels))), baked).visible = shows(levels);
+        add("banding, part of 8 bits", "N305", texture_of(codes_of(from_heights(heights, levels))), baked).visible =
+            shows(levels);
     }
     if (tiles) plant_seam(whole, all);
     return all;

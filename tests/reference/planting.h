@@ -14,17 +14,17 @@
 namespace tex::reference {
 
 struct Planted {
-    std::string damage;          // "JPEG, quality 50"
-    std::string rules;           // ids, separated by blanks: one of them should be found
+    std::string damage;  // "JPEG, quality 50"
+    std::string rules;   // ids, separated by blanks: one of them should be found
     Texture damaged;
     std::shared_ptr<const Texture> intact;  // the same texture without that damage; several may share one
-    std::optional<YAxis> y;      // required of both
-    bool tiles = false;          // required of both
-    bool visible = true;         // false: in this map the damage is below what 8 bits hold, or below the map's own steps
+    std::optional<YAxis> y;                 // required of both
+    bool tiles = false;                     // required of both
+    bool visible = true;  // false: in this map the damage is below what 8 bits hold, or below the map's own steps
 };
 
-// `map` holds unit vectors, y as in the file; `y` is its direction, where it is known; `tiles` whether it tiles; `blocks` whether it was decoded from blocks, so
-// that blocks are no damage to plant.
+// `map` holds unit vectors, y as in the file; `y` is its direction, where it is known; `tiles` whether it tiles;
+// `blocks` whether it was decoded from blocks, so that blocks are no damage to plant.
 std::vector<Planted> plant_all(const NormalMap& map, std::optional<YAxis> y, bool tiles, bool blocks);
 
 }  // namespace tex::reference

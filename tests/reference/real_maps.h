@@ -26,18 +26,19 @@ inline const char* to_string(LabelSource source) {
 inline bool is_label(LabelSource source) { return source != LabelSource::measured; }
 
 struct RealMap {
-    std::string path;          // below ../shared/data
-    std::optional<YAxis> y;    // nullopt: SOURCES.md says that it cannot be told
+    std::string path;        // below ../shared/data
+    std::optional<YAxis> y;  // nullopt: SOURCES.md says that it cannot be told
     LabelSource source = LabelSource::measured;
-    bool intact = true;        // false: SOURCES.md names a damage, or it is no tangent-space map
-    bool tiles = false;        // both ratios of SOURCES.md below 2
+    bool intact = true;  // false: SOURCES.md names a damage, or it is no tangent-space map
+    bool tiles = false;  // both ratios of SOURCES.md below 2
 };
 
 // All of them; the files are there only where ../shared/data is.
 const std::vector<RealMap>& real_maps();
 
-// Half of the pictures set thresholds, the other half is held out and reports: pictures of intact maps sorted by the FNV-1a hash (32 bits) of their names, the
-// first half sets. Two files of one picture (GL and DX, TGA and ATI2) fall into the same half.
+// Half of the pictures set thresholds, the other half is held out and reports: pictures of intact maps sorted by the
+// FNV-1a hash (32 bits) of their names, the first half sets. Two files of one picture (GL and DX, TGA and ATI2) fall
+// into the same half.
 bool sets_thresholds(const RealMap& map);
 
 }  // namespace tex::reference

@@ -28,8 +28,7 @@ std::vector<Grid<double>> build_roughness_chain(const Grid<Vector>& base, const 
     MipOptions averaging = options;
     averaging.domain = MipDomain::vector;
     Grid<Vector> squares(base.extent);
-    for (std::size_t k = 0; k < squares.values.size(); ++k)
-        squares.values[k].x = std::pow(roughness.values[k], 4.0);
+    for (std::size_t k = 0; k < squares.values.size(); ++k) squares.values[k].x = std::pow(roughness.values[k], 4.0);
     const auto vectors = mip_averages(base, averaging);
     const auto alphas = mip_averages(squares, averaging);
     std::vector<Grid<double>> levels = {roughness};

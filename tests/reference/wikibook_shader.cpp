@@ -8,18 +8,14 @@
 namespace reference {
 namespace {
 
-double dot(const Vec3& a, const Vec3& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
+double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 Vec3 normalize(const Vec3& a) {
     const double n = std::sqrt(dot(a, a));
     return {a[0] / n, a[1] / n, a[2] / n};
 }
 
-Vec3 minus(const Vec3& a, const Vec3& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
+Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
 // reflect() of GLSL: the incident vector i mirrored at the surface with normal n.
 Vec3 reflect(const Vec3& i, const Vec3& n) {
@@ -48,9 +44,8 @@ Vec3 light_bumpy_surface(const ShaderInput& in) {
 
     double power = 0.0;
     if (dot(normal_direction, light_direction) >= 0.0) {
-        double cosine =
-            dot(reflect({-light_direction[0], -light_direction[1], -light_direction[2]}, normal_direction),
-                view_direction);
+        double cosine = dot(reflect({-light_direction[0], -light_direction[1], -light_direction[2]}, normal_direction),
+                            view_direction);
         if (in.blinn) {
             const Vec3 sum{light_direction[0] + view_direction[0], light_direction[1] + view_direction[1],
                            light_direction[2] + view_direction[2]};

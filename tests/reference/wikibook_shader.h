@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// wikibook_shader.h: the fragment shaders of GLSL/Cg Programming in Unity, statement by statement, in double and with <cmath>.
+// wikibook_shader.h: the fragment shaders of GLSL/Cg Programming in Unity, statement by statement, in double and with
+// <cmath>.
 
 #pragma once
 

@@ -23,7 +23,9 @@ constexpr int kBlocks = 12;
 struct Normal {
     double x, y, z;
     Normal(double x_of, double y_of) : x(x_of), y(y_of), z(std::sqrt(1.0 - std::min(1.0, x * x + y * y))) {}
-    [[nodiscard]] double chord(const Normal& n) const { return (x - n.x) * (x - n.x) + (y - n.y) * (y - n.y) + (z - n.z) * (z - n.z); }
+    [[nodiscard]] double chord(const Normal& n) const {
+        return (x - n.x) * (x - n.x) + (y - n.y) * (y - n.y) + (z - n.z) * (z - n.z);
+    }
 };
 
 // A row of steep, rough blocks, and their bytes.
@@ -43,7 +45,8 @@ struct Row {
         return blocks;
     }
     [[nodiscard]] Normal normal(int block, int texel) const {
-        return {static_cast<double>(map.x.at(4 * block + texel % 4, texel / 4)), static_cast<double>(map.y.at(4 * block + texel % 4, texel / 4))};
+        return {static_cast<double>(map.x.at(4 * block + texel % 4, texel / 4)),
+                static_cast<double>(map.y.at(4 * block + texel % 4, texel / 4))};
     }
 };
 
@@ -51,7 +54,8 @@ std::vector<Normal> decoded(const std::byte* block, Encoding encoding) {
     float x[16], y[16];
     packing::decode_codes(block, encoding, x, y);
     std::vector<Normal> normals;
-    for (int k = 0; k < 16; ++k) normals.emplace_back(static_cast<double>(x[k]) / 127.5 - 1.0, static_cast<double>(y[k]) / 127.5 - 1.0);
+    for (int k = 0; k < 16; ++k)
+        normals.emplace_back(static_cast<double>(x[k]) / 127.5 - 1.0, static_cast<double>(y[k]) / 127.5 - 1.0);
     return normals;
 }
 
@@ -69,8 +73,10 @@ double least_sum(const Row& row, int block, std::vector<std::byte> bytes, Encodi
         // All texels take the same indices: 3 bits each, or 2 of green.
         for (int k = 0; k < 6; ++k) {
             bytes[2 + static_cast<std::size_t>(k)] = static_cast<std::byte>(pair % 8 * 0x249249 >> (8 * (k % 3)));
-            if (encoding != Encoding::dxt5nm) bytes[10 + static_cast<std::size_t>(k)] = static_cast<std::byte>(pair / 8 * 0x249249 >> (8 * (k % 3)));
-            else if (k < 4) bytes[12 + static_cast<std::size_t>(k)] = static_cast<std::byte>(pair / 8 % 4 * 0x55);
+            if (encoding != Encoding::dxt5nm)
+                bytes[10 + static_cast<std::size_t>(k)] = static_cast<std::byte>(pair / 8 * 0x249249 >> (8 * (k % 3)));
+            else if (k < 4)
+                bytes[12 + static_cast<std::size_t>(k)] = static_cast<std::byte>(pair / 8 % 4 * 0x55);
         }
         pairs.push_back(decoded(bytes.data(), encoding)[0]);
     }

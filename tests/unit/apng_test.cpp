@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Animated PNG: the first frame as libpng reads it, and the others by their chunks.
 
-#include "containers/apng.h"
+#include "formats/png/apng.h"
 
 #include <cstdint>
 #include <cstdio>
@@ -18,9 +18,7 @@
 namespace tex {
 namespace {
 
-Texture picture(std::uint8_t shade, Extent extent = {5, 3}) {
-    return render::Canvas(extent, {shade, 0, 9}).take();
-}
+Texture picture(std::uint8_t shade, Extent extent = {5, 3}) { return render::Canvas(extent, {shade, 0, 9}).take(); }
 
 std::vector<std::string> types_of(const std::vector<std::byte>& file) {
     std::vector<std::string> types;
@@ -52,8 +50,7 @@ TEST(Apng, HoldsAControlForEveryFrameAndNumbersThemInOrder) {
     const std::vector<std::string> types = types_of(*file);
     std::string line;
     for (const std::string& type : types) {
-        if (type == "IHDR" || type == "acTL" || type == "fcTL" || type == "IDAT" || type == "fdAT" ||
-            type == "IEND")
+        if (type == "IHDR" || type == "acTL" || type == "fcTL" || type == "IDAT" || type == "fdAT" || type == "IEND")
             line += type + " ";
     }
     EXPECT_EQ(line, "IHDR acTL fcTL IDAT fcTL fdAT fcTL fdAT IEND ");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every system call of a write fails once, and is once the last thing that its process does. The calls that write_file() makes are defined here,
-// in the program, and so come before those of the C library.
+// Every system call of a write fails once, and is once the last thing that its process does. The calls that
+// write_file() makes are defined here, in the program, and so come before those of the C library.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ struct Faults {
     int fail_at = 0;           // the call that fails, counted from 1; 0: none
     int error = EIO;
     int calls = 0;
-    std::string order = {};    // w: bytes are written; s: they are brought to the disk; n: the file gets a name
+    std::string order = {};  // w: bytes are written; s: they are brought to the disk; n: the file gets a name
 };
 thread_local Faults faults;
 
@@ -78,7 +78,9 @@ int fdatasync(int fd) { return fails("s") ? -1 : static_cast<int>(syscall(SYS_fd
 
 // Under another name here: <fcntl.h> has a struct flock.
 int flock_call(int fd, int operation) noexcept __asm__("flock");
-int flock_call(int fd, int operation) noexcept { return fails() ? -1 : static_cast<int>(syscall(SYS_flock, fd, operation)); }
+int flock_call(int fd, int operation) noexcept {
+    return fails() ? -1 : static_cast<int>(syscall(SYS_flock, fd, operation));
+}
 
 int fchmod(int fd, mode_t mode) noexcept { return fails() ? -1 : static_cast<int>(syscall(SYS_fchmod, fd, mode)); }
 
@@ -203,7 +205,8 @@ TEST_P(AtomicFileFaults, DeathAtAnyCallLeavesTheOldFileOrTheNewOne) {
     }
 }
 
-// What the next power cut finds under the name is on the disk. (A temporary name may come earlier; the last step is the file's own.)
+// What the next power cut finds under the name is on the disk. (A temporary name may come earlier; the last step is the
+// file's own.)
 TEST_P(AtomicFileFaults, BytesAreOnTheDiskBeforeTheyHaveTheName) {
     for (const bool sync : {true, false}) {
         prepare();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "base/atomic_file.h"
+#include "files/atomic_file.h"
 
 #include <gtest/gtest.h>
 
@@ -208,7 +208,8 @@ TEST_F(AtomicFile, AKilledWriterLeavesTheOldFileOrTheNewOne) {
         const pid_t child = fork();
         if (child == 0) {
             for (;;) {
-                if (!write_file(path("a"), bytes_of(two), options) || !write_file(path("a"), bytes_of(one), options)) _exit(1);
+                if (!write_file(path("a"), bytes_of(two), options) || !write_file(path("a"), bytes_of(one), options))
+                    _exit(1);
             }
         }
         usleep(static_cast<useconds_t>(random() % 3000));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "base/axis_filter.h"
+#include "rows/axis_filter.h"
 
 #include <algorithm>
 #include <vector>
@@ -26,8 +26,7 @@ tex::Plane<float> filtered(const float* row, int count, const tex::AxisFilter& a
     if (evenly) {
         std::vector<float> weights;
         for (int k = 0; k < axis.taps; ++k) weights.push_back(axis.weight(k, 0));
-        tex::filter_columns_evenly(halves.row(0), halves.row(1), weights.data(), axis.taps, count,
-                                   out.row(0));
+        tex::filter_columns_evenly(halves.row(0), halves.row(1), weights.data(), axis.taps, count, out.row(0));
     } else {
         tex::filter_columns(halves.row(0), halves.row(1), axis.weights.data(), axis.stride, axis.taps, count,
                             out.row(0));
@@ -38,8 +37,7 @@ tex::Plane<float> filtered(const float* row, int count, const tex::AxisFilter& a
 TEST(AxisFilter, ThePathForHalvingGivesTheBytesOfTheGeneralPath) {
     tex::on_every_target([] {
         for (const int width : {2, 14, 16, 30, 32, 34, 66, 258}) {
-            const auto rows =
-                tex::fields::plane_of({width, 2}, [](int i, int j) { return noise(i, j) - 0.5; });
+            const auto rows = tex::fields::plane_of({width, 2}, [](int i, int j) { return noise(i, j) - 0.5; });
             const float* both[] = {rows.row(0), rows.row(1)};
             const float halves[] = {0.5f, 0.5f};
             tex::Plane<float> fast(Extent{width / 2, 1}), column(Extent{width + 64, 1}, 0.0f);
@@ -56,10 +54,9 @@ TEST(AxisFilter, ThePathForEvenSizesGivesTheBytesOfTheGeneralPath) {
     tex::on_every_target([] {
         for (const auto& filter : tex::kMipFilterNames) {
             const tex::AxisFilter axis = tex::make_axis_filter(filter.value, 66);
-            const auto row =
-                tex::fields::plane_of({16 + 66 + 64, 1}, [](int i, int) { return noise(i, 3) - 0.5; });
-            EXPECT_TRUE(same_bytes(filtered(row.row(0) + 16, 33, axis, false),
-                                   filtered(row.row(0) + 16, 33, axis, true)))
+            const auto row = tex::fields::plane_of({16 + 66 + 64, 1}, [](int i, int) { return noise(i, 3) - 0.5; });
+            EXPECT_TRUE(
+                same_bytes(filtered(row.row(0) + 16, 33, axis, false), filtered(row.row(0) + 16, 33, axis, true)))
                 << filter.name;
         }
     });

@@ -18,11 +18,13 @@
 namespace {
 
 constexpr double kLimit = 0.01;  // degrees
-constexpr int kPiece = 192;      // texels a side on which every kernel and wrap is tried; whole maps get the shader's kernel
+constexpr int kPiece =
+    192;  // texels a side on which every kernel and wrap is tried; whole maps get the shader's kernel
 
 std::vector<std::string> height_maps() {
     std::vector<std::string> files;
-    for (const auto& entry : std::filesystem::directory_iterator(tex::shared_data() / "height")) files.push_back(entry.path().string());
+    for (const auto& entry : std::filesystem::directory_iterator(tex::shared_data() / "height"))
+        files.push_back(entry.path().string());
     std::sort(files.begin(), files.end());
     return files;
 }
@@ -69,7 +71,8 @@ TEST(BakeData, EveryKernelAndWrapAgreesWithTheReferenceOnRealHeights) {
             for (const auto& wrap : tex::kWrapNames) {
                 piece.wrap_x = piece.wrap_y = wrap.value;
                 const tex::BakeOptions options{kernel.value, 1.0f};
-                const double angle = largest_angle(tex::bake(piece, options).value(), tex::reference::bake(piece, options));
+                const double angle =
+                    largest_angle(tex::bake(piece, options).value(), tex::reference::bake(piece, options));
                 EXPECT_LT(angle, kLimit) << path << " " << kernel.name << " " << wrap.name;
             }
         }

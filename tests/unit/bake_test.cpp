@@ -111,8 +111,7 @@ TEST(Bake, ConstantHeightsAreExactlyFlat) {
     for (const BakeOptions& options : all_kernels()) {
         for (const Wrap wrap : kWraps) {
             for (const int size : kSizes) {
-                const NormalMap map =
-                    baked(field_of({size, size}, 1e6f, wrap, [](int, int) { return 0.1; }), options);
+                const NormalMap map = baked(field_of({size, size}, 1e6f, wrap, [](int, int) { return 0.1; }), options);
                 for (int i = 0; i < size; ++i) {
                     ASSERT_EQ(map.x.at(i, size / 2), 0.0f);
                     ASSERT_EQ(map.y.at(i, size / 2), 0.0f);
@@ -182,14 +181,12 @@ TEST(Bake, AgreesWithTheReferenceForEveryKernelWrapAndSize) {
             for (const int width : kSizes) {
                 for (const int height : {1, 2, 17}) {
                     for (const float bumpiness : {0.1f, 1.0f, 40.0f}) {
-                        HeightField field = field_of({width, height}, bumpiness, wrap,
-                                                     [](int i, int j) { return noise(i, j); });
+                        HeightField field =
+                            field_of({width, height}, bumpiness, wrap, [](int i, int j) { return noise(i, j); });
                         field.bumpiness_y *= 1.5f;
-                        const double angle =
-                            largest_angle(baked(field, options), tex::reference::bake(field, options));
-                        ASSERT_LT(angle, 0.01)
-                            << name_of(tex::kGradientKernelNames, options.kernel) << " "
-                            << name_of(tex::kWrapNames, wrap) << " " << width << "x" << height;
+                        const double angle = largest_angle(baked(field, options), tex::reference::bake(field, options));
+                        ASSERT_LT(angle, 0.01) << name_of(tex::kGradientKernelNames, options.kernel) << " "
+                                               << name_of(tex::kWrapNames, wrap) << " " << width << "x" << height;
                     }
                 }
             }
@@ -211,8 +208,7 @@ TEST(Bake, AxesMayWrapDifferently) {
 TEST(Bake, KernelsWiderThanTheMapWrapAgainAndAgain) {
     for (const Wrap wrap : kWraps) {
         for (const int size : {2, 3, 5}) {
-            const HeightField field =
-                field_of({size, size}, 4.0f, wrap, [](int i, int j) { return noise(i, j); });
+            const HeightField field = field_of({size, size}, 4.0f, wrap, [](int i, int j) { return noise(i, j); });
             const BakeOptions options{GradientKernel::gaussian, 8.0f};
             EXPECT_LT(largest_angle(baked(field, options), tex::reference::bake(field, options)), 0.01);
         }
@@ -228,17 +224,15 @@ TEST(Bake, EveryFiniteHeightGivesAFiniteUnitNormal) {
         for (const Wrap wrap : kWraps) {
             for (const float bumpiness : {0.0f, 1e-30f, 1.0f, kMax, -kMax}) {
                 for (const int size : {2, 7, 20}) {
-                    const NormalMap map =
-                        baked(field_of({size, size}, bumpiness, wrap,
-                                       [&](int i, int j) {
-                                           return static_cast<double>(
-                                               extremes[static_cast<std::size_t>(noise(i, j) * 6.0)]);
-                                       }),
-                              options);
+                    const NormalMap map = baked(
+                        field_of({size, size}, bumpiness, wrap,
+                                 [&](int i, int j) {
+                                     return static_cast<double>(extremes[static_cast<std::size_t>(noise(i, j) * 6.0)]);
+                                 }),
+                        options);
                     for (int j = 0; j < size; ++j) {
                         for (int i = 0; i < size; ++i) {
-                            const auto x = static_cast<double>(map.x.at(i, j)),
-                                       y = static_cast<double>(map.y.at(i, j)),
+                            const auto x = static_cast<double>(map.x.at(i, j)), y = static_cast<double>(map.y.at(i, j)),
                                        z = static_cast<double>(map.z.at(i, j));
                             ASSERT_NEAR(std::sqrt(x * x + y * y + z * z), 1.0, 2.4e-7);
                             ASSERT_GT(z, 0.0);
@@ -251,8 +245,8 @@ TEST(Bake, EveryFiniteHeightGivesAFiniteUnitNormal) {
 }
 
 TEST(Bake, LengthsAreExactToTwoUnitsInTheLastPlace) {
-    const NormalMap map = baked(
-        field_of({512, 64}, 50.0f, Wrap::repeat, [](int i, int j) { return noise(i, j) * noise(j, i); }));
+    const NormalMap map =
+        baked(field_of({512, 64}, 50.0f, Wrap::repeat, [](int i, int j) { return noise(i, j) * noise(j, i); }));
     for (int j = 0; j < 64; ++j) {
         for (int i = 0; i < 512; ++i) {
             const auto x = static_cast<double>(map.x.at(i, j)), y = static_cast<double>(map.y.at(i, j)),
@@ -268,8 +262,10 @@ void expect_same_bytes(const std::vector<int>& threads, const std::function<Norm
     tex::on_every_target([&] {
         for (const int count : threads) {
             NormalMap map = make(count);
-            if (!first) first = std::move(map);
-            else EXPECT_TRUE(same_bytes(*first, map)) << count << " threads";
+            if (!first)
+                first = std::move(map);
+            else
+                EXPECT_TRUE(same_bytes(*first, map)) << count << " threads";
         }
     });
 }
@@ -278,8 +274,7 @@ TEST(Bake, GivesTheSameBytesOnEveryTarget) {
     for (const BakeOptions& options : all_kernels()) {
         for (const Wrap wrap : kWraps) {
             for (const int width : kSizes) {
-                const HeightField field =
-                    field_of({width, 40}, 12.0f, wrap, [](int i, int j) { return noise(i, j); });
+                const HeightField field = field_of({width, 40}, 12.0f, wrap, [](int i, int j) { return noise(i, j); });
                 expect_same_bytes({1}, [&](int threads) { return baked(field, options, threads); });
             }
         }
@@ -288,8 +283,7 @@ TEST(Bake, GivesTheSameBytesOnEveryTarget) {
 
 TEST(Bake, GivesTheSameBytesForEveryNumberOfThreads) {
     // Several strips of rows; more kernels would not cut them otherwise.
-    const HeightField field =
-        field_of({1031, 400}, 12.0f, Wrap::clamp, [](int i, int j) { return noise(i, j); });
+    const HeightField field = field_of({1031, 400}, 12.0f, Wrap::clamp, [](int i, int j) { return noise(i, j); });
     for (const GradientKernel kernel : {GradientKernel::central, GradientKernel::sobel5}) {
         expect_same_bytes({1, 2, 3, 8}, [&](int threads) { return baked(field, {kernel, 1.0f}, threads); });
     }
@@ -314,16 +308,15 @@ TEST(SlopeRange, FindsTheSteepestTexels) {
 
 TEST(SlopeRange, OfACliffIsItsSlopeToo) {
     for (const double height : {1e4, 1e12}) {
-        const tex::SlopeRange range =
-            tex::slope_range(baked(field_of({100, 50}, 1.0f, Wrap::clamp, [=](int i, int j) { return i == 60 && j == 20 ? height : 0.0; })));
+        const tex::SlopeRange range = tex::slope_range(baked(
+            field_of({100, 50}, 1.0f, Wrap::clamp, [=](int i, int j) { return i == 60 && j == 20 ? height : 0.0; })));
         EXPECT_FLOAT_EQ(range.max_x, static_cast<float>(height / 2));
         EXPECT_FLOAT_EQ(range.min_y, static_cast<float>(-height / 2));
     }
 }
 
 TEST(SlopeRange, OfAPlaneIsItsSlopeWhateverTheThreadsAndTargets) {
-    const NormalMap map =
-        baked(field_of({33, 700}, 1.0f, Wrap::clamp, [](int i, int j) { return 2.0 * i + 0.5 * j; }));
+    const NormalMap map = baked(field_of({33, 700}, 1.0f, Wrap::clamp, [](int i, int j) { return 2.0 * i + 0.5 * j; }));
     tex::on_every_target([&] {
         for (const int threads : {1, 2, 8}) {
             const tex::SlopeRange range = tex::slope_range(map, {threads, {}});

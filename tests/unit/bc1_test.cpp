@@ -35,7 +35,8 @@ Texels decode(const std::byte* block, Bc1Mode mode) {
 
 TEST(Bc1, WidensByBitReplicationAndInterpolatesExactThirds) {
     // c0 = (17, 40, 3), c1 = (2, 21, 30) in 5:6:5 bits; in 8 bits (140, 162, 24) and (16, 85, 247).
-    const Texels t = decode(all_indices(17u << 11 | 40u << 5 | 3u, 2u << 11 | 21u << 5 | 30u).data(), Bc1Mode::standard);
+    const Texels t =
+        decode(all_indices(17u << 11 | 40u << 5 | 3u, 2u << 11 | 21u << 5 | 30u).data(), Bc1Mode::standard);
     const float r[4] = {140 / 255.f, 16 / 255.f, 296 / 765.f, 172 / 765.f};
     const float g[4] = {162 / 255.f, 85 / 255.f, 409 / 765.f, 332 / 765.f};
     const float b[4] = {24 / 255.f, 247 / 255.f, 295 / 765.f, 518 / 765.f};

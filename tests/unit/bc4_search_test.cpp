@@ -15,8 +15,8 @@ namespace {
 
 using tex::BlockTexels;
 
-// Blocks of all kinds: constant, two-valued, ramps, noise, clusters, at the ends of the range, partly outside; values with and
-// without fractions of a code.
+// Blocks of all kinds: constant, two-valued, ramps, noise, clusters, at the ends of the range, partly outside; values
+// with and without fractions of a code.
 std::vector<BlockTexels> special_blocks(int top) {
     std::vector<BlockTexels> blocks;
     std::mt19937 random(7);
@@ -72,7 +72,8 @@ TEST(Bc4Search, FindsTheOptimumOfEveryBlock) {
     for (const tex::Bc4Codes codes : {tex::kBc4Unorm, tex::kBc4Snorm}) {
         const std::vector<BlockTexels> blocks = special_blocks(codes.top);
         std::vector<tex::Bc4Endpoints> found(blocks.size());
-        tex::search_bc4_blocks(blocks.data(), bounds_of(blocks).data(), static_cast<int>(blocks.size()), codes, found.data());
+        tex::search_bc4_blocks(blocks.data(), bounds_of(blocks).data(), static_cast<int>(blocks.size()), codes,
+                               found.data());
         for (std::size_t k = 0; k < blocks.size(); ++k) {
             const tex::Bc4Endpoints exhaustive = tex::search_bc4(blocks[k], codes, codes.top);
             EXPECT_EQ(tex::bc4_error(blocks[k], codes, found[k]), tex::bc4_error(blocks[k], codes, exhaustive)) << k;
@@ -85,7 +86,8 @@ TEST(Bc4Search, FindsTheSameEndpointsOnEveryTarget) {
     std::vector<tex::Bc4Endpoints> expected;
     on_every_target([&] {
         std::vector<tex::Bc4Endpoints> found(blocks.size());
-        tex::search_bc4_blocks(blocks.data(), bounds_of(blocks).data(), static_cast<int>(blocks.size()), tex::kBc4Unorm, found.data());
+        tex::search_bc4_blocks(blocks.data(), bounds_of(blocks).data(), static_cast<int>(blocks.size()), tex::kBc4Unorm,
+                               found.data());
         if (expected.empty()) expected = found;
         for (std::size_t k = 0; k < blocks.size(); ++k) {
             EXPECT_EQ(found[k].e0, expected[k].e0);
@@ -109,7 +111,8 @@ TEST(GreenSearch, FindsTheSameEndpointsOnEveryTarget) {
     std::vector<tex::GreenEndpoints> expected;
     on_every_target([&] {
         std::vector<tex::GreenEndpoints> found(blocks.size());
-        tex::search_green_blocks(blocks.data(), bounds_of(blocks).data(), static_cast<int>(blocks.size()), found.data());
+        tex::search_green_blocks(blocks.data(), bounds_of(blocks).data(), static_cast<int>(blocks.size()),
+                                 found.data());
         if (expected.empty()) expected = found;
         for (std::size_t k = 0; k < blocks.size(); ++k) {
             EXPECT_EQ(found[k].e0, expected[k].e0);

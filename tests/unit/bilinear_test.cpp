@@ -10,8 +10,8 @@
 
 #include <gtest/gtest.h>
 
-#include "base/border.h"
-#include "base/sampler.h"
+#include "rows/border.h"
+#include "rows/sampler.h"
 #include "unit/fields.h"
 #include "unit/targets.h"
 
@@ -45,7 +45,8 @@ struct Axis {
 
 // At texels' centres, between them, backwards, far outside, and where rounding reaches the end of a period.
 constexpr Axis kAxes[] = {
-    {0.0, 1.0 / 64, 0.0}, {0.3, 4.0 / 257, 0.0}, {-7.25, 0.013, 0.7}, {1.0, -0.4, 0.0}, {0.0, 0.0, -1e-18}, {1e6, 0.11, -3.0}, {0.0, 1e-4, 0.5},
+    {0.0, 1.0 / 64, 0.0}, {0.3, 4.0 / 257, 0.0}, {-7.25, 0.013, 0.7}, {1.0, -0.4, 0.0},
+    {0.0, 0.0, -1e-18},   {1e6, 0.11, -3.0},     {0.0, 1e-4, 0.5},
 };
 
 TEST(Bilinear, TapsAreThoseOfAPlainLoop) {
@@ -60,9 +61,12 @@ TEST(Bilinear, TapsAreThoseOfAPlainLoop) {
                         // Those past the end are taken by kernels as well.
                         for (int i = 0; i < taps.padded(); ++i) {
                             const Tap tap = tap_at((axis.start + axis.step * (i + 0.5)) + axis.rest, wrap, n);
-                            ASSERT_EQ(row.first[i], tap.first) << name_of(kWrapNames, wrap) << " " << n << " " << axis.start << " " << i;
-                            ASSERT_EQ(row.second[i], tap.second) << name_of(kWrapNames, wrap) << " " << n << " " << axis.start << " " << i;
-                            ASSERT_EQ(row.weight[i], tap.weight) << name_of(kWrapNames, wrap) << " " << n << " " << axis.start << " " << i;
+                            ASSERT_EQ(row.first[i], tap.first)
+                                << name_of(kWrapNames, wrap) << " " << n << " " << axis.start << " " << i;
+                            ASSERT_EQ(row.second[i], tap.second)
+                                << name_of(kWrapNames, wrap) << " " << n << " " << axis.start << " " << i;
+                            ASSERT_EQ(row.weight[i], tap.weight)
+                                << name_of(kWrapNames, wrap) << " " << n << " " << axis.start << " " << i;
                         }
                     }
                 }
@@ -79,10 +83,12 @@ float sample_at(const Plane<float>& plane, const UvMap& map, Wrap wrap_x, Wrap w
     const Tap row = tap_at((map.v0 + map.vx * x) + map.vy * y, wrap_y, plane.extent().height);
     const float* upper = plane.row(row.first);
     const float* lower = plane.row(row.second);
-    return mix(mix(upper[column.first], upper[column.second], column.weight), mix(lower[column.first], lower[column.second], column.weight), row.weight);
+    return mix(mix(upper[column.first], upper[column.second], column.weight),
+               mix(lower[column.first], lower[column.second], column.weight), row.weight);
 }
 
-// Steps below, at, above one texel and above two, so that texels are permuted and gathered; the last rows and columns, where nothing lies beyond; turns.
+// Steps below, at, above one texel and above two, so that texels are permuted and gathered; the last rows and columns,
+// where nothing lies beyond; turns.
 TEST(Bilinear, SamplesAreThoseOfAPlainLoop) {
     on_every_target([] {
         for (const int size : {1, 3, 17, 64, 100}) {
@@ -98,7 +104,8 @@ TEST(Bilinear, SamplesAreThoseOfAPlainLoop) {
                             sampler.place(j);
                             sampler.sample(plane, row.row(0));
                             for (int i = 0; i < extent.width; ++i) {
-                                ASSERT_EQ(row.at(i, 0), sample_at(plane, map, wrap, wrap, i, j)) << size << " " << texels << " " << turn << " " << i << "," << j;
+                                ASSERT_EQ(row.at(i, 0), sample_at(plane, map, wrap, wrap, i, j))
+                                    << size << " " << texels << " " << turn << " " << i << "," << j;
                             }
                         }
                     }

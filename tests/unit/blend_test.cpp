@@ -23,7 +23,8 @@ Layer layer_of(NormalMap detail) {
     return layer;
 }
 
-NormalMap blend_one(const NormalMap& base, Layer layer, const BlendOptions& options = {}, const Execution& execution = {}) {
+NormalMap blend_one(const NormalMap& base, Layer layer, const BlendOptions& options = {},
+                    const Execution& execution = {}) {
     std::vector<Layer> layers;
     layers.push_back(std::move(layer));
     auto result = blend(chain_from(copy_of(base)), std::move(layers), options, execution);
@@ -55,24 +56,28 @@ TEST(Blend, GivesTheOtherMapForAFlatPartner) {
     for (const BlendMode mode : {BlendMode::whiteout, BlendMode::partial_derivative, BlendMode::rnm}) {
         const std::string name(name_of(kBlendModeNames, mode));
         expect_near(blend_one(map, layer_of(flat_map({33, 21})), with_mode(mode)), map, 1e-6f, name + ", flat detail");
-        expect_near(blend_one(flat_map({33, 21}), layer_of(copy_of(map)), with_mode(mode)), map, 1e-6f, name + ", flat base");
+        expect_near(blend_one(flat_map({33, 21}), layer_of(copy_of(map)), with_mode(mode)), map, 1e-6f,
+                    name + ", flat base");
     }
-    expect_near(blend_one(map, layer_of(flat_map({33, 21})), with_mode(BlendMode::udn)), map, 1e-6f, "udn, flat detail");
+    expect_near(blend_one(map, layer_of(flat_map({33, 21})), with_mode(BlendMode::udn)), map, 1e-6f,
+                "udn, flat detail");
 }
 
 TEST(Blend, DoesNotMindTheOrderWhereItPromisesSo) {
     const NormalMap a = wavy_map({33, 21});
     const NormalMap b = wavy_map({33, 21}, 2.0);
     for (const BlendMode mode : {BlendMode::whiteout, BlendMode::partial_derivative, BlendMode::linear}) {
-        expect_near(blend_one(a, layer_of(copy_of(b)), with_mode(mode)), blend_one(b, layer_of(copy_of(a)), with_mode(mode)),
-                    1e-6f, std::string(name_of(kBlendModeNames, mode)));
+        expect_near(blend_one(a, layer_of(copy_of(b)), with_mode(mode)),
+                    blend_one(b, layer_of(copy_of(a)), with_mode(mode)), 1e-6f,
+                    std::string(name_of(kBlendModeNames, mode)));
     }
 }
 
 // Adding slopes is adding heights.
 TEST(Blend, AddsSlopesInPartialDerivativeMode) {
-    const NormalMap n = blend_one(uniform_map({1, 1}, 0.6f, 0.0f, 0.8f), layer_of(uniform_map({1, 1}, 0.0f, 0.8f, 0.6f)),
-                                  with_mode(BlendMode::partial_derivative));
+    const NormalMap n =
+        blend_one(uniform_map({1, 1}, 0.6f, 0.0f, 0.8f), layer_of(uniform_map({1, 1}, 0.0f, 0.8f, 0.6f)),
+                  with_mode(BlendMode::partial_derivative));
     EXPECT_NEAR(n.x.at(0, 0) / n.z.at(0, 0), 0.75f, 1e-6f);
     EXPECT_NEAR(n.y.at(0, 0) / n.z.at(0, 0), 4.0f / 3.0f, 1e-6f);
 }
@@ -126,13 +131,15 @@ TEST(Blend, AgreesWithTheReference) {
             double worst = 0;
             for (int j = 0; j < c.base.height; ++j) {
                 for (int i = 0; i < c.base.width; ++i) {
-                    const reference::Vector n{static_cast<double>(result.x.at(i, j)), static_cast<double>(result.y.at(i, j)),
+                    const reference::Vector n{static_cast<double>(result.x.at(i, j)),
+                                              static_cast<double>(result.y.at(i, j)),
                                               static_cast<double>(result.z.at(i, j))};
                     worst = std::max(worst, reference::angle_between(n, expected.at(i, j)));
                 }
             }
             // Between levels our step of 1/256 moves the mixture by up to 1/512 of their difference.
-            const bool between_levels = static_cast<float>(c.detail.width) * c.tiling_x > static_cast<float>(c.base.width);
+            const bool between_levels =
+                static_cast<float>(c.detail.width) * c.tiling_x > static_cast<float>(c.base.width);
             EXPECT_LE(worst, between_levels ? 0.15 : 0.002) << c.what << ", " << row.name;
         }
     }
@@ -229,7 +236,8 @@ TEST(Blend, GivesTheSameBytesEverywhere) {
                     layer.rotation = 20.0f;
                     layer.scale = 1.5f;
                     layer.mask = Plane<float>({2, 2}, 0.75f);
-                    const NormalMap result = blend_one(wavy_map({width, 9}), std::move(layer), with_mode(row.value), execution);
+                    const NormalMap result =
+                        blend_one(wavy_map({width, 9}), std::move(layer), with_mode(row.value), execution);
                     if (!expected) expected = fields::hash_of(result);
                     EXPECT_EQ(fields::hash_of(result), *expected) << row.name << " " << hwy::TargetName(target);
                 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "base/blur.h"
+#include "rows/blur.h"
 
 #include <cmath>
 
@@ -34,8 +34,7 @@ TEST(Blur, WeightsAreOfAGaussianAndSumToOne) {
         for (std::size_t k = 1; k < weights.size(); ++k) {
             sum += 2.0 * static_cast<double>(weights[k]);
             const auto x = static_cast<double>(k);
-            EXPECT_NEAR(static_cast<double>(weights[k] / weights[0]),
-                        std::exp(-x * x / (2.0 * sigma * sigma)), 2e-7);
+            EXPECT_NEAR(static_cast<double>(weights[k] / weights[0]), std::exp(-x * x / (2.0 * sigma * sigma)), 2e-7);
         }
         EXPECT_NEAR(sum, 1.0, 1e-6);
     }
@@ -48,13 +47,11 @@ TEST(Blur, AgreesWithTheReference) {
                 for (const Extent extent : {Extent{1, 1}, Extent{2, 1}, Extent{3, 40}, Extent{33, 17}}) {
                     const Plane<float> heights = plane_of(extent, [](int i, int j) { return noise(i, j); });
                     const Plane<float> result = blurred(heights, sigma, wrap_x, wrap_y);
-                    const auto truth =
-                        tex::reference::blur(tex::reference::grid_of(heights), sigma, wrap_x, wrap_y);
+                    const auto truth = tex::reference::blur(tex::reference::grid_of(heights), sigma, wrap_x, wrap_y);
                     for (int j = 0; j < extent.height; ++j) {
                         for (int i = 0; i < extent.width; ++i) {
                             // Beyond clamped borders heights grow with the distance, and so do errors.
-                            ASSERT_NEAR(static_cast<double>(result.at(i, j)), truth.at(i, j),
-                                        2e-6 * (1.0 + sigma))
+                            ASSERT_NEAR(static_cast<double>(result.at(i, j)), truth.at(i, j), 2e-6 * (1.0 + sigma))
                                 << sigma << " " << extent.width << "x" << extent.height;
                         }
                     }
@@ -86,8 +83,7 @@ TEST(Blur, LeavesSlopesExactEnoughToBake) {
     tex::HeightField field{blurred(heights, 20.0, Wrap::repeat, Wrap::repeat), 100.0f, 100.0f, Wrap::repeat,
                            Wrap::repeat};
     const auto normals = tex::bake(field).value();
-    const auto truth =
-        tex::reference::blur(tex::reference::grid_of(heights), 20.0, Wrap::repeat, Wrap::repeat);
+    const auto truth = tex::reference::blur(tex::reference::grid_of(heights), 20.0, Wrap::repeat, Wrap::repeat);
     for (int j = 1; j < 39; ++j) {
         for (int i = 1; i < 149; ++i) {
             const double du = (truth.at(i + 1, j) - truth.at(i - 1, j)) / 2,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "base/border.h"
+#include "rows/border.h"
 
 #include <cmath>
 
@@ -33,8 +33,7 @@ TEST(Border, HeightsBeyondItFollowTheRulesOfWrap) {
 }
 
 TEST(Border, FiltersReadTexelsInside) {
-    const int repeat[] = {1, 2, 0, 1, 2, 0, 1}, clamp[] = {0, 0, 0, 1, 2, 2, 2},
-              mirror[] = {1, 0, 0, 1, 2, 2, 1};
+    const int repeat[] = {1, 2, 0, 1, 2, 0, 1}, clamp[] = {0, 0, 0, 1, 2, 2, 2}, mirror[] = {1, 0, 0, 1, 2, 2, 1};
     for (int i = -2; i < 5; ++i) {
         EXPECT_EQ(tex::border_index(Wrap::repeat, i, 3), repeat[i + 2]);
         EXPECT_EQ(tex::border_index(Wrap::clamp, i, 3), clamp[i + 2]);
@@ -45,8 +44,7 @@ TEST(Border, FiltersReadTexelsInside) {
 TEST(Border, RowsOfHeightsHaveAnApronOnAllSides) {
     for (const Wrap wrap_x : kWraps) {
         for (const Wrap wrap_y : kWraps) {
-            const auto plane =
-                tex::fields::plane_of({5, 4}, [](int i, int j) { return tex::fields::noise(i, j); });
+            const auto plane = tex::fields::plane_of({5, 4}, [](int i, int j) { return tex::fields::noise(i, j); });
             const auto truth = tex::reference::grid_of(plane);
             tex::HeightRows rows(plane.view(), wrap_x, wrap_y, 9, 3);
             for (int j = -10; j < 14; ++j) {

@@ -34,16 +34,16 @@ CheckReport checked(const Texture& texture, const CheckOptions& options) {
 }
 
 bool found(const CheckReport& report, const std::string& ids) {
-    return std::any_of(report.findings.begin(), report.findings.end(), [&](const Finding& finding) {
-        return ids.find(finding.rule->id) != std::string::npos;
-    });
+    return std::any_of(report.findings.begin(), report.findings.end(),
+                       [&](const Finding& finding) { return ids.find(finding.rule->id) != std::string::npos; });
 }
 
 #define SKIP_WITHOUT_DATA() \
     if (!std::filesystem::exists(kData)) GTEST_SKIP() << "no " << kData
 
-// A row is a label where the author's file name says GL or DX, or where the sign of the correlation with the height map beside it does; the other rows were
-// measured by a curl test for SOURCES.md too, so that agreement with them says little. The table keeps them apart.
+// A row is a label where the author's file name says GL or DX, or where the sign of the correlation with the height map
+// beside it does; the other rows were measured by a curl test for SOURCES.md too, so that agreement with them says
+// little. The table keeps them apart.
 TEST(CheckData, TellsEveryKnownDirectionOfGreen) {
     SKIP_WITHOUT_DATA();
     std::map<std::string, int> confusion[2];
@@ -52,11 +52,13 @@ TEST(CheckData, TellsEveryKnownDirectionOfGreen) {
         const auto texture = read_texture(kData + map.path);
         ASSERT_TRUE(texture) << texture.error().message();
         const CheckReport report = checked(*texture, {});
-        const auto name = [](std::optional<YAxis> y) { return y ? std::string(name_of(kYAxisNames, *y)) : std::string("unknown"); };
+        const auto name = [](std::optional<YAxis> y) {
+            return y ? std::string(name_of(kYAxisNames, *y)) : std::string("unknown");
+        };
         const bool is_label = reference::is_label(map.source);
         const std::string known_by = (is_label ? "label: " : "no label: ") + std::string(to_string(map.source));
-        std::printf("%-52s %-9s %-22s %-9s %+.2f %.3f\n", map.path.c_str(), name(map.y).c_str(), known_by.c_str(), name(report.y.y).c_str(),
-                    report.y.correlation, report.y.confidence);
+        std::printf("%-52s %-9s %-22s %-9s %+.2f %.3f\n", map.path.c_str(), name(map.y).c_str(), known_by.c_str(),
+                    name(report.y.y).c_str(), report.y.correlation, report.y.confidence);
         ++confusion[is_label ? 0 : 1][name(map.y) + " told " + name(report.y.y)];
         EXPECT_EQ(report.y.y, map.y) << map.path;
         EXPECT_FALSE(found(report, "N402")) << map.path;
@@ -79,9 +81,9 @@ TEST(CheckData, TellsEveryKnownDirectionOfGreen) {
 // What is found on the files as they are. SOURCES.md names none of that, but it is there: see the next test.
 TEST(CheckData, FindsNoDamageThatIsNotThere) {
     SKIP_WITHOUT_DATA();
-    const std::set<std::string> expected = {"normal/water1_256.tga N305", "dds/d3d_RifleStock_DXT1_747x600_mips10_nvtt.dds N306",
-                                            "dds/d3d_dwarf_armor_RGBA8_512_mips10.dds N501",
-                                            "dds/gz_waves_RGB24_256_mips9_gimp.dds N501"};
+    const std::set<std::string> expected = {
+        "normal/water1_256.tga N305", "dds/d3d_RifleStock_DXT1_747x600_mips10_nvtt.dds N306",
+        "dds/d3d_dwarf_armor_RGBA8_512_mips10.dds N501", "dds/gz_waves_RGB24_256_mips9_gimp.dds N501"};
     std::set<std::string> met;
     for (const auto& map : reference::real_maps()) {
         if (!map.intact) continue;
@@ -98,7 +100,8 @@ TEST(CheckData, FindsNoDamageThatIsNotThere) {
         }
     }
     EXPECT_EQ(met, expected);
-    std::printf("%zu findings of damage on %zu untouched maps, all of them true\n", met.size(), reference::real_maps().size());
+    std::printf("%zu findings of damage on %zu untouched maps, all of them true\n", met.size(),
+                reference::real_maps().size());
 }
 
 // The mean length of the stored vectors of a level.
@@ -124,7 +127,8 @@ TEST(CheckData, TwoFilesWereNotRenormalised) {
         const auto texture = read_texture(kData + path);
         ASSERT_TRUE(texture);
         EXPECT_NEAR(mean_length(*texture, 0), 1.0, 0.005) << path;
-        for (int level = 1; level <= 4; ++level) EXPECT_LT(mean_length(*texture, level), mean_length(*texture, level - 1) - 0.002) << path << level;
+        for (int level = 1; level <= 4; ++level)
+            EXPECT_LT(mean_length(*texture, level), mean_length(*texture, level - 1) - 0.002) << path << level;
         EXPECT_LT(mean_length(*texture, 4), last) << path;
     }
 }
@@ -140,7 +144,8 @@ TEST(CheckData, RifleStockShowsItsBlocks) {
     for (int i = 0; i + 1 < image->extent().width; ++i) {
         double sum = 0.0;
         for (int j = 0; j < image->extent().height; ++j) {
-            for (std::size_t c = 0; c < 2; ++c) sum += std::abs(image->planes[c].at(i + 1, j) - image->planes[c].at(i, j));
+            for (std::size_t c = 0; c < 2; ++c)
+                sum += std::abs(image->planes[c].at(i + 1, j) - image->planes[c].at(i, j));
         }
         (i % 4 == 3 ? across : inside).push_back(sum);
     }
@@ -160,7 +165,8 @@ TEST(CheckData, NamesTheVariantsOfTwoChannelFiles) {
     EXPECT_EQ(swizzle("dds/oiio_dds_bc3rxgb.dds").substr(1), "yzx");
     EXPECT_EQ(swizzle("dds/reference/run_RXGB_noalpha.dds").substr(1), "yzx");
     EXPECT_EQ(swizzle("dds/urho_Stone_DXT5_xGxR_1024_mips11.dds"), "_y_x");
-    for (const char* grey : {"dds/torque_Grenade2_DXT5nm_GGGR_512_mips10.dds", "dds/torque_rock_DXT5nm_GGGR_256_mips9.dds"}) {
+    for (const char* grey :
+         {"dds/torque_Grenade2_DXT5nm_GGGR_512_mips10.dds", "dds/torque_rock_DXT5nm_GGGR_256_mips9.dds"}) {
         const auto report = check_file(kData + grey, {});
         ASSERT_TRUE(report);
         EXPECT_TRUE(found(*report, "N211")) << grey;
@@ -179,7 +185,8 @@ TEST(CheckData, HostileFilesGiveReports) {
         const auto report = check_file(entry.path().string(), {}, read);
         ASSERT_TRUE(report) << entry.path();
         EXPECT_EQ(found(*report, "N101"), report->error && report->error->code != ErrorCode::out_of_memory &&
-                                              report->error->code != ErrorCode::io) << entry.path();
+                                              report->error->code != ErrorCode::io)
+            << entry.path();
         ++files;
         unreadable += report->error ? 1 : 0;
     }

@@ -28,8 +28,9 @@ NormalMap bumps(Extent extent, float strength = 12.0f) {
     for (int j = 0; j < extent.height; ++j) {
         for (int i = 0; i < extent.width; ++i) {
             const double u = tau * i / extent.width, v = tau * j / extent.height;
-            field.height.at(i, j) = static_cast<float>(std::sin(3 * u + std::cos(2 * v)) * std::cos(4 * v) + 0.5 * std::sin(7 * u + 5 * v) +
-                                                       0.3 * std::cos(11 * v - 4 * u) + 0.2 * std::sin(13 * u - 9 * v));
+            field.height.at(i, j) =
+                static_cast<float>(std::sin(3 * u + std::cos(2 * v)) * std::cos(4 * v) + 0.5 * std::sin(7 * u + 5 * v) +
+                                   0.3 * std::cos(11 * v - 4 * u) + 0.2 * std::sin(13 * u - 9 * v));
         }
     }
     return std::move(*bake(field));
@@ -48,8 +49,8 @@ std::set<std::string> ids(const Texture& texture, const CheckOptions& options = 
 using Ids = std::set<std::string>;
 
 void set_code(Texture& texture, std::size_t texel, int channel, int code) {
-    texture.levels[0].bytes[texel * static_cast<std::size_t>(format_info(texture.format).channels) + static_cast<std::size_t>(channel)] =
-        static_cast<std::byte>(code);
+    texture.levels[0].bytes[texel * static_cast<std::size_t>(format_info(texture.format).channels) +
+                            static_cast<std::size_t>(channel)] = static_cast<std::byte>(code);
 }
 
 CheckOptions requiring(std::initializer_list<const char*> requirements) {
@@ -94,8 +95,12 @@ TEST(Rules, NoRuleExplainsItselfThroughOthers) {
 
 TEST(Check, SoundMapsHaveNoFindings) {
     EXPECT_EQ(ids(map_texture()), Ids{});
-    EXPECT_EQ(ids(map_texture(), requiring({"y=up", "tiles", "pow2", "mips=none", "format=rgb8", "extent=128x128", "max-extent=128"})), Ids{});
-    EXPECT_EQ(ids(reference::texture_of(reference::chain_of(bumps({128, 128}), reference::ChainFault::none)), requiring({"mips=full"})), Ids{});
+    EXPECT_EQ(ids(map_texture(),
+                  requiring({"y=up", "tiles", "pow2", "mips=none", "format=rgb8", "extent=128x128", "max-extent=128"})),
+              Ids{});
+    EXPECT_EQ(ids(reference::texture_of(reference::chain_of(bumps({128, 128}), reference::ChainFault::none)),
+                  requiring({"mips=full"})),
+              Ids{});
 }
 
 // What mip --fade makes: the last levels are flat, which is no other image.
@@ -124,15 +129,17 @@ TEST(Check, RequirementsAreWhatTheySay) {
     const Texture odd = reference::texture_of(reference::codes_of(bumps({96, 64})));
     EXPECT_EQ(ids(odd), Ids{});
     EXPECT_EQ(ids(odd, requiring({"pow2"})), Ids{"N105"});
-    const Texture cut = reference::texture_of(reference::codes_of(reference::crop(bumps({160, 160}), 0, 0, {128, 128})));
+    const Texture cut =
+        reference::texture_of(reference::codes_of(reference::crop(bumps({160, 160}), 0, 0, {128, 128})));
     EXPECT_EQ(ids(cut), Ids{});
     EXPECT_EQ(ids(cut, requiring({"tiles"})), Ids{"N307"});
 }
 
 TEST(Check, RefusesRequirementsThatMeanNothing) {
     Requirements requirements;
-    for (const char* text : {"", "=", "y", "y=", "y=left", "mips", "mips=0", "mips=-1", "mips=two", "mips=4x", "extent=12", "extent=x12", "extent=0x4",
-                             "extent=4x4x4", "max-extent=99999999999", "format=dxt9", "pow2=yes", "tiles=", "colour=blue"}) {
+    for (const char* text :
+         {"", "=", "y", "y=", "y=left", "mips", "mips=0", "mips=-1", "mips=two", "mips=4x", "extent=12", "extent=x12",
+          "extent=0x4", "extent=4x4x4", "max-extent=99999999999", "format=dxt9", "pow2=yes", "tiles=", "colour=blue"}) {
         const auto result = add_requirement(requirements, text);
         ASSERT_FALSE(result) << text;
         EXPECT_EQ(result.error().code, ErrorCode::bad_option);
@@ -195,7 +202,8 @@ TEST(Check, FindsOneTexelThatIsNotANumber) {
 }
 
 TEST(Check, ChangesNothingAndGivesTheSameReportForEveryNumberOfThreads) {
-    const Texture texture = reference::texture_of(reference::chain_of(bumps({256, 256}), reference::ChainFault::shifted));
+    const Texture texture =
+        reference::texture_of(reference::chain_of(bumps({256, 256}), reference::ChainFault::shifted));
     Execution one;
     one.threads = 1;
     const auto expected = check("map", texture, requiring({"y=down"}), one);
@@ -267,7 +275,8 @@ TEST(CheckPair, ReportsStrengthSignAndOffset) {
     HeightField field{Plane<float>(extent), 6.0f, 6.0f, Wrap::clamp, Wrap::clamp};
     for (int j = 0; j < extent.height; ++j) {
         for (int i = 0; i < extent.width; ++i) {
-            field.height.at(i, j) = static_cast<float>(std::sin(0.2 * i) * std::cos(0.17 * j) + 0.3 * std::sin(0.31 * i + 0.4 * j));
+            field.height.at(i, j) =
+                static_cast<float>(std::sin(0.2 * i) * std::cos(0.17 * j) + 0.3 * std::sin(0.31 * i + 0.4 * j));
         }
     }
     const auto normals = bake(field);

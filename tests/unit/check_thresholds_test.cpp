@@ -34,7 +34,7 @@ const std::string kData = TEX_SOURCE_DIR "/../shared/data/";
 // Values of one statistic, of [the half that sets, the half held out].
 struct Statistic {
     const char* name = "";
-    bool high = true;     // damaged maps have the higher values
+    bool high = true;  // damaged maps have the higher values
     bool is_signed = false;
     double line = 0.0;
     std::vector<double> intact[2]{}, damaged[2]{};
@@ -48,7 +48,9 @@ struct Statistic {
 
 private:
     static double most(const std::vector<double>& v) { return v.empty() ? 0.0 : *std::max_element(v.begin(), v.end()); }
-    static double least(const std::vector<double>& v) { return v.empty() ? 0.0 : *std::min_element(v.begin(), v.end()); }
+    static double least(const std::vector<double>& v) {
+        return v.empty() ? 0.0 : *std::min_element(v.begin(), v.end());
+    }
 };
 
 struct Statistics {
@@ -149,8 +151,10 @@ void add_planted(const reference::Planted& planted, int half, Statistics& all) {
     if (damage.starts_with("banding")) add(all.lattice, [](const Stored& s) { return measure_lattice(s).strength; });
     if (damage == "seam") add(all.seam, [](const Stored& s) { return measure_seam(s).worst(); });
     if (damage == "BC1 before") add(all.palette, [](const Stored& s) { return palette_share(s); });
-    if (damage == "sRGB-decoded") add(all.dark, [](const Stored& s) { return measure_centre(s).distance(srgb_decoded(0.5)); });
-    if (damage == "sRGB-encoded") add(all.light, [](const Stored& s) { return measure_centre(s).distance(srgb_encoded(0.5)); });
+    if (damage == "sRGB-decoded")
+        add(all.dark, [](const Stored& s) { return measure_centre(s).distance(srgb_decoded(0.5)); });
+    if (damage == "sRGB-encoded")
+        add(all.light, [](const Stored& s) { return measure_centre(s).distance(srgb_encoded(0.5)); });
 }
 
 std::string two_digits(double value) {
@@ -186,18 +190,21 @@ TEST(CheckThresholds, FollowFromTheHalfThatSetsThem) {
         const auto chain = unpack(base, options);
         ASSERT_TRUE(chain);
         const bool blocks = format_info(texture->format).block == 4;
-        for (const auto& planted : reference::plant_all(chain->levels[0], map.y, map.tiles, blocks)) add_planted(planted, half, all);
+        for (const auto& planted : reference::plant_all(chain->levels[0], map.y, map.tiles, blocks))
+            add_planted(planted, half, all);
     }
     std::printf("%-20s %8s %8s   %19s   %19s\n", "", "", "", "half that sets", "half held out");
     std::printf("%-20s %8s %8s   %9s %9s   %9s %9s\n", "", "line", "fit", "intact", "damaged", "intact", "damaged");
-    for (const Statistic* s : {&all.jpeg, &all.lattice, &all.seam, &all.palette, &all.dark, &all.light, &all.related, &all.shift, &all.short_by}) {
-        std::printf("%-20s %8.3g %8.3g   %9.3g %9.3g   %9.3g %9.3g\n", s->name, s->line, s->fit(), s->worst_intact(0), s->faintest_damaged(0),
-                    s->worst_intact(1), s->faintest_damaged(1));
+    for (const Statistic* s : {&all.jpeg, &all.lattice, &all.seam, &all.palette, &all.dark, &all.light, &all.related,
+                               &all.shift, &all.short_by}) {
+        std::printf("%-20s %8.3g %8.3g   %9.3g %9.3g   %9.3g %9.3g\n", s->name, s->line, s->fit(), s->worst_intact(0),
+                    s->faintest_damaged(0), s->worst_intact(1), s->faintest_damaged(1));
         EXPECT_EQ(two_digits(s->line), two_digits(s->fit())) << s->name;
     }
 }
 
-// SOURCES.md does not name that damage: x and y of this map take few values, in groups about 8 codes apart, as slopes of few grey levels do.
+// SOURCES.md does not name that damage: x and y of this map take few values, in groups about 8 codes apart, as slopes
+// of few grey levels do.
 TEST(CheckThresholds, Water1TakesFewSlopes) {
     if (!std::filesystem::exists(kData)) GTEST_SKIP() << "no " << kData;
     const auto texture = read_texture(kData + "normal/water1_256.tga");
@@ -213,7 +220,8 @@ TEST(CheckThresholds, Water1TakesFewSlopes) {
         }
         EXPECT_EQ(std::count_if(texels.begin(), texels.end(), [](int n) { return n > 0; }), 33);
         // Between the groups around flat, of thousands of texels each, there is nothing.
-        for (const int empty : {121, 122, 123, 124, 125, 126, 127, 129, 130, 131, 132, 133, 134}) EXPECT_EQ(texels[static_cast<std::size_t>(empty)], 0);
+        for (const int empty : {121, 122, 123, 124, 125, 126, 127, 129, 130, 131, 132, 133, 134})
+            EXPECT_EQ(texels[static_cast<std::size_t>(empty)], 0);
         EXPECT_GT(texels[128], 10000);
     }
 }

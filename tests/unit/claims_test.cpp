@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "containers/claims.h"
+#include "formats/claims.h"
 
 #include <gtest/gtest.h>
 

@@ -86,7 +86,8 @@ TEST_F(Color, BuiltInCurveIsThatOfTheStandard) {
         image.planes[0] = Plane<float>(Extent{top + 1, 1});
         for (int k = 0; k <= top; ++k) image.planes[0].at(k, 0) = static_cast<float>(k) / static_cast<float>(top);
         ASSERT_TRUE(to_linear(image, {"sRGB", ""}));
-        for (int k = 0; k <= top; ++k) ASSERT_NEAR(image.planes[0].at(k, 0), srgb(k / static_cast<double>(top)), 1e-7) << k;
+        for (int k = 0; k <= top; ++k)
+            ASSERT_NEAR(image.planes[0].at(k, 0), srgb(k / static_cast<double>(top)), 1e-7) << k;
         EXPECT_EQ(image.planes[0].at(0, 0), 0.0f);
         EXPECT_EQ(image.planes[0].at(top, 0), 1.0f);
     }

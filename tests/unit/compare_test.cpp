@@ -87,7 +87,8 @@ TEST(Compare, OppositeVectorsAre180DegreesApart) {
 
 // The same figures from doubles, atan2 and a sort.
 TEST(Compare, AgreesWithTheDefinitionsInDouble) {
-    for (const Extent extent : {Extent{1, 1}, Extent{2, 3}, Extent{15, 7}, Extent{16, 16}, Extent{17, 9}, Extent{257, 33}}) {
+    for (const Extent extent :
+         {Extent{1, 1}, Extent{2, 3}, Extent{15, 7}, Extent{16, 16}, Extent{17, 9}, Extent{257, 33}}) {
         const NormalMap a = scattered(extent, 1), b = scattered(extent, 2);
         std::vector<double> angles;
         double sum = 0.0, squares = 0.0;
@@ -164,7 +165,8 @@ TEST(Compare, GivesTheSameBytesForEveryNumberOfThreads) {
         EXPECT_EQ(comparison->error.p999, expected->error.p999);
         for (int j = 0; j < extent.height; ++j) {
             ASSERT_EQ(std::memcmp(comparison->degrees.row(j), expected->degrees.row(j),
-                                  static_cast<std::size_t>(extent.width) * sizeof(float)), 0);
+                                  static_cast<std::size_t>(extent.width) * sizeof(float)),
+                      0);
         }
     }
 }

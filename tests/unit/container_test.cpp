@@ -93,9 +93,9 @@ TEST_F(ContainerFiles, ReadsWhatItWroteWhateverItsName) {
         Encoding encoding;
         int levels;
     };
-    const Case cases[] = {{"a.dds", Encoding::dxt5nm, 4},  {"a.ktx2", Encoding::bc5, 4},  {"a.png", Encoding::rgb8, 1},
-                          {"a.png", Encoding::rgba8, 1},   {"a.png", Encoding::rgb16, 1}, {"a.exr", Encoding::half, 1},
-                          {"a.exr", Encoding::float_, 1}, {"a.tif", Encoding::rgb16, 1},  {"a.tiff", Encoding::half, 1},
+    const Case cases[] = {{"a.dds", Encoding::dxt5nm, 4}, {"a.ktx2", Encoding::bc5, 4},  {"a.png", Encoding::rgb8, 1},
+                          {"a.png", Encoding::rgba8, 1},  {"a.png", Encoding::rgb16, 1}, {"a.exr", Encoding::half, 1},
+                          {"a.exr", Encoding::float_, 1}, {"a.tif", Encoding::rgb16, 1}, {"a.tiff", Encoding::half, 1},
                           {"a.tga", Encoding::rgba8, 1},  {"a.bmp", Encoding::rgb8, 1}};
     for (const Case& c : cases) {
         const Texture texture = encoded_texture(c.encoding, {13, 7}, c.levels);

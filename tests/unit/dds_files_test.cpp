@@ -57,9 +57,8 @@ TEST(DdsFiles, ReadsEverySharedFile) {
             std::string found = std::string(name_of(kFormatNames, texture->format)) + " " +
                                 std::to_string(texture->extent().width) + "x" +
                                 std::to_string(texture->extent().height) + " " +
-                                std::to_string(texture->levels.size()) + " " +
-                                (texture->swizzle_known ? "" : "?") + to_string(texture->swizzle) + " " +
-                                std::to_string(texture->remarks.size());
+                                std::to_string(texture->levels.size()) + " " + (texture->swizzle_known ? "" : "?") +
+                                to_string(texture->swizzle) + " " + std::to_string(texture->remarks.size());
             ASSERT_EQ(expected.count(path.stem()), 1u) << path << ": " << found;
             EXPECT_EQ(found, expected.at(path.stem())) << path;
         }
@@ -70,26 +69,26 @@ TEST(DdsFiles, ReadsEverySharedFile) {
 TEST(DdsFiles, ReadsOrRefusesEveryBadFile) {
     TEX_NEEDS_SHARED_DATA();
     const std::map<std::string, std::string> expected = {
-        {"oiio_crash-1634", "bad-data"},                            // 134 of 256 bytes
-        {"oiio_crash-bomb-32768", "bad-data"},                      // claims a gigabyte
-        {"oiio_crash-bpp", "unsupported"},                          // says that it is a volume
+        {"oiio_crash-1634", "bad-data"},        // 134 of 256 bytes
+        {"oiio_crash-bomb-32768", "bad-data"},  // claims a gigabyte
+        {"oiio_crash-bpp", "unsupported"},      // says that it is a volume
         {"oiio_dds_bc3_just_header", "bad-data"},
         {"oiio_dds_bc7_just_header", "unsupported"},
-        {"pillow_dxt5-colorblock-alpha-issue-4142", "read 1 1"},    // 240 bytes too many
+        {"pillow_dxt5-colorblock-alpha-issue-4142", "read 1 1"},  // 240 bytes too many
         {"pillow_timeout-041dd17dfde800360a47a172269df127af138c6b", "bad-data"},
         {"pillow_timeout-755a4d204f4208e3597ac3391edebee196462bd0", "bad-data"},
-        {"pillow_unimplemented_dxgi_format", "bad-data"},           // B8G8R8X8, a quarter of its bytes
+        {"pillow_unimplemented_dxgi_format", "bad-data"},  // B8G8R8X8, a quarter of its bytes
         {"pillow_unimplemented_pixel_format", "unsupported"},
         {"pillow_zero_mask_totals", "bad-data"},
         {"run_odd_24-bit-uncompressed-odd", "read 1 0"},
-        {"run_odd_both-dx10-and-pixel-format", "read 8 0"},         // the DX10 header counts
+        {"run_odd_both-dx10-and-pixel-format", "read 8 0"},  // the DX10 header counts
         {"run_odd_dxt5-simple-odd", "read 1 0"},
-        {"run_odd_restricted-header", "read 8 0"},                  // A1R5G5B5
+        {"run_odd_restricted-header", "read 8 0"},  // A1R5G5B5
         {"run_permissive_dds_header_size_24", "read 1 1"},
         {"run_permissive_dds_pixel_format_size_24", "read 1 1"},
-        {"run_permissive_wrong_mipmap_count_1", "read 1 0"},        // 0 levels
-        {"run_permissive_wrong_mipmap_count_3", "read 1 2"},        // 2^32 - 1 levels
-        {"run_permissive_wrong_mipmap_count_5", "read 1 1"},        // 3 levels, there is one
+        {"run_permissive_wrong_mipmap_count_1", "read 1 0"},  // 0 levels
+        {"run_permissive_wrong_mipmap_count_3", "read 1 2"},  // 2^32 - 1 levels
+        {"run_permissive_wrong_mipmap_count_5", "read 1 1"},  // 3 levels, there is one
     };
     std::size_t files = 0;
     for (const auto& path : files_in("bad", ".dds")) {
@@ -124,8 +123,8 @@ Picture read_picture(const std::filesystem::path& path) {
     return picture;
 }
 
-// The reference decodes show 8-bit codes; signed values n as (n + 1) / 2. RXGB files are shown with red put back from alpha, DXT5nm as
-// x, y and the z of those 8-bit x and y (a code of x is worth many of z where z is near 0).
+// The reference decodes show 8-bit codes; signed values n as (n + 1) / 2. RXGB files are shown with red put back from
+// alpha, DXT5nm as x, y and the z of those 8-bit x and y (a code of x is worth many of z where z is near 0).
 TEST(DdsFiles, DecodesWithinOneCodeOfTheReference) {
     TEX_NEEDS_SHARED_DATA();
     int files = 0;
@@ -152,7 +151,8 @@ TEST(DdsFiles, DecodesWithinOneCodeOfTheReference) {
                 const std::size_t channels = red_in_alpha ? 3 : image->planes.size();
                 for (std::size_t c = 0; c < channels; ++c) {
                     if (image->sample == SampleKind::snorm) value[c] = (value[c] + 1) / 2;
-                    worst[c] = std::max(worst[c], std::abs(std::floor(static_cast<double>(value[c]) * 255 + 0.5) - code[c]));
+                    worst[c] =
+                        std::max(worst[c], std::abs(std::floor(static_cast<double>(value[c]) * 255 + 0.5) - code[c]));
                 }
             }
         }

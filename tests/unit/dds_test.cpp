@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "containers/dds.h"
+#include "formats/dds/dds.h"
 
 #include <algorithm>
 #include <string>
@@ -10,8 +10,8 @@
 #include <tex/container.h>
 #include <tex/unpack.h>
 
-#include "containers/bytes.h"
-#include "containers/dds_format.h"
+#include "formats/bytes.h"
+#include "formats/dds/dds_format.h"
 #include "unit/textures.h"
 
 namespace tex {
@@ -42,8 +42,8 @@ void set_field(Bytes& bytes, std::size_t offset, std::uint32_t value) {
     for (std::size_t k = 0; k < 4; ++k) bytes[offset + k] = static_cast<std::byte>(value >> (8 * k) & 0xff);
 }
 
-constexpr std::size_t kHeightAt = 12, kWidthAt = 16, kPitchAt = 20, kMipsAt = 28, kFormatFlagsAt = 80,
-                      kFourCcAt = 84, kBitCountAt = 88, kMasksAt = 92, kCapsAt = 108, kCaps2At = 112, kDxgiAt = 128;
+constexpr std::size_t kHeightAt = 12, kWidthAt = 16, kPitchAt = 20, kMipsAt = 28, kFormatFlagsAt = 80, kFourCcAt = 84,
+                      kBitCountAt = 88, kMasksAt = 92, kCapsAt = 108, kCaps2At = 112, kDxgiAt = 128;
 
 // A DDS whose header is that of `format`, 8x8, one level, to be changed by a test.
 Bytes plain_file(Format format, DdsHeader header = DdsHeader::legacy) {
@@ -164,9 +164,23 @@ TEST(Dds, ReadsMasksOfAnyWidth) {
     const Case cases[] = {
         {kDdpfRgb, 16, 0xf800, 0x7e0, 0x1f, 0, 0x8410, {16.0f / 31, 32.0f / 63, 16.0f / 31}},
         {kDdpfRgb | kDdpfAlphaPixels, 16, 0x7c00, 0x3e0, 0x1f, 0x8000, 0x8001, {0, 0, 1.0f / 31, 1}},
-        {kDdpfRgb | kDdpfAlphaPixels, 16, 0xf00, 0xf0, 0xf, 0xf000, 0x1234, {2.0f / 15, 3.0f / 15, 4.0f / 15, 1.0f / 15}},
+        {kDdpfRgb | kDdpfAlphaPixels,
+         16,
+         0xf00,
+         0xf0,
+         0xf,
+         0xf000,
+         0x1234,
+         {2.0f / 15, 3.0f / 15, 4.0f / 15, 1.0f / 15}},
         {kDdpfRgb, 32, 0xff, 0xff00, 0xff0000, 0, 0x44332211, {17.0f / 255, 34.0f / 255, 51.0f / 255}},
-        {kDdpfRgb | kDdpfAlphaPixels, 32, 0x3ff, 0xffc00, 0x3ff00000, 0xc0000000, 0x80000001, {1.0f / 1023, 0, 0, 2.0f / 3}},
+        {kDdpfRgb | kDdpfAlphaPixels,
+         32,
+         0x3ff,
+         0xffc00,
+         0x3ff00000,
+         0xc0000000,
+         0x80000001,
+         {1.0f / 1023, 0, 0, 2.0f / 3}},
         {kDdpfRgb, 32, 0xffff, 0xffff0000, 0, 0, 0x00020001, {1.0f / 65535, 2.0f / 65535}},
         {kDdpfLuminance, 8, 0xff, 0, 0, 0, 0x33, {0.2f}},
         {kDdpfLuminance, 16, 0xffff, 0, 0, 0, 0x3333, {0.2f}},

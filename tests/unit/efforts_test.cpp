@@ -63,7 +63,8 @@ Errors errors_of(const Sampled& map, Encoding encoding, Effort effort) {
         float x[16], y[16];  // codes
         packing::decode_codes(blocks.data() + 16 * block, encoding, x, y);
         for (int k = 0; k < 16; ++k) {
-            const double p[2] = {static_cast<double>(map.x.at(4 * block + k % 4, k / 4)), static_cast<double>(map.y.at(4 * block + k % 4, k / 4))};
+            const double p[2] = {static_cast<double>(map.x.at(4 * block + k % 4, k / 4)),
+                                 static_cast<double>(map.y.at(4 * block + k % 4, k / 4))};
             const double e[2] = {static_cast<double>(x[k]) / 127.5 - 1.0, static_cast<double>(y[k]) / 127.5 - 1.0};
             errors.x += (p[0] - e[0]) * (p[0] - e[0]) * 127.5 * 127.5;
             errors.y += (p[1] - e[1]) * (p[1] - e[1]) * 127.5 * 127.5;
@@ -78,8 +79,9 @@ Errors errors_of(const Sampled& map, Encoding encoding, Effort effort) {
     return errors;
 }
 
-// No promise is made of the 99.9th percentile of the angle: the least squared error of each channel by itself may leave greater angles where normals
-// lean most. On these blocks that of fast lies between 0.76 and 7.6 times, that of normal between 0.81 and 5.1 times that of best.
+// No promise is made of the 99.9th percentile of the angle: the least squared error of each channel by itself may leave
+// greater angles where normals lean most. On these blocks that of fast lies between 0.76 and 7.6 times, that of normal
+// between 0.81 and 5.1 times that of best.
 void expect_ordered(const Sampled& map, const std::string& name) {
     for (const Encoding encoding : {Encoding::dxt5nm, Encoding::bc5, Encoding::bc5_snorm}) {
         SCOPED_TRACE(name + " " + std::string(name_of(kEncodingNames, encoding)));
@@ -118,7 +120,9 @@ TEST(Efforts, NoneIsWorseThanACheaperOneOnRealMaps) {
         const auto image = read_image((shared_data() / real.path).string());
         ASSERT_TRUE(image) << image.error().message();
         const auto at = [&](std::size_t plane) {
-            return [&, plane](int i, int j) { return std::clamp(2.0f * image->planes[plane].at(i, j) - 1.0f, -1.0f, 1.0f); };
+            return [&, plane](int i, int j) {
+                return std::clamp(2.0f * image->planes[plane].at(i, j) - 1.0f, -1.0f, 1.0f);
+            };
         };
         expect_ordered(sample(image->planes[0].extent(), at(0), at(1)), real.path);
         ++maps;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "containers/exr_chunk.h"
+#include "formats/exr/exr_chunk.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 
 #include <ImfCompression.h>
 
-#include "containers/exr.h"
+#include "formats/exr/exr.h"
 #include "unit/exr_files.h"
 
 namespace tex {
@@ -42,7 +42,8 @@ TEST(ExrChunk, ZipHoldsAllTexelsOrNone) {
     EXPECT_TRUE(unzipper.texels({}, 100'000, 100'000).empty());
 }
 
-// Zeros that were stored as differences from 128 are a fall of 128 at each byte: 0, 128, 0, ... in the even places, and on in the odd ones.
+// Zeros that were stored as differences from 128 are a fall of 128 at each byte: 0, 128, 0, ... in the even places, and
+// on in the odd ones.
 TEST(ExrChunk, ZipPredictsAndInterleaves) {
     Unzipper unzipper;
     const Bytes chunk = deflated(7'001);
@@ -55,7 +56,8 @@ TEST(ExrChunk, ZipPredictsAndInterleaves) {
 }
 
 TEST(ExrChunk, RunsAreCounted) {
-    const Bytes bytes = {std::byte{9}, std::byte{1}, std::byte{0xfd}, std::byte{1}, std::byte{2}, std::byte{3}};  // 10 times 1, then 3 bytes
+    const Bytes bytes = {std::byte{9}, std::byte{1}, std::byte{0xfd},
+                         std::byte{1}, std::byte{2}, std::byte{3}};  // 10 times 1, then 3 bytes
     EXPECT_TRUE(chunk_is_whole(Imf::RLE_COMPRESSION, bytes, 13));
     EXPECT_FALSE(chunk_is_whole(Imf::RLE_COMPRESSION, bytes, 14));
 }
@@ -80,7 +82,8 @@ std::string read_poisoned(const Bytes& bytes, int poison) {
     if (!image) said = image.error().reason;
     for (std::size_t c = 0; image && c < image->planes.size(); ++c) {
         for (int j = 0; j < image->extent().height; ++j) {
-            said.append(reinterpret_cast<const char*>(image->planes[c].row(j)), static_cast<std::size_t>(image->extent().width) * sizeof(float));
+            said.append(reinterpret_cast<const char*>(image->planes[c].row(j)),
+                        static_cast<std::size_t>(image->extent().width) * sizeof(float));
         }
     }
     mallopt(M_PERTURB, 0);
@@ -99,7 +102,8 @@ TEST(ExrChunk, DamagedFilesReadTheSameWhateverMemoryHeldBefore) {
                 // Chunks with another length, or other bytes in them; the header stays.
                 constexpr std::size_t kHeader = 300;
                 for (std::size_t n = random() % 3 + 1; n > 0; --n) {
-                    bytes[kHeader + random() % (bytes.size() - kHeader)] = static_cast<std::byte>(random() % 4 == 0 ? 0 : random());
+                    bytes[kHeader + random() % (bytes.size() - kHeader)] =
+                        static_cast<std::byte>(random() % 4 == 0 ? 0 : random());
                 }
                 const std::string first = read_poisoned(bytes, 0x55);
                 read += first.size() > 200;

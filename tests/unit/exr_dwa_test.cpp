@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "containers/exr_dwa.h"
+#include "formats/exr/exr_dwa.h"
 
 #include <gtest/gtest.h>
 
 #include <cstring>
 
-#include "containers/bytes.h"
-#include "containers/exr.h"
+#include "formats/bytes.h"
+#include "formats/exr/exr.h"
 #include "unit/exr_files.h"
 
 namespace tex {
@@ -16,7 +16,8 @@ namespace {
 using Bytes = std::vector<std::byte>;
 
 const std::vector<std::string> kColors = {"A", "B", "G", "R"};
-const std::vector<std::string> kChannels = {"A", "B", "G", "R", "Y", "depth", "two.B", "two.G", "two.R"};  // runs, cosine terms (three times), the rest
+const std::vector<std::string> kChannels = {
+    "A", "B", "G", "R", "Y", "depth", "two.B", "two.G", "two.R"};  // runs, cosine terms (three times), the rest
 
 Result<Image> read(const Bytes& bytes) {
     Result<InputFile> opened = InputFile::from_memory("test.exr", bytes);
@@ -29,7 +30,8 @@ std::uint64_t load_u64(const Bytes& bytes, std::size_t at) {
     return value;
 }
 
-// Where the head of the first chunk stands: version 2, and behind eleven numbers the rules, of which the first is for a channel called so.
+// Where the head of the first chunk stands: version 2, and behind eleven numbers the rules, of which the first is for a
+// channel called so.
 std::size_t first_chunk(const Bytes& bytes) {
     for (std::size_t at = 0; at + 100 < bytes.size(); ++at) {
         if (load_u64(bytes, at) == 2 && load_u64(bytes, at + 80) <= 1 && bytes[at + 90] == std::byte{'R'}) return at;
@@ -43,7 +45,8 @@ TEST(ExrDwa, SoundFilesAreWhole) {
             for (const bool tiled : {false, true}) {
                 for (const Extent extent : {Extent{1, 1}, {8, 8}, {9, 33}, {37, 41}, {257, 70}, {64, 300}}) {
                     const auto image = read(exr_file(extent, kChannels, type, compression, tiled));
-                    EXPECT_TRUE(image) << compression << type << tiled << " " << extent.width << "x" << extent.height << ": " << image.error().message();
+                    EXPECT_TRUE(image) << compression << type << tiled << " " << extent.width << "x" << extent.height
+                                       << ": " << image.error().message();
                 }
             }
         }
@@ -51,9 +54,11 @@ TEST(ExrDwa, SoundFilesAreWhole) {
 }
 
 TEST(ExrDwa, SoundColoursAndHeightsAreWhole) {
-    const std::vector<std::string> sets[] = {kColors, {"Y"}, {"R", "G"}, {"layer.red", "layer.green", "layer.blue"}, {"depth"}};
+    const std::vector<std::string> sets[] = {
+        kColors, {"Y"}, {"R", "G"}, {"layer.red", "layer.green", "layer.blue"}, {"depth"}};
     for (const std::vector<std::string>& names : sets) {
-        for (const Imf::PixelType type : {Imf::HALF, Imf::FLOAT}) EXPECT_TRUE(read(exr_file({70, 41}, names, type, Imf::DWAB_COMPRESSION))) << names[0];
+        for (const Imf::PixelType type : {Imf::HALF, Imf::FLOAT})
+            EXPECT_TRUE(read(exr_file({70, 41}, names, type, Imf::DWAB_COMPRESSION))) << names[0];
     }
 }
 
@@ -64,10 +69,21 @@ TEST(ExrDwa, ShortBuffersAreDamage) {
         const std::size_t head = first_chunk(sound);
         ASSERT_GT(head, 300u);
         ASSERT_TRUE(read(sound));
-        enum : std::size_t { rest_bytes = 1, rest_packed, ac_packed, dc_packed, runs_packed, runs_bytes, runs_unrolled, ac_count, dc_count };
+        enum : std::size_t {
+            rest_bytes = 1,
+            rest_packed,
+            ac_packed,
+            dc_packed,
+            runs_packed,
+            runs_bytes,
+            runs_unrolled,
+            ac_count,
+            dc_count
+        };
         const auto changed = [&](std::initializer_list<std::pair<std::size_t, std::uint64_t>> numbers) {
             Bytes bytes = sound;
-            for (const auto& [number, value] : numbers) std::memcpy(bytes.data() + head + 8 * number, &value, sizeof value);
+            for (const auto& [number, value] : numbers)
+                std::memcpy(bytes.data() + head + 8 * number, &value, sizeof value);
             return bytes;
         };
         const std::pair<const char*, Bytes> cases[] = {

@@ -37,11 +37,14 @@ private:
     std::size_t at_ = 0;
 };
 
-inline float exr_value(int i, int j, int c) { return static_cast<float>(i * 3 - j * 5 + c * 7) / 16.0f; }  // exact as half
+inline float exr_value(int i, int j, int c) {
+    return static_cast<float>(i * 3 - j * 5 + c * 7) / 16.0f;
+}  // exact as half
 
 // A file as OpenEXR writes it: channels of one type, a data window that begins at (-3, 5).
-inline std::vector<std::byte> exr_file(Extent extent, const std::vector<std::string>& names, Imf::PixelType type, Imf::Compression compression,
-               bool tiled = false, Imf::LineOrder order = Imf::DECREASING_Y) {
+inline std::vector<std::byte> exr_file(Extent extent, const std::vector<std::string>& names, Imf::PixelType type,
+                                       Imf::Compression compression, bool tiled = false,
+                                       Imf::LineOrder order = Imf::DECREASING_Y) {
     const Imath::Box2i window({-3, 5}, {-3 + extent.width - 1, 5 + extent.height - 1});
     Imf::Header header(window, window, 1.0f, {0, 0}, 1.0f, order, compression);
     Imf::FrameBuffer buffer;
@@ -61,7 +64,8 @@ inline std::vector<std::byte> exr_file(Extent extent, const std::vector<std::str
         if (type == Imf::HALF) base = halves[c].data();
         if (type == Imf::UINT) base = integers[c].data();
         header.channels().insert(names[c], Imf::Channel(type));
-        buffer.insert(names[c], Imf::Slice::Make(type, base, window, size, size * static_cast<std::size_t>(extent.width)));
+        buffer.insert(names[c],
+                      Imf::Slice::Make(type, base, window, size, size * static_cast<std::size_t>(extent.width)));
     }
     std::vector<std::byte> bytes;
     ExrSink sink(bytes);
@@ -80,8 +84,8 @@ inline std::vector<std::byte> exr_file(Extent extent, const std::vector<std::str
 }
 
 // The same file of one part with one attribute more. The offsets in the table of chunks move by its size.
-inline std::vector<std::byte> with_attribute(const std::vector<std::byte>& file, const std::string& name, const std::string& type,
-                                             const std::string& value) {
+inline std::vector<std::byte> with_attribute(const std::vector<std::byte>& file, const std::string& name,
+                                             const std::string& type, const std::string& value) {
     std::string attribute = name + '\0' + type + '\0';
     const auto size = static_cast<std::uint32_t>(value.size());
     attribute.append(reinterpret_cast<const char*>(&size), sizeof size).append(value);

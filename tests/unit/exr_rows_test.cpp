@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "containers/exr_rows.h"
+#include "formats/exr/exr_rows.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <random>
 #include <vector>
 
-#include "containers/claims.h"
-#include "containers/exr.h"
-#include "containers/exr_chunk.h"
+#include "formats/claims.h"
+#include "formats/exr/exr.h"
+#include "formats/exr/exr_chunk.h"
 #include "unit/exr_files.h"
 
 namespace tex {
@@ -23,7 +23,8 @@ Image some_rows(RowSource& rows, int first, int count) {
     const std::size_t size = rows.row_bytes() * static_cast<std::size_t>((count + 3) / 4 * 4);
     std::vector<std::byte> decoded(size + 4096, kGuard);
     EXPECT_TRUE(rows.decode(first, count, decoded.data()));
-    EXPECT_TRUE(std::all_of(decoded.begin() + static_cast<std::ptrdiff_t>(size), decoded.end(), [](std::byte b) { return b == kGuard; }));
+    EXPECT_TRUE(std::all_of(decoded.begin() + static_cast<std::ptrdiff_t>(size), decoded.end(),
+                            [](std::byte b) { return b == kGuard; }));
     Image image = make_image({rows.extent().width, count}, rows.names());
     rows.store(decoded.data(), 0, count, image);
     return image;
@@ -33,7 +34,8 @@ void expect_same(const Image& part, const Image& whole, int first) {
     for (std::size_t c = 0; c < whole.planes.size(); ++c) {
         for (int j = 0; j < part.extent().height; ++j) {
             const float* const row = part.planes[c].row(j);
-            ASSERT_TRUE(std::equal(row, row + part.extent().width, whole.planes[c].row(first + j))) << c << " " << first << " + " << j;
+            ASSERT_TRUE(std::equal(row, row + part.extent().width, whole.planes[c].row(first + j)))
+                << c << " " << first << " + " << j;
         }
     }
 }
@@ -44,8 +46,10 @@ TEST(ExrRows, AnyRowsAreThoseOfTheWholePicture) {
     for (int k = 0; k < Imf::NUM_COMPRESSION_METHODS; ++k) {
         for (const bool tiled : {false, true}) {
             for (const Imf::PixelType type : {Imf::HALF, Imf::FLOAT, Imf::UINT}) {
-                SCOPED_TRACE(testing::Message() << "compression " << k << (tiled ? ", tiles, type " : ", lines, type ") << type);
-                const auto bytes = exr_file({37, 41}, {"G", "R", "depth"}, type, static_cast<Imf::Compression>(k), tiled);
+                SCOPED_TRACE(testing::Message()
+                             << "compression " << k << (tiled ? ", tiles, type " : ", lines, type ") << type);
+                const auto bytes =
+                    exr_file({37, 41}, {"G", "R", "depth"}, type, static_cast<Imf::Compression>(k), tiled);
                 Result<InputFile> file = InputFile::from_memory("rows.exr", bytes);
                 const Result<Image> whole = read_exr(*file, {});
                 ASSERT_TRUE(whole) << whole.error().message();
@@ -61,9 +65,11 @@ TEST(ExrRows, AnyRowsAreThoseOfTheWholePicture) {
     }
 }
 
-// OpenEXR finds lines that follow one another without the table of chunks, and others by it: a file must not be whole for one thread and damaged for two.
+// OpenEXR finds lines that follow one another without the table of chunks, and others by it: a file must not be whole
+// for one thread and damaged for two.
 TEST(ExrRows, ChunksAreWhereTheTableSaysInWhateverOrderTheyAreRead) {
-    for (const Imf::Compression compression : {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION, Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION}) {
+    for (const Imf::Compression compression : {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION,
+                                               Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION}) {
         SCOPED_TRACE(compression);
         const int chunks = (97 + chunk_lines(compression) - 1) / chunk_lines(compression);
         auto bytes = exr_file({5, 97}, {"G", "R"}, Imf::HALF, compression, false, Imf::INCREASING_Y);
@@ -74,7 +80,8 @@ TEST(ExrRows, ChunksAreWhereTheTableSaysInWhateverOrderTheyAreRead) {
         };
         std::size_t table = 0;  // the chunks follow it
         while (entry(table) != table + sizeof(std::uint64_t) * static_cast<std::size_t>(chunks)) ++table;
-        std::swap_ranges(bytes.begin() + static_cast<std::ptrdiff_t>(table + 8), bytes.begin() + static_cast<std::ptrdiff_t>(table + 16),
+        std::swap_ranges(bytes.begin() + static_cast<std::ptrdiff_t>(table + 8),
+                         bytes.begin() + static_cast<std::ptrdiff_t>(table + 16),
                          bytes.begin() + static_cast<std::ptrdiff_t>(table + 16));
         Result<InputFile> file = InputFile::from_memory("table.exr", bytes);
         const Result<Image> whole = read_exr(*file, {});
@@ -87,14 +94,15 @@ TEST(ExrRows, ChunksAreWhereTheTableSaysInWhateverOrderTheyAreRead) {
     }
 }
 
-// OpenEXR does not look at the attribute `tiles` of a part of scan lines, so it may say anything: writers leave it behind when they convert a tiled file.
+// OpenEXR does not look at the attribute `tiles` of a part of scan lines, so it may say anything: writers leave it
+// behind when they convert a tiled file.
 TEST(ExrRows, ScanLinesIgnoreALeftoverTileDescription) {
     const auto plain = exr_file({37, 41}, {"B", "G", "R"}, Imf::HALF, Imf::ZIP_COMPRESSION);
     Result<InputFile> plain_file = InputFile::from_memory("lines.exr", plain);
     const Result<Image> whole = read_exr(*plain_file, {});
     ASSERT_TRUE(whole);
     for (const std::uint32_t size : {0u, 1u, 64u, 0x7fffffffu, 0xffffffffu}) {
-        for (const char mode : {0, 1, 2, 0x11, 0x7f}) {
+        for (const char mode : {'\0', '\1', '\2', '\x11', '\x7f'}) {
             SCOPED_TRACE(testing::Message() << size << " mode " << int{mode});
             const auto bytes = with_attribute(plain, "tiles", "tiledesc", tile_description(64, size, mode));
             Result<InputFile> file = InputFile::from_memory("tiles.exr", bytes);
@@ -113,7 +121,8 @@ TEST(ExrRows, ScanLinesIgnoreALeftoverTileDescription) {
 }
 
 TEST(ExrRows, PlanesThatNobodyWantsStayAsTheyWere) {
-    Result<InputFile> file = InputFile::from_memory("rows.exr", exr_file({5, 4}, {"G", "R"}, Imf::FLOAT, Imf::ZIP_COMPRESSION, false));
+    Result<InputFile> file =
+        InputFile::from_memory("rows.exr", exr_file({5, 4}, {"G", "R"}, Imf::FLOAT, Imf::ZIP_COMPRESSION, false));
     const auto rows = open_exr_rows(*file, {});
     ASSERT_TRUE(rows);
     (*rows)->choose_planes({false, true});

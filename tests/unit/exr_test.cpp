@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "containers/exr.h"
-#include "containers/exr_part.h"
+#include "formats/exr/exr.h"
+#include "formats/exr/exr_part.h"
 
 #include <gtest/gtest.h>
 
@@ -55,7 +55,8 @@ TEST(Exr, ReadsEveryTypeCompressionAndLayoutExactly) {
                 for (int j = 0; j < extent.height; ++j) {
                     for (int i = 0; i < extent.width; ++i) {
                         if (type == Imf::UINT) {
-                            const std::uint32_t code = static_cast<std::uint32_t>(i) * 123456789u + static_cast<std::uint32_t>(j);
+                            const std::uint32_t code =
+                                static_cast<std::uint32_t>(i) * 123456789u + static_cast<std::uint32_t>(j);
                             ASSERT_EQ(image->planes[0].at(i, j), static_cast<float>(code / 4294967295.0));
                         } else {
                             ASSERT_EQ(image->planes[0].at(i, j), exr_value(i, j, 1));
@@ -165,7 +166,7 @@ TEST(Exr, RefusesClaimsBeforeTakingMemory) {
         auto at = std::search(bytes.begin(), bytes.end(), name.begin(), name.end(),
                               [](std::byte a, char b) { return static_cast<char>(a) == b; });
         ASSERT_NE(at, bytes.end());
-        at += 11 + 6 + 4;  // the name, the type "box2i", the size
+        at += 11 + 6 + 4;                                   // the name, the type "box2i", the size
         const std::int32_t window[4] = {0, 0, 999'999, 3};  // as many chunks as before, but wider
         std::memcpy(&*at, window, sizeof window);
         const Result<Image> image = read(bytes);
@@ -256,8 +257,8 @@ Texture texture_of(Format format, Extent extent, int levels) {
 }
 
 TEST(Exr, TexturesComeBackWithTheirLevels) {
-    for (const Format format : {Format::r16_float, Format::rg32_float, Format::rgb16_float, Format::rgb32_float,
-                                Format::rgba16_float}) {
+    for (const Format format :
+         {Format::r16_float, Format::rg32_float, Format::rgb16_float, Format::rgb32_float, Format::rgba16_float}) {
         for (const int levels : {1, level_count({131, 70})}) {
             SCOPED_TRACE(name_of(kFormatNames, format));
             const Texture texture = texture_of(format, {131, 70}, levels);
@@ -288,11 +289,12 @@ TEST(Exr, RowsOfAllLevelsMayComeInAnyOrder) {
         const Bytes expected = encode_exr(texture).value();
         for (int round = 0; round < 6; ++round) {
             Bytes file;
-            auto target = open_exr_target(head_of(texture), [&file](std::uint64_t offset, std::span<const std::byte> bytes) -> Result<void> {
-                file.resize(std::max(file.size(), static_cast<std::size_t>(offset) + bytes.size()));
-                std::copy(bytes.begin(), bytes.end(), file.begin() + static_cast<std::ptrdiff_t>(offset));
-                return {};
-            });
+            auto target = open_exr_target(
+                head_of(texture), [&file](std::uint64_t offset, std::span<const std::byte> bytes) -> Result<void> {
+                    file.resize(std::max(file.size(), static_cast<std::size_t>(offset) + bytes.size()));
+                    std::copy(bytes.begin(), bytes.end(), file.begin() + static_cast<std::ptrdiff_t>(offset));
+                    return {};
+                });
             ASSERT_TRUE(target) << target.error().message();
             std::vector<int> next(texture.levels.size(), 0);
             for (std::size_t left = next.size(); left > 0;) {
@@ -300,9 +302,11 @@ TEST(Exr, RowsOfAllLevelsMayComeInAnyOrder) {
                 const Level& level = texture.levels[k];
                 if (next[k] == level.extent.height) continue;
                 const int most = random() % 2 == 0 ? 200 : 9;
-                const int count = std::min(1 + static_cast<int>(random() % static_cast<unsigned>(most)), level.extent.height - next[k]);
+                const int count = std::min(1 + static_cast<int>(random() % static_cast<unsigned>(most)),
+                                           level.extent.height - next[k]);
                 const std::size_t pitch = level.bytes.size() / static_cast<std::size_t>(level.extent.height);
-                ASSERT_TRUE((*target)->put(static_cast<int>(k), level.bytes.data() + pitch * static_cast<std::size_t>(next[k]), count));
+                ASSERT_TRUE((*target)->put(static_cast<int>(k),
+                                           level.bytes.data() + pitch * static_cast<std::size_t>(next[k]), count));
                 next[k] += count;
                 if (next[k] == level.extent.height) --left;
             }

@@ -31,8 +31,7 @@ inline HeightField field_of(Extent extent, float bumpiness, Wrap wrap,
 
 // A reproducible value in [0, 1) for a texel, the same in every standard library.
 inline double noise(int i, int j, unsigned seed = 0) {
-    unsigned x =
-        static_cast<unsigned>(i) * 0x8da6b343u ^ static_cast<unsigned>(j) * 0xd8163841u ^ seed * 0xcb1ab31fu;
+    unsigned x = static_cast<unsigned>(i) * 0x8da6b343u ^ static_cast<unsigned>(j) * 0xd8163841u ^ seed * 0xcb1ab31fu;
     x = (x ^ (x >> 15)) * 0x2c1b3c6du;
     x = (x ^ (x >> 12)) * 0x297a2d39u;
     return static_cast<double>((x ^ (x >> 15)) >> 8) / 16777216.0;

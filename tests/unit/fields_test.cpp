@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "containers/fields.h"
+#include "formats/dds/fields.h"
 
 #include <cmath>
 #include <cstring>
@@ -15,7 +15,7 @@ TEST(Fields, PickTheSmallestFormatThatHoldsThem) {
     EXPECT_EQ(format_of({1, {0xff, 0, 0, 0}, false}), Format::r8_unorm);
     EXPECT_EQ(format_of({2, {0xffff, 0, 0, 0}, false}), Format::r16_unorm);
     EXPECT_EQ(format_of({3, {0xff0000, 0xff00, 0xff, 0}, false}), Format::rgb8_unorm);
-    EXPECT_EQ(format_of({2, {0xf00, 0xf0, 0xf, 0xf000}, false}), Format::rgba8_unorm);   // 4 bits are exact in 8
+    EXPECT_EQ(format_of({2, {0xf00, 0xf0, 0xf, 0xf000}, false}), Format::rgba8_unorm);      // 4 bits are exact in 8
     EXPECT_EQ(format_of({2, {0x7c00, 0x3e0, 0x1f, 0x8000}, false}), Format::rgba16_unorm);  // 5 are not
     EXPECT_EQ(format_of({4, {0xffff, 0xffff0000, 0, 0}, false}), Format::rg16_unorm);
     EXPECT_EQ(format_of({2, {0xff, 0xff00, 0, 0}, true}), Format::rg8_snorm);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "containers/file_layout.h"
+#include "formats/file_layout.h"
 
 #include <algorithm>
 
 #include <gtest/gtest.h>
 #include <tex/container.h>
 
-#include "containers/dds.h"
-#include "containers/ktx2.h"
+#include "formats/dds/dds.h"
+#include "formats/ktx2/ktx2.h"
 #include "unit/textures.h"
 
 namespace tex {

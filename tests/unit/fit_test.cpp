@@ -70,7 +70,8 @@ TEST(Encode, NoEffortIsWorseThanACheaperOne) {
     }
 }
 
-// A row of decoded blocks: random endpoints at least 8 codes apart, and of their palettes some values only, of which there are three or more.
+// A row of decoded blocks: random endpoints at least 8 codes apart, and of their palettes some values only, of which
+// there are three or more.
 std::vector<float> decoded_rows(tex::Encoding encoding, bool second, unsigned seed) {
     std::mt19937 random(seed);
     std::vector<float> rows(4 * (kWidth + 12));
@@ -79,22 +80,27 @@ std::vector<float> decoded_rows(tex::Encoding encoding, bool second, unsigned se
         for (std::byte& byte : bytes) byte = static_cast<std::byte>(random());
         const bool green = encoding == tex::Encoding::dxt5nm && second;
         const auto code = [&](int k) {
-            return encoding == tex::Encoding::bc5_snorm ? static_cast<std::int8_t>(bytes[k]) : std::to_integer<int>(bytes[k]);
+            return encoding == tex::Encoding::bc5_snorm ? static_cast<std::int8_t>(bytes[k])
+                                                        : std::to_integer<int>(bytes[k]);
         };
         if (!green && std::abs(code(0) - code(1)) < 8) bytes[0] ^= std::byte{0x40};
         float palette[16], r[16], b[16], a[16];
         const auto set_indices = [&](int first, int count) {  // texel k takes index first + k % count
             std::uint64_t indices = 0;
-            for (int k = 0; k < 16; ++k) indices |= static_cast<std::uint64_t>(first + k % count) << ((green ? 2 : 3) * k);
+            for (int k = 0; k < 16; ++k)
+                indices |= static_cast<std::uint64_t>(first + k % count) << ((green ? 2 : 3) * k);
             const int header = green ? 4 : 2;
             for (int k = header; k < 8; ++k) bytes[k] = static_cast<std::byte>(indices >> (8 * (k - header)));
         };
         const int most = green ? 4 : 8;
         const int count = green ? 3 : 3 + static_cast<int>(random() % 4);
         set_indices(static_cast<int>(random()) & (most - count), count);
-        if (green) tex::decode_bc1(bytes, tex::Bc1Mode::four_colors, r, palette, b, a);
-        else if (encoding == tex::Encoding::bc5_snorm) tex::decode_bc4_snorm(bytes, palette);
-        else tex::decode_bc4_unorm(bytes, palette);
+        if (green)
+            tex::decode_bc1(bytes, tex::Bc1Mode::four_colors, r, palette, b, a);
+        else if (encoding == tex::Encoding::bc5_snorm)
+            tex::decode_bc4_snorm(bytes, palette);
+        else
+            tex::decode_bc4_unorm(bytes, palette);
         for (int k = 0; k < 16; ++k) {
             const float n = encoding == tex::Encoding::bc5_snorm ? palette[k] : 2.0f * palette[k] - 1.0f;
             rows[static_cast<std::size_t>(k / 4 * (kWidth + 12) + 4 * block + k % 4)] = n;
@@ -106,7 +112,8 @@ std::vector<float> decoded_rows(tex::Encoding encoding, bool second, unsigned se
 TEST(Encode, FindsThePalettesOfBlocksThatWereDecodedBefore) {
     for (const tex::Encoding encoding : {tex::Encoding::dxt5nm, tex::Encoding::bc5, tex::Encoding::bc5_snorm}) {
         for (unsigned seed = 0; seed < 8; ++seed) {
-            const std::vector<float> values[2] = {decoded_rows(encoding, false, seed), decoded_rows(encoding, true, 100 + seed)};
+            const std::vector<float> values[2] = {decoded_rows(encoding, false, seed),
+                                                  decoded_rows(encoding, true, 100 + seed)};
             tex::BlockRow row;
             for (int k = 0; k < 4; ++k) {
                 row.x[k] = values[0].data() + k * (kWidth + 12);
@@ -120,14 +127,20 @@ TEST(Encode, FindsThePalettesOfBlocksThatWereDecodedBefore) {
                 for (int channel = 0; channel < 2; ++channel) {
                     const std::byte* bytes = blocks.data() + 16 * block + 8 * channel;
                     const bool green = encoding == tex::Encoding::dxt5nm && channel == 1;
-                    if (green) tex::decode_bc1(bytes, tex::Bc1Mode::four_colors, r, decoded[1], b, a);
-                    else if (encoding == tex::Encoding::bc5_snorm) tex::decode_bc4_snorm(bytes, decoded[channel]);
-                    else tex::decode_bc4_unorm(bytes, decoded[channel]);
+                    if (green)
+                        tex::decode_bc1(bytes, tex::Bc1Mode::four_colors, r, decoded[1], b, a);
+                    else if (encoding == tex::Encoding::bc5_snorm)
+                        tex::decode_bc4_snorm(bytes, decoded[channel]);
+                    else
+                        tex::decode_bc4_unorm(bytes, decoded[channel]);
                     for (int k = 0; k < 16; ++k) {
-                        const float n = encoding == tex::Encoding::bc5_snorm ? decoded[channel][k] : 2.0f * decoded[channel][k] - 1.0f;
-                        const float before = values[channel][static_cast<std::size_t>(k / 4 * (kWidth + 12) + 4 * block + k % 4)];
+                        const float n = encoding == tex::Encoding::bc5_snorm ? decoded[channel][k]
+                                                                             : 2.0f * decoded[channel][k] - 1.0f;
+                        const float before =
+                            values[channel][static_cast<std::size_t>(k / 4 * (kWidth + 12) + 4 * block + k % 4)];
                         ASSERT_NEAR(n * 127.5f, before * 127.5f, 0.1f)
-                            << tex::name_of(tex::kEncodingNames, encoding) << " seed " << seed << " channel " << channel << " block " << block;
+                            << tex::name_of(tex::kEncodingNames, encoding) << " seed " << seed << " channel " << channel
+                            << " block " << block;
                     }
                 }
             }
@@ -152,8 +165,10 @@ TEST(Fit, WritesTheBlocksAskedForAndNothingElseOnEveryTarget) {
     for (const Effort effort : {Effort::fast, Effort::normal}) {
         for (const int encoding : {0, 1, 2}) {
             const auto fit = [&](int count, std::byte* blocks) {
-                if (encoding == 0) return tex::fit_dxt5nm_blocks({rows.x, false}, {rows.y, true}, count, effort, blocks);
-                return tex::fit_bc5_blocks({rows.x, false}, {rows.y, true}, count, encoding == 1 ? tex::kBc4Unorm : tex::kBc4Snorm, effort, blocks);
+                if (encoding == 0)
+                    return tex::fit_dxt5nm_blocks({rows.x, false}, {rows.y, true}, count, effort, blocks);
+                return tex::fit_bc5_blocks({rows.x, false}, {rows.y, true}, count,
+                                           encoding == 1 ? tex::kBc4Unorm : tex::kBc4Snorm, effort, blocks);
             };
             std::vector<std::byte> all(16 * 77);
             const bool extremes = fit(77, all.data());
@@ -161,11 +176,13 @@ TEST(Fit, WritesTheBlocksAskedForAndNothingElseOnEveryTarget) {
                 hwy::SetSupportedTargetsForTest(target);
                 for (const int count : {1, 7, 8, 9, 31, 32, 33, 64, 77}) {
                     std::vector<std::byte> some(16 * 77, std::byte{0xAB});
-                    EXPECT_EQ(fit(count, some.data()) && count == 77, extremes && count == 77) << hwy::TargetName(target);
+                    EXPECT_EQ(fit(count, some.data()) && count == 77, extremes && count == 77)
+                        << hwy::TargetName(target);
                     for (std::size_t k = 0; k < some.size(); ++k) {
                         const bool written = k < static_cast<std::size_t>(16 * count);
                         ASSERT_EQ(some[k], written ? all[k] : std::byte{0xAB})
-                            << count << " blocks, byte " << k << ", " << hwy::TargetName(target) << ", encoding " << encoding;
+                            << count << " blocks, byte " << k << ", " << hwy::TargetName(target) << ", encoding "
+                            << encoding;
                     }
                 }
             }
@@ -194,7 +211,8 @@ TEST(SingleGreens, AreOnTheirPalettesAndNearest) {
         EXPECT_LE(least, 2);
         EXPECT_LE(tex::single_greens_below()[third] >> 16, third);
         EXPECT_GE(tex::single_greens_above()[third] >> 16, third);
-        EXPECT_TRUE(on_palette(below.third, below.lower, below.distance) && on_palette(above.third, above.lower, above.distance));
+        EXPECT_TRUE(on_palette(below.third, below.lower, below.distance) &&
+                    on_palette(above.third, above.lower, above.distance));
     }
     EXPECT_EQ(tex::single_greens_above()[383] >> 8 & 0xFF, 31);  // flat, 127.5 codes
     EXPECT_EQ(tex::single_greens_above()[383] & 0xFF, 2);

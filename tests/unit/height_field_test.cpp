@@ -94,8 +94,7 @@ TEST(HeightField, TakesTheChannelAskedFor) {
     EXPECT_EQ(first_height(image, HeightChannel::g), 0.25f);
     EXPECT_EQ(first_height(image, HeightChannel::r), 0.375f);
     EXPECT_EQ(first_height(image, HeightChannel::a), 0.5f);
-    EXPECT_FLOAT_EQ(first_height(image, HeightChannel::luma),
-                    0.2126f * 0.375f + 0.7152f * 0.25f + 0.0722f * 0.125f);
+    EXPECT_FLOAT_EQ(first_height(image, HeightChannel::luma), 0.2126f * 0.375f + 0.7152f * 0.25f + 0.0722f * 0.125f);
     EXPECT_FLOAT_EQ(first_height(image, HeightChannel::average), 0.25f);
     EXPECT_EQ(first_height(image, HeightChannel::max), 0.375f);
 }
@@ -119,8 +118,7 @@ TEST(HeightField, AMissingChannelIsAnErrorThatListsThoseThereAre) {
 
 TEST(HeightField, AutomaticTakesLumaOnlyWhereColoursDifferAndCounts) {
     Image image;
-    for (int k = 0; k < 3; ++k)
-        image.planes.push_back(plane_of({37, 5}, [](int i, int j) { return noise(i, j); }));
+    for (int k = 0; k < 3; ++k) image.planes.push_back(plane_of({37, 5}, [](int i, int j) { return noise(i, j); }));
     image.names = {"R", "G", "B"};
     image.planes[1].at(36, 0) = 0.0f;
     image.planes[2].at(20, 4) = 1.0f;
@@ -132,8 +130,7 @@ TEST(HeightField, AutomaticTakesLumaOnlyWhereColoursDifferAndCounts) {
         for (int j = 0; j < 5; ++j) {
             for (int i = 0; i < 37; ++i) {
                 if ((i == 36 && j == 0) || (i == 20 && j == 4)) continue;
-                EXPECT_EQ(field.height.at(i, j),
-                          image.planes[0].at(i, j));  // exactly: not through luma's weights
+                EXPECT_EQ(field.height.at(i, j), image.planes[0].at(i, j));  // exactly: not through luma's weights
             }
         }
         EXPECT_FLOAT_EQ(field.height.at(36, 0), (0.2126f + 0.0722f) * image.planes[0].at(36, 0));
@@ -233,11 +230,9 @@ TEST(HeightField, BlursAfterItInverts) {
     options.wrap_x = Wrap::mirror;
     const Plane<float> heights = plane_of({20, 12}, [](int i, int j) { return noise(i, j); });
     const auto inverted = plane_of({20, 12}, [](int i, int j) { return 1.0 - noise(i, j); });
-    const auto truth =
-        tex::reference::blur(tex::reference::grid_of(inverted), 2.0, Wrap::mirror, Wrap::repeat);
+    const auto truth = tex::reference::blur(tex::reference::grid_of(inverted), 2.0, Wrap::mirror, Wrap::repeat);
     const HeightField field = tex::height_field(grey_image(heights.clone()), options).value();
-    for (int i = 0; i < 20; ++i)
-        EXPECT_NEAR(static_cast<double>(field.height.at(i, 11)), truth.at(i, 11), 1e-6);
+    for (int i = 0; i < 20; ++i) EXPECT_NEAR(static_cast<double>(field.height.at(i, 11)), truth.at(i, 11), 1e-6);
 }
 
 TEST(HeightField, BlurBeyondItsRangeIsABadOption) {
@@ -267,8 +262,10 @@ TEST(HeightField, GivesTheSameBytesOnEveryTargetAndForEveryNumberOfThreads) {
     tex::on_every_target([&] {
         for (const int threads : {1, 2, 3, 8}) {
             HeightField field = tex::height_field(image, options, {threads, {}}).value();
-            if (!first) first = std::move(field);
-            else EXPECT_TRUE(same_bytes(first->height, field.height)) << threads << " threads";
+            if (!first)
+                first = std::move(field);
+            else
+                EXPECT_TRUE(same_bytes(first->height, field.height)) << threads << " threads";
         }
     });
 }
@@ -296,8 +293,7 @@ TEST(HeightField, CanBeCancelledInEveryStep) {
     options.fill_invalid = true;
     options.blur_sigma = 1.0f;
     for (const double limit : {0.0, 0.1, 0.3, 0.45, 0.7, 0.9}) {
-        const auto result =
-            tex::height_field(image, options, {1, [&](double fraction) { return fraction < limit; }});
+        const auto result = tex::height_field(image, options, {1, [&](double fraction) { return fraction < limit; }});
         ASSERT_FALSE(result);
         EXPECT_EQ(result.error().code, ErrorCode::cancelled);
     }

@@ -112,7 +112,8 @@ void compare_with_magick(const std::string& file, const char* map) {
     SCOPED_TRACE(file);
     const Result<Image> image = read_image(file, quick());
     ASSERT_TRUE(image) << image.error().message();
-    const std::string raw = output_of(std::string(kMagick) + " '" + file + "' -auto-orient -depth 16 -endian LSB " + map + ":- 2>/dev/null");
+    const std::string raw = output_of(std::string(kMagick) + " '" + file + "' -auto-orient -depth 16 -endian LSB " +
+                                      map + ":- 2>/dev/null");
     const std::size_t planes = image->planes.size();
     ASSERT_EQ(raw.size(), static_cast<std::size_t>(image->extent().texels()) * planes * 2);
     std::size_t at = 0;
@@ -251,13 +252,16 @@ TEST_F(ImageIoFiles, TheContentDecidesNotTheName) {
 }
 
 TEST_F(ImageIoFiles, RefusesWhatIsNoPicture) {
-    for (const std::string text : {"hello, world", "#version 330\n", "%PDF-1.4", "x", "\x7f" "ELF\2\1\1"}) {
+    for (const std::string text : {"hello, world", "#version 330\n", "%PDF-1.4", "x",
+                                   "\x7f"
+                                   "ELF\2\1\1"}) {
         const Result<Image> image = read_image(make("a.png", text));
         ASSERT_FALSE(image);
         EXPECT_EQ(image.error().code, ErrorCode::bad_data);
         EXPECT_EQ(image.error().reason, "not a picture of any kind that is read here");
     }
-    EXPECT_EQ(read_image(make("a.ktx", "\xabKTX 11\xbb\r\n\x1a\n")).error().reason, "a KTX file of version 1: only version 2 is read");
+    EXPECT_EQ(read_image(make("a.ktx", "\xabKTX 11\xbb\r\n\x1a\n")).error().reason,
+              "a KTX file of version 1: only version 2 is read");
     EXPECT_EQ(read_image(make("empty.png", "")).error().reason, "is empty");
     EXPECT_EQ(read_image(folder_).error().reason, "is a directory");
     EXPECT_EQ(read_image(folder_ + "/missing.png").error().code, ErrorCode::io);
@@ -269,7 +273,8 @@ TEST_F(ImageIoFiles, ReadsFromAFifoInEveryWay) {
     ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
     for (const std::string name : {"tiny_10x10_u16.png", "reader_nan_inf_800x800.exr", "reader_grey_12bit_73x43.tif"}) {
         const std::string source = kData + "/height/" + name;
-        std::thread writer([&] { std::ofstream(fifo, std::ios::binary) << std::ifstream(source, std::ios::binary).rdbuf(); });
+        std::thread writer(
+            [&] { std::ofstream(fifo, std::ios::binary) << std::ifstream(source, std::ios::binary).rdbuf(); });
         const Result<Image> image = read_image(fifo, quick());
         writer.join();
         EXPECT_TRUE(image) << name << ": " << (image ? "" : image.error().message());
@@ -279,8 +284,9 @@ TEST_F(ImageIoFiles, ReadsFromAFifoInEveryWay) {
 TEST_F(ImageIoFiles, ReadsTheBaseLevelOfTextures) {
     Texture texture;
     texture.format = Format::rgba8_unorm;
-    texture.levels.push_back({{2, 1}, {std::byte{255}, std::byte{0}, std::byte{51}, std::byte{102}, std::byte{0}, std::byte{0},
-                                       std::byte{0}, std::byte{255}}});
+    texture.levels.push_back({{2, 1},
+                              {std::byte{255}, std::byte{0}, std::byte{51}, std::byte{102}, std::byte{0}, std::byte{0},
+                               std::byte{0}, std::byte{255}}});
     texture.levels.push_back({{1, 1}, std::vector<std::byte>(4)});
     for (const char* name : {"a.dds", "a.ktx2"}) {
         const auto bytes = encode_file(texture, *container_of(name));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "base/input_file.h"
+#include "files/input_file.h"
 
 #include <gtest/gtest.h>
 

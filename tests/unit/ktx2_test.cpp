@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "containers/ktx2.h"
+#include "formats/ktx2/ktx2.h"
 
 #include <cstring>
 #include <numeric>
@@ -11,7 +11,7 @@
 #include <tex/container.h>
 #include <tex/unpack.h>
 
-#include "containers/bytes.h"
+#include "formats/bytes.h"
 #include "unit/textures.h"
 
 namespace tex {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "base/math.h"
+#include "rows/math.h"
 
 #include <cmath>
 #include <functional>
@@ -16,9 +16,8 @@ using tex::math::kPi;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The largest error of `ours` against `truth`, in units in the last place of the double next to the truth.
-double largest_error(const std::function<double(double)>& ours,
-                     const std::function<long double(long double)>& truth, double low, double high,
-                     int count = 200000) {
+double largest_error(const std::function<double(double)>& ours, const std::function<long double(long double)>& truth,
+                     double low, double high, int count = 200000) {
     std::mt19937_64 random(1);
     std::uniform_real_distribution<double> distribution(low, high);
     double largest = 0.0;
@@ -73,10 +72,9 @@ TEST(Math, AtanIsWithinOneAndAHalfUlp) {
 TEST(Math, PowErrorGrowsWithTheExponentOnly) {
     for (const double y : {0.5, 1.0 / 2.4, 2.4, 2.2, 10.0, -3.0}) {
         const double bound = 2.0 + 3.0 * std::abs(y * std::log(1e-4));
-        EXPECT_LT(
-            largest_error([y](double x) { return tex::math::pow(x, y); },
-                          [y](long double x) { return std::pow(x, static_cast<long double>(y)); }, 1e-4, 1.0),
-            bound)
+        EXPECT_LT(largest_error([y](double x) { return tex::math::pow(x, y); },
+                                [y](long double x) { return std::pow(x, static_cast<long double>(y)); }, 1e-4, 1.0),
+                  bound)
             << y;
     }
 }
@@ -99,8 +97,7 @@ TEST(Math, SpecialValuesAreThoseOfTheStandard) {
     EXPECT_TRUE(std::isnan(tex::math::pow(-1.0, 0.5)));
     EXPECT_TRUE(std::signbit(tex::math::sin(-0.0)));
     EXPECT_TRUE(std::signbit(tex::math::atan(-0.0)));
-    for (const auto function :
-         {tex::math::exp, tex::math::log, tex::math::sin, tex::math::cos, tex::math::atan}) {
+    for (const auto function : {tex::math::exp, tex::math::log, tex::math::sin, tex::math::cos, tex::math::atan}) {
         EXPECT_TRUE(std::isnan(function(std::numeric_limits<double>::quiet_NaN())));
     }
 }

@@ -16,6 +16,8 @@ namespace {
 
 using tex::Extent;
 using tex::Fade;
+using tex::kDomains;
+using tex::kWraps;
 using tex::MipChain;
 using tex::MipDomain;
 using tex::MipFilter;
@@ -23,8 +25,6 @@ using tex::MipOptions;
 using tex::NormalMap;
 using tex::Wrap;
 using tex::fields::noise_normals;
-using tex::kDomains;
-using tex::kWraps;
 using tex::fields::same_bytes;
 
 // -- against the reference ---------------------------------------------------------------------------------
@@ -33,14 +33,13 @@ TEST(Mip, AgreesWithTheReferenceForEveryFilterDomainWrapAndSize) {
     for (const auto& filter : tex::kMipFilterNames) {
         for (const MipDomain domain : kDomains) {
             for (const Wrap wrap : kWraps) {
-                for (const Extent extent : {Extent{1, 1}, Extent{2, 2}, Extent{3, 5}, Extent{15, 16},
-                                            Extent{17, 33}, Extent{1, 30}, Extent{64, 36}}) {
+                for (const Extent extent : {Extent{1, 1}, Extent{2, 2}, Extent{3, 5}, Extent{15, 16}, Extent{17, 33},
+                                            Extent{1, 30}, Extent{64, 36}}) {
                     const NormalMap base = noise_normals(extent);
                     MipOptions options = options_of(filter.value, domain, wrap);
                     options.fade = Fade{2, 9};
                     const MipChain chain = chain_of(base, options);
-                    const auto truth =
-                        tex::reference::build_mip_chain(tex::reference::grid_of(base), options);
+                    const auto truth = tex::reference::build_mip_chain(tex::reference::grid_of(base), options);
                     ASSERT_EQ(chain.levels.size(), truth.size());
                     for (std::size_t k = 0; k < truth.size(); ++k) {
                         ASSERT_LT(largest_angle(chain.levels[k], truth[k]), 0.01)
@@ -74,7 +73,8 @@ void expect_same_bytes(const NormalMap& base, const MipOptions& options, const s
     tex::on_every_target([&] {
         for (const int count : threads) {
             MipChain chain = chain_of(base, options, count);
-            if (!first) first = std::move(chain);
+            if (!first)
+                first = std::move(chain);
             else
                 for (std::size_t k = 0; k < chain.levels.size(); ++k) {
                     EXPECT_TRUE(same_bytes(first->levels[k], chain.levels[k]))
@@ -101,8 +101,7 @@ TEST(Mip, GivesTheSameBytesForEveryNumberOfThreads) {
     for (const Extent extent : {Extent{512, 512}, Extent{513, 411}}) {
         for (const MipFilter filter : {MipFilter::box, MipFilter::mitchell}) {
             for (const MipDomain domain : kDomains) {
-                expect_same_bytes(noise_normals(extent), options_of(filter, domain, Wrap::repeat),
-                                  {1, 2, 3, 8});
+                expect_same_bytes(noise_normals(extent), options_of(filter, domain, Wrap::repeat), {1, 2, 3, 8});
             }
         }
     }
@@ -110,12 +109,12 @@ TEST(Mip, GivesTheSameBytesForEveryNumberOfThreads) {
 
 TEST(Mip, ReportsProgressUpwardsThroughAllLevels) {
     std::vector<double> seen = {0.0};
-    const auto chain = tex::build_mip_chain(noise_normals({301, 300}),
-                                            options_of(MipFilter::mitchell, MipDomain::slope, Wrap::clamp),
-                                            {1, [&](double fraction) {
-                                                 seen.push_back(fraction);
-                                                 return true;
-                                             }});
+    const auto chain =
+        tex::build_mip_chain(noise_normals({301, 300}), options_of(MipFilter::mitchell, MipDomain::slope, Wrap::clamp),
+                             {1, [&](double fraction) {
+                                  seen.push_back(fraction);
+                                  return true;
+                              }});
     ASSERT_TRUE(chain);
     EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
     EXPECT_GT(seen.size(), 4u);
@@ -123,8 +122,7 @@ TEST(Mip, ReportsProgressUpwardsThroughAllLevels) {
 }
 
 TEST(Mip, CanBeCancelled) {
-    const auto result =
-        tex::build_mip_chain(noise_normals({512, 512}), {}, {1, [](double) { return false; }});
+    const auto result = tex::build_mip_chain(noise_normals({512, 512}), {}, {1, [](double) { return false; }});
     ASSERT_FALSE(result);
     EXPECT_EQ(result.error().code, tex::ErrorCode::cancelled);
 }

@@ -18,6 +18,8 @@ namespace {
 
 using tex::Extent;
 using tex::Fade;
+using tex::kDomains;
+using tex::kWraps;
 using tex::MipChain;
 using tex::MipDomain;
 using tex::MipFilter;
@@ -26,8 +28,6 @@ using tex::NormalMap;
 using tex::Wrap;
 using tex::fields::noise;
 using tex::fields::noise_normals;
-using tex::kDomains;
-using tex::kWraps;
 using tex::fields::same_bytes;
 constexpr Extent kExtents[] = {{1, 1}, {1, 300}, {300, 1}, {5, 7}, {253, 253}, {1025, 1025}};
 
@@ -61,8 +61,7 @@ TEST(Mip, EveryTexelOfEveryLevelHasUnitLengthAndLooksOutwards) {
     for (const Extent extent : kExtents) {
         for (const auto& filter : tex::kMipFilterNames) {
             for (const MipDomain domain : kDomains) {
-                const MipChain chain =
-                    chain_of(noise_normals(extent), options_of(filter.value, domain, Wrap::repeat));
+                const MipChain chain = chain_of(noise_normals(extent), options_of(filter.value, domain, Wrap::repeat));
                 for (const NormalMap& level : chain.levels) {
                     for (int j = 0; j < level.extent().height; ++j) {
                         for (int i = 0; i < level.extent().width; ++i) {
@@ -117,8 +116,8 @@ TEST(Mip, AConstantVectorStays) {
         for (const auto& filter : tex::kMipFilterNames) {
             for (const MipDomain domain : kDomains) {
                 for (const Wrap wrap : kWraps) {
-                    const MipChain chain = chain_of(tex::uniform_map(extent, 0.36f, -0.48f, 0.8f),
-                                                    options_of(filter.value, domain, wrap));
+                    const MipChain chain =
+                        chain_of(tex::uniform_map(extent, 0.36f, -0.48f, 0.8f), options_of(filter.value, domain, wrap));
                     const NormalMap& last = chain.levels.back();
                     EXPECT_NEAR(last.x.at(0, 0), 0.36f, 1e-6f);
                     EXPECT_NEAR(last.y.at(0, 0), -0.48f, 1e-6f);
@@ -136,12 +135,10 @@ TEST(Mip, HalfFlatAndHalfSteepDiffersByDomain) {
     base.x.at(0, 0) = 0.8f;
     base.z.at(0, 0) = 0.6f;
     EXPECT_NEAR(
-        tilt_in_degrees(chain_of(base, options_of(MipFilter::box, MipDomain::vector, Wrap::repeat)).levels[1],
-                        0, 0),
+        tilt_in_degrees(chain_of(base, options_of(MipFilter::box, MipDomain::vector, Wrap::repeat)).levels[1], 0, 0),
         26.5651, 1e-4);
     EXPECT_NEAR(
-        tilt_in_degrees(chain_of(base, options_of(MipFilter::box, MipDomain::slope, Wrap::repeat)).levels[1],
-                        0, 0),
+        tilt_in_degrees(chain_of(base, options_of(MipFilter::box, MipDomain::slope, Wrap::repeat)).levels[1], 0, 0),
         33.6901, 1e-4);
 }
 
@@ -156,15 +153,13 @@ TEST(Mip, EveryLevelIsTheAverageOfTheBaseNotOfNormalisedLevels) {
     base.z.at(2, 0) = base.z.at(3, 0) = 0.8f;
     const MipChain chain = chain_of(base);
     // mean x = 1.2 / 4, mean z = (0.56 + 1.6) / 4
-    EXPECT_NEAR(tilt_in_degrees(chain.levels[2], 0, 0),
-                std::atan2(1.2, 2.16) * 180.0 / 3.14159265358979323846, 1e-4);
+    EXPECT_NEAR(tilt_in_degrees(chain.levels[2], 0, 0), std::atan2(1.2, 2.16) * 180.0 / 3.14159265358979323846, 1e-4);
 }
 
 TEST(Mip, TheBoxIsTheExactAverageOfOddSizes) {
     // In the slope domain the averages can be read from what is stored. Their mean by area is that of the
     // base level, at every level.
-    for (const Extent extent :
-         {Extent{5, 7}, Extent{253, 253}, Extent{1, 300}, Extent{300, 1}, Extent{1025, 33}}) {
+    for (const Extent extent : {Extent{5, 7}, Extent{253, 253}, Extent{1, 300}, Extent{300, 1}, Extent{1025, 33}}) {
         const NormalMap base = noise_normals(extent);
         const MipChain chain = chain_of(base, options_of(MipFilter::box, MipDomain::slope, Wrap::repeat));
         const auto mean_slope = [](const NormalMap& map) {
@@ -212,8 +207,8 @@ TEST(Mip, ASymmetricBumpStaysCentred) {
 }
 
 TEST(Mip, ABumpStaysWhereItIs) {
-    // The centre of mass of a round bump, weighed by the squares of its slopes; half a texel of drift in the step to a level would
-    // move it by half a texel of that level.
+    // The centre of mass of a round bump, weighed by the squares of its slopes; half a texel of drift in the step to a
+    // level would move it by half a texel of that level.
     for (const Extent extent : {Extent{256, 192}, Extent{253, 187}, Extent{131, 255}}) {
         const double u = 0.37 * extent.width, v = 0.58 * extent.height, sigma = 14.0;
         NormalMap base(extent);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "base/nearest.h"
+#include "rows/nearest.h"
 
 #include <tex/height_field.h>
 
@@ -54,8 +54,8 @@ Plane<float> filled(const Plane<float>& heights, Wrap wrap_x, Wrap wrap_y) {
 }
 
 TEST(Nearest, FillsFromTheNearestTexelTiesByRowThenColumn) {
-    for (const Extent extent : {Extent{1, 1}, Extent{1, 9}, Extent{9, 1}, Extent{2, 2}, Extent{7, 5},
-                                Extent{16, 16}, Extent{33, 20}, Extent{300, 12}}) {
+    for (const Extent extent : {Extent{1, 1}, Extent{1, 9}, Extent{9, 1}, Extent{2, 2}, Extent{7, 5}, Extent{16, 16},
+                                Extent{33, 20}, Extent{300, 12}}) {
         for (const double holes : {0.1, 0.5, 0.9, 0.98}) {
             for (const Wrap wrap_x : kWraps) {
                 for (const Wrap wrap_y : kWraps) {

@@ -11,7 +11,8 @@
 
 namespace tex {
 
-// Normals that lean in all directions by up to about 60 degrees, with features of a few texels; `phase` gives another map.
+// Normals that lean in all directions by up to about 60 degrees, with features of a few texels; `phase` gives another
+// map.
 inline NormalMap wavy_map(Extent extent, double phase = 0.0) {
     NormalMap map(extent);
     for (int j = 0; j < extent.height; ++j) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A file for each level, and files of roughness, from streams.
 
-#include "pipeline/output_file.h"
+#include "files/output_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -15,10 +15,10 @@
 
 #include <tex/image_io.h>
 
-#include "containers/row_source.h"
-#include "containers/texture_rows.h"
-#include "pipeline/bake_stream.h"
-#include "pipeline/pack_stream.h"
+#include "formats/row_source.h"
+#include "formats/texture_rows.h"
+#include "stream/bake_stream.h"
+#include "stream/pack_stream.h"
 #include "unit/normal_maps.h"
 #include "unit/streams.h"
 
@@ -40,7 +40,8 @@ protected:
         MipOptions mip;
         mip.levels = levels;
         const MipChain chain = build_mip_chain(wavy_map(extent), mip).value();
-        return write("in", encode_file(pack(chain, {Encoding::rgb8, YAxis::up, Effort::fast}).value(), container).value());
+        return write("in",
+                     encode_file(pack(chain, {Encoding::rgb8, YAxis::up, Effort::fast}).value(), container).value());
     }
     void draw(std::mt19937& random, Container container) {
         MipOptions& mip = bake_.mip;
@@ -97,7 +98,8 @@ TEST_F(OutputFiles, LevelsOfBakedMapsHaveTheBytesOfTheVerbs) {
         auto rows = open_rows(*file, {});
         ASSERT_TRUE(can_stream(*file, **rows, container, bake_));
         const StreamSizes sizes{1 << (2 + random() % 10), 0};
-        const auto report = bake_stream(*file, std::move(*rows), "", container, bake_, {1 + static_cast<int>(random() % 3), {}}, sizes);
+        const auto report =
+            bake_stream(*file, std::move(*rows), "", container, bake_, {1 + static_cast<int>(random() % 3), {}}, sizes);
         ASSERT_TRUE(report) << report.error().message();
         EXPECT_EQ(report->levels, static_cast<int>(chain.levels.size()));
         expect_files(chain, container, report->bytes);
@@ -121,7 +123,8 @@ TEST_F(OutputFiles, LevelsOfRepackedMapsHaveTheBytesOfTheVerbs) {
         SCOPED_TRACE(testing::Message() << "round " << round << ", " << extent.width << "x" << extent.height);
         draw(random, container);
         pack_.mip = random() % 2 == 0 ? std::optional(bake_.mip) : std::nullopt;  // else the file's own levels
-        const std::string input = write_map(extent, pack_.mip ? 1 : static_cast<int>(random() % 4), random() % 2 == 0 ? Container::ktx2 : Container::dds);
+        const std::string input = write_map(extent, pack_.mip ? 1 : static_cast<int>(random() % 4),
+                                            random() % 2 == 0 ? Container::ktx2 : Container::dds);
         MipChain chain = read_normals(input).value().chain;
         if (pack_.mip) {
             chain.levels.resize(1);
@@ -130,7 +133,8 @@ TEST_F(OutputFiles, LevelsOfRepackedMapsHaveTheBytesOfTheVerbs) {
         Result<InputFile> file = InputFile::open(input);
         Result<std::optional<TextureRows>> texture = open_texture_rows(*file, {});
         const StreamSizes sizes{1 << (2 + random() % 10), 0};
-        const auto report = pack_stream(*file, std::move(**texture), "", container, pack_, {1 + static_cast<int>(random() % 3), {}}, sizes);
+        const auto report = pack_stream(*file, std::move(**texture), "", container, pack_,
+                                        {1 + static_cast<int>(random() % 3), {}}, sizes);
         ASSERT_TRUE(report) << report.error().message();
         expect_files(chain, container, report->bytes);
         remove_outputs();
@@ -139,7 +143,8 @@ TEST_F(OutputFiles, LevelsOfRepackedMapsHaveTheBytesOfTheVerbs) {
 
 // Roughness beside the normals, of values and of maps, streamed and not.
 TEST_F(OutputFiles, RoughnessHasTheBytesOfTheVerbs) {
-    constexpr Format kFormats[] = {Format::bc4_unorm, Format::r8_unorm, Format::r16_unorm, Format::r16_float, Format::r32_float};
+    constexpr Format kFormats[] = {Format::bc4_unorm, Format::r8_unorm, Format::r16_unorm, Format::r16_float,
+                                   Format::r32_float};
     constexpr Container kRough[] = {Container::dds, Container::ktx2, Container::exr, Container::png};
     std::mt19937 random(10);
     for (int round = 0; round < 150; ++round) {
@@ -151,7 +156,9 @@ TEST_F(OutputFiles, RoughnessHasTheBytesOfTheVerbs) {
         RoughnessFile file;
         file.output = path("rough");
         file.container = kRough[random() % 4];
-        file.format = kFormats[file.container == Container::exr ? 3 + random() % 2 : file.container == Container::png ? 1 + random() % 2 : random() % 5];
+        file.format = kFormats[file.container == Container::exr   ? 3 + random() % 2
+                               : file.container == Container::png ? 1 + random() % 2
+                                                                  : random() % 5];
         if (file.container == Container::exr) pack_.mip->levels = random() % 2 == 0 ? 0 : 1;
         file.effort = Effort::fast;
         file.model = any_of(kRoughnessModelNames, random);
@@ -164,12 +171,14 @@ TEST_F(OutputFiles, RoughnessHasTheBytesOfTheVerbs) {
         if (file.container == Container::png) mip.levels = 1;
         const Plane<float> own(extent, file.own);
         const RoughnessChain chain = build_roughness_chain(base, own, file.model, mip).value();
-        const Bytes expected = encode_file(pack_roughness(chain, file.format, file.effort).value(), file.container, pack_.write).value();
+        const Bytes expected =
+            encode_file(pack_roughness(chain, file.format, file.effort).value(), file.container, pack_.write).value();
 
         Result<InputFile> opened = InputFile::open(input);
         Result<std::optional<TextureRows>> texture = open_texture_rows(*opened, {});
         const StreamSizes sizes{1 << (2 + random() % 10), 0};
-        const auto report = pack_stream(*opened, std::move(**texture), path("out"), Container::dds, pack_, {1 + static_cast<int>(random() % 3), {}}, sizes);
+        const auto report = pack_stream(*opened, std::move(**texture), path("out"), Container::dds, pack_,
+                                        {1 + static_cast<int>(random() % 3), {}}, sizes);
         ASSERT_TRUE(report) << report.error().message();
         ASSERT_TRUE(bytes_of(path("rough")) == expected);
         EXPECT_EQ(report->roughness_bytes, expected.size());
@@ -202,7 +211,8 @@ TEST_F(OutputFiles, DamageLeavesNoneOfTheLevels) {
     }
 }
 
-// Large files are open while they grow, small ones come at the end: either way what cannot be written is the error of the file that it is about.
+// Large files are open while they grow, small ones come at the end: either way what cannot be written is the error of
+// the file that it is about.
 TEST_F(OutputFiles, ALevelThatCannotBeWrittenIsNamedAndOthersAreWhole) {
     const std::string input = write_map({640, 640}, 1, Container::png);
     std::mt19937 random(8);
@@ -210,7 +220,9 @@ TEST_F(OutputFiles, ALevelThatCannotBeWrittenIsNamedAndOthersAreWhole) {
         draw(random, Container::dds);
         packing_.encoding = bake_.pack.encoding = Encoding::rgb8;
         bake_.mip = {};
-        bake_.level_names = [&](int level) { return path(level == missing ? "none/out" : "out" + std::to_string(level)); };
+        bake_.level_names = [&](int level) {
+            return path(level == missing ? "none/out" : "out" + std::to_string(level));
+        };
         const auto report = bake_file(input, "", Container::dds, bake_);
         EXPECT_EQ(report.error().message(), path("none/out") + ": the directory does not exist");
         const std::size_t before = missing == 4 ? 4 : 0;  // 0 and 1 are opened at once

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "pipeline/pack_stream.h"
+#include "stream/pack_stream.h"
 
 #include <gtest/gtest.h>
 #include <half.h>
@@ -65,7 +65,8 @@ protected:
         Result<std::optional<TextureRows>> texture = open_texture_rows(*file, options_.source.read);
         if (!texture) return texture.error();
         EXPECT_TRUE(*texture) << input;
-        return pack_stream(*file, std::move(**texture), path("out"), container, options_, {threads, std::move(progress)}, sizes);
+        return pack_stream(*file, std::move(**texture), path("out"), container, options_,
+                           {threads, std::move(progress)}, sizes);
     }
 
     void draw_options(std::mt19937& random, int levels) {
@@ -76,9 +77,11 @@ protected:
         options_.source.unpack.range = one_in(2) ? ValueRange::automatic : any_of(kValueRangeNames, random);
         if (one_in(2)) options_.source.unpack.y_axis = any_of(kYAxisNames, random);
         if (one_in(8)) options_.source.r_or_a = true;
-        options_.scale = one_in(3) ? std::optional<Scaling>({0.5f * static_cast<float>(random() % 7) - 1.0f, any_of(kScaleModeNames, random)})
+        options_.scale = one_in(3) ? std::optional<Scaling>({0.5f * static_cast<float>(random() % 7) - 1.0f,
+                                                             any_of(kScaleModeNames, random)})
                                    : std::nullopt;
-        options_.level = one_in(4) ? std::optional<int>(static_cast<int>(random() % static_cast<unsigned>(levels))) : std::nullopt;
+        options_.level =
+            one_in(4) ? std::optional<int>(static_cast<int>(random() % static_cast<unsigned>(levels))) : std::nullopt;
         options_.mip.reset();
         if (one_in(2)) {
             options_.mip = MipOptions();
@@ -143,7 +146,8 @@ TEST_F(PackStream, GivesTheBytesOfTheVerbs) {
 // Every file of others: channels by masks, rows that run upwards, headers that claim too much.
 TEST_F(PackStream, TakesTheTexturesOfOthersAsTheVerbsDo) {
     std::vector<std::filesystem::path> inputs;
-    for (const auto& entry : std::filesystem::directory_iterator(TEX_SOURCE_DIR "/samples/broken")) inputs.push_back(entry.path());
+    for (const auto& entry : std::filesystem::directory_iterator(TEX_SOURCE_DIR "/samples/broken"))
+        inputs.push_back(entry.path());
     if (std::filesystem::exists(shared_data())) {
         for (const char* folder : {"dds", "dds/reference", "bad"}) {
             for (const auto& file : files_in(folder, ".dds")) inputs.push_back(file);
@@ -197,7 +201,8 @@ TEST_F(PackStream, TakesRowsThatRunUpwards) {
 TEST_F(PackStream, ReadsOnceMoreWhereTheTexelsSayOtherwise) {
     std::mt19937 random(5);
     constexpr Swizzle kUnknown = {Component::other, Component::other, Component::other, Component::other};
-    constexpr Encoding kEncodings[] = {Encoding::rgba8, Encoding::ag8, Encoding::rgb8, Encoding::half, Encoding::float_};
+    constexpr Encoding kEncodings[] = {Encoding::rgba8, Encoding::ag8, Encoding::rgb8, Encoding::half,
+                                       Encoding::float_};
     for (int round = 0; round < 120; ++round) {
         const Extent extent{kSides[random() % 14], kSides[random() % 14]};
         const Encoding encoding = kEncodings[random() % std::size(kEncodings)];
@@ -236,7 +241,8 @@ TEST_F(PackStream, ReadsOnceMoreWhereTheTexelsSayOtherwise) {
         EXPECT_EQ(report->source.guessed, info.guessed);
         EXPECT_EQ(report->source.y_axis, info.y_axis);
         EXPECT_EQ(files(), 1u + static_cast<std::size_t>(std::filesystem::exists(path("out"))) +
-                               static_cast<std::size_t>(std::filesystem::exists(path("in.png")) && std::filesystem::exists(path("in.exr"))));
+                               static_cast<std::size_t>(std::filesystem::exists(path("in.png")) &&
+                                                        std::filesystem::exists(path("in.exr"))));
     }
 }
 
@@ -273,10 +279,10 @@ TEST_F(PackStream, TakesEveryInputThatComesInOrder) {
         Container kind;
         Encoding encoding;
     };
-    for (const auto& [kind, encoding] :
-         {Case{Container::png, Encoding::rgb8}, Case{Container::png, Encoding::rgb16}, Case{Container::exr, Encoding::half},
-          Case{Container::exr, Encoding::float_}, Case{Container::tiff, Encoding::rgb16}, Case{Container::tga, Encoding::ag8},
-          Case{Container::bmp, Encoding::rgb8}, Case{Container::jpeg, Encoding::rgb8}}) {
+    for (const auto& [kind, encoding] : {Case{Container::png, Encoding::rgb8}, Case{Container::png, Encoding::rgb16},
+                                         Case{Container::exr, Encoding::half}, Case{Container::exr, Encoding::float_},
+                                         Case{Container::tiff, Encoding::rgb16}, Case{Container::tga, Encoding::ag8},
+                                         Case{Container::bmp, Encoding::rgb8}, Case{Container::jpeg, Encoding::rgb8}}) {
         SCOPED_TRACE(name_of(kContainerNames, kind));
         const std::string input = write_map(extent, kind, encoding);
         const auto report = pack_file(input, path("out"), Container::ktx2, options_);
@@ -301,7 +307,8 @@ TEST_F(PackStream, LeavesWholeImagesToTheVerbs) {
 }
 
 TEST_F(PackStream, LevelsOfAnExrStream) {
-    const std::string mipped = write(pack(build_mip_chain(wavy_map({320, 190})).value(), {Encoding::half}).value(), Container::exr);
+    const std::string mipped =
+        write(pack(build_mip_chain(wavy_map({320, 190})).value(), {Encoding::half}).value(), Container::exr);
     pack_.encoding = Encoding::bc5;
     for (const bool builds : {false, true}) {
         options_.mip = builds ? std::optional(MipOptions()) : std::nullopt;
@@ -315,8 +322,12 @@ TEST_F(PackStream, LevelsOfAnExrStream) {
 
 TEST_F(PackStream, DamageIsTheSameErrorAndLeavesNothing) {
     for (const Container kind : {Container::png, Container::exr}) {
-        expect_same_damage(write_map({300, 200}, kind, default_encoding(kind)), [](const std::string& input) { return read_normals(input); },
-                           [&](const std::string& input, int threads) { return stream(input, Container::dds, threads, {2048, 0}); });
+        expect_same_damage(
+            write_map({300, 200}, kind, default_encoding(kind)),
+            [](const std::string& input) { return read_normals(input); },
+            [&](const std::string& input, int threads) {
+                return stream(input, Container::dds, threads, {2048, 0});
+            });
     }
     // A file that is damaged is damaged first, whatever else is wrong.
     options_.level = 3;
@@ -331,14 +342,17 @@ TEST_F(PackStream, OptionsThatDoNotFitAreTheSameErrors) {
               read_normals(input, options_.source).error().message());
     options_.source = {};
     options_.level = 2;
-    EXPECT_EQ(pack_file(input, path("out"), Container::dds, options_).error().message(), input + ": has no level 2, only 1");
-    EXPECT_EQ(pack_file(input, path("out"), Container::tga, options_).error().message(), input + ": has no level 2, only 1");
+    EXPECT_EQ(pack_file(input, path("out"), Container::dds, options_).error().message(),
+              input + ": has no level 2, only 1");
+    EXPECT_EQ(pack_file(input, path("out"), Container::tga, options_).error().message(),
+              input + ": has no level 2, only 1");
     Texture grey;
     grey.format = Format::r8_unorm;
     grey.levels.push_back({{4, 4}, Bytes(16)});
     const std::string one = write(grey, Container::png);
     options_.level.reset();
-    EXPECT_EQ(pack_file(one, path("out"), Container::dds, options_).error().message(), read_normals(one).error().message());
+    EXPECT_EQ(pack_file(one, path("out"), Container::dds, options_).error().message(),
+              read_normals(one).error().message());
     EXPECT_EQ(pack_file(path("none.png"), path("out"), Container::dds, options_).error().code, ErrorCode::io);
     EXPECT_EQ(files(), 1u);
 }
@@ -347,13 +361,16 @@ TEST_F(PackStream, OutputsThatCannotBeWrittenAreErrors) {
     const std::string input = write_map({300, 200}, Container::dds, Encoding::bc5);
     for (const Container container : {Container::png, Container::exr, Container::ktx2}) {
         pack_.encoding = default_encoding(container);
-        EXPECT_EQ(pack_file(input, path("none/out"), container, options_).error().message(), path("none/out") + ": the directory does not exist");
-        EXPECT_EQ(pack_file(input, "/dev/full", container, options_).error().message(), "/dev/full: cannot be written: no space left on the disk");
+        EXPECT_EQ(pack_file(input, path("none/out"), container, options_).error().message(),
+                  path("none/out") + ": the directory does not exist");
+        EXPECT_EQ(pack_file(input, "/dev/full", container, options_).error().message(),
+                  "/dev/full: cannot be written: no space left on the disk");
     }
     pack_.encoding = Encoding::bc5;
     EXPECT_EQ(pack_file(input, path("out"), Container::png, options_).error().message(),
               path("out") + ": PNG holds 8 or 16 bits in one, three or four channels, not bc5-unorm");
-    EXPECT_EQ(pack_file(input, path("out"), Container::exr, options_).error().message(), path("out") + ": EXR holds half and float, not bc5-unorm");
+    EXPECT_EQ(pack_file(input, path("out"), Container::exr, options_).error().message(),
+              path("out") + ": EXR holds half and float, not bc5-unorm");
     EXPECT_EQ(files(), 1u);
 }
 

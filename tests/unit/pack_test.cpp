@@ -29,9 +29,9 @@ using tex::Extent;
 using tex::MipChain;
 using tex::NormalMap;
 
-constexpr Encoding kAllEncodings[] = {Encoding::dxt5nm, Encoding::bc5,  Encoding::bc5_snorm, Encoding::rgb8,
-                                      Encoding::rgba8,  Encoding::rgb16, Encoding::ag8,      Encoding::rg8,
-                                      Encoding::rg16,   Encoding::half, Encoding::float_};
+constexpr Encoding kAllEncodings[] = {Encoding::dxt5nm, Encoding::bc5,   Encoding::bc5_snorm, Encoding::rgb8,
+                                      Encoding::rgba8,  Encoding::rgb16, Encoding::ag8,       Encoding::rg8,
+                                      Encoding::rg16,   Encoding::half,  Encoding::float_};
 constexpr Effort kAllEfforts[] = {Effort::fast, Effort::normal, Effort::best};
 
 template <class T>
@@ -46,9 +46,9 @@ int unorm(float n, int top) {
     return static_cast<int>(std::min(std::max(code, 0.0f), static_cast<float>(top)));
 }
 
-
 TEST(Pack, UnormCodesFollowTheFormulaInEveryLayout) {
-    for (const Extent extent : {Extent{1, 1}, Extent{2, 3}, Extent{15, 2}, Extent{16, 1}, Extent{17, 2}, Extent{257, 3}}) {
+    for (const Extent extent :
+         {Extent{1, 1}, Extent{2, 3}, Extent{15, 2}, Extent{16, 1}, Extent{17, 2}, Extent{257, 3}}) {
         const MipChain chain = chain_of(bumpy(extent, 3));
         const NormalMap& map = chain.levels[0];
         const auto rgb8 = as<std::uint8_t>(pack_bytes(chain, {Encoding::rgb8}));
@@ -89,7 +89,8 @@ TEST(Pack, FlatIs128And128And255) {
 }
 
 TEST(Pack, CodesAreClamped) {
-    const auto rgb16 = as<std::uint16_t>(pack_bytes(chain_of(tex::uniform_map({1, 1}, -1.5f, 1.5f, 1)), {Encoding::rgb16}));
+    const auto rgb16 =
+        as<std::uint16_t>(pack_bytes(chain_of(tex::uniform_map({1, 1}, -1.5f, 1.5f, 1)), {Encoding::rgb16}));
     EXPECT_EQ(rgb16, (std::vector<std::uint16_t>{0, 65535, 65535}));
 }
 
@@ -112,7 +113,8 @@ TEST(Pack, YDownStoresMinusYAndNothingElse) {
     for (const Encoding encoding : kAllEncodings) {
         EXPECT_EQ(pack_bytes(down, {encoding, tex::YAxis::down}), pack_bytes(up, {encoding, tex::YAxis::up}));
     }
-    const auto flat = as<std::uint32_t>(pack_bytes(chain_of(tex::uniform_map({1, 1}, 0, 0, 1)), {Encoding::float_, tex::YAxis::down}));
+    const auto flat = as<std::uint32_t>(
+        pack_bytes(chain_of(tex::uniform_map({1, 1}, 0, 0, 1)), {Encoding::float_, tex::YAxis::down}));
     EXPECT_EQ(flat[1], 0u);  // not -0
 }
 
@@ -207,9 +209,7 @@ TEST(Pack, FlatDecodesTo127Or128UnderEveryVendorsRule) {
                 const int a0 = byte(0), a1 = byte(1);
                 const int alpha_index = byte(2) & 7;
                 const int steps = a0 > a1 ? 7 : 5;
-                const int alpha = alpha_index == 0   ? a0
-                                  : alpha_index == 1 ? a1
-                                                     : rule(a0, a1, alpha_index - 1, steps);
+                const int alpha = alpha_index == 0 ? a0 : alpha_index == 1 ? a1 : rule(a0, a1, alpha_index - 1, steps);
                 ASSERT_LE(alpha_index, steps);
                 EXPECT_TRUE(alpha == 127 || alpha == 128) << alpha;
                 const int g0 = tex::widen_green((byte(8) | byte(9) << 8) >> 5 & 63);
@@ -227,7 +227,8 @@ TEST(Pack, ConstantBlocksAreWithinHalfACodeAtEveryLevel) {
         for (int code = 0; code < 256; ++code) {
             const float n = static_cast<float>(code) / 127.5f - 1.0f;
             for (const Effort effort : kAllEfforts) {
-                const auto bytes = pack_bytes(chain_of(tex::uniform_map({4, 4}, n, n, 0)), {encoding, tex::YAxis::up, effort});
+                const auto bytes =
+                    pack_bytes(chain_of(tex::uniform_map({4, 4}, n, n, 0)), {encoding, tex::YAxis::up, effort});
                 float x[16], y[16];
                 decode_codes(bytes.data(), encoding, x, y);
                 EXPECT_NEAR(x[0], static_cast<float>(code), 0.51f);
@@ -267,14 +268,16 @@ TEST(Pack, EncodeBlocksGivesTheSameBytesWithAnyStrideAndPitch) {
         std::copy_n(map.y.row(j), 37, &y[static_cast<std::size_t>(45 * j)]);
     }
     for (const Encoding encoding : {Encoding::dxt5nm, Encoding::bc5, Encoding::bc5_snorm}) {
-        for (const tex::PackOptions& options : {tex::PackOptions{encoding, tex::YAxis::down, Effort::fast}, tex::PackOptions{encoding},
-                                                tex::PackOptions{encoding, tex::YAxis::up, Effort::best, tex::Metric::angle}}) {
+        for (const tex::PackOptions& options :
+             {tex::PackOptions{encoding, tex::YAxis::down, Effort::fast}, tex::PackOptions{encoding},
+              tex::PackOptions{encoding, tex::YAxis::up, Effort::best, tex::Metric::angle}}) {
             const std::vector<std::byte> packed = pack_bytes(chain, options);
             constexpr std::size_t kRow = 10 * 16;
             constexpr std::size_t kPitch = kRow + 8;
             std::vector<std::byte> blocks(4 * kPitch);
             tex::encode_blocks({x.data(), {37, 14}, 41}, {y.data(), {37, 14}, 45}, options, blocks.data(), kPitch);
-            for (std::size_t k = 0; k < packed.size(); ++k) ASSERT_EQ(packed[k], blocks[k / kRow * kPitch + k % kRow]) << k;
+            for (std::size_t k = 0; k < packed.size(); ++k)
+                ASSERT_EQ(packed[k], blocks[k / kRow * kPitch + k % kRow]) << k;
         }
     }
 }

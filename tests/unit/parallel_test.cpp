@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "base/parallel.h"
+#include "threads/parallel.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "containers/picture.h"
+#include "formats/picture.h"
 
 #include <gtest/gtest.h>
 #include <tex/unpack.h>
@@ -25,9 +25,12 @@ TEST(Picture, KeepsItsValuesInTheSmallestFormat) {
         Format format;
     };
     const Case cases[] = {
-        {SampleKind::unorm, 1, 1.0f, Format::rgb8_unorm},         {SampleKind::unorm, 4, 7.0f / 15.0f, Format::rgb8_unorm},
-        {SampleKind::unorm, 8, 200.0f / 255.0f, Format::rgb8_unorm}, {SampleKind::unorm, 16, 4321.0f / 65535.0f, Format::rgb16_unorm},
-        {SampleKind::unorm, 32, 0.123456f, Format::rgb32_float},  {SampleKind::floating, 16, -0.25f, Format::rgb16_float},
+        {SampleKind::unorm, 1, 1.0f, Format::rgb8_unorm},
+        {SampleKind::unorm, 4, 7.0f / 15.0f, Format::rgb8_unorm},
+        {SampleKind::unorm, 8, 200.0f / 255.0f, Format::rgb8_unorm},
+        {SampleKind::unorm, 16, 4321.0f / 65535.0f, Format::rgb16_unorm},
+        {SampleKind::unorm, 32, 0.123456f, Format::rgb32_float},
+        {SampleKind::floating, 16, -0.25f, Format::rgb16_float},
         {SampleKind::floating, 32, 1e30f, Format::rgb32_float},
     };
     for (const Case& c : cases) {

@@ -18,8 +18,8 @@
 
 #include <tex/image_io.h>
 
-#include "containers/row_source.h"
-#include "pipeline/bake_stream.h"
+#include "formats/row_source.h"
+#include "stream/bake_stream.h"
 #include "unit/streams.h"
 
 namespace tex {
@@ -93,7 +93,8 @@ protected:
         auto rows = open_rows(*file, options_.read);
         if (!rows) return rows.error();
         if (!can_stream(*file, **rows, container, options_)) return Error{ErrorCode::unsupported, input, "no stream"};
-        return bake_stream(*file, std::move(*rows), path("out"), container, options_, {threads, std::move(progress)}, sizes);
+        return bake_stream(*file, std::move(*rows), path("out"), container, options_, {threads, std::move(progress)},
+                           sizes);
     }
 
     BakeFileOptions options_;
@@ -127,13 +128,15 @@ TEST_F(Pipeline, StreamsGiveTheBytesOfTheVerbs) {
         options_.strength = [&](Extent its) { return Strength{6.0f, static_cast<float>(its.height) / 8.0f}; };
         const Kind kind{1 + static_cast<int>(random() % 4), one_in(2) ? 8 : 16};
         if (kind.channels >= 3) options_.heights.channel = any_of(kHeightChannelNames, random);
-        if (kind.channels == 3 && options_.heights.channel == HeightChannel::a) options_.heights.channel = HeightChannel::b;
+        if (kind.channels == 3 && options_.heights.channel == HeightChannel::a)
+            options_.heights.channel = HeightChannel::b;
         if (options_.heights.channel == HeightChannel::y) options_.heights.channel = HeightChannel::max;
         constexpr Container kContainers[] = {Container::dds, Container::ktx2, Container::png, Container::exr};
         const Container container = kContainers[random() % 4];
         if (container == Container::png || container == Container::exr) {
             options_.mip.levels = container == Container::exr && one_in(2) ? 0 : 1;  // EXR holds the base level or all
-            while (!can_hold(container, options_.pack.encoding)) options_.pack.encoding = any_of(kEncodingNames, random);
+            while (!can_hold(container, options_.pack.encoding))
+                options_.pack.encoding = any_of(kEncodingNames, random);
         }
         const std::string input = write("in.png", make_png(extent, kind, static_cast<unsigned>(random())));
         SlopeRange slopes;
@@ -266,18 +269,26 @@ void make_exr(const std::string& path, Extent extent, const ExrKind& kind) {
         file.writePixels(extent.height);
         return;
     }
-    header.setTileDescription(Imf::TileDescription(static_cast<unsigned>(kind.tile), static_cast<unsigned>(kind.tile), Imf::ONE_LEVEL));
+    header.setTileDescription(
+        Imf::TileDescription(static_cast<unsigned>(kind.tile), static_cast<unsigned>(kind.tile), Imf::ONE_LEVEL));
     Imf::TiledOutputFile file(path.c_str(), header, 0);
     file.setFrameBuffer(buffer);
     file.writeTiles(0, file.numXTiles() - 1, 0, file.numYTiles() - 1);
 }
 
 TEST_F(Pipeline, ExrStreamsWhateverItsRowsAreKeptIn) {
-    const std::vector<ExrKind> kinds = {
-        {}, {Imf::NO_COMPRESSION}, {Imf::ZIPS_COMPRESSION, Imf::FLOAT}, {Imf::PIZ_COMPRESSION, Imf::UINT}, {Imf::RLE_COMPRESSION},
-        {Imf::PXR24_COMPRESSION, Imf::FLOAT}, {Imf::B44_COMPRESSION}, {Imf::DWAA_COMPRESSION}, {Imf::DWAB_COMPRESSION},
-        {Imf::ZIP_COMPRESSION, Imf::FLOAT, Imf::DECREASING_Y}, {Imf::ZIP_COMPRESSION, Imf::HALF, Imf::INCREASING_Y, 16},
-        {Imf::PIZ_COMPRESSION, Imf::FLOAT, Imf::RANDOM_Y, 32}};
+    const std::vector<ExrKind> kinds = {{},
+                                        {Imf::NO_COMPRESSION},
+                                        {Imf::ZIPS_COMPRESSION, Imf::FLOAT},
+                                        {Imf::PIZ_COMPRESSION, Imf::UINT},
+                                        {Imf::RLE_COMPRESSION},
+                                        {Imf::PXR24_COMPRESSION, Imf::FLOAT},
+                                        {Imf::B44_COMPRESSION},
+                                        {Imf::DWAA_COMPRESSION},
+                                        {Imf::DWAB_COMPRESSION},
+                                        {Imf::ZIP_COMPRESSION, Imf::FLOAT, Imf::DECREASING_Y},
+                                        {Imf::ZIP_COMPRESSION, Imf::HALF, Imf::INCREASING_Y, 16},
+                                        {Imf::PIZ_COMPRESSION, Imf::FLOAT, Imf::RANDOM_Y, 32}};
     options_.strength = [](Extent) { return Strength{9.0f, 9.0f}; };
     for (const Extent extent : {Extent{37, 61}, Extent{5, 3}, Extent{64, 300}}) {
         for (const ExrKind& kind : kinds) {
@@ -308,10 +319,12 @@ TEST_F(Pipeline, DamageIsTheSameErrorAndLeavesNothing) {
     make_exr(path("in.exr"), {200, 300}, {});
     for (const std::string& sound : {path("in.exr"), write("in.png", make_png({300, 500}, {1, 16}))}) {
         for (const Container container : {Container::dds, Container::png}) {
-            expect_same_damage(sound, [](const std::string& input) { return read_image(input); }, [&](const std::string& input, int threads) {
-                options_.pack.encoding = default_encoding(container);
-                return stream(input, container, threads, {2048, 0});
-            });
+            expect_same_damage(
+                sound, [](const std::string& input) { return read_image(input); },
+                [&](const std::string& input, int threads) {
+                    options_.pack.encoding = default_encoding(container);
+                    return stream(input, container, threads, {2048, 0});
+                });
         }
     }
     EXPECT_EQ(files(), 4u);
@@ -332,7 +345,8 @@ TEST_F(Pipeline, HeightsThatCannotBeUsedAreTheSameErrors) {
         for (const int row : {31, 0, 49}) {
             options_.heights.no_data = image.planes[0].at(7, row);
             for (const int threads : {1, 2}) {
-                EXPECT_EQ(stream(input, container, threads, {64, 0}).error().message(), height_field(image, options_.heights).error().message());
+                EXPECT_EQ(stream(input, container, threads, {64, 0}).error().message(),
+                          height_field(image, options_.heights).error().message());
             }
         }
     }
@@ -385,7 +399,8 @@ TEST_F(Pipeline, CancellingLeavesNothing) {
     options_.pack.encoding = default_encoding(Container::png);
     for (const int most : {10, 404}) {
         int calls = 0;
-        EXPECT_EQ(stream(input, Container::png, 1, {2000, 0}, [&](double) { return ++calls < most; }).error().code, ErrorCode::cancelled);
+        EXPECT_EQ(stream(input, Container::png, 1, {2000, 0}, [&](double) { return ++calls < most; }).error().code,
+                  ErrorCode::cancelled);
         EXPECT_EQ(calls, most);
         EXPECT_EQ(files(), 1u);
     }

@@ -54,7 +54,8 @@ double plain_fit(const std::vector<double>& values, int steps, int codes, const 
     return least;
 }
 
-// The root mean square error of the exact palette of `steps` spacings between the extremes moved inwards by a part of the range, and the range.
+// The root mean square error of the exact palette of `steps` spacings between the extremes moved inwards by a part of
+// the range, and the range.
 struct Unrefined {
     double error, range;
 };

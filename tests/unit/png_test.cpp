@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "containers/png.h"
+#include "formats/png/png.h"
 
 #include <gtest/gtest.h>
 #include <png.h>
@@ -126,8 +126,10 @@ TEST(Png, ReadsEveryKindExactly) {
     std::vector<Kind> kinds;
     for (const bool interlaced : {false, true}) {
         for (const bool transparent : {false, true}) {
-            for (const int bits : {1, 2, 4, 8, 16}) kinds.push_back({PNG_COLOR_TYPE_GRAY, bits, interlaced, transparent});
-            for (const int bits : {1, 2, 4, 8}) kinds.push_back({PNG_COLOR_TYPE_PALETTE, bits, interlaced, transparent});
+            for (const int bits : {1, 2, 4, 8, 16})
+                kinds.push_back({PNG_COLOR_TYPE_GRAY, bits, interlaced, transparent});
+            for (const int bits : {1, 2, 4, 8})
+                kinds.push_back({PNG_COLOR_TYPE_PALETTE, bits, interlaced, transparent});
             for (const int bits : {8, 16}) kinds.push_back({PNG_COLOR_TYPE_RGB, bits, interlaced, transparent});
         }
         for (const int bits : {8, 16}) {

@@ -21,8 +21,7 @@ NormalMap waves(Extent extent, bool upside_down) {
     NormalMap map(extent);
     for (int j = 0; j < extent.height; ++j) {
         for (int i = 0; i < extent.width; ++i) {
-            const double p = std::cos(0.4 * i) * std::sin(0.3 * j),
-                         q = -0.75 * std::sin(0.4 * i) * std::cos(0.3 * j);
+            const double p = std::cos(0.4 * i) * std::sin(0.3 * j), q = -0.75 * std::sin(0.4 * i) * std::cos(0.3 * j);
             const double n = std::sqrt(p * p + q * q + 1.0);
             map.x.at(i, j) = static_cast<float>(-p / n);
             map.y.at(i, j) = static_cast<float>((upside_down ? q : -q) / n);
@@ -58,8 +57,7 @@ TEST(PreviewColors, ViridisRunsFromDarkVioletToYellowAndGrowsInLightness) {
         EXPECT_NEAR(got.y, want[k].y, 0.02);
         EXPECT_NEAR(got.z, want[k].z, 0.02);
     }
-    for (int k = 1; k <= 100; ++k)
-        EXPECT_GT(lightness(viridis(k / 100.0)), lightness(viridis((k - 1) / 100.0)));
+    for (int k = 1; k <= 100; ++k) EXPECT_GT(lightness(viridis(k / 100.0)), lightness(viridis((k - 1) / 100.0)));
 }
 
 TEST(PreviewColors, DivergingIsLightestAtZeroAndDarkensToBothSides) {
@@ -115,15 +113,12 @@ TEST(PreviewLegend, NamesTheEndsInTheSameWayInEveryLocale) {
     EXPECT_EQ(number(-0.01), "-0.01");
     EXPECT_EQ(number(90.0), "90");
     EXPECT_EQ(number(-0.71234), "-0.712");
-    const Texture picture =
-        with_legend(plain_picture({200, 50}, {1, 2, 3}), {"title", 0.0, 1.0, Palette::viridis});
+    const Texture picture = with_legend(plain_picture({200, 50}, {1, 2, 3}), {"title", 0.0, 1.0, Palette::viridis});
     EXPECT_EQ(picture.extent(), (Extent{200, 86}));
     EXPECT_TRUE(code_at(picture, 10, 10) == (Code{1, 2, 3}));
     const Vec3 first = viridis(0.0);
-    EXPECT_TRUE(code_at(picture, 8, 60) ==
-                (Code{display_code(first.x), display_code(first.y), display_code(first.z)}));
-    EXPECT_EQ(with_legend(plain_picture({3, 2}, {}), {"title", 0.0, 1.0, Palette::viridis}).extent(),
-              (Extent{3, 38}));
+    EXPECT_TRUE(code_at(picture, 8, 60) == (Code{display_code(first.x), display_code(first.y), display_code(first.z)}));
+    EXPECT_EQ(with_legend(plain_picture({3, 2}, {}), {"title", 0.0, 1.0, Palette::viridis}).extent(), (Extent{3, 38}));
 }
 
 TEST(PreviewCanvas, DrawsLettersAndCutsWhatDoesNotFit) {
@@ -137,7 +132,8 @@ TEST(PreviewCanvas, DrawsLettersAndCutsWhatDoesNotFit) {
     EXPECT_TRUE(code_at(picture, 0, 3) == (Code{}));
     EXPECT_EQ(fitted("normal", 1, 100), "normal");
     EXPECT_EQ(fitted("normal", 1, 30), "n..al");
-    EXPECT_EQ(fitted("lit: a_rather_long_name_of_a_wall_dxt5nm.dds", 1, 24 * 6), "lit: a_rath.._dxt5nm.dds") << "the end tells files apart";
+    EXPECT_EQ(fitted("lit: a_rather_long_name_of_a_wall_dxt5nm.dds", 1, 24 * 6), "lit: a_rath.._dxt5nm.dds")
+        << "the end tells files apart";
     EXPECT_LE(text_width(fitted("a_rather_long_name_of_a_wall_dxt5nm.dds", 2, 201), 2), 201);
     EXPECT_EQ(fitted("normal", 2, 10), "");
     EXPECT_EQ(text_width("normal", 1), 35);

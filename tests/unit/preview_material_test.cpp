@@ -23,13 +23,11 @@ TEST(PreviewMaterial, SamplesTheLevelThatFitsThePixel) {
     options.show = Show::normals;
     for (int k = 0; k < 7; ++k) {
         options.size = {64 >> k, 64 >> k};
-        EXPECT_NEAR(pixel(render_or_fail({.map = &chain}, options), 0, 0)[0], (k / 10.0 + 1.0) / 2.0 * 255.0,
-                    0.51)
+        EXPECT_NEAR(pixel(render_or_fail({.map = &chain}, options), 0, 0)[0], (k / 10.0 + 1.0) / 2.0 * 255.0, 0.51)
             << k;
     }
     options.size = {45, 45};  // log2(64 / 45) = 0.508
-    EXPECT_NEAR(pixel(render_or_fail({.map = &chain}, options), 22, 22)[0], (0.0508 + 1.0) / 2.0 * 255.0,
-                0.6);
+    EXPECT_NEAR(pixel(render_or_fail({.map = &chain}, options), 22, 22)[0], (0.0508 + 1.0) / 2.0 * 255.0, 0.6);
 }
 
 TEST(PreviewMaterial, DetailIsBlendedByWhiteoutAtItsOwnTiling) {
@@ -48,9 +46,9 @@ TEST(PreviewMaterial, DetailIsBlendedByWhiteoutAtItsOwnTiling) {
     }
     EXPECT_EQ(pixel(picture, 2, 0)[0], 204);  // beside the detail's bump: the base as it is
     options.show = Show::plain;
-    EXPECT_EQ(difference(render_or_fail({.map = &base, .detail = &detail}, options),
-                         render_or_fail({.map = &base}, options)),
-              0);
+    EXPECT_EQ(
+        difference(render_or_fail({.map = &base, .detail = &detail}, options), render_or_fail({.map = &base}, options)),
+        0);
 }
 
 TEST(PreviewMaterial, AlbedoIsLinearAndGreyStandsForAllChannels) {
@@ -77,8 +75,8 @@ TEST(PreviewMaterial, BumpScaleFollowsItsMode) {
     PreviewOptions options;
     options.show = Show::world_normals;
     options.bump_scale = 0.5f;
-    EXPECT_NEAR(pixel(render_or_fail({.map = &map}, options), 1, 1)[0],
-                (0.3 / std::sqrt(0.09 + 0.64) + 1) / 2 * 255, 0.51);
+    EXPECT_NEAR(pixel(render_or_fail({.map = &map}, options), 1, 1)[0], (0.3 / std::sqrt(0.09 + 0.64) + 1) / 2 * 255,
+                0.51);
     options.scale_mode = ScaleMode::xy;
     EXPECT_NEAR(pixel(render_or_fail({.map = &map}, options), 1, 1)[0], (0.3 + 1) / 2 * 255, 0.51);
 }
@@ -92,8 +90,7 @@ TEST(PreviewMaterial, DetailAlbedoOfMiddleGreyChangesNothing) {
     const Texture without = render_or_fail({.map = &flat}, options);
     EXPECT_LE(difference(render_or_fail({.map = &flat, .detail_albedo = &grey}, options), without), 1);
     grey.planes[0] = Plane<float>(Extent{4, 4}, 0.1f);
-    EXPECT_LT(pixel(render_or_fail({.map = &flat, .detail_albedo = &grey}, options), 1, 1)[0],
-              pixel(without, 1, 1)[0]);
+    EXPECT_LT(pixel(render_or_fail({.map = &flat, .detail_albedo = &grey}, options), 1, 1)[0], pixel(without, 1, 1)[0]);
 }
 
 }  // namespace

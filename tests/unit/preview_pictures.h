@@ -20,16 +20,13 @@ using Pixel = std::array<int, 3>;
 
 inline Pixel pixel(const Texture& picture, int i, int j) {
     const Level& level = picture.levels.front();
-    const std::size_t at = (static_cast<std::size_t>(j) * static_cast<std::size_t>(level.extent.width) +
-                            static_cast<std::size_t>(i)) *
-                           3;
+    const std::size_t at =
+        (static_cast<std::size_t>(j) * static_cast<std::size_t>(level.extent.width) + static_cast<std::size_t>(i)) * 3;
     return {std::to_integer<int>(level.bytes[at]), std::to_integer<int>(level.bytes[at + 1]),
             std::to_integer<int>(level.bytes[at + 2])};
 }
 
-inline MipChain constant(Extent extent, float x, float y, float z) {
-    return chain_from(uniform_map(extent, x, y, z));
-}
+inline MipChain constant(Extent extent, float x, float y, float z) { return chain_from(uniform_map(extent, x, y, z)); }
 
 inline MipChain random_map(Extent extent, unsigned seed) {
     MipChain chain = constant(extent, 0.0f, 0.0f, 1.0f);
@@ -76,8 +73,8 @@ inline int difference(const Texture& a, const Texture& b) {
     EXPECT_EQ(a.extent(), b.extent());
     int largest = 0;
     for (std::size_t k = 0; k < a.levels[0].bytes.size(); ++k) {
-        largest = std::max(largest, std::abs(std::to_integer<int>(a.levels[0].bytes[k]) -
-                                             std::to_integer<int>(b.levels[0].bytes[k])));
+        largest = std::max(
+            largest, std::abs(std::to_integer<int>(a.levels[0].bytes[k]) - std::to_integer<int>(b.levels[0].bytes[k])));
     }
     return largest;
 }

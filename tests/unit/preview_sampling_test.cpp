@@ -23,15 +23,11 @@ Plane<float> plane_of(Extent extent, F f) {
     return plane;
 }
 
-Sampler single(const Plane<float>& plane, Wrap wrap) {
-    return {{{plane.view()}}, 1, wrap, wrap};
-}
+Sampler single(const Plane<float>& plane, Wrap wrap) { return {{{plane.view()}}, 1, wrap, wrap}; }
 
 constexpr Footprint kPoint{};
 
-double at(const Sampler& sampler, double u, double v) {
-    return sample(sampler, {u, v}, kPoint, 1)[0];
-}
+double at(const Sampler& sampler, double u, double v) { return sample(sampler, {u, v}, kPoint, 1)[0]; }
 
 TEST(PreviewSampling, TexelCentresGiveTheTexelAndRowsRunDownFromTheTop) {
     const Plane<float> plane = plane_of({4, 2}, [](int i, int j) { return 10 * j + i; });
@@ -90,8 +86,7 @@ TEST(PreviewParallax, OneStepIsTheWikibooksFormulaOnAStepHeightMap) {
                 const Vec3 view{0.6, -0.3, 0.5};
                 const Parallax parallax{static_cast<float>(amount), static_cast<float>(limit), 0};
                 const Vec2 offset = parallax_offset(parallax, height, {u, 0.4}, kPoint, view, 1);
-                const double p = static_cast<float>(amount), l = static_cast<float>(limit),
-                             h = u < 0.5 ? 0.0 : 1.0;
+                const double p = static_cast<float>(amount), l = static_cast<float>(limit), h = u < 0.5 ? 0.0 : 1.0;
                 EXPECT_DOUBLE_EQ(offset.x, reference::parallax_offset(p, h, view.x, view.z, l));
                 EXPECT_DOUBLE_EQ(offset.y, reference::parallax_offset(p, h, view.y, view.z, l));
             }

@@ -40,8 +40,7 @@ TEST_P(PreviewPlane, IsLitAsTheWikibooksShaderDoes) {
     in.binormal = {0, 1, 0};
     in.normal = {0, 0, 1};
     in.parallel_view = setup.field_of_view == 0.0f;
-    in.camera = {0, 0,
-                 in.parallel_view ? 1.0 : 1.0 / std::tan(setup.field_of_view * 3.14159265358979 / 360.0)};
+    in.camera = {0, 0, in.parallel_view ? 1.0 : 1.0 / std::tan(setup.field_of_view * 3.14159265358979 / 360.0)};
     in.light = {-0.7f, 0.9f, 1.3f};
     in.point_light = setup.light == LightKind::point;
     in.light_color = {1.0f, 0.9f, 0.7f};
@@ -71,8 +70,7 @@ INSTANTIATE_TEST_SUITE_P(
     Shaders, PreviewPlane,
     testing::Values(ShaderCase{"DirectionalPhong", LightKind::directional, SpecularModel::phong, 30.0f},
                     ShaderCase{"PointPhong", LightKind::point, SpecularModel::phong, 45.0f},
-                    ShaderCase{"DirectionalBlinnParallel", LightKind::directional, SpecularModel::blinn,
-                               0.0f},
+                    ShaderCase{"DirectionalBlinnParallel", LightKind::directional, SpecularModel::blinn, 0.0f},
                     ShaderCase{"PointBlinn", LightKind::point, SpecularModel::blinn, 60.0f}),
     [](const auto& row) { return std::string(row.param.name); });
 
@@ -105,8 +103,7 @@ TEST(Preview, MirroredUvsLightCorrectly) {
     }
     PreviewOptions options, turned;
     turned.mirror = true;
-    EXPECT_LE(difference(render_or_fail({.map = &map}, options), render_or_fail({.map = &mirrored}, turned)),
-              1);
+    EXPECT_LE(difference(render_or_fail({.map = &map}, options), render_or_fail({.map = &mirrored}, turned)), 1);
 }
 
 TEST(Preview, SphereHasTheNormalsOfASphere) {
@@ -197,7 +194,8 @@ TEST(Preview, GivesTheSameBytesForAnyNumberOfThreads) {
 }
 
 TEST(Preview, GivesTheseBytesInEveryBuild) {
-    // FNV-1a of a picture that goes through everything: when a change of the pictures is meant, put the new number here.
+    // FNV-1a of a picture that goes through everything: when a change of the pictures is meant, put the new number
+    // here.
     const MipChain map = random_map({64, 64}, 5);
     Plane<float> height(Extent{64, 64});
     for (int j = 0; j < 64; ++j) {

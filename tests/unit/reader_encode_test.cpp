@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The other direction of containers/reader.h: pictures that only OpenImageIO writes.
 
-#include "containers/reader.h"
+#include "formats/reader/reader.h"
 
 #include <gtest/gtest.h>
 
@@ -61,7 +61,8 @@ Bytes repack(const Image& image, Format format) {
             for (const Plane<float>& plane : image.planes) {
                 const float v = plane.at(i, j);
                 if (info.sample == SampleKind::unorm) {
-                    put(bytes, static_cast<std::uint32_t>(std::lround(v * (info.bits == 8 ? 255.0f : 65535.0f))), info.bits / 8);
+                    put(bytes, static_cast<std::uint32_t>(std::lround(v * (info.bits == 8 ? 255.0f : 65535.0f))),
+                        info.bits / 8);
                 } else if (info.bits == 16) {
                     put(bytes, static_cast<std::uint32_t>(std::lround((v - 0.5f) * 2048.0f)) + 0x3800, 2);
                 } else {
@@ -77,9 +78,11 @@ Bytes repack(const Image& image, Format format) {
 
 TEST(ReaderEncode, WritesExactlyWhatItReads) {
     const std::pair<Container, Format> pairs[] = {
-        {Container::tiff, Format::rgb8_unorm},   {Container::tiff, Format::rgba8_unorm}, {Container::tiff, Format::rgb16_unorm},
-        {Container::tiff, Format::rgb16_float},  {Container::tiff, Format::rgb32_float}, {Container::tiff, Format::r16_unorm},
-        {Container::tga, Format::rgb8_unorm},    {Container::tga, Format::rgba8_unorm},  {Container::bmp, Format::rgb8_unorm},
+        {Container::tiff, Format::rgb8_unorm},  {Container::tiff, Format::rgba8_unorm},
+        {Container::tiff, Format::rgb16_unorm}, {Container::tiff, Format::rgb16_float},
+        {Container::tiff, Format::rgb32_float}, {Container::tiff, Format::r16_unorm},
+        {Container::tga, Format::rgb8_unorm},   {Container::tga, Format::rgba8_unorm},
+        {Container::bmp, Format::rgb8_unorm},
     };
     for (const auto& [container, format] : pairs) {
         SCOPED_TRACE(testing::Message() << name_of(kContainerNames, container) << " " << name_of(kFormatNames, format));
@@ -121,7 +124,8 @@ TEST(ReaderEncode, EqualTexturesGiveEqualBytesWithoutDates) {
     const Texture texture = texture_of(Format::rgb8_unorm, {16, 16});
     const Container containers[] = {Container::tiff, Container::tga, Container::bmp, Container::jpeg};
     std::vector<Bytes> first;
-    for (const Container container : containers) first.push_back(encode_with_reader(texture, container, quick()).value());
+    for (const Container container : containers)
+        first.push_back(encode_with_reader(texture, container, quick()).value());
     usleep(1'100'000);  // so that a clock would tell another second
     for (std::size_t k = 0; k < first.size(); ++k) {
         EXPECT_EQ(encode_with_reader(texture, containers[k], quick()).value(), first[k]);
@@ -133,9 +137,10 @@ TEST(ReaderEncode, EqualTexturesGiveEqualBytesWithoutDates) {
 }
 
 TEST(ReaderEncode, RefusesWhatTheContainerCannotHold) {
-    const std::pair<Container, Format> pairs[] = {{Container::jpeg, Format::rgba8_unorm}, {Container::tga, Format::rgb16_unorm},
-                                                  {Container::bmp, Format::rgb32_float},  {Container::tiff, Format::bc3_unorm},
-                                                  {Container::tiff, Format::rg8_unorm},   {Container::png, Format::rgb8_unorm}};
+    const std::pair<Container, Format> pairs[] = {
+        {Container::jpeg, Format::rgba8_unorm}, {Container::tga, Format::rgb16_unorm},
+        {Container::bmp, Format::rgb32_float},  {Container::tiff, Format::bc3_unorm},
+        {Container::tiff, Format::rg8_unorm},   {Container::png, Format::rgb8_unorm}};
     for (const auto& [container, format] : pairs) {
         const Result<Bytes> bytes = encode_with_reader(texture_of(format, {4, 4}), container, quick());
         ASSERT_FALSE(bytes);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The reader's time, whenever one looks at it; what a reader hands over is in reader_test.cpp.
 
-#include "containers/reader_process.h"
+#include "formats/reader/reader_process.h"
 
 #include <sys/stat.h>
 
@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/input_file.h"
+#include "files/input_file.h"
 
 namespace tex {
 namespace {
@@ -35,11 +35,13 @@ protected:
         ReadOptions options;
         options.reader = folder_ + "/reader";
         options.reader_timeout = 1;
-        std::ofstream(options.reader) << "#!/bin/sh\n/bin/cat " << folder_ << "/header >&3\nprintf x >&5\n" << script << '\n';
+        std::ofstream(options.reader) << "#!/bin/sh\n/bin/cat " << folder_ << "/header >&3\nprintf x >&5\n"
+                                      << script << '\n';
         chmod(options.reader.c_str(), 0755);
         const Result<Descriptor> input = memory_file({});
         const Result<Descriptor> result = memory_file({});
-        Result<ReaderProcess> process = ReaderProcess::start({"file", "decode", "tiff", input->get(), result->get()}, options);
+        Result<ReaderProcess> process =
+            ReaderProcess::start({"file", "decode", "tiff", input->get(), result->get()}, options);
         if (!process) return process.error();
         std::this_thread::sleep_for(wait);
         return process->finish();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "containers/reader.h"
+#include "formats/reader/reader.h"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "containers/reader_process.h"
+#include "formats/reader/reader_process.h"
 
 namespace tex {
 namespace {
@@ -48,11 +48,11 @@ struct TiffMaker {
 
     [[nodiscard]] Bytes make() const {
         std::vector<std::array<std::uint32_t, 4>> tags = {
-            {256, 4, 1, static_cast<std::uint32_t>(width)}, {257, 4, 1, static_cast<std::uint32_t>(height)},
-            {258, 3, static_cast<std::uint32_t>(samples), 0}, {259, 3, 1, 1},
+            {256, 4, 1, static_cast<std::uint32_t>(width)},       {257, 4, 1, static_cast<std::uint32_t>(height)},
+            {258, 3, static_cast<std::uint32_t>(samples), 0},     {259, 3, 1, 1},
             {262, 3, 1, static_cast<std::uint32_t>(photometric)}, {273, 4, 1, 0},
             {274, 3, 1, static_cast<std::uint32_t>(orientation)}, {277, 3, 1, static_cast<std::uint32_t>(samples)},
-            {278, 4, 1, static_cast<std::uint32_t>(height)}, {279, 4, 1, static_cast<std::uint32_t>(data.size())}};
+            {278, 4, 1, static_cast<std::uint32_t>(height)},      {279, 4, 1, static_cast<std::uint32_t>(data.size())}};
         if (!palette.empty()) tags.push_back({320, 3, static_cast<std::uint32_t>(palette.size() / 2), 0});
         if (extra >= 0) tags.push_back({338, 3, 1, static_cast<std::uint32_t>(extra)});
         tags.push_back({339, 3, static_cast<std::uint32_t>(samples), 0});
@@ -62,7 +62,8 @@ struct TiffMaker {
             const bool list = tag[0] == 258 || tag[0] == 339;
             if (list && samples > 2) {
                 tag[3] = after + static_cast<std::uint32_t>(tail.size());
-                for (int k = 0; k < samples; ++k) put(tail, static_cast<std::uint32_t>(tag[0] == 258 ? bits : sample_format), 2);
+                for (int k = 0; k < samples; ++k)
+                    put(tail, static_cast<std::uint32_t>(tag[0] == 258 ? bits : sample_format), 2);
             } else if (list) {
                 const auto v = static_cast<std::uint32_t>(tag[0] == 258 ? bits : sample_format);
                 tag[3] = samples == 2 ? v | v << 16 : v;
@@ -107,7 +108,8 @@ void expect_row(const Result<Image>& image, std::size_t plane, const std::vector
     ASSERT_TRUE(image) << image.error().message();
     ASSERT_LT(plane, image->planes.size());
     ASSERT_EQ(static_cast<std::size_t>(image->extent().width), values.size());
-    for (std::size_t i = 0; i < values.size(); ++i) EXPECT_EQ(image->planes[plane].at(static_cast<int>(i), 0), values[i]) << i;
+    for (std::size_t i = 0; i < values.size(); ++i)
+        EXPECT_EQ(image->planes[plane].at(static_cast<int>(i), 0), values[i]) << i;
 }
 
 TEST(Reader, ReadsEverySampleTypeOfTiffRaw) {
@@ -119,7 +121,8 @@ TEST(Reader, ReadsEverySampleTypeOfTiffRaw) {
     expect_row(read(tiff.make()), 0, {0.0f, 1 / 65535.0f, 32768 / 65535.0f, 1.0f});
     tiff.bits = 32;
     tiff.data = raw<std::uint32_t>({0, 1, 2147483648u, 4294967295u});
-    expect_row(read(tiff.make()), 0, {0.0f, static_cast<float>(1 / 4294967295.0), static_cast<float>(2147483648.0 / 4294967295.0), 1.0f});
+    expect_row(read(tiff.make()), 0,
+               {0.0f, static_cast<float>(1 / 4294967295.0), static_cast<float>(2147483648.0 / 4294967295.0), 1.0f});
     tiff.sample_format = 2;
     tiff.bits = 16;
     tiff.data = raw<std::int16_t>({-32768, -32767, 0, 32767});
@@ -252,8 +255,8 @@ protected:
         file.write(reinterpret_cast<const char*>(&header), sizeof header);
         file.close();
         return "/usr/bin/head -c 8192 " + folder_ + "/header /dev/zero 2>/dev/null >/dev/null; /bin/cat " + folder_ +
-               "/header >&3; /usr/bin/head -c " + std::to_string(static_cast<int>(kReaderDataOffset - sizeof header) + data) +
-               " /dev/zero >&3";
+               "/header >&3; /usr/bin/head -c " +
+               std::to_string(static_cast<int>(kReaderDataOffset - sizeof header) + data) + " /dev/zero >&3";
     }
     ReaderHeader sound() const {
         ReaderHeader header;

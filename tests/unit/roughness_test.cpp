@@ -68,9 +68,7 @@ double alpha2_of(const RoughnessChain& chain) {
 class Random {
 public:
     double uniform() { return (static_cast<double>(engine_()) + 0.5) / 4294967296.0; }
-    double gaussian() {
-        return std::sqrt(-2.0 * std::log(uniform())) * std::cos(2.0 * std::numbers::pi * uniform());
-    }
+    double gaussian() { return std::sqrt(-2.0 * std::log(uniform())) * std::cos(2.0 * std::numbers::pi * uniform()); }
 
 private:
     std::mt19937 engine_{20051};
@@ -98,8 +96,8 @@ TEST(Roughness, ToksvigTurnsAMirrorOfRandomSlopesIntoTheirBeckmannDistribution) 
     for (const double alpha : {0.03, 0.06, 0.1}) {
         Random random;
         const NormalMap map = normals_of({256, 256}, [&] {
-            return tex::reference::normalised({alpha * std::sqrt(0.5) * random.gaussian(),
-                                               alpha * std::sqrt(0.5) * random.gaussian(), 1.0});
+            return tex::reference::normalised(
+                {alpha * std::sqrt(0.5) * random.gaussian(), alpha * std::sqrt(0.5) * random.gaussian(), 1.0});
         });
         const RoughnessChain chain = chain_of(map, 0.0f, RoughnessModel::toksvig);
         EXPECT_NEAR(std::sqrt(alpha2_of(chain)) / alpha, 1.0, 0.02) << alpha;
@@ -196,7 +194,8 @@ TEST(Roughness, NeitherDomainNorFadeMatters) {
 // -- against the reference ---------------------------------------------------------------------------------
 
 TEST(Roughness, AgreesWithTheReferenceForEveryModelFilterWrapAndSize) {
-    for (const Extent extent : {Extent{1, 1}, Extent{2, 2}, Extent{3, 5}, Extent{17, 33}, Extent{1, 30}, Extent{40, 20}}) {
+    for (const Extent extent :
+         {Extent{1, 1}, Extent{2, 2}, Extent{3, 5}, Extent{17, 33}, Extent{1, 30}, Extent{40, 20}}) {
         const NormalMap base = noise_normals(extent);
         const Plane<float> roughness = noise_roughness(extent);
         for (const RoughnessModel model : kModels) {
@@ -226,7 +225,8 @@ TEST(Roughness, AgreesWithTheReferenceForEveryModelFilterWrapAndSize) {
 TEST(Roughness, AsManyLevelsAsTheNormalsHave) {
     MipOptions options;
     options.levels = 3;
-    EXPECT_EQ(chain_of(noise_normals({16, 4}), noise_roughness({16, 4}), RoughnessModel::vmf, options).levels.size(), 3u);
+    EXPECT_EQ(chain_of(noise_normals({16, 4}), noise_roughness({16, 4}), RoughnessModel::vmf, options).levels.size(),
+              3u);
 }
 
 // -- the same bytes, progress ------------------------------------------------------------------------------
@@ -240,7 +240,8 @@ TEST(Roughness, GivesTheSameBytesOnEveryTargetAndForEveryNumberOfThreads) {
             tex::on_every_target([&] {
                 for (const int threads : {1, 3}) {
                     RoughnessChain chain = chain_of(base, roughness, model, {}, threads);
-                    if (!first) first = std::move(chain);
+                    if (!first)
+                        first = std::move(chain);
                     else
                         for (std::size_t k = 0; k < chain.levels.size(); ++k)
                             EXPECT_TRUE(same_bytes(first->levels[k], chain.levels[k])) << k;
@@ -255,14 +256,14 @@ TEST(Roughness, ReportsProgressAndCanBeCancelled) {
     const Plane<float> roughness = noise_roughness({300, 301});
     std::vector<double> seen = {0.0};
     const auto chain = tex::build_roughness_chain(base, roughness, RoughnessModel::vmf, {}, {1, [&](double done) {
-                                                      seen.push_back(done);
-                                                      return true;
-                                                  }});
+                                                                                                 seen.push_back(done);
+                                                                                                 return true;
+                                                                                             }});
     ASSERT_TRUE(chain);
     EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
     EXPECT_EQ(seen.back(), 1.0);
-    const auto none = tex::build_roughness_chain(base, roughness, RoughnessModel::vmf, {},
-                                                 {1, [](double) { return false; }});
+    const auto none =
+        tex::build_roughness_chain(base, roughness, RoughnessModel::vmf, {}, {1, [](double) { return false; }});
     ASSERT_FALSE(none);
     EXPECT_EQ(none.error().code, tex::ErrorCode::cancelled);
 }

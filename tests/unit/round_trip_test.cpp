@@ -51,9 +51,10 @@ Result<MipChain> through(const MipChain& chain, Encoding encoding, YAxis y_axis 
     return unpack(*texture);
 }
 
-// Component by component before z is rebuilt: a code of k bits is at most half a step, 1 / (2^k - 1), from n; snorm 1 / (2^k - 2); half
-// 2^-12 below 1/2 and 2^-11 ... of the value; float rounds lengths alone. Where z is stored, renormalising moves a vector by no
-// more than its error: the angle is at most asin(sqrt(3) bound). Where it is rebuilt the error grows by 1 / z.
+// Component by component before z is rebuilt: a code of k bits is at most half a step, 1 / (2^k - 1), from n; snorm 1 /
+// (2^k - 2); half 2^-12 below 1/2 and 2^-11 ... of the value; float rounds lengths alone. Where z is stored,
+// renormalising moves a vector by no more than its error: the angle is at most asin(sqrt(3) bound). Where it is rebuilt
+// the error grows by 1 / z.
 struct Bound {
     Encoding encoding;
     double component;  // of x and y as stored
@@ -62,9 +63,9 @@ struct Bound {
 
 TEST(RoundTrip, StaysWithinTheQuantisationOfEachEncoding) {
     const Bound bounds[] = {
-        {Encoding::rgb8, 1.0 / 255, true},     {Encoding::rgba8, 1.0 / 255, true}, {Encoding::rgb16, 1.0 / 65535, true},
-        {Encoding::half, 1.0 / 4096, true},    {Encoding::float_, 1e-7, true},     {Encoding::ag8, 1.0 / 255, false},
-        {Encoding::rg8, 1.0 / 255, false},     {Encoding::rg16, 1.0 / 65535, false},
+        {Encoding::rgb8, 1.0 / 255, true},  {Encoding::rgba8, 1.0 / 255, true},   {Encoding::rgb16, 1.0 / 65535, true},
+        {Encoding::half, 1.0 / 4096, true}, {Encoding::float_, 1e-7, true},       {Encoding::ag8, 1.0 / 255, false},
+        {Encoding::rg8, 1.0 / 255, false},  {Encoding::rg16, 1.0 / 65535, false},
     };
     const MipChain chain = chain_of({61, 43}, 6);
     for (const Bound& bound : bounds) {
@@ -93,9 +94,9 @@ TEST(RoundTrip, StaysWithinTheQuantisationOfEachEncoding) {
     }
 }
 
-// Blocks: no encoder can do worse than endpoints at the extremes of a block, rounded to their codes. With n values between them a
-// texel is then at most (max - min) / (2 (n - 1)) + half a step of the endpoints away; the encoder minimises squares, so this holds for
-// the root mean square of each block.
+// Blocks: no encoder can do worse than endpoints at the extremes of a block, rounded to their codes. With n values
+// between them a texel is then at most (max - min) / (2 (n - 1)) + half a step of the endpoints away; the encoder
+// minimises squares, so this holds for the root mean square of each block.
 TEST(RoundTrip, StaysWithinTheFitOfTheExtremesInEachBlock) {
     struct BlockBound {
         Encoding encoding;
@@ -112,7 +113,8 @@ TEST(RoundTrip, StaysWithinTheFitOfTheExtremesInEachBlock) {
         const auto back = through(chain, bound.encoding);
         ASSERT_TRUE(back);
         const NormalMap& after = back->levels[0];
-        const auto check = [&](const Plane<float>& from, const Plane<float>& to, double values, double step, int left, int top) {
+        const auto check = [&](const Plane<float>& from, const Plane<float>& to, double values, double step, int left,
+                               int top) {
             double least = 1, most = -1, squares = 0;
             int count = 0;
             for (int j = top; j < std::min(top + 4, 43); ++j) {
@@ -137,8 +139,7 @@ TEST(RoundTrip, StaysWithinTheFitOfTheExtremesInEachBlock) {
 
 // The encoding that stores what `texture` does, if there is one.
 std::optional<Encoding> encoding_of(const Texture& texture) {
-    const bool has_z =
-        std::find(texture.swizzle.begin(), texture.swizzle.end(), Component::z) != texture.swizzle.end();
+    const bool has_z = std::find(texture.swizzle.begin(), texture.swizzle.end(), Component::z) != texture.swizzle.end();
     for (const auto& row : kEncodingNames) {
         if (encoding_info(row.value).format != texture.format || row.value == Encoding::ag8) continue;
         const bool wants_z = row.value == Encoding::rgb8 || row.value == Encoding::rgba8;
@@ -147,8 +148,9 @@ std::optional<Encoding> encoding_of(const Texture& texture) {
     return std::nullopt;
 }
 
-// A texture that is unpacked and packed again stays what it was, at the default effort within 0.05 degrees on average: the blocks' own values are
-// found again. Vectors are kept as they are stored; where z is not stored that matters only beyond the unit circle.
+// A texture that is unpacked and packed again stays what it was, at the default effort within 0.05 degrees on average:
+// the blocks' own values are found again. Vectors are kept as they are stored; where z is not stored that matters only
+// beyond the unit circle.
 TEST(RoundTrip, RepacksEveryRealTextureWithoutFurtherLoss) {
     TEX_NEEDS_SHARED_DATA();
     int repacked = 0;
@@ -170,8 +172,8 @@ TEST(RoundTrip, RepacksEveryRealTextureWithoutFurtherLoss) {
                 for (std::size_t k = 0; k < once->levels.size(); ++k) {
                     const auto angles = compare(once->levels[k], twice->levels[k]);
                     ASSERT_TRUE(angles);
-                    EXPECT_LE(angles->error.mean, limit) << path.stem() << " " << name_of(kEffortNames, effort) << " level "
-                                                         << k << " max " << angles->error.max;
+                    EXPECT_LE(angles->error.mean, limit) << path.stem() << " " << name_of(kEffortNames, effort)
+                                                         << " level " << k << " max " << angles->error.max;
                 }
             }
         }

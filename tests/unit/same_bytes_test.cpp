@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/math.h"
+#include "rows/math.h"
 #include "unit/fields.h"
 
 namespace {
@@ -28,9 +28,8 @@ TEST(SameBytes, ElementaryFunctions) {
     std::uint64_t hash = 0xcbf29ce484222325u;
     for (int k = 0; k < 20000; ++k) {
         const double x = noise(k, 1) * 40.0 - 20.0;
-        for (const double value :
-             {tex::math::exp(x), tex::math::log(x * x), tex::math::sin(x), tex::math::cos(x),
-              tex::math::atan(x), tex::math::pow(x * x, 0.4), tex::math::sinc(x)}) {
+        for (const double value : {tex::math::exp(x), tex::math::log(x * x), tex::math::sin(x), tex::math::cos(x),
+                                   tex::math::atan(x), tex::math::pow(x * x, 0.4), tex::math::sinc(x)}) {
             hash = (hash ^ std::bit_cast<std::uint64_t>(value)) * 0x100000001b3u;
         }
     }
@@ -44,8 +43,7 @@ TEST(SameBytes, Bake) {
     for (const auto& kernel : tex::kGradientKernelNames) {
         std::uint64_t hash = 0;
         for (const Wrap wrap : kWraps) {
-            const auto field =
-                tex::fields::field_of({61, 47}, 7.0f, wrap, [](int i, int j) { return noise(i, j); });
+            const auto field = tex::fields::field_of({61, 47}, 7.0f, wrap, [](int i, int j) { return noise(i, j); });
             hash = hash_of(tex::bake(field, {kernel.value, 1.7f}).value(), hash);
         }
         EXPECT_EQ(hash, expected[static_cast<int>(kernel.value)]) << kernel.name;
@@ -67,8 +65,7 @@ TEST(SameBytes, Mip) {
                 options.wrap_x = options.wrap_y = wrap;
                 options.fade = tex::Fade{0, 9};
                 for (const tex::Extent extent : {tex::Extent{64, 48}, tex::Extent{61, 47}}) {
-                    const auto chain =
-                        tex::build_mip_chain(tex::fields::noise_normals(extent), options).value();
+                    const auto chain = tex::build_mip_chain(tex::fields::noise_normals(extent), options).value();
                     for (const tex::NormalMap& level : chain.levels) hash = hash_of(level, hash);
                 }
             }
@@ -83,8 +80,7 @@ TEST(SameBytes, Blur) {
     for (const Wrap wrap : kWraps) {
         tex::Image image;
         for (unsigned k = 0; k < 3; ++k) {
-            image.planes.push_back(
-                tex::fields::plane_of({61, 47}, [&](int i, int j) { return noise(i, j, k); }));
+            image.planes.push_back(tex::fields::plane_of({61, 47}, [&](int i, int j) { return noise(i, j, k); }));
         }
         image.names = {"R", "G", "B"};
         tex::HeightOptions options;

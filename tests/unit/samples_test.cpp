@@ -23,7 +23,8 @@ std::vector<float> decoded(SampleKind sample, const std::vector<T>& codes, std::
     std::vector<T> stored(codes.size() * gap, T(0x5a));
     for (std::size_t k = 0; k < codes.size(); ++k) stored[k * gap] = codes[k];
     std::vector<float> values(codes.size() + 1, 7.0f);
-    decode_samples(sample, 8 * sizeof(T), reinterpret_cast<const std::byte*>(stored.data()), gap * sizeof(T), static_cast<int>(codes.size()), values.data());
+    decode_samples(sample, 8 * sizeof(T), reinterpret_cast<const std::byte*>(stored.data()), gap * sizeof(T),
+                   static_cast<int>(codes.size()), values.data());
     EXPECT_EQ(values.back(), 7.0f) << "writes past the last";
     values.pop_back();
     return values;
@@ -37,7 +38,8 @@ void expect_all(SampleKind sample, const Expected& expected) {
         for (const std::size_t gap : {std::size_t{1}, std::size_t{3}}) {
             const std::vector<float> values = decoded(sample, codes, gap);
             for (std::size_t k = 0; k < codes.size(); ++k) {
-                ASSERT_EQ(std::bit_cast<std::uint32_t>(values[k]), std::bit_cast<std::uint32_t>(expected(codes[k]))) << k;
+                ASSERT_EQ(std::bit_cast<std::uint32_t>(values[k]), std::bit_cast<std::uint32_t>(expected(codes[k])))
+                    << k;
             }
         }
     });
@@ -45,9 +47,12 @@ void expect_all(SampleKind sample, const Expected& expected) {
 
 TEST(Samples, FractionsAreThoseOfDivision) {
     expect_all<std::uint8_t>(SampleKind::unorm, [](std::uint8_t code) { return static_cast<float>(code) / 255.0f; });
-    expect_all<std::uint16_t>(SampleKind::unorm, [](std::uint16_t code) { return static_cast<float>(code) / 65535.0f; });
-    expect_all<std::int8_t>(SampleKind::snorm, [](std::int8_t code) { return std::max(static_cast<float>(code) / 127.0f, -1.0f); });
-    expect_all<std::int16_t>(SampleKind::snorm, [](std::int16_t code) { return std::max(static_cast<float>(code) / 32767.0f, -1.0f); });
+    expect_all<std::uint16_t>(SampleKind::unorm,
+                              [](std::uint16_t code) { return static_cast<float>(code) / 65535.0f; });
+    expect_all<std::int8_t>(SampleKind::snorm,
+                            [](std::int8_t code) { return std::max(static_cast<float>(code) / 127.0f, -1.0f); });
+    expect_all<std::int16_t>(SampleKind::snorm,
+                             [](std::int16_t code) { return std::max(static_cast<float>(code) / 32767.0f, -1.0f); });
 }
 
 // Imath's table, also for numbers below 2^-14, infinity and every NaN.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What tex-reader gives up before it looks at a file, tried from inside: in a process of its own, which then tells what it could still do.
+// What tex-reader gives up before it looks at a file, tried from inside: in a process of its own, which then tells what
+// it could still do.
 
 #include <fcntl.h>
 #include <signal.h>
@@ -53,7 +54,8 @@ std::string possible(const std::function<bool()>& prepare, const std::vector<Att
     close(ends[1]);
     std::string text;
     char buffer[1000];
-    for (ssize_t n = 0; (n = read(ends[0], buffer, sizeof buffer)) > 0;) text.append(buffer, static_cast<std::size_t>(n));
+    for (ssize_t n = 0; (n = read(ends[0], buffer, sizeof buffer)) > 0;)
+        text.append(buffer, static_cast<std::size_t>(n));
     close(ends[0]);
     int status = 0;
     waitpid(child, &status, 0);
@@ -71,7 +73,8 @@ protected:
     }
     void TearDown() override { std::filesystem::remove_all(folder_); }
 
-    // All of them must be possible without the sandbox, or the test proves nothing. (Not all are for everybody everywhere: `certain` ones are.)
+    // All of them must be possible without the sandbox, or the test proves nothing. (Not all are for everybody
+    // everywhere: `certain` ones are.)
     [[nodiscard]] std::vector<Attempt> attempts(bool certain) const {
         const pid_t parent = getpid();
         const auto path = [this](const char* name) { return folder_ + "/" + name; };
@@ -81,9 +84,16 @@ protected:
             {"open to append", [=, this] { return open_with(file_, O_WRONLY | O_APPEND) >= 0; }},
             {"create", [=] { return open_with(path("new"), O_RDONLY | O_CREAT) >= 0; }},
             {"empty", [=, this] { return open_with(file_, O_RDONLY | O_TRUNC) >= 0; }},
-            {"link", [=, this] { return syscall(SYS_linkat, AT_FDCWD, file_.c_str(), AT_FDCWD, path("link").c_str(), 0) == 0; }},
-            {"symbolic link", [=, this] { return syscall(SYS_symlinkat, file_.c_str(), AT_FDCWD, path("symbolic").c_str()) == 0; }},
-            {"rename", [=] { return syscall(SYS_renameat2, AT_FDCWD, path("link").c_str(), AT_FDCWD, path("other").c_str(), 0) == 0; }},
+            {"link",
+             [=, this] {
+                 return syscall(SYS_linkat, AT_FDCWD, file_.c_str(), AT_FDCWD, path("link").c_str(), 0) == 0;
+             }},
+            {"symbolic link",
+             [=, this] { return syscall(SYS_symlinkat, file_.c_str(), AT_FDCWD, path("symbolic").c_str()) == 0; }},
+            {"rename",
+             [=] {
+                 return syscall(SYS_renameat2, AT_FDCWD, path("link").c_str(), AT_FDCWD, path("other").c_str(), 0) == 0;
+             }},
             {"folder", [=] { return syscall(SYS_mkdirat, AT_FDCWD, path("folder").c_str(), 0700) == 0; }},
             {"mode", [=, this] { return syscall(SYS_fchmodat, AT_FDCWD, file_.c_str(), 0600) == 0; }},
             {"truncate", [=, this] { return syscall(SYS_truncate, file_.c_str(), 1) == 0; }},
@@ -94,11 +104,13 @@ protected:
             {"signal to the parent", [=] { return syscall(SYS_kill, parent, 0) == 0; }},
             {"signal to a thread of the parent", [=] { return syscall(SYS_tgkill, parent, parent, 0) == 0; }},
             {"file in memory", [] { return syscall(SYS_memfd_create, "x", 0) >= 0; }},
-            {"own limits", [] {
+            {"own limits",
+             [] {
                  const rlimit core{};
                  return syscall(SYS_prlimit64, 0, RLIMIT_CORE, &core, nullptr) == 0;
              }},
-            {"another process", [] {
+            {"another process",
+             [] {
                  const long child = syscall(SYS_clone, SIGCHLD, nullptr, nullptr, nullptr, nullptr);
                  if (child == 0) _exit(0);
                  return child > 0;
@@ -107,10 +119,12 @@ protected:
         if (certain) return all;
         all.push_back({"trace the parent", [=] { return syscall(SYS_ptrace, 16, parent, nullptr, nullptr) == 0; }});
         all.push_back({"handle of the parent", [=] { return syscall(SYS_pidfd_open, parent, 0) >= 0; }});
-        all.push_back({"mount", [=, this] { return syscall(SYS_mount, "none", folder_.c_str(), "tmpfs", 0, nullptr) == 0; }});
+        all.push_back(
+            {"mount", [=, this] { return syscall(SYS_mount, "none", folder_.c_str(), "tmpfs", 0, nullptr) == 0; }});
         all.push_back({"another program", [] {
                            const char* const words[] = {"/bin/true", nullptr};
-                           return syscall(SYS_execve, words[0], words, nullptr) == 0;  // does not come back: status 0, and what follows is missing
+                           return syscall(SYS_execve, words[0], words, nullptr) ==
+                                  0;  // does not come back: status 0, and what follows is missing
                        }});
         all.push_back({"the end", [] { return true; }});
         return all;
@@ -141,12 +155,15 @@ TEST_F(Sandbox, LetsADecoderDoItsWork) {
 }
 
 TEST_F(Sandbox, HasNoFilesButTheInput) {
-    const std::vector<Attempt> reading = {{"input", [] { return open_with("/proc/self/fd/4", O_RDONLY) >= 0; }},
-                                          {"file", [this] { return open_with(file_, O_RDONLY) >= 0; }},
-                                          {"passwords", [] { return open_with("/etc/passwd", O_RDONLY) >= 0; }},
-                                          {"folder", [this] { return open_with(folder_, O_RDONLY | O_DIRECTORY) >= 0; }}};
+    const std::vector<Attempt> reading = {
+        {"input", [] { return open_with("/proc/self/fd/4", O_RDONLY) >= 0; }},
+        {"file", [this] { return open_with(file_, O_RDONLY) >= 0; }},
+        {"passwords", [] { return open_with("/etc/passwd", O_RDONLY) >= 0; }},
+        {"folder", [this] { return open_with(folder_, O_RDONLY | O_DIRECTORY) >= 0; }}};
     std::ofstream(folder_ + "/input") << "text";
-    const auto with_input = [this] { return dup2(open((folder_ + "/input").c_str(), O_RDONLY), kInputDescriptor) == kInputDescriptor; };
+    const auto with_input = [this] {
+        return dup2(open((folder_ + "/input").c_str(), O_RDONLY), kInputDescriptor) == kInputDescriptor;
+    };
     EXPECT_EQ(possible(with_input, reading), "input\nfile\npasswords\nfolder\n");
     if (landlock_version() == 0) {
         EXPECT_FALSE(restrict_files()) << "and --version --json says so";

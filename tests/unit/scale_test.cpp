@@ -29,7 +29,8 @@ TEST(Scale, AgreesWithTheReference) {
             for (int j = 0; j < 17; ++j) {
                 for (int i = 0; i < 61; ++i) {
                     const reference::Vector n = reference::scaled(grid.at(i, j), static_cast<double>(s), mode);
-                    // Near the horizon the clamp makes z of xy sensitive: its square is good to a few units in the last place.
+                    // Near the horizon the clamp makes z of xy sensitive: its square is good to a few units in the last
+                    // place.
                     EXPECT_NEAR(static_cast<double>(result->x.at(i, j)), n.x, 1e-6);
                     EXPECT_NEAR(static_cast<double>(result->y.at(i, j)), n.y, 1e-6);
                     EXPECT_NEAR(static_cast<double>(result->z.at(i, j)), n.z, mode == ScaleMode::xy ? 1e-3 : 1e-6);
@@ -59,7 +60,8 @@ TEST(Scale, IsWhatBakingWithScaledBumpinessGives) {
     HeightField field;
     field.height = Plane<float>({64, 48});
     for (int j = 0; j < 48; ++j) {
-        for (int i = 0; i < 64; ++i) field.height.at(i, j) = std::sin(0.2f * static_cast<float>(i)) * std::cos(0.3f * static_cast<float>(j));
+        for (int i = 0; i < 64; ++i)
+            field.height.at(i, j) = std::sin(0.2f * static_cast<float>(i)) * std::cos(0.3f * static_cast<float>(j));
     }
     auto gentle = bake(field);
     field.bumpiness_x = field.bumpiness_y = 5.0f;
@@ -72,7 +74,8 @@ TEST(Scale, IsWhatBakingWithScaledBumpinessGives) {
 TEST(Scale, ModesDifferAsDocumented) {
     const double tilt = 32.0 * 3.14159265358979 / 180;
     const auto angle = [&](float s) {
-        const NormalMap map = uniform_map({1, 1}, static_cast<float>(std::sin(tilt)), 0.0f, static_cast<float>(std::cos(tilt)));
+        const NormalMap map =
+            uniform_map({1, 1}, static_cast<float>(std::sin(tilt)), 0.0f, static_cast<float>(std::cos(tilt)));
         return largest_angle(*scale(copy_of(map), s, ScaleMode::slope), *scale(copy_of(map), s, ScaleMode::xy));
     };
     EXPECT_NEAR(angle(0.5f), 2.0, 0.1);

@@ -45,7 +45,8 @@ TEST(EncodePicture, TakesTheFewestChannels) {
 
     Canvas canvas({32, 32}, {0, 0, 0});
     for (int j = 0; j < 32; ++j) {
-        for (int i = 0; i < 32; ++i) canvas.set(i, j, {static_cast<std::uint8_t>(8 * i), static_cast<std::uint8_t>(8 * j), 1});
+        for (int i = 0; i < 32; ++i)
+            canvas.set(i, j, {static_cast<std::uint8_t>(8 * i), static_cast<std::uint8_t>(8 * j), 1});
     }
     Texture many = std::move(canvas).take();
     const auto colors = encode_picture(many);
@@ -64,8 +65,7 @@ TEST(EncodePicture, TakesTheFewestChannels) {
 }
 
 TEST(SplitView, ShowsTheLeftHalfOfOneAndTheRightHalfOfTheOther) {
-    const auto split =
-        split_view({plain_picture({40, 20}, {9, 9, 9}), "a"}, {plain_picture({40, 20}, {7, 7, 7}), "b"});
+    const auto split = split_view({plain_picture({40, 20}, {9, 9, 9}), "a"}, {plain_picture({40, 20}, {7, 7, 7}), "b"});
     ASSERT_TRUE(split);
     EXPECT_TRUE(code_at(*split, 17, 10) == (Code{9, 9, 9}));
     EXPECT_TRUE(code_at(*split, 20, 10) == kInk);

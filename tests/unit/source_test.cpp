@@ -46,7 +46,8 @@ TEST_F(SourceFiles, AreReadAsTheySay) {
     EXPECT_EQ(source.info.format, Format::bc5_unorm);
     EXPECT_EQ(source.info.y_axis, YAxis::down);
     EXPECT_FALSE(source.info.guessed);
-    EXPECT_TRUE(fields::same_bytes(source.chain.levels.front(), unpack(packed(Encoding::bc5, YAxis::down)).value().levels.front()));
+    EXPECT_TRUE(fields::same_bytes(source.chain.levels.front(),
+                                   unpack(packed(Encoding::bc5, YAxis::down)).value().levels.front()));
     SourceOptions options;
     options.unpack.y_axis = YAxis::up;
     EXPECT_EQ(read_normals(folder_ + "/a.ktx2", options).value().info.y_axis, YAxis::up);
@@ -81,7 +82,8 @@ TEST_F(SourceFiles, OfFloatsKeepEveryBitOfAUnitVectorAndNormaliseOthers) {
     const std::string path = write("short.exr", pack(chain_from(copy_of(map)), {Encoding::float_}).value());
     const NormalMap read = std::move(read_normals(path).value().chain.levels.front());
     const float x = read.x.at(3, 3), y = read.y.at(3, 3), z = read.z.at(3, 3);
-    EXPECT_NEAR(x * x + y * y + z * z, 1.0f, 1e-6f) << "the file says that it holds components; it does not say that they are of unit length";
+    EXPECT_NEAR(x * x + y * y + z * z, 1.0f, 1e-6f)
+        << "the file says that it holds components; it does not say that they are of unit length";
     SourceOptions options;
     options.unpack.keep_length = true;
     EXPECT_TRUE(fields::same_bytes(read_normals(path, options).value().chain.levels.front(), map));
@@ -92,23 +94,30 @@ TEST_F(SourceFiles, OfAlphaAloneHoldNoNormals) {
     for (const bool dx10 : {false, true}) {
         std::vector<char> bytes(148 + 20 * 12);
         std::ifstream(path, std::ios::binary).read(bytes.data(), 128);
-        const auto set = [&](std::size_t offset, std::uint32_t value) { std::memcpy(bytes.data() + offset, &value, sizeof value); };
+        const auto set = [&](std::size_t offset, std::uint32_t value) {
+            std::memcpy(bytes.data() + offset, &value, sizeof value);
+        };
         if (dx10) {
             set(80, 4);  // DDPF_FOURCC
             std::memcpy(bytes.data() + 84, "DX10", 4);
-            for (const auto& [offset, value] : {std::pair<std::size_t, std::uint32_t>{128, 65}, {132, 3}, {140, 1}}) set(offset, value);  // A8_UNORM
+            for (const auto& [offset, value] : {std::pair<std::size_t, std::uint32_t>{128, 65}, {132, 3}, {140, 1}})
+                set(offset, value);  // A8_UNORM
         } else {
             set(80, 2);  // DDPF_ALPHA
-            for (const auto& [offset, value] : {std::pair<std::size_t, std::uint32_t>{88, 8}, {92, 0}, {96, 0}, {100, 0}, {104, 0xff}}) set(offset, value);
+            for (const auto& [offset, value] :
+                 {std::pair<std::size_t, std::uint32_t>{88, 8}, {92, 0}, {96, 0}, {100, 0}, {104, 0xff}})
+                set(offset, value);
         }
         const std::size_t head = dx10 ? 148 : 128;
         for (std::size_t k = head; k < bytes.size(); ++k) bytes[k] = static_cast<char>(k * 7);
         const std::string name = folder_ + "/alpha.dds";
-        std::ofstream(name, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(head + std::size_t{20} * 12));
+        std::ofstream(name, std::ios::binary)
+            .write(bytes.data(), static_cast<std::streamsize>(head + std::size_t{20} * 12));
         const auto read = read_normals(name);
         ASSERT_FALSE(read);
         EXPECT_EQ(read.error().code, ErrorCode::unsupported);
-        EXPECT_EQ(read.error().message(), name + ": has one channel, which holds no normals (bake-normals reads heights)");
+        EXPECT_EQ(read.error().message(),
+                  name + ": has one channel, which holds no normals (bake-normals reads heights)");
         const Image image = std::move(read_image(name).value());
         EXPECT_EQ(image.names, std::vector<std::string>{"A"});
         EXPECT_EQ(image.planes.front().at(1, 0), static_cast<float>((head + 1) * 7 % 256) / 255.0f);
@@ -127,7 +136,8 @@ TEST_F(SourceFiles, WithoutNormalsAreErrorsThatNameThem) {
     grey.levels.push_back({{4, 4}, std::vector<std::byte>(16)});
     const Error one = read_normals(write("grey.png", grey)).error();
     EXPECT_EQ(one.code, ErrorCode::unsupported);
-    EXPECT_EQ(one.message(), folder_ + "/grey.png: has one channel, which holds no normals (bake-normals reads heights)");
+    EXPECT_EQ(one.message(),
+              folder_ + "/grey.png: has one channel, which holds no normals (bake-normals reads heights)");
     SourceOptions options;
     options.unpack.swizzle = Swizzle{Component::z, Component::y, Component::other, Component::x};
     const Error lacking = read_normals(write("rgb.png", packed(Encoding::rgb8)), options).error();

@@ -45,7 +45,8 @@ protected:
         return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_), {}));
     }
 
-    // Of a sound file, "cut" and "hurt" are damaged copies: stream(input, threads) must tell the error of read(input), and leave no "out".
+    // Of a sound file, "cut" and "hurt" are damaged copies: stream(input, threads) must tell the error of read(input),
+    // and leave no "out".
     template <class Read, class Stream>
     void expect_same_damage(const std::string& sound, const Read& read, const Stream& stream) const {
         Bytes bytes = bytes_of(sound);

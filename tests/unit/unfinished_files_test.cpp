@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "base/unfinished_files.h"
+#include "files/unfinished_files.h"
 
 #include <fcntl.h>
 #include <sys/time.h>
@@ -35,7 +35,9 @@ protected:
         for (const auto& entry : std::filesystem::directory_iterator(path_)) found.insert(entry.path().filename());
         return found;
     }
-    void create(const std::string& name) const { close(openat(folder_, name.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600)); }
+    void create(const std::string& name) const {
+        close(openat(folder_, name.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600));
+    }
 
     // What body() does to the folder in a process of its own, which ends with status 0.
     template <class Body>
@@ -105,7 +107,8 @@ TEST_F(UnfinishedFiles, ASignalAtAnyMomentLeavesNoTemporaryName) {
             sigaction(SIGALRM, &action, nullptr);
             std::atomic<int> written{0};
             const auto write = [&](int thread) {
-                const std::string target = "target" + std::to_string(thread), temporary = "temporary" + std::to_string(thread);
+                const std::string target = "target" + std::to_string(thread),
+                                  temporary = "temporary" + std::to_string(thread);
                 for (;;) {
                     UnfinishedFile file;
                     {

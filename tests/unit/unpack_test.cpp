@@ -87,7 +87,8 @@ TEST(Decode, NamesPlanesByChannelsAndTellsTheirKind) {
     }
 }
 
-// The blocks' own decoders are the oracle: every texel of every block, to the last bit, at sizes around the widths of vectors.
+// The blocks' own decoders are the oracle: every texel of every block, to the last bit, at sizes around the widths of
+// vectors.
 TEST(Decode, AgreesWithTheBlockDecodersToTheLastBit) {
     for (const Format format : {Format::bc1_unorm, Format::bc2_unorm, Format::bc3_unorm, Format::bc4_unorm,
                                 Format::bc4_snorm, Format::bc5_unorm, Format::bc5_snorm}) {
@@ -101,10 +102,12 @@ TEST(Decode, AgreesWithTheBlockDecodersToTheLastBit) {
                     const std::size_t index = static_cast<std::size_t>(j / 4 * ((extent.width + 3) / 4) + i / 4);
                     const std::byte* block = texture.levels[0].bytes.data() + index * block_bytes;
                     float channel[4][16];
-                    const bool color = format == Format::bc1_unorm || format == Format::bc2_unorm || format == Format::bc3_unorm;
+                    const bool color =
+                        format == Format::bc1_unorm || format == Format::bc2_unorm || format == Format::bc3_unorm;
                     if (color) {
-                        decode_bc1(block + block_bytes - 8, format == Format::bc1_unorm ? Bc1Mode::standard : Bc1Mode::four_colors,
-                                   channel[0], channel[1], channel[2], channel[3]);
+                        decode_bc1(block + block_bytes - 8,
+                                   format == Format::bc1_unorm ? Bc1Mode::standard : Bc1Mode::four_colors, channel[0],
+                                   channel[1], channel[2], channel[3]);
                         if (format == Format::bc2_unorm) decode_bc2_alpha(block, channel[3]);
                         if (format == Format::bc3_unorm) decode_bc4_unorm(block, channel[3]);
                     } else {
@@ -206,8 +209,8 @@ TEST(Unpack, MakesFlatWhatIsNotFinite) {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     for (const bool has_z : {false, true}) {
         for (const bool keep_length : {false, true}) {
-            Texture texture = texture_of<float>(
-                Format::rgb32_float, {3, 1}, {kNan, 0.0f, 1.0f, 0.0f, -kInfinity, 1.0f, 1e30f, 0.0f, 1.0f});
+            Texture texture = texture_of<float>(Format::rgb32_float, {3, 1},
+                                                {kNan, 0.0f, 1.0f, 0.0f, -kInfinity, 1.0f, 1e30f, 0.0f, 1.0f});
             texture.swizzle = swizzle_from(has_z ? "xyz1" : "xy_1");
             UnpackOptions options;
             options.keep_length = keep_length;
@@ -224,10 +227,10 @@ TEST(Unpack, TellsSignedFloatsFromUnsignedOnes) {
         texture.swizzle = swizzle_from("xyz1");
         return texture;
     };
-    expect_near(first_of(rgb({0.5f, 0.5f, 1.0f})), {0, 0, 1});                                // unsigned flat
-    expect_near(first_of(rgb({0.0f, 0.0f, 1.0f})), {0, 0, 1});                                // signed flat
-    expect_near(first_of(rgb({0.6f, 0.0f, 0.8f})), {0.6f, 0, 0.8f});                          // leans right only
-    expect_near(first_of(rgb({0.8f, 0.5f, 0.9f})), {0.6f, 0, 0.8f});                          // the same, unsigned
+    expect_near(first_of(rgb({0.5f, 0.5f, 1.0f})), {0, 0, 1});        // unsigned flat
+    expect_near(first_of(rgb({0.0f, 0.0f, 1.0f})), {0, 0, 1});        // signed flat
+    expect_near(first_of(rgb({0.6f, 0.0f, 0.8f})), {0.6f, 0, 0.8f});  // leans right only
+    expect_near(first_of(rgb({0.8f, 0.5f, 0.9f})), {0.6f, 0, 0.8f});  // the same, unsigned
     expect_near(first_of(rgb({0.5f, 0.5f, 0.5f, -0.1f, 0.0f, 1.0f})), {0.57735f, 0.57735f, 0.57735f}, 1e-5f);
     Texture told = rgb({0.0f, 0.0f, 1.0f});
     told.normal_encoding = "unsigned";

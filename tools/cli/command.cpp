@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include "cli/completion.h"
 #include "cli/help.h"
@@ -22,9 +22,7 @@ std::vector<std::string> split_names(const std::string& names) {
     return second.empty() ? std::vector<std::string>{first} : std::vector<std::string>{first, second};
 }
 
-bool is_option(std::string_view argument) {
-    return argument.size() > 1 && argument.front() == '-';
-}
+bool is_option(std::string_view argument) { return argument.size() > 1 && argument.front() == '-'; }
 
 }  // namespace
 
@@ -37,8 +35,7 @@ std::vector<std::string> names_of(const std::vector<Word>& words) {
 
 void check_word(const std::string& name, const std::vector<std::string>& names) {
     if (std::find(names.begin(), names.end(), name) != names.end()) return;
-    throw UsageError(
-        fmt::format("'{}' is none of {}{}", printable(name), join(names), did_you_mean(name, names)));
+    throw UsageError(fmt::format("'{}' is none of {}{}", printable(name), join(names), did_you_mean(name, names)));
 }
 
 Command::Command(std::string name, std::string summary)
@@ -50,8 +47,8 @@ Command::Command(std::string name, std::string summary)
     group(kHelpGroup);
     flag(help_, "-h,--help", "print this help and exit");
     flag(version_, "--version", "print the version and exit; with --json also how the program was built");
-    text(completion_, "--completion", "SHELL", "print the completion script for bash, zsh or fish and exit")
-        .hidden = true;
+    text(completion_, "--completion", "SHELL", "print the completion script for bash, zsh or fish and exit").hidden =
+        true;
     flag(list_options_, "--list-options", "print the option table and exit").hidden = true;
 }
 
@@ -104,8 +101,7 @@ Row& Command::text(std::string& target, const std::string& names, std::string va
     return row;
 }
 
-Row& Command::number(float& target, const std::string& names, std::string value, Range range,
-                     std::string help) {
+Row& Command::number(float& target, const std::string& names, std::string value, Range range, std::string help) {
     Row& row = option(names, std::move(value), std::move(help),
                       [&target, range](const std::string& text) { target = parse_float(text, range); });
     row.preset = fmt::format("{}", target);
@@ -114,15 +110,15 @@ Row& Command::number(float& target, const std::string& names, std::string value,
 
 Row& Command::number(int& target, const std::string& names, std::string value, int least, int greatest,
                      std::string help) {
-    Row& row = option(
-        names, std::move(value), std::move(help),
-        [&target, least, greatest](const std::string& text) { target = parse_int(text, least, greatest); });
+    Row& row = option(names, std::move(value), std::move(help), [&target, least, greatest](const std::string& text) {
+        target = parse_int(text, least, greatest);
+    });
     row.preset = fmt::format("{}", target);
     return row;
 }
 
-Row& Command::choice_row(const std::string& names, std::string value, std::string help,
-                         std::vector<Word> words, std::function<void(const std::string& name)> take) {
+Row& Command::choice_row(const std::string& names, std::string value, std::string help, std::vector<Word> words,
+                         std::function<void(const std::string& name)> take) {
     std::vector<std::string> valid = names_of(words);
     Row& row = option(names, std::move(value), std::move(help),
                       [valid = std::move(valid), take = std::move(take)](const std::string& name) {
@@ -152,8 +148,7 @@ void Command::check_equals_signs(int argc, const char* const* argv) const {
         const Row* row = find(argument.substr(0, place));
         if (row == nullptr) continue;
         if (row->value.empty()) throw UsageError(fmt::format("{} takes no value", row->name()));
-        if (place + 1 == argument.size())
-            throw UsageError(fmt::format("{} needs a value after the =", row->name()));
+        if (place + 1 == argument.size()) throw UsageError(fmt::format("{} needs a value after the =", row->name()));
     }
 }
 

@@ -47,9 +47,9 @@ struct Row {
     std::string group;               // heading in the help
     std::vector<std::string> names;  // "-o", "--output"
     std::string value;               // what stands for the value: "FILE"; empty for a flag
-    std::string help;         // a clause without a final full stop; `words` and `preset` are added to it
-    std::string preset;       // the default as a user would type it, or empty
-    std::vector<Word> words;  // the words that the option takes
+    std::string help;                // a clause without a final full stop; `words` and `preset` are added to it
+    std::string preset;              // the default as a user would type it, or empty
+    std::vector<Word> words;         // the words that the option takes
     Completes completes = Completes::nothing;
     bool hidden = false;                                                    // not in the help
     bool repeatable = false;                                                // may be given more than once
@@ -75,9 +75,7 @@ public:
     void usage(std::string line) { usages_.push_back(std::move(line)); }
     // What the positional arguments are: "HEIGHT...", "height maps; - is standard input".
     void input(std::string value, std::string help) { input_ = {std::move(value), std::move(help)}; }
-    void example(std::string line, std::string meaning) {
-        examples_.push_back({std::move(line), std::move(meaning)});
-    }
+    void example(std::string line, std::string meaning) { examples_.push_back({std::move(line), std::move(meaning)}); }
     void finds_things() { finds_ = true; }  // ExitCode::findings is one of the command's
     void group(std::string title) { group_ = std::move(title); }
 
@@ -88,23 +86,20 @@ public:
     Row& flag(bool& target, const std::string& names, std::string help);
     Row& text(std::string& target, const std::string& names, std::string value, std::string help);
     Row& number(float& target, const std::string& names, std::string value, Range range, std::string help);
-    Row& number(int& target, const std::string& names, std::string value, int least, int greatest,
-                std::string help);
+    Row& number(int& target, const std::string& names, std::string value, int least, int greatest, std::string help);
     template <class E, std::size_t N>
     Row& choice(E& target, const std::string& names, const std::string& value, const Named<E> (&table)[N],
                 const std::string& help) {
-        Row& row =
-            choice_row(names, value, help, words_of(table),
-                       [&target, &table](const std::string& name) { target = *find_by_name(table, name); });
+        Row& row = choice_row(names, value, help, words_of(table),
+                              [&target, &table](const std::string& name) { target = *find_by_name(table, name); });
         row.preset = name_of(table, target);
         return row;
     }
     template <class E, std::size_t N>
     Row& choice(std::optional<E>& target, const std::string& names, const std::string& value,
                 const Named<E> (&table)[N], const std::string& help) {
-        return choice_row(
-            names, value, help, words_of(table),
-            [&target, &table](const std::string& name) { target = *find_by_name(table, name); });
+        return choice_row(names, value, help, words_of(table),
+                          [&target, &table](const std::string& name) { target = *find_by_name(table, name); });
     }
 
     // Called after all options were read: throws UsageError where they contradict each other.

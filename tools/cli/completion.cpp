@@ -29,9 +29,8 @@ std::string bash_script(const Command& command) {
         const std::string pattern = join(row.names, "|");
         if (row.value.empty()) continue;
         if (row.completes == Completes::words) {
-            cases +=
-                fmt::format("        {}) mapfile -t COMPREPLY < <(compgen -W '{}' -- \"$cur\"); return ;;\n",
-                            pattern, join(names_of(row.words), " "));
+            cases += fmt::format("        {}) mapfile -t COMPREPLY < <(compgen -W '{}' -- \"$cur\"); return ;;\n",
+                                 pattern, join(names_of(row.words), " "));
         } else {
             std::string& list = row.completes == Completes::files         ? files
                                 : row.completes == Completes::directories ? directories
@@ -102,8 +101,8 @@ std::string zsh_script(const Command& command) {
             const std::string others =
                 row.names.size() > 1 && !row.repeatable ? fmt::format("({})", join(row.names, " ")) : "";
             const char* equals = row.value.empty() ? "" : name.starts_with("--") ? "=" : "+";
-            out += fmt::format("    '{}{}{}{}[{}]", row.repeatable && !row.value.empty() ? "*" : "", others,
-                               name, equals, zsh_escaped(row.help));
+            out += fmt::format("    '{}{}{}{}[{}]", row.repeatable && !row.value.empty() ? "*" : "", others, name,
+                               equals, zsh_escaped(row.help));
             if (!row.value.empty()) out += fmt::format(":{}:{}", zsh_escaped(row.value), zsh_action(row));
             out += "' \\\n";
         }
@@ -121,12 +120,11 @@ std::string fish_script(const Command& command) {
         if (row.hidden) continue;
         out += fmt::format("complete -c {}", command.name());
         for (const std::string& name : row.names) {
-            out += name.starts_with("--") ? fmt::format(" -l {}", name.substr(2))
-                                          : fmt::format(" -s {}", name.substr(1));
+            out +=
+                name.starts_with("--") ? fmt::format(" -l {}", name.substr(2)) : fmt::format(" -s {}", name.substr(1));
         }
         if (!row.value.empty())
-            out += row.completes == Completes::files || row.completes == Completes::directories ? " -r -F"
-                                                                                                : " -x";
+            out += row.completes == Completes::files || row.completes == Completes::directories ? " -r -F" : " -x";
         if (!row.words.empty()) {
             std::string list;  // one candidate a line, its meaning after a tab
             for (const Word& word : row.words)

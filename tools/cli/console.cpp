@@ -34,23 +34,17 @@ void print_message(std::string_view kind, std::string_view color, std::string_vi
     const std::string marked =
         stderr_has_color() ? fmt::format("\x1b[1;{}m{}:\x1b[0m", color, kind) : fmt::format("{}:", kind);
     const std::lock_guard lock(state.mutex);
-    write_stderr(fmt::format("{}{}: {} {}\n", state.bar_is_drawn ? kClearLine : "", state.program, marked,
-                             printable(message)));
+    write_stderr(
+        fmt::format("{}{}: {} {}\n", state.bar_is_drawn ? kClearLine : "", state.program, marked, printable(message)));
     state.bar_is_drawn = false;
 }
 
 }  // namespace
 
-void set_program(std::string name) {
-    console().program = std::move(name);
-}
-void set_quiet() {
-    console().quiet = true;
-}
+void set_program(std::string name) { console().program = std::move(name); }
+void set_quiet() { console().quiet = true; }
 
-void print_error(std::string_view message) {
-    print_message("error", "31", message);
-}
+void print_error(std::string_view message) { print_message("error", "31", message); }
 
 void print_warning(std::string_view message) {
     if (!console().quiet) print_message("warning", "33", message);

@@ -12,8 +12,7 @@ enum class ExitCode { done = 0, findings = 1, usage = 2, io = 3, data = 4, bug =
 
 inline constexpr Named<ExitCode> kExitCodeNames[] = {
     {ExitCode::done, "0", "done"},
-    {ExitCode::findings, "1",
-     "check-normals found problems, compare-normals found a difference over the limits"},
+    {ExitCode::findings, "1", "check-normals found problems, compare-normals found a difference over the limits"},
     {ExitCode::usage, "2", "the command line is wrong; nothing was read or written"},
     {ExitCode::io, "3", "a file cannot be opened, read or written; out of memory, disk or threads"},
     {ExitCode::data, "4", "a file is damaged, of an unsupported kind, or does not fit the options"},
@@ -26,12 +25,10 @@ constexpr ExitCode exit_code(ErrorCode code) {
     switch (code) {
         case ErrorCode::io:
         case ErrorCode::out_of_memory:
-        case ErrorCode::cancelled:
-            return ExitCode::io;
+        case ErrorCode::cancelled: return ExitCode::io;
         case ErrorCode::bad_data:
         case ErrorCode::unsupported:
-        case ErrorCode::bad_option:
-            return ExitCode::data;
+        case ErrorCode::bad_option: return ExitCode::data;
     }
     return ExitCode::bug;
 }

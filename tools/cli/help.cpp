@@ -19,8 +19,7 @@ std::vector<std::string> groups_in_order(const Command& command) {
     for (const Row& row : command.rows()) {
         if (std::find(groups.begin(), groups.end(), row.group) == groups.end()) groups.push_back(row.group);
     }
-    std::stable_partition(groups.begin(), groups.end(),
-                          [](const std::string& group) { return group != kHelpGroup; });
+    std::stable_partition(groups.begin(), groups.end(), [](const std::string& group) { return group != kHelpGroup; });
     return groups;
 }
 
@@ -66,8 +65,7 @@ void add_entry(std::string& out, const std::string& left, const std::string& rig
 std::string help_text(const Command& command) {
     std::string out;
     for (std::size_t k = 0; k < command.usages().size(); ++k) {
-        out += fmt::format("{}{} [OPTIONS] {}\n", k == 0 ? "Usage: " : "       ", command.name(),
-                           command.usages()[k]);
+        out += fmt::format("{}{} [OPTIONS] {}\n", k == 0 ? "Usage: " : "       ", command.name(), command.usages()[k]);
     }
     out += "\n";
     for (const std::string& line : wrapped(command.summary(), kWidth)) out += line + "\n";
@@ -81,16 +79,14 @@ std::string help_text(const Command& command) {
     }
     out += "\nExamples:\n";
     for (const Example& example : command.examples()) {
-        out += fmt::format("  {}\n      {}\n", example.line,
-                           join(wrapped(example.meaning, kWidth - 6), "\n      "));
+        out += fmt::format("  {}\n      {}\n", example.line, join(wrapped(example.meaning, kWidth - 6), "\n      "));
     }
     out += "\nExit status:\n";
     for (const Named<ExitCode>& row : kExitCodeNames) {
         if (row.value == ExitCode::findings && !command.finds()) continue;
         add_entry(out, fmt::format("  {}", row.name), std::string(row.meaning));
     }
-    out +=
-        fmt::format("\nSee {}(1) for the details and normal-maps(7) for the conventions.\n", command.name());
+    out += fmt::format("\nSee {}(1) for the details and normal-maps(7) for the conventions.\n", command.name());
     return out;
 }
 

@@ -23,9 +23,7 @@ extern "C" void on_signal(int signal) {
     alarm(kPatience);
 }
 
-extern "C" void on_alarm(int) {
-    end_by_signal(g_signal);
-}
+extern "C" void on_alarm(int) { end_by_signal(g_signal); }
 
 }  // namespace
 
@@ -43,13 +41,12 @@ void catch_signals() {
     sigaction(SIGALRM, &action, nullptr);
 }
 
-int caught_signal() {
-    return g_signal;
-}
+int caught_signal() { return g_signal; }
 
 void end_by_signal(int signal) {
-    // Only functions that a signal handler may call: both handlers come here. Threads may be anywhere, so nothing unwinds. (A wait that can be cancelled would
-    // serve decoders that hang, but neither a file system that is slow nor a second signal.)
+    // Only functions that a signal handler may call: both handlers come here. Threads may be anywhere, so nothing
+    // unwinds. (A wait that can be cancelled would serve decoders that hang, but neither a file system that is slow nor
+    // a second signal.)
     remove_unfinished_files();
     struct sigaction action {};
     action.sa_handler = SIG_DFL;

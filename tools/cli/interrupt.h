@@ -13,7 +13,8 @@ void catch_signals();
 // The signal that came, or 0.
 [[nodiscard]] int caught_signal();
 
-// Ends the process by `signal`, as if it had never been caught. Leaves no temporary file behind, whatever other threads do.
+// Ends the process by `signal`, as if it had never been caught. Leaves no temporary file behind, whatever other threads
+// do.
 [[noreturn]] void end_by_signal(int signal);
 
 }  // namespace tex::cli

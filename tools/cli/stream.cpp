@@ -14,8 +14,8 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include "base/system_error.h"
 #include "cli/console.h"
+#include "files/system_error.h"
 
 namespace tex::cli {
 namespace {
@@ -35,8 +35,9 @@ bool write_all(int fd, std::string_view text) {
     return true;
 }
 
-// Before the libraries' constructors, which end with abort() where they get no memory, and before the standard library has set memory for exceptions aside
-// (without which throwing one ends with abort(), too): a command that cannot have even this much says so.
+// Before the libraries' constructors, which end with abort() where they get no memory, and before the standard library
+// has set memory for exceptions aside (without which throwing one ends with abort(), too): a command that cannot have
+// even this much says so.
 void check_memory(int, char** argv, char**) {
     constexpr std::size_t kStart = std::size_t{4} << 20;
     // Not through the C library: libraries that put calls of their own before it are not ready.
@@ -65,9 +66,7 @@ void secure_streams() {
     static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));
 }
 
-bool write_stdout(std::string_view text) {
-    return write_all(STDOUT_FILENO, text);
-}
+bool write_stdout(std::string_view text) { return write_all(STDOUT_FILENO, text); }
 
 ExitCode print(std::string_view text) {
     if (write_stdout(text)) return ExitCode::done;
@@ -76,18 +75,14 @@ ExitCode print(std::string_view text) {
     return ExitCode::io;
 }
 
-void write_stderr(std::string_view text) {
-    write_all(STDERR_FILENO, text);
-}
+void write_stderr(std::string_view text) { write_all(STDERR_FILENO, text); }
 
 bool stdout_is_abandoned() {
     pollfd state{STDOUT_FILENO, POLLOUT, 0};
     return poll(&state, 1, 0) > 0 && (state.revents & POLLERR) != 0;
 }
 
-bool stdout_is_terminal() {
-    return isatty(STDOUT_FILENO) == 1;
-}
+bool stdout_is_terminal() { return isatty(STDOUT_FILENO) == 1; }
 
 bool stderr_is_terminal() {
     const char* terminal = std::getenv("TERM");

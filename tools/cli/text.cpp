@@ -28,7 +28,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     return last[b.size()];
 }
 
-// The bytes of the character that `text` begins with, in UTF-8 and in its shortest form; 0 where there is none, or a control character.
+// The bytes of the character that `text` begins with, in UTF-8 and in its shortest form; 0 where there is none, or a
+// control character.
 std::size_t character_length(std::string_view text) {
     const auto byte = [&](std::size_t k) { return k < text.size() ? static_cast<unsigned char>(text[k]) : 0u; };
     const unsigned first = byte(0);
@@ -40,7 +41,8 @@ std::size_t character_length(std::string_view text) {
         if ((byte(k) & 0xc0) != 0x80) return 0;
         code = code << 6 | (byte(k) & 0x3f);
     }
-    constexpr char32_t kLeast[] = {0, 0, 0xa0, 0x800, 0x10000};  // those of two bytes begin after the control characters
+    constexpr char32_t kLeast[] = {0, 0, 0xa0, 0x800,
+                                   0x10000};  // those of two bytes begin after the control characters
     const bool is_character = (code < 0xd800 || code >= 0xe000) && code != 0xfffe && code != 0xffff;
     return code >= kLeast[length] && code <= 0x10ffff && is_character ? length : 0;
 }

@@ -17,8 +17,8 @@ void check_range(std::string_view text, double value, Range range) {
     const bool too_small = range.least_too ? value < range.least : value <= range.least;
     if (!too_small && value <= range.greatest) return;
     if (std::isinf(range.greatest)) {
-        throw UsageError(fmt::format("{} is not {} {}", printable(text),
-                                     range.least_too ? "at least" : "greater than", range.least));
+        throw UsageError(fmt::format("{} is not {} {}", printable(text), range.least_too ? "at least" : "greater than",
+                                     range.least));
     }
     throw UsageError(fmt::format("{} is not {} {} and at most {}", printable(text),
                                  range.least_too ? "at least" : "greater than", range.least, range.greatest));
@@ -49,12 +49,8 @@ T parse_real(std::string_view text, Range range) {
 
 }  // namespace
 
-float parse_float(std::string_view text, Range range) {
-    return parse_real<float>(text, range);
-}
-double parse_double(std::string_view text, Range range) {
-    return parse_real<double>(text, range);
-}
+float parse_float(std::string_view text, Range range) { return parse_real<float>(text, range); }
+double parse_double(std::string_view text, Range range) { return parse_real<double>(text, range); }
 
 int parse_int(std::string_view text, int least, int greatest) {
     const int value = parse_number<int>(text, "a whole number");

@@ -2,12 +2,12 @@
 
 #include "cli/version.h"
 
-#include <CLI/Version.hpp>
 #include <fmt/format.h>
 #include <tbb/version.h>
 #include <tex/tex.h>
+#include <CLI/Version.hpp>
 
-#include "cli/json.h"
+#include "reports/json.h"
 
 namespace tex::cli {
 namespace {
@@ -22,9 +22,7 @@ constexpr const char* compiler() {
 
 }  // namespace
 
-std::string version_text(const Command& command) {
-    return fmt::format("{} {}\n", command.name(), TEX_VERSION);
-}
+std::string version_text(const Command& command) { return fmt::format("{} {}\n", command.name(), TEX_VERSION); }
 
 std::string version_json(const Command& command) {
     Json json;
@@ -40,8 +38,8 @@ std::string version_json(const Command& command) {
     json["dependencies"]["cli11"] = CLI11_VERSION;
     json["dependencies"]["fmt"] =
         fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100);
-    json["dependencies"]["nlohmann-json"] = fmt::format(
-        "{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH);
+    json["dependencies"]["nlohmann-json"] =
+        fmt::format("{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH);
     json["dependencies"]["onetbb"] = TBB_runtime_version();
     const Runtime runs = runtime();
     json["instruction_set"] = runs.instruction_set;

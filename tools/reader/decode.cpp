@@ -23,10 +23,10 @@ struct NativeType {
 };
 
 constexpr NativeType kTypes[] = {
-    {TypeDesc::UINT8, TypeDesc::UINT8, ReaderType::u8},     {TypeDesc::INT8, TypeDesc::INT8, ReaderType::s8},
-    {TypeDesc::UINT16, TypeDesc::UINT16, ReaderType::u16},  {TypeDesc::INT16, TypeDesc::INT16, ReaderType::s16},
-    {TypeDesc::UINT32, TypeDesc::UINT32, ReaderType::u32},  {TypeDesc::INT32, TypeDesc::INT32, ReaderType::s32},
-    {TypeDesc::HALF, TypeDesc::HALF, ReaderType::f16},      {TypeDesc::FLOAT, TypeDesc::FLOAT, ReaderType::f32},
+    {TypeDesc::UINT8, TypeDesc::UINT8, ReaderType::u8},    {TypeDesc::INT8, TypeDesc::INT8, ReaderType::s8},
+    {TypeDesc::UINT16, TypeDesc::UINT16, ReaderType::u16}, {TypeDesc::INT16, TypeDesc::INT16, ReaderType::s16},
+    {TypeDesc::UINT32, TypeDesc::UINT32, ReaderType::u32}, {TypeDesc::INT32, TypeDesc::INT32, ReaderType::s32},
+    {TypeDesc::HALF, TypeDesc::HALF, ReaderType::f16},     {TypeDesc::FLOAT, TypeDesc::FLOAT, ReaderType::f32},
 };
 
 // Values as they are stored; types that no plane distinguishes (64 bits, or another type for each channel) as float.
@@ -42,7 +42,8 @@ NativeType native_type(const OIIO::ImageSpec& spec) {
 // Why a picture is refused, or an empty view.
 std::string_view unsupported_reason(const std::string& format, const OIIO::ImageSpec& spec) {
     const std::string jpeg = spec.get_string_attribute("jpeg:ColorSpace");
-    const bool has_black = std::find(spec.channelnames.begin(), spec.channelnames.end(), "K") != spec.channelnames.end();
+    const bool has_black =
+        std::find(spec.channelnames.begin(), spec.channelnames.end(), "K") != spec.channelnames.end();
     if (has_black || jpeg.find('K') != std::string::npos || spec.get_string_attribute("oiio:ColorSpace") == "CMYK") {
         return "CMYK pictures are not read";
     }
@@ -71,14 +72,17 @@ void describe(const OIIO::ImageSpec& spec, const NativeType& type, ReaderHeader&
 int strip_rows(const OIIO::ImageSpec& spec, std::uint64_t bytes_of_row) {
     if (spec.tile_width > 0) return spec.tile_height;
     constexpr std::uint64_t kStrip = std::uint64_t{1} << 20;
-    return static_cast<int>(std::clamp<std::uint64_t>(kStrip / bytes_of_row, 1, static_cast<std::uint64_t>(spec.height)));
+    return static_cast<int>(
+        std::clamp<std::uint64_t>(kStrip / bytes_of_row, 1, static_cast<std::uint64_t>(spec.height)));
 }
 
-bool read_strip(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, const TypeDesc& type, int begin, int end, void* to) {
+bool read_strip(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, const TypeDesc& type, int begin, int end,
+                void* to) {
     const int y = spec.y + begin;
     const int y_end = spec.y + end;
     if (spec.tile_width > 0) {
-        return input.read_tiles(0, 0, spec.x, spec.x + spec.width, y, y_end, spec.z, spec.z + 1, 0, spec.nchannels, type, to);
+        return input.read_tiles(0, 0, spec.x, spec.x + spec.width, y, y_end, spec.z, spec.z + 1, 0, spec.nchannels,
+                                type, to);
     }
     return input.read_scanlines(0, 0, y, y_end, spec.z, 0, spec.nchannels, type, to);
 }
@@ -98,7 +102,8 @@ bool decode(const Task& task, ReaderHeader& header) {
     if (const std::string_view reason = unsupported_reason(task.format, spec); !reason.empty()) {
         return refuse(header, ErrorCode::unsupported, std::string(reason));
     }
-    if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1) return refuse(header, ErrorCode::bad_data, "holds no texels");
+    if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1)
+        return refuse(header, ErrorCode::bad_data, "holds no texels");
     if (spec.nchannels > kMaxReaderChannels) {
         return refuse(header, ErrorCode::unsupported, std::to_string(spec.nchannels) + " channels");
     }

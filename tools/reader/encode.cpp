@@ -49,7 +49,8 @@ OIIO::ImageSpec spec_of(const ReaderHeader& picture) {
 
 bool encode(const Task& task, ReaderHeader& header) {
     ReaderHeader picture;
-    if (!read_input(0, &picture, sizeof picture)) return refuse(header, ErrorCode::bad_data, "no picture was handed over");
+    if (!read_input(0, &picture, sizeof picture))
+        return refuse(header, ErrorCode::bad_data, "no picture was handed over");
     const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(task.format);
     if (!output) return refuse(header, ErrorCode::unsupported, "OpenImageIO has no encoder for " + task.format);
 

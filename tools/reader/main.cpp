@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// tex-reader: decodes and encodes pictures with OpenImageIO for libtex, which starts it. Not meant to be run by hand, except
+// tex-reader: decodes and encodes pictures with OpenImageIO for libtex, which starts it. Not meant to be run by hand,
+// except
 //
-//     tex-reader --version      OpenImageIO's version, and whether the kernel takes the restriction of files and the filter of system calls
+//     tex-reader --version      OpenImageIO's version, and whether the kernel takes the restriction of files and the
+//     filter of system calls
 
 #include <sys/mman.h>
 #include <unistd.h>
@@ -74,12 +76,13 @@ bool parse(const char* text, T& value) {
 int version() {
     const bool restricted = restrict_files();
     const bool filtered = filter_calls();
-    std::printf("OpenImageIO %s, files %s, system calls %s\n", OIIO_VERSION_STRING, restricted ? "restricted" : "not restricted",
-                filtered ? "filtered" : "not filtered");
+    std::printf("OpenImageIO %s, files %s, system calls %s\n", OIIO_VERSION_STRING,
+                restricted ? "restricted" : "not restricted", filtered ? "filtered" : "not filtered");
     return std::fflush(stdout) == 0 ? 0 : 1;
 }
 
-// Everything that a decoder could take from outside this file: threads, plug-ins, and (having no environment) nothing else.
+// Everything that a decoder could take from outside this file: threads, plug-ins, and (having no environment) nothing
+// else.
 void calm_openimageio() {
     OIIO::attribute("threads", 1);
     OIIO::attribute("plugin_searchpath", "");
@@ -142,7 +145,8 @@ int run(const std::string_view verb, const Task& task) {
 int main(int argc, char** argv) {
     using namespace tex::reader;
     const std::string_view verb = argc > 1 ? argv[1] : "";
-    // It always leaves without destructors: OpenImageIO's libraries take a tenth of a second to go, and the sandbox has no room for that.
+    // It always leaves without destructors: OpenImageIO's libraries take a tenth of a second to go, and the sandbox has
+    // no room for that.
     if (argc == 2 && verb == "--version") _exit(version());
     Task task;
     if (argc != 7 || (verb != "decode" && verb != "encode" && verb != "describe") || !parse(argv[3], task.max_texels) ||

@@ -10,7 +10,7 @@
 
 #include <tex/result.h>
 
-#include "containers/reader_protocol.h"
+#include "formats/reader/reader_protocol.h"
 
 namespace tex::reader {
 
@@ -28,14 +28,16 @@ void limit_process(const Task& task);
 // Bytes of address space and of one file that this process may have: the lesser of both.
 std::int64_t memory_limit();
 
-// Takes away all files but the input, which may be read (Landlock). False where the kernel does not know it, or refuses.
+// Takes away all files but the input, which may be read (Landlock). False where the kernel does not know it, or
+// refuses.
 bool restrict_files();
 
 // The kernel's version of Landlock; 0 where it has none.
 int landlock_version();
 
-// Takes away the system calls that a decoder needs no more: the network, opening files for writing, other programs, other processes (seccomp). False where the
-// kernel refuses the filter. Where either is refused, the other and the limits stay.
+// Takes away the system calls that a decoder needs no more: the network, opening files for writing, other programs,
+// other processes (seccomp). False where the kernel refuses the filter. Where either is refused, the other and the
+// limits stay.
 bool filter_calls();
 
 // Both answer in kResultDescriptor and return false after they have refused.

@@ -49,8 +49,10 @@ struct BakeOptions {
 //     du = dh/dx in heights per texel, to the right        n = normalize(-bumpiness_x du, -bumpiness_y dv, 1)
 //     dv = dh/dy in heights per texel, upwards
 //
-// (Blinn 1978; Catlike Coding, Rendering 6, 1.3.) Computed in float: slopes are exact to rounding, and lengths to 2 units in the last place. Slopes are clamped to
-// +-1e15, so that every finite height gives a finite unit normal with z > 0; heights must be finite (see height_field()).
+// (Blinn 1978; Catlike Coding, Rendering 6, 1.3.) Computed in float: slopes are exact to rounding, and lengths to 2
+// units in the last place. Slopes are clamped to
+// +-1e15, so that every finite height gives a finite unit normal with z > 0; heights must be finite (see
+// height_field()).
 //
 // Preconditions (asserted): 1 <= width, height <= kMaxExtent; finite bumpiness; gaussian_sigma in range.
 // Errors: out_of_memory, cancelled.
@@ -59,7 +61,8 @@ struct BakeOptions {
                                      const Execution& execution = {});
 
 // The range of slopes in a normal map: rise per texel width to the right (x) and upwards (y), -n.x / n.z and
-// -n.y / n.z with z at least 1e-16 (in maps that bake() did not make it may be 0 or below). For reports: a range beyond +-10 tells of a bumpiness that 8 bits hold badly.
+// -n.y / n.z with z at least 1e-16 (in maps that bake() did not make it may be 0 or below). For reports: a range beyond
+// +-10 tells of a bumpiness that 8 bits hold badly.
 struct SlopeRange {
     float min_x = 0.0f, max_x = 0.0f;
     float min_y = 0.0f, max_y = 0.0f;

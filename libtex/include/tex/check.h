@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // check.h: what is wrong with a texture of normals, told from its file and its texels.
 //
-// Every rule has an id that never changes ("N201"), a name, a severity, a sentence, an explanation and, where one exists, a fix in the form of a command. rules()
-// lists them all; the commands, the manual, the reports and the tests read that one table.
+// Every rule has an id that never changes ("N201"), a name, a severity, a sentence, an explanation and, where one
+// exists, a fix in the form of a command. rules() lists them all; the commands, the manual, the reports and the tests
+// read that one table.
 //
-// Rules that count (values, file) look at every texel. Rules that judge (damage, convention, pair) look at up to 2^20 texels, spread over the map, and
-// say how sure they are.
+// Rules that count (values, file) look at every texel. Rules that judge (damage, convention, pair) look at up to 2^20
+// texels, spread over the map, and say how sure they are.
 
 #pragma once
 
@@ -48,15 +49,16 @@ inline constexpr Named<RuleFamily> kRuleFamilyNames[] = {
 };
 
 struct Rule {
-    std::string_view id;           // "N201": stable for ever
-    std::string_view name;         // "not-unit-length"
+    std::string_view id;    // "N201": stable for ever
+    std::string_view name;  // "not-unit-length"
     RuleFamily family;
     Severity severity;             // unless the options say otherwise
     bool on;                       // off: only where the options enable it or require what it checks
     std::string_view sentence;     // what is wrong, as one sentence
     std::string_view explanation;  // how it is told, why it matters, what causes it
     std::string_view fix;          // a command in which FILE stands for the file, a sentence, or empty
-    std::string_view explains;     // ids of rules that this fault makes fire too, separated by blanks: their findings are left out
+    std::string_view
+        explains;  // ids of rules that this fault makes fire too, separated by blanks: their findings are left out
 };
 
 // All rules, by id.
@@ -65,16 +67,17 @@ struct Rule {
 // The rule with this id or name; null if there is none.
 [[nodiscard]] const Rule* find_rule(std::string_view id_or_name);
 
-// What a project demands of its files. Nothing is required by default but a side of at most 16384 texels, the limit of Direct3D 12.
+// What a project demands of its files. Nothing is required by default but a side of at most 16384 texels, the limit of
+// Direct3D 12.
 struct Requirements {
     std::optional<Format> format;
     std::optional<Encoding> encoding;  // a format and a swizzle
     std::optional<int> levels;         // 0: a complete chain, down to 1x1
     std::optional<Extent> extent;
     std::optional<YAxis> y;
-    int max_extent = 16384;            // texels along a side
+    int max_extent = 16384;  // texels along a side
     bool power_of_two = false;
-    bool tiles = false;                // the map repeats without a seam
+    bool tiles = false;  // the map repeats without a seam
 };
 
 enum class RequirementKey { format, mips, extent, max_extent, y, pow2, tiles };
@@ -95,10 +98,10 @@ inline constexpr Named<RequirementKey> kRequirementKeyNames[] = {
 
 struct CheckOptions {
     Requirements require;
-    std::vector<std::string> enable;    // ids or names
-    std::vector<std::string> disable;   // wins over enable
+    std::vector<std::string> enable;                         // ids or names
+    std::vector<std::string> disable;                        // wins over enable
     std::vector<std::pair<std::string, Severity>> severity;  // by id or name; the last one wins
-    const HeightField* height = nullptr;  // the map's heights, for the rules of the pair; not owned
+    const HeightField* height = nullptr;                     // the map's heights, for the rules of the pair; not owned
 };
 
 // Texels [x, x + width) x [y, y + height) of a level; y counts rows from the top.
@@ -110,12 +113,12 @@ struct Region {
 struct Finding {
     const Rule* rule = nullptr;
     Severity severity = Severity::warning;
-    std::string message;         // a sentence with its figures: "3.1 % of the texels are not of unit length: 0.71 to 1.02"
-    double figure = 0.0;         // the measured one, in `unit`
-    std::string_view unit;       // "share", "degrees", "texels", "ratio", ... or empty
-    double confidence = 1.0;     // 0.5 to 1; 1 where texels were counted
-    std::vector<Region> regions; // where; empty for the whole file
-    bool has_texel = false;      // (column, row) is the first texel concerned, on regions.front().level
+    std::string message;      // a sentence with its figures: "3.1 % of the texels are not of unit length: 0.71 to 1.02"
+    double figure = 0.0;      // the measured one, in `unit`
+    std::string_view unit;    // "share", "degrees", "texels", "ratio", ... or empty
+    double confidence = 1.0;  // 0.5 to 1; 1 where texels were counted
+    std::vector<Region> regions;  // where; empty for the whole file
+    bool has_texel = false;       // (column, row) is the first texel concerned, on regions.front().level
     int column = 0, row = 0;
 };
 
@@ -157,11 +160,11 @@ struct CheckReport {
 // Precondition (asserted): the texture has at least one level, each with level_bytes() bytes.
 // Errors: bad_option (see validate()), out_of_memory, cancelled.
 // The same report for every number of threads, processor and compiler.
-[[nodiscard]] Result<CheckReport> check(const std::string& file, const Texture& texture, const CheckOptions& options = {},
-                                        const Execution& execution = {});
+[[nodiscard]] Result<CheckReport> check(const std::string& file, const Texture& texture,
+                                        const CheckOptions& options = {}, const Execution& execution = {});
 
-// Reads a file and checks it. A file that cannot be read is a finding (N101) and its Error is in the report; so is, for memory
-// that ran out and cancellation, CheckReport::error alone. Errors: bad_option.
+// Reads a file and checks it. A file that cannot be read is a finding (N101) and its Error is in the report; so is, for
+// memory that ran out and cancellation, CheckReport::error alone. Errors: bad_option.
 [[nodiscard]] Result<CheckReport> check_file(const std::string& path, const CheckOptions& options = {},
                                              const ReadOptions& read = {}, const Execution& execution = {});
 

@@ -19,8 +19,8 @@ namespace tex {
 struct AngularError {
     std::int64_t texels = 0;
     double mean = 0.0;
-    double rms = 0.0;   // square root of the mean square
-    double p50 = 0.0;   // the median
+    double rms = 0.0;  // square root of the mean square
+    double p50 = 0.0;  // the median
     double p99 = 0.0;
     double p999 = 0.0;  // 99.9 %
     double max = 0.0;
@@ -37,8 +37,9 @@ struct Comparison {
 //
 //     angle = 2 asin(|a - b| / 2)
 //
-// which is accurate near 0, where acos(dot(a, b)) is not: in float, acos knows no angle between 0 and 0.02 degrees. Here equal vectors are exactly 0
-// degrees apart, and the error is below 0.0001 degrees up to 170 degrees and below 0.03 degrees beyond.
+// which is accurate near 0, where acos(dot(a, b)) is not: in float, acos knows no angle between 0 and 0.02 degrees.
+// Here equal vectors are exactly 0 degrees apart, and the error is below 0.0001 degrees up to 170 degrees and below
+// 0.03 degrees beyond.
 //
 // Preconditions (asserted): both maps have the same extent, at least 1x1.
 // Errors: out_of_memory, cancelled.

@@ -20,13 +20,35 @@ namespace tex {
 //   bc2  16 bytes: 4-bit alpha, then a BC1 block (DXT3)            bc5  16 bytes: R and G, two BC4 blocks
 //   bc3  16 bytes: alpha as a BC4 block, then a BC1 block (DXT5)
 enum class Format {
-    bc1_unorm, bc2_unorm, bc3_unorm, bc4_unorm, bc4_snorm, bc5_unorm, bc5_snorm,
-    r8_unorm, rg8_unorm, rgb8_unorm, rgba8_unorm,
-    r8_snorm, rg8_snorm, rgba8_snorm,
-    r16_unorm, rg16_unorm, rgb16_unorm, rgba16_unorm,
-    r16_snorm, rg16_snorm, rgba16_snorm,
-    r16_float, rg16_float, rgb16_float, rgba16_float,
-    r32_float, rg32_float, rgb32_float, rgba32_float,
+    bc1_unorm,
+    bc2_unorm,
+    bc3_unorm,
+    bc4_unorm,
+    bc4_snorm,
+    bc5_unorm,
+    bc5_snorm,
+    r8_unorm,
+    rg8_unorm,
+    rgb8_unorm,
+    rgba8_unorm,
+    r8_snorm,
+    rg8_snorm,
+    rgba8_snorm,
+    r16_unorm,
+    rg16_unorm,
+    rgb16_unorm,
+    rgba16_unorm,
+    r16_snorm,
+    rg16_snorm,
+    rgba16_snorm,
+    r16_float,
+    rg16_float,
+    rgb16_float,
+    rgba16_float,
+    r32_float,
+    rg32_float,
+    rgb32_float,
+    rgba32_float,
 };
 
 inline constexpr Named<Format> kFormatNames[] = {
@@ -78,14 +100,16 @@ struct FormatInfo {
 
 // What one stored channel holds.
 enum class Component {
-    zero,   // constant 0
-    one,    // constant 1
-    x, y, z,  // a component of the normal
+    zero,  // constant 0
+    one,   // constant 1
+    x,
+    y,
+    z,      // a component of the normal
     other,  // anything else (height, gloss, unused): not read, and written as 0
 };
 
 inline constexpr Named<Component> kComponentNames[] = {
-    {Component::zero, "0", "constant 0"}, {Component::one, "1", "constant 1"},
+    {Component::zero, "0", "constant 0"},   {Component::one, "1", "constant 1"},
     {Component::x, "x", "x of the normal"}, {Component::y, "y", "y of the normal"},
     {Component::z, "z", "z of the normal"}, {Component::other, "_", "something else"},
 };

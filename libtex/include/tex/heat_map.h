@@ -14,19 +14,20 @@ namespace tex {
 inline constexpr int kHeatMapLegendRows = 36;
 inline constexpr int kHeatMapLeastWidth = 128;
 
-// A picture of angles in degrees, one for each texel: planes R, G, B in [0, 1]. Black is 0, pale yellow is `full_scale` degrees and
-// more. (The colours of matplotlib's "inferno", Smith and van der Walt 2015, in ten linear pieces: its lightness grows evenly, so that it also reads in
-// grey and by people who do not see red and green apart.) Under the map stands a legend of kHeatMapLegendRows rows: the colours from 0 on the left to
-// full_scale on the right, with the values at both ends. Maps narrower than kHeatMapLeastWidth have black beside them.
+// A picture of angles in degrees, one for each texel: planes R, G, B in [0, 1]. Black is 0, pale yellow is `full_scale`
+// degrees and more. (The colours of matplotlib's "inferno", Smith and van der Walt 2015, in ten linear pieces: its
+// lightness grows evenly, so that it also reads in grey and by people who do not see red and green apart.) Under the
+// map stands a legend of kHeatMapLegendRows rows: the colours from 0 on the left to full_scale on the right, with the
+// values at both ends. Maps narrower than kHeatMapLeastWidth have black beside them.
 //
 // Preconditions (asserted): `degrees` is not empty and has no NaN; 0 < full_scale <= 180.
 // Errors: out_of_memory, cancelled.
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] Result<Image> heat_map(const Plane<float>& degrees, double full_scale, const Execution& execution = {});
 
-// The angles for a smaller picture: the longer side divided into at most `side` cells, each holding its largest angle, so that none is lost. Cells are square,
-// of a whole number of texels, but for those at the right and lower border. Precondition: `degrees` is not empty, side >= 1.
-// Errors: out_of_memory.
+// The angles for a smaller picture: the longer side divided into at most `side` cells, each holding its largest angle,
+// so that none is lost. Cells are square, of a whole number of texels, but for those at the right and lower border.
+// Precondition: `degrees` is not empty, side >= 1. Errors: out_of_memory.
 [[nodiscard]] Result<Plane<float>> largest_of_cells(const Plane<float>& degrees, int side);
 
 }  // namespace tex

@@ -33,8 +33,8 @@ inline constexpr Named<Wrap> kWrapNames[] = {
     {Wrap::mirror, "mirror", "the texture is mirrored at its border"},
 };
 
-// Heights, white (greater) is high. bumpiness_x and bumpiness_y are the height of value 1.0 in texel widths along each axis: 0
-// is flat, negative values turn bumps into dents; finite.
+// Heights, white (greater) is high. bumpiness_x and bumpiness_y are the height of value 1.0 in texel widths along each
+// axis: 0 is flat, negative values turn bumps into dents; finite.
 struct HeightField {
     Plane<float> height;
     float bumpiness_x = 1.0f;
@@ -51,10 +51,12 @@ struct Strength {
 
 // World units: value 1.0 is `range` high, the whole texture is `width` wide and `height` high, all in one unit (metres,
 // say). height = 0 means square texels. x = range * columns / width, y = range * rows / height: the same
-// surface at 512 and at 2048 texels gives the same normals. Limited to what a float holds. Precondition: width > 0, height >= 0, all finite.
+// surface at 512 and at 2048 texels gives the same normals. Limited to what a float holds. Precondition: width > 0,
+// height >= 0, all finite.
 [[nodiscard]] Strength strength_from_world(Extent extent, double range, double width, double height = 0.0);
 
-// Value 1.0 is `r` texture widths high, texels are square: x = y = r * columns. Limited to what a float holds. Precondition: r is finite.
+// Value 1.0 is `r` texture widths high, texels are square: x = y = r * columns. Limited to what a float holds.
+// Precondition: r is finite.
 [[nodiscard]] Strength strength_from_uv(Extent extent, double r);
 
 // Which value of a texel is its height.
@@ -101,11 +103,11 @@ struct HeightReport {
 // Makes a height field of strength 1 from a picture.
 //
 // Channel: see HeightChannel. A picture has colour where it has planes R, G and B; a picture of any other
-// single plane, or of one plane and A, is grey. Of an EXR file with other names the only non-alpha plane is taken, or the one called "Y",
-// "height", "displacement", "Z" or "depth" (any case) where there are several.
-// Invalid texels (NaN, infinite, equal to no_data): replaced where fill_invalid is set, by the value of the
-// nearest valid texel (Euclidean distance, wrap respected, ties by the smallest row, then column).
-// Blur: a Gaussian of radius ceil(3 sigma), weights normalised to 1, with the field's wrap.
+// single plane, or of one plane and A, is grey. Of an EXR file with other names the only non-alpha plane is taken, or
+// the one called "Y", "height", "displacement", "Z" or "depth" (any case) where there are several. Invalid texels (NaN,
+// infinite, equal to no_data): replaced where fill_invalid is set, by the value of the nearest valid texel (Euclidean
+// distance, wrap respected, ties by the smallest row, then column). Blur: a Gaussian of radius ceil(3 sigma), weights
+// normalised to 1, with the field's wrap.
 //
 // Errors: bad_option  the channel is not in the picture (the reason lists those that are); blur_sigma out of range
 //         bad_data    invalid texels and no fill_invalid: the reason names the first texel (column, row)
@@ -113,10 +115,10 @@ struct HeightReport {
 //         out_of_memory, cancelled
 // `report` may be null. The result is the same for every number of threads.
 [[nodiscard]] Result<HeightField> height_field(const Image& image, const HeightOptions& options,
-                                               const Execution& execution = {},
-                                               HeightReport* report = nullptr);
+                                               const Execution& execution = {}, HeightReport* report = nullptr);
 
-// Whether `error`, of height_field() or bake_file(), tells of invalid texels that fill_invalid replaces: some are invalid, others are not.
+// Whether `error`, of height_field() or bake_file(), tells of invalid texels that fill_invalid replaces: some are
+// invalid, others are not.
 [[nodiscard]] bool is_fillable(const Error& error);
 
 }  // namespace tex

@@ -39,12 +39,8 @@ struct Extent {
     int width = 0;
     int height = 0;
 
-    [[nodiscard]] constexpr std::int64_t texels() const {
-        return static_cast<std::int64_t>(width) * height;
-    }
-    friend constexpr bool operator==(Extent a, Extent b) {
-        return a.width == b.width && a.height == b.height;
-    }
+    [[nodiscard]] constexpr std::int64_t texels() const { return static_cast<std::int64_t>(width) * height; }
+    friend constexpr bool operator==(Extent a, Extent b) { return a.width == b.width && a.height == b.height; }
     friend constexpr bool operator!=(Extent a, Extent b) { return !(a == b); }
 };
 
@@ -111,8 +107,9 @@ private:
             std::free(block);
         }
     };
-    // Not aligned_alloc(): where aligned blocks come and go, the heap of glibc before 2.38 grows without end (its bug 14581). The block that the rows lie in is noted
-    // before them. The address sanitizer watches their end, and so gets blocks that end there.
+    // Not aligned_alloc(): where aligned blocks come and go, the heap of glibc before 2.38 grows without end (its bug
+    // 14581). The block that the rows lie in is noted before them. The address sanitizer watches their end, and so gets
+    // blocks that end there.
     static void* allocate(std::size_t bytes) {
 #ifdef TEX_ADDRESS_SANITIZER
         void* const block = std::aligned_alloc(kRowAlignment, bytes + kRowAlignment);
@@ -120,7 +117,8 @@ private:
         void* const block = std::malloc(bytes + kRowAlignment);
 #endif
         if (block == nullptr) throw std::bad_alloc();
-        char* const rows = static_cast<char*>(block) + (kRowAlignment - reinterpret_cast<std::uintptr_t>(block) % kRowAlignment);
+        char* const rows =
+            static_cast<char*>(block) + (kRowAlignment - reinterpret_cast<std::uintptr_t>(block) % kRowAlignment);
         std::memcpy(rows - sizeof block, &block, sizeof block);
         return rows;
     }

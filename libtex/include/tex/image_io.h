@@ -2,8 +2,8 @@
 // image_io.h: pictures from files.
 //
 // The first bytes of a file, not its name, decide how it is read. PNG and EXR are decoded in this process, by
-// libpng and OpenEXR; DDS and KTX2 by libtex; everything else (TIFF, TGA, JPEG, BMP, HDR, PSD ...) by OpenImageIO in a reader process of its
-// own, under limits of memory and time: a crash or a hang in such a decoder becomes an Error.
+// libpng and OpenEXR; DDS and KTX2 by libtex; everything else (TIFF, TGA, JPEG, BMP, HDR, PSD ...) by OpenImageIO in a
+// reader process of its own, under limits of memory and time: a crash or a hang in such a decoder becomes an Error.
 
 #pragma once
 
@@ -28,9 +28,9 @@ struct ReadOptions {
 
 // Reads a picture, its base level only, with all its channels: raw values (see Image), unassociated alpha, top row
 // first. PNG: 1 to 16 bits, grey, RGB, alpha, palette (expanded), transparency (as A), interlaced; colour
-// chunks (gAMA, sRGB, iCCP, sBIT) change nothing. EXR: half, float and uint, scanline and tiled, mip-mapped, any channel
-// names (R, G, B, A come first, the others by name); the data window; of several parts the first; deep data and subsampled channels are unsupported.
-// `path` "-" reads standard input.
+// chunks (gAMA, sRGB, iCCP, sBIT) change nothing. EXR: half, float and uint, scanline and tiled, mip-mapped, any
+// channel names (R, G, B, A come first, the others by name); the data window; of several parts the first; deep data and
+// subsampled channels are unsupported. `path` "-" reads standard input.
 //
 // Errors: io           cannot be opened or read; is a directory; the reader program cannot be started
 //         bad_data     empty, truncated, damaged; not a picture at all
@@ -43,8 +43,8 @@ struct ReadOptions {
 // What the reader process is, and what it gives up before it opens a file.
 struct ReaderInfo {
     std::string program;
-    std::string openimageio;      // its version
-    int landlock = 0;             // the kernel's version of Landlock; 0: it has none
+    std::string openimageio;        // its version
+    int landlock = 0;               // the kernel's version of Landlock; 0: it has none
     bool files_restricted = false;  // by Landlock: no file but the input
     bool calls_filtered = false;    // by seccomp: no network, no writing, no other programs
 };

@@ -14,8 +14,8 @@
 #pragma GCC visibility push(default)
 namespace tex {
 
-// The filter between a level and the next. x is the distance from the centre of the smaller level's texel, in texels of the
-// smaller level; weights are normalised to sum 1 for each texel.
+// The filter between a level and the next. x is the distance from the centre of the smaller level's texel, in texels of
+// the smaller level; weights are normalised to sum 1 for each texel.
 //
 //   box            1 for |x| <= 1/2; each texel weighs what of it is covered, so that odd sizes are exact
 //                  averages (Guthe, Heckbert: Non-Power-of-Two Mipmapping, NVIDIA 2005)
@@ -48,15 +48,16 @@ inline constexpr Named<MipDomain> kMipDomainNames[] = {
     {MipDomain::slope, "slope", "average the slopes: exact for height fields"},
 };
 
-// Fading out (Unity's "Fadeout Mip Maps"): level k moves to flat, (0, 0, 1), by t = clamp((k - first) / (last - first), 0, 1); from
-// `last` on all is flat. Precondition: 0 <= first < last.
+// Fading out (Unity's "Fadeout Mip Maps"): level k moves to flat, (0, 0, 1), by t = clamp((k - first) / (last - first),
+// 0, 1); from `last` on all is flat. Precondition: 0 <= first < last.
 struct Fade {
     int first = 1;
     int last = 3;
 };
 
 struct MipOptions {
-    int levels = 0;  // levels wanted, counting the base level; 0 is a complete chain; more than that is a complete chain
+    int levels =
+        0;  // levels wanted, counting the base level; 0 is a complete chain; more than that is a complete chain
     MipFilter filter = MipFilter::box;
     MipDomain domain = MipDomain::vector;
     std::optional<Fade> fade;
@@ -64,13 +65,13 @@ struct MipOptions {
     Wrap wrap_y = Wrap::repeat;
 };
 
-// Builds the chain. Each level is filtered from the previous one before that one was normalised, so that a level is the true average of
-// the base level; what is stored is
+// Builds the chain. Each level is filtered from the previous one before that one was normalised, so that a level is the
+// true average of the base level; what is stored is
 //
 //     normalize(lerp(normalize(average), (0, 0, 1), t))
 //
-// where a vector shorter than 1e-6 becomes (0, 0, 1), and a z below 0 (filters with negative lobes) becomes 0 first. The
-// base level is stored as given, except for the fade (t is 0 there unless first is negative, which is not allowed).
+// where a vector shorter than 1e-6 becomes (0, 0, 1), and a z below 0 (filters with negative lobes) becomes 0 first.
+// The base level is stored as given, except for the fade (t is 0 there unless first is negative, which is not allowed).
 //
 // Preconditions (asserted): `base` is not empty; fade as described; levels >= 0.
 // Errors: out_of_memory, cancelled.

@@ -38,7 +38,8 @@ struct NormalMap {
 // What a bump scale s does to a normal.
 //
 //   slope    normalize(s x, s y, z): what scaling the height by s does; glTF, Unity's SRP
-//   xy       (s x, s y, reconstruct_z(s x, s y)): Catlike Coding, Rendering 6, 2.3 (UnpackScaleNormal); where s x and s y
+//   xy       (s x, s y, reconstruct_z(s x, s y)): Catlike Coding, Rendering 6, 2.3 (UnpackScaleNormal); where s x and s
+//   y
 //            leave the unit circle, they are divided by their length and z is 0
 //
 // A normal tilted by 32 degrees differs by 2 degrees between them at s = 0.5, and by 39 at s = 2.
@@ -56,11 +57,9 @@ inline constexpr Named<ScaleMode> kScaleModeNames[] = {
     return std::sqrt(1.0f - std::min(std::max(x * x + y * y, 0.0f), 1.0f));
 }
 
-// The cheap approximation 1 - (x^2 + y^2) / 2 (GLSL/Cg Programming in Unity, Lighting of Bumpy Surfaces), for comparison: it
-// is 0.5 where the true z is 0.
-[[nodiscard]] inline float reconstruct_z_approximate(float x, float y) {
-    return 1.0f - (x * x + y * y) / 2.0f;
-}
+// The cheap approximation 1 - (x^2 + y^2) / 2 (GLSL/Cg Programming in Unity, Lighting of Bumpy Surfaces), for
+// comparison: it is 0.5 where the true z is 0.
+[[nodiscard]] inline float reconstruct_z_approximate(float x, float y) { return 1.0f - (x * x + y * y) / 2.0f; }
 
 }  // namespace tex
 #pragma GCC visibility pop

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // pipeline.h: from file to file, row by row.
 //
-// The verbs of the other headers take whole images and give whole images. Here a file is read a few rows at a time, and each row of texel blocks is
-// written when it is finished, so that memory is needed for a few strips of rows only, and decoding runs beside everything else. The bytes are
-// those of the verbs, one after the other.
+// The verbs of the other headers take whole images and give whole images. Here a file is read a few rows at a time, and
+// each row of texel blocks is written when it is finished, so that memory is needed for a few strips of rows only, and
+// decoding runs beside everything else. The bytes are those of the verbs, one after the other.
 
 #pragma once
 
@@ -39,7 +39,8 @@ inline constexpr Named<Path> kPathNames[] = {
 // The names of files that hold one level each, by the level. May throw std::bad_alloc only.
 using LevelNames = std::function<std::string(int level)>;
 
-// What bake_file() does: read_image(), to_linear() where color.space is not empty, height_field(), bake(), build_mip_chain(), pack(), write_texture().
+// What bake_file() does: read_image(), to_linear() where color.space is not empty, height_field(), bake(),
+// build_mip_chain(), pack(), write_texture().
 struct BakeFileOptions {
     ReadOptions read;
     ColorOptions color;
@@ -55,31 +56,34 @@ struct BakeFileOptions {
 
 struct BakeFileReport {
     Path path = Path::whole;
-    Extent extent;          // of the base level
+    Extent extent;  // of the base level
     int levels = 1;
     std::size_t bytes = 0;  // of the output, of all its files
     HeightReport heights;
-    SlopeRange slopes;      // where they were wanted, else zeros
+    SlopeRange slopes;  // where they were wanted, else zeros
 };
 
 // Bakes the height map `input` ("-" is standard input) and writes it to `output` as a file of the kind `container`.
 //
-// Streamed: PNG that is not interlaced, EXR, and what the reader process decodes (TIFF, TGA, JPEG ...), into DDS, KTX2, PNG and EXR, without fill_invalid and
-// without a colour space. PNG and EXR are written from the top: where the heights repeat from bottom to top, the last rows are decoded first (a PNG twice; of what
-// the reader process decodes all rows wait, as they are stored). Everything else takes the path of whole images. Pictures that hold one level get the base level. EXR
-// keeps the compressed tiles of smaller levels in memory until the base level is done.
+// Streamed: PNG that is not interlaced, EXR, and what the reader process decodes (TIFF, TGA, JPEG ...), into DDS, KTX2,
+// PNG and EXR, without fill_invalid and without a colour space. PNG and EXR are written from the top: where the heights
+// repeat from bottom to top, the last rows are decoded first (a PNG twice; of what the reader process decodes all rows
+// wait, as they are stored). Everything else takes the path of whole images. Pictures that hold one level get the base
+// level. EXR keeps the compressed tiles of smaller levels in memory until the base level is done.
 //
-// The output appears whole or not at all, see write_file(). Of files for each level none appears before all rows are done; then they do one after the other, up to one that
-// fails. What goes to standard output or a FIFO is held in memory until it is whole.
+// The output appears whole or not at all, see write_file(). Of files for each level none appears before all rows are
+// done; then they do one after the other, up to one that fails. What goes to standard output or a FIFO is held in
+// memory until it is whole.
 //
 // Preconditions (asserted): as those of the verbs.
-// Errors: those of the verbs. `file` is empty where the heights are concerned, not a file. Of several errors (a damaged picture, a directory that is
-// not there) any may be told.
-// The same bytes for every number of threads, and on either path.
+// Errors: those of the verbs. `file` is empty where the heights are concerned, not a file. Of several errors (a damaged
+// picture, a directory that is not there) any may be told. The same bytes for every number of threads, and on either
+// path.
 [[nodiscard]] Result<BakeFileReport> bake_file(const std::string& input, const std::string& output, Container container,
                                                const BakeFileOptions& options = {}, const Execution& execution = {});
 
-// A map of roughness beside the normals: build_roughness_chain() of the base level, with as many levels (one, where the file holds one), pack_roughness(), write_texture().
+// A map of roughness beside the normals: build_roughness_chain() of the base level, with as many levels (one, where the
+// file holds one), pack_roughness(), write_texture().
 struct RoughnessFile {
     std::string output;
     LevelNames level_names;  // as in BakeFileOptions
@@ -87,28 +91,29 @@ struct RoughnessFile {
     Format format = Format::bc4_unorm;
     Effort effort = Effort::normal;
     RoughnessModel model = RoughnessModel::toksvig;
-    float own = 0.0f;  // the material's roughness, the same everywhere,
+    float own = 0.0f;                           // the material's roughness, the same everywhere,
     std::function<Result<Plane<float>>()> map;  // or what this reads
 };
 
-// What pack_file() does: read_normals(), scale() where there is a scale, build_mip_chain() where there is `mip`, pack(), write_texture().
+// What pack_file() does: read_normals(), scale() where there is a scale, build_mip_chain() where there is `mip`,
+// pack(), write_texture().
 struct PackFileOptions {
     SourceOptions source;
-    std::optional<int> level;      // this level of the source alone, which becomes the base level; none: all of them
-    std::optional<Scaling> scale;  // none: as they are
-    std::optional<MipOptions> mip; // levels are built of the base level; none: the source's own are kept
+    std::optional<int> level;       // this level of the source alone, which becomes the base level; none: all of them
+    std::optional<Scaling> scale;   // none: as they are
+    std::optional<MipOptions> mip;  // levels are built of the base level; none: the source's own are kept
 
-    // How the output is packed, told by what the source is. Empty: default_encoding() of the container, y as in the source. Must not throw. Where the
-    // texels tell the swizzle, it may be called more than once; the last call counts.
+    // How the output is packed, told by what the source is. Empty: default_encoding() of the container, y as in the
+    // source. Must not throw. Where the texels tell the swizzle, it may be called more than once; the last call counts.
     std::function<PackOptions(const SourceInfo&)> pack;
     WriteOptions write;
-    LevelNames level_names;  // as in BakeFileOptions
+    LevelNames level_names;                  // as in BakeFileOptions
     std::optional<RoughnessFile> roughness;  // only where there is `mip`
 };
 
 struct PackFileReport {
     Path path = Path::whole;
-    Extent extent;          // of the base level that was written
+    Extent extent;  // of the base level that was written
     int levels = 1;
     std::size_t bytes = 0;  // of the output, of all its files
     std::size_t roughness_bytes = 0;
@@ -116,19 +121,22 @@ struct PackFileReport {
     SourceInfo source;
 };
 
-// Reads the normal map `input` ("-" is standard input) and writes it to `output` as a file of the kind `container`, in another encoding, with levels built
-// of it, scaled, or one level of it.
+// Reads the normal map `input` ("-" is standard input) and writes it to `output` as a file of the kind `container`, in
+// another encoding, with levels built of it, scaled, or one level of it.
 //
-// Streamed: DDS, KTX2 and EXR, level by level, PNG that is not interlaced, and what the reader process decodes (TIFF, TGA, JPEG ...), into DDS, KTX2, PNG and
-// EXR, which keeps the compressed tiles of built levels in memory until the base level is done. Everything else takes the path of whole images: the reader process encodes whole
-// pictures. Pictures that hold one level get the base level. A map of roughness
-// streams beside the normals where both files do and RoughnessFile::map is empty; its file appears after theirs.
+// Streamed: DDS, KTX2 and EXR, level by level, PNG that is not interlaced, and what the reader process decodes (TIFF,
+// TGA, JPEG ...), into DDS, KTX2, PNG and EXR, which keeps the compressed tiles of built levels in memory until the
+// base level is done. Everything else takes the path of whole images: the reader process encodes whole pictures.
+// Pictures that hold one level get the base level. A map of roughness streams beside the normals where both files do
+// and RoughnessFile::map is empty; its file appears after theirs.
 //
-// Streams cannot look at all texels before the first is written. Where these decide (four channels without a swizzle; floats without a range), the
-// likeliest layout of the format is assumed: x, y, z in R, G, B; x in A and y in G in BC3; signed floats. Where the texels turn out to say otherwise, the
-// file is read once more, and nothing of the first attempt remains.
+// Streams cannot look at all texels before the first is written. Where these decide (four channels without a swizzle;
+// floats without a range), the likeliest layout of the format is assumed: x, y, z in R, G, B; x in A and y in G in BC3;
+// signed floats. Where the texels turn out to say otherwise, the file is read once more, and nothing of the first
+// attempt remains.
 //
-// The output appears whole or not at all, and files for each level as bake_file() says. What goes to standard output or a FIFO is held in memory until it is whole.
+// The output appears whole or not at all, and files for each level as bake_file() says. What goes to standard output or
+// a FIFO is held in memory until it is whole.
 //
 // Preconditions (asserted): as those of the verbs.
 // Errors: those of the verbs; bad_option where the source has no such level. Of several errors any may be told.

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // preview.h: light on a normal map, and false colours.
 //
-// People judge a normal map by looking at light on it. preview() renders, on the CPU and with the same bytes everywhere, what a GPU would show
-// with the shaders of GLSL/Cg Programming in Unity (wikibook), "Lighting of Bumpy Surfaces" and "Projection of Bumpy Surfaces".
+// People judge a normal map by looking at light on it. preview() renders, on the CPU and with the same bytes
+// everywhere, what a GPU would show with the shaders of GLSL/Cg Programming in Unity (wikibook), "Lighting of Bumpy
+// Surfaces" and "Projection of Bumpy Surfaces".
 //
 // World. x right, y up, z towards the viewer (right-handed). Light is computed in linear values and stored as sRGB
 // (IEC 61966-2-1), rounded to the nearest code.
@@ -23,7 +24,8 @@
 #pragma GCC visibility push(default)
 namespace tex {
 
-// What a picture shows. n = (x, y, z) is the stored normal of a texel, p = -x/z and q = -y/z are its slopes (z at least 1/256).
+// What a picture shows. n = (x, y, z) is the stored normal of a texel, p = -x/z and q = -y/z are its slopes (z at least
+// 1/256).
 //
 //   lit            the whole material under the light: see "Lighting" below
 //   plain          the same without albedo, detail and parallax: the map alone
@@ -40,11 +42,23 @@ namespace tex {
 //   mips           all levels beside each other, (n + 1) / 2
 //   height         the height map, from its lowest value (black) to its highest (white)
 //
-// Values from 0 are shown in viridis, values of both signs in blue, white and red-brown; both order colours by lightness or by blue against
-// orange, which people with any common colour vision deficiency can read. A legend stands below. There are 240 steps between its ends (grey has all codes); values
-// beyond take the end's colour, NaN is magenta.
+// Values from 0 are shown in viridis, values of both signs in blue, white and red-brown; both order colours by
+// lightness or by blue against orange, which people with any common colour vision deficiency can read. A legend stands
+// below. There are 240 steps between its ends (grey has all codes); values beyond take the end's colour, NaN is
+// magenta.
 enum class Show {
-    lit, plain, normals, world_normals, slope, tilt, length, z_error, curl, channels, mips, height,
+    lit,
+    plain,
+    normals,
+    world_normals,
+    slope,
+    tilt,
+    length,
+    z_error,
+    curl,
+    channels,
+    mips,
+    height,
 };
 
 inline constexpr Named<Show> kShowNames[] = {
@@ -105,45 +119,48 @@ struct Light {
 };
 
 struct Material {
-    Rgb albedo = {0.6f, 0.6f, 0.6f};       // multiplies the albedo map where there is one
+    Rgb albedo = {0.6f, 0.6f, 0.6f};  // multiplies the albedo map where there is one
     Rgb specular = {0.25f, 0.25f, 0.25f};
-    float shininess = 20.0f;               // above 0
+    float shininess = 20.0f;  // above 0
     SpecularModel model = SpecularModel::phong;
 };
 
-// The camera orbits the origin, looks at it, and stands as far away as the whole shape needs to be in the picture. A plane seen straight on
-// (yaw and pitch 0) fills a picture of its own proportions exactly, so that texels and pixels coincide where their numbers do; its eye is at
-// (0, 0, 1 / tan(field_of_view / 2)).
+// The camera orbits the origin, looks at it, and stands as far away as the whole shape needs to be in the picture. A
+// plane seen straight on (yaw and pitch 0) fills a picture of its own proportions exactly, so that texels and pixels
+// coincide where their numbers do; its eye is at (0, 0, 1 / tan(field_of_view / 2)).
 struct Camera {
-    float yaw = 0.0f;             // degrees to the right
-    float pitch = 0.0f;           // degrees up, -89 to 89
-    float field_of_view = 30.0f;  // degrees from the picture's lower edge to its upper one, 0 to 120; 0 is a parallel projection
+    float yaw = 0.0f;    // degrees to the right
+    float pitch = 0.0f;  // degrees up, -89 to 89
+    float field_of_view =
+        30.0f;  // degrees from the picture's lower edge to its upper one, 0 to 120; 0 is a parallel projection
 };
 
 // Detail, as in Catlike Coding, Rendering 6, 3: sampled at uv * tiling + offset, scaled, then blended over the map by
-// whiteout, normalize(n1.xy + n2.xy, n1.z n2.z). The detail's albedo, sampled at the same place, is multiplied with the albedo and with 4.5948, so that sRGB
-// grey 0.5 changes nothing (unity_ColorSpaceDouble).
+// whiteout, normalize(n1.xy + n2.xy, n1.z n2.z). The detail's albedo, sampled at the same place, is multiplied with the
+// albedo and with 4.5948, so that sRGB grey 0.5 changes nothing (unity_ColorSpaceDouble).
 struct Detail {
     float tiling_x = 1.0f, tiling_y = 1.0f;
     float offset_x = 0.0f, offset_y = 0.0f;
     float scale = 1.0f;  // the detail's bump scale
 };
 
-// Parallax mapping (Kaneko et al. 2001; Welsh 2004; wikibook, "Projection of Bumpy Surfaces"). V is the unnormalised direction to the viewer in
-// the tangent frame (T, B, N), h the height map at uv:
+// Parallax mapping (Kaneko et al. 2001; Welsh 2004; wikibook, "Projection of Bumpy Surfaces"). V is the unnormalised
+// direction to the viewer in the tangent frame (T, B, N), h the height map at uv:
 //
 //     offset = clamp(P (h - 0.5) V.xy / V.z, -L, L)          one step: steps = 0
 //
-// With steps N >= 1 the view ray is marched through the height map (relief mapping: Policarpo, Oliveira, Comba 2005): it is at offset
-// P (t - 0.5) V.xy / V.z, clamped to +-L, at height t; t falls from 1 to 0 in N equal steps until the height map
-// there reaches t, and the crossing is interpolated between the last two. All maps are then sampled at uv + offset.
+// With steps N >= 1 the view ray is marched through the height map (relief mapping: Policarpo, Oliveira, Comba 2005):
+// it is at offset P (t - 0.5) V.xy / V.z, clamped to +-L, at height t; t falls from 1 to 0 in N equal steps until the
+// height map there reaches t, and the crossing is interpolated between the last two. All maps are then sampled at uv +
+// offset.
 struct Parallax {
     float amount = 0.0f;  // P: height of value 1.0 in texture widths; negative makes white low
     float limit = 0.1f;   // L >= 0, in texture widths
     int steps = 0;        // 0 to 1024
 };
 
-// What is rendered. The chains must outlive the call. Precondition: `map` has a level; levels have the extents of level_extent().
+// What is rendered. The chains must outlive the call. Precondition: `map` has a level; levels have the extents of
+// level_extent().
 struct PreviewScene {
     const MipChain* map = nullptr;     // sampled from its own levels; one level only is sampled without mip-mapping
     const MipChain* detail = nullptr;  // or none
@@ -151,22 +168,24 @@ struct PreviewScene {
     const Image* detail_albedo = nullptr;  // or none; the same, sampled where the detail is
     const Plane<float>* height = nullptr;  // or none; mip-mapped by a box filter
 
-    // The texture stores x and y alone (DXT5nm, BC5): z is reconstructed from the filtered x and y, as the shader does. Otherwise
-    // x, y and z are filtered, and the result is normalised.
+    // The texture stores x and y alone (DXT5nm, BC5): z is reconstructed from the filtered x and y, as the shader does.
+    // Otherwise x, y and z are filtered, and the result is normalised.
     bool map_without_z = false;
     bool detail_without_z = false;
 };
 
 struct PreviewOptions {
     Show show = Show::lit;
-    // Pixels, without the legend, at most 16384 a side. {n, 0}: n is the longer side, in the proportions of the plane (sphere and cube: square).
-    // {0, 0}: on a plane the map's extent times the tiles, the longer side at most 1024; else 512x512.
+    // Pixels, without the legend, at most 16384 a side. {n, 0}: n is the longer side, in the proportions of the plane
+    // (sphere and cube: square). {0, 0}: on a plane the map's extent times the tiles, the longer side at most 1024;
+    // else 512x512.
     Extent size;
 
     Shape shape = Shape::plane;
     int tiles_x = 1, tiles_y = 1;  // how often the map stands on a plane, 1 to 256
     bool mirror = false;           // u runs from right to left on the whole shape: T turns round, and w is -1
-    float spin = 0.0f;             // degrees: sphere and cube turn to the right about their vertical axis; over a plane the light circles
+    float spin =
+        0.0f;  // degrees: sphere and cube turn to the right about their vertical axis; over a plane the light circles
 
     std::optional<Camera> camera;  // none: straight on; a cube from yaw -35, pitch 25
     Light light;
@@ -179,7 +198,7 @@ struct PreviewOptions {
 
     Wrap wrap_x = Wrap::repeat;  // of every map; clamp repeats the border texel
     Wrap wrap_y = Wrap::repeat;
-    int anisotropy = 8;          // most samples along a texel's long axis, 1 to 16; 1 is trilinear filtering alone
+    int anisotropy = 8;  // most samples along a texel's long axis, 1 to 16; 1 is trilinear filtering alone
 
     float maximum = 0.0f;  // the legend's upper end for slope, tilt, length, z_error and curl; 0 chooses
     bool legend = true;    // below false colours and mips; adds to the height
@@ -187,7 +206,8 @@ struct PreviewOptions {
 
 // Renders one picture: rgb8, one level, sRGB.
 //
-// Lighting (wikibook, "Lighting of Bumpy Surfaces"), per pixel, N the perturbed normal, L the direction to the light, V to the viewer:
+// Lighting (wikibook, "Lighting of Bumpy Surfaces"), per pixel, N the perturbed normal, L the direction to the light, V
+// to the viewer:
 //
 //     N         = normalize(n.x T + n.y B + n.z N_shape)
 //     a         = 1 for directional light, 1 / distance for a point light
@@ -195,11 +215,12 @@ struct PreviewOptions {
 //     specular  = 0 where N.L < 0, else max(0, R.V)^shininess  (blinn: max(0, N.normalize(L + V))^shininess)
 //     color     = ambient albedo + a light (albedo max(0, N.L) + specular_color specular)
 //
-// Filtering. Trilinear between the map's levels, with the footprint of the pixel in the texture (Heckbert 1989) taken from the neighbouring view rays;
-// up to `anisotropy` trilinear samples along the longer axis (EXT_texture_filter_anisotropic). Pixels on the outline of a shape
-// are averaged from 16 rays.
+// Filtering. Trilinear between the map's levels, with the footprint of the pixel in the texture (Heckbert 1989) taken
+// from the neighbouring view rays; up to `anisotropy` trilinear samples along the longer axis
+// (EXT_texture_filter_anisotropic). Pixels on the outline of a shape are averaged from 16 rays.
 //
-// Errors: bad_option  the show is height but there is no height map; the albedo has neither R, G and B nor one plane; an option
+// Errors: bad_option  the show is height but there is no height map; the albedo has neither R, G and B nor one plane;
+// an option
 //                     is outside the range stated beside it
 //         out_of_memory, cancelled
 // The same bytes for every number of threads, processor and compiler.

@@ -22,8 +22,9 @@ struct Scaling {
 
 // Scales every normal by `scale`, the bump scale of shaders:
 //
-//   slope   normalize(s x, s y, z)                            what scaling the height by s does (glTF's normalTexture.scale)
-//   xy      x' = s x, y' = s y, z' = reconstruct_z(x', y')    UnpackScaleNormal (Catlike Coding, Rendering 6, 2.3),
+//   slope   normalize(s x, s y, z)                            what scaling the height by s does (glTF's
+//   normalTexture.scale) xy      x' = s x, y' = s y, z' = reconstruct_z(x', y')    UnpackScaleNormal (Catlike Coding,
+//   Rendering 6, 2.3),
 //           and normalize(x', y', z')                         which differs from it only where x'^2 + y'^2 is above 1
 //
 // The two agree at s = 1 and near flat; on a normal tilted by 32 degrees they lie 2 degrees apart at s = 0.5 and 39 at

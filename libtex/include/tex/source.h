@@ -25,17 +25,18 @@ struct SourceOptions {
     UnpackOptions unpack;
 
     std::optional<Swizzle> bc5_swizzle;  // of BC5 files, instead of their own; unpack.swizzle counts before it
-    bool r_or_a = false;                 // x is in A where guess_swizzle() finds it there, else in R, and y in G; unpack.swizzle counts before it
-    bool file_y_first = false;           // what a file says of y counts before unpack.y_axis
+    bool r_or_a = false;        // x is in A where guess_swizzle() finds it there, else in R, and y in G; unpack.swizzle
+                                // counts before it
+    bool file_y_first = false;  // what a file says of y counts before unpack.y_axis
 };
 
 // What a file turned out to hold.
 struct SourceInfo {
     Format format = Format::rgba8_unorm;
-    Swizzle swizzle = {};             // that it was read with
-    bool guessed = false;             // the texels told the swizzle, and it is not simply rgb in a file that looks like rgb
-    YAxis y_axis = YAxis::up;         // that it was read with: where y points in the file
-    bool srgb = false;                // as these two in Texture
+    Swizzle swizzle = {};      // that it was read with
+    bool guessed = false;      // the texels told the swizzle, and it is not simply rgb in a file that looks like rgb
+    YAxis y_axis = YAxis::up;  // that it was read with: where y points in the file
+    bool srgb = false;         // as these two in Texture
     std::vector<std::string> remarks;
 };
 
@@ -44,11 +45,12 @@ struct Source {
     SourceInfo info;
 };
 
-// Reads the normals in a file: read_texture(), guess_swizzle() where it is needed, unpack(). With `base_only` the smaller levels are left out.
+// Reads the normals in a file: read_texture(), guess_swizzle() where it is needed, unpack(). With `base_only` the
+// smaller levels are left out.
 //
 // Errors, all of which name the file: those of the three; unsupported where there is one channel only.
-[[nodiscard]] Result<Source> read_normals(const std::string& path, const SourceOptions& options = {}, bool base_only = false,
-                                          const Execution& execution = {});
+[[nodiscard]] Result<Source> read_normals(const std::string& path, const SourceOptions& options = {},
+                                          bool base_only = false, const Execution& execution = {});
 
 }  // namespace tex
 #pragma GCC visibility pop

@@ -13,9 +13,7 @@ namespace tex {
 
 inline constexpr Named<Swizzle> kSwizzleNames[] = {
     {{Component::x, Component::y, Component::z, Component::other}, "rgb", "x, y, z in R, G, B"},
-    {{Component::one, Component::y, Component::one, Component::x},
-     "dxt5nm",
-     "x in A, y in G (Unity; also xGxR, AG)"},
+    {{Component::one, Component::y, Component::one, Component::x}, "dxt5nm", "x in A, y in G (Unity; also xGxR, AG)"},
     {{Component::other, Component::y, Component::z, Component::x}, "rxgb", "x in A, y in G, z in B (Doom 3)"},
     {{Component::x, Component::y, Component::zero, Component::one}, "rg", "x in R, y in G"},
     {{Component::y, Component::x, Component::zero, Component::one}, "gr", "y in R, x in G (3Dc, ATI2)"},
@@ -26,14 +24,16 @@ inline constexpr Named<Swizzle> kSwizzleNames[] = {
 // no choice (fewer than four channels); else the texels of the base level decide, up to about 2^20 of them,
 // spread over the map:
 //
-//   dxt5nm   R and B are constant (within 8/255), and A varies or R, G, B cannot be a unit vector (of floats: neither as
+//   dxt5nm   R and B are constant (within 8/255), and A varies or R, G, B cannot be a unit vector (of floats: neither
+//   as
 //            they are nor as (n + 1) / 2); or A varies and R, G and B are equal (y in all three)
 //   rxgb     R is constant, A is not, and A, G, B are nearer to unit vectors than R, G, B
 //   rgb      all others
 //
 // A texture without x or y in its own swizzle (one channel) keeps it: unpack() then says what is missing.
 //
-// Precondition (asserted): there is a base level. Errors: out_of_memory, cancelled. The same result for every number of threads.
+// Precondition (asserted): there is a base level. Errors: out_of_memory, cancelled. The same result for every number of
+// threads.
 [[nodiscard]] Result<Swizzle> guess_swizzle(const Texture& texture, const Execution& execution = {});
 
 }  // namespace tex

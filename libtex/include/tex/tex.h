@@ -8,7 +8,8 @@
 //                                                                                                   |      ^
 //                                                                                                 pack   unpack
 //                                                                                                   v      |
-//                                                                        file <--write_texture--   Texture   <--read_texture-- file
+//                                                                        file <--write_texture--   Texture
+//                                                                        <--read_texture-- file
 //
 //     #include <tex/tex.h>
 //
@@ -25,18 +26,21 @@
 // Five conventions
 // ----------------
 //
-// 1. One convention in memory, conversions at the border. Planar float; x right, y up (OpenGL, Unity), z out of the surface;
+// 1. One convention in memory, conversions at the border. Planar float; x right, y up (OpenGL, Unity), z out of the
+// surface;
 //    components in [-1, 1]; unit length; rows from the top; linear. Only pack and unpack flip, swizzle and quantise.
 // 2. The border can fail; kernels cannot. Reading, parsing and writing return Result<T>; verbs on whole images do
 //    so for out_of_memory and cancelled (and bad_option where they say so), and assert their preconditions. No
 //    exception leaves libtex.
-// 3. The same bytes everywhere: for every number of threads, instruction set and compiler. (Heights that OpenColorIO converted
+// 3. The same bytes everywhere: for every number of threads, instruction set and compiler. (Heights that OpenColorIO
+// converted
 //    are exempt.)
 // 4. The library is silent: no stdout, stderr, exit, environment or locale. Progress and cancellation are callbacks
 //    (Execution).
 // 5. Units are in the name or in the comment: texels, degrees, bytes. Strides are in elements, pitches in bytes.
 //
-// Threads: every function may be called from any number of threads at once, on different objects or on the same const object.
+// Threads: every function may be called from any number of threads at once, on different objects or on the same const
+// object.
 
 #pragma once
 
@@ -44,14 +48,14 @@
 #include <utility>
 #include <vector>
 
-#include <tex/names.h>
-#include <tex/result.h>
 #include <tex/execution.h>
-#include <tex/image.h>
-#include <tex/height_field.h>
-#include <tex/normal_map.h>
-#include <tex/mip_chain.h>
 #include <tex/format.h>
+#include <tex/height_field.h>
+#include <tex/image.h>
+#include <tex/mip_chain.h>
+#include <tex/names.h>
+#include <tex/normal_map.h>
+#include <tex/result.h>
 #include <tex/texture.h>
 
 #include <tex/bake.h>
@@ -71,8 +75,8 @@
 #include <tex/color.h>
 #include <tex/container.h>
 #include <tex/image_io.h>
-#include <tex/source.h>
 #include <tex/pipeline.h>
+#include <tex/source.h>
 
 #pragma GCC visibility push(default)
 namespace tex {
@@ -82,8 +86,9 @@ namespace tex {
 
 // What libtex runs with on this machine, for reports.
 struct Runtime {
-    std::string instruction_set;                                   // of the kernels, as Highway names it: "AVX2"; results do not depend on it
-    std::vector<std::pair<std::string, std::string>> dependencies;  // libraries that it links, and their versions: ("libpng", "1.6.39")
+    std::string instruction_set;  // of the kernels, as Highway names it: "AVX2"; results do not depend on it
+    std::vector<std::pair<std::string, std::string>>
+        dependencies;  // libraries that it links, and their versions: ("libpng", "1.6.39")
 };
 [[nodiscard]] Runtime runtime();
 

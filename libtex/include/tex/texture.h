@@ -26,8 +26,8 @@ struct Texture {
     std::vector<Level> levels;
 
     // What the channels hold and which way y points. Where a file does not say, the reader leaves
-    // `swizzle_known` or `y_known` false, and the values beside them are the likeliest for its format. A format of one channel has it in R;
-    // where that channel is alpha (DDPF_ALPHA, DXGI_FORMAT_A8_UNORM) the swizzle is 000_.
+    // `swizzle_known` or `y_known` false, and the values beside them are the likeliest for its format. A format of one
+    // channel has it in R; where that channel is alpha (DDPF_ALPHA, DXGI_FORMAT_A8_UNORM) the swizzle is 000_.
     Swizzle swizzle = {Component::x, Component::y, Component::z, Component::other};
     bool swizzle_known = false;
     YAxis y_axis = YAxis::up;

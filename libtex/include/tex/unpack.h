@@ -13,10 +13,11 @@
 #pragma GCC visibility push(default)
 namespace tex {
 
-// Decodes one level to float planes, one for each channel of the format, named R, G, B, A (A alone where the swizzle says that the only
-// channel is alpha): [0, 1] for unorm, [-1, 1] for snorm, as stored for floats. Block formats decode as described here, not as a particular GPU does: 5- and 6-bit endpoints are
-// widened to 8 bits by bit replication, palettes interpolate with exact thirds, fifths and sevenths, and nothing
-// is rounded. The lowest snorm code is -1 as well.
+// Decodes one level to float planes, one for each channel of the format, named R, G, B, A (A alone where the swizzle
+// says that the only channel is alpha): [0, 1] for unorm, [-1, 1] for snorm, as stored for floats. Block formats decode
+// as described here, not as a particular GPU does: 5- and 6-bit endpoints are widened to 8 bits by bit replication,
+// palettes interpolate with exact thirds, fifths and sevenths, and nothing is rounded. The lowest snorm code is -1 as
+// well.
 //
 // Precondition (asserted): 0 <= level < levels.size(), and the level has level_bytes() bytes.
 // Errors: out_of_memory, cancelled.
@@ -36,22 +37,24 @@ inline constexpr Named<ValueRange> kValueRangeNames[] = {
 };
 
 struct UnpackOptions {
-    std::optional<Swizzle> swizzle;  // instead of the texture's own
-    std::optional<YAxis> y_axis;     // instead of the texture's own; pictures are up without it
+    std::optional<Swizzle> swizzle;            // instead of the texture's own
+    std::optional<YAxis> y_axis;               // instead of the texture's own; pictures are up without it
     ValueRange range = ValueRange::automatic;  // for floats only
-    bool snap_flat = false;    // 8-bit unorm values from 127/255 to 128/255 are 0, not -+0.0039
-    bool keep_length = false;  // leave vectors as they are stored, instead of normalising them: to pack them again without loss
+    bool snap_flat = false;                    // 8-bit unorm values from 127/255 to 128/255 are 0, not -+0.0039
+    bool keep_length =
+        false;  // leave vectors as they are stored, instead of normalising them: to pack them again without loss
 };
 
-// Normals from a texture, every level. unorm values become n = 2 c - 1; y is negated where it points down in the texture. Where
-// the swizzle holds z, vectors are normalised (shorter than 1e-6: (0, 0, 1); z below 0: as stored); where it holds x
-// and y only, z = reconstruct_z(x, y) and, where x^2 + y^2 is above 1, x and y are divided by their length, so that the
-// vector is of unit length. A vector that is not finite, or whose squared length is not, becomes (0, 0, 1). 32-bit floats whose vector
-// is of unit length already (x^2 + y^2 + z^2 within 2^-20 of 1) stay as they are stored, so that a chain of commands gives the bytes of one.
+// Normals from a texture, every level. unorm values become n = 2 c - 1; y is negated where it points down in the
+// texture. Where the swizzle holds z, vectors are normalised (shorter than 1e-6: (0, 0, 1); z below 0: as stored);
+// where it holds x and y only, z = reconstruct_z(x, y) and, where x^2 + y^2 is above 1, x and y are divided by their
+// length, so that the vector is of unit length. A vector that is not finite, or whose squared length is not, becomes
+// (0, 0, 1). 32-bit floats whose vector is of unit length already (x^2 + y^2 + z^2 within 2^-20 of 1) stay as they are
+// stored, so that a chain of commands gives the bytes of one.
 //
-// Floats in ValueRange::automatic are what Texture::normal_encoding says ("signed" or "unsigned"). Where it is empty the base level
-// decides for all: signed where a value of x, y or z lies below 0; else signed where that reading is nearer to unit
-// vectors, as the sum of |x^2 + y^2 + z^2 - 1| says (without z of max(0, x^2 + y^2 - 1)); else unsigned.
+// Floats in ValueRange::automatic are what Texture::normal_encoding says ("signed" or "unsigned"). Where it is empty
+// the base level decides for all: signed where a value of x, y or z lies below 0; else signed where that reading is
+// nearer to unit vectors, as the sum of |x^2 + y^2 + z^2 - 1| says (without z of max(0, x^2 + y^2 - 1)); else unsigned.
 //
 // A component that stands in several channels of the swizzle is read from the first of them.
 //
@@ -63,8 +66,8 @@ struct UnpackOptions {
                                       const Execution& execution = {});
 
 // Normals from a picture. The swizzle names planes: R, G, B, A; in a picture without R the plane Y stands for R, G and
-// B; in one that has neither, the planes are R, G, B, A in their order. Without a swizzle in the options x, y and z are R, G and B,
-// and x and y the planes of a picture of two. ValueRange::automatic: by Image::normal_encoding, else as
+// B; in one that has neither, the planes are R, G, B, A in their order. Without a swizzle in the options x, y and z are
+// R, G and B, and x and y the planes of a picture of two. ValueRange::automatic: by Image::normal_encoding, else as
 // above.
 [[nodiscard]] Result<NormalMap> unpack(const Image& image, const UnpackOptions& options = {},
                                        const Execution& execution = {});

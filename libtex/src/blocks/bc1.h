@@ -8,8 +8,8 @@
 //     c0 > c1, or four_colors     c0, c1, (2 c0 + c1)/3, (c0 + 2 c1)/3
 //     else                        c0, c1, (c0 + c1)/2, transparent black
 //
-// The colours are compared as 16-bit numbers. Channels are widened to 8 bits by replication of their high bits and divided
-// by 255; thirds are exact: each value is one rational number, rounded once to float. (Direct3D 11.3 Functional
+// The colours are compared as 16-bit numbers. Channels are widened to 8 bits by replication of their high bits and
+// divided by 255; thirds are exact: each value is one rational number, rounded once to float. (Direct3D 11.3 Functional
 // Specification, 19.5.6 to 19.5.8, whose interpolants GPUs approximate.)
 
 #pragma once
@@ -33,8 +33,8 @@ void decode_bc1(const std::byte* block, Bc1Mode mode, float r[16], float g[16], 
 // Decodes the first 8 bytes of a BC2 block: 4 bits of alpha for each texel, row-major, texel 0 in the lowest bits.
 void decode_bc2_alpha(const std::byte* block, float a[16]);
 
-// Encoding: the green of a DXT5nm colour block, whose R and B are 31 in both colours, so that they decode to exactly 255
-// whatever the index and the decoder. Green alone is fitted, to codes 0 to 255.
+// Encoding: the green of a DXT5nm colour block, whose R and B are 31 in both colours, so that they decode to exactly
+// 255 whatever the index and the decoder. Green alone is fitted, to codes 0 to 255.
 
 // Two greens of 6 bits, e0 <= e1. The block holds the greater one first, so c0 > c1 where they differ.
 struct GreenEndpoints {
@@ -45,13 +45,15 @@ struct GreenEndpoints {
 // A green of 6 bits as the code of 8 bits that decoders widen it to.
 constexpr int widen_green(int code) { return code << 2 | code >> 4; }
 
-// The squared error of a block whose texels take the nearest value of the palette, in units of (code / kGreenErrorUnit)^2. Exact.
+// The squared error of a block whose texels take the nearest value of the palette, in units of (code /
+// kGreenErrorUnit)^2. Exact.
 inline constexpr std::int64_t kGreenErrorUnit = std::int64_t{3} * kCodeUnit;
 [[nodiscard]] std::int64_t green_error(const BlockTexels& texels, GreenEndpoints endpoints);
 
-// The endpoints with the least squared error of all whose lower one lies within `reach` 6-bit codes of the least value and whose
-// greater one within `reach` of the greatest: of all that there are, for reach = 63. Of equals the nearest endpoints, then
-// the greatest: flat, 127.5, takes 31 and 33, whose mean with weights 2:1 is 128 under every vendor's rounding.
+// The endpoints with the least squared error of all whose lower one lies within `reach` 6-bit codes of the least value
+// and whose greater one within `reach` of the greatest: of all that there are, for reach = 63. Of equals the nearest
+// endpoints, then the greatest: flat, 127.5, takes 31 and 33, whose mean with weights 2:1 is 128 under every vendor's
+// rounding.
 [[nodiscard]] GreenEndpoints search_green(const BlockTexels& texels, int reach);
 
 // Writes the colour block: each texel takes the nearest value, of equals the first; equal endpoints use index 0 only.

@@ -3,8 +3,8 @@
 #include "blocks/bc4.h"
 
 #include <algorithm>
-#include <limits>
 #include <cstdint>
+#include <limits>
 
 namespace tex {
 namespace {
@@ -113,8 +113,8 @@ Bc4Endpoints search_bc4(const BlockTexels& texels, Bc4Codes codes, int reach) {
             const int first = std::max({0, low - reach, high - reach - distance});
             const int last = std::min({codes.top - distance, low + reach, high + reach - distance});
             for (int lower = last; lower >= first; --lower) {
-                const Bc4Endpoints e = eight_values ? Bc4Endpoints{lower + distance, lower}
-                                                    : Bc4Endpoints{lower, lower + distance};
+                const Bc4Endpoints e =
+                    eight_values ? Bc4Endpoints{lower + distance, lower} : Bc4Endpoints{lower, lower + distance};
                 const std::int64_t error = error_up_to(least_error, texels, codes, e);
                 if (error < least_error) {
                     best = e;

@@ -8,9 +8,10 @@
 //     e0 > e1     8 values:  e0, e1, (6 e0 + e1)/7, (5 e0 + 2 e1)/7, ... (e0 + 6 e1)/7
 //     else        6 values:  e0, e1, (4 e0 + e1)/5, ... (e0 + 4 e1)/5, the lowest value, the greatest value
 //
-// The endpoints are compared as stored. Values are divided by 255 (unorm: lowest 0, greatest 1) or by 127 (snorm: lowest
-// -1, greatest 1; -128 counts as -127). Sevenths and fifths are exact: each value is one rational number, rounded
-// once to float. (Direct3D 11.3 Functional Specification, 19.5.11 and 19.5.12, whose interpolants GPUs approximate.)
+// The endpoints are compared as stored. Values are divided by 255 (unorm: lowest 0, greatest 1) or by 127 (snorm:
+// lowest -1, greatest 1; -128 counts as -127). Sevenths and fifths are exact: each value is one rational number,
+// rounded once to float. (Direct3D 11.3 Functional Specification, 19.5.11 and 19.5.12, whose interpolants GPUs
+// approximate.)
 
 #pragma once
 
@@ -39,13 +40,14 @@ struct Bc4Endpoints {
     int e1 = 0;
 };
 
-// The squared error of a block whose texels take the nearest value of the palette, in units of (code / kBc4ErrorUnit)^2. Exact.
+// The squared error of a block whose texels take the nearest value of the palette, in units of (code /
+// kBc4ErrorUnit)^2. Exact.
 inline constexpr std::int64_t kBc4ErrorUnit = std::int64_t{35} * kCodeUnit;
 [[nodiscard]] std::int64_t bc4_error(const BlockTexels& texels, Bc4Codes codes, Bc4Endpoints endpoints);
 
-// The endpoints with the least squared error of all whose lower one lies within `reach` codes of the least value and whose
-// greater one within `reach` codes of the greatest, with 8 and with 6 values: of all that there are, for reach = codes.top. Of equals the nearest
-// endpoints, then those with 8 values, then the greatest.
+// The endpoints with the least squared error of all whose lower one lies within `reach` codes of the least value and
+// whose greater one within `reach` codes of the greatest, with 8 and with 6 values: of all that there are, for reach =
+// codes.top. Of equals the nearest endpoints, then those with 8 values, then the greatest.
 [[nodiscard]] Bc4Endpoints search_bc4(const BlockTexels& texels, Bc4Codes codes, int reach);
 
 // Writes the block: each texel takes the nearest value, of equals the first.

@@ -8,8 +8,8 @@
 
 namespace tex {
 
-// Encoders count in whole numbers, so that they compare errors exactly: values are multiples of 1/1024 of a code, which holds
-// 8-bit sources exactly and moves others by less than 0.0003 degrees.
+// Encoders count in whole numbers, so that they compare errors exactly: values are multiples of 1/1024 of a code, which
+// holds 8-bit sources exactly and moves others by less than 0.0003 degrees.
 inline constexpr std::int32_t kCodeUnit = 1024;
 
 struct BlockTexels {
@@ -17,7 +17,8 @@ struct BlockTexels {
     std::uint32_t mask = 0xFFFF;  // bit k is set where texel k lies in the level; the others carry no weight
 };
 
-// A component in [-1, 1] (clamped), mapped to the codes 0 to `top`, in units of 1/kCodeUnit. Computed in float, from left to right; halves up.
+// A component in [-1, 1] (clamped), mapped to the codes 0 to `top`, in units of 1/kCodeUnit. Computed in float, from
+// left to right; halves up.
 inline std::int32_t to_code_units(float n, int top) {
     const float half_range = 0.5f * static_cast<float>(top) * static_cast<float>(kCodeUnit);
     const float clamped = std::fmin(std::fmax(n, -1.0f), 1.0f);

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/math.h"
+#include "rows/math.h"
 
 namespace tex {
 namespace {
@@ -42,7 +42,9 @@ double median_of(const Stored& stored, Component component) {
 
 double Centre::distance(double value) const { return std::max(std::abs(x - value), std::abs(y - value)); }
 
-Centre measure_centre(const Stored& stored) { return {median_of(stored, Component::x), median_of(stored, Component::y)}; }
+Centre measure_centre(const Stored& stored) {
+    return {median_of(stored, Component::x), median_of(stored, Component::y)};
+}
 
 double srgb_encoded(double c) { return c <= 0.0031308 ? 12.92 * c : 1.055 * math::pow(c, 1.0 / 2.4) - 0.055; }
 double srgb_decoded(double c) { return c <= 0.04045 ? c / 12.92 : math::pow((c + 0.055) / 1.055, 2.4); }

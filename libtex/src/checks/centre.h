@@ -7,8 +7,8 @@
 
 namespace tex {
 
-// Medians of the stored x and y over the sampled texels in which one of them is not black: what fills the space outside of UV islands does not count. Half,
-// where all are black. Precondition: x and y are stored.
+// Medians of the stored x and y over the sampled texels in which one of them is not black: what fills the space outside
+// of UV islands does not count. Half, where all are black. Precondition: x and y are stored.
 struct Centre {
     double x = 0.5, y = 0.5;
     // The larger distance of both from `value`.

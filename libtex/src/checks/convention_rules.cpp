@@ -10,7 +10,8 @@
 namespace tex {
 namespace {
 
-// A neighbourhood of 3x3 regions says something where its correlation is at least this, and this share of its evidence agrees.
+// A neighbourhood of 3x3 regions says something where its correlation is at least this, and this share of its evidence
+// agrees.
 constexpr double kLeastCorrelation = 0.2;
 constexpr double kLeastAgreement = 0.8;
 constexpr std::size_t kLeastNeighbours = 4;
@@ -92,9 +93,9 @@ void check_mixed(const Subject& subject, Findings& findings) {
     const double all = static_cast<double>(votes.up.size() + votes.down.size());
     if (less.size() < kMixedRegions || static_cast<double>(less.size()) < kMixedShare * all) return;
     const YAxis y = up_is_less ? YAxis::up : YAxis::down;
-    Finding& finding = findings.add(
-        "N402", std::to_string(less.size()) + " of " + decimal(all, 0) + " regions point " + direction(y) + ", the others " +
-                    direction(y == YAxis::up ? YAxis::down : YAxis::up));
+    Finding& finding =
+        findings.add("N402", std::to_string(less.size()) + " of " + decimal(all, 0) + " regions point " + direction(y) +
+                                 ", the others " + direction(y == YAxis::up ? YAxis::down : YAxis::up));
     finding.figure = static_cast<double>(less.size()) / all;
     finding.unit = "share";
     finding.confidence = subject.y.confidence;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/math.h"
+#include "rows/math.h"
 
 namespace tex {
 namespace {

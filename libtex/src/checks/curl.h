@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // curl.h: which way green points, told from the pixels.
 //
-// The slopes of a height field have no curl: dp/dy = dq/dx where y points up. In a map with y down dq/dx has the other sign, and in a map whose x and y
-// are exchanged it is dp/dx and dq/dy that agree. (google/audit-normalmap, 2017, has the first idea.)
+// The slopes of a height field have no curl: dp/dy = dq/dx where y points up. In a map with y down dq/dx has the other
+// sign, and in a map whose x and y are exchanged it is dp/dx and dq/dy that agree. (google/audit-normalmap, 2017, has
+// the first idea.)
 
 #pragma once
 
@@ -14,10 +15,10 @@ namespace tex {
 
 // Sums over texels, of which everything is a ratio.
 struct CurlSums {
-    double cross = 0.0;       // sum of dp/dy dq/dx, y up in the file's own sense
-    double p_square = 0.0;    // sum of (dp/dy)^2
-    double q_square = 0.0;    // sum of (dq/dx)^2
-    double exchanged = 0.0;   // sum of dp/dx dq/dy
+    double cross = 0.0;      // sum of dp/dy dq/dx, y up in the file's own sense
+    double p_square = 0.0;   // sum of (dp/dy)^2
+    double q_square = 0.0;   // sum of (dq/dx)^2
+    double exchanged = 0.0;  // sum of dp/dx dq/dy
     double px_square = 0.0, qy_square = 0.0;
 
     void add(const CurlSums& other);

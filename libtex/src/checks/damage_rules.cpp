@@ -29,7 +29,8 @@ constexpr double kExchangedLead = 0.1;
 constexpr double kExchangedLeast = 0.2;
 constexpr double kExchangedConfidence = 0.99;
 
-// The mean of |length - 1| over every 7th sampled texel, after `restore` was applied to the stored values of x, y and z.
+// The mean of |length - 1| over every 7th sampled texel, after `restore` was applied to the stored values of x, y and
+// z.
 template <class Restore>
 double length_error(const Stored& stored, Restore&& restore) {
     constexpr int kStep = 7;
@@ -65,8 +66,9 @@ void check_curve(const Subject& subject, Findings& findings) {
         });
         if (restored >= as_stored) return;
     }
-    Finding& finding = findings.add(dark ? "N301" : "N302", "x and y centre on " + decimal(255.0 * centre.x, 0) + " and " +
-                                                                decimal(255.0 * centre.y, 0) + " of 255 instead of 128");
+    Finding& finding =
+        findings.add(dark ? "N301" : "N302", "x and y centre on " + decimal(255.0 * centre.x, 0) + " and " +
+                                                 decimal(255.0 * centre.y, 0) + " of 255 instead of 128");
     finding.figure = (centre.x + centre.y) / 2.0;
     finding.unit = "of full scale";
     finding.confidence = 0.99;
@@ -75,15 +77,16 @@ void check_curve(const Subject& subject, Findings& findings) {
 void check_alpha(const Subject& subject, Findings& findings) {
     const TexelCounts& counts = subject.counts;
     const Stored& stored = subject.stored;
-    const bool straight_possible = stored.has_z() && !stored.is_signed && stored.image->planes.size() == 4 &&
-                                   stored.channel(Component::x) != 3;
+    const bool straight_possible =
+        stored.has_z() && !stored.is_signed && stored.image->planes.size() == 4 && stored.channel(Component::x) != 3;
     if (!straight_possible || counts.high[3] - counts.low[3] < 0.1f) return;
     if (counts.share(Property::above_alpha) > kAboveAlphaShare || counts.alpha_correlation < kAlphaCorrelation) return;
     // A mask with black outside is no proof: half-transparent texels are.
     const Plane<float>& alpha = stored.image->planes[3];
     double half = 0.0;
     for (int j = 0; j < alpha.extent().height; ++j) {
-        for (int i = 0; i < alpha.extent().width; ++i) half += alpha.at(i, j) > 0.1f && alpha.at(i, j) < 0.9f ? 1.0 : 0.0;
+        for (int i = 0; i < alpha.extent().width; ++i)
+            half += alpha.at(i, j) > 0.1f && alpha.at(i, j) < 0.9f ? 1.0 : 0.0;
     }
     if (half < kHalfAlphaShare * static_cast<double>(counts.texels)) return;
     const double as_stored = length_error(stored, [](double c, int, int) { return c; });
@@ -101,8 +104,10 @@ void check_alpha(const Subject& subject, Findings& findings) {
 
 void check_exchanged(const Subject& subject, Findings& findings) {
     const TexelCounts& counts = subject.counts;
-    if (subject.stored.has_z() && std::max(counts.mean_x, counts.mean_y) > kExchangedMean && std::abs(counts.mean_z) < kExchangedZ) {
-        Finding& finding = findings.add("N308", counts.mean_x > counts.mean_y ? "the channel of x holds z" : "the channel of y holds z");
+    if (subject.stored.has_z() && std::max(counts.mean_x, counts.mean_y) > kExchangedMean &&
+        std::abs(counts.mean_z) < kExchangedZ) {
+        Finding& finding = findings.add(
+            "N308", counts.mean_x > counts.mean_y ? "the channel of x holds z" : "the channel of y holds z");
         finding.figure = std::max(counts.mean_x, counts.mean_y);
         finding.unit = "component";
         finding.confidence = 0.99;
@@ -112,8 +117,8 @@ void check_exchanged(const Subject& subject, Findings& findings) {
     const bool behind = counts.share(Property::z_behind) > 0.05;
     if (behind || exchanged < as_stored + kExchangedLead || exchanged < kExchangedLeast) return;
     if (subject.curl.exchanged_confidence < kExchangedConfidence) return;
-    Finding& finding = findings.add("N308", "x and y agree better when exchanged (correlation " + decimal(exchanged, 2) + " against " +
-                                                decimal(as_stored, 2) + ")");
+    Finding& finding = findings.add("N308", "x and y agree better when exchanged (correlation " +
+                                                decimal(exchanged, 2) + " against " + decimal(as_stored, 2) + ")");
     finding.figure = exchanged;
     finding.unit = "correlation";
     finding.confidence = subject.curl.exchanged_confidence;
@@ -136,8 +141,10 @@ void check_blocks(const Subject& subject, Findings& findings) {
     // The first one that speaks: blocks of 8x8 are blocks of 4x4 too.
     const JpegTrace jpeg = measure_jpeg(subject.stored);
     if (jpeg.weight() > thresholds::kJpegTrace) {
-        add("N304", "the transform of 8x8 blocks is quantised as by JPEG of quality " + decimal(jpeg.quality(), 0) + " (strength " +
-                        decimal(jpeg.strength, 2) + ")", jpeg.quality(), "quality");
+        add("N304",
+            "the transform of 8x8 blocks is quantised as by JPEG of quality " + decimal(jpeg.quality(), 0) +
+                " (strength " + decimal(jpeg.strength, 2) + ")",
+            jpeg.quality(), "quality");
         return;
     }
     const double palette = palette_share(subject.stored);
@@ -146,7 +153,8 @@ void check_blocks(const Subject& subject, Findings& findings) {
         return;
     }
     const double ratio = grid_ratio(subject.stored, 8);
-    if (ratio > thresholds::kJpegRatio) add("N304", "steps between 8x8 blocks are " + decimal(ratio, 2) + " times those inside", ratio, "ratio");
+    if (ratio > thresholds::kJpegRatio)
+        add("N304", "steps between 8x8 blocks are " + decimal(ratio, 2) + " times those inside", ratio, "ratio");
 }
 
 void check_banding(const Subject& subject, Findings& findings) {
@@ -165,12 +173,14 @@ void check_seam(const Subject& subject, Findings& findings) {
     if (seam.worst() < thresholds::kSeamRatio) return;
     const Extent extent = subject.stored.extent();
     const bool right = seam.ratio_x > seam.ratio_y;
-    Finding& finding = findings.add("N307", "the step across the " + std::string(right ? "left and right" : "top and bottom") +
-                                                " border is " + decimal(seam.worst(), 1) + " times nearly all steps inside");
+    Finding& finding =
+        findings.add("N307", "the step across the " + std::string(right ? "left and right" : "top and bottom") +
+                                 " border is " + decimal(seam.worst(), 1) + " times nearly all steps inside");
     finding.figure = seam.worst();
     finding.unit = "ratio";
     finding.confidence = 0.95;
-    finding.regions = {right ? Region{0, extent.width - 1, 0, 1, extent.height} : Region{0, 0, extent.height - 1, extent.width, 1}};
+    finding.regions = {right ? Region{0, extent.width - 1, 0, 1, extent.height}
+                             : Region{0, 0, extent.height - 1, extent.width, 1}};
 }
 
 }  // namespace

@@ -16,7 +16,8 @@ std::string format_text(const Texture& texture, const Swizzle& swizzle) {
     return std::string(name_of(kFormatNames, texture.format)) + ", " + to_string(swizzle);
 }
 
-// Whether two swizzles hold the same components; what else is in a channel does not matter where the encoding leaves it open.
+// Whether two swizzles hold the same components; what else is in a channel does not matter where the encoding leaves it
+// open.
 bool same_layout(const Swizzle& wanted, const Swizzle& stored, int channels) {
     for (std::size_t c = 0; c < static_cast<std::size_t>(channels); ++c) {
         const auto holds = [](Component k) { return k == Component::x || k == Component::y || k == Component::z; };
@@ -29,9 +30,10 @@ bool same_layout(const Swizzle& wanted, const Swizzle& stored, int channels) {
 bool holds_encoding(const Texture& texture, const Swizzle& swizzle, Encoding encoding) {
     const EncodingInfo info = encoding_info(encoding);
     const auto widened = [](Format format) {
-        return format == Format::rgb16_float ? Format::rgba16_float
+        return format == Format::rgb16_float   ? Format::rgba16_float
                : format == Format::rgb32_float ? Format::rgba32_float
-               : format == Format::rgb16_unorm ? Format::rgba16_unorm : format;
+               : format == Format::rgb16_unorm ? Format::rgba16_unorm
+                                               : format;
     };
     return widened(texture.format) == widened(info.format) &&
            same_layout(info.swizzle, swizzle, format_info(texture.format).channels);
@@ -39,7 +41,8 @@ bool holds_encoding(const Texture& texture, const Swizzle& swizzle, Encoding enc
 
 void check_format(const Texture& texture, const Swizzle& swizzle, const Requirements& require, Findings& findings) {
     std::string_view wanted;
-    if (require.encoding && !holds_encoding(texture, swizzle, *require.encoding)) wanted = name_of(kEncodingNames, *require.encoding);
+    if (require.encoding && !holds_encoding(texture, swizzle, *require.encoding))
+        wanted = name_of(kEncodingNames, *require.encoding);
     if (require.format && *require.format != texture.format) wanted = name_of(kFormatNames, *require.format);
     if (!wanted.empty()) findings.add("N108", format_text(texture, swizzle) + " instead of " + std::string(wanted));
 }
@@ -48,13 +51,15 @@ void check_levels(const Texture& texture, const Requirements& require, Findings&
     const int levels = static_cast<int>(texture.levels.size());
     const int complete = level_count(texture.extent());
     if (levels > 1 && levels < complete) {
-        findings.add("N103", std::to_string(levels) + " levels, the last of " + extent_text(texture.levels.back().extent) +
-                                 "; a complete chain has " + std::to_string(complete));
+        findings.add("N103", std::to_string(levels) + " levels, the last of " +
+                                 extent_text(texture.levels.back().extent) + "; a complete chain has " +
+                                 std::to_string(complete));
     }
     if (!require.levels) return;
     const int wanted = *require.levels == 0 ? complete : *require.levels;
     if (levels != wanted) {
-        findings.add("N109", std::to_string(levels) + (levels == 1 ? " level" : " levels") + " instead of " + std::to_string(wanted));
+        findings.add("N109", std::to_string(levels) + (levels == 1 ? " level" : " levels") + " instead of " +
+                                 std::to_string(wanted));
     }
 }
 
@@ -62,7 +67,8 @@ void check_extent(const Texture& texture, const Requirements& require, Findings&
     const Extent extent = texture.extent();
     const std::string text = extent_text(extent);
     if (!is_power_of_two(extent.width) || !is_power_of_two(extent.height)) findings.add("N105", text);
-    if (format_info(texture.format).block == 4 && (extent.width % 4 != 0 || extent.height % 4 != 0)) findings.add("N106", text);
+    if (format_info(texture.format).block == 4 && (extent.width % 4 != 0 || extent.height % 4 != 0))
+        findings.add("N106", text);
     if (extent.width > require.max_extent || extent.height > require.max_extent) {
         findings.add("N107", text + "; the limit is " + std::to_string(require.max_extent));
     }

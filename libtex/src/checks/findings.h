@@ -16,7 +16,8 @@
 
 namespace tex {
 
-// A texture, its base level decoded, and what was measured of it. Without x or y in the swizzle only the file is checked.
+// A texture, its base level decoded, and what was measured of it. Without x or y in the swizzle only the file is
+// checked.
 struct Subject {
     const Texture& texture;
     const CheckOptions& options;
@@ -24,8 +25,8 @@ struct Subject {
     Image base;
     Stored stored;
     bool has_vectors = false;
-    bool constant = false;     // no channel varies
-    bool sampled_ok = false;   // large and varied enough for statistics
+    bool constant = false;    // no channel varies
+    bool sampled_ok = false;  // large and varied enough for statistics
     TexelCounts counts;
     Curl curl;
     YEvidence y;  // as far as the curl tells

@@ -101,7 +101,8 @@ double grid_ratio(const Stored& stored, int block) {
     double most = 1.0;
     for (const Component component : {Component::x, Component::y}) {
         const Plane<float>& plane = stored.image->planes[static_cast<std::size_t>(stored.channel(component))];
-        most = std::max(most, std::min(axis_ratio(plane, windows, block, true), axis_ratio(plane, windows, block, false)));
+        most =
+            std::max(most, std::min(axis_ratio(plane, windows, block, true), axis_ratio(plane, windows, block, false)));
     }
     return most;
 }

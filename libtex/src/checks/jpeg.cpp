@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "base/math.h"
+#include "rows/math.h"
 
 namespace tex {
 namespace {
@@ -18,17 +18,18 @@ constexpr int kHighest = 4;
 constexpr int kSide = kHighest + 1;
 constexpr std::size_t kCoefficients = std::size_t{kSide} * kSide;
 // The steps of those of luma at quality 50 (T.81, table K.1), [v][u].
-constexpr int kSteps[kSide][kSide] = {{16, 11, 10, 16, 24}, {12, 12, 14, 19, 26}, {14, 13, 16, 24, 40}, {14, 17, 22, 29, 51}, {18, 22, 37, 56, 68}};
+constexpr int kSteps[kSide][kSide] = {
+    {16, 11, 10, 16, 24}, {12, 12, 14, 19, 26}, {14, 13, 16, 24, 40}, {14, 17, 22, 29, 51}, {18, 22, 37, 56, 68}};
 
-constexpr int kFinest = 4;     // finer steps drown in the rounding of R, G and B
+constexpr int kFinest = 4;  // finer steps drown in the rounding of R, G and B
 constexpr int kCoarsest = 60;
-constexpr int kBins = 16;       // of a histogram, in 1
-constexpr int kRange = 512;     // magnitudes above are rare
+constexpr int kBins = 16;    // of a histogram, in 1
+constexpr int kRange = 512;  // magnitudes above are rare
 constexpr std::size_t kAllBins = std::size_t{kRange} * kBins;
-constexpr int kBlocks = 8192;   // are enough
-constexpr double kLeastCount = 12.0;      // coefficients that are not rounded to 0
+constexpr int kBlocks = 8192;         // are enough
+constexpr double kLeastCount = 12.0;  // coefficients that are not rounded to 0
 constexpr std::size_t kLeastCoefficients = 3;
-constexpr double kAsStrong = 0.1;   // every multiple of 2q is one of q: the largest step among the strong ones
+constexpr double kAsStrong = 0.1;  // every multiple of 2q is one of q: the largest step among the strong ones
 constexpr double kStrong = 0.6;
 
 using Histogram = std::vector<double>;
@@ -42,16 +43,19 @@ struct CosineBasis {
     CosineBasis() {
         for (int u = 0; u < kSide; ++u) {
             const double scale = u == 0 ? std::sqrt(0.125) : 0.5;
-            for (int x = 0; x < 8; ++x) row[u][x] = static_cast<float>(scale * math::cos((2 * x + 1) * u * math::kPi / 16.0));
+            for (int x = 0; x < 8; ++x)
+                row[u][x] = static_cast<float>(scale * math::cos((2 * x + 1) * u * math::kPi / 16.0));
         }
     }
 };
 
 // Adds the coefficients of the block at (x, y), in codes of 8 bits, to their histograms [v][u].
-void add_block(const Image& image, const CosineBasis& basis, int x, int y, std::array<Histogram, kCoefficients>& histograms) {
+void add_block(const Image& image, const CosineBasis& basis, int x, int y,
+               std::array<Histogram, kCoefficients>& histograms) {
     float half[8][kSide] = {};
     for (int j = 0; j < 8; ++j) {
-        const float *r = image.planes[0].row(y + j) + x, *g = image.planes[1].row(y + j) + x, *b = image.planes[2].row(y + j) + x;
+        const float *r = image.planes[0].row(y + j) + x, *g = image.planes[1].row(y + j) + x,
+                    *b = image.planes[2].row(y + j) + x;
         for (int i = 0; i < 8; ++i) {
             const float luma = 255.0f * (0.299f * r[i] + 0.587f * g[i] + 0.114f * b[i]);
             for (int u = 0; u < kSide; ++u) half[j][u] += luma * basis.row[u][i];
@@ -69,20 +73,23 @@ void add_block(const Image& image, const CosineBasis& basis, int x, int y, std::
     }
 }
 
-// One period of cos(2 pi c / step) for each step, in bins: made once, as small files would take most of their time for it.
+// One period of cos(2 pi c / step) for each step, in bins: made once, as small files would take most of their time for
+// it.
 const std::vector<double>& wave_of(int step) {
     static const auto waves = [] {
         std::array<std::vector<double>, kCoarsest + 1> all;
         for (int each = kFinest; each <= kCoarsest; ++each) {
             const int period = each * kBins;
-            for (int k = 0; k < period; ++k) all[static_cast<std::size_t>(each)].push_back(math::cos(2.0 * math::kPi * k / period));
+            for (int k = 0; k < period; ++k)
+                all[static_cast<std::size_t>(each)].push_back(math::cos(2.0 * math::kPi * k / period));
         }
         return all;
     }();
     return waves[static_cast<std::size_t>(step)];
 }
 
-// The mean of cos(2 pi c / step) over the coefficients c of at least half a step: 1 where all are multiples. -1 for too few.
+// The mean of cos(2 pi c / step) over the coefficients c of at least half a step: 1 where all are multiples. -1 for too
+// few.
 double strength_at(const Histogram& histogram, int step) {
     const std::vector<double>& wave = wave_of(step);
     double sum = 0.0, count = 0.0;

@@ -7,18 +7,21 @@
 
 namespace tex {
 
-// A JPEG stores the cosine transform of 8x8 blocks of luma as multiples of a step for each coefficient; decoded and rounded to 8 bits they still lie close
-// to the multiples. (Fan, de Queiroz: Identification of Bitmap Compression History, 2003.)
+// A JPEG stores the cosine transform of 8x8 blocks of luma as multiples of a step for each coefficient; decoded and
+// rounded to 8 bits they still lie close to the multiples. (Fan, de Queiroz: Identification of Bitmap Compression
+// History, 2003.)
 struct JpegTrace {
     double strength = 0.0;  // 0 to 1: how closely; the median over the low coefficients. Below 0.3 where no JPEG was
-    double scale = 0.0;     // of the steps, against the table of ITU-T T.81 annex K: 1 is quality 50 of libjpeg, 0.5 quality 75
+    double scale =
+        0.0;  // of the steps, against the table of ITU-T T.81 annex K: 1 is quality 50 of libjpeg, 0.5 quality 75
     // What is judged: a faint trace and a fine quantisation both count for little.
     [[nodiscard]] double weight() const { return strength * scale; }
     // As libjpeg numbers it, 1 to 100. Precondition: scale > 0.
     [[nodiscard]] double quality() const { return scale <= 1.0 ? 100.0 - 50.0 * scale : 50.0 / scale; }
 };
 
-// Looks at blocks aligned with the map's corner. No trace in maps of fewer than three channels, of signed values, or too small.
+// Looks at blocks aligned with the map's corner. No trace in maps of fewer than three channels, of signed values, or
+// too small.
 JpegTrace measure_jpeg(const Stored& stored);
 
 }  // namespace tex

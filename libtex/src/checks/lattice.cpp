@@ -7,12 +7,12 @@
 #include <cstddef>
 #include <vector>
 
-#include "base/math.h"
+#include "rows/math.h"
 
 namespace tex {
 namespace {
 
-constexpr int kBins = 2048;         // of slopes from -1/2 to 1/2
+constexpr int kBins = 2048;  // of slopes from -1/2 to 1/2
 constexpr double kRange = 0.5;
 constexpr double kLeastRate = 16.0;  // teeth per unit of slope
 constexpr double kMostRate = 51.0;
@@ -36,7 +36,8 @@ std::vector<double> detail_of(const std::vector<double>& bins) {
     double total = 0.0;
     for (int k = 0; k < kBins; ++k) {
         const double s = (k + 0.5) / kBins - kRange;
-        weighted[static_cast<std::size_t>(k)] = bins[static_cast<std::size_t>(k)] * (math::exp(-s * s / (0.2 * 0.2)) - math::exp(-s * s / (0.03 * 0.03)));
+        weighted[static_cast<std::size_t>(k)] =
+            bins[static_cast<std::size_t>(k)] * (math::exp(-s * s / (0.2 * 0.2)) - math::exp(-s * s / (0.03 * 0.03)));
         total += weighted[static_cast<std::size_t>(k)];
     }
     for (int k = 0; k < kBins; ++k) {
@@ -62,7 +63,8 @@ int count_teeth(const std::vector<double>& bins, double step) {
         teeth[static_cast<std::size_t>(tooth + std::floor(kRange / step) + 1.0)] += bins[static_cast<std::size_t>(k)];
         sum += bins[static_cast<std::size_t>(k)];
     }
-    return static_cast<int>(std::count_if(teeth.begin(), teeth.end(), [&](double t) { return sum > 0.0 && t >= 0.01 * sum; }));
+    return static_cast<int>(
+        std::count_if(teeth.begin(), teeth.end(), [&](double t) { return sum > 0.0 && t >= 0.01 * sum; }));
 }
 
 }  // namespace
@@ -89,7 +91,8 @@ Lattice measure_lattice(const Stored& stored) {
         const double strength = std::min(p, q);
         if (strength > lattice.strength) lattice = {1.0 / rate, strength, 0};
     }
-    if (lattice.step > 0.0) lattice.teeth = std::min(count_teeth(bins_p, lattice.step), count_teeth(bins_q, lattice.step));
+    if (lattice.step > 0.0)
+        lattice.teeth = std::min(count_teeth(bins_p, lattice.step), count_teeth(bins_q, lattice.step));
     return lattice;
 }
 

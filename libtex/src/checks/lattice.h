@@ -14,7 +14,8 @@ struct Lattice {
     int teeth = 0;          // that hold at least 1 % of the slopes other than 0: few are a map's own flat faces
 };
 
-// Looks for teeth at distances from 0.0196, 2.5 codes of 8 bits (finer ones drown in the rounding of the codes), to 1/16.
+// Looks for teeth at distances from 0.0196, 2.5 codes of 8 bits (finer ones drown in the rounding of the codes), to
+// 1/16.
 Lattice measure_lattice(const Stored& stored);
 
 }  // namespace tex

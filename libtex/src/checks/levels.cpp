@@ -9,7 +9,7 @@
 
 #include <tex/normal_map.h>
 
-#include "base/parallel.h"
+#include "threads/parallel.h"
 
 namespace tex {
 namespace {
@@ -126,7 +126,8 @@ void add_gradients(Sums& sums, const Vector& s, const NormalMap& r, int i, int j
     }
 }
 
-Result<void> add_window(const Stored& stored, const NormalMap& averages, Rect window, const Execution& execution, Sums& all) {
+Result<void> add_window(const Stored& stored, const NormalMap& averages, Rect window, const Execution& execution,
+                        Sums& all) {
     NormalMap unit(Extent{window.width, window.height});
     const auto normalise = [&](int begin, int end) {
         for (int j = begin; j < end; ++j) {
@@ -196,7 +197,8 @@ void vectors_of_row(const Stored& stored, int j, float* x, float* y, float* z) {
     for (int i = 0; i < stored.extent().width; ++i) {
         float nx = sx[i] * scale + offset, ny = sy[i] * scale + offset;
         if (sz == nullptr) {
-            const float beyond = std::max(1.0f, std::sqrt(nx * nx + ny * ny));  // as unpack() shortens what lies outside the circle
+            const float beyond =
+                std::max(1.0f, std::sqrt(nx * nx + ny * ny));  // as unpack() shortens what lies outside the circle
             nx = nx / beyond;
             ny = ny / beyond;
         }
@@ -224,7 +226,8 @@ Result<NormalMap> base_averages(const Stored& stored, const Execution& execution
     NormalMap map(to);
     const auto body = [&](int begin, int end) {
         // The rows of the base level under rows begin to end of the smaller one.
-        const int first = first_covered(begin, from.height, to.height), last = last_covered(end - 1, from.height, to.height);
+        const int first = first_covered(begin, from.height, to.height),
+                  last = last_covered(end - 1, from.height, to.height);
         NormalMap rows(Extent{from.width, last - first});
         for (int j = first; j < last; ++j) {
             vectors_of_row(stored, j, rows.x.row(j - first), rows.y.row(j - first), rows.z.row(j - first));

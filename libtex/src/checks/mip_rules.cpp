@@ -16,11 +16,11 @@ namespace tex {
 namespace {
 
 constexpr int kLeastSide = 16;         // of a level that is judged: smaller ones have too few texels
-constexpr double kLeastSignal = 0.02;   // of components, 2.5 codes of 8 bits
-constexpr double kLeastDue = 0.01;      // where z is not stored: what renormalising must change to be seen
+constexpr double kLeastSignal = 0.02;  // of components, 2.5 codes of 8 bits
+constexpr double kLeastDue = 0.01;     // where z is not stored: what renormalising must change to be seen
 constexpr double kFaded = 0.7;
 constexpr double kFadeRelated = 0.95;
-constexpr double kFadeShort = 0.01;     // fading is no averaging: the vectors stay of unit length
+constexpr double kFadeShort = 0.01;  // fading is no averaging: the vectors stay of unit length
 constexpr double kFlatGain = 0.15;
 
 Region whole(const LevelMeasure& m) { return {m.level, 0, 0, m.extent.width, m.extent.height}; }
@@ -29,7 +29,8 @@ std::string name_level(const LevelMeasure& m) {
     return "level " + std::to_string(m.level) + " (" + extent_text(m.extent) + ")";
 }
 
-// Mean length falls, as that of averages does; or, where z is not stored, x and y are those of the averages and not of unit vectors.
+// Mean length falls, as that of averages does; or, where z is not stored, x and y are those of the averages and not of
+// unit vectors.
 bool is_not_normalised(const LevelMeasure& m, double base_length, bool has_z) {
     const double due = base_length - m.average_length;
     // A base level of vectors longer than 1 does not make renormalised ones short.
@@ -49,9 +50,9 @@ void check_lengths(const std::vector<LevelMeasure>& levels, double base_length, 
     }
     if (worst == nullptr) return;
     const double length = has_z ? worst->length : worst->average_length;
-    Finding& finding = findings.add("N501", std::to_string(regions.size()) + (regions.size() == 1 ? " level is" : " levels are") +
-                                                " not renormalised; in " + name_level(*worst) + " the mean length is " +
-                                                decimal(length, 3));
+    Finding& finding = findings.add(
+        "N501", std::to_string(regions.size()) + (regions.size() == 1 ? " level is" : " levels are") +
+                    " not renormalised; in " + name_level(*worst) + " the mean length is " + decimal(length, 3));
     finding.figure = length;
     finding.unit = "length";
     finding.regions = std::move(regions);
@@ -61,13 +62,15 @@ void check_relations(const std::vector<LevelMeasure>& levels, Findings& findings
     for (const LevelMeasure& m : levels) {
         const double shift = std::max(std::abs(m.shift_x), std::abs(m.shift_y));
         if (m.correlation > thresholds::kLevelRelated && shift > thresholds::kLevelShift && shift < 2.0) {
-            Finding& finding = findings.add("N503", name_level(m) + " lies " + decimal(m.shift_x, 2) + " texels to the right of and " +
-                                                        decimal(m.shift_y, 2) + " below its place");
+            Finding& finding =
+                findings.add("N503", name_level(m) + " lies " + decimal(m.shift_x, 2) + " texels to the right of and " +
+                                         decimal(m.shift_y, 2) + " below its place");
             finding.figure = shift;
             finding.unit = "texels";
             finding.confidence = 0.95;
             finding.regions = {whole(m)};
-        } else if (m.correlation < thresholds::kLevelRelated && m.stored_signal > kLeastSignal) {  // else flat: it faded
+        } else if (m.correlation < thresholds::kLevelRelated &&
+                   m.stored_signal > kLeastSignal) {  // else flat: it faded
             Finding& finding = findings.add("N502", name_level(m) + " correlates by " + decimal(m.correlation, 2) +
                                                         " with the filtered base level");
             finding.figure = m.correlation;

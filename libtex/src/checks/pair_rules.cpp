@@ -8,9 +8,9 @@
 namespace tex {
 namespace {
 
-constexpr int kReach = 3;            // texels that a shift is looked for
-constexpr double kFollows = 0.6;     // correlation
-constexpr double kBetterBy = 0.05;   // a shift must be better than none by this
+constexpr int kReach = 3;           // texels that a shift is looked for
+constexpr double kFollows = 0.6;    // correlation
+constexpr double kBetterBy = 0.05;  // a shift must be better than none by this
 
 // Sums over texels of slopes (p, q) against differences (u, v) of the heights.
 struct Fit {
@@ -52,7 +52,8 @@ std::optional<PairEvidence> check_pair_rules(const Subject& subject, Findings& f
     if (field == nullptr || !subject.has_vectors || subject.constant) return std::nullopt;
     const Extent extent = subject.stored.extent();
     if (field->height.extent() != extent) {
-        findings.add("N601", "the height map is " + extent_text(field->height.extent()) + ", the normal map " + extent_text(extent));
+        findings.add("N601", "the height map is " + extent_text(field->height.extent()) + ", the normal map " +
+                                 extent_text(extent));
         return std::nullopt;
     }
     Fit fits[2 * kReach + 1][2 * kReach + 1];
@@ -80,8 +81,9 @@ std::optional<PairEvidence> check_pair_rules(const Subject& subject, Findings& f
     pair.strength = best->uu > 0.0 ? best->pu / best->uu : 0.0;
     pair.y = best->x() * best->y() >= 0.0 ? YAxis::up : YAxis::down;
 
-    const std::string fitted = "correlation " + decimal(pair.correlation, 2) + ", strength " + decimal(pair.strength, 2) + ", y " +
-                               direction(pair.y) + ", offset " + std::to_string(pair.offset_x) + ", " + std::to_string(pair.offset_y);
+    const std::string fitted = "correlation " + decimal(pair.correlation, 2) + ", strength " +
+                               decimal(pair.strength, 2) + ", y " + direction(pair.y) + ", offset " +
+                               std::to_string(pair.offset_x) + ", " + std::to_string(pair.offset_y);
     const auto add = [&](std::string_view id, const std::string& what) {
         Finding& finding = findings.add(id, what + " (" + fitted + ")");
         finding.figure = pair.correlation;

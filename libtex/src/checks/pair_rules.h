@@ -7,7 +7,8 @@
 
 namespace tex {
 
-// How the normals follow from subject.options.height, and what is wrong with that; nullopt without heights or without slopes to compare.
+// How the normals follow from subject.options.height, and what is wrong with that; nullopt without heights or without
+// slopes to compare.
 std::optional<PairEvidence> check_pair_rules(const Subject& subject, Findings& findings);
 
 }  // namespace tex

@@ -7,8 +7,8 @@
 
 namespace tex {
 
-// The mean step of x or y from the last line to the first, divided by the 98th percentile of the mean steps between lines inside. Every texel
-// counts. 0 along an axis of fewer than 8 texels.
+// The mean step of x or y from the last line to the first, divided by the 98th percentile of the mean steps between
+// lines inside. Every texel counts. 0 along an axis of fewer than 8 texels.
 struct Seam {
     double ratio_x = 0.0;  // from the right border to the left
     double ratio_y = 0.0;  // from the bottom border to the top

@@ -26,8 +26,8 @@ int window_begin(int n, int k) {
     return static_cast<int>(room * k / (kWindowsAcross - 1)) / kPhase * kPhase;
 }
 
-// Texels beside one without a normal become unusable too, up to kHoleBorder away: there filters and block codecs have mixed the
-// normals with whatever fills the hole.
+// Texels beside one without a normal become unusable too, up to kHoleBorder away: there filters and block codecs have
+// mixed the normals with whatever fills the hole.
 void widen_holes(Slopes& slopes) {
     const Extent extent = slopes.extent();
     const auto pass = [&](int length, int lines, auto at) {

@@ -34,12 +34,12 @@ struct Rect {
     int x = 0, y = 0, width = 0, height = 0;
 };
 
-// Where the statistical rules look: the whole map up to 2^20 texels, else 16 squares of 256 texels, spread evenly, with corners at multiples
-// of 16 so that grids of blocks stay in phase. Rules that count texels do not sample.
+// Where the statistical rules look: the whole map up to 2^20 texels, else 16 squares of 256 texels, spread evenly, with
+// corners at multiples of 16 so that grids of blocks stay in phase. Rules that count texels do not sample.
 std::vector<Rect> sample_windows(Extent extent);
 
-// Slopes p = -x/z and q = -y/z of a window, NaN where a texel holds no usable normal: not finite, shorter than 0.5, z below
-// 0.05, or x^2 + y^2 above 1.04 where z is not stored.
+// Slopes p = -x/z and q = -y/z of a window, NaN where a texel holds no usable normal: not finite, shorter than 0.5, z
+// below 0.05, or x^2 + y^2 above 1.04 where z is not stored.
 struct Slopes {
     Plane<float> p, q;
     [[nodiscard]] Extent extent() const { return p.extent(); }

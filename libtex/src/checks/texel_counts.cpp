@@ -9,7 +9,7 @@
 
 #include <tex/normal_map.h>
 
-#include "base/parallel.h"
+#include "threads/parallel.h"
 
 namespace tex {
 namespace {

@@ -32,18 +32,18 @@ struct Tally {
 };
 
 enum class Property {
-    not_finite,      // a component is NaN or infinite; such a texel counts nowhere else
-    null_vector,     // shorter than kNullLength (z stored)
-    off_length,      // the length is off 1 by more than kTwoCodes (z stored)
-    z_below,         // z below -kTwoCodes (z stored)
-    z_behind,        // z below -0.1 (z stored)
-    beyond_unit,     // x^2 + y^2 above (1 + kTwoCodes)^2
-    red_not_one,     // R below 1, for the layout (R, y, _, x)
-    alpha_not_one,   // A below 1, where A is not x
-    above_alpha,     // R, G or B above A by more than a code and a half
-    grey,            // R, G and B are equal within a code and a half
-    flat_low,        // x and y are code 127 of 255
-    flat_high,       // x and y are code 128
+    not_finite,     // a component is NaN or infinite; such a texel counts nowhere else
+    null_vector,    // shorter than kNullLength (z stored)
+    off_length,     // the length is off 1 by more than kTwoCodes (z stored)
+    z_below,        // z below -kTwoCodes (z stored)
+    z_behind,       // z below -0.1 (z stored)
+    beyond_unit,    // x^2 + y^2 above (1 + kTwoCodes)^2
+    red_not_one,    // R below 1, for the layout (R, y, _, x)
+    alpha_not_one,  // A below 1, where A is not x
+    above_alpha,    // R, G or B above A by more than a code and a half
+    grey,           // R, G and B are equal within a code and a half
+    flat_low,       // x and y are code 127 of 255
+    flat_high,      // x and y are code 128
 };
 inline constexpr int kPropertyCount = 12;
 

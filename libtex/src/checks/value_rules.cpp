@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "base/math.h"
+#include "rows/math.h"
 
 namespace tex {
 namespace {
@@ -22,10 +22,12 @@ constexpr std::int64_t kFlatLeast = 256;  // texels
 constexpr double kLeanDegrees = 10.0;
 constexpr float kVaries = 0.05f;  // of a stored channel: more than its rounding
 
-Finding& add_counted(const Subject& subject, Findings& findings, std::string_view id, Property property, const std::string& what) {
+Finding& add_counted(const Subject& subject, Findings& findings, std::string_view id, Property property,
+                     const std::string& what) {
     const Tally& tally = subject.counts[property];
     const double share = subject.counts.share(property);
-    Finding& finding = findings.add(id, percent(share) + " of the texels" + what + ", the first at " + texel_text(tally.column, tally.row));
+    Finding& finding = findings.add(
+        id, percent(share) + " of the texels" + what + ", the first at " + texel_text(tally.column, tally.row));
     finding.figure = share;
     finding.unit = "share";
     finding.regions = {{0, tally.column, tally.row, 1, 1}};
@@ -37,17 +39,19 @@ Finding& add_counted(const Subject& subject, Findings& findings, std::string_vie
 
 void check_lengths(const Subject& subject, Findings& findings) {
     const TexelCounts& counts = subject.counts;
-    if (counts[Property::not_finite].count > 0) add_counted(subject, findings, "N204", Property::not_finite, " are NaN or infinite");
+    if (counts[Property::not_finite].count > 0)
+        add_counted(subject, findings, "N204", Property::not_finite, " are NaN or infinite");
     if (counts.share(Property::null_vector) > kNullShare) {
         add_counted(subject, findings, "N205", Property::null_vector, " are shorter than 0.1");
     }
     if (counts.share(Property::off_length) > kOffLengthShare) {
         add_counted(subject, findings, "N201", Property::off_length,
-                    " are off unit length by more than two codes (mean length " + decimal(counts.mean_length, 3) + ", " +
-                        decimal(static_cast<double>(counts.min_length), 2) + " to " +
+                    " are off unit length by more than two codes (mean length " + decimal(counts.mean_length, 3) +
+                        ", " + decimal(static_cast<double>(counts.min_length), 2) + " to " +
                         decimal(static_cast<double>(counts.max_length), 2) + ")");
     }
-    if (counts.share(Property::z_below) > kBelowShare) add_counted(subject, findings, "N202", Property::z_below, " have z below zero");
+    if (counts.share(Property::z_below) > kBelowShare)
+        add_counted(subject, findings, "N202", Property::z_below, " have z below zero");
     if (!subject.stored.has_z() && counts.share(Property::beyond_unit) > kBeyondShare) {
         add_counted(subject, findings, "N203", Property::beyond_unit, " have x^2 + y^2 above 1");
     }
@@ -58,8 +62,9 @@ void check_means(const Subject& subject, Findings& findings) {
     const double lean = std::sqrt(counts.mean_x * counts.mean_x + counts.mean_y * counts.mean_y);
     const double angle = math::atan(lean / std::max(counts.mean_z, 1e-6)) * 180.0 / math::kPi;
     if (angle > kLeanDegrees) {
-        Finding& finding = findings.add("N207", "the mean normal leans by " + decimal(angle, 1) + " degrees, towards x " +
-                                                    decimal(counts.mean_x, 3) + ", y " + decimal(counts.mean_y, 3));
+        Finding& finding =
+            findings.add("N207", "the mean normal leans by " + decimal(angle, 1) + " degrees, towards x " +
+                                     decimal(counts.mean_x, 3) + ", y " + decimal(counts.mean_y, 3));
         finding.figure = angle;
         finding.unit = "degrees";
     }
@@ -68,8 +73,9 @@ void check_means(const Subject& subject, Findings& findings) {
     const Tally &most = is_low ? low : high, &least = is_low ? high : low;
     const double share = static_cast<double>(most.count) / static_cast<double>(counts.texels);
     if (counts.texels >= kFlatLeast && share > kFlatShare && least.count * 20 < most.count) {
-        Finding& finding = findings.add("N208", percent(share) + " of the texels are flat as (" + (is_low ? "127, 127" : "128, 128") +
-                                                    "), which leans by 0.32 degrees");
+        Finding& finding =
+            findings.add("N208", percent(share) + " of the texels are flat as (" + (is_low ? "127, 127" : "128, 128") +
+                                     "), which leans by 0.32 degrees");
         finding.figure = share;
         finding.unit = "share";
     }
@@ -83,12 +89,14 @@ void check_channels(const Subject& subject, Findings& findings) {
     };
     const int cx = stored.channel(Component::x), cy = stored.channel(Component::y), cz = stored.channel(Component::z);
     if (cz >= 0 && counts.share(Property::grey) > kGreyShare && range(cx) > 0.0f) {
-        Finding& finding = findings.add("N210", "R, G and B are equal in " + percent(counts.share(Property::grey)) + " of the texels");
+        Finding& finding =
+            findings.add("N210", "R, G and B are equal in " + percent(counts.share(Property::grey)) + " of the texels");
         finding.figure = counts.share(Property::grey);
         finding.unit = "share";
     }
     if (cz >= 0 && range(cz) == 0.0f && std::max(range(cx), range(cy)) > 2.0f * kVaries) {
-        findings.add("N209", "blue is " + decimal(static_cast<double>(counts.low[static_cast<std::size_t>(cz)]), 3) + " everywhere");
+        findings.add("N209", "blue is " + decimal(static_cast<double>(counts.low[static_cast<std::size_t>(cz)]), 3) +
+                                 " everywhere");
     }
     if (counts[Property::red_not_one].count > 0) {
         add_counted(subject, findings, "N211", Property::red_not_one, " have R below 255");

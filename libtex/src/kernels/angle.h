@@ -7,8 +7,8 @@
 
 namespace tex {
 
-// degrees[i] = 2 asin(min(1, |a[i] - b[i]| / 2)), in degrees, for `count` texels. Rows are those of a Plane: whole vectors past
-// the last texel are read and written.
+// degrees[i] = 2 asin(min(1, |a[i] - b[i]| / 2)), in degrees, for `count` texels. Rows are those of a Plane: whole
+// vectors past the last texel are read and written.
 void angle_row(const VectorRow& a, const VectorRow& b, int count, float* degrees);
 
 }  // namespace tex

@@ -135,7 +135,8 @@ float measure(const Normals& n, const Ends& x_ends, const Ends& y_ends, int* pai
                 const F dx = hn::Sub(x, hn::Set(d, mx));
                 const F dz = hn::Sub(z, hn::Set(d, std::sqrt(1.0f - std::min(1.0f, mx * mx + my * my))));
                 const F chord = hn::Add(hn::Add(hn::Mul(dx, dx), dyy), hn::Mul(dz, dz));
-                if (pairs != nullptr) pair = hn::IfThenElse(hn::Lt(chord, least), hn::Set(d, static_cast<float>(a + 8 * b)), pair);
+                if (pairs != nullptr)
+                    pair = hn::IfThenElse(hn::Lt(chord, least), hn::Set(d, static_cast<float>(a + 8 * b)), pair);
                 least = hn::Min(least, chord);
             }
         }
@@ -150,7 +151,8 @@ float measure(const Normals& n, const Ends& x_ends, const Ends& y_ends, int* pai
     return sum;
 }
 
-// Takes the step that gains most, of all that change the endpoints of one channel by up to 3 codes. False where none gains.
+// Takes the step that gains most, of all that change the endpoints of one channel by up to 3 codes. False where none
+// gains.
 bool take_step(const Normals& n, Ends (&ends)[2], float& sum) {
     constexpr int kMoves[8][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}};
     const Ends before[2] = {ends[0], ends[1]};

@@ -26,8 +26,8 @@ void LimitHeights(const float* in, int count, float* out) {
     for (int i = 0; i < count; i += kLanes) hn::StoreU(clamped(hn::LoadU(kD, in + i), limit), kD, out + i);
 }
 
-void ContinueHeights(const float* inner, const float* edge, const float* other, bool reflected, float drift,
-                     int count, float* out) {
+void ContinueHeights(const float* inner, const float* edge, const float* other, bool reflected, float drift, int count,
+                     float* out) {
     const V limit = hn::Set(kD, kMaxHeight);
     const V two = hn::Set(kD, 2.0f);
     const V periods = hn::Set(kD, drift);
@@ -55,8 +55,8 @@ HWY_INLINE void store_normals(V slope_x, V slope_y, int i, NormalRow out) {
     hn::StoreU(scale, kD, out.z + i);
 }
 
-void NormalsByDifference(const float* left, const float* right, const float* down, const float* up,
-                         float scale_x, float scale_y, int count, NormalRow out) {
+void NormalsByDifference(const float* left, const float* right, const float* down, const float* up, float scale_x,
+                         float scale_y, int count, NormalRow out) {
     const V sx = hn::Set(kD, scale_x);
     const V sy = hn::Set(kD, scale_y);
     for (int i = 0; i < count; i += kLanes) {
@@ -81,16 +81,15 @@ void DeriveColumn(const float* const* rows, const float* derivative, int radius,
     for (int i = 0; i < count; i += kLanes) {
         V sum = hn::Zero(kD);
         for (int k = 1; k <= radius; ++k) {
-            const V difference =
-                hn::Sub(hn::LoadU(kD, rows[radius - k] + i), hn::LoadU(kD, rows[radius + k] + i));
+            const V difference = hn::Sub(hn::LoadU(kD, rows[radius - k] + i), hn::LoadU(kD, rows[radius + k] + i));
             sum = hn::Add(sum, hn::Mul(hn::Set(kD, derivative[k - 1]), difference));
         }
         hn::StoreU(sum, kD, out + i);
     }
 }
 
-void NormalsBySmoothing(const float* const* du, const float* dv, const float* smoothing, int radius,
-                        float scale_x, float scale_y, int count, NormalRow out) {
+void NormalsBySmoothing(const float* const* du, const float* dv, const float* smoothing, int radius, float scale_x,
+                        float scale_y, int count, NormalRow out) {
     const V sx = hn::Set(kD, scale_x);
     const V sy = hn::Set(kD, scale_y);
     for (int i = 0; i < count; i += kLanes) {
@@ -143,17 +142,15 @@ HWY_EXPORT(DeriveColumn);
 HWY_EXPORT(NormalsBySmoothing);
 HWY_EXPORT(WidenSlopeBounds);
 
-void limit_heights(const float* in, int count, float* out) {
-    HWY_DYNAMIC_DISPATCH(LimitHeights)(in, count, out);
-}
+void limit_heights(const float* in, int count, float* out) { HWY_DYNAMIC_DISPATCH(LimitHeights)(in, count, out); }
 
-void continue_heights(const float* inner, const float* edge, const float* other, bool reflected, float drift,
-                      int count, float* out) {
+void continue_heights(const float* inner, const float* edge, const float* other, bool reflected, float drift, int count,
+                      float* out) {
     HWY_DYNAMIC_DISPATCH(ContinueHeights)(inner, edge, other, reflected, drift, count, out);
 }
 
-void normals_by_difference(const float* left, const float* right, const float* down, const float* up,
-                           float scale_x, float scale_y, int count, NormalRow out) {
+void normals_by_difference(const float* left, const float* right, const float* down, const float* up, float scale_x,
+                           float scale_y, int count, NormalRow out) {
     HWY_DYNAMIC_DISPATCH(NormalsByDifference)(left, right, down, up, scale_x, scale_y, count, out);
 }
 
@@ -165,8 +162,8 @@ void derive_column(const float* const* rows, const float* derivative, int radius
     HWY_DYNAMIC_DISPATCH(DeriveColumn)(rows, derivative, radius, count, out);
 }
 
-void normals_by_smoothing(const float* const* du, const float* dv, const float* smoothing, int radius,
-                          float scale_x, float scale_y, int count, NormalRow out) {
+void normals_by_smoothing(const float* const* du, const float* dv, const float* smoothing, int radius, float scale_x,
+                          float scale_y, int count, NormalRow out) {
     HWY_DYNAMIC_DISPATCH(NormalsBySmoothing)(du, dv, smoothing, radius, scale_x, scale_y, count, out);
 }
 

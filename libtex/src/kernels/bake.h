@@ -26,12 +26,12 @@ void limit_heights(const float* in, int count, float* out);
 //     out[i] = (reflected ? 2 edge[i] - inner[i] : inner[i]) + drift (edge[i] - other[i])
 //
 // all cut to +-kMaxHeight before.
-void continue_heights(const float* inner, const float* edge, const float* other, bool reflected, float drift,
-                      int count, float* out);
+void continue_heights(const float* inner, const float* edge, const float* other, bool reflected, float drift, int count,
+                      float* out);
 
 // normalize(-slope_x, -slope_y, 1) with slope_x = (right - left) scale_x, slope_y = (up - down) scale_y.
-void normals_by_difference(const float* left, const float* right, const float* down, const float* up,
-                           float scale_x, float scale_y, int count, NormalRow out);
+void normals_by_difference(const float* left, const float* right, const float* down, const float* up, float scale_x,
+                           float scale_y, int count, NormalRow out);
 
 // out[i] = sum over k = 1 to radius of derivative[k - 1] (row[i + k] - row[i - k]).
 void derive_row(const float* row, const float* derivative, int radius, int count, float* out);
@@ -44,10 +44,11 @@ void derive_column(const float* const* rows, const float* derivative, int radius
 //
 //     slope_x = scale_x (smoothing[0] du[radius][i] + sum of smoothing[k] (du[radius - k][i] + du[radius + k][i]))
 //     slope_y = scale_y (smoothing[0] dv[i]         + sum of smoothing[k] (dv[i - k] + dv[i + k]))
-void normals_by_smoothing(const float* const* du, const float* dv, const float* smoothing, int radius,
-                          float scale_x, float scale_y, int count, NormalRow out);
+void normals_by_smoothing(const float* const* du, const float* dv, const float* smoothing, int radius, float scale_x,
+                          float scale_y, int count, NormalRow out);
 
-// The least and greatest slopes, -x/z and -y/z with z at least 1e-16: no slope is infinite, and those of bake(), up to 1e15, are what they are.
+// The least and greatest slopes, -x/z and -y/z with z at least 1e-16: no slope is infinite, and those of bake(), up to
+// 1e15, are what they are.
 struct SlopeBounds {
     float min_x, max_x;
     float min_y, max_y;

@@ -22,20 +22,19 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::CappedTag<float, 16>;
 using F = hn::Vec<Floats>;
 
-// G on a grid of 1/phases code: row r holds G(base + i + r / phases) from i = -16 on, and zeros outside the block's range. In units of 1/phases code.
+// G on a grid of 1/phases code: row r holds G(base + i + r / phases) from i = -16 on, and zeros outside the block's
+// range. In units of 1/phases code.
 constexpr int kMaxPhases = 14;
 constexpr int kPad = 16;
 constexpr std::ptrdiff_t kRow = kPad + 272 + kPad;
 
 struct Gains {
     HWY_ALIGN float rows[kMaxPhases * kRow];
-    // For 6 values: the gain of the threshold between the lowest code and the lower endpoint e, at e, and between the greater
-    // endpoint e and the greatest code, times the distances of these; in codes squared.
+    // For 6 values: the gain of the threshold between the lowest code and the lower endpoint e, at e, and between the
+    // greater endpoint e and the greatest code, times the distances of these; in codes squared.
     HWY_ALIGN float below[kRow], above[kRow];
 
-    Gains() {
-        std::fill(std::begin(rows), std::end(rows), 0.0f);
-    }
+    Gains() { std::fill(std::begin(rows), std::end(rows), 0.0f); }
 };
 
 void tabulate(const Block& block, int phases, Gains& gains) {
@@ -81,14 +80,16 @@ public:
         : block_(block), gains_(gains), eight_values_(eight_values), steps_(eight_values ? 7 : 5), top_(top),
           open_below_(open_below), open_above_(open_above) {}
 
-    // All lower endpoints from `first` to `last` (absolute codes) with the greater one `distance` above. Returns the least error.
+    // All lower endpoints from `first` to `last` (absolute codes) with the greater one `distance` above. Returns the
+    // least error.
     float score(int first, int last, int distance, Bc4Candidates& candidates) const {
         const Floats d;
         const int lanes = static_cast<int>(hn::Lanes(d));
         const int phases = 2 * steps_;
         const float inverse = 1.0f / static_cast<float>(phases);
         const F spacing = hn::Set(d, static_cast<float>(distance) / static_cast<float>(steps_));
-        const F per_spacing = hn::Set(d, distance == 0 ? 0.0f : static_cast<float>(steps_) / static_cast<float>(distance));
+        const F per_spacing =
+            hn::Set(d, distance == 0 ? 0.0f : static_cast<float>(steps_) / static_cast<float>(distance));
         // Gains are in units of 1/phases code; twice the spacing times these, in codes squared.
         const F weight = hn::Set(d, 2.0f * static_cast<float>(distance) / static_cast<float>(steps_) * inverse);
         HWY_ALIGN float errors[16];
@@ -117,7 +118,8 @@ public:
                 away = hn::Min(away, hn::Set(d, static_cast<float>(top_ - block_.base) - block_.mean));
                 total = hn::Add(total, hn::LoadU(d, gains_.above + lower + distance));
             }
-            const F error = hn::Sub(hn::Add(hn::Set(d, block_.deviations), hn::Mul(hn::Set(d, block_.count), hn::Mul(away, away))), total);
+            const F error = hn::Sub(
+                hn::Add(hn::Set(d, block_.deviations), hn::Mul(hn::Set(d, block_.count), hn::Mul(away, away))), total);
             const auto valid = hn::Lt(hn::Iota(d, 0.0f), hn::Set(d, static_cast<float>(last - lower + 1)));
             least = hn::IfThenElse(valid, hn::Min(least, error), least);
             if (hn::AllFalse(d, hn::And(valid, hn::Le(error, hn::Set(d, candidates.limit()))))) continue;
@@ -129,7 +131,8 @@ public:
         return hn::GetLane(hn::MinOfLanes(d, least));
     }
 
-    // The pairs of that distance that may be as good as the limit. Returns how many distances beyond this one cannot hold a better one.
+    // The pairs of that distance that may be as good as the limit. Returns how many distances beyond this one cannot
+    // hold a better one.
     int score_near(int distance, Bc4Candidates& candidates) const {
         const float s = std::sqrt(std::max(candidates.limit(), 0.0f));
         const float highest = open_below_ ? 255.0f : std::floor(block_.least + s);
@@ -138,8 +141,10 @@ public:
         const int last = std::min(top_ - distance, block_.base + static_cast<int>(std::min(highest, 255.0f)));
         if (first > last) return 0;
         const float least = score(first, last, distance, candidates);
-        // An endpoint that moves by one code moves the root of the error by at most the root of the number of texels, 4.
-        return static_cast<int>(0.2499f * (std::sqrt(std::max(least - block_.slack, 0.0f)) - std::sqrt(candidates.limit())));
+        // An endpoint that moves by one code moves the root of the error by at most the root of the number of
+        // texels, 4.
+        return static_cast<int>(0.2499f *
+                                (std::sqrt(std::max(least - block_.slack, 0.0f)) - std::sqrt(candidates.limit())));
     }
 
     void search(const ClusterBounds& bounds, Bc4Candidates& candidates) const {
@@ -205,7 +210,8 @@ Bc4Endpoints search(const BlockTexels& texels, const ClusterBounds& bounds, Bc4C
     const Scorer eight(block, gains, true, top, false, false);
     // Something to start from: endpoints at the extremes, and near them.
     const int distance = std::min(block.length, top);
-    eight.score(std::max(0, std::min(block.base - 4, top - distance)), std::min(block.base + 4, top - distance), distance, candidates);
+    eight.score(std::max(0, std::min(block.base - 4, top - distance)), std::min(block.base + 4, top - distance),
+                distance, candidates);
     eight.search(bounds, candidates);
 
     const float s = std::sqrt(candidates.limit());

@@ -21,8 +21,8 @@ using PlaceVec = hn::Vec<PlaceTag>;
 using IndexTag = hn::Rebind<std::int32_t, PlaceTag>;
 using IndexVec = hn::Vec<IndexTag>;
 
-// A coordinate in widths, moved by whole periods to where its texel index is a small number. Clamped axes are the same beyond
-// one width outside.
+// A coordinate in widths, moved by whole periods to where its texel index is a small number. Clamped axes are the same
+// beyond one width outside.
 HWY_INLINE PlaceVec Reduce(PlaceTag d, Wrap wrap, PlaceVec u) {
     switch (wrap) {
         case Wrap::repeat: return hn::Sub(u, hn::Floor(u));
@@ -32,7 +32,8 @@ HWY_INLINE PlaceVec Reduce(PlaceTag d, Wrap wrap, PlaceVec u) {
     return hn::Min(hn::Max(u, hn::Set(d, -1.0)), hn::Set(d, 2.0));
 }
 
-// The texel at an index at most one texel outside of a period (repeat: n texels, mirror: 2 n), any index where borders are clamped.
+// The texel at an index at most one texel outside of a period (repeat: n texels, mirror: 2 n), any index where borders
+// are clamped.
 HWY_INLINE IndexVec Wrapped(IndexTag d, Wrap wrap, IndexVec index, int n) {
     const IndexVec zero = hn::Zero(d);
     const IndexVec last = hn::Set(d, n - 1);
@@ -52,7 +53,8 @@ void Taps(double start, double step, double rest, Wrap wrap, int n, int count, c
     for (std::size_t i = 0; i < end; i += hn::Lanes(d)) {
         const PlaceVec x = hn::Add(hn::Iota(d, static_cast<double>(i)), hn::Set(d, 0.5));
         const PlaceVec u = hn::Add(hn::Add(hn::Set(d, start), hn::Mul(hn::Set(d, step), x)), hn::Set(d, rest));
-        const PlaceVec place = hn::Sub(hn::Mul(Reduce(d, wrap, u), hn::Set(d, static_cast<double>(n))), hn::Set(d, 0.5));
+        const PlaceVec place =
+            hn::Sub(hn::Mul(Reduce(d, wrap, u), hn::Set(d, static_cast<double>(n))), hn::Set(d, 0.5));
         const PlaceVec whole = hn::Floor(place);
         const IndexVec index = hn::DemoteTo(di, whole);
         hn::StoreU(Wrapped(di, wrap, index, n), di, taps.first + i);
@@ -78,7 +80,9 @@ void FindRuns(const TapRow& taps, int count, int readable, std::int32_t* start) 
 }
 
 // Exactly a at 0 and b at 1.
-HWY_INLINE FloatVec Mix(FloatVec a, FloatVec b, FloatVec t, FloatVec rest) { return hn::Add(hn::Mul(a, rest), hn::Mul(b, t)); }
+HWY_INLINE FloatVec Mix(FloatVec a, FloatVec b, FloatVec t, FloatVec rest) {
+    return hn::Add(hn::Mul(a, rest), hn::Mul(b, t));
+}
 
 // Texels at columns of one vector.
 struct Gathered {
@@ -108,13 +112,16 @@ private:
 };
 
 template <class Texels>
-HWY_INLINE FloatVec Bilinear(const float* upper, const float* lower, const Texels& first, const Texels& second, FloatVec x, FloatVec y) {
+HWY_INLINE FloatVec Bilinear(const float* upper, const float* lower, const Texels& first, const Texels& second,
+                             FloatVec x, FloatVec y) {
     const FloatVec one = hn::Set(FloatTag(), 1.0f);
     const FloatVec rest = hn::Sub(one, x);
-    return Mix(Mix(first(upper), second(upper), x, rest), Mix(first(lower), second(lower), x, rest), y, hn::Sub(one, y));
+    return Mix(Mix(first(upper), second(upper), x, rest), Mix(first(lower), second(lower), x, rest), y,
+               hn::Sub(one, y));
 }
 
-void BilinearRow(const float* upper, const float* lower, const TapRow& columns, const std::int32_t* runs, float weight, int count, float* out) {
+void BilinearRow(const float* upper, const float* lower, const TapRow& columns, const std::int32_t* runs, float weight,
+                 int count, float* out) {
     const FloatTag d;
     const ColumnTag di;
     const FloatVec y = hn::Set(d, weight);
@@ -145,9 +152,12 @@ void tap_row(double start, double step, double rest, Wrap wrap, int n, int count
     HWY_DYNAMIC_DISPATCH(Taps)(start, step, rest, wrap, n, count, taps);
 }
 
-void find_runs(const TapRow& taps, int count, int readable, std::int32_t* start) { HWY_DYNAMIC_DISPATCH(FindRuns)(taps, count, readable, start); }
+void find_runs(const TapRow& taps, int count, int readable, std::int32_t* start) {
+    HWY_DYNAMIC_DISPATCH(FindRuns)(taps, count, readable, start);
+}
 
-void bilinear_row(const float* upper, const float* lower, const TapRow& columns, const std::int32_t* runs, float weight, int count, float* out) {
+void bilinear_row(const float* upper, const float* lower, const TapRow& columns, const std::int32_t* runs, float weight,
+                  int count, float* out) {
     HWY_DYNAMIC_DISPATCH(BilinearRow)(upper, lower, columns, runs, weight, count, out);
 }
 

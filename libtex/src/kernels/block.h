@@ -12,14 +12,15 @@ namespace tex {
 
 // In codes relative to `base`.
 struct Block {
-    float v[16];       // texels outside the level are replaced by the mean, which changes no sum
-    int base;          // the greatest whole code that is not above any texel
-    int length;        // from base to the least whole code that is not below any texel
-    float count;       // texels in the level
+    float v[16];  // texels outside the level are replaced by the mean, which changes no sum
+    int base;     // the greatest whole code that is not above any texel
+    int length;   // from base to the least whole code that is not below any texel
+    float count;  // texels in the level
     float mean;
     float deviations;  // the sum of the squared deviations from the mean
     float least, greatest;
-    float slack;       // bounds the rounding of errors, in codes squared: less where all texels are whole codes, as tables then have none
+    float slack;  // bounds the rounding of errors, in codes squared: less where all texels are whole codes, as tables
+                  // then have none
 };
 
 inline Block measure(const BlockTexels& texels) {

@@ -17,12 +17,13 @@ struct Candidate {
     int kind;
 };
 
-// Keeps the candidates whose error, computed in float, is within `slack` (the bound of its rounding) of the least one, and in the end picks
-// the best by `exact`, a function from Candidate to std::int64_t. Of equals: the smallest distance, then the
-// smallest kind, then the greatest lower endpoint; but the first pair without any error ends the search.
+// Keeps the candidates whose error, computed in float, is within `slack` (the bound of its rounding) of the least one,
+// and in the end picks the best by `exact`, a function from Candidate to std::int64_t. Of equals: the smallest
+// distance, then the smallest kind, then the greatest lower endpoint; but the first pair without any error ends the
+// search.
 //
-// The outcome does not depend on how many pairs are looked at together: whatever the limit was on the way, all that are within
-// the final one are in the list.
+// The outcome does not depend on how many pairs are looked at together: whatever the limit was on the way, all that are
+// within the final one are in the list.
 template <class Exact>
 class Candidates {
 public:
@@ -48,7 +49,8 @@ public:
 
     // The best of those added so far, of which there must be one.
     Candidate settle() {
-        const int count = static_cast<int>(std::remove_if(list_, list_ + count_, [&](const Candidate& c) { return c.error > limit(); }) - list_);
+        const int count = static_cast<int>(
+            std::remove_if(list_, list_ + count_, [&](const Candidate& c) { return c.error > limit(); }) - list_);
         Candidate best = list_[0];
         std::int64_t least = count > 1 ? exact_(best) : 0;
         for (int k = 1; k < count; ++k) {

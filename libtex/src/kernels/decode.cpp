@@ -40,18 +40,22 @@ struct Fractions {
 
 // Sevenths, and fifths with the lowest and the greatest value, of codes of which `one` is 1.
 constexpr Fractions Sevenths(float one) {
-    return {{1, 0, 6, 5, 4, 3, 2, 1}, {0, 1, 1, 2, 3, 4, 5, 6}, {},
+    return {{1, 0, 6, 5, 4, 3, 2, 1},
+            {0, 1, 1, 2, 3, 4, 5, 6},
+            {},
             {one, one, 7 * one, 7 * one, 7 * one, 7 * one, 7 * one, 7 * one}};
 }
 constexpr Fractions Fifths(float one, float lowest) {
-    return {{1, 0, 4, 3, 2, 1, 0, 0}, {0, 1, 1, 2, 3, 4, 0, 0}, {0, 0, 0, 0, 0, 0, lowest * one, one},
+    return {{1, 0, 4, 3, 2, 1, 0, 0},
+            {0, 1, 1, 2, 3, 4, 0, 0},
+            {0, 0, 0, 0, 0, 0, lowest * one, one},
             {one, one, 5 * one, 5 * one, 5 * one, 5 * one, one, one}};
 }
 // Thirds, and halves with black, of 8-bit codes; twice, as there are eight lanes.
-constexpr Fractions kThirds = {{1, 0, 2, 1, 1, 0, 2, 1}, {0, 1, 1, 2, 0, 1, 1, 2}, {},
-                               {255, 255, 765, 765, 255, 255, 765, 765}};
-constexpr Fractions kHalves = {{1, 0, 1, 0, 1, 0, 1, 0}, {0, 1, 1, 0, 0, 1, 1, 0}, {},
-                               {255, 255, 510, 255, 255, 255, 510, 255}};
+constexpr Fractions kThirds = {
+    {1, 0, 2, 1, 1, 0, 2, 1}, {0, 1, 1, 2, 0, 1, 1, 2}, {}, {255, 255, 765, 765, 255, 255, 765, 765}};
+constexpr Fractions kHalves = {
+    {1, 0, 1, 0, 1, 0, 1, 0}, {0, 1, 1, 0, 0, 1, 1, 0}, {}, {255, 255, 510, 255, 255, 255, 510, 255}};
 constexpr Fractions kUnorm[2] = {Fifths(255, 0), Sevenths(255)};
 constexpr Fractions kSnorm[2] = {Fifths(127, -1), Sevenths(127)};
 
@@ -64,8 +68,8 @@ HWY_INLINE V8 Palette(const Fractions& fractions, int e0, int e1) {
 }
 
 // Two rows of four texels; the index of texel k stands in bits from shifts[k].
-HWY_INLINE void LookUpTwoRows(V8 palette, std::uint32_t bits, const std::uint32_t* shifts, std::uint32_t mask, float* out,
-                              std::ptrdiff_t stride) {
+HWY_INLINE void LookUpTwoRows(V8 palette, std::uint32_t bits, const std::uint32_t* shifts, std::uint32_t mask,
+                              float* out, std::ptrdiff_t stride) {
     const D8 d;
     const U8 du;
     const hn::CappedTag<float, 4> d4;
@@ -93,7 +97,8 @@ HWY_INLINE void DecodeBc4(const std::byte* block, float* out, std::ptrdiff_t str
         e1 = static_cast<std::int8_t>(e1);
     }
     const Fractions& fractions = (kSigned ? kSnorm : kUnorm)[e0 > e1 ? 1 : 0];
-    const V8 palette = kSigned ? Palette(fractions, std::max(e0, -127), std::max(e1, -127)) : Palette(fractions, e0, e1);
+    const V8 palette =
+        kSigned ? Palette(fractions, std::max(e0, -127), std::max(e1, -127)) : Palette(fractions, e0, e1);
     LookUpTwoRows(palette, static_cast<std::uint32_t>(all >> 16 & 0xffffff), kShifts, 7, out, stride);
     LookUpTwoRows(palette, static_cast<std::uint32_t>(all >> 40), kShifts, 7, out + 2 * stride, stride);
 }
@@ -137,7 +142,8 @@ void DecodeBlocks(Format format, const std::byte* blocks, int count, const Chann
     const std::ptrdiff_t end = std::ptrdiff_t{4} * count;
     switch (format) {
         case Format::bc1_unorm:
-            for (std::ptrdiff_t at = 0; at < end; at += 4, blocks += 8) DecodeBc1(blocks, Bc1Mode::standard, rows, at, stride);
+            for (std::ptrdiff_t at = 0; at < end; at += 4, blocks += 8)
+                DecodeBc1(blocks, Bc1Mode::standard, rows, at, stride);
             break;
         case Format::bc2_unorm:
             for (std::ptrdiff_t at = 0; at < end; at += 4, blocks += 16) {
@@ -193,12 +199,8 @@ void DecodeBlock(Format format, const std::byte* block, float channels[4][16]) {
             return decode_bc4_unorm(block, a);
         case Format::bc4_unorm: return decode_bc4_unorm(block, r);
         case Format::bc4_snorm: return decode_bc4_snorm(block, r);
-        case Format::bc5_unorm:
-            decode_bc4_unorm(block, r);
-            return decode_bc4_unorm(block + 8, g);
-        default:
-            decode_bc4_snorm(block, r);
-            return decode_bc4_snorm(block + 8, g);
+        case Format::bc5_unorm: decode_bc4_unorm(block, r); return decode_bc4_unorm(block + 8, g);
+        default: decode_bc4_snorm(block, r); return decode_bc4_snorm(block + 8, g);
     }
 }
 
@@ -234,8 +236,7 @@ void decode_texels(Format format, const std::byte* texels, int count, const Chan
     }
 }
 
-void decode_blocks(Format format, const std::byte* blocks, int count, const ChannelRows& rows,
-                   std::ptrdiff_t stride) {
+void decode_blocks(Format format, const std::byte* blocks, int count, const ChannelRows& rows, std::ptrdiff_t stride) {
     HWY_DYNAMIC_DISPATCH(DecodeBlocks)(format, blocks, count, rows, stride);
 }
 

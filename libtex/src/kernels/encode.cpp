@@ -56,7 +56,8 @@ struct Channel {
 Channel channel_x(const BlockRow& row) { return {row.x, row.width, row.height, false}; }
 Channel channel_y(const BlockRow& row) { return {row.y, row.width, row.height, row.negate_y}; }
 
-// Whether a block that was decoded before may have had 6 values, and the lowest or the greatest code: it has one of these, and up to eight values.
+// Whether a block that was decoded before may have had 6 values, and the lowest or the greatest code: it has one of
+// these, and up to eight values.
 bool may_have_six_values(const BlockTexels& texels, int top) {
     const auto [least, greatest] = std::minmax_element(texels.values, texels.values + 16);
     if (*least == *greatest || (*least != 0 && *greatest != top * kCodeUnit)) return false;
@@ -72,7 +73,8 @@ bool may_have_six_values(const BlockTexels& texels, int top) {
 
 // The optimum of the blocks from `first` on and, where `six_values` is set, of those before that may have had 6 values.
 template <class Endpoints, class Search, class Write>
-void search_blocks(const Channel& channel, int first, bool six_values, int top, Search search, Write write, std::byte* blocks) {
+void search_blocks(const Channel& channel, int first, bool six_values, int top, Search search, Write write,
+                   std::byte* blocks) {
     BlockTexels texels[kRun];
     ClusterBounds bounds[kRun];
     Endpoints endpoints[kRun];
@@ -96,7 +98,8 @@ void search_bc4(const Channel& channel, Bc4Codes codes, int first, bool six_valu
         [&](const BlockTexels* texels, const ClusterBounds* bounds, int count, Bc4Endpoints* endpoints) {
             search_bc4_blocks(texels, bounds, count, codes, endpoints);
         },
-        [&](const BlockTexels& texels, Bc4Endpoints e, std::byte* block) { write_bc4(texels, codes, e, block); }, blocks);
+        [&](const BlockTexels& texels, Bc4Endpoints e, std::byte* block) { write_bc4(texels, codes, e, block); },
+        blocks);
 }
 
 // Calls encode(run of the row, blocks).
@@ -116,7 +119,8 @@ void for_each_run(const BlockRow& row, std::byte* blocks, Encode encode) {
 void encode_bc5(const BlockRow& row, Bc4Codes codes, Effort effort, std::byte* blocks) {
     const Channel x = channel_x(row);
     const int fitted = effort == Effort::best ? 0 : x.whole_blocks();
-    const bool extremes = fitted > 0 && fit_bc5_blocks({row.x, false}, {row.y, row.negate_y}, fitted, codes, effort, blocks);
+    const bool extremes =
+        fitted > 0 && fit_bc5_blocks({row.x, false}, {row.y, row.negate_y}, fitted, codes, effort, blocks);
     if (!extremes && fitted == x.blocks()) return;
     search_bc4(x, codes, fitted, extremes, blocks);
     search_bc4(channel_y(row), codes, fitted, extremes, blocks + 8);
@@ -125,7 +129,8 @@ void encode_bc5(const BlockRow& row, Bc4Codes codes, Effort effort, std::byte* b
 void encode_dxt5nm_run(const BlockRow& row, Effort effort, std::byte* blocks) {
     const Channel x = channel_x(row);
     const int fitted = effort == Effort::best ? 0 : x.whole_blocks();
-    const bool extremes = fitted > 0 && fit_dxt5nm_blocks({row.x, false}, {row.y, row.negate_y}, fitted, effort, blocks);
+    const bool extremes =
+        fitted > 0 && fit_dxt5nm_blocks({row.x, false}, {row.y, row.negate_y}, fitted, effort, blocks);
     if (extremes || fitted < x.blocks()) search_bc4(x, kBc4Unorm, fitted, extremes, blocks);
     if (fitted == x.blocks()) return;
     search_blocks<GreenEndpoints>(channel_y(row), fitted, false, 255, search_green_blocks, write_green, blocks + 8);
@@ -152,7 +157,8 @@ void encode_blocks(const BlockRow& row, const PackOptions& options, std::byte* b
         case Encoding::bc5_snorm: encode_bc5_snorm(row, options.effort, blocks); break;
         default: assert(false && "not an encoding in blocks"); return;
     }
-    if (options.effort == Effort::best && options.metric == Metric::angle) improve_angles(row, options.encoding, blocks);
+    if (options.effort == Effort::best && options.metric == Metric::angle)
+        improve_angles(row, options.encoding, blocks);
 }
 
 }  // namespace tex

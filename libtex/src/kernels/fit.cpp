@@ -58,7 +58,8 @@ HWY_INLINE W stored_index(W k, const std::uint8_t* table) {
 #else
     // The upper byte is out of the table, which gives 0.
     const hn::Repartition<std::uint8_t, Words> d8;
-    return hn::BitCast(Words(), hn::TableLookupBytesOr0(hn::LoadDup128(d8, table), hn::BitCast(d8, hn::Or(k, word(0x8000)))));
+    return hn::BitCast(Words(),
+                       hn::TableLookupBytesOr0(hn::LoadDup128(d8, table), hn::BitCast(d8, hn::Or(k, word(0x8000)))));
 #endif
 }
 
@@ -106,9 +107,10 @@ HWY_INLINE BlockWords choose_bc4(const Group& group, Bc4Codes codes, const Choic
         chosen.low[p] = hn::IfThenElse(better, six.high[p], eight.low[p]);
     }
     const auto better = hn::MaskFromVec(to_words(is_six));
-    return bc4_words(group, codes, chosen,
-                     {hn::IfThenElse(better, six_ramp.factor, ramp.factor), hn::IfThenElse(better, six_ramp.offset, ramp.offset),
-                      hn::IfThenElse(better, word(cut(5)), word(cut(7))), hn::IfThenElseZero(better, word(8))});
+    return bc4_words(
+        group, codes, chosen,
+        {hn::IfThenElse(better, six_ramp.factor, ramp.factor), hn::IfThenElse(better, six_ramp.offset, ramp.offset),
+         hn::IfThenElse(better, word(cut(5)), word(cut(7))), hn::IfThenElseZero(better, word(8))});
 }
 
 // Zero where all texels are whole codes.
@@ -138,7 +140,8 @@ HWY_INLINE BlockWords normal_bc4(const W* texels, Bc4Codes codes, bool& extremes
     make_group<Precision::full>(texels, group);
     const Fitter<EightValues> fitter(group, {top});
     Choice found;
-    for (const auto& [g, j] : {std::pair(0.0f, 1.0f), {0.5f, 0.0f}, {0.5f, 2.0f}}) fitter.start<Precision::coarse>(g, j, 2, found);
+    for (const auto& [g, j] : {std::pair(0.0f, 1.0f), {0.5f, 0.0f}, {0.5f, 2.0f}})
+        fitter.start<Precision::coarse>(g, j, 2, found);
     Choice eight;
     fitter.score<Precision::full>(found, nullptr, eight);
     fitter.start<Precision::full>(0.0f, 0.0f, 3, eight);
@@ -154,7 +157,8 @@ HWY_INLINE BlockWords normal_bc4(const W* texels, Bc4Codes codes, bool& extremes
         const auto lowest = hn::Eq(group.base[p], hn::Zero(Floats()));
         const auto extreme = hn::Or(lowest, hn::Eq(hn::Add(group.base[p], range), constant(top)));
         extremes |= !hn::AllFalse(Floats(), hn::And(extreme, hn::Gt(range, hn::Zero(Floats()))));
-        const F least_range = hn::IfThenElse(hn::Eq(fractions.part[p], hn::Zero(Floats())), constant(7.0f), constant(0.5f));
+        const F least_range =
+            hn::IfThenElse(hn::Eq(fractions.part[p], hn::Zero(Floats())), constant(7.0f), constant(0.5f));
         open[p] = hn::IfThenElseZero(hn::Gt(range, least_range), constant(65535.0f));
     }
     offer_bc4_palettes(group, to_words(open), top, eight, six);
@@ -164,7 +168,9 @@ HWY_INLINE BlockWords normal_bc4(const W* texels, Bc4Codes codes, bool& extremes
 HWY_INLINE BlockWords green_words(const Group& group, const Choice& choice) {
     const Ramp ramp = Fitter<Greens>(group, {}).ramp_of(choice);
     BlockWords block;
-    pack_indices<2>(kGreenIndices, [&](int texel) { return index(group.values[texel], ramp.factor, ramp.offset, word(cut(3))); }, block.w + 2);
+    pack_indices<2>(
+        kGreenIndices, [&](int texel) { return index(group.values[texel], ramp.factor, ramp.offset, word(cut(3))); },
+        block.w + 2);
     const W red_blue = word(0xF81F);
     block.w[0] = hn::Or(hn::ShiftLeft<5>(to_words(choice.high)), red_blue);
     block.w[1] = hn::Or(hn::ShiftLeft<5>(to_words(choice.low)), red_blue);
@@ -200,7 +206,8 @@ HWY_INLINE BlockWords normal_green(const W* texels) {
     fitter.start<Precision::full>(0.0f, 0.0f, 3, best);
     F wide[kParts];  // two spacings have 8/3 codes or more
     for (int p = 0; p < kParts; ++p) {
-        wide[p] = hn::IfThenElseZero(hn::Gt(group.greatest[p], hn::Mul(group.per_unit[p], constant(2.5f))), constant(65535.0f));
+        wide[p] = hn::IfThenElseZero(hn::Gt(group.greatest[p], hn::Mul(group.per_unit[p], constant(2.5f))),
+                                     constant(65535.0f));
     }
     offer_green_palettes(group, to_words(wide), best);
     return green_words(group, best);
@@ -208,7 +215,8 @@ HWY_INLINE BlockWords normal_green(const W* texels) {
 
 // Calls encode(rows of x, rows of y, blocks) for groups of lanes() blocks; the last ones in copies.
 template <class Encode>
-HWY_INLINE void for_each_group(const ChannelRows& x, const ChannelRows& y, int count, std::byte* blocks, Encode encode) {
+HWY_INLINE void for_each_group(const ChannelRows& x, const ChannelRows& y, int count, std::byte* blocks,
+                               Encode encode) {
     std::ptrdiff_t first = 0;
     for (; first + lanes() <= count; first += lanes()) {
         const float* from[2][4];
@@ -238,7 +246,8 @@ bool fit_dxt5nm_blocks(const ChannelRows& x, const ChannelRows& y, int count, Ef
     for_each_group(x, y, count, blocks, [&](const float* const* xs, const float* const* ys, std::byte* to) {
         W texels[16];
         load_texels(xs, 255, x.negate, texels);
-        const BlockWords alpha = effort == Effort::fast ? fast_bc4(texels, kBc4Unorm) : normal_bc4(texels, kBc4Unorm, extremes);
+        const BlockWords alpha =
+            effort == Effort::fast ? fast_bc4(texels, kBc4Unorm) : normal_bc4(texels, kBc4Unorm, extremes);
         load_texels(ys, 255, y.negate, texels);
         const BlockWords green = effort == Effort::fast ? fast_green(texels) : normal_green(texels);
         store_blocks(alpha, green, to);
@@ -246,7 +255,8 @@ bool fit_dxt5nm_blocks(const ChannelRows& x, const ChannelRows& y, int count, Ef
     return extremes;
 }
 
-bool fit_bc5_blocks(const ChannelRows& x, const ChannelRows& y, int count, Bc4Codes codes, Effort effort, std::byte* blocks) {
+bool fit_bc5_blocks(const ChannelRows& x, const ChannelRows& y, int count, Bc4Codes codes, Effort effort,
+                    std::byte* blocks) {
     bool extremes = false;
     for_each_group(x, y, count, blocks, [&](const float* const* xs, const float* const* ys, std::byte* to) {
         BlockWords words[2];
@@ -274,7 +284,8 @@ bool fit_dxt5nm_blocks(const ChannelRows& x, const ChannelRows& y, int count, Ef
     return HWY_DYNAMIC_DISPATCH(fit_dxt5nm_blocks)(x, y, count, effort, blocks);
 }
 
-bool fit_bc5_blocks(const ChannelRows& x, const ChannelRows& y, int count, Bc4Codes codes, Effort effort, std::byte* blocks) {
+bool fit_bc5_blocks(const ChannelRows& x, const ChannelRows& y, int count, Bc4Codes codes, Effort effort,
+                    std::byte* blocks) {
     return HWY_DYNAMIC_DISPATCH(fit_bc5_blocks)(x, y, count, codes, effort, blocks);
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // fit_greens-inl.h: greens scored by the thresholds between their values, without indices.
 //
-// With 4 values of spacing s from a on, the squared error is that of a alone, less 2 s times the sum of max(0, v - t) over the texels v and the three
-// thresholds t between values. max(0, v - t) = max(v, t) - t, so that maxima and means of 16 bits do.
+// With 4 values of spacing s from a on, the squared error is that of a alone, less 2 s times the sum of max(0, v - t)
+// over the texels v and the three thresholds t between values. max(0, v - t) = max(v, t) - t, so that maxima and means
+// of 16 bits do.
 //
 // Compiled once for each Highway target, as part of fit.cpp.
 
@@ -44,8 +45,8 @@ public:
         score_thresholds(lower, b, ends.high, choice);
     }
 
-    // Scores all pairs of stored codes whose members are within `reach` (at most 2) of those of the choice. Out of line: unrolled it would not fit
-    // into the caches of instructions.
+    // Scores all pairs of stored codes whose members are within `reach` (at most 2) of those of the choice. Out of
+    // line: unrolled it would not fit into the caches of instructions.
     HWY_NOINLINE void neighbours(int reach, Choice& choice) const {
         Lower lower[5];
         F high[5][kParts], b[5][kParts];
@@ -63,7 +64,8 @@ public:
     }
 
 private:
-    // A lower endpoint: as stored; its value in sixths of local units; and the error of texels that all take it, less that of the middle of the range.
+    // A lower endpoint: as stored; its value in sixths of local units; and the error of texels that all take it, less
+    // that of the middle of the range.
     struct Lower {
         F stored[kParts], sixths[kParts], error[kParts];
     };
@@ -77,7 +79,8 @@ private:
     }
 
     // `b`: the greater endpoint in sixths of local units; below the lower one it counts as equal.
-    HWY_INLINE void score_thresholds(const Lower& lower, const F (&b)[kParts], const F (&stored_b)[kParts], Choice& choice) const {
+    HWY_INLINE void score_thresholds(const Lower& lower, const F (&b)[kParts], const F (&stored_b)[kParts],
+                                     Choice& choice) const {
         F low[kParts], middle[kParts], high[kParts], sum[kParts], span[kParts];
         for (int p = 0; p < kParts; ++p) {
             const F a = lower.sixths[p];
@@ -92,8 +95,8 @@ private:
             middle[p] = hn::Max(middle[p], hn::Zero(Floats()));
             high[p] = hn::Max(high[p], hn::Zero(Floats()));
         }
-        const Parts means =
-            sum_of(mean_greater<0, 16>(to_words(low)), mean_greater<0, 16>(to_words(middle)), mean_greater<0, 16>(to_words(high)));
+        const Parts means = sum_of(mean_greater<0, 16>(to_words(low)), mean_greater<0, 16>(to_words(middle)),
+                                   mean_greater<0, 16>(to_words(high)));
         for (int p = 0; p < kParts; ++p) {
             const F gain = hn::Mul(hn::Mul(span[p], constant(16.0f * 4.0f)), hn::Sub(means.part[p], sum[p]));
             choice.offer(p, hn::Sub(lower.error[p], gain), lower.stored[p], hn::Max(lower.stored[p], stored_b[p]));
@@ -106,7 +109,8 @@ private:
         if constexpr (kCount == 1) {
             return hn::Max(group_.values[kFirst], t);
         } else {
-            return hn::AverageRound(mean_greater<kFirst, kCount / 2>(t), mean_greater<kFirst + kCount / 2, kCount / 2>(t));
+            return hn::AverageRound(mean_greater<kFirst, kCount / 2>(t),
+                                    mean_greater<kFirst + kCount / 2, kCount / 2>(t));
         }
     }
 };

@@ -27,9 +27,9 @@ using Floats = hn::CappedTag<float, 16>;
 using W = hn::Vec<Words>;
 using F = hn::Vec<Floats>;
 
-constexpr int kLanes = 32;        // at most
-constexpr float kFine = 128.0f;   // units of texels as loaded, for each code
-constexpr int kHighUnit = 128;    // local units of Group::high
+constexpr int kLanes = 32;       // at most
+constexpr float kFine = 128.0f;  // units of texels as loaded, for each code
+constexpr int kHighUnit = 128;   // local units of Group::high
 
 // Constants, and always inlined, as loops over them must be unrolled.
 HWY_INLINE constexpr int lanes() { return static_cast<int>(hn::MaxLanes(Words())); }
@@ -52,7 +52,8 @@ HWY_INLINE Parts sum_of(W a, W b, W c) {
 }
 // Numbers of 0 to 65535, rounded to whole ones: added to 2^23, the lowest bits of the sum hold them.
 HWY_INLINE W to_words(const F (&value)[kParts]) {
-    return hn::TruncateTo(Words(), hn::BitCast(hn::Rebind<std::uint32_t, Floats>(), hn::Add(value[0], constant(8388608.0f))));
+    return hn::TruncateTo(Words(),
+                          hn::BitCast(hn::Rebind<std::uint32_t, Floats>(), hn::Add(value[0], constant(8388608.0f))));
 }
 #else
 constexpr int kParts = 2;
@@ -88,8 +89,8 @@ HWY_INLINE W to_words(const F (&value)[kParts]) {
 }
 #endif
 
-// Blocks in lanes. Values, and endpoints called a and b, are local: units of `unit` codes from the least texel, `base` codes, on, such that the
-// greatest texel lies between 32768 and 65535.
+// Blocks in lanes. Values, and endpoints called a and b, are local: units of `unit` codes from the least texel, `base`
+// codes, on, such that the greatest texel lies between 32768 and 65535.
 struct Group {
     W values[16];
     W high[16];  // values = kHighUnit high + low, high up to 512
@@ -99,8 +100,9 @@ struct Group {
     F sum[kParts], high_sum[kParts];  // of values, and of kHighUnit high
 };
 
-// Texels of four rows, 16 vectors of 1/128 code, clamped to 0 to `top` codes. Transposing within 16 bytes is cheaper than across the vector:
-// with B blocks in a vector of floats, lane 8 p + 4 h + m holds block (2 m + h) B + p, which suits BlockWriter.
+// Texels of four rows, 16 vectors of 1/128 code, clamped to 0 to `top` codes. Transposing within 16 bytes is cheaper
+// than across the vector: with B blocks in a vector of floats, lane 8 p + 4 h + m holds block (2 m + h) B + p, which
+// suits BlockWriter.
 #if HWY_TARGET == HWY_SCALAR
 HWY_INLINE void load_texels(const float* const rows[4], int top, bool negate, W* v) {
     const float half = 0.5f * kFine * static_cast<float>(top);
@@ -228,7 +230,8 @@ HWY_INLINE void store_blocks(const BlockWords& first, const BlockWords& second, 
                                           : hn::InterleaveLower(d32, hn::BitCast(d32, b01), hn::BitCast(d32, b23)));
         };
         for (int m = 0; m < 4; ++m) {
-            const auto blocks_m = m % 2 ? hn::InterleaveUpper(d64, a(m / 2), b(m / 2)) : hn::InterleaveLower(d64, a(m / 2), b(m / 2));
+            const auto blocks_m =
+                m % 2 ? hn::InterleaveUpper(d64, a(m / 2), b(m / 2)) : hn::InterleaveLower(d64, a(m / 2), b(m / 2));
             hn::StoreU(hn::BitCast(d8, blocks_m), d8, to + (2 * m + h) * 2 * lanes());
         }
     };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // fit_palettes-inl.h: blocks whose values lie on a palette, as those do that were decoded before.
 //
-// Where the least and the greatest value are the p-th and the q-th of a palette, they say what its endpoints are. For each p and q, these are
-// offered where they are codes that can be stored and all values lie on the palette.
+// Where the least and the greatest value are the p-th and the q-th of a palette, they say what its endpoints are. For
+// each p and q, these are offered where they are codes that can be stored and all values lie on the palette.
 //
 // Compiled once for each Highway target, as part of fit.cpp.
 
@@ -22,23 +22,27 @@ HWY_BEFORE_NAMESPACE();
 namespace tex {
 namespace HWY_NAMESPACE {
 
-// Set where the first `texels` of a block lie on a grid that divides its range into kSpan spacings, within what the rounding of values to 1/128
-// of a code explains.
+// Set where the first `texels` of a block lie on a grid that divides its range into kSpan spacings, within what the
+// rounding of values to 1/128 of a code explains.
 template <int kSpan>
 HWY_INLINE W on_grid(const Group& group, int texels) {
     const Words d;
     constexpr float kUnit = static_cast<float>(1 << kIndexBits);
     F factor[kParts], tolerance[kParts];
     for (int p = 0; p < kParts; ++p) {
-        const F per_value = hn::Div(constant(kUnit * static_cast<float>(kSpan)), hn::Max(group.greatest[p], constant(32768.0f)));
+        const F per_value =
+            hn::Div(constant(kUnit * static_cast<float>(kSpan)), hn::Max(group.greatest[p], constant(32768.0f)));
         factor[p] = hn::Mul(per_value, constant(65536.0f));
-        tolerance[p] = hn::Min(hn::Add(hn::Mul(hn::Mul(group.per_unit[p], constant(1.0f / kFine)), per_value), constant(2.0f)), constant(0.25f * kUnit));
+        tolerance[p] =
+            hn::Min(hn::Add(hn::Mul(hn::Mul(group.per_unit[p], constant(1.0f / kFine)), per_value), constant(2.0f)),
+                    constant(0.25f * kUnit));
     }
     const W by = to_words(factor);
     const W below = to_words(tolerance);
     const W fraction = word((1 << kIndexBits) - 1);
     W most = hn::Zero(d);
-    for (int k = 0; k < texels; ++k) most = hn::Max(most, hn::And(hn::Add(hn::MulHigh(group.values[k], by), below), fraction));
+    for (int k = 0; k < texels; ++k)
+        most = hn::Max(most, hn::And(hn::Add(hn::MulHigh(group.values[k], by), below), fraction));
     const W limit = hn::Add(below, below);
     return hn::VecFromMask(d, hn::Eq(hn::Max(most, limit), limit));
 }
@@ -75,7 +79,8 @@ HWY_INLINE void offer_palettes(const Group& group, W among, Kind kind, Choice& c
             F stored_low = low;
             F stored_high = high;
             kind.round(stored_low, stored_high);
-            const F off = hn::Max(hn::Abs(hn::Sub(kind.widen(stored_low), low)), hn::Abs(hn::Sub(kind.widen(stored_high), high)));
+            const F off =
+                hn::Max(hn::Abs(hn::Sub(kind.widen(stored_low), low)), hn::Abs(hn::Sub(kind.widen(stored_high), high)));
             const auto nearer = hn::Lt(off, least_off);
             least_off = hn::IfThenElse(nearer, off, least_off);
             ends.low[p] = hn::IfThenElse(nearer, stored_low, ends.low[p]);
@@ -85,7 +90,8 @@ HWY_INLINE void offer_palettes(const Group& group, W among, Kind kind, Choice& c
     if (!hn::AllTrue(d, none)) fitter.template score<Precision::full>(ends, nullptr, choice);
 }
 
-// Out of line: few groups of blocks need these. Values that span one, two or three spacings are on the grids of four and of six, too.
+// Out of line: few groups of blocks need these. Values that span one, two or three spacings are on the grids of four
+// and of six, too.
 template <int kSpan>
 HWY_NOINLINE void offer_bc4_palettes(const Group& group, W among, float top, Choice& eight, Choice& six) {
     offer_palettes<EightValues, kSpan>(group, among, {top}, eight);

@@ -72,8 +72,8 @@ struct Greens {
     }
 };
 
-// Turns a value into an index, counted from the lower endpoint: q = value * factor / 65536 + offset has 2^kIndexBits for each spacing, and
-// the additions saturate at both ends of the palette: k = (q - cut) / 2^kIndexBits.
+// Turns a value into an index, counted from the lower endpoint: q = value * factor / 65536 + offset has 2^kIndexBits
+// for each spacing, and the additions saturate at both ends of the palette: k = (q - cut) / 2^kIndexBits.
 struct Ramp {
     W factor, offset;
 };
@@ -91,7 +91,8 @@ HWY_INLINE Ramp make_ramp(const F (&a)[kParts], const F (&b)[kParts]) {
     F factor[kParts], offset[kParts];
     for (int p = 0; p < kParts; ++p) {
         const F span = hn::Sub(b[p], a[p]);
-        const F exact = hn::Div(constant(65536.0f * kUnit * static_cast<float>(Kind::kSteps)), hn::Max(span, constant(1.0f)));
+        const F exact =
+            hn::Div(constant(65536.0f * kUnit * static_cast<float>(Kind::kSteps)), hn::Max(span, constant(1.0f)));
         factor[p] = hn::IfThenElseZero(hn::Gt(span, hn::Zero(Floats())), hn::Min(exact, constant(65535.0f)));
         const F start = hn::Mul(hn::Mul(a[p], factor[p]), constant(1.0f / 65536.0f));
         offset[p] = clamped(hn::Sub(constant(static_cast<float>(cut(Kind::kSteps)) + 0.5f * kUnit), start), 65535.0f);
@@ -146,7 +147,8 @@ class Fitter {
 public:
     Fitter(const Group& group, Kind kind) : group_(group), kind_(kind) {}
 
-    // Takes `steps` steps from endpoints at which n - j + g spacings span the range, the lower one g / 2 spacings above the least texel.
+    // Takes `steps` steps from endpoints at which n - j + g spacings span the range, the lower one g / 2 spacings above
+    // the least texel.
     template <Precision kPrecision>
     HWY_INLINE void start(float g, float j, int steps, Choice& choice) const {
         Ends ends;
@@ -154,8 +156,8 @@ public:
         for (int k = 0; k < steps; ++k) step<kPrecision>(ends, k + 1 < steps, choice);
     }
 
-    // Rounds the endpoints, takes the nearest indices, and keeps the endpoints where they are the best so far; with `refined` then replaces
-    // them by those that suit the indices best.
+    // Rounds the endpoints, takes the nearest indices, and keeps the endpoints where they are the best so far; with
+    // `refined` then replaces them by those that suit the indices best.
     template <Precision kPrecision>
     HWY_INLINE void step(Ends& ends, bool refined, Choice& choice) const {
         Ends stored = ends;
@@ -163,7 +165,8 @@ public:
         score<kPrecision>(stored, refined ? &ends : nullptr, choice);
     }
 
-    // Where a block's range is at most n codes, a spacing of one code: it loses nothing where all texels are whole codes.
+    // Where a block's range is at most n codes, a spacing of one code: it loses nothing where all texels are whole
+    // codes.
     HWY_INLINE void whole_codes(Choice& choice) const {
         const Floats d;
         Ends ends = choice;  // the other blocks learn nothing new
@@ -185,13 +188,15 @@ public:
         const Sums sums = sum_up<Kind, kPrecision>(group_, ramp_of(stored));
         const Moments m = moments<kPrecision>(sums);
         for (int p = 0; p < kParts; ++p) {
-            choice.offer(p, error_of(m, p, local(stored.low[p], p), local(stored.high[p], p)), stored.low[p], stored.high[p]);
+            choice.offer(p, error_of(m, p, local(stored.low[p], p), local(stored.high[p], p)), stored.low[p],
+                         stored.high[p]);
             if (refined != nullptr) refine(m, p, *refined);
         }
     }
 
-    // From endpoints at the extremes, moved inwards by a part of the range, to those that suit their indices best, rounded. Returns the indices' ramp.
-    // Where `whole` is set, if given (all texels are whole codes), and the range is at most n codes: a spacing of one code, which loses nothing.
+    // From endpoints at the extremes, moved inwards by a part of the range, to those that suit their indices best,
+    // rounded. Returns the indices' ramp. Where `whole` is set, if given (all texels are whole codes), and the range is
+    // at most n codes: a spacing of one code, which loses nothing.
     HWY_INLINE Ramp solve(float part, const hn::Mask<Floats>* whole, Choice& choice) const {
         const Floats d;
         Ends ends, at;
@@ -227,7 +232,8 @@ public:
         if (hn::AllFalse(d, any_narrow)) return ramp;
         const Ramp rounded_ramp = ramp_of(choice);
         const auto where = hn::MaskFromVec(to_words(narrow));
-        return {hn::IfThenElse(where, rounded_ramp.factor, ramp.factor), hn::IfThenElse(where, rounded_ramp.offset, ramp.offset)};
+        return {hn::IfThenElse(where, rounded_ramp.factor, ramp.factor),
+                hn::IfThenElse(where, rounded_ramp.offset, ramp.offset)};
     }
 
     // The ramp of stored endpoints.
@@ -242,7 +248,9 @@ public:
 
     // A local value in codes, and a stored code as a local value.
     HWY_INLINE F code(F value, int p) const { return hn::Add(group_.base[p], hn::Mul(value, group_.unit[p])); }
-    HWY_INLINE F local(F stored, int p) const { return hn::Mul(hn::Sub(kind_.widen(stored), group_.base[p]), group_.per_unit[p]); }
+    HWY_INLINE F local(F stored, int p) const {
+        return hn::Mul(hn::Sub(kind_.widen(stored), group_.base[p]), group_.per_unit[p]);
+    }
 
 protected:
     HWY_INLINE void start_at(float g, float j, Ends& ends) const {
@@ -264,24 +272,27 @@ protected:
 
     template <Precision kPrecision>
     HWY_INLINE Moments moments(const Sums& sums) const {
-        Moments m{to_floats(sums.k), to_floats(sums.kk), to_floats(sums.k_high), kPrecision == Precision::full ? group_.sum : group_.high_sum};
+        Moments m{to_floats(sums.k), to_floats(sums.kk), to_floats(sums.k_high),
+                  kPrecision == Precision::full ? group_.sum : group_.high_sum};
         for (int p = 0; p < kParts; ++p) m.kv.part[p] = hn::Mul(m.kv.part[p], constant(kHighUnit));
         if constexpr (kPrecision == Precision::full) {
             const Parts low = to_floats(sums.k_low);
-            for (int p = 0; p < kParts; ++p) m.kv.part[p] = hn::Add(m.kv.part[p], hn::Sub(low.part[p], constant(kLowBias)));
+            for (int p = 0; p < kParts; ++p)
+                m.kv.part[p] = hn::Add(m.kv.part[p], hn::Sub(low.part[p], constant(kLowBias)));
         }
         return m;
     }
 
-    // The sum of (v - a - k spacing)^2, less that of (v - c)^2, c being the middle of the range of values. Indices are counted from n / 2
-    // and values from c: that keeps the numbers, and so their rounding, small.
+    // The sum of (v - a - k spacing)^2, less that of (v - c)^2, c being the middle of the range of values. Indices are
+    // counted from n / 2 and values from c: that keeps the numbers, and so their rounding, small.
     HWY_INLINE F error_of(const Moments& m, int p, F a, F b) const {
         constexpr float kHalf = 0.5f * kSteps;
         constexpr float kMiddle = 32768.0f;
         const F spacing = hn::Mul(hn::Sub(b, a), constant(1.0f / kSteps));
         const F middle = hn::Sub(hn::Mul(hn::Add(a, b), constant(0.5f)), constant(kMiddle));
         const F k = hn::Sub(m.k.part[p], constant(16.0f * kHalf));
-        const F kk = hn::Add(hn::Sub(m.kk.part[p], hn::Mul(m.k.part[p], constant(kSteps))), constant(16.0f * kHalf * kHalf));
+        const F kk =
+            hn::Add(hn::Sub(m.kk.part[p], hn::Mul(m.k.part[p], constant(kSteps))), constant(16.0f * kHalf * kHalf));
         const F v = hn::Sub(m.v[p], constant(16.0f * kMiddle));
         const F kv = hn::Sub(hn::Sub(m.kv.part[p], hn::Mul(m.v[p], constant(kHalf))), hn::Mul(k, constant(kMiddle)));
         const F from_middle = hn::Mul(middle, hn::Sub(hn::Mul(constant(16.0f), middle), hn::Add(v, v)));
@@ -295,7 +306,8 @@ protected:
         const F k = m.k.part[p];
         const F kv = m.kv.part[p];
         const F determinant = hn::Sub(hn::Mul(constant(16.0f), m.kk.part[p]), hn::Mul(k, k));
-        const F slope = hn::Div(hn::Sub(hn::Mul(constant(16.0f), kv), hn::Mul(k, m.v[p])), hn::Max(determinant, constant(1.0f)));
+        const F slope =
+            hn::Div(hn::Sub(hn::Mul(constant(16.0f), kv), hn::Mul(k, m.v[p])), hn::Max(determinant, constant(1.0f)));
         const F start = hn::Mul(hn::Sub(m.v[p], hn::Mul(slope, k)), constant(1.0f / 16.0f));
         const F end = hn::Add(start, hn::Mul(slope, constant(kSteps)));
         const auto solvable = hn::Gt(determinant, hn::Zero(d));

@@ -81,7 +81,8 @@ void score(const Block& block, const Gains& gains, int first, int last, int dist
         const I low4 = hn::ShiftLeft<2>(low);
         const I high4 = hn::ShiftLeft<2>(high);
         const auto gain = [&](I t) { return hn::GatherIndex(d, gains, hn::Min(hn::Max(t, zero), end)); };
-        const F total = hn::Add(hn::Add(gain(hn::Add(sum, low4)), gain(hn::Add(hn::Add(sum, sum), sum))), gain(hn::Add(sum, high4)));
+        const F total = hn::Add(hn::Add(gain(hn::Add(sum, low4)), gain(hn::Add(hn::Add(sum, sum), sum))),
+                                gain(hn::Add(sum, high4)));
         const F span = hn::ConvertTo(d, hn::Sub(high, low));
         const F spacing = hn::Mul(span, hn::Set(d, 1.0f / 3.0f));
         const F from_low = hn::Sub(hn::Set(d, block.mean), hn::ConvertTo(d, low));
@@ -90,7 +91,8 @@ void score(const Block& block, const Gains& gains, int first, int last, int dist
         const F away = hn::Sub(from_low, hn::Mul(clamped, spacing));
         // 2 spacings times gains in sixths.
         const F gained = hn::Mul(hn::Mul(span, hn::Set(d, 1.0f / 9.0f)), total);
-        const F error = hn::Sub(hn::Add(hn::Set(d, block.deviations), hn::Mul(hn::Set(d, block.count), hn::Mul(away, away))), gained);
+        const F error = hn::Sub(
+            hn::Add(hn::Set(d, block.deviations), hn::Mul(hn::Set(d, block.count), hn::Mul(away, away))), gained);
         const auto valid = hn::Lt(code, hn::Set(di, last + 1));
         if (hn::AllFalse(d, hn::And(hn::RebindMask(d, valid), hn::Le(error, hn::Set(d, candidates.limit()))))) continue;
         hn::Store(error, d, errors);
@@ -104,7 +106,9 @@ void score(const Block& block, const Gains& gains, int first, int last, int dist
 int code_above(float value) {
     const int code = std::clamp(static_cast<int>(std::ceil((value - 3.0f) * 0.25f)), 0, 63);
     const int low = std::max(0, code - 1);
-    return static_cast<float>(widen_green(low)) >= value ? low : static_cast<float>(widen_green(code)) >= value ? code : code + 1;
+    return static_cast<float>(widen_green(low)) >= value    ? low
+           : static_cast<float>(widen_green(code)) >= value ? code
+                                                            : code + 1;
 }
 int code_below(float value) {
     const int code = std::clamp(static_cast<int>(std::floor(value * 0.25f)), 0, 63);
@@ -138,7 +142,8 @@ GreenEndpoints search(const BlockTexels& texels, const ClusterBounds& bounds, Ga
     if (block.length > 0) score(block, gains, std::max(0, low - 2), std::min(63 - start, low + 2), start, candidates);
     for (int distance = start; distance < 64 && block.length > 0 && !candidates.perfect(); ++distance) {
         const float spacing = static_cast<float>(4 * distance) / 3.0f;
-        const int thresholds = spacing * 3.0f <= range ? 3 : std::min(3, static_cast<int>(range / spacing * 1.0001f) + 1);
+        const int thresholds =
+            spacing * 3.0f <= range ? 3 : std::min(3, static_cast<int>(range / spacing * 1.0001f) + 1);
         if (bounds.bound[thresholds] > candidates.limit()) break;
         const float apart = 0.5f * spacing - range;
         if (apart > 0.0f && block.count * apart * apart > candidates.limit()) break;

@@ -104,8 +104,7 @@ void SmoothColumn(const float* const* rows, const float* smoothing, int radius, 
             const V both = hn::Add(hn::LoadU(kD, rows[radius - k] + i), hn::LoadU(kD, rows[radius + k] + i));
             sum = hn::Add(sum, hn::Mul(hn::Set(kD, smoothing[k]), both));
         }
-        hn::StoreU(hn::Add(sum, hn::Mul(hn::Set(kD, smoothing[0]), hn::LoadU(kD, rows[radius] + i))), kD,
-                   out + i);
+        hn::StoreU(hn::Add(sum, hn::Mul(hn::Set(kD, smoothing[0]), hn::LoadU(kD, rows[radius] + i))), kD, out + i);
     }
 }
 

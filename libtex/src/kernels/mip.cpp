@@ -42,15 +42,13 @@ void FilterColumns(const float* even, const float* odd, const float* weights, st
         V sum = hn::Mul(hn::LoadU(kD, weights + i), hn::LoadU(kD, even + i));
         for (int k = 1; k < taps; ++k) {
             const float* half = (k & 1) != 0 ? odd : even;
-            sum = hn::Add(sum,
-                          hn::Mul(hn::LoadU(kD, weights + k * stride + i), hn::LoadU(kD, half + i + k / 2)));
+            sum = hn::Add(sum, hn::Mul(hn::LoadU(kD, weights + k * stride + i), hn::LoadU(kD, half + i + k / 2)));
         }
         hn::StoreU(sum, kD, out + i);
     }
 }
 
-void FilterColumnsEvenly(const float* even, const float* odd, const float* weights, int taps, int count,
-                         float* out) {
+void FilterColumnsEvenly(const float* even, const float* odd, const float* weights, int taps, int count, float* out) {
     for (int i = 0; i < count; i += kLanes) {
         V sum = hn::Mul(hn::Set(kD, weights[0]), hn::LoadU(kD, even + i));
         for (int k = 1; k < taps; ++k) {
@@ -159,13 +157,12 @@ void split_row(const float* row, int count, float* even, float* odd) {
     HWY_DYNAMIC_DISPATCH(SplitRow)(row, count, even, odd);
 }
 
-void filter_columns(const float* even, const float* odd, const float* weights, std::ptrdiff_t stride,
-                    int taps, int count, float* out) {
+void filter_columns(const float* even, const float* odd, const float* weights, std::ptrdiff_t stride, int taps,
+                    int count, float* out) {
     HWY_DYNAMIC_DISPATCH(FilterColumns)(even, odd, weights, stride, taps, count, out);
 }
 
-void filter_columns_evenly(const float* even, const float* odd, const float* weights, int taps, int count,
-                           float* out) {
+void filter_columns_evenly(const float* even, const float* odd, const float* weights, int taps, int count, float* out) {
     HWY_DYNAMIC_DISPATCH(FilterColumnsEvenly)(even, odd, weights, taps, count, out);
 }
 

@@ -19,12 +19,11 @@ void split_row(const float* row, int count, float* even, float* odd);
 
 // out[i] = sum over k of weights[k * stride + i] row[2 i + k], summed in this order, of a row that
 // split_row() has split: every texel has weights of its own (odd sizes).
-void filter_columns(const float* even, const float* odd, const float* weights, std::ptrdiff_t stride,
-                    int taps, int count, float* out);
+void filter_columns(const float* even, const float* odd, const float* weights, std::ptrdiff_t stride, int taps,
+                    int count, float* out);
 
 // The same with weights[k] for all texels (even sizes).
-void filter_columns_evenly(const float* even, const float* odd, const float* weights, int taps, int count,
-                           float* out);
+void filter_columns_evenly(const float* even, const float* odd, const float* weights, int taps, int count, float* out);
 
 // The box filter where both sizes are halved exactly: the same bytes as filter_rows() and
 // filter_columns_evenly() with weights of 1/2. Reads nothing past texel 2 count rounded up to 64 bytes.

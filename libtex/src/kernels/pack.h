@@ -7,8 +7,8 @@
 
 namespace tex {
 
-// One stored channel of a row: `values` are components in [-1, 1], or null for a channel that is constantly 1. A negated
-// channel stores -values.
+// One stored channel of a row: `values` are components in [-1, 1], or null for a channel that is constantly 1. A
+// negated channel stores -values.
 struct PackChannel {
     const float* values = nullptr;
     bool negate = false;

@@ -67,8 +67,8 @@ HWY_INLINE V vmf(Averages of) {
     return cut(hn::Add(of.alpha2, hn::Div(of.loss, two_kappa)));
 }
 
-void RoughnessOfAverages(RoughnessModel model, const float* x, const float* y, const float* z,
-                         const float* alpha2, int count, float* roughness) {
+void RoughnessOfAverages(RoughnessModel model, const float* x, const float* y, const float* z, const float* alpha2,
+                         int count, float* roughness) {
     for (int i = 0; i < count; i += kLanes) {
         const Averages averages = load_averages(x + i, y + i, z + i, alpha2 + i);
         const V rougher = model == RoughnessModel::toksvig ? toksvig(averages) : vmf(averages);
@@ -95,8 +95,8 @@ void roughness_of_alpha2(const float* alpha2, int count, float* roughness) {
     HWY_DYNAMIC_DISPATCH(RoughnessOfAlpha2)(alpha2, count, roughness);
 }
 
-void roughness_of_averages(RoughnessModel model, const float* x, const float* y, const float* z,
-                           const float* alpha2, int count, float* roughness) {
+void roughness_of_averages(RoughnessModel model, const float* x, const float* y, const float* z, const float* alpha2,
+                           int count, float* roughness) {
     HWY_DYNAMIC_DISPATCH(RoughnessOfAverages)(model, x, y, z, alpha2, count, roughness);
 }
 

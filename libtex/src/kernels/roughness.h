@@ -16,7 +16,7 @@ void clean_roughness(const float* roughness, int count, float* clean, float* alp
 void roughness_of_alpha2(const float* alpha2, int count, float* roughness);
 
 // The roughness of a row of a smaller level: of averaged vectors and of averaged alpha^2.
-void roughness_of_averages(RoughnessModel model, const float* x, const float* y, const float* z,
-                           const float* alpha2, int count, float* roughness);
+void roughness_of_averages(RoughnessModel model, const float* x, const float* y, const float* z, const float* alpha2,
+                           int count, float* roughness);
 
 }  // namespace tex

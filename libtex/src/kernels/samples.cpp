@@ -30,8 +30,9 @@ HWY_INLINE V SignedFraction(D d, Codes codes, float one) {
     return hn::Max(Fraction(d, codes, one), hn::Set(d, -1.0f));
 }
 
-// Exponents are moved from half's bias to float's, by 112. Those of 0 and of what is below 2^-14 have no leading one: it is given to them, then
-// taken away. Infinity and NaN go to float's greatest exponent. (Not hardware's conversion, which makes NaN quiet: elsewhere they are not.)
+// Exponents are moved from half's bias to float's, by 112. Those of 0 and of what is below 2^-14 have no leading one:
+// it is given to them, then taken away. Infinity and NaN go to float's greatest exponent. (Not hardware's conversion,
+// which makes NaN quiet: elsewhere they are not.)
 template <class Halves>
 HWY_INLINE V FromHalf(D d, Halves halves) {
     const hn::RebindToUnsigned<D> du;
@@ -40,7 +41,8 @@ HWY_INLINE V FromHalf(D d, Halves halves) {
     const auto magnitude = hn::ShiftLeft<13>(hn::And(bits, hn::Set(du, 0x7fffu)));
     const auto normal = hn::Add(magnitude, hn::Set(du, 112u << 23));
     const auto special = hn::Or(magnitude, hn::Set(du, 0x7f800000u));
-    const auto small = hn::Sub(hn::BitCast(d, hn::Or(magnitude, hn::Set(du, 113u << 23))), hn::BitCast(d, hn::Set(du, 113u << 23)));
+    const auto small =
+        hn::Sub(hn::BitCast(d, hn::Or(magnitude, hn::Set(du, 113u << 23))), hn::BitCast(d, hn::Set(du, 113u << 23)));
     auto value = hn::IfThenElse(hn::Eq(exponent, hn::Set(du, 0x7c00u)), special, normal);
     value = hn::IfThenElse(hn::Eq(exponent, hn::Zero(du)), hn::BitCast(du, small), value);
     return hn::BitCast(d, hn::Or(value, hn::ShiftLeft<16>(hn::And(bits, hn::Set(du, 0x8000u)))));
@@ -62,7 +64,8 @@ void Decode(const std::byte* first, std::size_t step, int count, float* out, con
             for (std::size_t k = 0; k < n; ++k) std::memcpy(&picked[k], first + k * step, sizeof(T));
         }
         first += n * step;
-        for (std::size_t k = 0; k < n; k += hn::Lanes(d)) hn::Store(convert(d, hn::Load(stored, picked + k)), d, values + k);
+        for (std::size_t k = 0; k < n; k += hn::Lanes(d))
+            hn::Store(convert(d, hn::Load(stored, picked + k)), d, values + k);
         std::memcpy(out + i, values, n * sizeof(float));
     }
 }
@@ -75,7 +78,8 @@ void DecodeSamples(SampleKind sample, int bits, const std::byte* first, std::siz
     } else if (sample == SampleKind::snorm && bits == 8) {
         Decode<std::int8_t>(first, step, count, out, [](D d, auto codes) { return SignedFraction(d, codes, 127.0f); });
     } else if (sample == SampleKind::snorm) {
-        Decode<std::int16_t>(first, step, count, out, [](D d, auto codes) { return SignedFraction(d, codes, 32767.0f); });
+        Decode<std::int16_t>(first, step, count, out,
+                             [](D d, auto codes) { return SignedFraction(d, codes, 32767.0f); });
     } else if (bits == 16) {
         Decode<std::uint16_t>(first, step, count, out, [](D d, auto halves) { return FromHalf(d, halves); });
     } else {

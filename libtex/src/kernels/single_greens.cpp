@@ -43,7 +43,9 @@ struct Packed {
 
     Packed() {
         const Table near(kMaxSingleDistance);
-        const auto packed = [](const SingleGreen& green) { return green.third << 16 | green.lower << 8 | green.distance; };
+        const auto packed = [](const SingleGreen& green) {
+            return green.third << 16 | green.lower << 8 | green.distance;
+        };
         std::transform(near.below, near.below + kThirds, below, packed);
         std::transform(near.above, near.above + kThirds, above, packed);
     }

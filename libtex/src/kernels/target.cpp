@@ -26,7 +26,9 @@ std::int64_t kernel_target() { return HWY_DYNAMIC_DISPATCH(KernelTarget)(); }
 
 const char* kernel_target_name() { return hwy::TargetName(kernel_target()); }
 
-std::string highway_version() { return std::to_string(HWY_MAJOR) + "." + std::to_string(HWY_MINOR) + "." + std::to_string(HWY_PATCH); }
+std::string highway_version() {
+    return std::to_string(HWY_MAJOR) + "." + std::to_string(HWY_MINOR) + "." + std::to_string(HWY_PATCH);
+}
 
 }  // namespace tex
 #endif  // HWY_ONCE

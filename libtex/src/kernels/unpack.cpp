@@ -32,9 +32,7 @@ V Component(D d, V value, const UnpackRule& rule) {
 }
 
 // False for NaN and infinity.
-M IsFinite(D d, V value) {
-    return hn::Lt(value, hn::Set(d, std::numeric_limits<float>::infinity()));
-}
+M IsFinite(D d, V value) { return hn::Lt(value, hn::Set(d, std::numeric_limits<float>::infinity())); }
 
 // Of unit length, but for the rounding of a normalised vector's components (below 2^-21) and of this sum.
 M IsUnit(D d, V squared_length) {
@@ -60,7 +58,8 @@ Vec3 Finish(D d, Vec3 n, const UnpackRule& rule) {
     Vec3 unit = Normalise(d, n);
     if (rule.keep_unit) {
         const M keep = IsUnit(d, squared);
-        unit = {hn::IfThenElse(keep, n.x, unit.x), hn::IfThenElse(keep, n.y, unit.y), hn::IfThenElse(keep, n.z, unit.z)};
+        unit = {hn::IfThenElse(keep, n.x, unit.x), hn::IfThenElse(keep, n.y, unit.y),
+                hn::IfThenElse(keep, n.z, unit.z)};
     }
     return FlatUnless(d, finite, unit);
 }
@@ -73,9 +72,8 @@ void UnpackRow(const float* x, const float* y, const float* z, const UnpackRule&
         const V nx = Component(d, hn::LoadU(d, x + i), rule);
         V ny = Component(d, hn::LoadU(d, y + i), rule);
         if (rule.flip_y) ny = hn::Neg(ny);
-        const Vec3 n = z == nullptr
-                           ? Reconstruct(d, nx, ny, rule)
-                           : Finish(d, {nx, ny, Component(d, hn::LoadU(d, z + i), rule)}, rule);
+        const Vec3 n = z == nullptr ? Reconstruct(d, nx, ny, rule)
+                                    : Finish(d, {nx, ny, Component(d, hn::LoadU(d, z + i), rule)}, rule);
         StoreVec3(d, n, out_x + i, out_y + i, out_z + i);
     }
 }

@@ -14,8 +14,8 @@ View::View(const Camera& camera, Extent pixels, const std::function<double(Vec3 
     const Vec3 right{cy, 0.0, -sy};
     const Vec3 up = cross(toward_, right);
 
-    // The picture plane goes through the origin; with T = tan(field of view / 2) the eye is half_height / T before it. A point p lies
-    // below the upper edge where p.up + T p.toward <= half_height, and so for the other edges.
+    // The picture plane goes through the origin; with T = tan(field of view / 2) the eye is half_height / T before it.
+    // A point p lies below the upper edge where p.up + T p.toward <= half_height, and so for the other edges.
     const double half_angle = radians(static_cast<double>(camera.field_of_view)) / 2.0;
     const double slope = math::sin(half_angle) / math::cos(half_angle);
     const double proportion = static_cast<double>(pixels.width) / pixels.height;

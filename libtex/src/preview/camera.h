@@ -17,12 +17,14 @@ struct Ray {
     Vec3 direction;
 };
 
-// A Camera (preview.h) whose picture, `pixels` large, just holds a shape. `support` gives the greatest dot(direction, point) of its points.
+// A Camera (preview.h) whose picture, `pixels` large, just holds a shape. `support` gives the greatest dot(direction,
+// point) of its points.
 class View {
 public:
     View(const Camera& camera, Extent pixels, const std::function<double(Vec3 direction)>& support);
 
-    // The ray through (x, y) in pixels from the picture's top left corner; pixel (i, j) has its centre at (i + 0.5, j + 0.5).
+    // The ray through (x, y) in pixels from the picture's top left corner; pixel (i, j) has its centre at (i + 0.5, j +
+    // 0.5).
     [[nodiscard]] Ray ray(double x, double y) const;
 
     // The unnormalised direction from `point` to the viewer.

@@ -10,8 +10,7 @@ namespace tex::render {
 namespace {
 
 std::size_t offset_of(const Level& level, int x, int y) {
-    return (static_cast<std::size_t>(y) * static_cast<std::size_t>(level.extent.width) +
-            static_cast<std::size_t>(x)) *
+    return (static_cast<std::size_t>(y) * static_cast<std::size_t>(level.extent.width) + static_cast<std::size_t>(x)) *
            3;
 }
 
@@ -39,9 +38,7 @@ void Canvas::fill(int x, int y, Extent size, Code color) {
     }
 }
 
-void Canvas::draw(int x, int y, const Level& picture) {
-    draw_columns(x, y, picture, 0, picture.extent.width);
-}
+void Canvas::draw(int x, int y, const Level& picture) { draw_columns(x, y, picture, 0, picture.extent.width); }
 
 void Canvas::draw_columns(int x, int y, const Level& picture, int from, int to) {
     const int first = std::max(from, -x);
@@ -49,8 +46,7 @@ void Canvas::draw_columns(int x, int y, const Level& picture, int from, int to) 
     if (first >= last) return;
     for (int j = std::max(0, -y); j < picture.extent.height && y + j < level_.extent.height; ++j) {
         std::memcpy(level_.bytes.data() + offset_of(level_, x + first, y + j),
-                    picture.bytes.data() + offset_of(picture, first, j),
-                    static_cast<std::size_t>(last - first) * 3);
+                    picture.bytes.data() + offset_of(picture, first, j), static_cast<std::size_t>(last - first) * 3);
     }
 }
 

@@ -42,13 +42,11 @@ private:
     return words.empty() ? 0 : (static_cast<int>(words.size()) * kGlyphAdvance - 1) * scale;
 }
 
-// The words, or as many of their letters as fit into `width` pixels, with ".." in the middle where some are cut: files that belong together often have names
-// that differ at their ends.
+// The words, or as many of their letters as fit into `width` pixels, with ".." in the middle where some are cut: files
+// that belong together often have names that differ at their ends.
 [[nodiscard]] std::string fitted(std::string_view words, int scale, int width);
 
 // The size of letters that suits a picture: 1, or 2 where it is 1024 pixels or wider.
-[[nodiscard]] constexpr int text_scale(int picture_width) {
-    return picture_width >= 1024 ? 2 : 1;
-}
+[[nodiscard]] constexpr int text_scale(int picture_width) { return picture_width >= 1024 ? 2 : 1; }
 
 }  // namespace tex::render

@@ -10,9 +10,7 @@ namespace {
 
 constexpr Vec3 kMagenta{1.0, 0.0, 1.0};
 
-double unit(double value) {
-    return value > 0.0 ? std::min(value, 1.0) : 0.0;
-}
+double unit(double value) { return value > 0.0 ? std::min(value, 1.0) : 0.0; }
 
 }  // namespace
 
@@ -44,7 +42,8 @@ Vec3 diverging(double t) {
 }
 
 Vec3 inferno(double t) {
-    constexpr std::uint32_t kStops[] = {0x000004, 0x1b0c42, 0x4b0c6b, 0x781c6d, 0xa52c60, 0xcf4446, 0xed6925, 0xfb9a06, 0xf7d03c, 0xfcffa4};
+    constexpr std::uint32_t kStops[] = {0x000004, 0x1b0c42, 0x4b0c6b, 0x781c6d, 0xa52c60,
+                                        0xcf4446, 0xed6925, 0xfb9a06, 0xf7d03c, 0xfcffa4};
     constexpr int kPieces = 9;
     const auto stop = [&](int k) {
         const auto channel = [&](int shift) { return static_cast<double>(kStops[k] >> shift & 0xff) / 255.0; };
@@ -56,9 +55,7 @@ Vec3 inferno(double t) {
     return stop(k) + (stop(k + 1) - stop(k)) * (place - k);
 }
 
-std::uint8_t display_code(double value) {
-    return static_cast<std::uint8_t>(unit(value) * 255.0 + 0.5);
-}
+std::uint8_t display_code(double value) { return static_cast<std::uint8_t>(unit(value) * 255.0 + 0.5); }
 
 double srgb_to_linear(double value) {
     return value <= 0.04045 ? value / 12.92 : math::pow((value + 0.055) / 1.055, 2.4);
@@ -73,8 +70,7 @@ std::uint8_t srgb_code(double linear) {
         return begins;
     }();
     if (linear != linear) return 0;
-    return static_cast<std::uint8_t>(std::upper_bound(kBegins.begin(), kBegins.end(), linear) -
-                                     kBegins.begin());
+    return static_cast<std::uint8_t>(std::upper_bound(kBegins.begin(), kBegins.end(), linear) - kBegins.begin());
 }
 
 }  // namespace tex::render

@@ -16,12 +16,12 @@ struct Code {
 
 // Display colours: sRGB values, 0 to 1, that need no further curve.
 
-// Viridis (van der Walt, Smith 2015; CC0), 0 to 1, as the polynomial that Matt Zucker fitted ("colormaps", Shadertoy WlfXRN, 2019; CC0). At most 0.02 from
-// the table. Even in lightness, and readable with any colour vision.
+// Viridis (van der Walt, Smith 2015; CC0), 0 to 1, as the polynomial that Matt Zucker fitted ("colormaps", Shadertoy
+// WlfXRN, 2019; CC0). At most 0.02 from the table. Even in lightness, and readable with any colour vision.
 [[nodiscard]] Vec3 viridis(double t);
 
-// -1 to 1: dark blue, light blue, white at 0, orange, brown. Drawn for this library; blue against orange stays apart for
-// people who confuse red and green.
+// -1 to 1: dark blue, light blue, white at 0, orange, brown. Drawn for this library; blue against orange stays apart
+// for people who confuse red and green.
 [[nodiscard]] Vec3 diverging(double t);
 
 // Inferno (Smith and van der Walt 2015; CC0), 0 to 1, in ten linear pieces.

@@ -28,14 +28,10 @@ Vec3 ColorScale::color(double value) const {
     double t = (value - least) / (range > 0.0 ? range : 1.0);
     if (palette != Palette::grey && t > 0.0 && t < 1.0) t = std::floor(t * kColorSteps + 0.5) / kColorSteps;
     switch (palette) {
-        case Palette::viridis:
-            return viridis(t);
-        case Palette::diverging:
-            return diverging(2.0 * t - 1.0);
-        case Palette::grey:
-            return Vec3{1.0, 1.0, 1.0} * t;
-        case Palette::inferno:
-            return inferno(t);
+        case Palette::viridis: return viridis(t);
+        case Palette::diverging: return diverging(2.0 * t - 1.0);
+        case Palette::grey: return Vec3{1.0, 1.0, 1.0} * t;
+        case Palette::inferno: return inferno(t);
     }
     return {};
 }
@@ -50,9 +46,8 @@ Level legend(int width, int unit, const ColorScale& scale) {
     Canvas canvas(Extent{width, kLegendRows * unit});
     const int bar = std::max(1, width - 2 * kMargin * unit);
     for (int i = 0; i < bar; ++i) {
-        const Vec3 color =
-            scale.color(scale.least + (scale.greatest - scale.least) *
-                                          (bar > 1 ? static_cast<double>(i) / (bar - 1) : 0.0));
+        const Vec3 color = scale.color(scale.least + (scale.greatest - scale.least) *
+                                                         (bar > 1 ? static_cast<double>(i) / (bar - 1) : 0.0));
         canvas.fill((width - bar) / 2 + i, kBarTop * unit, {1, kBarHeight * unit},
                     {display_code(color.x), display_code(color.y), display_code(color.z)});
     }

@@ -11,7 +11,8 @@
 
 namespace tex::render {
 
-// Values from `least` to `greatest`, in viridis, in the diverging colours (then least = -greatest), in grey, or in inferno.
+// Values from `least` to `greatest`, in viridis, in the diverging colours (then least = -greatest), in grey, or in
+// inferno.
 enum class Palette { viridis, diverging, grey, inferno };
 struct ColorScale {
     std::string title;
@@ -25,7 +26,8 @@ struct ColorScale {
 // Three significant digits, the shortest form, the same in every locale.
 [[nodiscard]] std::string number(double value);
 
-// A bar of the colours, the values at its ends, the title between them: a picture of `width` pixels and kLegendRows times `unit` rows.
+// A bar of the colours, the values at its ends, the title between them: a picture of `width` pixels and kLegendRows
+// times `unit` rows.
 inline constexpr int kLegendRows = 36;
 [[nodiscard]] Level legend(int width, int unit, const ColorScale& scale);
 

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "base/parallel.h"
 #include "checks/curl.h"
 #include "preview/progress.h"
 #include "preview/vector.h"
+#include "threads/parallel.h"
 
 namespace tex::render {
 namespace {
@@ -34,23 +34,18 @@ Vec2 slopes_at(const NormalMap& map, int i, int j) {
 double value_at(Show show, const NormalMap& map, int i, int j) {
     const Vec3 n = normal_at(map, i, j);
     switch (show) {
-        case Show::slope:
-            return length(slopes_at(map, i, j));
-        case Show::tilt:
-            return degrees(angle_of(length(Vec2{n.x, n.y}), n.z));
-        case Show::length:
-            return length(n) - 1.0;
+        case Show::slope: return length(slopes_at(map, i, j));
+        case Show::tilt: return degrees(angle_of(length(Vec2{n.x, n.y}), n.z));
+        case Show::length: return length(n) - 1.0;
         case Show::z_error: {
             const double square = std::min(n.x * n.x + n.y * n.y, 1.0);
             return n.z - std::sqrt(1.0 - square);
         }
-        default:
-            return 0.0;
+        default: return 0.0;
     }
 }
 
-Result<Plane<float>> fill(Extent extent, const Execution& execution,
-                          const std::function<double(int i, int j)>& value) {
+Result<Plane<float>> fill(Extent extent, const Execution& execution, const std::function<double(int i, int j)>& value) {
     Plane<float> plane(extent);
     const auto done = parallel_for(execution, extent.height, kRowsPerPiece, [&](int begin, int end) {
         for (int j = begin; j < end; ++j) {
@@ -78,8 +73,8 @@ CurlView curl_view(const NormalMap& map) {
     return view;
 }
 
-// The two derivatives that are equal in a height field, by central differences, one-sided at the border; y grows upwards. NaN
-// beside texels that hold no normal.
+// The two derivatives that are equal in a height field, by central differences, one-sided at the border; y grows
+// upwards. NaN beside texels that hold no normal.
 struct Mixed {
     double dq_dx, dp_dy;
 };
@@ -176,8 +171,7 @@ Result<Measure> measure(Show show, const NormalMap& map, float maximum, const Ex
             if (choose) scale.greatest = round_maximum(result.values, 0.01);
             scale.palette = Palette::diverging;
             break;
-        default:
-            break;
+        default: break;
     }
     if (scale.palette == Palette::diverging) scale.least = -scale.greatest;
     return result;

@@ -6,15 +6,14 @@
 
 namespace tex::render {
 
-Vec2 parallax_offset(const Parallax& parallax, const Sampler& height, Vec2 uv, const Footprint& footprint,
-                     Vec3 view, int anisotropy) {
+Vec2 parallax_offset(const Parallax& parallax, const Sampler& height, Vec2 uv, const Footprint& footprint, Vec3 view,
+                     int anisotropy) {
     const double amount = parallax.amount, limit = parallax.limit;
     // At a grazing angle the quotient overflows to infinity, which the clamp takes; only 0 / 0 must not arise.
     const double z = std::max(view.z, 1e-12);
     const auto offset_at = [&](double t) {
         const double rise = amount * (t - 0.5);
-        return Vec2{std::clamp(rise * view.x / z, -limit, limit),
-                    std::clamp(rise * view.y / z, -limit, limit)};
+        return Vec2{std::clamp(rise * view.x / z, -limit, limit), std::clamp(rise * view.y / z, -limit, limit)};
     };
     const auto height_at = [&](Vec2 place) { return sample(height, place, footprint, anisotropy)[0]; };
     if (parallax.steps <= 0) return offset_at(height_at(uv));

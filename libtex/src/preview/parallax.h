@@ -10,7 +10,7 @@
 namespace tex::render {
 
 // The offset of Parallax (preview.h) for a view direction in the tangent frame, view.z > 0.
-[[nodiscard]] Vec2 parallax_offset(const Parallax& parallax, const Sampler& height, Vec2 uv,
-                                   const Footprint& footprint, Vec3 view, int anisotropy);
+[[nodiscard]] Vec2 parallax_offset(const Parallax& parallax, const Sampler& height, Vec2 uv, const Footprint& footprint,
+                                   Vec3 view, int anisotropy);
 
 }  // namespace tex::render

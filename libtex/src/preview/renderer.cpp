@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "base/parallel.h"
 #include "preview/canvas.h"
 #include "preview/shading.h"
+#include "threads/parallel.h"
 
 namespace tex::render {
 namespace {
@@ -57,8 +57,7 @@ private:
     [[nodiscard]] Vec3 color(double x, double y) const {
         const std::optional<Hit> hit = stage_.body.meet(stage_.view.ray(x, y));
         if (!hit) return ground_;
-        return surface_(
-            *hit, {uv_step(*hit, stage_.view.ray(x + 1.0, y)), uv_step(*hit, stage_.view.ray(x, y + 1.0))});
+        return surface_(*hit, {uv_step(*hit, stage_.view.ray(x + 1.0, y)), uv_step(*hit, stage_.view.ray(x, y + 1.0))});
     }
 
     const Stage& stage_;

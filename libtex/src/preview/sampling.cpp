@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "base/parallel.h"
+#include "threads/parallel.h"
 
 namespace tex::render {
 namespace {
@@ -15,10 +15,8 @@ namespace {
 // The texel that stands at index i of an axis of n texels.
 int wrapped(std::int64_t i, int n, Wrap wrap) {
     switch (wrap) {
-        case Wrap::repeat:
-            return static_cast<int>((i % n + n) % n);
-        case Wrap::clamp:
-            return static_cast<int>(std::clamp<std::int64_t>(i, 0, n - 1));
+        case Wrap::repeat: return static_cast<int>((i % n + n) % n);
+        case Wrap::clamp: return static_cast<int>(std::clamp<std::int64_t>(i, 0, n - 1));
         case Wrap::mirror: {
             const std::int64_t period = 2 * std::int64_t{n};
             const std::int64_t k = (i % period + period) % period;
@@ -99,8 +97,7 @@ void halve_row(PlaneView<const float> larger, int j, Plane<float>& smaller) {
         for (int r = 0; r < rows.count; ++r) {
             const float* row = larger.row(rows.first + r) + columns.first;
             double across = 0.0;
-            for (int c = 0; c < columns.count; ++c)
-                across += columns.weights[c] * static_cast<double>(row[c]);
+            for (int c = 0; c < columns.count; ++c) across += columns.weights[c] * static_cast<double>(row[c]);
             sum += rows.weights[r] * across;
         }
         smaller.at(i, j) = static_cast<float>(sum);
@@ -124,8 +121,7 @@ Result<Pyramid> Pyramid::build(const std::vector<PlaneView<const float>>& base, 
     pyramid.levels_.push_back(base);
     const int count = level_count(base[0].extent);
     for (int level = 1; level < count; ++level) {
-        const ProgressSpan span{static_cast<double>(level - 1) / (count - 1),
-                                static_cast<double>(level) / (count - 1)};
+        const ProgressSpan span{static_cast<double>(level - 1) / (count - 1), static_cast<double>(level) / (count - 1)};
         std::vector<PlaneView<const float>> views;
         for (const PlaneView<const float>& larger : pyramid.levels_.back()) {
             Plane<float> smaller(level_extent(larger.extent, 1));
@@ -153,8 +149,7 @@ Sample sample(const Sampler& sampler, Vec2 uv, const Footprint& footprint, int a
     const double px = length(Vec2{footprint.dx.x * w, footprint.dx.y * h});
     const double py = length(Vec2{footprint.dy.x * w, footprint.dy.y * h});
     const double longer = std::max(px, py), shorter = std::min(px, py);
-    if (!(longer > 1.0))
-        return trilinear(sampler, 0.0, uv);  // magnified: also where the footprint is unknown
+    if (!(longer > 1.0)) return trilinear(sampler, 0.0, uv);  // magnified: also where the footprint is unknown
 
     // A hair below the ratio: a footprint that is square but for rounding takes one sample.
     const double ratio = shorter > 0.0 ? longer / shorter - 1e-6 : 1e9;

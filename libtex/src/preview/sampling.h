@@ -34,7 +34,8 @@ struct Sampler {
 // Planes with smaller levels of their own, made by a box filter that weighs what a texel covers.
 class Pyramid {
 public:
-    // Precondition: 1 to kMaxChannels planes of one extent, which outlive the pyramid. Errors: cancelled, out_of_memory.
+    // Precondition: 1 to kMaxChannels planes of one extent, which outlive the pyramid. Errors: cancelled,
+    // out_of_memory.
     static Result<Pyramid> build(const std::vector<PlaneView<const float>>& base, const Execution& execution);
 
     [[nodiscard]] Sampler sampler(Wrap wrap_x, Wrap wrap_y) const;

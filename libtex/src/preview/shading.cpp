@@ -47,9 +47,8 @@ Vec3 shade(const Illumination& with, Vec3 point, Vec3 normal, Vec3 view, Vec3 al
     const double facing = dot(normal, to_light);
     double specular = 0.0;
     if (facing >= 0.0) {
-        const double cosine = with.model == SpecularModel::phong
-                                  ? dot(normal * (2.0 * facing) - to_light, view)
-                                  : dot(normal, normalize(to_light + view));
+        const double cosine = with.model == SpecularModel::phong ? dot(normal * (2.0 * facing) - to_light, view)
+                                                                 : dot(normal, normalize(to_light + view));
         if (cosine > 0.0) specular = math::pow(cosine, with.shininess);
     }
     const Vec3 reflected = albedo * std::max(0.0, facing) + with.specular * specular;

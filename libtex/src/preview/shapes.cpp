@@ -76,12 +76,9 @@ double Body::support(Vec3 d) const {
     constexpr double kMargin = 1.06;
     const double level = std::sqrt(d.x * d.x + d.z * d.z);
     switch (shape_) {
-        case Shape::plane:
-            return half_width_ * std::abs(d.x) + std::abs(d.y);
-        case Shape::sphere:
-            return kMargin * length(d);
-        case Shape::cube:
-            return kMargin * kHalfEdge * (std::sqrt(2.0) * level + std::abs(d.y));
+        case Shape::plane: return half_width_ * std::abs(d.x) + std::abs(d.y);
+        case Shape::sphere: return kMargin * length(d);
+        case Shape::cube: return kMargin * kHalfEdge * (std::sqrt(2.0) * level + std::abs(d.y));
     }
     return 1.0;
 }
@@ -89,12 +86,9 @@ double Body::support(Vec3 d) const {
 double Body::distance(const Ray& ray, int& face) const {
     face = 1;
     switch (shape_) {
-        case Shape::plane:
-            return meet_plane(ray, half_width_);
-        case Shape::sphere:
-            return meet_sphere(ray);
-        case Shape::cube:
-            return meet_cube(ray, face);
+        case Shape::plane: return meet_plane(ray, half_width_);
+        case Shape::sphere: return meet_sphere(ray);
+        case Shape::cube: return meet_cube(ray, face);
     }
     return kMissed;
 }
@@ -115,7 +109,8 @@ std::optional<Hit> Body::meet(const Ray& ray) const {
     hit.face = face;
     double w = 1.0;
     if (mirror_) {
-        // u grows to the other side, so the tangent turns round; cross(N, T) then points against growing v, which w mends.
+        // u grows to the other side, so the tangent turns round; cross(N, T) then points against growing v, which w
+        // mends.
         hit.uv.x = -hit.uv.x;
         hit.tangent = hit.tangent * -1.0;
         w = -1.0;
@@ -141,8 +136,7 @@ Hit Body::on_sphere(Vec3 point) const {
     hit.normal = normalize(point);
     const double around = std::sqrt(hit.normal.x * hit.normal.x + hit.normal.z * hit.normal.z);
     // East; at the poles, where every direction is south or north, any will do.
-    hit.tangent =
-        around > 1e-9 ? Vec3{hit.normal.z / around, 0.0, -hit.normal.x / around} : Vec3{1.0, 0.0, 0.0};
+    hit.tangent = around > 1e-9 ? Vec3{hit.normal.z / around, 0.0, -hit.normal.x / around} : Vec3{1.0, 0.0, 0.0};
     hit.u_per_length = u_turns_ / (2.0 * math::kPi * std::max(around, 1e-4));
     hit.v_per_length = 1.0 / math::kPi;
     hit.uv = {0.5 + u_turns_ * angle_of(hit.normal.x, hit.normal.z) / (2.0 * math::kPi),

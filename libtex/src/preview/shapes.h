@@ -45,7 +45,8 @@ private:
     bool mirror_;
 };
 
-// The change of (u, v) from `hit` to where `ray` meets the plane that touches the shape there; 0 where it meets it nowhere.
+// The change of (u, v) from `hit` to where `ray` meets the plane that touches the shape there; 0 where it meets it
+// nowhere.
 [[nodiscard]] Vec2 uv_step(const Hit& hit, const Ray& ray);
 
 }  // namespace tex::render

@@ -22,9 +22,7 @@ std::optional<std::vector<PlaneView<const float>>> colors_of(const Image& image)
 // Unity's unity_ColorSpaceDouble for linear light, 2^2.2: a detail albedo of sRGB grey 0.5 changes nothing.
 constexpr double kColorSpaceDouble = 4.59479380;
 
-Vec3 vec(const Sample& s) {
-    return {s[0], s[1], s[2]};
-}
+Vec3 vec(const Sample& s) { return {s[0], s[1], s[2]}; }
 
 Vec3 color_at(const Sampler& sampler, Vec2 uv, const Footprint& footprint, int anisotropy) {
     const Sample s = sample(sampler, uv, footprint, anisotropy);
@@ -44,8 +42,7 @@ Result<Textures> Textures::prepare(const PreviewScene& scene, const PreviewOptio
         if (image == nullptr) return {};
         const auto planes = colors_of(*image);
         if (!planes)
-            return Error{
-                ErrorCode::bad_option, {}, "an albedo has neither channels R, G and B nor a single one"};
+            return Error{ErrorCode::bad_option, {}, "an albedo has neither channels R, G and B nor a single one"};
         auto built = Pyramid::build(*planes, step);
         if (!built) return built.error();
         pyramid = std::move(*built);
@@ -54,8 +51,8 @@ Result<Textures> Textures::prepare(const PreviewScene& scene, const PreviewOptio
     };
     if (auto done = colors(scene.albedo, textures.albedo_, textures.albedo, part(execution, 0.0, 0.5)); !done)
         return done.error();
-    if (auto done = colors(scene.detail_albedo, textures.detail_albedo_, textures.detail_albedo,
-                           part(execution, 0.5, 0.8));
+    if (auto done =
+            colors(scene.detail_albedo, textures.detail_albedo_, textures.detail_albedo, part(execution, 0.5, 0.8));
         !done) {
         return done.error();
     }
@@ -91,20 +88,19 @@ Hit LitSurface::displaced(const Hit& hit, const Footprint& footprint) const {
     if (textures_.height.empty() || options_.parallax.amount == 0.0f) return seen;
     const Vec3 way = stage_.view.towards_viewer(hit.point);
     const Vec3 view{dot(way, hit.tangent), dot(way, hit.binormal), dot(way, hit.normal)};
-    seen.uv = hit.uv + parallax_offset(options_.parallax, textures_.height, hit.uv, footprint, view,
-                                       options_.anisotropy);
+    seen.uv =
+        hit.uv + parallax_offset(options_.parallax, textures_.height, hit.uv, footprint, view, options_.anisotropy);
     return seen;
 }
 
 Vec3 LitSurface::tangent_normal(Vec2 uv, const Footprint& footprint) const {
     const int anisotropy = options_.anisotropy;
-    const Vec3 base =
-        unpack_normal(vec(sample(textures_.map, uv, footprint, anisotropy)), scene_.map_without_z,
-                      static_cast<double>(options_.bump_scale), options_.scale_mode);
+    const Vec3 base = unpack_normal(vec(sample(textures_.map, uv, footprint, anisotropy)), scene_.map_without_z,
+                                    static_cast<double>(options_.bump_scale), options_.scale_mode);
     if (textures_.detail.empty()) return base;
     const Sample fetched = sample(textures_.detail, detail_place(uv), detail_area(footprint), anisotropy);
-    const Vec3 fine = unpack_normal(vec(fetched), scene_.detail_without_z,
-                                    static_cast<double>(options_.detail.scale), options_.scale_mode);
+    const Vec3 fine = unpack_normal(vec(fetched), scene_.detail_without_z, static_cast<double>(options_.detail.scale),
+                                    options_.scale_mode);
     return blend_whiteout(base, fine);
 }
 
@@ -122,8 +118,7 @@ Footprint LitSurface::detail_area(const Footprint& footprint) const {
 Vec3 LitSurface::albedo(Vec2 uv, const Footprint& footprint) const {
     const Rgb& tint = options_.material.albedo;
     Vec3 color{static_cast<double>(tint.r), static_cast<double>(tint.g), static_cast<double>(tint.b)};
-    if (!textures_.albedo.empty())
-        color = times(color, color_at(textures_.albedo, uv, footprint, options_.anisotropy));
+    if (!textures_.albedo.empty()) color = times(color, color_at(textures_.albedo, uv, footprint, options_.anisotropy));
     if (!textures_.detail_albedo.empty()) {
         const Vec3 fine =
             color_at(textures_.detail_albedo, detail_place(uv), detail_area(footprint), options_.anisotropy);

@@ -30,8 +30,7 @@ private:
 // The whole material, lit.
 class LitSurface {
 public:
-    LitSurface(const Textures& textures, const PreviewScene& scene, const PreviewOptions& options,
-               const Stage& stage);
+    LitSurface(const Textures& textures, const PreviewScene& scene, const PreviewOptions& options, const Stage& stage);
 
     [[nodiscard]] Vec3 linear_light(const Hit& hit, const Footprint& footprint) const;
     // The perturbed normal in the space of the shape.

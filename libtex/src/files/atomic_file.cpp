@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "files/atomic_file.h"
+
+#include <fcntl.h>
+#include <linux/fs.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <climits>
+#include <cstdio>
+#include <optional>
+#include <utility>
+
+#include <tex/container.h>
+
+#include "files/input_file.h"
+#include "files/system_error.h"
+#include "files/through_file.h"
+#include "files/unfinished_files.h"
+#include "threads/guard.h"
+
+namespace tex {
+namespace {
+
+// 0, or the errno of what failed.
+int write_fully(int fd, std::uint64_t offset, std::span<const std::byte> bytes) {
+    constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;
+    while (!bytes.empty()) {
+        const ssize_t n = ::pwrite(fd, bytes.data(), std::min(bytes.size(), kMostAtOnce), static_cast<off_t>(offset));
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return n < 0 ? errno : EIO;
+        bytes = bytes.subspan(static_cast<std::size_t>(n));
+        offset += static_cast<std::uint64_t>(n);
+    }
+    return 0;
+}
+
+// Where the file shall be, as seen from its open directory.
+struct Target {
+    std::string path;  // as the caller gave it, for messages
+    Descriptor folder;
+    std::string name;
+    std::optional<struct stat> existing;
+};
+
+// Follows the last component of `path` through symbolic links, dangling ones too: the link stays, its target is
+// written.
+Result<std::string> follow_links(const std::string& path) {
+    std::string at = path;
+    constexpr int kMostLinks = 40;  // as the kernel
+    for (int k = 0; k < kMostLinks; ++k) {
+        char target[PATH_MAX];
+        const ssize_t n = readlink(at.c_str(), target, sizeof target);
+        if (n < 0) return at;  // no link, or not there at all
+        const std::string_view to(target, static_cast<std::size_t>(n));
+        const std::size_t slash = at.rfind('/');
+        if (to.starts_with('/') || slash == std::string::npos) {
+            at = to;
+        } else {
+            at = at.substr(0, slash + 1).append(to);
+        }
+    }
+    return system_error(path, ELOOP);
+}
+
+Result<Target> find_target(const std::string& path) {
+    const Result<std::string> real = follow_links(path);
+    if (!real) return real.error();
+    Target target;
+    target.path = path;
+    const std::string& full = real.value();
+    const std::size_t slash = full.rfind('/');
+    target.name = slash == std::string::npos ? full : full.substr(slash + 1);
+    const std::string folder = slash == std::string::npos ? "." : full.substr(0, slash + 1);
+    if (target.name.empty()) return Error{ErrorCode::io, path, "names a directory, not a file"};
+
+    target.folder = Descriptor(::open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
+    if (!target.folder) {
+        if (errno == ENOENT) return Error{ErrorCode::io, path, "the directory does not exist"};
+        return system_error(path, errno);
+    }
+    struct stat status {};
+    if (fstatat(target.folder.get(), target.name.c_str(), &status, AT_SYMLINK_NOFOLLOW) == 0) {
+        target.existing = status;
+    } else if (errno != ENOENT) {
+        return system_error(path, errno);
+    }
+    return target;
+}
+
+// Gives the new file the owner, group and mode of the old one, as far as this user may; never more rights to anybody.
+void keep_rights(int fd, const struct stat& old) {
+    mode_t mode = old.st_mode & 07777;
+    struct stat now {};
+    if (fstat(fd, &now) != 0) return;
+    const bool owner_kept = now.st_uid == old.st_uid || fchown(fd, old.st_uid, static_cast<gid_t>(-1)) == 0;
+    const bool group_kept = now.st_gid == old.st_gid || fchown(fd, static_cast<uid_t>(-1), old.st_gid) == 0;
+    if (!owner_kept) mode &= ~static_cast<mode_t>(S_ISUID);
+    if (!group_kept) mode = (mode & ~static_cast<mode_t>(S_ISGID | S_IRWXG)) | (mode & S_IRWXO) << 3;
+    if (fchmod(fd, mode) != 0) return;  // the file stays readable by its writer alone
+}
+
+// The last steps before a file gets its name. 0, or the errno of what failed.
+int settle(int fd, const Target& target, bool sync) {
+    if (target.existing) keep_rights(fd, *target.existing);
+    while (sync && fdatasync(fd) != 0) {
+        if (errno == EINVAL) break;  // this kind of file cannot be synchronised
+        if (errno != EINTR) return errno;
+    }
+    return 0;
+}
+
+// 0, or the errno of what failed: EWOULDBLOCK where somebody else has the lock.
+int lock(int fd) {
+    int failed = -1;
+    do {
+        failed = flock(fd, LOCK_EX | LOCK_NB);
+    } while (failed != 0 && errno == EINTR);
+    return failed == 0 ? 0 : errno;
+}
+
+bool same_file(const Target& target, const std::string& name, int fd) {
+    struct stat named {};
+    struct stat open {};
+    return fstatat(target.folder.get(), name.c_str(), &named, AT_SYMLINK_NOFOLLOW) == 0 && fstat(fd, &open) == 0 &&
+           named.st_dev == open.st_dev && named.st_ino == open.st_ino;
+}
+
+// Removes the temporary called `name` if its writer is gone.
+void sweep(const Target& target, const std::string& name) {
+    const Descriptor file(::openat(target.folder.get(), name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+    struct stat status {};
+    if (!file || fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode)) return;
+    if (lock(file.get()) == 0 && same_file(target, name, file.get())) unlinkat(target.folder.get(), name.c_str(), 0);
+}
+
+// Calls make(name) for temporary names until it succeeds; sweeps what dead writers left under them. Returns the
+// name, or an empty string and errno.
+template <class Make>
+std::string temporary_name(const Target& target, const Make& make) {
+    constexpr std::size_t kMostOfName = 200;  // of 255 bytes that a name may have
+    constexpr int kMostWriters = 4096;
+    std::string stem(1, '.');
+    stem.append(target.name, 0, kMostOfName).append(".tex-tmp");
+    for (int k = 0; k < kMostWriters; ++k) {
+        std::string name = stem + std::to_string(k);
+        if (make(name)) return name;
+        if (errno != EEXIST) return {};
+        sweep(target, name);
+        if (make(name)) return name;
+        if (errno != EEXIST) return {};
+    }
+    errno = EEXIST;
+    return {};
+}
+
+Error exists_error(const Target& target) { return {ErrorCode::io, target.path, "exists already"}; }
+
+// Renames a temporary to the target; on failure it is removed. 0, or the errno of what failed. The section is that of
+// all that the caller does to the temporary's name.
+int move_into_place(const NameSection&, const Target& target, const std::string& temporary, bool no_clobber) {
+    const int folder = target.folder.get();
+    const char* from = temporary.c_str();
+    const char* to = target.name.c_str();
+    int failed = 0;
+    if (!no_clobber) {
+        failed = renameat(folder, from, folder, to);
+    } else {
+        failed = renameat2(folder, from, folder, to, RENAME_NOREPLACE);
+        if (failed != 0 && (errno == EINVAL || errno == ENOSYS)) {
+            failed = linkat(folder, from, folder, to, 0);
+            if (failed == 0) unlinkat(folder, from, 0);
+        }
+    }
+    if (failed == 0) return 0;
+    const int reason = errno;
+    unlinkat(folder, from, 0);
+    return reason;
+}
+
+// `failed` is what move_into_place() returned.
+Result<void> moved(const Target& target, int failed, bool no_clobber) {
+    if (failed == 0) return {};
+    if (no_clobber && failed == EEXIST) return exists_error(target);
+    return system_error(target.path, failed, "cannot be put into place");
+}
+
+// The mode of a new file: the umask decides; a replacement is private until keep_rights().
+mode_t first_mode(const Target& target) { return target.existing ? 0600 : 0666; }
+
+// A file without a name; an empty one where there are no nameless files here. Errors: io.
+Result<Descriptor> open_nameless(const Target& target) {
+    Descriptor file(::openat(target.folder.get(), ".", O_TMPFILE | O_WRONLY | O_CLOEXEC, first_mode(target)));
+    if (file) {
+        // Its name will come through /proc.
+        const std::string path = "/proc/self/fd/" + std::to_string(file.get());
+        if (faccessat(AT_FDCWD, path.c_str(), F_OK, 0) != 0) return Descriptor();
+        lock(file.get());
+        return file;
+    }
+    const bool unsupported = errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL || errno == ENOENT;
+    if (unsupported) return Descriptor();
+    return system_error(target.path, errno, "the directory cannot be written");
+}
+
+// A file with a temporary name, which goes to `name` and to `unfinished`. Errors: io.
+Result<Descriptor> open_named(const Target& target, std::string& name, UnfinishedFile& unfinished) {
+    Descriptor file;
+    name = temporary_name(target, [&](const std::string& temporary) {
+        const NameSection section;
+        file = Descriptor(::openat(target.folder.get(), temporary.c_str(),
+                                   O_CREAT | O_EXCL | O_WRONLY | O_NOFOLLOW | O_CLOEXEC, first_mode(target)));
+        if (!file) return false;
+        // Somebody may take it for a dead writer's before it is locked: then it is gone, or about to be.
+        if (lock(file.get()) == EWOULDBLOCK || !same_file(target, temporary, file.get())) {
+            errno = EEXIST;
+            return false;
+        }
+        unfinished.add(section, target.folder.get(), temporary);
+        return true;
+    });
+    if (name.empty()) return system_error(target.path, errno, "the directory cannot be written");
+    return file;
+}
+
+Result<void> name_nameless(int fd, const Target& target, bool no_clobber) {
+    const std::string nameless = "/proc/self/fd/" + std::to_string(fd);
+    const auto link = [&](const std::string& name) {
+        return linkat(AT_FDCWD, nameless.c_str(), target.folder.get(), name.c_str(), AT_SYMLINK_FOLLOW) == 0;
+    };
+    if (!target.existing || no_clobber) {
+        if (link(target.name)) return {};
+        if (errno != EEXIST) return system_error(target.path, errno, "cannot be put into place");
+        if (no_clobber) return exists_error(target);
+    }
+    int failed = 0;
+    const std::string temporary = temporary_name(target, [&](const std::string& name) {
+        const NameSection section;
+        if (!link(name)) return false;
+        failed = move_into_place(section, target, name, no_clobber);
+        return true;
+    });
+    if (temporary.empty()) return system_error(target.path, errno, "the directory cannot be written");
+    return moved(target, failed, no_clobber);
+}
+
+}  // namespace
+
+struct AtomicFile::State {
+    Target target;
+    AtomicFileOptions options;
+    Descriptor file;
+    std::string temporary;                     // the name of a file that has one
+    std::optional<UnfinishedFile> unfinished;  // the same for remove_unfinished_files()
+    std::optional<ThroughFile> through;        // instead of all of the above
+
+    ~State() {
+        if (temporary.empty()) return;
+        const NameSection section;
+        unfinished->remove(section);
+        unlinkat(target.folder.get(), temporary.c_str(), 0);
+    }
+};
+
+AtomicFile::AtomicFile(std::unique_ptr<State> state) : state_(std::move(state)) {}
+AtomicFile::AtomicFile(AtomicFile&&) noexcept = default;
+AtomicFile::~AtomicFile() = default;
+
+Result<AtomicFile> AtomicFile::open(const std::string& path, const AtomicFileOptions& options) {
+    return guarded([&]() -> Result<AtomicFile> {
+        if (path.find('\0') != std::string::npos) return Error{ErrorCode::io, path, "the name holds a zero byte"};
+        auto state = std::make_unique<State>();
+        state->options = options;
+        Result<std::optional<ThroughFile>> through = ThroughFile::open(path);
+        if (!through) return through.error();
+        if (*through) {
+            state->through = std::move(*through);
+            return AtomicFile(std::move(state));
+        }
+        Result<Target> target = find_target(path);
+        if (!target) return target.error();
+        if (target->existing && options.no_clobber) return exists_error(*target);
+        // A rename would replace a file that its owner has protected; who may not write it shall not.
+        if (target->existing && faccessat(target->folder.get(), target->name.c_str(), W_OK, AT_EACCESS) != 0) {
+            return system_error(path, errno);
+        }
+        state->target = std::move(*target);
+        Result<Descriptor> file = open_nameless(state->target);
+        if (file && !*file) file = open_named(state->target, state->temporary, state->unfinished.emplace());
+        if (!file) return file.error();
+        state->file = std::move(*file);
+        return AtomicFile(std::move(state));
+    });
+}
+
+Result<void> AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
+    return guarded([&]() -> Result<void> {
+        if (state_->through) {
+            state_->through->hold(offset, bytes);
+            return {};
+        }
+        const int failed = write_fully(state_->file.get(), offset, bytes);
+        if (failed != 0) return system_error(state_->target.path, failed, "cannot be written");
+        return {};
+    });
+}
+
+Result<void> AtomicFile::commit() {
+    return guarded([&]() -> Result<void> {
+        if (state_->through) return state_->through->write_held();
+        const Target& target = state_->target;
+        const int fd = state_->file.get();
+        if (const int failed = settle(fd, target, state_->options.sync); failed != 0) {
+            return system_error(target.path, failed, "cannot be written");
+        }
+        if (state_->temporary.empty()) return name_nameless(fd, target, state_->options.no_clobber);
+        const std::string temporary = std::exchange(state_->temporary, {});
+        int failed = 0;
+        {
+            const NameSection section;
+            state_->unfinished->remove(section);
+            failed = move_into_place(section, target, temporary, state_->options.no_clobber);
+        }
+        return moved(target, failed, state_->options.no_clobber);
+    });
+}
+
+Result<void> write_atomically(const std::string& path, std::span<const std::byte> bytes,
+                              const AtomicFileOptions& options) {
+    Result<AtomicFile> file = AtomicFile::open(path, options);
+    if (!file) return file.error();
+    if (file->state_->through) return file->state_->through->write(bytes);
+    if (Result<void> written = file->write_at(0, bytes); !written) return written;
+    return file->commit();
+}
+
+Result<void> write_file(const std::string& path, const std::vector<std::byte>& bytes, const WriteOptions& options) {
+    return write_atomically(path, bytes, {options.sync, options.no_clobber});
+}
+
+}  // namespace tex

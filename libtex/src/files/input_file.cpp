@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "files/input_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <limits>
+
+#include "files/system_error.h"
+#include "threads/guard.h"
+
+namespace tex {
+namespace {
+
+// read(2) and pread(2) refuse or shorten greater counts.
+constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;
+
+// Calls `once(data, count)` (a read) until all `count` bytes are there, the file ends, or it fails.
+template <class Once>
+Result<std::size_t> read_fully(const std::string& path, std::byte* data, std::size_t count, const Once& once) {
+    std::size_t done = 0;
+    while (done < count) {
+        const ssize_t n = once(data + done, std::min(count - done, kMostAtOnce), done);
+        if (n == 0) break;
+        if (n < 0 && errno == EINTR) continue;
+        if (n < 0) return system_error(path, errno, "cannot be read");
+        done += static_cast<std::size_t>(n);
+    }
+    return done;
+}
+
+Result<Descriptor> open_descriptor(const std::string& path) {
+    if (path.find('\0') != std::string::npos) {
+        return Error{ErrorCode::io, path, "the name holds a zero byte"};
+    }
+    int fd = -1;
+    do {
+        fd = path == "-" ? fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
+                         : ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY);
+    } while (fd < 0 && errno == EINTR);
+    if (fd < 0) return system_error(path, errno);
+    return Descriptor(fd);
+}
+
+}  // namespace
+
+Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
+    if (this != &other) {
+        reset();
+        fd_ = other.release();
+    }
+    return *this;
+}
+
+void Descriptor::reset() {
+    if (fd_ >= 0) ::close(fd_);
+    fd_ = -1;
+}
+
+Result<InputFile> InputFile::open(const std::string& path) {
+    return guarded([&]() -> Result<InputFile> {
+        InputFile file;
+        file.path_ = path;
+        Result<Descriptor> fd = open_descriptor(path);
+        if (!fd) return std::move(fd).error();
+        file.fd_ = std::move(*fd);
+
+        struct stat status {};
+        if (fstat(file.fd_.get(), &status) != 0) return system_error(path, errno);
+        if (S_ISDIR(status.st_mode)) return Error{ErrorCode::io, path, "is a directory"};
+        // /dev/zero has no end, a disk no picture. A terminal or /dev/null behind standard input is the user's own
+        // doing.
+        if (path != "-" && (S_ISBLK(status.st_mode) || S_ISCHR(status.st_mode)) && path != "/dev/stdin") {
+            return Error{ErrorCode::io, path, "is a device, not a file"};
+        }
+        // Files of /proc and /sys are regular and say that they have no bytes: only reading tells.
+        if (S_ISREG(status.st_mode) && status.st_size > 0) {
+            const off_t at = lseek(file.fd_.get(), 0, SEEK_CUR);
+            if (at >= 0) {
+                file.start_ = at;
+                file.size_ = std::max<std::int64_t>(0, status.st_size - at);
+            }
+        }
+
+        std::byte head[kHeadBytes];
+        const Result<std::size_t> got = file.read(head, kHeadBytes);
+        if (!got) return got.error();
+        if (*got == 0) return Error{ErrorCode::bad_data, path, "is empty"};
+        file.head_.assign(head, head + *got);
+        return file;
+    });
+}
+
+Result<InputFile> InputFile::from_memory(const std::string& name, std::vector<std::byte> bytes) {
+    return guarded([&]() -> Result<InputFile> {
+        if (bytes.empty()) return Error{ErrorCode::bad_data, name, "is empty"};
+        InputFile file;
+        file.path_ = name;
+        file.size_ = static_cast<std::int64_t>(bytes.size());
+        file.head_.assign(bytes.begin(),
+                          bytes.begin() + static_cast<std::ptrdiff_t>(std::min(bytes.size(), kHeadBytes)));
+        file.memory_ = std::move(bytes);
+        return file;
+    });
+}
+
+std::optional<int> InputFile::whole_file() const {
+    if (!size_ || memory_ || start_ != 0) return std::nullopt;
+    return fd_.get();
+}
+
+Result<void> InputFile::settle(std::int64_t limit) {
+    if (size_) return {};
+    Result<std::vector<std::byte>> bytes = read_rest(limit);
+    if (!bytes) return std::move(bytes).error();
+    fd_.reset();
+    size_ = static_cast<std::int64_t>(bytes->size());
+    memory_ = std::move(*bytes);
+    position_ = 0;
+    return {};
+}
+
+Result<std::size_t> InputFile::read(std::byte* data, std::size_t count) {
+    if (memory_) {
+        Result<std::size_t> got = read_at(static_cast<std::int64_t>(position_), data, count);
+        position_ += *got;
+        return got;
+    }
+    const std::size_t known = std::min(count, head_.size() - position_);
+    if (known > 0) std::memcpy(data, head_.data() + position_, known);
+    position_ += known;
+    Result<std::size_t> more =
+        read_fully(path_, data + known, count - known,
+                   [&](std::byte* at, std::size_t n, std::size_t) { return ::read(fd_.get(), at, n); });
+    if (!more) return more;
+    return known + *more;
+}
+
+Result<void> InputFile::rewind() {
+    position_ = 0;
+    const auto after_head = start_ + static_cast<std::int64_t>(head_.size());
+    if (!memory_ && lseek(fd_.get(), after_head, SEEK_SET) < 0) return system_error(path_, errno);
+    return {};
+}
+
+Result<std::size_t> InputFile::read_at(std::int64_t offset, std::byte* data, std::size_t count) const {
+    if (memory_) {
+        const std::size_t from = std::min(static_cast<std::size_t>(offset), memory_->size());
+        const std::size_t n = std::min(count, memory_->size() - from);
+        if (n > 0) std::memcpy(data, memory_->data() + from, n);
+        return n;
+    }
+    return read_fully(path_, data, count, [&](std::byte* at, std::size_t n, std::size_t done) {
+        return ::pread(fd_.get(), at, n, start_ + offset + static_cast<std::int64_t>(done));
+    });
+}
+
+Result<std::vector<std::byte>> InputFile::read_rest(std::int64_t limit) {
+    return guarded([&]() -> Result<std::vector<std::byte>> {
+        const Error too_large{ErrorCode::unsupported, path_,
+                              "larger than " + std::to_string(limit) + " bytes, the most that is read"};
+        if (size_ && *size_ > limit) return too_large;
+        // One byte more than the file has tells its end without growing.
+        std::vector<std::byte> bytes(size_ ? static_cast<std::size_t>(*size_) + 1 : std::size_t{1} << 16);
+        std::size_t filled = 0;
+        for (;;) {
+            const Result<std::size_t> got = read(bytes.data() + filled, bytes.size() - filled);
+            if (!got) return got.error();
+            filled += *got;
+            if (static_cast<std::int64_t>(filled) > limit) return too_large;
+            if (filled < bytes.size()) break;
+            bytes.resize(bytes.size() * 2);
+        }
+        bytes.resize(filled);
+        return bytes;
+    });
+}
+
+std::int64_t largest_file(const ReadOptions& options) {
+    constexpr std::int64_t kHeader = 1 << 20;
+    const std::int64_t texels = std::max<std::int64_t>(options.max_texels, 0);
+    if (texels > std::numeric_limits<std::int64_t>::max() / 64) return std::numeric_limits<std::int64_t>::max();
+    return texels * 16 / 3 * 4 + kHeader;
+}
+
+Result<std::vector<std::byte>> read_whole_file(const std::string& path, const ReadOptions& options) {
+    Result<InputFile> file = InputFile::open(path);
+    if (!file) return std::move(file).error();
+    return file->read_rest(largest_file(options));
+}
+
+}  // namespace tex

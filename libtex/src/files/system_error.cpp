@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "files/system_error.h"
+
+#include <cerrno>
+
+namespace tex {
+
+Error system_error(const std::string& file, int number, const char* doing) {
+    const bool exhausted = number == ENOMEM || number == EMFILE || number == ENFILE;
+    std::string reason = doing;
+    if (!reason.empty()) reason += ": ";
+    return {exhausted ? ErrorCode::out_of_memory : ErrorCode::io, file, reason + system_reason(number)};
+}
+
+}  // namespace tex

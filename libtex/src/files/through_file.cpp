@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "files/through_file.h"
+
+#include <fcntl.h>
+#include <pthread.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <ctime>
+#include <utility>
+
+#include "files/system_error.h"
+
+namespace tex {
+namespace {
+
+// 0, or the errno of what failed.
+int write_fully(int fd, std::span<const std::byte> bytes) {
+    constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;
+    while (!bytes.empty()) {
+        const ssize_t n = ::write(fd, bytes.data(), std::min(bytes.size(), kMostAtOnce));
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return n < 0 ? errno : EIO;
+        bytes = bytes.subspan(static_cast<std::size_t>(n));
+    }
+    return 0;
+}
+
+// While it lives, a pipe without a reader is an error (EPIPE) for this thread, not a signal that ends the process.
+class NoPipeSignal {
+public:
+    NoPipeSignal() {
+        sigemptyset(&pipe_);
+        sigaddset(&pipe_, SIGPIPE);
+        sigset_t pending;
+        sigpending(&pending);
+        was_pending_ = sigismember(&pending, SIGPIPE) == 1;
+        pthread_sigmask(SIG_BLOCK, &pipe_, &before_);
+    }
+    ~NoPipeSignal() {
+        const timespec at_once{};
+        while (!was_pending_ && sigtimedwait(&pipe_, nullptr, &at_once) == -1 && errno == EINTR) {
+        }
+        pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+    }
+    NoPipeSignal(const NoPipeSignal&) = delete;
+    NoPipeSignal& operator=(const NoPipeSignal&) = delete;
+
+private:
+    sigset_t pipe_{};
+    sigset_t before_{};
+    bool was_pending_ = false;
+};
+
+}  // namespace
+
+Result<std::optional<ThroughFile>> ThroughFile::open(const std::string& path) {
+    if (const std::optional<int> fd = named_descriptor(path))
+        return std::optional(ThroughFile(path, Descriptor(), *fd));
+    struct stat status {};
+    if (stat(path.c_str(), &status) != 0) return std::optional<ThroughFile>();
+    if (S_ISDIR(status.st_mode)) return system_error(path, EISDIR);
+    if (S_ISREG(status.st_mode)) return std::optional<ThroughFile>();
+    Descriptor device(::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY));
+    // A FIFO waits here for its reader: whoever sends a signal meanwhile wants the wait to end.
+    if (!device && errno == EINTR) return Error{ErrorCode::cancelled, path, "interrupted while waiting for a reader"};
+    if (!device) return system_error(path, errno);
+    const int fd = device.get();
+    return std::optional(ThroughFile(path, std::move(device), fd));
+}
+
+ThroughFile::ThroughFile(std::string path, Descriptor owned, int fd)
+    : path_(std::move(path)), owned_(std::move(owned)), fd_(fd), mutex_(std::make_unique<std::mutex>()) {}
+
+Result<void> ThroughFile::write(std::span<const std::byte> bytes) {
+    const NoPipeSignal no_signal;
+    if (const int failed = write_fully(fd_, bytes); failed != 0)
+        return system_error(path_, failed, "cannot be written");
+    return {};
+}
+
+void ThroughFile::hold(std::uint64_t offset, std::span<const std::byte> bytes) {
+    const std::lock_guard lock(*mutex_);
+    held_.emplace(offset, std::vector<std::byte>(bytes.begin(), bytes.end()));
+}
+
+Result<void> ThroughFile::write_held() {
+    const std::lock_guard lock(*mutex_);
+    std::uint64_t position = 0;
+    for (auto& [offset, bytes] : held_) {
+        const std::vector<std::byte> gap(static_cast<std::size_t>(offset - position));
+        if (Result<void> written = write(gap); !written) return written;
+        if (Result<void> written = write(bytes); !written) return written;
+        position = offset + bytes.size();
+    }
+    held_.clear();
+    return {};
+}
+
+}  // namespace tex

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// through_file.h: standard output, FIFOs and devices, which are written through.
+
+#pragma once
+
+#include <unistd.h>
+
+#include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tex/result.h>
+
+#include "files/input_file.h"
+
+namespace tex {
+
+// The descriptor that "-", /dev/stdout, /dev/fd/N and /proc/self/fd/N stand for. They are written through even where a
+// file is behind them: the shell that opened it holds on to that file. (Here, so that the commands have it too.)
+inline std::optional<int> named_descriptor(std::string_view path) {
+    if (path == "-" || path == "/dev/stdout") return STDOUT_FILENO;
+    for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
+        if (!path.starts_with(folder)) continue;
+        path.remove_prefix(folder.size());
+        int fd = -1;
+        const auto [end, error] = std::from_chars(path.data(), path.data() + path.size(), fd);
+        if (error == std::errc() && end == path.data() + path.size()) return fd;
+        return std::nullopt;
+    }
+    return std::nullopt;
+}
+
+class ThroughFile {
+public:
+    // Nothing where `path` is, or will be, a regular file. Errors: io; cancelled, see write_file().
+    static Result<std::optional<ThroughFile>> open(const std::string& path);
+
+    // Writes bytes behind those that are written already. Errors: io.
+    Result<void> write(std::span<const std::byte> bytes);
+
+    // Keeps bytes in memory until write_held(), as nothing may go out that an error would make worthless. Any thread
+    // may call. Throws std::bad_alloc.
+    void hold(std::uint64_t offset, std::span<const std::byte> bytes);
+    // Writes all that is held, in order, with zeros in between. Errors: io.
+    Result<void> write_held();
+
+private:
+    ThroughFile(std::string path, Descriptor owned, int fd);
+
+    std::string path_;
+    Descriptor owned_;  // where fd_ is ours
+    int fd_;
+    std::unique_ptr<std::mutex> mutex_;
+    std::map<std::uint64_t, std::vector<std::byte>> held_;  // by offset
+};
+
+}  // namespace tex

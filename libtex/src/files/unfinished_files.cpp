@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "files/unfinished_files.h"
+
+#include <time.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cassert>
+#include <cstring>
+
+#include <tex/container.h>
+
+namespace tex {
+
+// A list that only grows, to as many places as there were files at once: whoever walks through it needs no lock.
+struct UnfinishedFile::Place {
+    std::atomic<bool> taken{true};
+    std::atomic<bool> exists{false};  // the file; `folder` and `name` are set
+    int folder = -1;
+    char name[NAME_MAX + 1] = {};
+    Place* next = nullptr;
+};
+
+struct UnfinishedFiles {
+    using Place = UnfinishedFile::Place;
+
+    // Sections under way, and whether no other may begin.
+    static constexpr unsigned kClosed = 1u << 31;
+    static inline std::atomic<unsigned> sections{0};
+    static inline std::atomic<Place*> first{nullptr};
+    static_assert(std::atomic<unsigned>::is_always_lock_free && std::atomic<Place*>::is_always_lock_free &&
+                  std::atomic<bool>::is_always_lock_free);
+
+    static Place* take() {
+        for (Place* place = first; place != nullptr; place = place->next) {
+            bool taken = false;
+            if (place->taken.compare_exchange_strong(taken, true)) return place;
+        }
+        auto* made = new Place;
+        made->next = first;
+        while (!first.compare_exchange_weak(made->next, made)) {
+        }
+        return made;
+    }
+};
+
+namespace {
+
+void block_signals(sigset_t* before) {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, before);
+}
+
+// Until another thread ends the process.
+[[noreturn]] void wait_for_the_end() {
+    for (;;) pause();
+}
+
+}  // namespace
+
+NameSection::NameSection() {
+    block_signals(&before_);
+    if ((UnfinishedFiles::sections.fetch_add(1) & UnfinishedFiles::kClosed) == 0) return;
+    UnfinishedFiles::sections.fetch_sub(1);
+    wait_for_the_end();
+}
+
+NameSection::~NameSection() {
+    UnfinishedFiles::sections.fetch_sub(1);
+    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+}
+
+UnfinishedFile::UnfinishedFile() : place_(UnfinishedFiles::take()) {}
+
+UnfinishedFile::~UnfinishedFile() {
+    assert(!place_->exists);
+    place_->taken = false;
+}
+
+void UnfinishedFile::add(const NameSection&, int folder, const std::string& name) {
+    assert(name.size() <= NAME_MAX);
+    place_->folder = folder;
+    std::memcpy(place_->name, name.c_str(), name.size() + 1);
+    place_->exists = true;
+}
+
+void UnfinishedFile::remove(const NameSection&) { place_->exists = false; }
+
+void remove_unfinished_files() noexcept {
+    block_signals(nullptr);
+    if ((UnfinishedFiles::sections.fetch_or(UnfinishedFiles::kClosed) & UnfinishedFiles::kClosed) != 0)
+        wait_for_the_end();
+    constexpr timespec kMoment{0, 100'000};
+    while (UnfinishedFiles::sections != UnfinishedFiles::kClosed) nanosleep(&kMoment, nullptr);
+    for (UnfinishedFiles::Place* place = UnfinishedFiles::first; place != nullptr; place = place->next) {
+        if (place->exists) unlinkat(place->folder, place->name, 0);
+    }
+}
+
+}  // namespace tex

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "formats/dds/dds.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+
+#include <tex/mip_chain.h>
+
+#include "formats/bytes.h"
+#include "formats/claims.h"
+#include "formats/dds/dds_format.h"
+
+namespace tex {
+namespace {
+
+constexpr std::size_t kMagicBytes = 4;
+constexpr std::size_t kHeaderBytes = 124;
+constexpr std::size_t kPixelFormatBytes = 32;
+constexpr std::size_t kDx10Bytes = 20;
+
+// DDS_HEADER::dwFlags, dwCaps and dwCaps2 (ddraw.h).
+constexpr std::uint32_t kDdsdCaps = 0x1;
+constexpr std::uint32_t kDdsdHeight = 0x2;
+constexpr std::uint32_t kDdsdWidth = 0x4;
+constexpr std::uint32_t kDdsdPitch = 0x8;
+constexpr std::uint32_t kDdsdPixelFormat = 0x1000;
+constexpr std::uint32_t kDdsdMipMapCount = 0x20000;
+constexpr std::uint32_t kDdsdLinearSize = 0x80000;
+constexpr std::uint32_t kDdsdDepth = 0x800000;
+constexpr std::uint32_t kCapsComplex = 0x8;
+constexpr std::uint32_t kCapsTexture = 0x1000;
+constexpr std::uint32_t kCapsMipMap = 0x400000;
+constexpr std::uint32_t kCaps2CubeMap = 0x200;
+constexpr std::uint32_t kCaps2Volume = 0x200000;
+
+// DDS_HEADER_DXT10.
+constexpr std::uint32_t kDimensionTexture1d = 2;
+constexpr std::uint32_t kDimensionTexture2d = 3;
+constexpr std::uint32_t kDimensionTexture3d = 4;
+constexpr std::uint32_t kMiscTextureCube = 0x4;
+constexpr std::uint32_t kAlphaModeCustom = 4;  // alpha is a channel like the others
+
+// -- writing -------------------------------------------------------------------------------------------------
+
+bool is_dxt5nm(const Swizzle& swizzle) {
+    return swizzle[0] != Component::x && swizzle[1] == Component::y && swizzle[3] == Component::x;
+}
+
+// The pixel format of a legacy header; nullopt where the format has none.
+std::optional<DdsPixelFormat> legacy_pixel_format(const TextureHead& head) {
+    const auto coded = [](std::uint32_t code, std::uint32_t swizzle_code = 0) {
+        return DdsPixelFormat{kDdpfFourCc, code, swizzle_code, {}};
+    };
+    switch (head.format) {
+        case Format::bc1_unorm: return coded(fourcc("DXT1"));
+        case Format::bc2_unorm: return coded(fourcc("DXT3"));
+        case Format::bc3_unorm: return coded(fourcc("DXT5"));
+        case Format::bc4_unorm: return coded(fourcc("ATI1"));
+        case Format::bc4_snorm: return coded(fourcc("BC4S"));
+        // Without the code ATI2 means y first.
+        case Format::bc5_unorm: return coded(fourcc("ATI2"), head.swizzle[0] == Component::y ? 0 : fourcc("A2XY"));
+        case Format::bc5_snorm: return coded(fourcc("BC5S"));
+        case Format::r8_unorm: return DdsPixelFormat{kDdpfLuminance, 0, 8, {0xff, 0, 0, 0}};
+        case Format::r16_unorm: return DdsPixelFormat{kDdpfLuminance, 0, 16, {0xffff, 0, 0, 0}};
+        // Blue first, as Direct3D 9 has it: some readers (ImageMagick 6) do not look at the masks.
+        case Format::rgb8_unorm: return DdsPixelFormat{kDdpfRgb, 0, 24, {0xff0000, 0xff00, 0xff, 0}};
+        case Format::rgba8_unorm:
+            return DdsPixelFormat{kDdpfRgb | kDdpfAlphaPixels, 0, 32, {0xff0000, 0xff00, 0xff, 0xff000000}};
+        case Format::rgb16_unorm:
+        case Format::rgba16_unorm: return coded(36);
+        case Format::rgba16_snorm: return coded(110);
+        case Format::r16_float: return coded(111);
+        case Format::rg16_float: return coded(112);
+        case Format::rgb16_float:
+        case Format::rgba16_float: return coded(113);
+        case Format::r32_float: return coded(114);
+        case Format::rg32_float: return coded(115);
+        case Format::rgb32_float:
+        case Format::rgba32_float: return coded(116);
+        default: return std::nullopt;
+    }
+}
+
+// The format of four channels that a format of three is widened to; others as they are.
+Format widened(Format format) {
+    switch (format) {
+        case Format::rgb16_unorm: return Format::rgba16_unorm;
+        case Format::rgb16_float: return Format::rgba16_float;
+        case Format::rgb32_float: return Format::rgba32_float;
+        default: return format;
+    }
+}
+
+// dwPitchOrLinearSize: bytes of a row of texels, or of the base level for block formats.
+std::uint32_t pitch_or_size(const TextureHead& head, Rearrange rearrange) {
+    const Extent base = format_info(head.format).block == 1 ? Extent{head.extent.width, 1} : head.extent;
+    const std::size_t bytes = stored_level_bytes(head.format, base, rearrange);
+    return static_cast<std::uint32_t>(std::min<std::size_t>(bytes, 0xffffffffu));
+}
+
+// -- reading -------------------------------------------------------------------------------------------------
+
+struct Header {
+    std::uint32_t flags = 0;
+    std::uint32_t height = 0;
+    std::uint32_t width = 0;
+    std::uint32_t depth = 0;
+    std::uint32_t mip_map_count = 0;
+    DdsPixelFormat pixel_format;
+    std::uint32_t caps2 = 0;
+    std::size_t end = kMagicBytes + kHeaderBytes;  // where the levels begin
+    bool has_dx10 = false;
+    std::uint32_t dxgi = 0;
+    std::uint32_t dimension = 0;
+    std::uint32_t misc = 0;
+    std::uint32_t array_size = 0;
+    std::vector<std::string> remarks;
+};
+
+Error bad_data(const std::string& name, std::string reason) { return {ErrorCode::bad_data, name, std::move(reason)}; }
+
+Error unsupported(const std::string& name, std::string reason) {
+    return {ErrorCode::unsupported, name, std::move(reason)};
+}
+
+Result<Header> parse_header(const std::byte* data, std::size_t size, const std::string& name) {
+    if (size < kMagicBytes + kHeaderBytes) return bad_data(name, "truncated: the DDS header is not complete");
+    const auto field = [&](std::size_t index) { return load_u32(data + kMagicBytes + 4 * index); };
+    Header header;
+    // Tools have written 24 in both places; the fields stand where they always do.
+    const std::uint32_t header_bytes = field(0);
+    const std::uint32_t format_bytes = field(18);
+    if (header_bytes != kHeaderBytes && header_bytes != 24) {
+        return bad_data(name, "DDS header of " + std::to_string(header_bytes) + " bytes instead of 124");
+    }
+    if (format_bytes != kPixelFormatBytes && format_bytes != 24 && format_bytes != 0) {
+        return bad_data(name, "DDS pixel format of " + std::to_string(format_bytes) + " bytes instead of 32");
+    }
+    if (header_bytes != kHeaderBytes) header.remarks.push_back("the header gives its size as 24 instead of 124");
+    if (format_bytes != kPixelFormatBytes) {
+        header.remarks.push_back("the pixel format gives its size as " + std::to_string(format_bytes) +
+                                 " instead of 32");
+    }
+    header.flags = field(1);
+    header.height = field(2);
+    header.width = field(3);
+    header.depth = field(5);
+    header.mip_map_count = field(6);
+    header.pixel_format = {field(19), field(20), field(21), {field(22), field(23), field(24), field(25)}};
+    header.caps2 = field(27);
+    if (header.pixel_format.four_cc == fourcc("DX10") && (header.pixel_format.flags & kDdpfFourCc) != 0) {
+        if (size < header.end + kDx10Bytes) return bad_data(name, "truncated: the DX10 header is not complete");
+        const auto dx10 = [&](std::size_t index) { return load_u32(data + header.end + 4 * index); };
+        header.has_dx10 = true;
+        header.dxgi = dx10(0);
+        header.dimension = dx10(1);
+        header.misc = dx10(2);
+        header.array_size = dx10(3);
+        header.end += kDx10Bytes;
+    }
+    return header;
+}
+
+// Refuses what is not one two-dimensional texture.
+Result<void> check_kind(Header& header, const std::string& name) {
+    const bool cube = (header.caps2 & kCaps2CubeMap) != 0 || (header.has_dx10 && (header.misc & kMiscTextureCube) != 0);
+    const bool volume = (header.caps2 & kCaps2Volume) != 0 || ((header.flags & kDdsdDepth) != 0 && header.depth > 1) ||
+                        (header.has_dx10 && header.dimension == kDimensionTexture3d);
+    if (cube) return unsupported(name, "cube maps are not supported");
+    if (volume) return unsupported(name, "volume textures are not supported");
+    if (!header.has_dx10) return {};
+    if (header.array_size > 1) return unsupported(name, "texture arrays are not supported");
+    if (header.array_size == 0) header.remarks.push_back("the array size is 0 instead of 1");
+    if (header.dimension != kDimensionTexture2d && !(header.dimension == kDimensionTexture1d && header.height == 1)) {
+        header.remarks.push_back("the resource dimension is " + std::to_string(header.dimension) + " instead of 3");
+    }
+    return {};
+}
+
+// Bytes of a level in the file. Does not overflow: at most 2^40 texels of 16 bytes.
+std::size_t file_bytes(const DdsTexels& texels, Extent extent) {
+    if (!texels.fields) return level_bytes(texels.format, extent);
+    return static_cast<std::size_t>(extent.texels()) * static_cast<std::size_t>(texels.fields->texel_bytes);
+}
+
+// How many levels the header means.
+int wanted_levels(const Header& header, Extent extent, std::vector<std::string>& remarks) {
+    const int most = level_count(extent);
+    if (header.mip_map_count <= static_cast<std::uint32_t>(most)) {
+        return std::max(1, static_cast<int>(header.mip_map_count));
+    }
+    remarks.push_back("the mip count is " + std::to_string(header.mip_map_count) + ", a complete chain has " +
+                      std::to_string(most));
+    return most;
+}
+
+}  // namespace
+
+bool is_dds(const std::byte* data, std::size_t size) { return size >= kMagicBytes && load_u32(data) == fourcc("DDS "); }
+
+FileLayout dds_layout(const TextureHead& head, const WriteOptions& options) {
+    std::optional<DdsPixelFormat> legacy = legacy_pixel_format(head);
+    const std::uint32_t dxgi = dxgi_of(widened(head.format));
+    const bool dx10 = !legacy || (options.dds_header == DdsHeader::dx10 && dxgi != 0);
+    DdsPixelFormat pixel_format = dx10 ? DdsPixelFormat{kDdpfFourCc, fourcc("DX10"), 0, {}} : *legacy;
+    if (options.dds_mark) {
+        pixel_format.flags |= kDdpfNormal;
+        if (!dx10 && head.format == Format::bc3_unorm && is_dxt5nm(head.swizzle)) {
+            pixel_format.bit_count = fourcc("A2D5");
+        }
+    }
+
+    FileLayout layout;
+    if (widened(head.format) != head.format) layout.rearrange = Rearrange::widen;
+    if ((pixel_format.flags & kDdpfRgb) != 0) layout.rearrange = Rearrange::bgr;
+    const bool mips = head.levels > 1;
+    const bool block = format_info(head.format).block > 1;
+
+    ByteWriter writer;
+    writer.text("DDS ");
+    writer.u32(kHeaderBytes);
+    writer.u32(kDdsdCaps | kDdsdHeight | kDdsdWidth | kDdsdPixelFormat | kDdsdMipMapCount |
+               (block ? kDdsdLinearSize : kDdsdPitch));
+    writer.u32(static_cast<std::uint32_t>(head.extent.height));
+    writer.u32(static_cast<std::uint32_t>(head.extent.width));
+    writer.u32(pitch_or_size(head, layout.rearrange));
+    writer.u32(0);  // depth
+    writer.u32(static_cast<std::uint32_t>(head.levels));
+    writer.zeros(11 * sizeof(std::uint32_t));  // reserved: where tools sign
+    writer.u32(kPixelFormatBytes);
+    writer.u32(pixel_format.flags);
+    writer.u32(pixel_format.four_cc);
+    writer.u32(pixel_format.bit_count);
+    for (const std::uint32_t mask : pixel_format.masks) writer.u32(mask);
+    writer.u32(kCapsTexture | (mips ? kCapsComplex | kCapsMipMap : 0));
+    writer.zeros(4 * sizeof(std::uint32_t));  // caps2 to caps4, reserved
+    if (dx10) {
+        const Component alpha = head.swizzle[3];
+        const bool custom = alpha == Component::x || alpha == Component::y || alpha == Component::z;
+        writer.u32(dxgi);
+        writer.u32(kDimensionTexture2d);
+        writer.u32(0);  // misc
+        writer.u32(1);  // array size
+        writer.u32(custom ? kAlphaModeCustom : 0);
+    }
+
+    layout.size = writer.size();
+    layout.head = writer.take();
+    for (int k = 0; k < head.levels; ++k) {
+        const std::size_t bytes = stored_level_bytes(head.format, level_extent(head.extent, k), layout.rearrange);
+        layout.levels.push_back({layout.size, bytes});
+        layout.size += bytes;
+    }
+    return layout;
+}
+
+Result<StoredTexture> parse_dds(const FetchBytes& fetch, std::size_t size, const std::string& name,
+                                const ReadOptions& options) {
+    const Result<std::vector<std::byte>> head = fetch(0, std::min(size, kMagicBytes + kHeaderBytes + kDx10Bytes));
+    if (!head) return head.error();
+    Result<Header> header = parse_header(head->data(), size, name);
+    if (!header) return header.error();
+    if (const Result<void> kind = check_kind(*header, name); !kind) return kind.error();
+    const Result<Extent> extent = claimed_extent(name, header->width, header->height, options);
+    if (!extent) return extent.error();
+    Result<DdsTexels> texels = header->has_dx10 ? texels_of_dxgi(header->dxgi) : texels_of(header->pixel_format);
+    if (!texels) return Error{texels.error().code, name, texels.error().reason};
+
+    StoredTexture stored;
+    stored.fields = texels->fields;
+    Texture& texture = stored.head;
+    texture.format = texels->format;
+    texture.swizzle = texels->swizzle;
+    texture.swizzle_known = texels->swizzle_known;
+    texture.srgb = texels->srgb;
+    texture.remarks = std::move(header->remarks);
+    texture.remarks.insert(texture.remarks.end(), texels->remarks.begin(), texels->remarks.end());
+
+    const int wanted = wanted_levels(*header, *extent, texture.remarks);
+    std::size_t left = size - header->end;
+    for (int k = 0; k < wanted; ++k) {
+        const Extent level = level_extent(*extent, k);
+        const std::size_t bytes = file_bytes(*texels, level);
+        if (bytes > left) {
+            if (k == 0) {
+                return bad_data(name, "truncated: the base level wants " + std::to_string(bytes) + " bytes, " +
+                                          std::to_string(left) + " are left");
+            }
+            texture.remarks.push_back("the mip count is " + std::to_string(header->mip_map_count) +
+                                      ", the data end after " + std::to_string(k));
+            left = 0;
+            break;
+        }
+        stored.levels.push_back({level, size - left});
+        left -= bytes;
+    }
+    if (left > 0) {
+        texture.remarks.push_back(std::to_string(left) + " bytes after the last level were not read");
+    }
+    return stored;
+}
+
+Result<Texture> decode_dds(const std::byte* data, std::size_t size, const std::string& name,
+                           const ReadOptions& options) {
+    Result<StoredTexture> stored = parse_dds(fetch_from(data), size, name, options);
+    if (!stored) return stored.error();
+    return load_texture(*stored, data);
+}
+
+}  // namespace tex

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// dds_format.h: what the pixel format of a DDS file means, by FourCC, masks or DXGI number.
+
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tex/format.h>
+#include <tex/result.h>
+
+#include "formats/dds/fields.h"
+
+namespace tex {
+
+// DDS_PIXELFORMAT without its size.
+struct DdsPixelFormat {
+    std::uint32_t flags = 0;
+    std::uint32_t four_cc = 0;
+    std::uint32_t bit_count = 0;  // of a texel; tools leave a swizzle code here where there is a FourCC
+    std::array<std::uint32_t, 4> masks = {};
+};
+
+// DDS_PIXELFORMAT::dwFlags (ddraw.h; 0x80000000 is NVIDIA's).
+inline constexpr std::uint32_t kDdpfAlphaPixels = 0x1;
+inline constexpr std::uint32_t kDdpfAlpha = 0x2;
+inline constexpr std::uint32_t kDdpfFourCc = 0x4;
+inline constexpr std::uint32_t kDdpfRgb = 0x40;
+inline constexpr std::uint32_t kDdpfLuminance = 0x20000;
+inline constexpr std::uint32_t kDdpfBumpDudv = 0x80000;
+inline constexpr std::uint32_t kDdpfNormal = 0x80000000u;
+
+// How the texels of a file are stored and what they hold.
+struct DdsTexels {
+    Format format = Format::rgba8_unorm;
+    std::optional<FieldLayout> fields;  // to be converted to `format`; else the bytes are in `format`
+    Swizzle swizzle = {Component::x, Component::y, Component::z, Component::other};
+    bool swizzle_known = false;
+    bool srgb = false;
+    std::vector<std::string> remarks;
+};
+
+// The channels that normals are likeliest in, where nothing says so. BC3 is taken for DXT5nm.
+[[nodiscard]] Swizzle likely_swizzle(Format format);
+
+// From a legacy header. Errors: bad_data, unsupported; Error::file is left to the caller.
+[[nodiscard]] Result<DdsTexels> texels_of(const DdsPixelFormat& pixel_format);
+
+// From the DXGI_FORMAT of a DX10 header. Errors: unsupported.
+[[nodiscard]] Result<DdsTexels> texels_of_dxgi(std::uint32_t dxgi);
+
+// The DXGI_FORMAT that is exactly `format`; 0 where there is none.
+[[nodiscard]] std::uint32_t dxgi_of(Format format);
+
+}  // namespace tex

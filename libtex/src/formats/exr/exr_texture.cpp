@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "formats/exr/exr_texture.h"
+
+#include <algorithm>
+#include <optional>
+
+#include <ImfChannelList.h>
+#include <ImfStringAttribute.h>
+
+#include <tex/mip_chain.h>
+
+namespace tex {
+namespace {
+
+// The channels of a texture: colour where there is colour, else everything.
+Result<std::vector<ExrChannel>> texture_channels(const std::string& path, const Imf::Header& header) {
+    std::vector<ExrChannel> channels = channels_of(header);
+    const Imf::ChannelList& list = header.channels();
+    if (list.findChannel("R") && list.findChannel("G") && list.findChannel("B")) {
+        channels.resize(list.findChannel("A") ? 4 : 3);
+    } else if (channels.empty() || channels.size() > 4) {
+        return Error{ErrorCode::unsupported, path,
+                     std::to_string(channels.size()) + " channels, and not R, G and B among them"};
+    }
+    return channels;
+}
+
+Format float_format(std::size_t channels, bool half) {
+    constexpr Format kHalf[] = {Format::r16_float, Format::rg16_float, Format::rgb16_float, Format::rgba16_float};
+    constexpr Format kFloat[] = {Format::r32_float, Format::rg32_float, Format::rgb32_float, Format::rgba32_float};
+    return (half ? kHalf : kFloat)[channels - 1];
+}
+
+void describe_normals(const Imf::Header& header, std::size_t channels, Texture& texture) {
+    constexpr Component kX = Component::x, kY = Component::y, kZ = Component::z, kOther = Component::other;
+    if (channels == 1) texture.swizzle = {kOther, Component::zero, Component::zero, Component::one};
+    if (channels == 2) texture.swizzle = {kX, kY, Component::zero, Component::one};
+    if (channels == 3) texture.swizzle = {kX, kY, kZ, Component::one};
+    if (channels == 4) texture.swizzle = {kX, kY, kZ, kOther};
+    if (const auto* text = header.findTypedAttribute<Imf::StringAttribute>(kNormalEncoding)) {
+        texture.normal_encoding = text->value();
+        texture.swizzle_known = channels >= 2;
+    }
+    if (const auto* text = header.findTypedAttribute<Imf::StringAttribute>(kNormalYAxis)) {
+        if (const std::optional<YAxis> axis = find_by_name(kYAxisNames, text->value())) {
+            texture.y_axis = *axis;
+            texture.y_known = true;
+        }
+    }
+}
+
+// How many levels of a part follow our rule.
+int usable_levels(const Imf::Header& header, Extent base, std::vector<std::string>& remarks) {
+    const std::optional<Imf::TileDescription> tiles = tiles_of(header);
+    if (!tiles || tiles->mode == Imf::ONE_LEVEL) return 1;
+    if (tiles->mode == Imf::MIPMAP_LEVELS) {
+        const auto power = [](int n) { return (n & (n - 1)) == 0; };
+        if (tiles->roundingMode == Imf::ROUND_DOWN || (power(base.width) && power(base.height)))
+            return level_count(base);
+        remarks.emplace_back("mip levels with extents rounded up are left out");
+    } else {
+        remarks.emplace_back("ripmap levels are left out");
+    }
+    return 1;
+}
+
+}  // namespace
+
+Result<ExrTexture> exr_texture_of(const std::string& path, const Imf::Header& header, Extent base) {
+    Result<std::vector<ExrChannel>> channels = texture_channels(path, header);
+    if (!channels) return std::move(channels).error();
+    ExrTexture texture;
+    const bool half = std::all_of(channels->begin(), channels->end(),
+                                  [](const ExrChannel& channel) { return channel.type == Imf::HALF; });
+    texture.head.format = float_format(channels->size(), half);
+    describe_normals(header, channels->size(), texture.head);
+    texture.levels = usable_levels(header, base, texture.head.remarks);
+    texture.channels = std::move(*channels);
+    return texture;
+}
+
+}  // namespace tex

@@ -1,0 +1,363 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "formats/ktx2/ktx2.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <numeric>
+#include <optional>
+#include <string_view>
+
+#include <tex/mip_chain.h>
+
+#include "formats/bytes.h"
+#include "formats/claims.h"
+#include "formats/dds/dds_format.h"
+#include "formats/ktx2/ktx2_descriptor.h"
+
+namespace tex {
+namespace {
+
+constexpr unsigned char kIdentifier[12] = {0xab, 'K', 'T', 'X', ' ', '2', '0', 0xbb, '\r', '\n', 0x1a, '\n'};
+constexpr std::size_t kHeaderBytes = 80;      // identifier, header and index
+constexpr std::size_t kLevelIndexBytes = 24;  // for each level
+
+constexpr std::string_view kNormalKey = "libtex.normal";
+constexpr Swizzle kDxt5nm = {Component::one, Component::y, Component::one, Component::x};
+
+// A VkFormat. Texels with `bgr` store blue first.
+struct VkRow {
+    std::uint32_t vk;
+    Format format;
+    bool srgb;
+    bool bgr;
+};
+
+// The first row of a format is the one that is written.
+constexpr VkRow kVkFormats[] = {
+    {9, Format::r8_unorm, false, false},      {10, Format::r8_snorm, false, false},
+    {15, Format::r8_unorm, true, false},      {16, Format::rg8_unorm, false, false},
+    {17, Format::rg8_snorm, false, false},    {22, Format::rg8_unorm, true, false},
+    {23, Format::rgb8_unorm, false, false},   {29, Format::rgb8_unorm, true, false},
+    {30, Format::rgb8_unorm, false, true},    {36, Format::rgb8_unorm, true, true},
+    {37, Format::rgba8_unorm, false, false},  {38, Format::rgba8_snorm, false, false},
+    {43, Format::rgba8_unorm, true, false},   {44, Format::rgba8_unorm, false, true},
+    {50, Format::rgba8_unorm, true, true},    {70, Format::r16_unorm, false, false},
+    {71, Format::r16_snorm, false, false},    {76, Format::r16_float, false, false},
+    {77, Format::rg16_unorm, false, false},   {78, Format::rg16_snorm, false, false},
+    {83, Format::rg16_float, false, false},   {84, Format::rgb16_unorm, false, false},
+    {90, Format::rgb16_float, false, false},  {91, Format::rgba16_unorm, false, false},
+    {92, Format::rgba16_snorm, false, false}, {97, Format::rgba16_float, false, false},
+    {100, Format::r32_float, false, false},   {103, Format::rg32_float, false, false},
+    {106, Format::rgb32_float, false, false}, {109, Format::rgba32_float, false, false},
+    {133, Format::bc1_unorm, false, false},   {131, Format::bc1_unorm, false, false},
+    {132, Format::bc1_unorm, true, false},    {134, Format::bc1_unorm, true, false},
+    {135, Format::bc2_unorm, false, false},   {136, Format::bc2_unorm, true, false},
+    {137, Format::bc3_unorm, false, false},   {138, Format::bc3_unorm, true, false},
+    {139, Format::bc4_unorm, false, false},   {140, Format::bc4_snorm, false, false},
+    {141, Format::bc5_unorm, false, false},   {142, Format::bc5_snorm, false, false},
+};
+
+Error bad_data(const std::string& name, std::string reason) { return {ErrorCode::bad_data, name, std::move(reason)}; }
+
+Error unsupported(const std::string& name, std::string reason) {
+    return {ErrorCode::unsupported, name, std::move(reason)};
+}
+
+// -- writing -------------------------------------------------------------------------------------------------
+
+Format stored_format(Format format) {
+    switch (format) {
+        case Format::rgb16_unorm: return Format::rgba16_unorm;
+        case Format::rgb16_float: return Format::rgba16_float;
+        case Format::rgb32_float: return Format::rgba32_float;
+        default: return format;
+    }
+}
+
+std::uint32_t vk_format_of(Format format) {
+    for (const VkRow& row : kVkFormats) {
+        if (row.format == format) return row.vk;
+    }
+    return 0;
+}
+
+std::string normal_value(const TextureHead& head) {
+    std::string value = head.swizzle == kDxt5nm ? "dxt5nm" : to_string(head.swizzle);
+    if (head.y_known) value += head.y_axis == YAxis::up ? " +y" : " -y";
+    return value;
+}
+
+void write_entry(ByteWriter& writer, std::string_view key, std::string_view value) {
+    writer.u32(static_cast<std::uint32_t>(key.size() + value.size() + 2));
+    writer.text(key);
+    writer.u8(0);
+    writer.text(value);
+    writer.u8(0);
+    writer.align(4);
+}
+
+// Keys in the order of their code points, as the specification wants them.
+std::vector<std::byte> key_values(const TextureHead& head) {
+    ByteWriter writer;
+    write_entry(writer, "KTXorientation", "rd");
+    write_entry(writer, "KTXwriter", "libtex");
+    if (head.swizzle_known) write_entry(writer, kNormalKey, normal_value(head));
+    return writer.take();
+}
+
+std::size_t round_up(std::size_t value, std::size_t alignment) {
+    return (value + alignment - 1) / alignment * alignment;
+}
+
+// -- reading -------------------------------------------------------------------------------------------------
+
+struct Ktx2Header {
+    std::uint32_t vk_format, width, height, depth, layers, faces, levels, supercompression;
+    std::uint32_t key_values_offset, key_values_bytes;
+};
+
+Ktx2Header parse_header(const std::byte* data) {
+    const auto field = [&](std::size_t offset) { return load_u32(data + offset); };
+    return {field(12), field(20), field(24), field(28), field(32),
+            field(36), field(40), field(44), field(56), field(60)};
+}
+
+Result<Extent> check_header(const Ktx2Header& header, const std::string& name, const ReadOptions& options) {
+    if (header.supercompression != 0) {
+        return unsupported(name,
+                           "supercompression scheme " + std::to_string(header.supercompression) + " is not supported");
+    }
+    if (header.faces == 6) return unsupported(name, "cube maps are not supported");
+    if (header.faces != 1) return bad_data(name, std::to_string(header.faces) + " faces");
+    if (header.depth > 1) return unsupported(name, "volume textures are not supported");
+    if (header.layers > 1) return unsupported(name, "texture arrays are not supported");
+    if (header.height == 0) return unsupported(name, "one-dimensional textures are not supported");
+    return claimed_extent(name, header.width, header.height, options);
+}
+
+struct KeyValue {
+    std::string_view key;
+    std::string_view value;  // without the final zero of a string
+};
+
+// nullopt where the entries do not add up.
+std::optional<std::vector<KeyValue>> parse_key_values(const std::byte* data, std::size_t size) {
+    std::vector<KeyValue> entries;
+    while (size >= 4) {
+        const std::size_t bytes = load_u32(data);
+        if (bytes > size - 4) return std::nullopt;
+        const std::string_view entry(reinterpret_cast<const char*>(data + 4), bytes);
+        const std::size_t end = entry.find('\0');
+        if (end == std::string_view::npos) return std::nullopt;
+        std::string_view value = entry.substr(end + 1);
+        if (!value.empty() && value.back() == '\0') value.remove_suffix(1);
+        entries.push_back({entry.substr(0, end), value});
+        const std::size_t step = std::min(size, round_up(4 + bytes, 4));
+        data += step;
+        size -= step;
+    }
+    return entries;
+}
+
+// The value of "libtex.normal". False where it is none that ktx2_layout() writes.
+bool apply_normal_key(std::string_view value, Texture& texture) {
+    const std::size_t blank = value.find(' ');
+    const std::string_view swizzle_text = value.substr(0, blank);
+    Swizzle swizzle;
+    if (swizzle_text == "dxt5nm") {
+        swizzle = kDxt5nm;
+    } else {
+        if (swizzle_text.size() != 4) return false;
+        for (std::size_t c = 0; c < 4; ++c) {
+            const auto component = find_by_name(kComponentNames, swizzle_text.substr(c, 1));
+            if (!component) return false;
+            swizzle[c] = *component;
+        }
+    }
+    if (blank != std::string_view::npos) {
+        const std::string_view y = value.substr(blank + 1);
+        if (y != "+y" && y != "-y") return false;
+        texture.y_axis = y == "+y" ? YAxis::up : YAxis::down;
+        texture.y_known = true;
+    }
+    texture.swizzle = swizzle;
+    texture.swizzle_known = true;
+    texture.normal_encoding = "signed";
+    return true;
+}
+
+// KTXswizzle says which stored channel a shader finds in its R, G, B and A: "ag01" shows x in R and y in G.
+bool apply_ktx_swizzle(std::string_view value, Texture& texture) {
+    constexpr std::string_view kChannels = "rgba";
+    if (value.size() != 4) return false;
+    const std::size_t x = kChannels.find(value[0]);
+    const std::size_t y = kChannels.find(value[1]);
+    const std::size_t z = kChannels.find(value[2]);
+    if (x == std::string_view::npos || y == std::string_view::npos || x == y) return false;
+    Swizzle swizzle = {Component::other, Component::other, Component::other, Component::other};
+    swizzle[x] = Component::x;
+    swizzle[y] = Component::y;
+    if (z != std::string_view::npos && z != x && z != y) swizzle[z] = Component::z;
+    texture.swizzle = swizzle;
+    texture.swizzle_known = true;
+    return true;
+}
+
+// What the key/value data say. Returns true where rows run upwards. Errors: those of `fetch`.
+Result<bool> apply_key_values(const FetchBytes& fetch, std::size_t size, const Ktx2Header& header, Texture& texture) {
+    if (header.key_values_bytes == 0) return false;
+    const std::size_t offset = header.key_values_offset;
+    std::vector<std::byte> bytes;  // that the entries point into
+    std::optional<std::vector<KeyValue>> entries;
+    if (offset <= size && header.key_values_bytes <= size - offset) {
+        Result<std::vector<std::byte>> fetched = fetch(offset, header.key_values_bytes);
+        if (!fetched) return fetched.error();
+        bytes = std::move(*fetched);
+        entries = parse_key_values(bytes.data(), bytes.size());
+    }
+    if (!entries) {
+        texture.remarks.push_back("the key/value data are damaged and were not read");
+        return false;
+    }
+    bool upwards = false;
+    bool own = false;
+    for (const KeyValue& entry : *entries) {
+        if (entry.key == "KTXorientation" && entry.value.size() >= 2) upwards = entry.value[1] == 'u';
+        if (entry.key == "KTXswizzle" && entry.value != "rgba" && !own && !apply_ktx_swizzle(entry.value, texture)) {
+            texture.remarks.push_back("KTXswizzle was not understood");
+        }
+        if (entry.key == kNormalKey) {
+            own = apply_normal_key(entry.value, texture);
+            if (!own) texture.remarks.push_back("the key libtex.normal was not understood");
+        }
+    }
+    return upwards;
+}
+
+// Where level k stands, by its entry in the level index.
+Result<StoredTexture::Place> place_of(const std::byte* entry, std::size_t size, std::size_t k, Format format,
+                                      Extent extent, const std::string& name) {
+    const std::uint64_t offset = load_u64(entry);
+    const std::uint64_t bytes = load_u64(entry + 8);
+    const std::size_t wanted = level_bytes(format, extent);
+    const std::string level_text = "level " + std::to_string(k);
+    if (bytes != wanted) {
+        return bad_data(name,
+                        level_text + " has " + std::to_string(bytes) + " bytes instead of " + std::to_string(wanted));
+    }
+    if (offset > size || bytes > size - offset) {
+        return bad_data(name, "truncated: " + level_text + " ends beyond the end of the file");
+    }
+    return StoredTexture::Place{extent, offset};
+}
+
+}  // namespace
+
+bool is_ktx2(const std::byte* data, std::size_t size) {
+    return size >= sizeof kIdentifier && std::memcmp(data, kIdentifier, sizeof kIdentifier) == 0;
+}
+
+FileLayout ktx2_layout(const TextureHead& head) {
+    const Format stored = stored_format(head.format);
+    const FormatInfo info = format_info(stored);
+    const auto level_total = static_cast<std::size_t>(head.levels);
+    const std::vector<std::byte> descriptor = data_format_descriptor(stored);
+    const std::vector<std::byte> entries = key_values(head);
+    const std::size_t descriptor_offset = kHeaderBytes + level_total * kLevelIndexBytes;
+    const std::size_t entries_offset = descriptor_offset + descriptor.size();
+
+    FileLayout layout;
+    if (stored != head.format) layout.rearrange = Rearrange::widen;
+    layout.levels.resize(level_total);
+    layout.size = entries_offset + entries.size();
+    const std::size_t alignment = std::lcm(info.block_bytes, std::size_t{4});
+    for (std::size_t k = level_total; k-- > 0;) {
+        layout.size = round_up(layout.size, alignment);
+        layout.levels[k] = {layout.size, level_bytes(stored, level_extent(head.extent, static_cast<int>(k)))};
+        layout.size += layout.levels[k].bytes;
+    }
+
+    ByteWriter writer;
+    for (const unsigned char c : kIdentifier) writer.u8(c);
+    writer.u32(vk_format_of(stored));
+    writer.u32(info.block > 1 ? 1 : static_cast<std::uint32_t>(info.bits / 8));  // bytes of one value
+    writer.u32(static_cast<std::uint32_t>(head.extent.width));
+    writer.u32(static_cast<std::uint32_t>(head.extent.height));
+    writer.u32(0);  // depth
+    writer.u32(0);  // layers
+    writer.u32(1);  // faces
+    writer.u32(static_cast<std::uint32_t>(head.levels));
+    writer.u32(0);  // no supercompression
+    writer.u32(static_cast<std::uint32_t>(descriptor_offset));
+    writer.u32(static_cast<std::uint32_t>(descriptor.size()));
+    writer.u32(static_cast<std::uint32_t>(entries_offset));
+    writer.u32(static_cast<std::uint32_t>(entries.size()));
+    writer.u64(0);  // supercompression global data
+    writer.u64(0);
+    for (const FileLayout::Place& place : layout.levels) {
+        writer.u64(place.offset);
+        writer.u64(place.bytes);
+        writer.u64(place.bytes);  // uncompressed
+    }
+    layout.head = writer.take();
+    layout.head.insert(layout.head.end(), descriptor.begin(), descriptor.end());
+    layout.head.insert(layout.head.end(), entries.begin(), entries.end());
+    return layout;
+}
+
+Result<StoredTexture> parse_ktx2(const FetchBytes& fetch, std::size_t size, const std::string& name,
+                                 const ReadOptions& options) {
+    if (size < kHeaderBytes) return bad_data(name, "truncated: the KTX2 header is not complete");
+    const Result<std::vector<std::byte>> head = fetch(0, kHeaderBytes);
+    if (!head) return head.error();
+    const Ktx2Header header = parse_header(head->data());
+    const Result<Extent> extent = check_header(header, name, options);
+    if (!extent) return extent.error();
+    const auto row = std::find_if(std::begin(kVkFormats), std::end(kVkFormats),
+                                  [&](const VkRow& r) { return r.vk == header.vk_format; });
+    if (row == std::end(kVkFormats)) {
+        return unsupported(name, "VkFormat " + std::to_string(header.vk_format) + " is not supported");
+    }
+    const auto levels = std::max<std::uint32_t>(1, header.levels);  // 0: the reader makes the others
+    if (levels > static_cast<std::uint32_t>(level_count(*extent))) {
+        return bad_data(
+            name, std::to_string(levels) + " levels, a complete chain has " + std::to_string(level_count(*extent)));
+    }
+    if (size < kHeaderBytes + levels * kLevelIndexBytes) {
+        return bad_data(name, "truncated: the level index is not complete");
+    }
+
+    const Result<std::vector<std::byte>> index = fetch(kHeaderBytes, levels * kLevelIndexBytes);
+    if (!index) return index.error();
+
+    StoredTexture stored;
+    stored.bgr = row->bgr;
+    Texture& texture = stored.head;
+    texture.format = row->format;
+    texture.swizzle = likely_swizzle(row->format);
+    texture.srgb = row->srgb;
+    const Result<bool> upwards = apply_key_values(fetch, size, header, texture);
+    if (!upwards) return upwards.error();
+    stored.upwards = *upwards;
+    if (stored.upwards && format_info(row->format).block > 1) {
+        return unsupported(name, "blocks whose rows run upwards (KTXorientation) are not supported");
+    }
+    for (std::size_t k = 0; k < levels; ++k) {
+        const Result<StoredTexture::Place> place = place_of(index->data() + k * kLevelIndexBytes, size, k, row->format,
+                                                            level_extent(*extent, static_cast<int>(k)), name);
+        if (!place) return place.error();
+        stored.levels.push_back(*place);
+    }
+    return stored;
+}
+
+Result<Texture> decode_ktx2(const std::byte* data, std::size_t size, const std::string& name,
+                            const ReadOptions& options) {
+    Result<StoredTexture> stored = parse_ktx2(fetch_from(data), size, name, options);
+    if (!stored) return stored.error();
+    return load_texture(*stored, data);
+}
+
+}  // namespace tex

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "formats/ktx2/ktx2_descriptor.h"
+
+#include <bit>
+#include <cstdint>
+
+#include "formats/bytes.h"
+
+namespace tex {
+namespace {
+
+// khr_df.h of the Khronos Data Format Specification.
+constexpr std::uint32_t kModelRgbsda = 1;
+constexpr std::uint32_t kModelBc1a = 128;
+constexpr std::uint32_t kTransferLinear = 1;
+constexpr std::uint32_t kPrimariesUnspecified = 0;
+constexpr std::uint32_t kChannelColor = 0;
+constexpr std::uint32_t kChannelBc1aAlphaPresent = 1;
+constexpr std::uint32_t kChannelAlpha = 15;
+constexpr std::uint32_t kQualifierSigned = 0x40;
+constexpr std::uint32_t kQualifierFloat = 0x80;
+
+struct Sample {
+    std::uint32_t channel = 0;  // with its qualifiers
+    std::uint32_t bit_offset = 0;
+    std::uint32_t bit_length = 0;
+    std::uint32_t lower = 0;  // the code (the bits of the float) of 0, or of -1 where it is signed
+    std::uint32_t upper = 0;  // of 1
+};
+
+std::uint32_t model_of(Format format) {
+    switch (format) {
+        case Format::bc1_unorm: return kModelBc1a;
+        case Format::bc2_unorm: return kModelBc1a + 1;
+        case Format::bc3_unorm: return kModelBc1a + 2;
+        case Format::bc4_unorm:
+        case Format::bc4_snorm: return kModelBc1a + 3;
+        case Format::bc5_unorm:
+        case Format::bc5_snorm: return kModelBc1a + 4;
+        default: return kModelRgbsda;
+    }
+}
+
+Sample block_sample(const FormatInfo& info, std::uint32_t channel, std::uint32_t bit_offset) {
+    if (info.sample == SampleKind::snorm) {
+        return {channel | kQualifierSigned, bit_offset, 64, 0x80000000u, 0x7fffffffu};
+    }
+    return {channel, bit_offset, 64, 0, 0xffffffffu};
+}
+
+std::vector<Sample> block_samples(Format format) {
+    const FormatInfo info = format_info(format);
+    switch (format) {
+        case Format::bc1_unorm: return {block_sample(info, kChannelBc1aAlphaPresent, 0)};
+        case Format::bc2_unorm:
+        case Format::bc3_unorm: return {block_sample(info, kChannelAlpha, 0), block_sample(info, kChannelColor, 64)};
+        case Format::bc5_unorm:
+        case Format::bc5_snorm: return {block_sample(info, 0, 0), block_sample(info, 1, 64)};  // red, green
+        default: return {block_sample(info, 0, 0)};
+    }
+}
+
+std::vector<Sample> texel_samples(const FormatInfo& info) {
+    const auto bits = static_cast<std::uint32_t>(info.bits);
+    std::vector<Sample> samples;
+    for (int c = 0; c < info.channels; ++c) {
+        Sample sample;
+        sample.channel = c == 3 ? kChannelAlpha : static_cast<std::uint32_t>(c);
+        sample.bit_offset = static_cast<std::uint32_t>(c) * bits;
+        sample.bit_length = bits;
+        sample.upper = (1u << (bits % 32)) - 1;
+        if (info.sample == SampleKind::snorm) {
+            sample.channel |= kQualifierSigned;
+            sample.upper >>= 1;
+            sample.lower = 0u - sample.upper;
+        }
+        if (info.sample == SampleKind::floating) {
+            sample.channel |= kQualifierSigned | kQualifierFloat;
+            sample.lower = std::bit_cast<std::uint32_t>(-1.0f);
+            sample.upper = std::bit_cast<std::uint32_t>(1.0f);
+        }
+        samples.push_back(sample);
+    }
+    return samples;
+}
+
+}  // namespace
+
+std::vector<std::byte> data_format_descriptor(Format format) {
+    const FormatInfo info = format_info(format);
+    const std::vector<Sample> samples = info.block > 1 ? block_samples(format) : texel_samples(info);
+    const auto block_bytes = static_cast<std::uint32_t>(24 + 16 * samples.size());
+    const auto edge = static_cast<std::uint32_t>(info.block - 1);
+
+    ByteWriter writer;
+    writer.u32(4 + block_bytes);
+    writer.u32(0);                      // vendor Khronos, type basic format
+    writer.u32(2 | block_bytes << 16);  // version 1.3
+    writer.u32(model_of(format) | kPrimariesUnspecified << 8 | kTransferLinear << 16);  // flags 0: straight alpha
+    writer.u32(edge | edge << 8);
+    writer.u32(static_cast<std::uint32_t>(info.block_bytes));
+    writer.u32(0);  // planes 4 to 7
+    for (const Sample& sample : samples) {
+        writer.u32(sample.bit_offset | (sample.bit_length - 1) << 16 | sample.channel << 24);
+        writer.u32(0);  // position
+        writer.u32(sample.lower);
+        writer.u32(sample.upper);
+    }
+    return writer.take();
+}
+
+}  // namespace tex

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "formats/level_rows.h"
+
+#include <utility>
+#include <vector>
+
+#include "formats/channel_names.h"
+#include "formats/claims.h"
+#include "kernels/decode.h"
+
+namespace tex {
+namespace {
+
+class LevelRows final : public RowSource {
+public:
+    LevelRows(const InputFile& file, std::shared_ptr<const StoredTexture> texture, std::size_t k)
+        : file_(file), texture_(std::move(texture)), offset_(texture_->levels[k].offset),
+          info_(format_info(texture_->head.format)) {
+        const Extent extent = texture_->levels[k].extent;
+        pitch_ = level_bytes(texture_->head.format, {extent.width, 1});
+        describe(extent, channel_names(texture_->head), pitch_ / static_cast<std::size_t>(info_.block));
+        describe_samples(info_.sample, info_.bits);
+    }
+
+    [[nodiscard]] int rows_together() const override { return info_.block; }
+    [[nodiscard]] bool is_random() const override { return true; }
+    void choose_planes(const std::vector<bool>& wanted) override { wanted_ = wanted; }
+
+    Result<void> decode(int first, int count, std::byte* rows) override;
+    void store(const std::byte* rows, int first, int end, Image& image) const override;
+
+private:
+    // Reads rows of the file, of blocks or of texels.
+    [[nodiscard]] Result<void> fetch(int first, int count, std::byte* out) const {
+        const std::size_t pitch = stored_pitch(*texture_, extent().width);
+        const std::uint64_t offset = offset_ + static_cast<std::uint64_t>(first) * pitch;
+        const std::size_t wanted = pitch * static_cast<std::size_t>(count);
+        const Result<std::size_t> got = file_.read_at(static_cast<std::int64_t>(offset), out, wanted);
+        if (!got) return got.error();
+        if (*got < wanted) return Error{ErrorCode::bad_data, file_.path(), "the file ends too early"};
+        return {};
+    }
+    [[nodiscard]] Result<void> convert(int first, int count, std::byte* rows) const {
+        std::vector<std::byte> stored(stored_pitch(*texture_, extent().width) * static_cast<std::size_t>(count));
+        if (Result<void> fetched = fetch(first, count, stored.data()); !fetched) return fetched;
+        convert_rows(*texture_, stored.data(), extent().width, count, rows);
+        return {};
+    }
+
+    const InputFile& file_;
+    const std::shared_ptr<const StoredTexture> texture_;
+    const std::uint64_t offset_;
+    const FormatInfo info_;
+    std::size_t pitch_ = 0;  // of a row of blocks or texels, in head.format
+    std::vector<bool> wanted_ = std::vector<bool>(4, true);
+};
+
+Result<void> LevelRows::decode(int first, int count, std::byte* rows) {
+    if (texture_->upwards) {
+        Result<void> done;
+        for (int j = 0; done && j < count; ++j) {
+            done = convert(extent().height - 1 - (first + j), 1, rows + static_cast<std::size_t>(j) * pitch_);
+        }
+        return done;
+    }
+    const int block = info_.block;
+    const int begin = first / block;
+    const int units = (first + count + block - 1) / block - begin;
+    return texture_->fields || texture_->bgr ? convert(begin, units, rows) : fetch(begin, units, rows);
+}
+
+void LevelRows::store(const std::byte* rows, int first, int end, Image& image) const {
+    const Format format = texture_->head.format;
+    const int width = extent().width;
+    for (int j = first; j < end; j += info_.block, rows += pitch_) {
+        ChannelRows out;
+        for (std::size_t c = 0; c < image.planes.size(); ++c) {
+            if (wanted_[c]) out.channel[c] = image.planes[c].row(j);
+        }
+        if (info_.block == 1) {
+            decode_texels(format, rows, width, out);
+        } else {
+            decode_blocks(format, rows, (width + 3) / 4, out, image.planes.front().stride());
+        }
+    }
+}
+
+}  // namespace
+
+std::unique_ptr<RowSource> open_level_rows(const InputFile& file, std::shared_ptr<const StoredTexture> texture,
+                                           std::size_t k) {
+    return std::make_unique<LevelRows>(file, std::move(texture), k);
+}
+
+}  // namespace tex

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// png.h: PNG, both directions, through libpng.
+
+#pragma once
+
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <tex/image.h>
+#include <tex/image_io.h>
+#include <tex/result.h>
+#include <tex/texture.h>
+
+#include "files/input_file.h"
+#include "formats/row_source.h"
+#include "formats/row_target.h"
+
+namespace tex {
+
+// Whether a file that begins with `head` is a PNG, sound or damaged in transfer.
+bool is_png(std::span<const std::byte> head);
+
+// Of the libpng that runs.
+const char* png_version();
+
+// Opens a PNG, to be read row by row where it is not interlaced. `file` must outlive the rows. Errors: those of
+// read_png() that the header tells.
+Result<std::unique_ptr<RowSource>> open_png(InputFile& file, const ReadOptions& options);
+
+// Reads a PNG as read_image() promises: grey as Y, colour and palette as R, G, B, alpha or tRNS as A; values are code /
+// (2^bits - 1); gAMA, sRGB, iCCP and sBIT change nothing. Damaged ancillary chunks count as damage too.
+//
+// Errors: bad_data (with libpng's reason), unsupported (too large), io, out_of_memory.
+Result<Image> read_png(InputFile& file, const ReadOptions& options);
+
+// Writes the base level of a texture row by row, with the bytes of encode_png(). Errors: unsupported (another format),
+// out_of_memory.
+Result<std::unique_ptr<RowTarget>> open_png_target(const TextureHead& head, WriteBytes write);
+
+// Encodes the base level of a texture in an 8- or 16-bit unorm format: one channel as grey, three as RGB, four as RGBA.
+// Equal textures give equal bytes (with one version of zlib).
+//
+// Errors: unsupported (another format), out_of_memory.
+Result<std::vector<std::byte>> encode_png(const Texture& texture);
+
+// Encodes a level of one byte for each texel, the number of a colour. Precondition: 1 to 256 colours, and no byte
+// beyond them. Errors: unsupported (libpng's reason), out_of_memory.
+struct PngColor {
+    std::uint8_t r, g, b;
+    friend auto operator<=>(const PngColor&, const PngColor&) = default;
+};
+Result<std::vector<std::byte>> encode_indexed_png(const Level& indices, const std::vector<PngColor>& palette);
+
+}  // namespace tex

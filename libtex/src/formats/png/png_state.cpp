@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "formats/png/png_state.h"
+
+#include <cstdlib>
+#include <cstring>
+
+namespace tex {
+
+void on_png_error(png_structp png, png_const_charp message) {
+    auto* state = static_cast<PngState*>(png_get_error_ptr(png));
+    std::strncpy(state->reason, message, sizeof state->reason - 1);
+    png_longjmp(png, 1);
+}
+
+void on_png_warning(png_structp, png_const_charp) {}
+
+png_voidp on_png_allocate(png_structp png, png_alloc_size_t size) {
+    void* memory = std::malloc(size);
+    if (memory == nullptr) static_cast<PngState*>(png_get_mem_ptr(png))->out_of_memory = true;
+    return memory;
+}
+
+void on_png_free(png_structp, png_voidp memory) { std::free(memory); }
+
+}  // namespace tex

@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "formats/reader/reader_process.h"
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <link.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/ioctl.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <climits>
+#include <cstring>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "files/system_error.h"
+#include "formats/reader/reader.h"
+#include "threads/guard.h"
+
+namespace tex {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// The folder of the object that this code is in: of libtex, or of the program that it is linked into.
+std::string own_folder() {
+    Dl_info info{};
+    link_map* map = nullptr;
+    static const char anchor = 0;
+    std::string object = "/proc/self/exe";
+    if (dladdr1(&anchor, &info, reinterpret_cast<void**>(&map), RTLD_DL_LINKMAP) != 0 && map != nullptr &&
+        map->l_name != nullptr && map->l_name[0] != '\0') {
+        object = map->l_name;
+    }
+    char resolved[PATH_MAX];
+    if (realpath(object.c_str(), resolved) == nullptr) return {};
+    std::string folder = resolved;
+    return folder.erase(folder.rfind('/'));
+}
+
+// Attributes and file actions of a spawned process, freed with it.
+class SpawnPlan {
+public:
+    SpawnPlan() {
+        posix_spawnattr_init(&attributes);
+        posix_spawn_file_actions_init(&actions);
+    }
+    ~SpawnPlan() {
+        posix_spawn_file_actions_destroy(&actions);
+        posix_spawnattr_destroy(&attributes);
+    }
+    SpawnPlan(const SpawnPlan&) = delete;
+    SpawnPlan& operator=(const SpawnPlan&) = delete;
+
+    posix_spawnattr_t attributes{};
+    posix_spawn_file_actions_t actions{};
+};
+
+// Starts the program with exactly the descriptors of the protocol, no environment, default signals, and as the leader
+// of its own process group: a Ctrl-C at the terminal is the caller's to handle, and what the reader might have started
+// ends with it. 0 or an errno.
+int spawn(const std::string& program, std::vector<std::string> arguments, int result, int input, int progress,
+          pid_t& child) {
+    // Out of the way of the numbers that they are to have.
+    const Descriptor from[] = {Descriptor(fcntl(result, F_DUPFD_CLOEXEC, 16)),
+                               Descriptor(fcntl(input, F_DUPFD_CLOEXEC, 16)),
+                               Descriptor(fcntl(progress, F_DUPFD_CLOEXEC, 16))};
+    if (!from[0] || !from[1] || !from[2]) return errno;
+    SpawnPlan plan;
+    int failed = 0;
+    const auto check = [&failed](int status) { failed = failed != 0 ? failed : status; };
+    for (int fd = 0; fd < 3; ++fd) {
+        check(posix_spawn_file_actions_addopen(&plan.actions, fd, "/dev/null", fd == 0 ? O_RDONLY : O_WRONLY, 0));
+    }
+    check(posix_spawn_file_actions_adddup2(&plan.actions, from[0].get(), kResultDescriptor));
+    check(posix_spawn_file_actions_adddup2(&plan.actions, from[1].get(), kInputDescriptor));
+    check(posix_spawn_file_actions_adddup2(&plan.actions, from[2].get(), kProgressDescriptor));
+    check(posix_spawn_file_actions_addclosefrom_np(&plan.actions, kProgressDescriptor + 1));
+
+    sigset_t none;
+    sigset_t all;
+    sigemptyset(&none);
+    sigfillset(&all);
+    check(posix_spawnattr_setsigmask(&plan.attributes, &none));
+    check(posix_spawnattr_setsigdefault(&plan.attributes, &all));
+    check(posix_spawnattr_setpgroup(&plan.attributes, 0));
+    check(posix_spawnattr_setflags(&plan.attributes,
+                                   POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP));
+    if (failed != 0) return failed;
+
+    std::vector<char*> argv = {const_cast<char*>(program.c_str())};
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    char* const no_environment[] = {nullptr};
+    return posix_spawn(&child, program.c_str(), &plan.actions, &plan.attributes, argv.data(), no_environment);
+}
+
+enum class News { strip, end, late };
+
+// Time has run out. But whoever waits may have come late, after long work on what was there: an end that came until now
+// counts, and whatever the process still says does not prolong it.
+News last_news(int progress) {
+    int there = 0;
+    if (ioctl(progress, FIONREAD, &there) != 0) return News::late;
+    char strips[256];
+    while (there > 0) {
+        const ssize_t n = read(progress, strips, std::min(sizeof strips, static_cast<std::size_t>(there)));
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) break;
+        there -= static_cast<int>(n);
+    }
+    pollfd poll_for{progress, POLLIN, 0};
+    const bool has_ended = poll(&poll_for, 1, 0) > 0 && (poll_for.revents & (POLLHUP | POLLIN)) == POLLHUP;
+    return has_ended ? News::end : News::late;
+}
+
+// Waits for word from the process: a strip of rows is there, or the pipe has ended, that is every process that holds it
+// is gone, or time has run out.
+News wait_for_news(int progress, Clock::time_point deadline) {
+    for (;;) {
+        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+        if (left <= 0) return last_news(progress);
+        pollfd poll_for{progress, POLLIN, 0};
+        const int ready = poll(&poll_for, 1, static_cast<int>(std::min<long long>(left + 1, 60'000)));
+        if (ready < 0 && errno != EINTR) return News::late;
+        if (ready <= 0) continue;
+        char strips[256];
+        const ssize_t n = read(progress, strips, sizeof strips);
+        if (n > 0) return News::strip;
+        if (n == 0) return News::end;
+        if (errno != EINTR) return News::late;
+    }
+}
+
+// How a process ended; nothing where somebody else in this program collected it.
+struct Ending {
+    int signal = 0;
+    int status = 0;
+};
+
+Ending collect(pid_t child) {
+    kill(-child, SIGKILL);  // nothing to a process that has ended; the end of one that only closed its pipe
+    int status = 0;
+    pid_t got = -1;
+    do {
+        got = waitpid(child, &status, 0);
+    } while (got < 0 && errno == EINTR);
+    if (got != child) return {};
+    return {WIFSIGNALED(status) ? WTERMSIG(status) : 0, WIFEXITED(status) ? WEXITSTATUS(status) : 0};
+}
+
+std::string does(const ReaderJob& job) { return job.verb == "encode" ? "the encoder" : "the decoder"; }
+
+// Whether this process may have less memory than the reader: so the reader has that little, too.
+bool is_short_of_memory(std::int64_t reader_memory) {
+    rlimit now{};
+    return getrlimit(RLIMIT_AS, &now) == 0 &&
+           now.rlim_cur < static_cast<rlim_t>(std::max<std::int64_t>(reader_memory, 0));
+}
+
+// `begun`: it was ready to look at the file.
+Error abnormal_end(const ReaderJob& job, const std::string& program, Ending ending, bool begun, bool is_short) {
+    constexpr int kNotLoaded = 127;  // of the dynamic loader, and of shells
+    const std::string signal = " (signal " + std::to_string(ending.signal) + ")";
+    if (ending.signal == SIGKILL) {
+        return {ErrorCode::out_of_memory, job.path, does(job) + " was killed by the system: out of memory?"};
+    }
+    if (ending.signal != 0 && is_short) {
+        return {ErrorCode::out_of_memory, job.path,
+                does(job) + " crashed" + signal + "; it has little memory (ulimit -v)"};
+    }
+    if (ending.signal != 0 && !begun) {
+        return {ErrorCode::io, job.path, "the reader program " + program + " cannot be started" + signal};
+    }
+    if (ending.signal != 0) return {ErrorCode::bad_data, job.path, does(job) + " crashed on this file" + signal};
+    if (ending.status == kNotLoaded) {
+        return {ErrorCode::io, job.path, "the reader program " + program + " cannot be loaded"};
+    }
+    if (ending.status == kNoRoom) {
+        return {ErrorCode::out_of_memory, job.path,
+                does(job) + " cannot hand over its result: no memory, or a limit on the size of files (ulimit -f)"};
+    }
+    return {ErrorCode::bad_data, job.path,
+            does(job) + " ended without a result (exit status " + std::to_string(ending.status) + ")"};
+}
+
+// The reader's own words, which may be anything: one line, printable, without the name under which it knew the file.
+std::string clean_reason(const ReaderHeader& header) {
+    std::string reason(header.reason, strnlen(header.reason, sizeof header.reason));
+    if (const std::size_t line = reason.find('\n'); line != std::string::npos) reason.erase(line);
+    for (const char* name : {"\"/proc/self/fd/4\"", "/proc/self/fd/4", "\"\""}) {
+        for (std::size_t at; (at = reason.find(name)) != std::string::npos;)
+            reason.replace(at, std::strlen(name), "the file");
+    }
+    std::erase_if(reason, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
+    while (!reason.empty() && (reason.back() == '.' || reason.back() == ' ')) reason.pop_back();
+    return reason.empty() ? "the decoder gave no reason" : reason;
+}
+
+Error reported_error(const ReaderJob& job, const ReaderHeader& header) {
+    ErrorCode code = ErrorCode::bad_data;
+    for (const ErrorCode known : {ErrorCode::io, ErrorCode::unsupported, ErrorCode::out_of_memory}) {
+        if (header.error == static_cast<std::uint32_t>(known)) code = known;
+    }
+    return {code, job.path, clean_reason(header)};
+}
+
+}  // namespace
+
+Result<std::string> find_reader(const ReadOptions& options) {
+    if (!options.reader.empty()) return options.reader;
+    const std::string folder = own_folder();
+    for (const char* place : {"/../libexec/libtex/tex-reader", "/../../libexec/libtex/tex-reader", "/tex-reader"}) {
+        const std::string program = folder + place;
+        if (!folder.empty() && access(program.c_str(), X_OK) == 0) return program;
+    }
+    return Error{ErrorCode::io, {}, "the reader program tex-reader was not found beside libtex"};
+}
+
+Error nonsense(const std::string& path) { return {ErrorCode::bad_data, path, "the decoder handed over nonsense"}; }
+
+bool read_exactly(int fd, std::uint64_t offset, std::byte* to, std::size_t count) {
+    while (count > 0) {
+        const ssize_t n = pread(fd, to, count, static_cast<off_t>(offset));
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return false;
+        to += n;
+        offset += static_cast<std::uint64_t>(n);
+        count -= static_cast<std::size_t>(n);
+    }
+    return true;
+}
+
+bool write_exactly(int fd, std::uint64_t offset, std::span<const std::byte> bytes) {
+    while (!bytes.empty()) {
+        const ssize_t n = pwrite(fd, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return false;
+        offset += static_cast<std::uint64_t>(n);
+        bytes = bytes.subspan(static_cast<std::size_t>(n));
+    }
+    return true;
+}
+
+Result<Descriptor> memory_file(const std::string& path) {
+    Descriptor file(memfd_create("libtex", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+    if (!file || fcntl(file.get(), F_ADD_SEALS, F_SEAL_SHRINK) != 0)
+        return system_error(path, errno, "a file in memory");
+    return file;
+}
+
+struct ReaderProcess::State {
+    ReaderJob job;
+    std::string program;
+    int seconds = 1;
+    std::int64_t memory = 0;  // bytes
+    Clock::time_point deadline;
+    Descriptor progress;
+    pid_t child = -1;
+    bool has_spoken = false;  // the header is there
+    bool in_time = true;
+    std::optional<Ending> ending;
+
+    ~State() {
+        if (child > 0 && !ending) collect(child);
+    }
+    [[nodiscard]] ReaderHeader read_header(bool& whole) const {
+        ReaderHeader header;
+        const ssize_t got = pread(job.result, &header, sizeof header, 0);
+        whole = got == static_cast<ssize_t>(sizeof header) && header.magic == kReaderMagic;
+        return header;
+    }
+    // Waits for the next strip; false where the process has ended.
+    bool wait() {
+        if (ending) return false;
+        const News news = wait_for_news(progress.get(), deadline);
+        has_spoken = has_spoken || news == News::strip;
+        if (news == News::strip) return true;
+        in_time = news == News::end;
+        ending = collect(child);
+        return false;
+    }
+};
+
+ReaderProcess::ReaderProcess(std::unique_ptr<State> state) : state_(std::move(state)) {}
+ReaderProcess::ReaderProcess(ReaderProcess&&) noexcept = default;
+ReaderProcess& ReaderProcess::operator=(ReaderProcess&&) noexcept = default;
+ReaderProcess::~ReaderProcess() = default;
+
+Result<ReaderProcess> ReaderProcess::start(const ReaderJob& job, const ReadOptions& options) {
+    return guarded([&]() -> Result<ReaderProcess> {
+        const Result<std::string> program = find_reader(options);
+        if (!program) return Error{program.error().code, job.path, program.error().reason};
+        auto state = std::make_unique<State>();
+        state->job = job;
+        state->program = *program;
+        state->seconds = std::max(1, options.reader_timeout);
+        state->memory = options.reader_memory;
+        state->deadline = Clock::now() + std::chrono::seconds(state->seconds);
+
+        int ends[2];
+        if (pipe2(ends, O_CLOEXEC) != 0) return system_error(job.path, errno, "a pipe");
+        state->progress = Descriptor(ends[0]);
+        const Descriptor childs_end(ends[1]);
+        const int failed =
+            spawn(*program,
+                  {job.verb, job.format, std::to_string(options.max_texels), std::to_string(options.reader_memory),
+                   std::to_string(state->seconds), std::to_string(getpid())},
+                  job.result, job.input, childs_end.get(), state->child);
+        if (failed != 0) {
+            state->child = -1;
+            return system_error(job.path, failed, ("the reader program " + *program + " cannot be started").c_str());
+        }
+        return ReaderProcess(std::move(state));
+    });
+}
+
+Result<ReaderHeader> ReaderProcess::wait_for_rows(std::uint64_t rows) {
+    for (;;) {
+        bool whole = false;
+        const ReaderHeader header = state_->has_spoken ? state_->read_header(whole) : ReaderHeader();
+        if (whole && header.rows_done >= rows) return header;
+        if (!state_->wait()) return finish();
+    }
+}
+
+Result<ReaderHeader> ReaderProcess::finish() {
+    while (state_->wait()) {
+    }
+    return guarded([&]() -> Result<ReaderHeader> {
+        const ReaderJob& job = state_->job;
+        if (!state_->in_time || state_->ending->signal == SIGXCPU) {
+            return Error{ErrorCode::bad_data, job.path,
+                         does(job) + " did not end within " + std::to_string(state_->seconds) + " s"};
+        }
+        bool whole = false;
+        const ReaderHeader header = state_->read_header(whole);
+        if (whole && header.state == ReaderState::refused) return reported_error(job, header);
+        if (!whole || header.state != ReaderState::done || state_->ending->signal != 0) {
+            return abnormal_end(job, state_->program, *state_->ending, whole, is_short_of_memory(state_->memory));
+        }
+        return header;
+    });
+}
+
+Result<ReaderHeader> run_reader(const ReaderJob& job, const ReadOptions& options) {
+    Result<ReaderProcess> process = ReaderProcess::start(job, options);
+    if (!process) return process.error();
+    return process->finish();
+}
+
+}  // namespace tex

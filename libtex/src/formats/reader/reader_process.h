@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// reader_process.h: runs the reader program once, under a time limit, follows its rows, and says how it ended.
+
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include <tex/image_io.h>
+#include <tex/result.h>
+
+#include "files/input_file.h"
+#include "formats/reader/reader_protocol.h"
+
+namespace tex {
+
+// A file in memory that other processes can grow and fill, but not shorten. Errors: out_of_memory.
+Result<Descriptor> memory_file(const std::string& path);
+
+// Whole transfers at an offset; false where the file ends or the system refuses.
+bool read_exactly(int fd, std::uint64_t offset, std::byte* to, std::size_t count);
+bool write_exactly(int fd, std::uint64_t offset, std::span<const std::byte> bytes);
+
+// The process said what cannot be.
+Error nonsense(const std::string& path);
+
+// One run of the reader: what it does, on which descriptor, and where the result goes.
+struct ReaderJob {
+    std::string path;  // for messages
+    std::string verb;  // "decode" or "encode"
+    std::string format;
+    int input = -1;
+    int result = -1;  // a memory_file()
+};
+
+class ReaderProcess {
+public:
+    // Errors: io (cannot be started), out_of_memory.
+    static Result<ReaderProcess> start(const ReaderJob& job, const ReadOptions& options);
+    ReaderProcess(ReaderProcess&& other) noexcept;
+    ReaderProcess& operator=(ReaderProcess&& other) noexcept;
+    ~ReaderProcess();  // ends it
+
+    // Waits until so many rows are there, or it has ended. The header says how many there are; they may be fewer.
+    // Errors: as finish().
+    Result<ReaderHeader> wait_for_rows(std::uint64_t rows);
+
+    // Waits for its end. Returns its header, in which magic and state are checked and nothing else.
+    //
+    // Errors: bad_data (crash, time limit, no result), and what the reader itself reported; out_of_memory.
+    Result<ReaderHeader> finish();
+
+private:
+    struct State;
+    explicit ReaderProcess(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+// Runs the reader from its start to its end. Errors: those of both.
+Result<ReaderHeader> run_reader(const ReaderJob& job, const ReadOptions& options);
+
+}  // namespace tex

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// reader_protocol.h: what libtex and its reader process tell each other.
+//
+// libtex starts
+//
+//     tex-reader decode|encode|describe FORMAT MAX_TEXELS MEMORY SECONDS PARENT
+//
+// (FORMAT as OpenImageIO names it, MEMORY in bytes, PARENT the process id of the caller) with these descriptors and no
+// others:
+//
+//     kResultDescriptor    a file in memory, empty: ReaderHeader at 0, the data at kReaderDataOffset
+//     kInputDescriptor     decode: the picture file; encode: a file in memory, ReaderHeader at 0 (extent, channels,
+//     type), the texels at kReaderDataOffset
+//                          describe: an empty file in memory; the answer is in `sandboxed`, `landlock` and, as the
+//                          version of OpenImageIO, `reason`
+//     kProgressDescriptor  a pipe: a byte for each strip of rows that is in place; its end tells that the process is
+//     gone
+//
+// Texels are interleaved, native byte order, rows from the top without padding: row j is at kReaderDataOffset + j *
+// row_bytes(). rows_done in the header grows while they arrive, so that a consumer may follow. An encoded file is
+// `bytes` long.
+//
+// The header is there, as `working`, once the process is ready: one that ends earlier has not seen its input. It ends
+// with status kNoRoom where even the header cannot be written.
+//
+// The reader is not trusted: whatever it hands over is checked as if it came from the file itself.
+
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+namespace tex {
+
+inline constexpr int kResultDescriptor = 3;
+inline constexpr int kInputDescriptor = 4;
+inline constexpr int kProgressDescriptor = 5;
+
+inline constexpr std::uint32_t kReaderMagic = 0x31786574;  // "tex1": changes with the layout below
+inline constexpr int kMaxReaderChannels = 64;
+inline constexpr std::size_t kReaderDataOffset = 8192;
+
+// Bits of ReaderHeader::sandboxed.
+inline constexpr std::uint32_t kCallsFiltered = 1;
+inline constexpr std::uint32_t kFilesRestricted = 2;
+
+inline constexpr int kNoRoom = 3;
+
+enum class ReaderState : std::uint32_t { working, done, refused };
+
+enum class ReaderType : std::uint32_t { u8, s8, u16, s16, u32, s32, f16, f32 };
+
+inline constexpr std::size_t reader_type_bytes(ReaderType type) {
+    switch (type) {
+        case ReaderType::u8:
+        case ReaderType::s8: return 1;
+        case ReaderType::u16:
+        case ReaderType::s16:
+        case ReaderType::f16: return 2;
+        case ReaderType::u32:
+        case ReaderType::s32:
+        case ReaderType::f32: return 4;
+    }
+    return 0;
+}
+
+struct ReaderHeader {
+    std::uint32_t magic = kReaderMagic;
+    ReaderState state = ReaderState::working;
+    std::uint32_t error = 0;      // an ErrorCode, where the state is `refused`
+    std::uint32_t sandboxed = 0;  // what the kernel granted: kCallsFiltered, kFilesRestricted
+    std::int32_t width = 0;
+    std::int32_t height = 0;
+    std::int32_t channels = 0;
+    ReaderType type = ReaderType::u8;
+    std::uint32_t bits = 0;      // significant bits of a sample in the file
+    std::uint32_t landlock = 0;  // the kernel's version of it
+    std::uint64_t rows_done = 0;
+    std::uint64_t bytes = 0;  // of an encoded file
+    char reason[1024] = {};
+    char names[kMaxReaderChannels][64] = {};
+};
+
+static_assert(std::is_trivially_copyable_v<ReaderHeader> && sizeof(ReaderHeader) <= kReaderDataOffset);
+
+inline constexpr std::uint64_t row_bytes(const ReaderHeader& header) {
+    return static_cast<std::uint64_t>(header.width) * static_cast<std::uint64_t>(header.channels) *
+           reader_type_bytes(header.type);
+}
+
+}  // namespace tex

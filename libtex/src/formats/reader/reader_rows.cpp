@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "formats/reader/reader_rows.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include <half.h>
+
+#include "files/system_error.h"
+#include "formats/claims.h"
+#include "formats/reader/reader_process.h"
+#include "threads/guard.h"
+
+namespace tex {
+namespace {
+
+// The first bytes of a kind of file, and OpenImageIO's name for it.
+struct Mark {
+    std::string_view bytes;
+    std::string_view format;
+};
+
+using namespace std::string_view_literals;
+
+constexpr Mark kMarks[] = {
+    {"II*\0"sv, "tiff"},
+    {"MM\0*"sv, "tiff"},
+    {"II+\0"sv, "tiff"},
+    {"MM\0+"sv, "tiff"},
+    {"\xff\xd8\xff"sv, "jpeg"},
+    {"BM"sv, "bmp"},
+    {"#?RADIANCE"sv, "hdr"},
+    {"#?RGBE"sv, "hdr"},
+    {"8BPS"sv, "psd"},
+    {"GIF8"sv, "gif"},
+    {"RIFF"sv, "webp"},
+    {"P1"sv, "pnm"},
+    {"P2"sv, "pnm"},
+    {"P3"sv, "pnm"},
+    {"P4"sv, "pnm"},
+    {"P5"sv, "pnm"},
+    {"P6"sv, "pnm"},
+    {"Pf"sv, "pnm"},
+    {"PF"sv, "pnm"},
+    {"\x01\xda"sv, "sgi"},
+    {"\0\0\0\x0cjP  "sv, "jpeg2000"},
+    {"\xff\x4f\xff\x51"sv, "jpeg2000"},
+    {"SDPX"sv, "dpx"},
+    {"XPDS"sv, "dpx"},
+    {"\x80\x2a\x5f\xd7"sv, "cineon"},
+    {"FOR4"sv, "iff"},
+    {"\x53\x80\xf6\x34"sv, "softimage"},
+};
+
+// TGA begins with its header at once: an id's length, the kind of palette (0, 1), the kind of picture, the palette,
+// origin, extent and depth.
+bool may_be_tga(std::span<const std::byte> head) {
+    constexpr std::size_t kHeader = 18;
+    if (head.size() < kHeader) return false;
+    const auto at = [&](std::size_t k) { return static_cast<int>(head[k]); };
+    const auto one_of = [](int v, std::initializer_list<int> list) {
+        return std::find(list.begin(), list.end(), v) != list.end();
+    };
+    const bool palette = at(1) == 1 && one_of(at(7), {15, 16, 24, 32});
+    return (at(1) == 0 || palette) && one_of(at(2), {1, 2, 3, 9, 10, 11}) && one_of(at(16), {8, 15, 16, 24, 32}) &&
+           (at(12) | at(13)) != 0 && (at(14) | at(15)) != 0;
+}
+
+std::optional<std::string> format_of(std::span<const std::byte> head) {
+    const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
+    for (const Mark& mark : kMarks) {
+        if (text.starts_with(mark.bytes)) return std::string(mark.format);
+    }
+    if (may_be_tga(head)) return "targa";
+    return std::nullopt;
+}
+
+// How the integers of one type become floats.
+struct Scale {
+    SampleKind kind = SampleKind::unorm;
+    int bits = 8;   // significant ones
+    int shift = 0;  // unsigned: from the container to the significant bits
+};
+
+// Decoders widen integers of n bits to whole bytes: by repeating bits, or by rounding v (2^m - 1) / (2^n - 1). Either
+// way the upper n bits are v, and a value that came about otherwise (a palette's colour) betrays itself.
+bool widened(std::uint32_t code, int n, int m) {
+    const std::uint64_t v = code >> (m - n);
+    std::uint64_t repeated = 0;
+    for (int at = m - n; at > -n; at -= n) repeated |= at >= 0 ? v << at : v >> -at;
+    const std::uint64_t top = (std::uint64_t{1} << n) - 1;
+    const std::uint64_t scaled = v * ((std::uint64_t{1} << m) - 1);
+    return code == repeated || code == scaled / top || code == (scaled + top / 2) / top || code == v << (m - n);
+}
+
+template <class T>
+bool all_widened(const std::byte* row, std::size_t count, int bits) {
+    for (std::size_t k = 0; k < count; ++k) {
+        T code;
+        std::memcpy(&code, row + k * sizeof(T), sizeof(T));
+        if (!widened(code, bits, static_cast<int>(sizeof(T) * 8))) return false;
+    }
+    return true;
+}
+
+template <class T>
+float to_float(T code, const Scale& scale) {
+    if constexpr (std::is_same_v<T, float>) {
+        return code;
+    } else if constexpr (std::is_same_v<T, Imath::half>) {
+        return static_cast<float>(code);
+    } else if constexpr (std::is_signed_v<T>) {
+        const double value = static_cast<double>(code) / static_cast<double>(std::numeric_limits<T>::max());
+        return static_cast<float>(std::max(value, -1.0));
+    } else {
+        const auto top = static_cast<double>((std::uint64_t{1} << scale.bits) - 1);
+        return static_cast<float>(static_cast<double>(code >> scale.shift) / top);
+    }
+}
+
+template <class T>
+void store_row(const std::byte* row, const Scale& scale, Image& image, int j) {
+    const std::size_t channels = image.planes.size();
+    for (std::size_t c = 0; c < channels; ++c) {
+        float* to = image.planes[c].row(j);
+        const std::byte* from = row + c * sizeof(T);
+        for (int i = 0; i < image.extent().width; ++i, from += channels * sizeof(T)) {
+            T code;
+            std::memcpy(&code, from, sizeof(T));
+            to[i] = to_float(code, scale);
+        }
+    }
+}
+
+// Calls visit(T{}) with the C++ type that stands for a ReaderType.
+template <class Visit>
+auto with_type(ReaderType type, const Visit& visit) {
+    switch (type) {
+        case ReaderType::u8: return visit(std::uint8_t{});
+        case ReaderType::s8: return visit(std::int8_t{});
+        case ReaderType::u16: return visit(std::uint16_t{});
+        case ReaderType::s16: return visit(std::int16_t{});
+        case ReaderType::u32: return visit(std::uint32_t{});
+        case ReaderType::s32: return visit(std::int32_t{});
+        case ReaderType::f16: return visit(Imath::half{});
+        case ReaderType::f32: break;
+    }
+    return visit(float{});
+}
+
+// Names as the decoder gives them, as far as they are names.
+std::vector<std::string> plane_names(const ReaderHeader& header) {
+    std::vector<std::string> names;
+    for (int c = 0; c < header.channels; ++c) {
+        const char* text = header.names[c];
+        std::string name(text, strnlen(text, sizeof header.names[c]));
+        const bool sound = !name.empty() && std::all_of(name.begin(), name.end(), [](char ch) {
+            return static_cast<unsigned char>(ch) >= 0x20 && ch != 0x7f;
+        });
+        names.push_back(sound ? name : "channel" + std::to_string(c));
+    }
+    const bool alpha_last = names.size() == 2 && names[1] == "A";
+    if (names.size() == 1 || alpha_last) names[0].assign(1, 'Y');
+    return names;
+}
+
+// All of the header that is relied on.
+bool plausible(const ReaderHeader& header) {
+    return header.channels >= 1 && header.channels <= kMaxReaderChannels && header.type <= ReaderType::f32 &&
+           header.bits >= 1 && header.bits <= 8 * reader_type_bytes(header.type);
+}
+
+// The file as a descriptor that a process can open again: a stream goes to memory first.
+Result<Descriptor> copy_to_memory(InputFile& file, const ReadOptions& options) {
+    const Result<std::vector<std::byte>> bytes = file.read_rest(std::min(largest_file(options), options.reader_memory));
+    if (!bytes) return bytes.error();
+    Result<Descriptor> memory = memory_file(file.path());
+    if (memory && !write_exactly(memory->get(), 0, *bytes)) return system_error(file.path(), errno, "a file in memory");
+    return memory;
+}
+
+class ReaderRows final : public RowSource {
+public:
+    explicit ReaderRows(InputFile& file) : file_(file) {}
+
+    // Starts the reader and waits for its first rows.
+    Result<void> open(const ReadOptions& options);
+
+    Result<void> decode(int first, int count, std::byte* rows) override;
+    [[nodiscard]] bool can_peek() const override { return true; }
+    Result<void> peek(int first, int count, std::byte* rows) override;
+    Result<void> finish() override;
+    void store(const std::byte* rows, int first, int end, Image& image) const override;
+
+private:
+    Result<void> start(const ReadOptions& options);
+    Result<Scale> find_scale();
+    [[nodiscard]] bool fetch(int first, int count, std::byte* rows) const {
+        const std::uint64_t offset = kReaderDataOffset + static_cast<std::uint64_t>(first) * row_bytes();
+        return read_exactly(result_.get(), offset, rows, row_bytes() * static_cast<std::size_t>(count));
+    }
+
+    InputFile& file_;
+    Descriptor memory_;  // a copy of a stream
+    Descriptor result_;
+    std::optional<ReaderProcess> process_;
+    ReaderHeader header_;  // as it was when the first rows came
+    Scale scale_;
+};
+
+bool is_ktx1(std::span<const std::byte> head) {
+    constexpr unsigned char kMark[] = {0xab, 'K', 'T', 'X', ' ', '1', '1', 0xbb};
+    return head.size() >= sizeof kMark && std::memcmp(head.data(), kMark, sizeof kMark) == 0;
+}
+
+Result<void> ReaderRows::start(const ReadOptions& options) {
+    const std::optional<std::string> format = format_of(file_.head());
+    if (!format && is_ktx1(file_.head()))
+        return Error{ErrorCode::unsupported, file_.path(), "a KTX file of version 1: only version 2 is read"};
+    if (!format) return Error{ErrorCode::bad_data, file_.path(), "not a picture of any kind that is read here"};
+    std::optional<int> input = file_.whole_file();
+    if (!input) {
+        Result<Descriptor> copy = copy_to_memory(file_, options);
+        if (!copy) return copy.error();
+        memory_ = std::move(*copy);
+        input = memory_.get();
+    }
+    Result<Descriptor> result = memory_file(file_.path());
+    if (!result) return result.error();
+    result_ = std::move(*result);
+    Result<ReaderProcess> process =
+        ReaderProcess::start({file_.path(), "decode", *format, *input, result_.get()}, options);
+    if (!process) return process.error();
+    process_ = std::move(*process);
+    return {};
+}
+
+Result<void> ReaderRows::open(const ReadOptions& options) {
+    if (Result<void> started = start(options); !started) return started;
+    const Result<ReaderHeader> header = process_->wait_for_rows(1);
+    if (!header) return header.error();
+    if (!plausible(*header)) return nonsense(file_.path());
+    const Result<Extent> extent = claimed_extent(file_.path(), header->width, header->height, options);
+    if (!extent) return extent.error();
+    // Of what the process may write, before memory is taken for it.
+    const std::uint64_t claimed = tex::row_bytes(*header) * static_cast<std::uint64_t>(extent->height);
+    if (claimed > static_cast<std::uint64_t>(std::max<std::int64_t>(options.reader_memory, 0)))
+        return nonsense(file_.path());
+    header_ = *header;
+    describe(*extent, plane_names(header_), tex::row_bytes(header_));
+    const Result<Scale> scale = find_scale();
+    if (!scale) return scale.error();
+    scale_ = *scale;
+    describe_samples(scale_.kind, scale_.bits);
+    return {};
+}
+
+// Whether integers of fewer bits than their container have been widened shows only when all of them have been seen.
+Result<Scale> ReaderRows::find_scale() {
+    return with_type(header_.type, [&](auto zero) -> Result<Scale> {
+        using T = decltype(zero);
+        constexpr bool kFloating = std::is_same_v<T, float> || std::is_same_v<T, Imath::half>;
+        Scale scale{kFloating ? SampleKind::floating : SampleKind::unorm, static_cast<int>(sizeof(T) * 8), 0};
+        if constexpr (!kFloating && std::is_signed_v<T>) scale.kind = SampleKind::snorm;
+        if constexpr (std::is_unsigned_v<T>) {
+            const auto bits = static_cast<int>(header_.bits);
+            if (bits >= scale.bits) return scale;
+            if (const Result<ReaderHeader> done = process_->finish(); !done) return done.error();
+            std::vector<std::byte> row(row_bytes());
+            for (int j = 0; j < extent().height; ++j) {
+                if (!fetch(j, 1, row.data())) return nonsense(file_.path());
+                if (!all_widened<T>(row.data(), row.size() / sizeof(T), bits)) return scale;
+            }
+            scale = {SampleKind::unorm, bits, scale.bits - bits};
+        }
+        return scale;
+    });
+}
+
+// Up to them all rows wait in memory as they were decoded.
+Result<void> ReaderRows::peek(int first, int count, std::byte* rows) {
+    const Result<ReaderHeader> there =
+        process_->wait_for_rows(static_cast<std::uint64_t>(first) + static_cast<std::uint64_t>(count));
+    if (!there) return there.error();
+    if (!fetch(first, count, rows)) return nonsense(file_.path());
+    return {};
+}
+
+Result<void> ReaderRows::decode(int first, int count, std::byte* rows) {
+    if (Result<void> there = peek(first, count, rows); !there) return there;
+    // What has been read need not stay in memory. Where that fails, it stays.
+    const auto page = static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+    const auto page_of = [&](int row) {  // begins at or before the row, but never in the header
+        const std::uint64_t offset = kReaderDataOffset + static_cast<std::uint64_t>(row) * row_bytes();
+        return std::max(offset / page * page, (kReaderDataOffset + page - 1) / page * page);
+    };
+    if (const std::uint64_t begin = page_of(first), end = page_of(first + count); end > begin) {
+        [[maybe_unused]] const int failed = fallocate(result_.get(), FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE,
+                                                      static_cast<off_t>(begin), static_cast<off_t>(end - begin));
+    }
+    return {};
+}
+
+Result<void> ReaderRows::finish() {
+    const Result<ReaderHeader> done = process_->finish();
+    if (!done) return done.error();
+    return {};
+}
+
+void ReaderRows::store(const std::byte* rows, int first, int end, Image& image) const {
+    with_type(header_.type, [&](auto zero) {
+        for (int j = first; j < end; ++j, rows += row_bytes()) store_row<decltype(zero)>(rows, scale_, image, j);
+    });
+}
+
+}  // namespace
+
+Result<std::unique_ptr<RowSource>> open_reader_rows(InputFile& file, const ReadOptions& options) {
+    return guarded([&]() -> Result<std::unique_ptr<RowSource>> {
+        auto rows = std::make_unique<ReaderRows>(file);
+        if (const Result<void> opened = rows->open(options); !opened) return opened.error();
+        return std::unique_ptr<RowSource>(std::move(rows));
+    });
+}
+
+}  // namespace tex

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// row_target.h: a picture that is written a few rows at a time, each level from the top.
+
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+
+#include <tex/container.h>
+#include <tex/result.h>
+
+#include "formats/file_layout.h"
+
+namespace tex {
+
+// Puts bytes into a file, each of them once, in any order. Errors: io, out_of_memory.
+using WriteBytes = std::function<Result<void>(std::uint64_t offset, std::span<const std::byte> bytes)>;
+
+class RowTarget {
+public:
+    RowTarget() = default;
+    RowTarget(const RowTarget&) = delete;
+    RowTarget& operator=(const RowTarget&) = delete;
+    virtual ~RowTarget() = default;
+
+    // The next `count` rows of a level, in the format of the head. Levels may come in any order, also some rows of one
+    // and then of another. Throws std::bad_alloc. Errors: unsupported, with the library's reason; those of WriteBytes.
+    virtual Result<void> put(int level, const std::byte* rows, int count) = 0;
+
+    // After the last row: what is left goes into the file. Errors: as put().
+    virtual Result<void> finish() = 0;
+};
+
+// Whether files of this kind can be written row by row: PNG, which gets the base level alone, and EXR.
+[[nodiscard]] bool takes_rows(Container container);
+
+// A texture as such a file, with the bytes of encode_file(). Precondition: takes_rows(). Errors: as encode_file().
+Result<std::unique_ptr<RowTarget>> open_row_target(Container container, const TextureHead& head, WriteBytes write);
+
+// All rows at once. Errors: as encode_file().
+Result<std::vector<std::byte>> encode_rows(Container container, const Texture& texture);
+
+}  // namespace tex

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "formats/stored_texture.h"
+
+#include <utility>
+
+#include "formats/file_layout.h"
+
+namespace tex {
+
+FetchBytes fetch_from(const std::byte* data) {
+    return [data](std::uint64_t offset, std::size_t count) -> Result<std::vector<std::byte>> {
+        return std::vector<std::byte>(data + offset, data + offset + count);
+    };
+}
+
+std::size_t stored_pitch(const StoredTexture& texture, int width) {
+    if (texture.fields) return static_cast<std::size_t>(width) * static_cast<std::size_t>(texture.fields->texel_bytes);
+    return level_bytes(texture.head.format, {width, 1});
+}
+
+void convert_rows(const StoredTexture& texture, const std::byte* source, int width, int count, std::byte* target) {
+    const Format format = texture.head.format;
+    if (texture.fields) {
+        convert_fields(*texture.fields, source, static_cast<std::size_t>(width) * static_cast<std::size_t>(count),
+                       format, target);
+        return;
+    }
+    const std::size_t bytes = level_bytes(format, {width, 1}) * static_cast<std::size_t>(count);
+    rearrange_texels(format, texture.bgr ? Rearrange::bgr : Rearrange::none, source,
+                     bytes / format_info(format).block_bytes, target);
+}
+
+Texture load_texture(const StoredTexture& stored, const std::byte* data) {
+    Texture texture = stored.head;
+    const int block = format_info(texture.format).block;
+    for (const StoredTexture::Place& place : stored.levels) {
+        Level level{place.extent, std::vector<std::byte>(level_bytes(texture.format, place.extent))};
+        const int width = place.extent.width;
+        const int rows = (place.extent.height + block - 1) / block;
+        const std::byte* source = data + place.offset;
+        if (!stored.upwards) {
+            convert_rows(stored, source, width, rows, level.bytes.data());
+        } else {
+            const std::size_t pitch = level_bytes(texture.format, {width, 1});
+            for (int j = 0; j < rows; ++j) {
+                convert_rows(stored, source + static_cast<std::size_t>(rows - 1 - j) * stored_pitch(stored, width),
+                             width, 1, level.bytes.data() + static_cast<std::size_t>(j) * pitch);
+            }
+        }
+        texture.levels.push_back(std::move(level));
+    }
+    return texture;
+}
+
+}  // namespace tex

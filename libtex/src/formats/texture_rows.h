@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// texture_rows.h: textures, and pictures as textures, from open files: whole, or a few rows at a time.
+
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <tex/image_io.h>
+#include <tex/result.h>
+#include <tex/texture.h>
+
+#include "files/input_file.h"
+#include "formats/row_source.h"
+
+namespace tex {
+
+// As read_texture(path), of an open file. Errors name the file.
+Result<Texture> read_texture(InputFile& file, const ReadOptions& options);
+
+// A texture whose levels come as rows.
+struct TextureRows {
+    Texture head;                                    // what read_texture() says of it, but for the levels
+    std::vector<std::unique_ptr<RowSource>> levels;  // [0] is the base level
+    std::vector<std::size_t>
+        planes;           // of the images that the rows are stored in: those that hold the channels of head.format
+    bool rounds = false;  // values are to go through round_to_texels() (picture.h)
+};
+
+// The texture in `file`, which must outlive it. Nothing where it can only be read as a whole: interlaced PNG;
+// read_texture() may follow then. Errors: those of read_texture() that a header tells.
+Result<std::optional<TextureRows>> open_texture_rows(InputFile& file, const ReadOptions& options);
+
+}  // namespace tex

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "rows/bake_rows.h"
+
+#include <utility>
+
+#include "rows/blur.h"
+#include "rows/math.h"
+
+namespace tex {
+namespace {
+
+Gradient gaussian_gradient(double sigma) {
+    Gradient gradient{0, {}, gaussian_weights(sigma)};
+    gradient.radius = static_cast<int>(gradient.smoothing.size()) - 1;
+    std::vector<double> derivative;
+    double moment = 0.0;  // what the derivative makes of a plane of slope 1
+    for (int k = 1; k <= gradient.radius; ++k) {
+        // g relative to g(1): the factor cancels, and g(1) itself is too small for a double where sigma is
+        // small.
+        derivative.push_back(k * math::exp(-0.5 * (k * k - 1) / (sigma * sigma)));
+        moment += 2.0 * k * derivative.back();
+    }
+    for (const double d : derivative) gradient.derivative.push_back(static_cast<float>(d / moment));
+    return gradient;
+}
+
+// An axis of one texel has slope 0.
+float bumpiness(float value, int texels) { return texels > 1 ? value : 0.0f; }
+
+// What a difference is multiplied by: the smoothed kernels hold it in their weights.
+float step(const Gradient& gradient) { return !gradient.is_difference() || gradient.forward ? 1.0f : 0.5f; }
+
+}  // namespace
+
+Gradient gradient_of(const BakeOptions& options) {
+    switch (options.kernel) {
+        case GradientKernel::forward: return {1, {}, {}, true};
+        case GradientKernel::central: break;
+        case GradientKernel::sobel: return {1, {0.5f}, {0.5f, 0.25f}};
+        case GradientKernel::scharr: return {1, {0.5f}, {0.625f, 0.1875f}};
+        case GradientKernel::prewitt: return {1, {0.5f}, {1.0f / 3.0f, 1.0f / 3.0f}};
+        case GradientKernel::sobel5: return {2, {0.25f, 0.125f}, {0.375f, 0.25f, 0.0625f}};
+        case GradientKernel::gaussian: return gaussian_gradient(static_cast<double>(options.gaussian_sigma));
+    }
+    return {};
+}
+
+BakeRows::BakeRows(Extent extent, RowOf heights, const Gradient& gradient, const HeightFieldHead& head, int first)
+    : extent_(extent), gradient_(gradient), scale_x_(step(gradient) * bumpiness(head.bumpiness_x, extent.width)),
+      scale_y_(step(gradient) * bumpiness(head.bumpiness_y, extent.height)),
+      rows_(extent, std::move(heights), head.wrap_x, head.wrap_y, gradient.radius, 2 * gradient.radius + 1),
+      next_(first - gradient.radius) {
+    if (gradient.is_difference()) return;
+    const int window = 2 * gradient.radius + 1;
+    du_ = Plane<float>(Extent{extent.width, window});
+    dv_ = Plane<float>(Extent{rows_.lead() + extent.width + rows_.lead(), 1});
+    window_rows_.resize(static_cast<std::size_t>(window));
+    window_du_.resize(static_cast<std::size_t>(window));
+}
+
+void BakeRows::fetch() {
+    const float* row = rows_.fetch(next_);
+    if (!gradient_.is_difference()) {
+        derive_row(row, gradient_.derivative.data(), gradient_.radius, extent_.width,
+                   du_.row(wrap_around(next_, 2 * gradient_.radius + 1)));
+    }
+    ++next_;
+}
+
+void BakeRows::bake(int j, NormalRow out) {
+    const int radius = gradient_.radius;
+    while (next_ <= j + radius) fetch();
+    if (gradient_.is_difference()) {
+        const float* row = rows_.row(j);
+        const float* left = gradient_.forward ? row : row - 1;
+        const float* down = gradient_.forward ? row : rows_.row(j + 1);
+        normals_by_difference(left, row + 1, down, rows_.row(j - 1), scale_x_, scale_y_, extent_.width, out);
+        return;
+    }
+    const int window = 2 * radius + 1;
+    const int lead = rows_.lead();
+    for (int k = 0; k < window; ++k) {
+        window_rows_[static_cast<std::size_t>(k)] = rows_.row(j - radius + k) - lead;
+        window_du_[static_cast<std::size_t>(k)] = du_.row(wrap_around(j - radius + k, window));
+    }
+    derive_column(window_rows_.data(), gradient_.derivative.data(), radius, lead + extent_.width + radius, dv_.row(0));
+    normals_by_smoothing(window_du_.data(), dv_.row(0) + lead, gradient_.smoothing.data(), radius, scale_x_, scale_y_,
+                         extent_.width, out);
+}
+
+}  // namespace tex

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// bake_rows.h: rows of heights to rows of normals, from top to bottom, through a window as high as the gradient kernel.
+
+#pragma once
+
+#include <vector>
+
+#include <tex/bake.h>
+
+#include "kernels/bake.h"
+#include "rows/border.h"
+
+namespace tex {
+
+// A gradient as one-sided weights: derivative[k - 1] is d at +k (at -k its negative), smoothing[k] is s at +k and -k.
+// Forward and central, a difference of two texels and nothing in between, have none.
+struct Gradient {
+    int radius = 1;  // the rows that a normal needs above and below its own
+    std::vector<float> derivative;
+    std::vector<float> smoothing;
+    bool forward = false;
+
+    [[nodiscard]] bool is_difference() const { return derivative.empty(); }
+};
+
+Gradient gradient_of(const BakeOptions& options);
+
+// A height field without its heights.
+struct HeightFieldHead {
+    float bumpiness_x = 1.0f;
+    float bumpiness_y = 1.0f;
+    Wrap wrap_x = Wrap::repeat;
+    Wrap wrap_y = Wrap::repeat;
+};
+
+class BakeRows {
+public:
+    // `first` is the first row that will be baked. `heights` and `gradient` must outlive this.
+    BakeRows(Extent extent, RowOf heights, const Gradient& gradient, const HeightFieldHead& head, int first);
+
+    // Bakes row j into `out`, which has room for whole vectors. Rows follow one another, also past the last one where
+    // the heights repeat: row `height` is row 0 again.
+    void bake(int j, NormalRow out);
+
+    // The next row of heights that bake() will ask for, which may lie beyond the border (see height_index()).
+    [[nodiscard]] int next_height() const { return next_; }
+
+private:
+    void fetch();
+
+    const Extent extent_;
+    const Gradient& gradient_;
+    const float scale_x_;
+    const float scale_y_;
+    HeightRows rows_;
+    int next_;
+    // All kernels but differences. Two ways through the window of rows: the derivative along the row is smoothed down
+    // the column, the derivative down the column is smoothed along the row.
+    Plane<float> du_;
+    Plane<float> dv_;
+    std::vector<const float*> window_rows_;
+    std::vector<const float*> window_du_;
+};
+
+}  // namespace tex

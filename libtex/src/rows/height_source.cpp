@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "rows/height_source.h"
+
+#include <algorithm>
+#include <limits>
+#include <string_view>
+
+#include "kernels/height_field.h"
+
+namespace tex {
+namespace {
+
+constexpr std::string_view kTheFirst = ", the first at column ";  // of heights that are invalid
+
+// The greatest HeightOptions::blur_sigma.
+constexpr float kMaxBlurSigma = 256.0f;
+
+constexpr int kNoPlane = -1;
+
+using Names = std::vector<std::string>;
+
+int find(const Names& names, std::string_view name) {
+    const auto at = std::find(names.begin(), names.end(), name);
+    return at == names.end() ? kNoPlane : static_cast<int>(at - names.begin());
+}
+
+bool same_word(std::string_view a, std::string_view b) {
+    const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](char p, char q) { return lower(p) == lower(q); });
+}
+
+// The plane with the heights of a picture without colour; kNoPlane where it is not clear which.
+int grey_plane(const Names& names) {
+    std::vector<int> planes;
+    for (int k = 0; k < static_cast<int>(names.size()); ++k) {
+        if (names[static_cast<std::size_t>(k)] != "A") planes.push_back(k);
+    }
+    if (names.size() == 1) return 0;
+    if (planes.size() == 1) return planes.front();
+    for (const std::string_view word : {"Y", "height", "displacement", "Z", "depth"}) {
+        for (const int k : planes) {
+            if (same_word(names[static_cast<std::size_t>(k)], word)) return k;
+        }
+    }
+    return kNoPlane;
+}
+
+std::string list_of_channels(const Names& names) {
+    std::string list;
+    for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+    return list;
+}
+
+Error no_such_channel(const Names& names, HeightChannel channel) {
+    std::string reason =
+        channel == HeightChannel::automatic
+            ? "which channel holds the height is not clear"
+            : "the picture has no channel for \"" + std::string(name_of(kHeightChannelNames, channel)) + "\"";
+    return {ErrorCode::bad_option, {}, reason + "; its channels are " + list_of_channels(names)};
+}
+
+// Row j of the heights before anything else is done to them. Returns the number of texels where `automatic`
+// took luma.
+std::int64_t take_row(const Image& image, const HeightSource& source, int j, float* out) {
+    const auto row = [&](int plane) { return image.planes[static_cast<std::size_t>(plane)].row(j); };
+    const int count = image.extent().width;
+    if (source.plane != kNoPlane) {
+        std::copy_n(row(source.plane), count, out);
+        return 0;
+    }
+    const ColorRow colors{row(source.red), row(source.green), row(source.blue)};
+    switch (source.mixture) {
+        case HeightChannel::luma: luma_row(colors, count, out); break;
+        case HeightChannel::average: average_row(colors, count, out); break;
+        case HeightChannel::max: max_row(colors, count, out); break;
+        default: return automatic_row(colors, count, out);
+    }
+    return 0;
+}
+
+}  // namespace
+
+Result<HeightSource> find_height_source(const Names& names, HeightChannel channel) {
+    HeightSource source{channel, kNoPlane, find(names, "R"), find(names, "G"), find(names, "B")};
+    const bool colour = source.red >= 0 && source.green >= 0 && source.blue >= 0;
+    const int grey = colour ? kNoPlane : grey_plane(names);
+    const auto named = [&](const char* name) { return find(names, name) >= 0 ? find(names, name) : grey; };
+    switch (channel) {
+        case HeightChannel::r: source.plane = named("R"); break;
+        case HeightChannel::g: source.plane = named("G"); break;
+        case HeightChannel::b: source.plane = named("B"); break;
+        case HeightChannel::a: source.plane = find(names, "A"); break;
+        case HeightChannel::y: source.plane = named("Y"); break;
+        case HeightChannel::automatic:
+        case HeightChannel::luma:
+        case HeightChannel::average:
+        case HeightChannel::max:
+            if (colour) return source;
+            source.plane = grey;
+            break;
+    }
+    if (source.plane == kNoPlane) return no_such_channel(names, channel);
+    return source;
+}
+
+std::optional<Error> check_blur(const HeightOptions& options) {
+    if (options.blur_sigma >= 0.0f && options.blur_sigma <= kMaxBlurSigma) return std::nullopt;
+    return Error{ErrorCode::bad_option, {}, "the blur's sigma must be from 0 to 256 texels"};
+}
+
+HeightCounts take_heights(const Image& image, const HeightSource& source, const HeightOptions& options, int j,
+                          float* out) {
+    const float no_data = options.no_data.value_or(std::numeric_limits<float>::quiet_NaN());
+    HeightCounts counts;
+    counts.luma = take_row(image, source, j, out);
+    counts.invalid = clean_row(out, image.extent().width, no_data, options.invert);
+    return counts;
+}
+
+Error invalid_heights(std::int64_t invalid, int column, int row, Extent extent, const HeightOptions& options) {
+    const std::string kinds = options.no_data ? "NaN, infinite or no-data" : "NaN or infinite";
+    if (invalid == extent.texels()) return {ErrorCode::bad_data, {}, "no texel has a height: all are " + kinds};
+    return {ErrorCode::bad_data,
+            {},
+            std::to_string(invalid) + (invalid == 1 ? " height is " : " heights are ") + kinds +
+                std::string(kTheFirst) + std::to_string(column) + ", row " + std::to_string(row)};
+}
+
+bool is_fillable(const Error& error) {
+    return error.code == ErrorCode::bad_data && error.reason.find(kTheFirst) != std::string::npos;
+}
+
+}  // namespace tex

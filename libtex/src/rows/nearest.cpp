@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "rows/nearest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <vector>
+
+#include "rows/border.h"
+
+namespace tex {
+namespace {
+
+constexpr std::int32_t kNone = -1;
+
+// The distance of texels i and k on an axis of n texels.
+int axis_distance(int i, int k, int n, bool repeats) {
+    const int straight = std::abs(i - k);
+    return repeats ? std::min(straight, n - straight) : straight;
+}
+
+// First pass: the row of the nearest valid texel in the same column, for columns [begin, end); the upper
+// one of two.
+void find_in_columns(PlaneView<const float> heights, bool repeats, int begin, int end, Plane<std::int32_t>& nearest) {
+    const int rows = heights.extent.height;
+    std::vector<std::int32_t> last(static_cast<std::size_t>(end - begin));
+    // Downwards: the valid texel above. A second round lets those at the bottom count for the top.
+    std::fill(last.begin(), last.end(), kNone);
+    for (int j = repeats ? -rows : 0; j < rows; ++j) {
+        const int row = wrap_around(j, rows);
+        for (int i = begin; i < end; ++i) {
+            std::int32_t& seen = last[static_cast<std::size_t>(i - begin)];
+            if (!std::isnan(heights.at(i, row))) seen = row;
+            nearest.at(i, row) = seen;
+        }
+    }
+    // Upwards: the valid texel below, if it is nearer, or as near and of a smaller row.
+    std::fill(last.begin(), last.end(), kNone);
+    for (int j = repeats ? 2 * rows - 1 : rows - 1; j >= 0; --j) {
+        const int row = wrap_around(j, rows);
+        for (int i = begin; i < end; ++i) {
+            std::int32_t& seen = last[static_cast<std::size_t>(i - begin)];
+            if (!std::isnan(heights.at(i, row))) seen = row;
+            if (seen == kNone || j >= rows) continue;
+            std::int32_t& best = nearest.at(i, row);
+            const int below = axis_distance(row, seen, rows, repeats);
+            const int above = best == kNone ? rows : axis_distance(row, best, rows, repeats);
+            if (below < above || (below == above && seen < best)) best = seen;
+        }
+    }
+}
+
+// A valid texel as seen from one row.
+struct Site {
+    std::int64_t position;  // column; of its repetitions column + k * columns
+    std::int64_t square;    // of the distance from the row, in texels^2
+    std::int32_t row;
+    std::int32_t column;
+
+    [[nodiscard]] bool before(const Site& other) const {
+        return row != other.row ? row < other.row : column < other.column;
+    }
+};
+
+// The first position from which on `right` is nearer than `left`, right.position > left.position: the
+// difference of their squared distances falls steadily. Where both are as near, the smaller row, then
+// column wins.
+std::int64_t takes_over(const Site& left, const Site& right) {
+    const std::int64_t slope = 2 * (right.position - left.position);
+    const std::int64_t rise =
+        right.position * right.position - left.position * left.position + right.square - left.square;
+    const std::int64_t quotient = rise / slope - (rise % slope < 0 ? 1 : 0);  // rounded down
+    const bool tie = rise % slope == 0;
+    return tie && right.before(left) ? quotient : quotient + 1;
+}
+
+// Second pass: the sites that are the nearest somewhere in a row, from left to right, each with the
+// position where it begins to be.
+class RowOfSites {
+public:
+    void clear() {
+        sites_.clear();
+        starts_.clear();
+    }
+    void add(const Site& site, std::int64_t columns) {
+        while (!sites_.empty()) {
+            const std::int64_t start = takes_over(sites_.back(), site);
+            if (start > starts_.back()) {
+                if (start < columns) push(site, start);
+                return;
+            }
+            sites_.pop_back();
+            starts_.pop_back();
+        }
+        push(site, 0);
+    }
+    // Calls fill(column, site) for columns 0, 1, ...
+    template <class Fill>
+    void for_each(int columns, Fill&& fill) const {
+        std::size_t k = 0;
+        for (int i = 0; i < columns; ++i) {
+            while (k + 1 < sites_.size() && starts_[k + 1] <= i) ++k;
+            fill(i, sites_[k]);
+        }
+    }
+
+private:
+    void push(const Site& site, std::int64_t start) {
+        sites_.push_back(site);
+        starts_.push_back(start);
+    }
+    std::vector<Site> sites_;
+    std::vector<std::int64_t> starts_;
+};
+
+void fill_row(PlaneView<float> heights, const Plane<std::int32_t>& nearest, int j, bool repeats_x, bool repeats_y,
+              RowOfSites& sites) {
+    const auto [columns, rows] = heights.extent;
+    sites.clear();
+    // On an axis that repeats, half a turn to each side is as far as the nearest can be.
+    const int margin = repeats_x ? columns / 2 + 1 : 0;
+    for (int position = -margin; position < columns + margin; ++position) {
+        const int column = wrap_around(position, columns);
+        const std::int32_t row = nearest.at(column, j);
+        if (row == kNone) continue;
+        const std::int64_t distance = axis_distance(j, row, rows, repeats_y);
+        sites.add({position, distance * distance, row, column}, columns);
+    }
+    sites.for_each(columns, [&](int i, const Site& site) {
+        float& height = heights.at(i, j);
+        if (std::isnan(height)) height = heights.at(site.column, site.row);
+    });
+}
+
+bool has_hole(const float* row, int count) {
+    return std::any_of(row, row + count, [](float h) { return std::isnan(h); });
+}
+
+}  // namespace
+
+Result<void> fill_from_nearest(PlaneView<float> heights, Wrap wrap_x, Wrap wrap_y, const Execution& execution,
+                               ProgressSpan span) {
+    const Extent extent = heights.extent;
+    const bool repeats_x = wrap_x == Wrap::repeat, repeats_y = wrap_y == Wrap::repeat;
+    Plane<std::int32_t> nearest(extent);
+    const double half = (span.from + span.to) / 2;
+    constexpr int kColumns = 256;
+    const auto columns = [&](int begin, int end) { find_in_columns(heights, repeats_y, begin, end, nearest); };
+    if (auto done = parallel_for(execution, extent.width, kColumns, columns, {span.from, half}); !done) return done;
+
+    // A hole is written by the thread that has its row, and read by none: sites are valid texels.
+    const auto rows = [&](int begin, int end) {
+        RowOfSites sites;
+        for (int j = begin; j < end; ++j) {
+            if (has_hole(heights.row(j), extent.width)) fill_row(heights, nearest, j, repeats_x, repeats_y, sites);
+        }
+    };
+    return parallel_for(execution, extent.height, std::max(1, (1 << 15) / extent.width), rows, {half, span.to});
+}
+
+}  // namespace tex

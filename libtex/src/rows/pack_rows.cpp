@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "rows/pack_rows.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include <half.h>
+
+#include "kernels/encode.h"
+#include "kernels/pack.h"
+
+namespace tex {
+namespace {
+
+// The rows of a normal map as a format's channels.
+class Rows {
+public:
+    Rows(const NormalMap& map, int height, const Swizzle& swizzle, YAxis y_axis)
+        : map_(map), extent_{map.extent().width, height}, swizzle_(swizzle), negate_y_(y_axis == YAxis::down) {}
+
+    void channels(int j, PackChannel out[4]) const {
+        for (std::size_t k = 0; k < 4; ++k) {
+            switch (swizzle_[k]) {
+                case Component::x: out[k] = {map_.x.row(j), false}; break;
+                case Component::y: out[k] = {map_.y.row(j), negate_y_}; break;
+                case Component::z: out[k] = {map_.z.row(j), false}; break;
+                default:
+                    out[k] = {};
+                    break;  // every encoding's constants are 1, but for channels that it does not store
+            }
+        }
+    }
+
+    [[nodiscard]] BlockRow block_row(int j) const {
+        BlockRow row;
+        row.width = extent_.width;
+        row.height = std::min(4, extent_.height - j);
+        row.negate_y = negate_y_;
+        for (int k = 0; k < 4; ++k) {
+            row.x[k] = map_.x.row(j + std::min(k, row.height - 1));
+            row.y[k] = map_.y.row(j + std::min(k, row.height - 1));
+        }
+        return row;
+    }
+
+    [[nodiscard]] Extent extent() const { return extent_; }
+
+private:
+    const NormalMap& map_;
+    const Extent extent_;
+    const Swizzle swizzle_;
+    const bool negate_y_;
+};
+
+std::size_t size(int n) { return static_cast<std::size_t>(n); }
+
+// Rows [begin, end) as unorm codes. The kernel writes past a row's end, hence the row between.
+template <class Code, class Kernel>
+void pack_codes(const Rows& rows, int channels, int begin, int end, std::byte* out, Kernel kernel) {
+    const int width = rows.extent().width;
+    std::vector<Code> codes(size(channels) * size(width + kPackSlack));
+    const std::size_t row_bytes = size(channels) * size(width) * sizeof(Code);
+    for (int j = begin; j < end; ++j) {
+        PackChannel from[4];
+        rows.channels(j, from);
+        kernel(from, channels, width, codes.data());
+        std::memcpy(out + size(j) * row_bytes, codes.data(), row_bytes);
+    }
+}
+
+// Rows [begin, end) as floats, or as halves rounded to nearest even by Imath.
+template <class Value>
+void pack_values(const Rows& rows, int channels, int begin, int end, std::byte* out) {
+    const int width = rows.extent().width;
+    std::vector<Value> values(size(channels) * size(width));
+    const std::size_t row_bytes = values.size() * sizeof(Value);
+    for (int j = begin; j < end; ++j) {
+        PackChannel from[4];
+        rows.channels(j, from);
+        for (int k = 0; k < channels; ++k) {
+            const float* source = from[k].values;
+            Value* value = values.data() + k;
+            // 0 - n, not -n: a flat map holds no negative zeros.
+            for (int i = 0; i < width; ++i, value += channels) {
+                *value = Value(from[k].negate ? 0.0f - source[i] : source[i]);
+            }
+        }
+        std::memcpy(out + size(j) * row_bytes, values.data(), row_bytes);
+    }
+}
+
+}  // namespace
+
+void pack_rows(const NormalMap& map, int height, const PackOptions& options, int begin, int end, std::byte* out) {
+    const auto [format, swizzle] = encoding_info(options.encoding);
+    const FormatInfo info = format_info(format);
+    const Rows rows(map, height, swizzle, options.y_axis);
+    const std::size_t row_blocks = (size(rows.extent().width) + 3) / 4;
+    for (int j = begin; j < end && info.block == 4; j += 4) {
+        std::byte* blocks = out + size(j / 4) * row_blocks * info.block_bytes;
+        encode_blocks(rows.block_row(j), options, blocks);
+    }
+    if (info.block == 4) return;
+    if (info.bits == 8) {
+        pack_codes<std::uint8_t>(rows, info.channels, begin, end, out, pack_unorm8);
+    } else if (info.bits == 16 && info.sample == SampleKind::unorm) {
+        pack_codes<std::uint16_t>(rows, info.channels, begin, end, out, pack_unorm16);
+    } else if (info.bits == 16) {
+        pack_values<Imath::half>(rows, info.channels, begin, end, out);
+    } else {
+        pack_values<float>(rows, info.channels, begin, end, out);
+    }
+}
+
+}  // namespace tex

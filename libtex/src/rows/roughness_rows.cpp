@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "rows/roughness_rows.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include <half.h>
+
+#include "kernels/encode.h"
+
+namespace tex {
+namespace {
+
+// Rows of a row of blocks as 2 roughness - 1: encoders take components of vectors.
+class Components {
+public:
+    explicit Components(const Plane<float>& level) : level_(level), rows_(Extent{level.extent().width, 4}) {}
+
+    const float* row(int k, int j) {
+        const float* from = level_.row(j);
+        float* to = rows_.row(k);
+        for (int i = 0; i < level_.extent().width; ++i) to[i] = 2.0f * from[i] - 1.0f;
+        return to;
+    }
+
+private:
+    const Plane<float>& level_;
+    Plane<float> rows_;
+};
+
+// BC4 is the first block of BC5.
+void pack_blocks(const Plane<float>& level, int height, Effort effort, int begin, int end, std::byte* out) {
+    constexpr std::size_t kBc4 = 8, kBc5 = 16;
+    const int width = level.extent().width;
+    const std::size_t count = (static_cast<std::size_t>(width) + 3) / 4;
+    std::vector<std::byte> pairs(count * kBc5);
+    Components components(level);
+    for (int j = begin; j < end; j += 4) {
+        BlockRow row;
+        row.width = width;
+        row.height = std::min(4, height - j);
+        for (int k = 0; k < 4; ++k) {
+            row.x[k] = k < row.height ? components.row(k, j + k) : row.x[k - 1];
+            row.y[k] = row.x[k];
+        }
+        encode_bc5_unorm(row, effort, pairs.data());
+        std::byte* block = out + static_cast<std::size_t>(j / 4) * count * kBc4;
+        for (std::size_t k = 0; k < count; ++k) std::memcpy(block + k * kBc4, pairs.data() + k * kBc5, kBc4);
+    }
+}
+
+template <class Code>
+void pack_codes(const Plane<float>& level, int begin, int end, std::byte* out) {
+    constexpr auto kTop = static_cast<float>(std::numeric_limits<Code>::max());
+    const auto width = static_cast<std::size_t>(level.extent().width);
+    std::vector<Code> codes(width);
+    for (int j = begin; j < end; ++j) {
+        std::transform(level.row(j), level.row(j) + width, codes.begin(),
+                       [](float v) { return static_cast<Code>(std::clamp(v, 0.0f, 1.0f) * kTop + 0.5f); });
+        std::memcpy(out + static_cast<std::size_t>(j) * width * sizeof(Code), codes.data(), width * sizeof(Code));
+    }
+}
+
+template <class Value>
+void pack_values(const Plane<float>& level, int begin, int end, std::byte* out) {
+    const auto width = static_cast<std::size_t>(level.extent().width);
+    std::vector<Value> values(width);
+    for (int j = begin; j < end; ++j) {
+        std::transform(level.row(j), level.row(j) + width, values.begin(), [](float v) { return Value(v); });
+        std::memcpy(out + static_cast<std::size_t>(j) * width * sizeof(Value), values.data(), width * sizeof(Value));
+    }
+}
+
+}  // namespace
+
+void pack_roughness_rows(const Plane<float>& level, int height, Format format, Effort effort, int begin, int end,
+                         std::byte* out) {
+    switch (format) {
+        case Format::bc4_unorm: pack_blocks(level, height, effort, begin, end, out); break;
+        case Format::r8_unorm: pack_codes<std::uint8_t>(level, begin, end, out); break;
+        case Format::r16_unorm: pack_codes<std::uint16_t>(level, begin, end, out); break;
+        case Format::r16_float: pack_values<Imath::half>(level, begin, end, out); break;
+        default: pack_values<float>(level, begin, end, out); break;
+    }
+}
+
+}  // namespace tex

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "rows/source_layout.h"
+
+#include "rows/unpack_rows.h"
+
+namespace tex {
+namespace {
+
+constexpr Swizzle kXy = {Component::x, Component::y, Component::zero, Component::one};
+
+bool is_bc5(Format format) { return format == Format::bc5_unorm || format == Format::bc5_snorm; }
+
+bool leaves_a_choice(const Texture& head) { return !head.swizzle_known && format_info(head.format).channels == 4; }
+
+}  // namespace
+
+std::optional<Swizzle> known_swizzle(const Texture& head, const SourceOptions& options) {
+    if (options.unpack.swizzle) return options.unpack.swizzle;
+    if (options.bc5_swizzle && is_bc5(head.format)) return options.bc5_swizzle;
+    if (leaves_a_choice(head)) return std::nullopt;
+    if (options.r_or_a) return guessed_swizzle(head.swizzle, options);
+    return head.swizzle;
+}
+
+Swizzle guessed_swizzle(const Swizzle& guess, const SourceOptions& options) {
+    return options.r_or_a && guess[3] != Component::x ? kXy : guess;
+}
+
+SourceInfo source_info(const Texture& head, const Swizzle& swizzle, const SourceOptions& options) {
+    SourceInfo info;
+    info.format = head.format;
+    info.swizzle = swizzle;
+    const bool as_expected = name_of(kSwizzleNames, swizzle) == "rgb" && head.swizzle[3] != Component::x;
+    info.guessed = leaves_a_choice(head) && !options.unpack.swizzle && !options.r_or_a && !as_expected;
+    const bool told = options.file_y_first && head.y_known;
+    info.y_axis = told ? head.y_axis : options.unpack.y_axis.value_or(head.y_axis);
+    info.srgb = head.srgb;
+    info.remarks = head.remarks;
+    return info;
+}
+
+UnpackOptions unpack_options(const SourceInfo& info, const SourceOptions& options) {
+    UnpackOptions unpack = options.unpack;
+    unpack.swizzle = info.swizzle;
+    unpack.y_axis = info.y_axis;
+    return unpack;
+}
+
+Result<void> check_channels(const Texture& head) {
+    if (format_info(head.format).channels > 1) return {};
+    return Error{ErrorCode::unsupported, {}, kOneChannel};
+}
+
+}  // namespace tex

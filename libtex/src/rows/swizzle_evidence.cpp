@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "rows/swizzle_evidence.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include <tex/swizzle.h>
+
+namespace tex {
+namespace {
+
+constexpr float kConstant = 8.0f / 255.0f;  // a BC1 block's fit of a constant may stray by this much
+constexpr int kMostTexels = 1 << 20;
+
+int step_of(Extent extent) {
+    return std::max(1, static_cast<int>(std::ceil(std::sqrt(static_cast<double>(extent.texels()) / kMostTexels))));
+}
+
+double length_error(float a, float b, float c, float scale, float offset) {
+    const float x = a * scale - offset;
+    const float y = b * scale - offset;
+    const float z = c * scale - offset;
+    const float error = std::abs(x * x + y * y + z * z - 1.0f);
+    return static_cast<double>(std::isfinite(error) ? std::min(error, 4.0f) : 4.0f);
+}
+
+double signed_error(float a, float b, float c) { return length_error(a, b, c, 1.0f, 0.0f); }
+double unsigned_error(float a, float b, float c) { return length_error(a, b, c, 2.0f, 1.0f); }
+
+Swizzle named(std::string_view name) { return *find_by_name(kSwizzleNames, name); }
+
+}  // namespace
+
+void SwizzleEvidence::Range::add(float value) {
+    if (!std::isfinite(value)) return;
+    least = std::min(least, value);
+    greatest = std::max(greatest, value);
+}
+
+bool SwizzleEvidence::Range::is_constant() const { return !(greatest - least > kConstant); }
+
+SwizzleEvidence::SwizzleEvidence(Extent extent, SampleKind sample)
+    : extent_(extent), is_float_(sample == SampleKind::floating), step_(step_of(extent)) {}
+
+void SwizzleEvidence::add_row(int j, const float* const (&channels)[4]) {
+    if (j % step_ != 0) return;
+    for (int i = 0; i < extent_.width; i += step_) {
+        const float r = channels[0][i];
+        const float g = channels[1][i];
+        const float b = channels[2][i];
+        const float a = channels[3][i];
+        for (std::size_t c = 0; c < 4; ++c) channels_[c].add(channels[c][i]);
+        signed_.rgb += signed_error(r, g, b);
+        signed_.rxgb += signed_error(a, g, b);
+        unsigned_.rgb += unsigned_error(r, g, b);
+        unsigned_.rxgb += unsigned_error(a, g, b);
+        off_grey_ += static_cast<double>(std::abs(r - g) + std::abs(b - g)) / 2.0;
+        ++count_;
+    }
+}
+
+Swizzle SwizzleEvidence::layout() const {
+    // Unsigned where no texel is negative.
+    const bool is_signed =
+        std::any_of(std::begin(channels_), std::end(channels_), [](const Range& range) { return range.least < 0.0f; });
+    const auto count = static_cast<double>(count_);
+    const double rgb_error = (is_signed ? signed_ : unsigned_).rgb / count;
+    const double rxgb_error = (is_signed ? signed_ : unsigned_).rxgb / count;
+    const auto& [r, g, b, a] = channels_;
+    constexpr double kNotUnit = 0.25;  // far beyond quantisation and filtering
+    // Floats without a negative value may be signed all the same: a flat map is 0, 0, 1.
+    const bool is_unit = rgb_error <= kNotUnit || (is_float_ && signed_.rgb / count <= kNotUnit);
+    if (r.is_constant() && b.is_constant() && (!a.is_constant() || !is_unit)) return named("dxt5nm");
+    constexpr double kGrey = 4.0 / 255.0;  // 5 and 6 bits of the same grey differ by so much
+    if (!a.is_constant() && off_grey_ / count <= kGrey) return named("dxt5nm");
+    if (r.is_constant() && !a.is_constant() && rxgb_error < rgb_error) return named("rxgb");
+    return named("rgb");
+}
+
+}  // namespace tex

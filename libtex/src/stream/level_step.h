@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// level_step.h: one level and the next: which rows of the larger one are needed, and for how long.
+
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <tex/mip.h>
+
+#include "rows/axis_filter.h"
+#include "rows/mip_rows.h"
+#include "stream/row_shelf.h"
+
+namespace tex {
+
+// Rows of the larger level go to the shelf, in the order that row_shelf.h describes; while is_ready(), row() of the
+// smaller one can be made of window(), and advance() follows.
+struct LevelStep {
+    // From level `level`, whose first row to come is `start`. Rows have up to `planes` planes.
+    LevelStep(Extent from_extent, int level, int planes, int start, const MipOptions& options);
+
+    [[nodiscard]] bool is_ready() const;
+    [[nodiscard]] int row() const { return next % to.height; }
+    // The y.taps rows, of one plane, that it is made of. They stand until the next call.
+    const float* const* window(int plane);
+    void advance();
+
+    // The first row of the smaller level that is made.
+    [[nodiscard]] int start() const { return first % to.height; }
+
+    const Extent from;
+    const Extent to;
+    const int to_level;
+    const bool halves;  // two rows and two columns become one, nothing else
+    const AxisFilter x;
+    const AxisFilter y;
+    MipRows filter;
+    const int first;  // the position of the first row that is made
+    int next;         // of the next one
+    RowShelf shelf;   // rows of `from`
+    RowMaker rows;    // for rows of `to`
+
+private:
+    // Where the window of the next row begins, as a position in the larger level.
+    [[nodiscard]] int begin() const;
+    // The row of the larger level that is the k-th in the window of the next row.
+    [[nodiscard]] int source(int k) const;
+
+    std::vector<const float*> window_;
+    const Wrap wrap_y_;
+};
+
+}  // namespace tex

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// normal_source.h: the normals in an open file.
+
+#pragma once
+
+#include <tex/source.h>
+
+#include "files/input_file.h"
+
+namespace tex {
+
+// As read_normals(path). May throw std::bad_alloc.
+Result<Source> read_normals(InputFile& file, const SourceOptions& options, bool base_only, const Execution& execution);
+
+}  // namespace tex

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "stream/pack_stream.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <tex/mip_chain.h>
+
+#include "formats/claims.h"
+#include "rows/source_layout.h"
+#include "stream/layout_finder.h"
+#include "stream/level_stage.h"
+#include "stream/strip_writer.h"
+#include "stream/unpack_stage.h"
+#include "threads/parallel.h"
+
+namespace tex {
+namespace {
+
+// How many levels build_mip_chain() makes.
+int levels_built(const MipOptions& options, Extent base) {
+    const int complete = level_count(base);
+    return options.levels > 0 ? std::min(options.levels, complete) : complete;
+}
+
+// One reading of the file, under an assumption about its layout.
+class Attempt {
+public:
+    Attempt(TextureRows& texture, const std::string& input, const std::string& output, Container container,
+            const PackFileOptions& options, const Execution& execution, const StreamSizes& sizes,
+            const KnownLayout& known, std::unique_ptr<StripWriter>& writer)
+        : texture_(texture), input_(input), output_(output), container_(container), options_(options),
+          execution_(execution), sizes_(sizes), writer_(writer), finder_(texture, options.source, known) {}
+
+    // Nothing in the result, but correction(), where the texels say that the assumption was wrong.
+    Result<std::optional<PackFileReport>> run();
+    [[nodiscard]] const KnownLayout& correction() const { return *correction_; }
+
+private:
+    Result<void> prepare();
+    Result<void> look_at_base_level();
+    Result<std::unique_ptr<StripWriter>> open_writer() const;
+    Result<void> stream_level(std::size_t k, StripWriter& writer, const Execution& execution);
+    [[nodiscard]] int roughness_levels() const {
+        return holds_levels(options_.roughness->container, options_.roughness->level_names) ? report_.levels : 1;
+    }
+    [[nodiscard]] RowSource& rows(std::size_t k) const { return *texture_.levels[k]; }
+
+    TextureRows& texture_;
+    const std::string& input_;
+    const std::string& output_;
+    const Container container_;
+    const PackFileOptions& options_;
+    const Execution& execution_;
+    const StreamSizes& sizes_;
+    std::unique_ptr<StripWriter>& writer_;  // that of the attempt before, until this one has its own
+    LayoutFinder finder_;
+    std::optional<KnownLayout> correction_;
+    Sources sources_;
+    UnpackRule rule_;
+    std::size_t first_ = 0;  // the level that becomes the base level
+    std::size_t end_ = 1;    // of the levels that are read
+    PackFileReport report_;
+};
+
+// What is to be read, and written. Errors are those of options that do not fit the file.
+Result<void> Attempt::prepare() {
+    const Texture& head = texture_.head;
+    if (Result<void> fit = check_channels(head); !fit) return fit;
+    const FormatInfo info = format_info(head.format);
+    const Result<Sources> sources = sources_of(finder_.layout().swizzle, (1u << info.channels) - 1);
+    if (!sources) return sources.error();
+    sources_ = *sources;
+    report_.source = source_info(head, finder_.layout().swizzle, options_.source);
+    rule_ = rule_of(unpack_options(report_.source, options_.source), info.sample, info.bits, report_.source.y_axis);
+    rule_.is_unsigned = finder_.layout().is_unsigned;
+
+    const std::size_t held = texture_.levels.size();
+    first_ = static_cast<std::size_t>(options_.level.value_or(0));
+    if (first_ >= held) return no_such_level(input_, *options_.level, held);
+    end_ = options_.level || options_.mip || !holds_levels(container_, options_.level_names) ? first_ + 1 : held;
+    report_.path = Path::streamed;
+    report_.extent = rows(first_).extent();
+    report_.pack = pack_options(options_, container_, report_.source);
+    report_.levels = static_cast<int>(end_ - first_);
+    if (options_.mip && holds_levels(container_, options_.level_names)) {
+        report_.levels = levels_built(*options_.mip, report_.extent);
+    }
+    return {};
+}
+
+// Where the base level decides how another one is to be read.
+Result<void> Attempt::look_at_base_level() {
+    RowSource& base = rows(0);
+    const int step = (base.rows_together() + 3) / 4 * 4;  // see RowSource::decode() and store()
+    Image image = make_image({base.extent().width, step}, base.names());
+    std::vector<std::byte> decoded(base.row_bytes() * static_cast<std::size_t>(step));
+    for (int j = 0; j < base.extent().height; j += step) {
+        const int count = std::min(step, base.extent().height - j);
+        if (Result<void> done = base.decode(j, count, decoded.data()); !done) return done;
+        base.store(decoded.data(), 0, count, image);
+        for (int k = 0; k < count; ++k) {
+            const float* channels[4] = {};
+            for (std::size_t c = 0; c < texture_.planes.size(); ++c)
+                channels[c] = image.planes[texture_.planes[c]].row(k);
+            finder_.add_row(channels);
+        }
+    }
+    correction_ = finder_.correction();
+    return {};
+}
+
+Result<std::unique_ptr<StripWriter>> Attempt::open_writer() const {
+    const StripPacking packing = packing_of(report_.pack, report_.extent, report_.levels);
+    Result<std::unique_ptr<StripWriter>> normals =
+        StripWriter::open({output_, options_.level_names}, container_, packing, options_.write);
+    if (!normals || !options_.roughness) return normals;
+    const RoughnessFile& file = *options_.roughness;
+    const StripPacking rough = packing_of(file, report_.extent, roughness_levels());
+    Result<std::unique_ptr<StripWriter>> roughness =
+        StripWriter::open({file.output, file.level_names}, file.container, rough, options_.write, Opened::late);
+    if (!roughness) return roughness;
+    return StripWriter::pair(std::move(*normals), std::move(*roughness));
+}
+
+// Level k, and what is built of it.
+Result<void> Attempt::stream_level(std::size_t k, StripWriter& writer, const Execution& execution) {
+    const Extent extent = rows(k).extent();
+    const int levels = options_.mip ? report_.levels : 1;
+    LayoutFinder* const finder = k == 0 && finder_.depends_on_texels() ? &finder_ : nullptr;
+    if (finder == nullptr) {
+        std::vector<bool> wanted(rows(k).names().size(), false);
+        for (const int c : {sources_.x, sources_.y, sources_.z}) {
+            if (c >= 0) wanted[texture_.planes[static_cast<std::size_t>(c)]] = true;
+        }
+        rows(k).choose_planes(wanted);
+    }
+    RowStream stream(rows(k), input_, static_cast<int>(k - first_), levels, writer, execution, sizes_);
+    UnpackStage normals(texture_, extent, sources_, rule_, options_.scale, finder, stream.sink());
+    constexpr int kFromTheTop = 0;
+    LevelStage mips(extent, levels, kFromTheTop, options_.mip.value_or(MipOptions()), stream.strips());
+    std::optional<RoughnessStage> roughness;
+    if (options_.roughness) {
+        const RoughnessFile& file = *options_.roughness;
+        roughness.emplace(extent, roughness_levels(), *options_.mip, file.model, file.own,
+                          stream.roughness_strips(roughness_levels()));
+    }
+    Result<void> done = stream.run(normals, mips, roughness ? &*roughness : nullptr);
+    if (done && finder != nullptr) correction_ = finder->correction();
+    return done;
+}
+
+Result<std::optional<PackFileReport>> Attempt::run() {
+    if (const Result<void> ready = prepare(); !ready) return after_all_rows(rows(0), input_, ready.error().of(input_));
+    if (first_ > 0 && finder_.depends_on_texels()) {
+        if (const Result<void> seen = look_at_base_level(); !seen) return seen.error().of(input_);
+        if (correction_) return std::optional<PackFileReport>();
+    }
+    Result<std::unique_ptr<StripWriter>> opened = open_writer();
+    if (!opened) return opened.error();
+    // Not earlier: who reads from a FIFO takes its last writer's end for that of the file.
+    writer_ = std::move(*opened);
+    StripWriter& writer = *writer_;
+    double texels = 0.0;
+    for (std::size_t k = first_; k < end_; ++k) texels += static_cast<double>(rows(k).extent().texels());
+    double done = 0.0;
+    for (std::size_t k = first_; k < end_; ++k) {
+        const double next = done + static_cast<double>(rows(k).extent().texels()) / texels;
+        const Result<void> streamed = stream_level(k, writer, part_of(execution_, done, std::min(1.0, next)));
+        if (!streamed) return streamed.error();
+        if (correction_) return std::optional<PackFileReport>();
+        done = next;
+    }
+    if (const Result<void> committed = writer.commit(); !committed) return committed.error();
+    report_.bytes = writer.file_bytes();
+    report_.roughness_bytes = writer.roughness_bytes();
+    return std::optional(report_);
+}
+
+}  // namespace
+
+PackOptions pack_options(const PackFileOptions& options, Container container, const SourceInfo& source) {
+    if (options.pack) return options.pack(source);
+    PackOptions pack;
+    pack.encoding = default_encoding(container);
+    pack.y_axis = source.y_axis;
+    return pack;
+}
+
+Error no_such_level(const std::string& input, int level, std::size_t levels) {
+    return {ErrorCode::bad_option, input, "has no level " + std::to_string(level) + ", only " + std::to_string(levels)};
+}
+
+Result<PackFileReport> pack_stream(InputFile& file, TextureRows texture, const std::string& output, Container container,
+                                   const PackFileOptions& options, const Execution& execution,
+                                   const StreamSizes& sizes) {
+    double told = 0.0;  // no attempt falls behind one before
+    Execution onward{execution.threads, {}};
+    if (execution.progress) {
+        onward.progress = [&](double fraction) { return execution.progress(told = std::max(told, fraction)); };
+    }
+    KnownLayout known;
+    std::unique_ptr<StripWriter> writer;
+    while (true) {
+        Attempt attempt(texture, file.path(), output, container, options, onward, sizes, known, writer);
+        Result<std::optional<PackFileReport>> done = attempt.run();
+        if (!done) return done.error();
+        if (*done) return **done;
+        known = attempt.correction();
+        texture = {};
+        if (const Result<void> again = file.rewind(); !again) return again.error();
+        Result<std::optional<TextureRows>> opened = open_texture_rows(file, options.source.read);
+        if (!opened) return opened.error();
+        if (!*opened) return Error{ErrorCode::io, file.path(), "changed while it was read"};
+        texture = std::move(**opened);
+    }
+}
+
+}  // namespace tex

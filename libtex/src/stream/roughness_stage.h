@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// roughness_stage.h: rows of the base level's normals to rows of roughness of all levels.
+
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <tex/mip.h>
+#include <tex/roughness.h>
+
+#include "stream/level_step.h"
+#include "stream/row_shelf.h"
+#include "stream/strips.h"
+
+namespace tex {
+
+// The same values as build_roughness_chain().
+class RoughnessStage {
+public:
+    // `own` is the material's roughness everywhere. Otherwise as LevelStage, from the top.
+    RoughnessStage(Extent base, int levels, const MipOptions& options, RoughnessModel model, float own, Strips& strips);
+
+    void put(int j, const NormalRow& row, std::shared_ptr<const void> owner);
+
+private:
+    void put_row(std::size_t step, int j, ShelfRow row);
+    void make_row(std::size_t step);
+
+    const RoughnessModel model_;
+    Strips& strips_;
+    std::vector<std::unique_ptr<LevelStep>> steps_;  // [k] makes level k + 1 of level k: x, y, z and alpha^2
+    Plane<float> own_;                               // a row of roughness, and one of alpha^2
+};
+
+}  // namespace tex

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "stream/strip_writer.h"
+
+#include <algorithm>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <tex/mip_chain.h>
+
+#include "formats/dds/dds.h"
+#include "formats/file_layout.h"
+#include "formats/ktx2/ktx2.h"
+#include "formats/row_target.h"
+#include "rows/pack_rows.h"
+#include "rows/roughness_rows.h"
+#include "threads/guard.h"
+
+namespace tex {
+namespace {
+
+// DDS and KTX2: every level has its place from the start.
+class TextureWriter final : public StripWriter {
+public:
+    // `first` is the level that the file begins with.
+    TextureWriter(std::unique_ptr<OutputFile> file, FileLayout layout, StripPacking packing, int first)
+        : file_(std::move(file)), layout_(std::move(layout)), packing_(std::move(packing)), first_(first) {}
+
+    Result<void> begin() { return file_->write_at(0, layout_.head); }
+    [[nodiscard]] bool is_in_order(const Strip&) const override { return false; }
+    Result<void> write(Strip& strip) override;
+    Result<void> commit() override { return file_->commit(); }
+    [[nodiscard]] std::size_t file_bytes() const override { return layout_.size; }
+
+private:
+    const std::unique_ptr<OutputFile> file_;
+    const FileLayout layout_;
+    const StripPacking packing_;
+    const int first_;
+};
+
+Result<void> TextureWriter::write(Strip& strip) {
+    return guarded([&]() -> Result<void> {
+        const Format format = packing_.head.format;
+        const Extent extent{strip.map.extent().width, strip.height};
+        const std::size_t size = level_bytes(format, extent);
+        const std::size_t stored_size = stored_level_bytes(format, extent, layout_.rearrange);
+        const bool rearranged = layout_.rearrange != Rearrange::none;
+        strip.bytes.resize(size + (rearranged ? stored_size : 0));
+        packing_.pack(strip, strip.bytes.data());
+        std::span<const std::byte> stored(strip.bytes.data(), size);
+        if (rearranged) {
+            std::byte* target = strip.bytes.data() + size;
+            rearrange_texels(format, layout_.rearrange, strip.bytes.data(), size / format_info(format).block_bytes,
+                             target);
+            stored = {target, stored_size};
+        }
+        // Strips begin with whole rows of blocks.
+        const std::size_t before = stored_level_bytes(format, {extent.width, strip.first}, layout_.rearrange);
+        return file_->write_at(layout_.levels[static_cast<std::size_t>(strip.level - first_)].offset + before, stored);
+    });
+}
+
+// Pictures, whose rows are compressed one after the other. Strips that come before their turn wait, packed.
+class PictureWriter final : public StripWriter {
+public:
+    PictureWriter(std::string path, std::unique_ptr<OutputFile> file, StripPacking packing, int first)
+        : path_(std::move(path)), file_(std::move(file)), packing_(std::move(packing)), first_(first) {}
+
+    Result<void> begin(Container container, const TextureHead& head) {
+        Result<std::unique_ptr<RowTarget>> target =
+            open_row_target(container, head, [this](std::uint64_t offset, std::span<const std::byte> bytes) {
+                size_ = std::max(size_, static_cast<std::size_t>(offset) + bytes.size());
+                return bytes.empty() ? Result<void>() : file_->write_at(offset, bytes);
+            });
+        if (!target) return target.error().of(path_);
+        target_ = std::move(*target);
+        return {};
+    }
+    [[nodiscard]] bool is_in_order(const Strip&) const override { return true; }
+    Result<void> write(Strip& strip) override;
+    Result<void> commit() override;
+    [[nodiscard]] std::size_t file_bytes() const override { return size_; }
+
+private:
+    struct Packed {
+        int rows = 0;
+        std::vector<std::byte> bytes;
+    };
+    struct Level {
+        int next = 0;                   // the row that comes next
+        std::map<int, Packed> waiting;  // by their first rows
+    };
+    Result<void> put(int level, const std::byte* rows, int count) {
+        levels_[level].next += count;
+        const Result<void> put = target_->put(level, rows, count);
+        return put ? put : Result<void>(put.error().of(path_));
+    }
+
+    const std::string path_;
+    const std::unique_ptr<OutputFile> file_;
+    const StripPacking packing_;
+    std::size_t size_ = 0;
+    std::unique_ptr<RowTarget> target_;  // writes into the file
+    const int first_;                    // the level that the file begins with
+    std::map<int, Level> levels_;
+};
+
+Result<void> PictureWriter::write(Strip& strip) {
+    return guarded([&]() -> Result<void> {
+        strip.bytes.resize(level_bytes(packing_.head.format, {strip.map.extent().width, strip.height}));
+        packing_.pack(strip, strip.bytes.data());
+        const int index = strip.level - first_;
+        Level& level = levels_[index];
+        if (strip.first != level.next) {
+            level.waiting[strip.first] = {strip.height, strip.bytes};
+            return {};
+        }
+        Result<void> done = put(index, strip.bytes.data(), strip.height);
+        while (done && !level.waiting.empty() && level.waiting.begin()->first == level.next) {
+            const Packed packed = std::move(level.waiting.extract(level.waiting.begin()).mapped());
+            done = put(index, packed.bytes.data(), packed.rows);
+        }
+        return done;
+    });
+}
+
+Result<void> PictureWriter::commit() {
+    const Result<void> ended = guarded([&] { return target_->finish(); });
+    return ended ? file_->commit() : Result<void>(ended.error().of(path_));
+}
+
+// A file for each level.
+class LevelWriter final : public StripWriter {
+public:
+    explicit LevelWriter(std::vector<std::unique_ptr<StripWriter>> levels) : levels_(std::move(levels)) {}
+
+    [[nodiscard]] bool is_in_order(const Strip& strip) const override {
+        return levels_[static_cast<std::size_t>(strip.level)]->is_in_order(strip);
+    }
+    Result<void> write(Strip& strip) override { return levels_[static_cast<std::size_t>(strip.level)]->write(strip); }
+    // One after the other, each closed before the next: those after one that fails do not appear.
+    Result<void> commit() override {
+        for (std::unique_ptr<StripWriter>& level : levels_) {
+            if (Result<void> done = level->commit(); !done) return done;
+            bytes_ += level->file_bytes();
+            level.reset();
+        }
+        return {};
+    }
+    [[nodiscard]] std::size_t file_bytes() const override { return bytes_; }
+
+private:
+    std::vector<std::unique_ptr<StripWriter>> levels_;
+    std::size_t bytes_ = 0;
+};
+
+// Normals, and roughness beside them.
+class PairWriter final : public StripWriter {
+public:
+    PairWriter(std::unique_ptr<StripWriter> normals, std::unique_ptr<StripWriter> roughness)
+        : normals_(std::move(normals)), roughness_(std::move(roughness)) {}
+
+    [[nodiscard]] bool is_in_order(const Strip& strip) const override { return of(strip).is_in_order(strip); }
+    Result<void> write(Strip& strip) override { return of(strip).write(strip); }
+    Result<void> commit() override {
+        if (Result<void> done = normals_->commit(); !done) return done;
+        bytes_ = normals_->file_bytes();
+        normals_.reset();
+        return roughness_->commit();
+    }
+    [[nodiscard]] std::size_t file_bytes() const override { return bytes_; }
+    [[nodiscard]] std::size_t roughness_bytes() const override { return roughness_->file_bytes(); }
+
+private:
+    [[nodiscard]] StripWriter& of(const Strip& strip) const {
+        return strip.content == Content::roughness ? *roughness_ : *normals_;
+    }
+
+    std::unique_ptr<StripWriter> normals_;
+    const std::unique_ptr<StripWriter> roughness_;
+    std::size_t bytes_ = 0;
+};
+
+using Opening = Result<std::unique_ptr<StripWriter>>;
+
+// One file, whose base level is level `first` of all.
+Opening open_file(const std::string& path, Container container, const StripPacking& packing, int first, Opened when,
+                  const WriteOptions& options) {
+    const TextureHead& head = packing.head;
+    FileLayout layout;
+    if (is_texture(container)) layout = container == Container::dds ? dds_layout(head, options) : ktx2_layout(head);
+    const std::size_t bytes = is_texture(container) ? layout.size : level_bytes(head.format, head.extent);
+    Result<std::unique_ptr<OutputFile>> file = OutputFile::open(path, bytes, when, {options.sync, options.no_clobber});
+    if (!file) return file.error();
+    if (!is_texture(container)) {
+        auto picture = std::make_unique<PictureWriter>(path, std::move(*file), packing, first);
+        if (const Result<void> begun = picture->begin(container, head); !begun) return begun.error();
+        return std::unique_ptr<StripWriter>(std::move(picture));
+    }
+    auto texture = std::make_unique<TextureWriter>(std::move(*file), std::move(layout), packing, first);
+    if (const Result<void> begun = texture->begin(); !begun) return begun.error();
+    return std::unique_ptr<StripWriter>(std::move(texture));
+}
+
+}  // namespace
+
+bool is_texture(Container container) { return container == Container::dds || container == Container::ktx2; }
+
+bool holds_levels(Container container, const LevelNames& names) { return names || can_hold_levels(container); }
+
+bool takes_strips(Container container) { return is_texture(container) || takes_rows(container); }
+
+StripPacking packing_of(const PackOptions& options, Extent extent, int levels) {
+    const EncodingInfo encoding = encoding_info(options.encoding);
+    return {{encoding.format, extent, levels, encoding.swizzle, true, options.y_axis, true},
+            [options](const Strip& strip, std::byte* out) {
+                pack_rows(strip.map, strip.height, options, 0, strip.height, out);
+            }};
+}
+
+StripPacking packing_of(const RoughnessFile& options, Extent extent, int levels) {
+    TextureHead head{options.format, extent, levels};
+    head.swizzle = kRoughnessSwizzle;
+    return {head, [format = options.format, effort = options.effort](const Strip& strip, std::byte* out) {
+                pack_roughness_rows(strip.map.x, strip.height, format, effort, 0, strip.height, out);
+            }};
+}
+
+Opening StripWriter::open(const OutputNames& names, Container container, StripPacking packing,
+                          const WriteOptions& options, Opened when) {
+    if (!names.of_level) return open_file(names.output, container, packing, 0, when, options);
+    const Extent extent = packing.head.extent;
+    const int levels = std::exchange(packing.head.levels, 1);
+    std::vector<std::unique_ptr<StripWriter>> files;
+    for (int k = 0; k < levels; ++k) {
+        packing.head.extent = level_extent(extent, k);
+        Opening file = open_file(names.of_level(k), container, packing, k, k == 0 ? when : Opened::late, options);
+        if (!file) return file.error();
+        files.push_back(std::move(*file));
+    }
+    return std::unique_ptr<StripWriter>(std::make_unique<LevelWriter>(std::move(files)));
+}
+
+std::unique_ptr<StripWriter> StripWriter::pair(std::unique_ptr<StripWriter> normals,
+                                               std::unique_ptr<StripWriter> roughness) {
+    return std::make_unique<PairWriter>(std::move(normals), std::move(roughness));
+}
+
+}  // namespace tex

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// strip_writer.h: strips of normals to their places in a file.
+
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include <tex/container.h>
+#include <tex/pack.h>
+#include <tex/pipeline.h>
+
+#include "files/output_file.h"
+#include "formats/file_layout.h"
+#include "stream/strips.h"
+
+namespace tex {
+
+// Where levels go: all into `output`, or where there is of_level, each into a file of its own.
+struct OutputNames {
+    const std::string& output;
+    const LevelNames& of_level;
+};
+
+// How strips become texels.
+struct StripPacking {
+    TextureHead head;
+    std::function<void(const Strip& strip, std::byte* out)> pack;
+};
+StripPacking packing_of(const PackOptions& options, Extent extent, int levels);
+StripPacking packing_of(const RoughnessFile& options, Extent extent, int levels);
+
+class StripWriter {
+public:
+    StripWriter() = default;
+    StripWriter(const StripWriter&) = delete;
+    StripWriter& operator=(const StripWriter&) = delete;
+    virtual ~StripWriter() = default;
+
+    // Opens the output and writes what stands before the texels. Precondition: takes_strips(). Errors: io,
+    // out_of_memory; unsupported (the container cannot hold the encoding, or so many levels).
+    static Result<std::unique_ptr<StripWriter>> open(const OutputNames& names, Container container,
+                                                     StripPacking packing, const WriteOptions& options,
+                                                     Opened when = Opened::at_once);
+
+    // Gives strips to one or the other, by their content; files of roughness appear after those of normals.
+    static std::unique_ptr<StripWriter> pair(std::unique_ptr<StripWriter> normals,
+                                             std::unique_ptr<StripWriter> roughness);
+
+    // Strips of its kind and level are to come one at a time, best from the top; else in any order, from several
+    // threads at once.
+    [[nodiscard]] virtual bool is_in_order(const Strip& strip) const = 0;
+
+    // Packs a whole strip and puts it into its place. Errors: io, out_of_memory.
+    virtual Result<void> write(Strip& strip) = 0;
+
+    // After the last strip: the file appears, or one after the other. Errors: io, out_of_memory.
+    virtual Result<void> commit() = 0;
+
+    [[nodiscard]] virtual std::size_t file_bytes() const = 0;
+    [[nodiscard]] virtual std::size_t roughness_bytes() const { return 0; }
+};
+
+// DDS and KTX2, whose strips come in any order.
+[[nodiscard]] bool is_texture(Container container);
+
+// Whether all levels are written, or the base level alone.
+[[nodiscard]] bool holds_levels(Container container, const LevelNames& names);
+
+// Whether files of this kind are written strip by strip: DDS, KTX2, and those that takes_rows() knows, in order.
+[[nodiscard]] bool takes_strips(Container container);
+
+}  // namespace tex

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// fork_join.h: a loop on TBB's threads, whose order the thread sanitizer understands.
+//
+// TBB's library is not compiled with the sanitizer, which so cannot see that a body begins after its loop does and ends
+// before it, and takes every use of what a body wrote for a race. Here it is told. (What TBB's headers and the lambda
+// below do among themselves is in tests/tsan.supp.)
+
+#pragma once
+
+#include <pthread.h>
+
+#include <algorithm>
+#include <mutex>
+#include <vector>
+
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#include <tex/result.h>
+
+#if defined(__SANITIZE_THREAD__)
+#include <sanitizer/tsan_interface.h>
+#endif
+
+namespace tex {
+
+#if defined(__SANITIZE_THREAD__)
+inline char fork_moment = 0;
+inline char join_moment = 0;
+inline void happens_before(char& moment) { __tsan_release(&moment); }
+inline void happens_after(char& moment) { __tsan_acquire(&moment); }
+#else
+inline constexpr char fork_moment = 0;
+inline constexpr char join_moment = 0;
+inline void happens_before(char) {}
+inline void happens_after(char) {}
+#endif
+
+// Where fork_join() throws std::runtime_error, which is TBB's: the threads that could start a moment ago cannot any
+// more.
+inline Error no_threads_error() { return {ErrorCode::out_of_memory, {}, "the system refuses threads"}; }
+
+// Whether the system gives this process `count` threads more, all at once: TBB throws where it is refused one, and has
+// then lost count. Tries it, as often as `count` grows.
+inline bool threads_can_start(int count) {
+    static std::mutex mutex;
+    static int most = 0;  // that could
+    const std::lock_guard lock(mutex);
+    if (count <= most) return true;
+    constexpr std::size_t kStack = std::size_t{4} << 20;  // TBB's
+    pthread_attr_t attributes;
+    pthread_attr_init(&attributes);
+    pthread_attr_setstacksize(&attributes, kStack);
+    std::mutex together;  // held until all have started
+    together.lock();
+    const auto wait = [](void* held) -> void* {
+        static_cast<std::mutex*>(held)->lock();
+        static_cast<std::mutex*>(held)->unlock();
+        return nullptr;
+    };
+    std::vector<pthread_t> threads(static_cast<std::size_t>(count));
+    std::size_t started = 0;
+    while (started < threads.size() && pthread_create(&threads[started], &attributes, wait, &together) == 0) ++started;
+    together.unlock();
+    for (std::size_t k = 0; k < started; ++k) pthread_join(threads[k], nullptr);
+    pthread_attr_destroy(&attributes);
+    if (started == threads.size()) most = count;
+    return started == threads.size();
+}
+
+// Calls body(k) for every k in [0, count), on up to `threads` threads, begun about in order; returns when all of them
+// have returned. One after the other, on this thread, where the system refuses threads. Precondition: 2 <= threads <=
+// what tbb::global_control allows (TBB would warn on stderr).
+template <class Body>
+void fork_join(int threads, int count, const Body& body) {
+    const auto allowed =
+        static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+    if (!threads_can_start(std::max(threads, allowed) - 1)) {
+        for (int k = 0; k < count; ++k) body(k);
+        return;
+    }
+    happens_before(fork_moment);
+    tbb::task_arena(threads).execute([&] {
+        tbb::parallel_for(
+            tbb::blocked_range<int>(0, count, 1),
+            [&](const tbb::blocked_range<int>& range) {
+                happens_after(fork_moment);
+                for (int k = range.begin(); k < range.end(); ++k) body(k);
+                happens_before(join_moment);
+            },
+            tbb::simple_partitioner());
+    });
+    happens_after(join_moment);
+}
+
+}  // namespace tex

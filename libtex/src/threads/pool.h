@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// pool.h: things that are needed again and again, and cost something to make.
+
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace tex {
+
+// Hands out things; one that nobody holds any more waits for the next taker, in the state in which it was left. Any
+// thread may take and let go. What was handed out may outlive the pool; copies of a pool share what waits in it.
+template <class T>
+class Pool {
+public:
+    // Something that waits, or else what make() returns (a std::unique_ptr<T>).
+    template <class Make>
+    std::shared_ptr<T> take(const Make& make) {
+        std::unique_ptr<T> thing;
+        {
+            const std::lock_guard lock(shelf_->mutex);
+            if (!shelf_->things.empty()) {
+                thing = std::move(shelf_->things.back());
+                shelf_->things.pop_back();
+            }
+        }
+        if (!thing) {
+            thing = make();
+            const std::lock_guard lock(shelf_->mutex);
+            shelf_->things.reserve(++shelf_->made);  // so that giving back needs no memory
+        }
+        T* raw = thing.release();
+        return std::shared_ptr<T>(raw, [shelf = shelf_](T* back) {
+            std::unique_ptr<T> owned(back);
+            const std::lock_guard lock(shelf->mutex);
+            shelf->things.push_back(std::move(owned));
+        });
+    }
+
+private:
+    struct Shelf {
+        std::mutex mutex;
+        std::vector<std::unique_ptr<T>> things;
+        std::size_t made = 0;
+    };
+    std::shared_ptr<Shelf> shelf_ = std::make_shared<Shelf>();
+};
+
+}  // namespace tex

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "batch/name_pattern.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "cli/text.h"
+#include "cli/usage_error.h"
+
+namespace tex::cli {
+namespace {
+
+const std::vector<std::string>& known_fields() {
+    static const std::vector<std::string> fields = {"dir", "stem", "ext", "level", "format"};
+    return fields;
+}
+
+}  // namespace
+
+NameFields name_fields(const std::string& path) {
+    if (path == "-") return {".", "stdin", "", ""};
+    const std::filesystem::path parts(path);
+    const std::string dir = parts.parent_path().string();
+    return {dir.empty() ? "." : dir, parts.stem().string(), parts.extension().string(), ""};
+}
+
+std::string with_level(const std::string& name, int level) {
+    std::string result;
+    for (const char c : name) {
+        if (c == kLevelMark) {
+            result += std::to_string(level);
+        } else {
+            result += c;
+        }
+    }
+    return result;
+}
+
+bool has_level(const std::string& name) { return name.find(kLevelMark) != std::string::npos; }
+
+NamePattern::NamePattern(std::string_view text) {
+    std::string literal;
+    const auto end_literal = [&] {
+        if (!literal.empty()) pieces_.push_back({false, literal});
+        literal.clear();
+    };
+    for (std::size_t k = 0; k < text.size(); ++k) {
+        const char c = text[k];
+        if ((c == '{' || c == '}') && k + 1 < text.size() && text[k + 1] == c) {
+            literal += c;
+            ++k;
+        } else if (c == '}') {
+            throw UsageError(fmt::format("'{}' has a }} without its {{", printable(text)));
+        } else if (c == '{') {
+            const std::size_t close = text.find('}', k);
+            if (close == std::string_view::npos)
+                throw UsageError(fmt::format("'{}' has a {{ without its }}", printable(text)));
+            const std::string field(text.substr(k + 1, close - k - 1));
+            if (std::find(known_fields().begin(), known_fields().end(), field) == known_fields().end()) {
+                throw UsageError(fmt::format("the field {{{}}} is none of {}{}", printable(field), join(known_fields()),
+                                             did_you_mean(field, known_fields())));
+            }
+            end_literal();
+            pieces_.push_back({true, field});
+            k = close;
+        } else {
+            literal += c;
+        }
+    }
+    end_literal();
+}
+
+std::string NamePattern::expand(const NameFields& fields) const {
+    std::string name;
+    for (const Piece& piece : pieces_) {
+        if (!piece.is_field)
+            name += piece.text;
+        else if (piece.text == "dir")
+            name += fields.dir;
+        else if (piece.text == "stem")
+            name += fields.stem;
+        else if (piece.text == "ext")
+            name += fields.ext;
+        else if (piece.text == "format")
+            name += fields.format;
+        else
+            name += kLevelMark;
+    }
+    return name;
+}
+
+bool NamePattern::uses(std::string_view field) const {
+    return std::any_of(pieces_.begin(), pieces_.end(),
+                       [&](const Piece& piece) { return piece.is_field && piece.text == field; });
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "options/groups.h"
+
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "batch/name_pattern.h"
+#include "cli/text.h"
+#include "cli/usage_error.h"
+
+namespace tex::cli {
+
+void WrapOptions::add(Command& command, std::string help) {
+    Row& row = command.option("--wrap", "W[,W]", std::move(help), [this](const std::string& text) {
+        const auto [first, second] = cut(text, ',');
+        x = parse_word(first, kWrapNames);
+        y = text.find(',') == std::string::npos ? x : parse_word(second, kWrapNames);
+    });
+    row.words = words_of(kWrapNames);
+    row.completes = Completes::words;
+    row.preset = name_of(kWrapNames, x);
+}
+
+void MipChainOptions::add(Command& command, bool with_keep, std::string levels_default) {
+    command.group("Mip chain");
+    Row& row = command.option(
+        "--mips", "N", "levels, counting the base level: a number, or a word",
+        [this, with_keep](const std::string& text) {
+            keep = with_keep && text == "keep";
+            if (text == "all" || keep) {
+                levels = 0;
+            } else if (text == "none") {
+                levels = 1;
+            } else {
+                try {
+                    levels = parse_int(text, 1, std::numeric_limits<int>::max());
+                } catch (const UsageError&) {
+                    throw UsageError(fmt::format("'{}' is neither all{} nor none nor a number of at least 1",
+                                                 printable(text), with_keep ? " nor keep" : ""));
+                }
+            }
+        });
+    row.words = {{"all", "down to 1x1"}, {"none", "the base level alone"}};
+    if (with_keep) row.words.insert(row.words.begin() + 1, {"keep", "those that the source has"});
+    row.completes = Completes::words;
+    row.preset = std::move(levels_default);
+
+    command.choice(mip.filter, "--mip-filter", "F", kMipFilterNames, "the filter from level to level");
+    command.choice(mip.domain, "--mip-domain", "D", kMipDomainNames, "what is averaged");
+    command.option("--fade", "FIRST,LAST", "fade to flat from level FIRST on; from LAST on all is flat",
+                   [this](const std::string& text) {
+                       const auto [first, last] = cut(text, ',');
+                       Fade fade;
+                       fade.first = parse_int(first, 0, 1000);
+                       fade.last = parse_int(last, 0, 1000);
+                       if (fade.first >= fade.last)
+                           throw UsageError(fmt::format("{} is not less than {}", fade.first, fade.last));
+                       mip.fade = fade;
+                   });
+}
+
+void MipChainOptions::check_builds(const Command& command) const {
+    if (levels && !keep) return;
+    const std::vector<std::string> idle = command.given_of({"--mip-filter", "--mip-domain", "--fade", "--wrap"});
+    if (idle.empty()) return;
+    throw UsageError(fmt::format("{} does nothing where levels are kept; --mips all builds them", idle.front()));
+}
+
+void MipChainOptions::check(const std::vector<Task>& tasks) const {
+    if (!levels || *levels == 1 || keep) return;
+    for (const Task& task : tasks) {
+        if (can_hold_levels(task.container) || has_level(task.output)) continue;
+        throw UsageError(
+            fmt::format("{}: a {} file holds one level; --mips wants .dds, .ktx2 or .exr, or --name with {{level}}",
+                        printable(task.output), name_of(kContainerNames, task.container)));
+    }
+}
+
+int MipChainOptions::levels_for(const Task& task) const {
+    if (levels) return *levels;
+    const bool is_texture = task.container == Container::dds || task.container == Container::ktx2;
+    return is_texture || has_level(task.output) ? 0 : 1;
+}
+
+}  // namespace tex::cli

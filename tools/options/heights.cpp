@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "options/heights.h"
+
+#include <cstdlib>
+
+#include <fmt/format.h>
+#include <tex/image_io.h>
+
+#include "cli/console.h"
+#include "cli/text.h"
+#include "cli/usage_error.h"
+
+namespace tex::cli {
+
+void ColorGroup::add(Command& command) {
+    command.text(color.space, "--color-space", "NAME",
+                 "the colour space that the heights were saved in, to make them linear; without a "
+                 "configuration sRGB or linear");
+    Row& config = command.text(color.config, "--ocio-config", "FILE", "the OpenColorIO configuration");
+    config.preset = "$OCIO";
+    config.completes = Completes::files;
+    command.check([this, &command] {
+        if (command.given("--ocio-config") && color.space.empty())
+            throw UsageError("--ocio-config does nothing without --color-space");
+        if (const char* variable = std::getenv("OCIO"); variable != nullptr && color.config.empty())
+            color.config = variable;
+    });
+}
+
+Result<void> ColorGroup::check() const {
+    if (!is_given()) return {};
+    Image texel;
+    texel.planes.emplace_back(Extent{1, 1}, 0.5f);
+    texel.names = {"Y"};
+    auto converted = to_linear(texel, color);
+    if (!converted && converted.error().code == ErrorCode::bad_option) {
+        throw UsageError(fmt::format("--color-space: {}", converted.error().reason));
+    }
+    return converted;
+}
+
+std::string ColorGroup::config_file() const {
+    return is_given() && !color.config.starts_with("ocio://") ? color.config : std::string();
+}
+
+void StrengthOptions::add(Command& command) {
+    command.group("Strength (one of three)");
+    command.number(bumpiness, "--bumpiness", "B", {},
+                   "the height of value 1.0 in texels, as a shader measures it; negative: dents");
+    command.option("--height-range", "R", "the height of value 1.0 in the unit of --size",
+                   [this](const std::string& text) { height_range = parse_double(text); });
+    command.option("--size", "W[xH]", "the width and height of the whole map; without H texels are square",
+                   [this](const std::string& text) {
+                       const auto [first, second] = cut(text, 'x');
+                       width = parse_double(first, kPositive);
+                       height = text.find('x') == std::string::npos ? 0.0 : parse_double(second, kPositive);
+                   });
+    command.option("--uv-height", "R", "the height of value 1.0 in widths of the map",
+                   [this](const std::string& text) { uv_height = parse_double(text); });
+    command.check([this, &command] {
+        const std::vector<std::string> several = command.given_of({"--bumpiness", "--height-range", "--uv-height"});
+        if (several.size() > 1) throw UsageError(join(several, " and ") + " contradict each other: give one");
+        if (command.given("--size") && !height_range) throw UsageError("--size does nothing without --height-range");
+        if (height_range && !command.given("--size")) throw UsageError("--height-range needs --size");
+    });
+}
+
+Strength StrengthOptions::strength(Extent extent) const {
+    if (height_range) return strength_from_world(extent, *height_range, width, height);
+    if (uv_height) return strength_from_uv(extent, *uv_height);
+    return {bumpiness, bumpiness};
+}
+
+void HeightGroup::add(Command& command) {
+    command.choice(options.channel, "--channel", "C", kHeightChannelNames, "which channel holds the heights");
+    command.flag(options.invert, "--invert", "white is low: h becomes 1 - h");
+    command.number(options.blur_sigma, "--blur", "SIGMA", {0.0, 256.0},
+                   "blur the heights first, by a Gaussian of SIGMA texels");
+    command.flag(options.fill_invalid, "--fill-invalid",
+                 "replace NaN, infinite and no-data texels by the nearest valid one");
+    command.option("--no-data", "V", "texels of exactly this value are invalid",
+                   [this](const std::string& text) { options.no_data = parse_float(text); });
+}
+
+ChannelFile parse_channel_file(const std::string& text) {
+    if (text.empty()) throw UsageError("needs a value that is not empty");
+    ChannelFile source{text};
+    if (const std::size_t colon = text.rfind(':'); colon != std::string::npos) {
+        const auto channel = find_by_name(kHeightChannelNames, std::string_view(text).substr(colon + 1));
+        if (!channel) return source;  // a colon of the file's name
+        source.channel = *channel;
+        source.file.resize(colon);
+    }
+    return source;
+}
+
+Result<Plane<float>> read_channel(Job& job, const ChannelFile& source, const Execution& execution) {
+    auto image = read_image(source.file, job.read_options);
+    if (!image) return image.error();
+    HeightOptions channel;
+    channel.channel = source.channel;
+    auto values = height_field(*image, channel, execution);
+    if (!values) return Error{values.error().code, source.file, values.error().reason};
+    return std::move(values->height);
+}
+
+Error HeightReader::with_remedy(const Error& error) {
+    if (!is_fillable(error)) return error;
+    return {error.code, error.file, error.reason + "; --fill-invalid fills in the nearest valid ones"};
+}
+
+void HeightReader::note(Job& job, const HeightReport& report) {
+    if (const std::string config = color.config_file(); !config.empty()) job.depends_on(config);
+    if (report.luma_texels > 0) ++luma_files_;
+    luma_texels_ += report.luma_texels;
+}
+
+void HeightReader::warn_of_luma() const {
+    if (luma_files_ == 0) return;
+    print_warning(
+        fmt::format("R, G and B differ in {} texels of {} file{}: their luma is the height; --channel chooses another",
+                    luma_texels_.load(), luma_files_.load(), luma_files_ == 1 ? "" : "s"));
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// heights.h: the option groups of commands that read height maps, and the step that reads them.
+
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <tex/color.h>
+#include <tex/height_field.h>
+
+#include "batch/job.h"
+#include "cli/command.h"
+
+namespace tex::cli {
+
+// --color-space, --ocio-config and the variable OCIO.
+struct ColorGroup {
+    ColorOptions color;
+
+    void add(Command& command);
+    [[nodiscard]] bool is_given() const { return !color.space.empty(); }
+
+    // Tries the conversion, so that a name that the configuration does not know is found before any file is
+    // read: throws UsageError; errors of Result: the configuration cannot be read.
+    [[nodiscard]] Result<void> check() const;
+
+    // The configuration as a file that outputs depend on, or empty.
+    [[nodiscard]] std::string config_file() const;
+};
+
+// Strength: --bumpiness, --height-range with --size, --uv-height. At most one of the three.
+struct StrengthOptions {
+    float bumpiness = HeightField{}.bumpiness_x;
+    std::optional<double> height_range;
+    double width = 0.0;
+    double height = 0.0;
+    std::optional<double> uv_height;
+
+    void add(Command& command);
+    [[nodiscard]] Strength strength(Extent extent) const;
+};
+
+// --channel, --invert, --blur, --fill-invalid, --no-data.
+struct HeightGroup {
+    HeightOptions options;
+
+    void add(Command& command);
+};
+
+// FILE[:CHANNEL]: a picture of which one channel is read, a mask or a roughness map.
+struct ChannelFile {
+    std::string file;
+    HeightChannel channel = HeightChannel::automatic;
+};
+[[nodiscard]] ChannelFile parse_channel_file(const std::string& text);
+[[nodiscard]] Result<Plane<float>> read_channel(Job& job, const ChannelFile& source, const Execution& execution);
+
+// How the heights of jobs are read: all of the groups above, and what is told of it.
+class HeightReader {
+public:
+    StrengthOptions strength;
+    ColorGroup color;
+    HeightGroup heights;
+
+    // `error`, of reading or baking heights, with the option that avoids it, where there is one.
+    [[nodiscard]] static Error with_remedy(const Error& error);
+
+    // What the reading of a job's heights met; the job depends on the colour configuration.
+    void note(Job& job, const HeightReport& report);
+
+    // One warning for all files whose height had to be guessed from colours.
+    void warn_of_luma() const;
+
+private:
+    std::atomic<std::int64_t> luma_files_{0};
+    std::atomic<std::int64_t> luma_texels_{0};
+};
+
+}  // namespace tex::cli

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "options/layers.h"
+
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "cli/text.h"
+#include "cli/usage_error.h"
+
+namespace tex::cli {
+namespace {
+
+constexpr Range kTilingRange{0.0, kMaxTiling, false};
+constexpr Range kOffsetRange{-kMaxTiling, kMaxTiling};
+
+// "X" or "X,Y"; without a comma Y is X where `square`, else an error.
+std::pair<float, float> parse_pair(const std::string& text, Range range, bool square) {
+    const auto [first, second] = cut(text, ',');
+    const float x = parse_float(first, range);
+    if (square && text.find(',') == std::string::npos) return {x, x};
+    return {x, parse_float(second, range)};
+}
+
+}  // namespace
+
+void LayerOptions::add(Command& command) {
+    command.group("Layers (each option once for all details, or once for each)");
+    Row& detail =
+        command.option("--detail", "FILE", "a detail map; all inputs are then bases", [this](const std::string& text) {
+            if (text.empty()) throw UsageError("needs a value that is not empty");
+            details_.push_back(text);
+        });
+    detail.completes = Completes::files;
+    detail.repeatable = true;
+    command
+        .option("--detail-scale", "S", "make the detail steeper or flatter",
+                [this](const std::string& text) {
+                    scale_.values.push_back(parse_float(text, {-kMaxScale, kMaxScale}));
+                })
+        .repeatable = true;
+    add_placement(command);
+    Row& mask = command.option("--mask", "FILE[:CHANNEL]", "where the detail shows: white is all of it",
+                               [this](const std::string& text) { mask_.values.push_back(parse_channel_file(text)); });
+    mask.completes = Completes::files;
+    mask.repeatable = true;
+    command
+        .option("--strength", "T", "how much of the detail shows, 0 to 1",
+                [this](const std::string& text) {
+                    strength_.values.push_back(parse_float(text, {0.0, 1.0}));
+                })
+        .repeatable = true;
+    Row& y =
+        command.option("--detail-y-in", "AXIS", "where green points in the detail",
+                       [this](const std::string& text) { y_in_.values.emplace_back(parse_word(text, kYAxisNames)); });
+    y.words = words_of(kYAxisNames);
+    y.completes = Completes::words;
+    y.preset = "as the file says, else as --y-in";
+    y.repeatable = true;
+}
+
+void LayerOptions::add_placement(Command& command) {
+    Row& tiling = command.option(
+        "--tiling", "X[,Y]", "how often the detail repeats across the base",
+        [this](const std::string& text) { tiling_.values.push_back(parse_pair(text, kTilingRange, true)); });
+    tiling.preset = "1,1";
+    tiling.repeatable = true;
+    Row& offset = command.option(
+        "--offset", "X,Y", "moves the detail, in its widths and heights; y upwards",
+        [this](const std::string& text) { offset_.values.push_back(parse_pair(text, kOffsetRange, false)); });
+    offset.preset = "0,0";
+    offset.repeatable = true;
+    command
+        .option("--rotate", "DEGREES", "turns the detail counter-clockwise, its vectors too",
+                [this](const std::string& text) { rotation_.values.push_back(parse_float(text)); })
+        .repeatable = true;
+    Row& wrap = command.option(
+        "--detail-wrap", "W[,W]", "what lies beyond the detail's border", [this](const std::string& text) {
+            const auto [first, second] = cut(text, ',');
+            const Wrap x = parse_word(first, kWrapNames);
+            wrap_.values.emplace_back(x, text.find(',') == std::string::npos ? x : parse_word(second, kWrapNames));
+        });
+    wrap.words = words_of(kWrapNames);
+    wrap.completes = Completes::words;
+    wrap.preset = name_of(kWrapNames, Layer{}.wrap_x);
+    wrap.repeatable = true;
+}
+
+void LayerOptions::check(std::size_t count) const {
+    const auto fits = [count](const char* name, std::size_t given) {
+        if (given <= 1 || given == count) return;
+        throw UsageError(
+            fmt::format("{} is given {} times for {} detail{}", name, given, count, count == 1 ? "" : "s"));
+    };
+    fits("--detail-scale", scale_.values.size());
+    fits("--tiling", tiling_.values.size());
+    fits("--offset", offset_.values.size());
+    fits("--rotate", rotation_.values.size());
+    fits("--detail-wrap", wrap_.values.size());
+    fits("--mask", mask_.values.size());
+    fits("--strength", strength_.values.size());
+    fits("--detail-y-in", y_in_.values.size());
+}
+
+std::vector<std::string> LayerOptions::mask_files() const {
+    std::vector<std::string> files;
+    for (const ChannelFile& mask : mask_.values) files.push_back(mask.file);
+    return files;
+}
+
+Result<Layer> LayerOptions::read_layer(Job& job, std::size_t k, const std::string& name, SourceOptions& source,
+                                       const Execution& execution) const {
+    auto detail = source.read(job, name, execution, {false, true, y_in_.of(k, std::nullopt)});
+    if (!detail) return detail.error();
+    Layer layer;
+    layer.detail = std::move(detail->chain);
+    layer.scale = scale_.of(k, layer.scale);
+    std::tie(layer.tiling_x, layer.tiling_y) = tiling_.of(k, {layer.tiling_x, layer.tiling_y});
+    std::tie(layer.offset_x, layer.offset_y) = offset_.of(k, {layer.offset_x, layer.offset_y});
+    layer.rotation = rotation_.of(k, layer.rotation);
+    std::tie(layer.wrap_x, layer.wrap_y) = wrap_.of(k, {layer.wrap_x, layer.wrap_y});
+    layer.strength = strength_.of(k, layer.strength);
+    const ChannelFile mask = mask_.of(k, {});
+    if (mask.file.empty()) return layer;
+    auto values = read_channel(job, mask, execution);
+    if (!values) return values.error();
+    layer.mask = std::move(*values);
+    return layer;
+}
+
+Result<std::vector<Layer>> LayerOptions::read(Job& job, const std::vector<std::string>& names, SourceOptions& source,
+                                              double from, double until) const {
+    std::vector<Layer> layers;
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        const double share = static_cast<double>(k + 1) / static_cast<double>(names.size());
+        auto layer = read_layer(job, k, names[k], source, job.until(from + (until - from) * share));
+        if (!layer) return layer.error();
+        layers.push_back(std::move(*layer));
+    }
+    return layers;
+}
+
+}  // namespace tex::cli

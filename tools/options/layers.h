@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// layers.h: the option group of detail layers: files, and for each the way it lies on the base.
+
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <tex/blend.h>
+
+#include "batch/job.h"
+#include "cli/command.h"
+#include "options/heights.h"
+#include "options/source.h"
+
+namespace tex::cli {
+
+// Values of an option that may be given for each layer: the i-th for the i-th layer, or a single one for all.
+template <class T>
+class PerLayer {
+public:
+    std::vector<T> values;
+
+    [[nodiscard]] T of(std::size_t layer, T otherwise) const {
+        if (values.empty()) return otherwise;
+        return values.size() == 1 ? values.front() : values.at(layer);
+    }
+};
+
+class LayerOptions {
+public:
+    void add(Command& command);
+
+    // Throws UsageError where an option is given neither once nor once for each of `count` layers.
+    void check(std::size_t count) const;
+
+    [[nodiscard]] const std::vector<std::string>& details() const { return details_; }
+    // The files of all masks.
+    [[nodiscard]] std::vector<std::string> mask_files() const;
+
+    // Reads the layers: `names` are their files. Each advances the job towards `until`.
+    [[nodiscard]] Result<std::vector<Layer>> read(Job& job, const std::vector<std::string>& names,
+                                                  SourceOptions& source, double from, double until) const;
+
+private:
+    using Pair = std::pair<float, float>;
+
+    void add_placement(Command& command);
+    [[nodiscard]] Result<Layer> read_layer(Job& job, std::size_t layer, const std::string& name, SourceOptions& source,
+                                           const Execution& execution) const;
+
+    std::vector<std::string> details_;
+    PerLayer<float> scale_, rotation_, strength_;
+    PerLayer<Pair> tiling_, offset_;
+    PerLayer<ChannelFile> mask_;
+    PerLayer<std::pair<Wrap, Wrap>> wrap_;
+    PerLayer<std::optional<YAxis>> y_in_;
+};
+
+}  // namespace tex::cli

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "options/output.h"
+
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "batch/job.h"
+#include "batch/name_pattern.h"
+#include "cli/stream.h"
+#include "cli/text.h"
+#include "cli/usage_error.h"
+#include "cli/value.h"
+
+namespace tex::cli {
+namespace {
+
+std::string known_extensions() {
+    std::vector<std::string> names;
+    for (const Named<Container>& row : kContainerNames) names.emplace_back(row.meaning);
+    return join(names);
+}
+
+std::string encodings_in(Container container) {
+    std::vector<std::string> names;
+    for (const Named<Encoding>& row : kEncodingNames) {
+        if (can_hold(container, row.value)) names.emplace_back(row.name);
+    }
+    return join(names);
+}
+
+std::string containers_for(Encoding encoding) {
+    std::vector<std::string> names;
+    for (const Named<Container>& row : kContainerNames) {
+        if (can_hold(row.value, encoding)) names.emplace_back(row.meaning);
+    }
+    return join(names);
+}
+
+// One file of the job's output: the texture itself, or one of its levels.
+Result<std::size_t> write_file_of(Job& job, const Texture& texture, const std::string& path, Container container,
+                                  const WriteOptions& options) {
+    auto bytes = encode_file(texture, container, options);
+    if (!bytes) return bytes.error().of(path);
+    if (auto written = write_file(path, *bytes, options); !written) return written.error();
+    job.wrote(path);
+    return bytes->size();
+}
+
+// Writes `texture` to `name` as a `container`: one file, or one for each level where the name has {level}. Returns the
+// bytes of all.
+Result<std::size_t> write_levels(Job& job, Texture texture, const std::string& name, Container container,
+                                 const OutputOptions& options) {
+    const WriteOptions write = options.write_options(job);
+    if (!has_level(name)) return write_file_of(job, texture, name, container, write);
+    std::size_t bytes = 0;
+    std::vector<Level> levels = std::exchange(texture.levels, {});
+    for (std::size_t k = 0; k < levels.size(); ++k) {
+        texture.levels.clear();
+        texture.levels.push_back(std::move(levels[k]));
+        auto size = write_file_of(job, texture, with_level(name, static_cast<int>(k)), container, write);
+        if (!size) return size.error();
+        bytes += *size;
+    }
+    return bytes;
+}
+
+}  // namespace
+
+std::string default_encodings() {
+    std::string text;
+    for (const Named<Encoding>& encoding : kEncodingNames) {
+        std::vector<std::string> containers;
+        for (const Named<Container>& container : kContainerNames) {
+            if (default_encoding(container.value) == encoding.value) containers.emplace_back(container.name);
+        }
+        if (!containers.empty())
+            text += fmt::format("{}{} in {}", text.empty() ? "" : "; ", encoding.name, join(containers));
+    }
+    return text;
+}
+
+std::string extension_of(Container container) {
+    for (const Named<Container>& row : kContainerNames) {
+        if (row.value == container) return cut(row.meaning, ',').first;
+    }
+    return {};
+}
+
+void OutputOptions::add(Command& command, std::string format_default, std::string y_default) {
+    command.group("Output");
+    command.choice(format, "--format", "F", kEncodingNames, "how normals are stored").preset =
+        std::move(format_default);
+    command
+        .choice(container, "--container", "KIND", kContainerNames,
+                "the kind of file, where the output's name does not tell (a pipe)")
+        .preset = "by extension; dds for -";
+    command.choice(y, "--y", "AXIS", kYAxisNames, "where green points in the output").preset = std::move(y_default);
+    command.choice(effort, "--effort", "E", kEffortNames, "how hard block encoders look for the smallest error");
+    command.choice(metric, "--metric", "M", kMetricNames, "which error --effort best makes smallest; angle implies it");
+    command.choice(dds_header, "--dds-header", "H", kDdsHeaderNames, "the header of DDS files");
+    command.flag(dds_mark, "--dds-mark", "mark DDS files as normal maps, as NVIDIA's tools do");
+}
+
+Container OutputOptions::container_for(const std::string& output, Container standard_output) const {
+    const std::optional<Container> told = container_of(output);
+    if (container) {
+        if (told && *told != *container) {
+            throw UsageError(fmt::format("{} says {}, --container says {}", printable(output),
+                                         name_of(kContainerNames, *told), name_of(kContainerNames, *container)));
+        }
+        return *container;
+    }
+    if (told) return *told;
+    if (output == "-") return standard_output;
+    const std::string extension = std::filesystem::path(output).extension().string();
+    throw UsageError(fmt::format(
+        "{}: {} is no kind of file that can be written ({}); --container names one", printable(output),
+        extension.empty() ? "a name without an extension" : "'" + printable(extension) + "'", known_extensions()));
+}
+
+void OutputOptions::check_holds(const std::string& output, Container container, Encoding encoding) {
+    if (can_hold(container, encoding)) return;
+    throw UsageError(fmt::format("{}: a {} file cannot hold {}, it holds {}; {} goes into {}", printable(output),
+                                 name_of(kContainerNames, container), name_of(kEncodingNames, encoding),
+                                 encodings_in(container), name_of(kEncodingNames, encoding), containers_for(encoding)));
+}
+
+WriteOptions OutputOptions::write_options(const Job& job) const {
+    WriteOptions write = job.write_options;
+    write.dds_header = dds_header;
+    write.dds_mark = dds_mark;
+    return write;
+}
+
+void report_texture(Job& job, Extent extent, int levels, const PackOptions& pack, std::size_t bytes) {
+    job.report["extent"] = {extent.width, extent.height};
+    job.report["levels"] = levels;
+    job.report["format"] = name_of(kEncodingNames, pack.encoding);
+    job.report["y"] = name_of(kYAxisNames, pack.y_axis);
+    job.report["bytes"] = bytes;
+}
+
+Result<void> write_chain(Job& job, MipChain chain, const OutputOptions& options, Encoding encoding, YAxis y) {
+    if (!can_hold_levels(job.task.container) && !has_level(job.task.output)) chain.levels.resize(1);
+    const PackOptions pack_options = options.pack_options(encoding, y);
+    auto texture = pack(chain, pack_options, job.until(0.95));
+    if (!texture) return texture.error();
+    chain.levels.clear();
+
+    const Extent extent = texture->extent();
+    const int count = static_cast<int>(texture->levels.size());
+    const auto bytes = write_levels(job, std::move(*texture), job.task.output, job.task.container, options);
+    if (!bytes) return bytes.error();
+    report_texture(job, extent, count, pack_options, *bytes);
+    return {};
+}
+
+}  // namespace tex::cli

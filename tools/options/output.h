@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// output.h: the option group that says what is written, and the step that ends every command: pack, encode,
+// write.
+
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <tex/container.h>
+#include <tex/pack.h>
+
+#include "cli/command.h"
+
+namespace tex::cli {
+
+class Job;
+
+struct OutputOptions {
+    std::optional<Encoding> format;      // none: the container's own, or whatever the command takes instead
+    std::optional<Container> container;  // none: by the output's extension
+    std::optional<YAxis> y;              // none: the input's
+    Effort effort = PackOptions{}.effort;
+    Metric metric = PackOptions{}.metric;
+    DdsHeader dds_header = WriteOptions{}.dds_header;
+    bool dds_mark = WriteOptions{}.dds_mark;
+
+    // `format_default` and `y_default` stand in the help.
+    void add(Command& command, std::string format_default, std::string y_default);
+
+    // The container of `output` ("-" is `standard_output`'s); throws UsageError where its name does not tell.
+    [[nodiscard]] Container container_for(const std::string& output, Container standard_output) const;
+
+    // A metric of angles implies the best effort.
+    [[nodiscard]] PackOptions pack_options(Encoding encoding, YAxis y_axis) const {
+        return {encoding, y_axis, metric == Metric::angle ? Effort::best : effort, metric};
+    }
+    // Those of the job, with what is asked for here.
+    [[nodiscard]] WriteOptions write_options(const Job& job) const;
+
+    // Throws UsageError where `encoding` does not fit into the container.
+    static void check_holds(const std::string& output, Container container, Encoding encoding);
+};
+
+// The library's encoding for each container: "dxt5nm in dds, ktx2; rgb8 in png, tga, ...".
+[[nodiscard]] std::string default_encodings();
+
+// ".dds" for Container::dds: the first of its extensions.
+[[nodiscard]] std::string extension_of(Container container);
+
+// Tells the job's report extent, levels, format, y and bytes.
+void report_texture(Job& job, Extent extent, int levels, const PackOptions& pack, std::size_t bytes);
+
+// Packs `chain` as `encoding` and writes it where the job says: one file, or one for each level where the
+// name has {level}; a picture gets the base level. See report_texture().
+[[nodiscard]] Result<void> write_chain(Job& job, MipChain chain, const OutputOptions& options, Encoding encoding,
+                                       YAxis y);
+
+}  // namespace tex::cli

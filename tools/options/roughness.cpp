@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "options/roughness.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "batch/name_pattern.h"
+#include "batch/repack.h"
+#include "cli/text.h"
+#include "cli/usage_error.h"
+#include "cli/value.h"
+
+namespace tex::cli {
+namespace {
+
+bool can_hold(Container container, Format format) {
+    const bool is_float = format_info(format).sample == SampleKind::floating;
+    switch (container) {
+        case Container::dds:
+        case Container::ktx2: return true;
+        case Container::exr: return is_float;
+        case Container::tiff: return format != Format::bc4_unorm;
+        case Container::png: return format == Format::r8_unorm || format == Format::r16_unorm;
+        case Container::tga:
+        case Container::bmp:
+        case Container::jpeg: return format == Format::r8_unorm;
+    }
+    return false;
+}
+
+// Throws UsageError where the name does not tell.
+Container container_for(const std::string& path) {
+    if (const auto container = container_of(path)) return *container;
+    throw UsageError(fmt::format("--roughness-out: {} is no kind of file that can be written", printable(path)));
+}
+
+}  // namespace
+
+void RoughnessOptions::add(Command& command, FileOptions& files) {
+    files_ = &files;
+    command.group("Roughness");
+    command
+        .text(
+            output_, "--roughness-out", "FILE",
+            "write a roughness map whose levels make up for what the normals lose; of many inputs a pattern as --name")
+        .completes = Completes::files;
+    Row& input =
+        command.option("--roughness-in", "FILE|VALUE", "the material's own roughness, FILE[:CHANNEL] or a number",
+                       [this](const std::string& text) { take_input(text); });
+    input.preset = "0";
+    input.completes = Completes::files;
+    command.choice(model_, "--roughness-model", "M", kRoughnessModelNames, "how lost variance becomes roughness");
+    command.choice(format_, "--roughness-format", "F", kRoughnessFormatNames, "how roughness is stored").preset =
+        "bc4 in dds, ktx2; r16 in tiff; half in exr; else r8";
+    command.check([this, &command] {
+        const auto idle = command.given_of({"--roughness-in", "--roughness-model", "--roughness-format"});
+        if (command.given("--roughness-out") && output_.empty())
+            throw UsageError("--roughness-out: needs a value that is not empty");
+        if (output_ == "-") throw UsageError("--roughness-out: needs a file, not standard output");
+        if (!is_given() && !idle.empty()) throw UsageError(idle.front() + " does nothing without --roughness-out");
+        if (!is_given()) return;
+        files_->amend = [this](Task& task) {
+            task.beside.push_back(output_of(task));
+            if (!input_.file.empty()) task.also.push_back(input_of(task).file);
+        };
+    });
+}
+
+void RoughnessOptions::take_input(const std::string& text) {
+    input_ = {};
+    const bool is_number = !text.empty() && text.find_first_not_of("+-.0123456789eE") == std::string::npos;
+    if (is_number) {
+        value_ = parse_float(text, {0.0, 1.0});
+        return;
+    }
+    input_ = parse_channel_file(text);
+    if (input_.file == "-") throw UsageError("needs a file or a number, not standard input");
+    if (NamePattern(input_.file).uses("level")) throw UsageError("{level} has no meaning for what is read");
+}
+
+ChannelFile RoughnessOptions::input_of(const Task& task) const {
+    return {NamePattern(input_.file).expand(name_fields(task.input)), input_.channel};
+}
+
+std::string RoughnessOptions::output_of(const Task& task) const {
+    NameFields fields = name_fields(task.input);
+    if (NamePattern(output_).uses("format"))
+        fields.format = name_of(kRoughnessFormatNames, format_in(container_for(NamePattern(output_).expand(fields))));
+    return files_->place(output_, fields);
+}
+
+Format RoughnessOptions::format_in(Container container) const {
+    if (format_) return *format_;
+    switch (container) {
+        case Container::dds:
+        case Container::ktx2: return Format::bc4_unorm;
+        case Container::tiff: return Format::r16_unorm;
+        case Container::exr: return Format::r16_float;
+        default: return Format::r8_unorm;
+    }
+}
+
+void RoughnessOptions::check(const std::vector<Task>& tasks, int levels) const {
+    if (!is_given()) return;
+    for (const Task& task : tasks) {
+        const std::string path = output_of(task);
+        const Container container = container_for(path);
+        const auto kind = name_of(kContainerNames, container);
+        if (!can_hold(container, format_in(container))) {
+            throw UsageError(fmt::format("{}: a {} file cannot hold roughness as {}", printable(path), kind,
+                                         name_of(kRoughnessFormatNames, format_in(container))));
+        }
+        if (levels == 1 || can_hold_levels(container) || has_level(path)) continue;
+        throw UsageError(
+            fmt::format("{}: a {} file holds one level; --roughness-out wants .dds, .ktx2 or .exr, or {{level}}",
+                        printable(path), kind));
+    }
+}
+
+RoughnessFile RoughnessOptions::file(Job& job, Effort effort) const {
+    RoughnessFile file;
+    file.output = output_of(job.task);
+    file.level_names = level_names(file.output);
+    file.container = container_for(file.output);
+    file.format = format_in(file.container);
+    file.effort = effort;
+    file.model = model_;
+    file.own = value_;
+    if (input_.file.empty()) return file;
+    file.map = [this, &job]() -> Result<Plane<float>> {
+        const ChannelFile source = input_of(job.task);
+        job.depends_on(source.file);
+        return read_channel(job, source, {job.threads(), {}});
+    };
+    return file;
+}
+
+void RoughnessOptions::tell(Job& job, const PackFileReport& packed) const {
+    if (!is_given()) return;
+    const std::string path = output_of(job.task);
+    const std::vector<std::string> normals = job.outputs();
+    if (has_level(job.task.output)) job.report["output"] = normals;
+    wrote_levels(job, path, packed.levels);
+    const std::vector<std::string> written(job.outputs().begin() + static_cast<std::ptrdiff_t>(normals.size()),
+                                           job.outputs().end());
+    Json report;
+    if (has_level(path))
+        report["output"] = written;
+    else
+        report["output"] = path;
+    report["format"] = name_of(kRoughnessFormatNames, format_in(container_for(path)));
+    report["model"] = name_of(kRoughnessModelNames, model_);
+    report["bytes"] = packed.roughness_bytes;
+    job.report["roughness"] = std::move(report);
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "options/scene.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+#include <tex/color.h>
+#include <tex/image_io.h>
+#include <tex/mip.h>
+
+#include "cli/text.h"
+#include "cli/usage_error.h"
+#include "options/groups.h"
+
+namespace tex::cli {
+namespace {
+
+constexpr int kLargestPicture = 16384;
+
+// Numbers with commas between them.
+std::vector<float> parse_floats(const std::string& text, std::size_t least, std::size_t most, Range range = {}) {
+    std::vector<float> values;
+    std::string rest = text;
+    for (bool more = true; more;) {
+        more = rest.find(',') != std::string::npos;
+        auto [first, second] = cut(rest, ',');
+        values.push_back(parse_float(first, range));
+        rest = std::move(second);
+    }
+    if (values.size() < least || values.size() > most) {
+        throw UsageError(
+            least == most
+                ? fmt::format("'{}' is not {} numbers with commas between them", printable(text), least)
+                : fmt::format("'{}' is not {} to {} numbers with commas between them", printable(text), least, most));
+    }
+    return values;
+}
+
+void add_color(Command& command, Rgb& target, const std::string& name, const std::string& help) {
+    command
+        .option(name, "C", help + ": one linear value, or R,G,B",
+                [&target](const std::string& text) {
+                    const std::vector<float> c = parse_floats(text, 1, 3, {0.0, 1e6});
+                    if (c.size() == 2)
+                        throw UsageError(fmt::format("'{}' is neither one value nor R,G,B", printable(text)));
+                    target = c.size() == 3 ? Rgb{c[0], c[1], c[2]} : Rgb{c[0], c[0], c[0]};
+                })
+        .preset = fmt::format("{}", target.r);
+}
+
+void add_pair(Command& command, float& x, float& y, const std::string& name, const std::string& help) {
+    command
+        .option(name, "X[,Y]", help,
+                [&x, &y](const std::string& text) {
+                    const std::vector<float> values = parse_floats(text, 1, 2, {-1e4, 1e4});
+                    x = values.front();
+                    y = values.back();
+                })
+        .preset = fmt::format("{}", x);
+}
+
+void add_file(Command& command, std::string& target, const std::string& name, const std::string& help) {
+    command.text(target, name, "FILE", help).completes = Completes::files;
+}
+
+// Options that mean nothing without another one.
+void check_needs(Command& command, std::string needed, std::vector<std::string> names) {
+    command.check([&command, needed = std::move(needed), names = std::move(names)] {
+        if (command.given(needed)) return;
+        for (const std::string& name : command.given_of(names))
+            throw UsageError(fmt::format("{} needs {}", name, needed));
+    });
+}
+
+}  // namespace
+
+Extent parse_picture_size(const std::string& text) {
+    const auto [width, height] = cut(text, 'x');
+    if (text.find('x') == std::string::npos) return {parse_int(text, 1, kLargestPicture), 0};
+    return {parse_int(width, 1, kLargestPicture), parse_int(height, 1, kLargestPicture)};
+}
+
+void SceneOptions::add(Command& command) {
+    add_shape(command);
+    add_light(command);
+    add_material(command);
+    add_detail(command);
+    add_parallax(command);
+    add_sampling(command);
+}
+
+void SceneOptions::add_shape(Command& command) {
+    command.group("Shape");
+    Row& row = command.option("--shape", "S", "what the map is put on", [this](const std::string& text) {
+        const auto [word, tiles] = cut(text, ':');
+        if (word != "tiled" || tiles.empty()) {
+            preview.shape = parse_word(text, kShapeNames);
+            return;
+        }
+        const auto [x, y] = cut(tiles, 'x');
+        preview.tiles_x = parse_int(x, 1, 256);
+        preview.tiles_y = tiles.find('x') == std::string::npos ? preview.tiles_x : parse_int(y, 1, 256);
+    });
+    row.words = words_of(kShapeNames);
+    row.words.push_back({"tiled:NxM", "a plane of N by M tiles"});
+    row.preset = name_of(kShapeNames, preview.shape);
+    command.flag(preview.mirror, "--mirror", "mirrored UVs: u runs from right to left");
+    command
+        .option("--camera", "YAW,PITCH[,FOV]", "where the viewer stands, in degrees; FOV 0 is a parallel projection",
+                [this](const std::string& text) {
+                    const std::vector<float> values = parse_floats(text, 2, 3);
+                    Camera camera{values[0], values[1]};
+                    if (values.size() == 3) camera.field_of_view = values[2];
+                    if (!(camera.pitch >= -89.0f && camera.pitch <= 89.0f))
+                        throw UsageError("the pitch is -89 to 89 degrees");
+                    if (!(camera.field_of_view >= 0.0f && camera.field_of_view <= 120.0f))
+                        throw UsageError("FOV is 0 to 120 degrees");
+                    preview.camera = camera;
+                })
+        .preset = "0,0,30; of a cube -35,25,30";
+}
+
+void SceneOptions::add_light(Command& command) {
+    command.group("Light");
+    Light& light = preview.light;
+    command
+        .option("--light", "X,Y,Z", "the direction to the light, or its place; x right, y up, z to the viewer",
+                [&light](const std::string& text) {
+                    const std::vector<float> v = parse_floats(text, 3, 3, {-1e6, 1e6});
+                    if (v[0] == 0.0f && v[1] == 0.0f && v[2] == 0.0f)
+                        throw UsageError("0,0,0 is neither a direction nor a place beside the surface");
+                    light.x = v[0];
+                    light.y = v[1];
+                    light.z = v[2];
+                })
+        .preset = fmt::format("{},{},{}", light.x, light.y, light.z);
+    command.choice(light.kind, "--light-kind", "KIND", kLightKindNames, "what kind of light");
+    add_color(command, light.color, "--light-color", "its colour");
+    add_color(command, preview.ambient, "--ambient", "light from everywhere");
+}
+
+void SceneOptions::add_material(Command& command) {
+    command.group("Material");
+    Material& material = preview.material;
+    add_file(command, albedo, "--albedo", "the albedo map, in sRGB; linear where it holds floats");
+    add_color(command, material.albedo, "--tint", "the albedo, multiplied with its map");
+    add_color(command, material.specular, "--specular", "the colour of highlights");
+    command.number(material.shininess, "--shininess", "S", kPositive, "the exponent of highlights");
+    command.choice(material.model, "--specular-model", "M", kSpecularModelNames, "how highlights are computed");
+    command.number(preview.bump_scale, "--bump-scale", "S", {}, "strength of the map");
+    command.choice(preview.scale_mode, "--scale-mode", "MODE", kScaleModeNames,
+                   "what --bump-scale and --detail-scale do");
+}
+
+void SceneOptions::add_detail(Command& command) {
+    command.group("Detail");
+    Detail& fine = preview.detail;
+    add_file(command, detail, "--detail", "a normal map blended over each map by whiteout");
+    add_file(command, detail_albedo, "--detail-albedo",
+             "an albedo map multiplied with the albedo; grey 0.5 changes nothing");
+    add_pair(command, fine.tiling_x, fine.tiling_y, "--detail-tiling", "how often it stands on the map");
+    add_pair(command, fine.offset_x, fine.offset_y, "--detail-offset", "its offset in its own widths");
+    command.number(fine.scale, "--detail-scale", "S", {}, "its strength");
+    command.choice(detail_y_in, "--detail-y-in", "AXIS", kYAxisNames, "where green points in it").preset =
+        "as the file says, else as --y-in";
+    check_needs(command, "--detail", {"--detail-scale", "--detail-y-in"});
+    command.check([&command] {
+        if (command.given("--detail") || command.given("--detail-albedo")) return;
+        for (const std::string& name : command.given_of({"--detail-tiling", "--detail-offset"})) {
+            throw UsageError(fmt::format("{} needs --detail or --detail-albedo", name));
+        }
+    });
+}
+
+void SceneOptions::add_parallax(Command& command) {
+    command.group("Parallax");
+    Parallax& parallax = preview.parallax;
+    add_file(command, height, "--height", "the height map, white being high");
+    command.number(parallax.amount, "--parallax", "P", {}, "height of white over black in widths of the map");
+    command.number(parallax.limit, "--parallax-limit", "L", {0.0, 1e6}, "the greatest offset, in widths of the map");
+    command.number(parallax.steps, "--parallax-steps", "N", 0, 1024,
+                   "march along the view ray in N steps; 0 is one offset");
+    check_needs(command, "--height", {"--parallax"});
+    check_needs(command, "--parallax", {"--parallax-limit", "--parallax-steps"});
+}
+
+void SceneOptions::add_sampling(Command& command) {
+    command.group("Sampling");
+    Row& row = command.option("--wrap", "W[,W]", "what lies beyond the border of all maps, or for x and y apart",
+                              [this](const std::string& text) {
+                                  const auto [first, second] = cut(text, ',');
+                                  preview.wrap_x = parse_word(first, kWrapNames);
+                                  preview.wrap_y = text.find(',') == std::string::npos ? preview.wrap_x
+                                                                                       : parse_word(second, kWrapNames);
+                              });
+    row.words = {
+        {"repeat", "the texture tiles"}, {"clamp", "the border texel again"}, {"mirror", "the texture is mirrored"}};
+    row.completes = Completes::words;
+    row.preset = name_of(kWrapNames, preview.wrap_x);
+    command.number(preview.anisotropy, "--anisotropy", "N", 1, 16,
+                   "most samples along a texel's longer axis; 1 is trilinear");
+}
+
+std::vector<std::string> SceneOptions::files() const {
+    std::vector<std::string> names;
+    for (const std::string* name : {&albedo, &detail, &detail_albedo, &height}) {
+        if (!name->empty()) names.push_back(*name);
+    }
+    return names;
+}
+
+Result<SampledMap> read_sampled_map(Job& job, const std::string& path, SourceOptions& source, const Reading& reading,
+                                    const PreviewOptions& preview, const Execution& execution) {
+    auto read = source.read(job, path, execution, reading);
+    if (!read) return read.error();
+    SampledMap map;
+    map.without_z =
+        std::find(read->info.swizzle.begin(), read->info.swizzle.end(), Component::z) == read->info.swizzle.end();
+    map.chain = std::move(read->chain);
+    if (map.chain.levels.size() == 1) {
+        MipOptions mip;
+        mip.wrap_x = preview.wrap_x;
+        mip.wrap_y = preview.wrap_y;
+        auto built = build_mip_chain(std::move(map.chain.levels.front()), mip, execution);
+        if (!built) return Error{built.error().code, path, built.error().reason};
+        map.chain = std::move(*built);
+    }
+    return map;
+}
+
+Result<SceneFiles> SceneOptions::read(Job& job, SourceOptions& source, const Execution& execution) const {
+    SceneFiles files;
+    if (!detail.empty()) {
+        auto map = read_sampled_map(job, detail, source, {false, true, detail_y_in, false}, preview, execution);
+        if (!map) return map.error();
+        files.detail = std::move(*map);
+    }
+    for (const auto& [path, target] : {std::pair{&albedo, &files.albedo}, {&detail_albedo, &files.detail_albedo}}) {
+        if (path->empty()) continue;
+        auto image = read_image(*path, job.read_options);
+        if (!image) return image.error();
+        if (image->sample != SampleKind::floating) {
+            if (auto linear = to_linear(*image, {"sRGB", {}}); !linear)
+                return Error{linear.error().code, *path, linear.error().reason};
+        }
+        *target = std::move(*image);
+    }
+    if (!height.empty()) {
+        auto image = read_image(height, job.read_options);
+        if (!image) return image.error();
+        auto field = height_field(*image, {}, execution);
+        if (!field) return Error{field.error().code, height, field.error().reason};
+        files.height = std::move(field->height);
+    }
+    return files;
+}
+
+PreviewScene SceneFiles::with(const SampledMap& map) const {
+    PreviewScene scene;
+    scene.map = &map.chain;
+    scene.map_without_z = map.without_z;
+    if (detail) {
+        scene.detail = &detail->chain;
+        scene.detail_without_z = detail->without_z;
+    }
+    if (albedo) scene.albedo = &*albedo;
+    if (detail_albedo) scene.detail_albedo = &*detail_albedo;
+    if (!height.empty()) scene.height = &height;
+    return scene;
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "options/source.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <tex/swizzle.h>
+
+#include "cli/console.h"
+#include "cli/text.h"
+#include "cli/usage_error.h"
+
+namespace tex::cli {
+namespace {
+
+constexpr Swizzle kXY = {Component::x, Component::y, Component::zero, Component::one};
+constexpr Swizzle kYX = {Component::y, Component::x, Component::zero, Component::one};
+
+// "rgb" for what is in the table, else the letters: "1y1x".
+std::string swizzle_name(const Swizzle& swizzle) {
+    const std::string_view name = name_of(kSwizzleNames, swizzle);
+    return name.empty() ? to_string(swizzle) : std::string(name);
+}
+
+Encoding exact_encoding(const SourceInfo& source) {
+    switch (source.format) {
+        case Format::bc3_unorm: return Encoding::dxt5nm;
+        case Format::bc5_unorm: return Encoding::bc5;
+        case Format::bc5_snorm: return Encoding::bc5_snorm;
+        case Format::rg8_unorm:
+        case Format::rg8_snorm: return Encoding::rg8;
+        case Format::rg16_unorm:
+        case Format::rg16_snorm: return Encoding::rg16;
+        default: break;
+    }
+    const FormatInfo info = format_info(source.format);
+    if (info.sample == SampleKind::floating) return info.bits == 16 ? Encoding::half : Encoding::float_;
+    if (info.bits == 16) return Encoding::rgb16;
+    if (info.block == 1 && source.swizzle[3] == Component::x) return Encoding::ag8;
+    return source.format == Format::rgba8_unorm ? Encoding::rgba8 : Encoding::rgb8;
+}
+
+}  // namespace
+
+Encoding encoding_of(const SourceInfo& source, const Task& task) {
+    const auto is_texture = [](Container container) {
+        return container == Container::dds || container == Container::ktx2;
+    };
+    const std::optional<Container> before = container_of(task.input);
+    const Encoding encoding = exact_encoding(source);
+    if (before && is_texture(*before) == is_texture(task.container)) {
+        if (can_hold(task.container, encoding)) return encoding;
+        if (encoding == Encoding::rgba8 && can_hold(task.container, Encoding::rgb8)) return Encoding::rgb8;
+    }
+    return default_encoding(task.container);
+}
+
+void report_source(Job& job, const SourceInfo& info) {
+    job.report["source"] = {{"format", name_of(kFormatNames, info.format)}, {"swizzle", swizzle_name(info.swizzle)}};
+}
+
+void SourceOptions::add(Command& command, bool with_keep_length) {
+    command.group("Input");
+    command.choice(unpack.y_axis, "--y-in", "AXIS", kYAxisNames, "where green points in the input").preset =
+        "as the file says, else up";
+    Row& row = command.option("--swizzle", "S", "which channels hold what", [this](const std::string& text) {
+        std::vector<std::string> names = names_of(words_of(kSwizzleNames));
+        names.insert(names.end(), {"auto", "rgorag"});
+        check_word(text, names);
+        swizzle = find_by_name(kSwizzleNames, text);
+        rg_or_ag = text == "rgorag";
+    });
+    row.words = words_of(kSwizzleNames);
+    row.words.insert(row.words.begin(), {"auto", "as the file says, else as its texels look"});
+    row.words.push_back({"rgorag", "x in R or A, whichever varies, y in G: R * A in a shader"});
+    row.preset = "auto";
+    row.completes = Completes::words;
+    command.choice(bc5_order, "--bc5-order", "ORDER", kBc5OrderNames, "the channels of BC5 files that do not say")
+        .preset = "yx in ATI2, else xy";
+    command.choice(unpack.range, "--range", "R", kValueRangeNames, "how stored floats are to be read");
+    command.flag(unpack.snap_flat, "--snap-flat", "read 127 and 128 of 8-bit files as 0");
+    if (with_keep_length) command.flag(unpack.keep_length, "--keep-length", "do not normalise what is read");
+}
+
+void SourceOptions::warn_of_guesses() const {
+    for (const auto& [name, guesses] : guesses_) {
+        const std::string more = guesses.count > 1 ? fmt::format(" and {} more", guesses.count - 1) : std::string();
+        print_warning(
+            fmt::format("{}{}: taken for {}, as the texels look; --swizzle says otherwise", guesses.first, more, name));
+    }
+}
+
+tex::SourceOptions SourceOptions::options(const Job& job, const Reading& reading) const {
+    tex::SourceOptions options;
+    options.read = job.read_options;
+    options.unpack = unpack;
+    options.unpack.swizzle = swizzle;
+    if (reading.y) options.unpack.y_axis = reading.y;
+    options.unpack.keep_length = reading.keep_length.value_or(unpack.keep_length);
+    if (bc5_order) options.bc5_swizzle = *bc5_order == Bc5Order::xy ? kXY : kYX;
+    options.r_or_a = rg_or_ag;
+    options.file_y_first = reading.is_detail && !reading.y;
+    return options;
+}
+
+void SourceOptions::note(Job& job, const std::string& path, const SourceInfo& info) {
+    const std::string prefix = path == job.task.input ? std::string() : path + ": ";
+    for (const std::string& remark : info.remarks) job.warn(prefix + remark);
+    if (info.srgb) job.warn(prefix + "declares sRGB colours, which normals are not; its values are used as they are");
+    if (!info.guessed) return;
+    const std::lock_guard lock(mutex_);
+    Guesses& guesses = guesses_[swizzle_name(info.swizzle)];
+    // Of files that are read at once any may come first: the first in the alphabet is named.
+    if (guesses.count++ == 0 || path < guesses.first) guesses.first = path;
+}
+
+Result<Source> SourceOptions::read(Job& job, const std::string& path, const Execution& execution,
+                                   const Reading& reading) {
+    auto source = read_normals(path, options(job, reading), reading.base_only, execution);
+    if (source) note(job, path, source->info);
+    return source;
+}
+
+Result<Source> SourceOptions::read(Job& job, double until, bool base_only) {
+    auto source = read(job, job.task.input, job.until(until), {base_only});
+    if (source) report_source(job, source->info);
+    return source;
+}
+
+}  // namespace tex::cli

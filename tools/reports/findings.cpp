@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "reports/findings.h"
+
+#include <cmath>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "cli/text.h"
+
+namespace tex::cli {
+namespace {
+
+std::string_view name_of_y(YAxis y) { return name_of(kYAxisNames, y); }
+
+void replace_word(std::string& text, std::string_view word, std::string_view by) {
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + by.size())) {
+        text.replace(at, word.size(), by);
+    }
+}
+
+// A file name as a shell takes it.
+std::string quoted(const std::string& name) {
+    constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+@%,:=";
+    if (!name.empty() && name.find_first_not_of(kPlain) == std::string::npos) return name;
+    std::string text = "'";
+    for (const char c : printable(name)) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return text + "'";
+}
+
+Json region_json(const Region& region) {
+    Json json;
+    json["level"] = region.level;
+    json["x"] = region.x;
+    json["y"] = region.y;
+    json["width"] = region.width;
+    json["height"] = region.height;
+    return json;
+}
+
+}  // namespace
+
+std::string fix_of(const Finding& finding, const CheckReport& report, const Requirements& require) {
+    std::string fix(finding.rule->fix);
+    if (finding.rule->id == "N108") {
+        const std::string_view wanted = require.encoding ? name_of(kEncodingNames, *require.encoding) : "";
+        if (wanted.empty()) return {};
+        replace_word(fix, "WANTED", wanted);
+    }
+    replace_word(fix, "WANTED", name_of_y(require.y.value_or(YAxis::up)));
+    replace_word(fix, "MEASURED", name_of_y(report.y.y.value_or(YAxis::up)));
+    replace_word(fix, "FILE", quoted(report.file));
+    return fix;
+}
+
+std::string findings_text(const CheckReport& report, const Requirements& require) {
+    std::string text;
+    for (const Finding& finding : report.findings) {
+        const Rule& rule = *finding.rule;
+        std::string_view sentence = rule.sentence;
+        sentence.remove_suffix(1);
+        text += fmt::format("{}: {} {} {}: {}: {}\n", printable(report.file), name_of(kSeverityNames, finding.severity),
+                            rule.id, rule.name, sentence, printable(finding.message));
+        const std::string fix = fix_of(finding, report, require);
+        if (!fix.empty()) text += fmt::format("    fix: {}\n", fix);
+    }
+    return text;
+}
+
+Json findings_json(const CheckReport& report, const Requirements& require) {
+    Json json;
+    if (report.error) {
+        json["error"] = {{"code", name_of(kErrorCodeNames, report.error->code)}, {"reason", report.error->reason}};
+    } else {
+        json["format"] = name_of(kFormatNames, report.format);
+        json["swizzle"] = to_string(report.swizzle);
+        json["extent"] = {report.extent.width, report.extent.height};
+        json["levels"] = report.levels;
+        json["y"] = {{"measured", report.y.y ? Json(name_of_y(*report.y.y)) : Json()},
+                     {"correlation", static_cast<float>(report.y.correlation)},
+                     {"confidence", static_cast<float>(report.y.confidence)}};
+    }
+    if (report.pair) {
+        json["pair"] = {{"correlation", static_cast<float>(report.pair->correlation)},
+                        {"strength", static_cast<float>(report.pair->strength)},
+                        {"y", name_of_y(report.pair->y)},
+                        {"offset", {report.pair->offset_x, report.pair->offset_y}}};
+    }
+    json["findings"] = Json::array();
+    for (const Finding& finding : report.findings) {
+        Json item;
+        item["id"] = finding.rule->id;
+        item["name"] = finding.rule->name;
+        item["severity"] = name_of(kSeverityNames, finding.severity);
+        item["message"] = finding.message;
+        item["figure"] = static_cast<float>(finding.figure);
+        item["unit"] = finding.unit;
+        item["confidence"] = static_cast<float>(finding.confidence);
+        item["regions"] = Json::array();
+        for (const Region& region : finding.regions) item["regions"].push_back(region_json(region));
+        if (finding.has_texel) item["texel"] = {finding.column, finding.row};
+        const std::string fix = fix_of(finding, report, require);
+        if (!fix.empty()) item["fix"] = fix;
+        json["findings"].push_back(std::move(item));
+    }
+    json["explained"] = report.explained;
+    return json;
+}
+
+std::string rules_text() {
+    std::string text;
+    RuleFamily family = RuleFamily::pair;
+    for (const Rule& rule : rules()) {
+        if (text.empty() || rule.family != family) {
+            family = rule.family;
+            for (const auto& row : kRuleFamilyNames) {
+                if (row.value == family)
+                    text += fmt::format("{}{}: {}\n", text.empty() ? "" : "\n", row.name, row.meaning);
+            }
+        }
+        text += fmt::format("  {}  {:<20} {:<8} {}{}\n", rule.id, rule.name, name_of(kSeverityNames, rule.severity),
+                            rule.sentence, rule.on ? "" : " (off by default)");
+    }
+    return text;
+}
+
+std::string rule_text(const Rule& rule) {
+    std::string text = fmt::format("{} {} ({}, {})\n\n", rule.id, rule.name, name_of(kRuleFamilyNames, rule.family),
+                                   name_of(kSeverityNames, rule.severity));
+    for (const std::string_view part : {rule.sentence, rule.explanation}) {
+        for (const std::string& line : wrapped(part, 78)) text += line + "\n";
+    }
+    if (!rule.fix.empty()) text += fmt::format("\nFix: {}\n", rule.fix);
+    if (!rule.explains.empty()) text += fmt::format("\nWhere it is found, these are left out: {}\n", rule.explains);
+    return text;
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// findings.h: check reports for people and as JSON.
+
+#pragma once
+
+#include <string>
+
+#include <tex/check.h>
+
+#include "reports/json.h"
+
+namespace tex::cli {
+
+// The fix of a finding as a command for this file, or empty.
+[[nodiscard]] std::string fix_of(const Finding& finding, const CheckReport& report, const Requirements& require);
+
+// One line for each finding, and its fix below: "maps/a.dds: error N401 wrong-y: Green points ...: green points down
+// instead of up".
+[[nodiscard]] std::string findings_text(const CheckReport& report, const Requirements& require);
+
+// The report, as --json tells it.
+[[nodiscard]] Json findings_json(const CheckReport& report, const Requirements& require);
+
+// All rules in a table, and one of them at length.
+[[nodiscard]] std::string rules_text();
+[[nodiscard]] std::string rule_text(const Rule& rule);
+
+}  // namespace tex::cli

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "reports/html_map.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <tex/container.h>
+#include <tex/mip.h>
+#include <tex/pack.h>
+#include <tex/preview.h>
+#include <tex/sheet.h>
+#include <tex/unpack.h>
+
+namespace tex::cli {
+namespace {
+
+// Smaller packed levels than this are small enough for every page.
+constexpr int kSmallLevel = 64;
+
+int longest(Extent extent) { return std::max(extent.width, extent.height); }
+
+std::size_t base64_size(std::size_t bytes) { return (bytes + 2) / 3 * 4; }
+
+bool is_packed(Format format) {
+    switch (format) {
+        case Format::bc1_unorm:
+        case Format::bc2_unorm:
+        case Format::bc3_unorm:
+        case Format::bc5_unorm:
+        case Format::bc5_snorm: return true;
+        default: return false;
+    }
+}
+
+struct View {
+    Show show;
+    const char* caption;
+    const char* alt;
+    bool needs_z = false;
+};
+constexpr View kViews[] = {
+    {Show::normals, "normals", "the colours of the map with green up: x, y and z as red, green and blue"},
+    {Show::mips, "mip chain", "all levels beside each other, largest first"},
+    {Show::tilt, "tilt", "the angle to the surface in degrees, dark 0 to light 90"},
+    {Show::curl, "curl",
+     "curl in blue and orange: pale where the map can be a height field's; its legend tells y up from y down"},
+    {Show::length, "length", "length of the stored vectors less 1: pale where it is right", true},
+    {Show::z_error, "z error", "stored z less the z that x and y imply: pale where it is right", true},
+};
+
+Result<HtmlPicture> draw(const HtmlMap& map, Show show, int size, const char* caption, const char* alt,
+                         const Execution& execution) {
+    PreviewScene scene;
+    scene.map = &map.chain;
+    scene.map_without_z = map.without_z();
+    PreviewOptions options;
+    options.show = show;
+    options.size = {size, 0};
+    const auto picture = preview(scene, options, execution);
+    if (!picture) return picture.error();
+    return html_picture(*picture, caption, alt);
+}
+
+Result<void> draw_pictures(HtmlMap& map, const HtmlSizes& sizes, const Execution& execution) {
+    constexpr const char* kLit = "lit from the upper left";
+    auto thumbnail = draw(map, Show::lit, sizes.thumbnail, kLit, kLit, execution);
+    if (!thumbnail) return thumbnail.error();
+    map.thumbnail = std::move(*thumbnail);
+    if (sizes.lit == 0) return {};
+    auto lit = draw(map, Show::lit, sizes.lit, kLit, kLit, execution);
+    if (!lit) return lit.error();
+    map.lit = std::move(*lit);
+    if (sizes.view == 0) return {};
+    for (const View& view : kViews) {
+        if (view.needs_z && map.without_z()) continue;
+        if (view.show == Show::mips && map.stored_levels == 1) continue;
+        auto drawn = draw(map, view.show, view.show == Show::mips ? 2 * sizes.view : sizes.view, view.caption, view.alt,
+                          execution);
+        if (!drawn) return drawn.error();
+        map.views.push_back(std::move(*drawn));
+    }
+    return {};
+}
+
+// Levels from the first that is small enough, as PNGs of 8 bits.
+Result<HtmlLevels> decoded_levels(const MipChain& chain, const Execution& execution) {
+    HtmlLevels result;
+    for (const NormalMap& level : chain.levels) {
+        if (longest(level.extent()) > kLargestHtmlLevel) {
+            ++result.first;
+            continue;
+        }
+        MipChain one;
+        one.levels.emplace_back();
+        one.levels.front().x = level.x.clone();
+        one.levels.front().y = level.y.clone();
+        one.levels.front().z = level.z.clone();
+        PackOptions options;
+        options.encoding = Encoding::rgb8;
+        const auto texture = pack(one, options, execution);
+        if (!texture) return texture.error();
+        auto png = encode_file(*texture, Container::png);
+        if (!png) return png.error();
+        result.levels.push_back({level.extent(), std::move(*png)});
+    }
+    return result;
+}
+
+// Which channel holds a component, or -1.
+int channel_of(const Swizzle& swizzle, Component component) {
+    const auto found = std::find(swizzle.begin(), swizzle.end(), component);
+    return found == swizzle.end() ? -1 : static_cast<int>(found - swizzle.begin());
+}
+
+}  // namespace
+
+HtmlSizes html_sizes(std::size_t files) {
+    if (files <= 40) return {72, 256, 192};
+    if (files <= 150) return {64, 192, 128};
+    if (files <= 600) return {48, 128, 0};
+    return {48, 0, 0};
+}
+
+void HtmlLevels::limit(int side) {
+    while (!levels.empty() && longest(levels.front().extent) > side) {
+        levels.erase(levels.begin());
+        ++first;
+    }
+}
+
+std::size_t HtmlLevels::bytes() const {
+    std::size_t sum = 0;
+    for (const One& level : levels) sum += level.bytes.size();
+    return sum;
+}
+
+bool HtmlMap::without_z() const { return channel_of(swizzle, Component::z) < 0; }
+
+const HtmlLevels& HtmlMap::shown() const { return packed.levels.empty() ? decoded : packed; }
+
+void HtmlMap::limit(int side) {
+    packed.limit(side);
+    decoded.limit(side);
+}
+
+std::size_t HtmlMap::picture_size() const {
+    std::size_t sum = base64_size(thumbnail.png.size()) + base64_size(lit.png.size());
+    for (const HtmlPicture& view : views) sum += base64_size(view.png.size());
+    return sum;
+}
+
+std::size_t HtmlMap::level_size() const { return base64_size(shown().bytes()); }
+
+Json HtmlMap::json() const {
+    Json json;
+    const HtmlLevels& levels = shown();
+    json["file"] = file;
+    json["y"] = name_of(kYAxisNames, y);
+    json["format"] = name_of(kFormatNames, format);
+    json["packed"] = !packed.levels.empty();
+    json["channels"] = {channel_of(swizzle, Component::x), channel_of(swizzle, Component::y),
+                        channel_of(swizzle, Component::z)};
+    json["first"] = levels.first;
+    json["levels"] = Json::array();
+    for (const HtmlLevels::One& level : levels.levels) {
+        json["levels"].push_back({level.extent.width, level.extent.height, level.bytes.size()});
+    }
+    return json;
+}
+
+Result<HtmlPicture> html_picture(const Texture& picture, std::string caption, std::string alt) {
+    auto png = encode_picture(picture);
+    if (!png) return png.error();
+    return HtmlPicture{std::move(caption), std::move(alt), picture.extent(), std::move(*png)};
+}
+
+Result<HtmlMap> draw_html_map(const std::string& file, const Texture& texture, const Swizzle& swizzle,
+                              const HtmlSizes& sizes, const Execution& execution) {
+    HtmlMap map;
+    map.file = file;
+    map.format = texture.format;
+    map.swizzle = swizzle;
+    map.y = texture.y_axis;
+    map.extent = texture.extent();
+    map.stored_levels = static_cast<int>(texture.levels.size());
+
+    UnpackOptions options;
+    options.swizzle = swizzle;
+    options.keep_length = true;  // what is wrong is to be seen
+    auto chain = unpack(texture, options, execution);
+    if (!chain) return chain.error();
+    map.chain = std::move(*chain);
+    if (map.chain.levels.size() == 1) {
+        auto built = build_mip_chain(std::move(map.chain.levels.front()), {}, execution);
+        if (!built) return built.error();
+        map.chain = std::move(*built);
+    }
+    if (const auto drawn = draw_pictures(map, sizes, execution); !drawn) return drawn.error();
+
+    if (is_packed(texture.format)) {
+        for (const Level& level : texture.levels) map.packed.levels.push_back({level.extent, level.bytes});
+        map.packed.limit(kLargestHtmlLevel);
+    }
+    if (!is_packed(texture.format) || longest(texture.levels.back().extent) > kSmallLevel) {
+        auto levels = decoded_levels(map.chain, execution);
+        if (!levels) return levels.error();
+        map.decoded = std::move(*levels);
+    }
+    return map;
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "reports/html_report.h"
+
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+#include <tex/tex.h>
+
+#include "reports/html.h"
+#include "reports/report_page.h"
+
+namespace tex::cli {
+namespace {
+
+// The longest sides that levels are limited to, one after the other, until a page is small enough.
+constexpr std::array kSides = {1024, 512, 256, 128, 64, 32, 0};
+
+constexpr int kWidePicture = 200;  // pixels; wider ones take two columns
+
+std::string image_tag(const HtmlPicture& picture, const std::string& of, const char* attributes) {
+    return fmt::format("<img {} width=\"{}\" height=\"{}\" alt=\"{}\" src=\"data:image/png;base64,{}\">", attributes,
+                       picture.extent.width, picture.extent.height,
+                       html_text(picture.alt.empty() ? of : of + ": " + picture.alt), base64(picture.png));
+}
+
+std::string figure(const HtmlPicture& picture, const std::string& of) {
+    const char* kind = picture.extent.width > kWidePicture ? " class=\"wide\"" : "";
+    return fmt::format("<figure{}>{}<figcaption>{}</figcaption></figure>\n", kind,
+                       image_tag(picture, of, "loading=\"lazy\" decoding=\"async\""), html_text(picture.caption));
+}
+
+std::string figures(const std::vector<HtmlPicture>& pictures, const std::string& of) {
+    if (pictures.empty()) return {};
+    std::string html = "<div class=\"views\">\n";
+    for (const HtmlPicture& picture : pictures) html += figure(picture, of);
+    return html + "</div>\n";
+}
+
+// The still picture that the script makes a canvas of. `number` is that of the first map in the page.
+std::string stage(const HtmlEntry& entry, std::size_t number) {
+    if (entry.maps.empty()) return {};
+    const HtmlMap& map = entry.maps.front();
+    const HtmlPicture& still = map.lit.png.empty() ? map.thumbnail : map.lit;
+    const bool has_levels = !map.shown().levels.empty();
+    std::string html = "<div class=\"stage\"";
+    if (has_levels) html += fmt::format(" data-map=\"{}\"", number);
+    if (has_levels && entry.maps.size() > 1) html += fmt::format(" data-other=\"{}\"", number + 1);
+    html += ">\n";
+    html += figure(still, map.file);
+    if (!has_levels)
+        html += "<p class=\"remark\">There are too many files in this report for a light that moves.</p>\n";
+    return html + "</div>\n";
+}
+
+// Characters that pictures and levels take.
+std::size_t size_of(const HtmlEntry& entry) {
+    std::size_t sum = 0;
+    for (const HtmlPicture& picture : entry.extras) sum += picture.png.size() * 4 / 3;
+    for (const HtmlMap& map : entry.maps) sum += map.picture_size() + map.level_size();
+    return sum;
+}
+
+// Puts `text` where the page has the mark `name`.
+void fill(std::string& page, std::string_view name, std::string_view text) {
+    const std::string mark = fmt::format("<!--{}-->", name);
+    const auto at = page.find(mark);
+    if (at != std::string::npos) page.replace(at, mark.size(), text);
+}
+
+}  // namespace
+
+HtmlReport::HtmlReport(std::string command, std::vector<std::string> columns)
+    : command_(std::move(command)), columns_(std::move(columns)) {}
+
+void HtmlReport::add(const std::string& key, HtmlEntry entry) {
+    const std::lock_guard lock(mutex_);
+    for (HtmlMap& map : entry.maps) {
+        map.chain = {};
+        map.limit(side_);
+    }
+    HtmlEntry& kept = entries_[key];
+    size_ += size_of(entry) - size_of(kept);
+    kept = std::move(entry);
+    if (size_ > kHtmlBudget) keep_to_budget();
+}
+
+// More entries only make a page larger, so the limit at the end is that of the whole set, whichever entry came last.
+void HtmlReport::keep_to_budget() {
+    for (const int side : kSides) {
+        if (side >= side_ || size_ <= kHtmlBudget) continue;
+        side_ = side;
+        size_ = 0;
+        for (auto& [key, entry] : entries_) {
+            for (HtmlMap& map : entry.maps) map.limit(side);
+            size_ += size_of(entry);
+        }
+    }
+}
+
+void HtmlReport::explain(const Rule& rule) {
+    const std::lock_guard lock(mutex_);
+    rules_.emplace(rule.id, &rule);
+}
+
+std::string HtmlReport::table() const {
+    std::string html =
+        "<table id=\"files\">\n<thead><tr><th scope=\"col\" class=\"picture\"><span "
+        "class=\"unseen\">picture</span></th><th scope=\"col\">file</th>";
+    for (const std::string& column : columns_) html += fmt::format("<th scope=\"col\">{}</th>", html_text(column));
+    html += "</tr></thead>\n<tbody>\n";
+    int number = 0;
+    for (const auto& [key, entry] : entries_) {
+        ++number;
+        html += fmt::format("<tr data-words=\"{}\"><td class=\"picture\">", html_text(entry.words));
+        if (!entry.maps.empty() && !entry.maps.front().thumbnail.png.empty()) {
+            // Decoration: the name beside it says the same.
+            HtmlPicture picture = entry.maps.front().thumbnail;
+            html += fmt::format(
+                "<img loading=\"lazy\" decoding=\"async\" width=\"{}\" height=\"{}\" alt=\"\" "
+                "src=\"data:image/png;base64,{}\">",
+                picture.extent.width, picture.extent.height, base64(picture.png));
+        }
+        html += fmt::format("</td><th scope=\"row\"><a href=\"#file-{}\">{}</a></th>{}</tr>\n", number,
+                            html_text(entry.title), entry.row);
+    }
+    return html + "</tbody>\n</table>\n";
+}
+
+std::string HtmlReport::sections() const {
+    std::string html;
+    int number = 0;
+    std::size_t map_number = 0;
+    for (const auto& [key, entry] : entries_) {
+        html += fmt::format(
+            "<section class=\"file\" id=\"file-{}\" data-words=\"{}\">\n<h2>{}</h2>\n<div class=\"columns\">\n",
+            ++number, html_text(entry.words), html_text(entry.title));
+        // The pictures of a single map stand beside it, those of two below.
+        html += stage(entry, map_number) + "<div class=\"facts\">\n" + entry.body + figures(entry.extras, entry.title) +
+                (entry.maps.size() == 1 ? figures(entry.maps.front().views, entry.title) : "") + "</div>\n</div>\n";
+        for (const HtmlMap& map : entry.maps) {
+            if (entry.maps.size() > 1 && !map.views.empty())
+                html += fmt::format("<h3>{}</h3>\n", html_text(map.file)) + figures(map.views, map.file);
+        }
+        html += "</section>\n";
+        map_number += entry.maps.size();
+    }
+    return html;
+}
+
+std::string HtmlReport::rules_text() const {
+    if (rules_.empty()) return {};
+    std::string html = "<section id=\"rules\">\n<h2>Rules</h2>\n<dl>\n";
+    for (const auto& [id, rule] : rules_) {
+        html += fmt::format("<dt id=\"{0}\">{0} {1}</dt><dd>{2} {3}</dd>\n", html_text(id), html_text(rule->name),
+                            html_text(rule->sentence), html_text(rule->explanation));
+    }
+    return html + "</dl>\n</section>\n";
+}
+
+// The levels of map n are the bytes of #map-n, one after the other.
+std::string HtmlReport::data() const {
+    Json maps = Json::array();
+    std::string bytes;
+    for (const auto& [key, entry] : entries_) {
+        for (const HtmlMap& map : entry.maps) {
+            std::vector<std::byte> all;
+            for (const HtmlLevels::One& level : map.shown().levels)
+                all.insert(all.end(), level.bytes.begin(), level.bytes.end());
+            bytes += fmt::format("<script type=\"text/plain\" id=\"map-{}\">{}</script>\n", maps.size(), base64(all));
+            maps.push_back(map.json());
+        }
+    }
+    return fmt::format("<script type=\"application/json\" id=\"maps\">{}</script>\n", script_json(maps)) + bytes;
+}
+
+std::string HtmlReport::page(const std::string& summary) const {
+    const std::lock_guard lock(mutex_);
+    std::string html(kReportHtml);
+    // From the end, so that no mark is looked for in what was put in.
+    fill(html, "script", fmt::format("<script>\n{}</script>\n", kReportScript));
+    fill(html, "data", data());
+    fill(html, "version", html_text(version()));
+    fill(html, "rules", rules_text());
+    fill(html, "sections", sections());
+    fill(html, "table", table());
+    fill(html, "summary", html_text(summary));
+    fill(html, "command", html_text(command_));
+    fill(html, "style", fmt::format("<style>\n{}</style>\n", kReportStyle));
+    fill(html, "title", html_text(command_ + ": " + summary));
+    return html;
+}
+
+}  // namespace tex::cli

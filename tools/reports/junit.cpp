@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "reports/junit.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "cli/text.h"
+#include "reports/findings.h"
+
+namespace tex::cli {
+namespace {
+
+// Text for an attribute or an element: lines that may hold any bytes. XML 1.0 has no way to write most control
+// characters.
+std::string escaped(std::string_view text) {
+    std::string xml;
+    while (true) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        for (const char c : printable(text.substr(0, end))) {
+            switch (c) {
+                case '&': xml += "&amp;"; break;
+                case '<': xml += "&lt;"; break;
+                case '>': xml += "&gt;"; break;
+                case '"': xml += "&quot;"; break;
+                default: xml += c; break;
+            }
+        }
+        if (end == text.size()) return xml;
+        xml += "&#10;";
+        text.remove_prefix(end + 1);
+    }
+}
+
+std::string test_case(const CheckReport& report, const Requirements& require, Severity fail_on) {
+    CheckReport failing = report, other = report;
+    const auto fails = [&](const Finding& finding) { return finding.severity >= fail_on; };
+    std::erase_if(failing.findings, [&](const Finding& finding) { return !fails(finding); });
+    std::erase_if(other.findings, fails);
+    std::string xml = fmt::format("    <testcase classname=\"check-normals\" name=\"{}\">\n", escaped(report.file));
+    if (report.error) {
+        xml += fmt::format("      <error type=\"{}\" message=\"{}\"/>\n", name_of(kErrorCodeNames, report.error->code),
+                           escaped(report.error->reason));
+    } else if (!failing.findings.empty()) {
+        const Finding& first = failing.findings.front();
+        xml += fmt::format("      <failure type=\"{}\" message=\"{}\">{}</failure>\n", first.rule->id,
+                           escaped(fmt::format("{} {}", first.rule->sentence, first.message)),
+                           escaped(findings_text(failing, require)));
+    }
+    if (!other.findings.empty() && !report.error) {
+        xml += fmt::format("      <system-out>{}</system-out>\n", escaped(findings_text(other, require)));
+    }
+    return xml + "    </testcase>\n";
+}
+
+}  // namespace
+
+std::string junit_text(const std::vector<CheckReport>& reports, const Requirements& require, Severity fail_on) {
+    const auto count = [&](auto holds) { return std::count_if(reports.begin(), reports.end(), holds); };
+    const auto errors = count([](const CheckReport& report) { return report.error.has_value(); });
+    const auto failures = count([&](const CheckReport& report) {
+        return !report.error && std::any_of(report.findings.begin(), report.findings.end(),
+                                            [&](const Finding& finding) { return finding.severity >= fail_on; });
+    });
+    std::string xml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n";
+    xml += fmt::format(
+        "  <testsuite name=\"check-normals\" tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"0\" time=\"0\">\n",
+        reports.size(), failures, errors);
+    for (const CheckReport& report : reports) xml += test_case(report, require, fail_on);
+    return xml + "  </testsuite>\n</testsuites>\n";
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// junit.h: check reports as JUnit XML, which GitLab and Jenkins show as tests.
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <tex/check.h>
+
+namespace tex::cli {
+
+// One test case for each file: a failure with the findings at or above `fail_on`, an error where it could not be read;
+// lesser findings are its output.
+[[nodiscard]] std::string junit_text(const std::vector<CheckReport>& reports, const Requirements& require,
+                                     Severity fail_on);
+
+}  // namespace tex::cli

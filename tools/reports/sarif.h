@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// sarif.h: check reports as SARIF 2.1.0 (OASIS 2020), which GitHub and others turn into annotations.
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <tex/check.h>
+
+namespace tex::cli {
+
+// One run of check-normals. The rules' metadata are those of rules(). Files that could not be opened are notifications
+// of the invocation. No time, host or absolute path is added.
+[[nodiscard]] std::string sarif_text(const std::vector<CheckReport>& reports, const Requirements& require);
+
+}  // namespace tex::cli

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "reports/text_file.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <memory>
+
+#include "files/system_error.h"
+
+namespace tex::cli {
+
+Result<std::string> read_text_file(const std::string& path) {
+    const bool from_stdin = path == "-";
+    const std::unique_ptr<FILE, int (*)(FILE*)> opened(
+        from_stdin ? nullptr : std::fopen(path.c_str(), "rbe"),
+        [](FILE* file) { return file == nullptr ? 0 : std::fclose(file); });
+    FILE* file = from_stdin ? stdin : opened.get();
+    const auto failed = [&] {
+        return Error{ErrorCode::io, from_stdin ? "standard input" : path, system_reason(errno)};
+    };
+    if (file == nullptr) return failed();
+    std::string text;
+    char buffer[65536];
+    while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, file)) text.append(buffer, count);
+    if (std::ferror(file) != 0) return failed();
+    return text;
+}
+
+}  // namespace tex::cli
