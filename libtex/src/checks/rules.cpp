@@ -16,18 +16,15 @@ constexpr Rule kRules[] = {
      "It is damaged, truncated, empty or of a kind that is not supported. Nothing else can be said about it.", "", ""},
     {"N102", "header-disagrees", file, warning, true, "The header contradicts the data.",
      "A size, count or flag in the header is not what the data are. This reader overlooks it; other readers refuse the "
-     "file or "
-     "read other texels.",
+     "file or read other texels.",
      "pack-normals FILE -o FIXED.dds", ""},
     {"N103", "mips-incomplete", file, warning, true, "The mip chain ends before 1x1.",
      "A texture with some levels but not all is incomplete in OpenGL and samples as black there unless the application "
-     "limits "
-     "the levels.",
+     "limits the levels.",
      "mip-normals FILE -o FIXED.dds", ""},
     {"N104", "trailing-bytes", file, warning, true, "Bytes follow the last level.",
      "They are not part of the texture: an appended file, a second surface that the header does not mention, or an "
-     "exporter's "
-     "wrong size.",
+     "exporter's wrong size.",
      "pack-normals FILE -o FIXED.dds", ""},
     {"N105", "not-power-of-two", file, error, false, "A side is not a power of two.",
      "Old hardware and some engines cannot mip-map or repeat such textures. Off unless pow2 is required.", "", ""},
@@ -52,42 +49,35 @@ constexpr Rule kRules[] = {
     // -- the vectors ------------------------------------------------------------------------------------------
     {"N201", "not-unit-length", values, warning, true, "Vectors are not of unit length.",
      "More than 5 % of the vectors are shorter or longer than 1 by more than two codes of 8 bits. Shaders that do not "
-     "normalise "
-     "light them wrongly. Filters and blends without renormalisation do this, painting too.",
+     "normalise light them wrongly. Filters and blends without renormalisation do this, painting too.",
      "pack-normals FILE --format rgb8 -o FIXED.png", ""},
     {"N202", "z-below-zero", values, warning, true, "Vectors point into the surface.",
      "z is below zero by more than two codes. Encodings that rebuild z cannot hold that, and lighting from the front "
-     "turns "
-     "black.",
+     "turns black.",
      "", "N201"},
     {"N203", "beyond-unit", values, warning, true, "x and y lie outside the unit circle.",
      "x^2 + y^2 is above 1 by more than two codes in more than 0.1 % of the texels of an encoding without z, so z "
-     "cannot be "
-     "rebuilt. Areas outside the UV islands filled with black do this.",
+     "cannot be rebuilt. Areas outside the UV islands filled with black do this.",
      "", "N207"},
     {"N204", "not-finite", values, error, true, "Texels are NaN or infinite.",
      "One such texel spreads through mip levels and bilinear filters.", "", "N201 N202 N203 N206 N207 N307"},
     {"N205", "null-vector", values, error, true, "Vectors point nowhere.",
      "They are shorter than 0.1: middle grey, where a mask or a border was painted into the map. Normalising them "
-     "gives NaN in a "
-     "shader.",
+     "gives NaN in a shader.",
      "pack-normals FILE --format rgb8 -o FIXED.png", "N201"},
     {"N206", "constant", values, note, true, "All texels are the same.",
      "A placeholder or a failed bake: a texture of 1x1 would do.", "", "N201 N207 N208 N209 N305 N403"},
     {"N207", "leaning", values, warning, true, "The map leans as a whole.",
      "The mean of the normals is more than 10 degrees off (0, 0, 1). A map over a flat surface has no lean; one "
-     "channel was "
-     "shifted, or the surface behind a bake was not flat.",
+     "channel was shifted, or the surface behind a bake was not flat.",
      "", ""},
     {"N208", "biased-flat", values, note, true, "Flat texels are biased.",
      "8 bits have no exact zero: code 127 means -0.0039, code 128 +0.0039. A quarter of the map or more is flat, and "
-     "all of it "
-     "leans the same way, by 0.32 degrees; blended as detail it tilts the base.",
+     "all of it leans the same way, by 0.32 degrees; blended as detail it tilts the base.",
      "unpack-normals FILE --snap-flat -o FIXED.exr", ""},
     {"N209", "blue-not-z", values, warning, true, "Blue does not hold z.",
      "Blue is constant while x and y vary: the file has two components, and its third channel is a filler. Readers "
-     "that do not "
-     "rebuild z get bent normals.",
+     "that do not rebuild z get bent normals.",
      "pack-normals FILE --format bc5 -o FIXED.dds", "N201 N202 N205"},
     {"N210", "grey-picture", values, error, true, "The picture is grey.",
      "R, G and B are equal everywhere: this is a height or bump map, not a normal map.",
@@ -99,8 +89,7 @@ constexpr Rule kRules[] = {
      "pack-normals FILE --format dxt5nm -o FIXED.dds", ""},
     {"N212", "alpha-not-one", values, note, true, "Alpha is not 255 beside x in R.",
      "Unity's UnpackNormalmapRGorAG multiplies x by A. A height or gloss there bends the normals, unless the shader "
-     "reads "
-     "R, G and B alone.",
+     "reads R, G and B alone.",
      "pack-normals FILE --format rgb8 -o FIXED.png", ""},
     {"N213", "object-space", values, error, true, "The normals are not in tangent space.",
      "z points away from the surface in many texels and the vectors face all directions: an object-space or "
@@ -116,37 +105,31 @@ constexpr Rule kRules[] = {
      "N201 N202 N203 N205 N206 N207 N305 N307 N308 N401 N402 N403 N404 N501 N502 N504"},
     {"N303", "premultiplied", damage, error, true, "R, G and B were multiplied by alpha.",
      "No channel exceeds alpha, and dividing by it makes the vectors longer and even. Image libraries do this on "
-     "reading unless "
-     "told otherwise (OpenImageIO: oiio:UnassociatedAlpha).",
+     "reading unless told otherwise (OpenImageIO: oiio:UnassociatedAlpha).",
      "", "N201 N202 N205 N207 N212 N213 N301 N305 N308 N401 N402 N403 N404 N501 N502 N504"},
     {"N304", "jpeg-blocks", damage, warning, true, "The map shows the 8x8 blocks of lossy JPEG.",
      "The cosine transform of aligned blocks is quantised as JPEG of about quality 65 or less does it, or steps stand "
-     "out at every "
-     "eighth column and row. Chroma subsampling halves the resolution of x; go back to a lossless source.",
+     "out at every eighth column and row. Chroma subsampling halves the resolution of x; go back to a lossless source.",
      "", "N201 N202"},
     {"N305", "banding", damage, warning, true, "The slopes lie on a lattice.",
      "The map was baked from heights of 8 bits: slopes take few values, which shows as terraces in reflections. Bake "
-     "from 16 bits, "
-     "or blur the heights.",
+     "from 16 bits, or blur the heights.",
      "bake-normals HEIGHT --blur 1 -o FIXED.dds", ""},
     {"N306", "bc-blocks", damage, warning, true, "The map shows the 4x4 blocks of texture compression.",
      "Either an uncompressed file holds texels that were BC-compressed before, or the steps between the blocks of a "
-     "compressed "
-     "one are twice those inside. DXT1 and DXT5 with normals in R, G and B do this.",
+     "compressed one are twice those inside. DXT1 and DXT5 with normals in R, G and B do this.",
      "pack-normals SOURCE --format bc5 -o FIXED.dds", "N201 N202 N304"},
     {"N307", "seam", damage, error, false, "The map does not meet itself at its borders.",
      "The step across the border is larger than nearly all steps inside. Off unless tiles is required.", "", ""},
     {"N308", "channels-exchanged", damage, error, true, "Two channels are exchanged.",
      "Either another channel than the third holds z (blue, green, red order), or x and y changed places: the slopes "
-     "have curl as "
-     "they stand and none when exchanged (so also where the order of BC5's blocks was mistaken).",
+     "have curl as they stand and none when exchanged (so also where the order of BC5's blocks was mistaken).",
      "", "N201 N202 N205 N207 N209 N213 N401 N402 N403 N404"},
 
     // -- convention -------------------------------------------------------------------------------------------
     {"N401", "wrong-y", convention, error, true, "Green points the other way than required.",
      "The slopes of a height field have no curl; here they have none only if y is turned. y=up is OpenGL, Unity, "
-     "Blender, glTF; "
-     "y=down is DirectX, Unreal.",
+     "Blender, glTF; y=down is DirectX, Unreal.",
      "unpack-normals FILE --y-in MEASURED --y WANTED -o FIXED.png", "N112 N404"},
     {"N402", "mixed-y", convention, error, true, "Green points up in one part of the map and down in another.",
      "Maps of both conventions were pasted together.", "", "N401 N403 N404"},
@@ -161,13 +144,11 @@ constexpr Rule kRules[] = {
      "mip-normals FILE -o FIXED.dds", ""},
     {"N502", "level-unrelated", mips, error, true, "A level does not follow from the base level.",
      "It correlates by less than 0.44 with the filtered base level: another image, a level sampled instead of "
-     "filtered, or one "
-     "that was shifted by more than a texel.",
+     "filtered, or one that was shifted by more than a texel.",
      "mip-normals FILE -o FIXED.dds", "N501 N504"},
     {"N503", "level-shifted", mips, warning, true, "A level is shifted against the base level.",
      "Its texels lie off the centres of those that they stand for: the map crawls as levels change. Filters of the "
-     "wrong phase "
-     "do this, and sizes that are not powers of two.",
+     "wrong phase do this, and sizes that are not powers of two.",
      "mip-normals FILE -o FIXED.dds", "N502 N504"},
     {"N504", "fade-unfinished", mips, warning, true, "The chain fades, but its end is not flat.",
      "Detail fades from level to level and then stops fading: distant surfaces keep a faint pattern.",
@@ -176,13 +157,11 @@ constexpr Rule kRules[] = {
     // -- the pair ---------------------------------------------------------------------------------------------
     {"N601", "height-mismatch", pair, error, true, "The normals do not follow from the height map.",
      "Their slopes correlate by less than 0.6 with its differences, or only after a shift: another version, another "
-     "crop or "
-     "another map.",
+     "crop or another map.",
      "bake-normals HEIGHT -o FIXED.dds", "N602"},
     {"N602", "height-inverted", pair, warning, true, "White is low in the height map.",
      "The normals follow from it with the opposite sign. Where they are right it is a depth map, and shaders want to "
-     "be told; else bake "
-     "them again.",
+     "be told; else bake them again.",
      "bake-normals HEIGHT -o FIXED.dds", ""},
 };
 
