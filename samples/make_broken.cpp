@@ -166,6 +166,15 @@ void Maker::values() {
         object.z.at(i, j + 64) = -object.z.at(i, j + 64);
     }
     png("N213-object-space", codes_of(object));
+    Codes colors = codes();  // bricks in brown and mortar in grey
+    for (int k = 0; k < 128 * 128; ++k) {
+        const int i = k % 128, j = k / 128, shade = colors.at(i, j, 0) / 8;
+        const bool mortar = i % 32 < 3 || j % 16 < 3;
+        colors.at(i, j, 0) = static_cast<unsigned char>(mortar ? 150 + shade : 140 + 2 * shade);
+        colors.at(i, j, 1) = static_cast<unsigned char>(mortar ? 148 + shade : 60 + shade);
+        colors.at(i, j, 2) = static_cast<unsigned char>(mortar ? 140 + shade : 45 + shade);
+    }
+    png("N214-not-a-normal-map", colors);
 }
 
 void Maker::damages() {

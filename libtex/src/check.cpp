@@ -104,7 +104,8 @@ Result<void> measure(Subject& subject) {
     subject.base = std::move(*image);
     const auto swizzle = guess_swizzle(subject.texture, subject.execution);
     if (!swizzle) return swizzle.error();
-    subject.stored = {&subject.base, *swizzle, is_signed(subject.texture, subject.base, *swizzle)};
+    subject.stored = {&subject.base, *swizzle, is_signed(subject.texture, subject.base, *swizzle),
+                      format_info(subject.texture.format).block > 1};
     const Stored& stored = subject.stored;
     subject.has_vectors = stored.channel(Component::x) >= 0 && stored.channel(Component::y) >= 0;
     if (!subject.has_vectors) return {};

@@ -57,7 +57,7 @@ struct Statistics {
     Statistic jpeg{.name = "trace of JPEG", .line = thresholds::kJpegTrace};
     Statistic lattice{.name = "lattice of slopes", .line = thresholds::kLatticeStrength};
     Statistic seam{.name = "seam", .line = thresholds::kSeamRatio};
-    Statistic palette{.name = "palettes of blocks", .line = thresholds::kPaletteShare};
+    Statistic palette{.name = "palettes of blocks", .is_signed = true /* a share */, .line = thresholds::kPaletteShare};
     Statistic dark{.name = "centre off 55", .high = false, .line = thresholds::kDarkCentre};
     Statistic light{.name = "centre off 188", .high = false, .line = thresholds::kLightCentre};
     Statistic related{.name = "levels related", .high = false, .is_signed = true, .line = thresholds::kLevelRelated};

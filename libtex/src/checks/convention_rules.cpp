@@ -18,6 +18,10 @@ constexpr std::size_t kLeastNeighbours = 4;
 constexpr double kLeastEnergy = 0.25;  // of the median neighbourhood's
 constexpr double kMixedShare = 0.08;   // of the neighbourhoods that say something
 constexpr std::size_t kMixedRegions = 3;
+// Neighbourhoods that correlate by less speak softly, as those of UV islands do: more of them must disagree.
+constexpr double kClearCorrelation = 0.5;
+constexpr double kMixedShareSoftly = 0.25;
+constexpr double kLeastUsable = 0.5;  // of the texels hold a normal: a few between others that do not are no evidence
 
 struct Neighbourhood {
     const CurlRegion* centre = nullptr;
@@ -62,6 +66,13 @@ std::vector<Neighbourhood> neighbourhoods_of(const Curl& curl) {
 // Regions whose neighbourhood says clearly which way green points.
 struct Votes {
     std::vector<Region> up, down;
+    std::vector<double> correlations;  // of both, without their signs
+
+    [[nodiscard]] double median() {
+        const auto middle = correlations.begin() + static_cast<std::ptrdiff_t>(correlations.size() / 2);
+        std::nth_element(correlations.begin(), middle, correlations.end());
+        return *middle;
+    }
 };
 
 Votes votes_of(const Subject& subject) {
@@ -81,22 +92,26 @@ Votes votes_of(const Subject& subject) {
         // 0.8 of the evidence on one side: |sum| / sum of magnitudes is 2 * 0.8 - 1.
         if (std::abs(n.agreeing) < (2.0 * kLeastAgreement - 1.0) * n.evidence) continue;
         const Rect& rect = n.centre->rect;
+        votes.correlations.push_back(std::abs(correlation));
         (correlation > 0.0 ? votes.up : votes.down).push_back({0, rect.x, rect.y, rect.width, rect.height});
     }
     return votes;
 }
 
 void check_mixed(const Subject& subject, Findings& findings) {
-    const Votes votes = votes_of(subject);
+    if (subject.curl.usable < kLeastUsable) return;
+    Votes votes = votes_of(subject);
     const bool up_is_less = votes.up.size() < votes.down.size();
     const std::vector<Region>& less = up_is_less ? votes.up : votes.down;
     const double all = static_cast<double>(votes.up.size() + votes.down.size());
-    if (less.size() < kMixedRegions || static_cast<double>(less.size()) < kMixedShare * all) return;
+    if (less.size() < kMixedRegions) return;
+    const double share = static_cast<double>(less.size()) / all;
+    if (share < (votes.median() < kClearCorrelation ? kMixedShareSoftly : kMixedShare)) return;
     const YAxis y = up_is_less ? YAxis::up : YAxis::down;
     Finding& finding =
         findings.add("N402", std::to_string(less.size()) + " of " + decimal(all, 0) + " regions point " + direction(y) +
                                  ", the others " + direction(y == YAxis::up ? YAxis::down : YAxis::up));
-    finding.figure = static_cast<double>(less.size()) / all;
+    finding.figure = share;
     finding.unit = "share";
     finding.confidence = subject.y.confidence;
     finding.regions = less;

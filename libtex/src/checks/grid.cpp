@@ -61,40 +61,108 @@ double axis_ratio(const Plane<float>& plane, const std::vector<Rect>& windows, i
     return usual > 0.0 ? border / usual : 1.0;
 }
 
-// The number of different colours in a block, up to 5.
-int colors_in(const Image& image, std::size_t channels, int x, int y) {
-    std::array<std::array<float, 3>, 4> seen{};
-    int count = 0;
+using Color = std::array<float, 3>;
+
+constexpr float kCode = 1.0f / 255.0f;
+constexpr float kContrast = 8.0f * kCode;  // between the ends of a palette: below, rounding hides where the others lie
+constexpr float kOffPalette = 1.5f * kCode;
+constexpr std::size_t kMostColors = 4;  // of a block of BC1 to BC3
+constexpr double kLeastBlocks = 64.0;   // for a share to mean something
+
+enum class Palette { unclear, fits, differs };
+
+// The different colours of a block; one more than kMostColors stands for all further ones.
+std::vector<Color> colors_of(const Image& image, std::size_t channels, int x, int y) {
+    std::vector<Color> seen;
     for (int j = 0; j < 4; ++j) {
         for (int i = 0; i < 4; ++i) {
-            std::array<float, 3> color{};
+            Color color{};
             for (std::size_t c = 0; c < channels; ++c) color[c] = image.planes[c].at(x + i, y + j);
-            const auto end = seen.begin() + count;
-            if (std::find(seen.begin(), end, color) != end) continue;
-            if (count == 4) return 5;
-            seen[static_cast<std::size_t>(count++)] = color;
+            if (std::find(seen.begin(), seen.end(), color) != seen.end()) continue;
+            seen.push_back(color);
+            if (seen.size() > kMostColors) return seen;
         }
     }
-    return count;
+    return seen;
 }
 
-double share_at(const Stored& stored, int offset) {
+// Whether `color` lies a third, half or two thirds of the way from one end to the other.
+bool is_between(const Color& color, const Color& first, const Color& last) {
+    for (const float t : {1.0f / 3.0f, 0.5f, 2.0f / 3.0f}) {
+        bool near = true;
+        for (std::size_t c = 0; c < color.size(); ++c)
+            near = near && std::abs(first[c] + t * (last[c] - first[c]) - color[c]) <= kOffPalette;
+        if (near) return true;
+    }
+    return false;
+}
+
+float contrast(const Color& a, const Color& b) {
+    float most = 0.0f;
+    for (std::size_t c = 0; c < a.size(); ++c) most = std::max(most, std::abs(a[c] - b[c]));
+    return most;
+}
+
+// Whether the texels of a block are those of a palette: two colours and one or two evenly spaced between them. One or
+// two colours alone fit any.
+Palette palette_of(const Image& image, std::size_t channels, int x, int y) {
+    std::vector<Color> colors = colors_of(image, channels, x, y);
+    if (colors.size() > kMostColors) return Palette::differs;
+    if (colors.size() < 3) return Palette::unclear;
+    std::size_t first = 0, last = 1;
+    for (std::size_t a = 0; a < colors.size(); ++a) {
+        for (std::size_t b = a + 1; b < colors.size(); ++b) {
+            if (contrast(colors[a], colors[b]) > contrast(colors[first], colors[last])) first = a, last = b;
+        }
+    }
+    if (contrast(colors[first], colors[last]) < kContrast) return Palette::unclear;
+    for (std::size_t k = 0; k < colors.size(); ++k) {
+        if (k != first && k != last && !is_between(colors[k], colors[first], colors[last])) return Palette::differs;
+    }
+    return Palette::fits;
+}
+
+// Of the blocks whose corners lie at `offset` plus multiples of `pitch`.
+double share_at(const Stored& stored, int offset, int pitch) {
     const std::size_t channels = std::min<std::size_t>(stored.image->planes.size(), 3);
-    double few = 0.0, all = 0.0;
+    double fits = 0.0, all = 0.0;
     for (const Rect& window : sample_windows(stored.extent())) {
-        for (int y = offset; y + 4 <= window.height; y += 4) {
-            for (int x = offset; x + 4 <= window.width; x += 4) {
-                const int colors = colors_in(*stored.image, channels, window.x + x, window.y + y);
-                if (colors == 1) continue;
+        for (int y = offset; y + 4 <= window.height; y += pitch) {
+            for (int x = offset; x + 4 <= window.width; x += pitch) {
+                const Palette palette = palette_of(*stored.image, channels, window.x + x, window.y + y);
+                if (palette == Palette::unclear) continue;
                 all += 1.0;
-                if (colors <= 4) few += 1.0;
+                if (palette == Palette::fits) fits += 1.0;
             }
         }
     }
-    return all > 0.0 ? few / all : 0.0;
+    return all >= kLeastBlocks ? fits / all : 0.0;
 }
 
 }  // namespace
+
+double grid_excess(const Stored& stored, int block) {
+    double most = 0.0;
+    for (const Component component : {Component::x, Component::y}) {
+        const Plane<float>& plane = stored.image->planes[static_cast<std::size_t>(stored.channel(component))];
+        double least = 2.0;
+        for (const bool columns : {true, false}) {
+            double at_borders = 0.0, inside = 0.0, borders = 0.0, others = 0.0;
+            for (const Rect& window : sample_windows(stored.extent())) {
+                const std::vector<double> steps = mean_steps(plane, window, columns);
+                const double lines = columns ? window.height : window.width;
+                for (std::size_t k = 0; k < steps.size(); ++k) {
+                    const bool border = (k + 1) % static_cast<std::size_t>(block) == 0;
+                    (border ? at_borders : inside) += steps[k];
+                    (border ? borders : others) += lines;
+                }
+            }
+            if (borders > 0.0 && others > 0.0) least = std::min(least, at_borders / borders - inside / others);
+        }
+        if (least < 2.0) most = std::max(most, least);
+    }
+    return most;
+}
 
 double grid_ratio(const Stored& stored, int block) {
     const std::vector<Rect> windows = sample_windows(stored.extent());
@@ -107,6 +175,9 @@ double grid_ratio(const Stored& stored, int block) {
     return most;
 }
 
-double palette_share(const Stored& stored) { return share_at(stored, 0) - share_at(stored, 2); }
+double palette_share(const Stored& stored) {
+    // Blocks that lie across those of a codec; and, within a JPEG's blocks of 8x8, those across the middle.
+    return share_at(stored, 0, 4) - std::max(share_at(stored, 2, 4), share_at(stored, 2, 8));
+}
 
 }  // namespace tex

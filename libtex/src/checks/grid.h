@@ -14,8 +14,13 @@ namespace tex {
 // both directions, of channel x or y, whichever shows more.
 double grid_ratio(const Stored& stored, int block);
 
-// The share of aligned 4x4 blocks (of those that are not of one colour) whose texels have at most four different
-// colours, as BC1 to BC3 leave them, less the same share at an offset of (2, 2).
+// By how much the mean step across the borders of blocks exceeds the mean step inside them, in stored values (1 is the
+// full scale of unorm): the lesser of both directions, of channel x or y, whichever shows more.
+double grid_excess(const Stored& stored, int block);
+
+// The share of aligned 4x4 blocks whose texels are those of a palette of BC1 to BC3: two colours and one or two evenly
+// spaced between them. Blocks of one or two colours, or of little contrast, do not count. Less the same share of blocks
+// at an offset of (2, 2), which only a map of few values reaches too. 0 in maps of fewer than 64 blocks that count.
 double palette_share(const Stored& stored);
 
 }  // namespace tex

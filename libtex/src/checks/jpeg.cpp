@@ -129,7 +129,7 @@ double median(std::vector<double>& values) {
 
 }  // namespace
 
-JpegTrace measure_jpeg(const Stored& stored) {
+JpegTrace measure_jpeg(const Stored& stored, int offset) {
     if (stored.image->planes.size() < 3 || stored.is_signed) return {};
     const std::vector<Rect> windows = sample_windows(stored.extent());
     std::int64_t blocks = 0;
@@ -139,8 +139,8 @@ JpegTrace measure_jpeg(const Stored& stored) {
     histograms.fill(Histogram(kAllBins));
     const CosineBasis basis;
     for (const Rect& window : windows) {
-        for (int y = 0; y + 8 <= window.height; y += 8) {
-            for (int x = y / 8 % stride * 8; x + 8 <= window.width; x += 8 * stride) {
+        for (int y = offset; y + 8 <= window.height; y += 8) {
+            for (int x = offset + y / 8 % stride * 8; x + 8 <= window.width; x += 8 * stride) {
                 add_block(*stored.image, basis, window.x + x, window.y + y, histograms);
             }
         }

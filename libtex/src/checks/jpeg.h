@@ -20,8 +20,9 @@ struct JpegTrace {
     [[nodiscard]] double quality() const { return scale <= 1.0 ? 100.0 - 50.0 * scale : 50.0 / scale; }
 };
 
-// Looks at blocks aligned with the map's corner. No trace in maps of fewer than three channels, of signed values, or
-// too small.
-JpegTrace measure_jpeg(const Stored& stored);
+// Looks at blocks of 8x8 texels whose corners lie at multiples of 8, plus `offset` (0 to 7). A JPEG leaves its trace at
+// offset 0 alone; a map of few distinct values has a similar one at any offset. No trace in maps of fewer than three
+// channels, of signed values, or too small.
+JpegTrace measure_jpeg(const Stored& stored, int offset = 0);
 
 }  // namespace tex

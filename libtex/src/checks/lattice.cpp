@@ -17,6 +17,7 @@ constexpr double kRange = 0.5;
 constexpr double kLeastRate = 16.0;  // teeth per unit of slope
 constexpr double kMostRate = 51.0;
 constexpr double kRateStep = 0.25;
+constexpr double kLeastShare = 0.1;  // of the texels looked at: a few gentle slopes in a steep map say nothing
 
 void add_slopes(const Plane<float>& slopes, std::vector<double>& bins) {
     for (int j = 0; j < slopes.extent().height; ++j) {
@@ -27,6 +28,12 @@ void add_slopes(const Plane<float>& slopes, std::vector<double>& bins) {
             bins[static_cast<std::size_t>(std::clamp(bin, 0, kBins - 1))] += 1.0;
         }
     }
+}
+
+double count(const std::vector<double>& bins) {
+    double sum = 0.0;
+    for (const double bin : bins) sum += bin;
+    return sum;
 }
 
 // Less its own average over one period of the slowest comb, and without slopes near 0: a flat map is no comb.
@@ -71,12 +78,15 @@ int count_teeth(const std::vector<double>& bins, double step) {
 
 Lattice measure_lattice(const Stored& stored) {
     std::vector<double> bins_p(kBins), bins_q(kBins);
+    double looked_at = 0.0;
     for (const Rect& window : sample_windows(stored.extent())) {
+        looked_at += static_cast<double>(window.width) * window.height;
         const Slopes slopes = slopes_of(stored, window);
         add_slopes(slopes.p, bins_p);
         add_slopes(slopes.q, bins_q);
     }
     Lattice lattice;
+    if (std::min(count(bins_p), count(bins_q)) < kLeastShare * looked_at) return lattice;
     const std::vector<double> detail_p = detail_of(bins_p), detail_q = detail_of(bins_q);
     constexpr int kRates = static_cast<int>((kMostRate - kLeastRate) / kRateStep) + 1;
     for (int r = 0; r < kRates; ++r) {

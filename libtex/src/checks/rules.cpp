@@ -47,7 +47,7 @@ constexpr Rule kRules[] = {
      "KTX2 and EXR files of libtex say which way y points.", "unpack-normals FILE --y WANTED -o FIXED.exr", ""},
 
     // -- the vectors ------------------------------------------------------------------------------------------
-    {"N201", "not-unit-length", values, warning, true, "Vectors are not of unit length.",
+    {"N201", "not-unit-length", values, note, true, "Vectors are not of unit length.",
      "More than 5 % of the vectors are shorter or longer than 1 by more than two codes of 8 bits. Shaders that do not "
      "normalise light them wrongly. Filters and blends without renormalisation do this, painting too.",
      "pack-normals FILE --format rgb8 -o FIXED.png", ""},
@@ -84,8 +84,9 @@ constexpr Rule kRules[] = {
      "bake-normals FILE -o FIXED.dds",
      "N201 N202 N203 N205 N206 N207 N208 N209 N213 N301 N302 N303 N304 N305 N306 N308 N401 N402 N403 N404 N501 N502 "
      "N503 N504"},
-    {"N211", "dxt5nm-red", values, error, true, "R is not 255 in the layout of DXT5nm.",
-     "Unity's shaders multiply R and A to read x from either; where R is not 255, x comes out too small (or 0).",
+    {"N211", "dxt5nm-red", values, note, true, "R is not 255 in the layout of DXT5nm.",
+     "Unity's shaders multiply R and A to read x from either; where R is not 255, x comes out too small (or 0). "
+     "Shaders that read A and G alone are right. Require format=dxt5nm where R matters.",
      "pack-normals FILE --format dxt5nm -o FIXED.dds", ""},
     {"N212", "alpha-not-one", values, note, true, "Alpha is not 255 beside x in R.",
      "Unity's UnpackNormalmapRGorAG multiplies x by A. A height or gloss there bends the normals, unless the shader "
@@ -95,6 +96,9 @@ constexpr Rule kRules[] = {
      "z points away from the surface in many texels and the vectors face all directions: an object-space or "
      "world-space map.",
      "", "N201 N202 N205 N207 N305 N401 N402 N403 N404 N501 N502 N504"},
+    {"N214", "not-a-normal-map", values, error, true, "The picture is no normal map.",
+     "Nearly all texels are far from unit length and many point away from the surface: colours, not vectors.", "",
+     "N201 N202 N205 N207 N213 N301 N302 N303 N304 N305 N306 N308 N401 N402 N403 N404 N501 N502 N504"},
 
     // -- damage -----------------------------------------------------------------------------------------------
     {"N301", "srgb-decoded", damage, error, true, "The map went through the sRGB curve: it is too dark.",
@@ -112,7 +116,8 @@ constexpr Rule kRules[] = {
      "out at every eighth column and row. Chroma subsampling halves the resolution of x; go back to a lossless source.",
      "", "N201 N202"},
     {"N305", "banding", damage, warning, true, "The slopes lie on a lattice.",
-     "The map was baked from heights of 8 bits: slopes take few values, which shows as terraces in reflections. Bake "
+     "The map was baked from heights of few values, 8 bits say: slopes take few values too, which shows as terraces in "
+     "reflections. Bake "
      "from 16 bits, or blur the heights.",
      "bake-normals HEIGHT --blur 1 -o FIXED.dds", ""},
     {"N306", "bc-blocks", damage, warning, true, "The map shows the 4x4 blocks of texture compression.",

@@ -17,6 +17,7 @@ struct Stored {
     const Image* image = nullptr;  // R, G, B, A as decode() gives them
     Swizzle swizzle{};
     bool is_signed = false;  // values are components themselves; otherwise (n + 1) / 2
+    bool in_blocks = false;  // decoded from texel blocks
 
     [[nodiscard]] Extent extent() const { return image->extent(); }
     // The channel that holds `component`, or -1.

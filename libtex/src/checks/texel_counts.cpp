@@ -17,6 +17,8 @@ namespace {
 constexpr int kRowsPerPiece = 16;
 constexpr float kCodeAndHalf = 1.5f / 255.0f;
 constexpr float kBehind = -0.1f;
+constexpr float kBeyond = 1.0f + kTwoCodes;
+constexpr float kBeyondOfBlocks = 1.1f;
 
 // One row's share of the counts.
 struct RowCounts {
@@ -45,7 +47,8 @@ struct RowView {
     const float *x = nullptr, *y = nullptr, *z = nullptr;
     int channels = 0;
     float scale = 2.0f, offset = -1.0f;  // from a stored value to a component
-    bool colors = false;                 // R, G, B and A are all there, and A is not a component
+    float beyond = kBeyond * kBeyond;
+    bool colors = false;  // R, G, B and A are all there, and A is not a component
     bool one_in_red = false;
     bool alpha_free = false;
     float low_flat = 2.0f, high_flat = 2.0f;  // codes 127 and 128, where the format has them
@@ -65,7 +68,7 @@ void count_vectors(const RowView& view, int width, RowCounts& row) {
             row.mark(Property::not_finite, true, i);
             continue;
         }
-        row.mark(Property::beyond_unit, flat > kLong, i);
+        row.mark(Property::beyond_unit, flat > view.beyond, i);
         if constexpr (kHasZ) {
             row.mark(Property::null_vector, square < kNull, i);
             row.mark(Property::off_length, square > kLong || square < kShort, i);
@@ -133,6 +136,7 @@ RowView view_of(const Stored& stored, int j) {
     view.x = row_of(Component::x);
     view.y = row_of(Component::y);
     view.z = row_of(Component::z);
+    if (stored.in_blocks) view.beyond = kBeyondOfBlocks * kBeyondOfBlocks;
     if (stored.is_signed) {
         view.scale = 1.0f;
         view.offset = 0.0f;

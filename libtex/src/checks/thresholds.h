@@ -4,9 +4,9 @@
 // The lines are drawn on half of the real maps that the tests know (tests/reference/real_maps.h: pictures sorted by the
 // FNV-1a hash of their names, the first half) and reported on the other half, which had no say. A fitted line is the
 // geometric mean, to two digits, of the largest value of an intact map of that half and the least of a damaged one, or
-// the arithmetic mean where values have a sign. The unit test CheckThresholds does that again, fails where a number
-// here is not what comes out, and prints both halves; CheckData and tests/bench/check_bench.cpp print what is detected
-// and missed.
+// the arithmetic mean where values have a sign or are shares. The unit test CheckThresholds does that again, fails
+// where a number here is not what comes out, and prints both halves; CheckData and tests/bench/check_bench.cpp print
+// what is detected and missed.
 
 #pragma once
 
@@ -16,7 +16,7 @@ namespace tex::thresholds {
 inline constexpr double kJpegTrace = 0.61;        // JpegTrace::weight(): 0.47 (a JPEG of quality 75) and 0.80
 inline constexpr double kLatticeStrength = 0.68;  // Lattice::strength: 0.63 and 0.72
 inline constexpr double kSeamRatio = 1.8;         // Seam::worst(): 1.4 and 2.3
-inline constexpr double kPaletteShare = 0.043;    // palette_share(): 0.0054 and 0.34
+inline constexpr double kPaletteShare = 0.49;     // palette_share(): 0.000061 and 0.98
 inline constexpr double kDarkCentre =
     0.063;  // Centre::distance() from where decoding as sRGB puts flat: 0.27 and 0.015
 inline constexpr double kLightCentre = 0.048;  // the same for encoding: 0.23 and 0.010

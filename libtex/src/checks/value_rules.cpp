@@ -17,6 +17,7 @@ constexpr double kBeyondShare = 0.001;
 constexpr double kNullShare = 0.0001;
 constexpr double kBehindShare = 0.05;
 constexpr double kGreyShare = 0.999;
+constexpr double kColorShare = 0.9;
 constexpr double kFlatShare = 0.25;
 constexpr std::int64_t kFlatLeast = 256;  // texels
 constexpr double kLeanDegrees = 10.0;
@@ -106,12 +107,16 @@ void check_channels(const Subject& subject, Findings& findings) {
     }
     if (counts.share(Property::z_behind) > kBehindShare) {
         add_counted(subject, findings, "N213", Property::z_behind, " point away from the surface");
+        // Maps of an object's space hold unit vectors, if rounded or compressed ones.
+        if (counts.share(Property::off_length) > kColorShare)
+            add_counted(subject, findings, "N214", Property::off_length, " are off unit length by more than two codes");
     }
 }
 
 }  // namespace
 
 void check_value_rules(const Subject& subject, Findings& findings) {
+    if (format_info(subject.texture.format).channels == 1) findings.add("N210", "the file has one channel alone");
     if (!subject.has_vectors) return;
     if (subject.constant && subject.counts.texels > 1) {
         findings.add("N206", "every texel is the same as the first").unit = "";
