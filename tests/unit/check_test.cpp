@@ -104,6 +104,54 @@ TEST(Check, SoundMapsHaveNoFindings) {
 }
 
 // What mip --fade makes: the last levels are flat, which is no other image.
+// Heights that are awkward to judge a bake by: few values, flat parts, slopes that hardly change or that no 8 bits
+// hold.
+float awkward_height(int shape, int i, int j) {
+    constexpr int kSide = 128;
+    const double x = i - kSide / 2, y = j - kSide / 2, edge = std::max(std::abs(x), std::abs(y));
+    const double tau = 2.0 * 3.14159265358979 / kSide;
+    const double heights[] = {
+        (x * x + y * y) / 8192.0 * 251.0,                                         // a bowl
+        std::max(0.0, 200.0 - 3.0 * edge),                                        // a pyramid
+        60.0 * std::clamp((56.0 - edge) / 12.0, 0.0, 1.0),                        // a stamp
+        250.0 * std::sqrt(std::max(0.0, 1.0 - (x * x + y * y) / (55.0 * 55.0))),  // half a ball
+        127.0 + 60.0 * std::sin(tau * i + std::cos(2.0 * tau * j)) * std::cos(tau * j) +
+            30.0 * std::sin(tau * (3 * i + 2 * j)),
+    };
+    return static_cast<float>(std::floor(heights[shape]) / 255.0);
+}
+
+// N305 would be true of these: the heights have few values.
+TEST(Check, OwnBakesOfAwkwardHeightsAreIntact) {
+    for (int shape = 0; shape < 5; ++shape) {
+        for (const float bumpiness : {0.5f, 2.0f, 8.0f, 10.0f, 1000.0f}) {
+            HeightField field{Plane<float>(Extent{128, 128}), bumpiness, bumpiness, Wrap::clamp, Wrap::clamp};
+            for (int k = 0; k < 128 * 128; ++k)
+                field.height.at(k % 128, k / 128) = awkward_height(shape, k % 128, k / 128);
+            for (const Encoding encoding :
+                 {Encoding::dxt5nm, Encoding::bc5, Encoding::bc5_snorm, Encoding::rgb8, Encoding::rgb16}) {
+                SCOPED_TRACE(testing::Message() << "shape " << shape << ", bumpiness " << bumpiness << ", "
+                                                << name_of(kEncodingNames, encoding));
+                PackOptions options;
+                options.encoding = encoding;
+                const auto chain = build_mip_chain(std::move(*bake(field)), {});
+                const Ids found = ids(*pack(*chain, options));
+                for (const char* id : {"N201", "N202", "N203", "N205", "N301", "N302", "N304", "N306", "N308", "N402",
+                                       "N404", "N501", "N502", "N503"})
+                    EXPECT_FALSE(found.contains(id)) << id;
+            }
+        }
+    }
+}
+
+TEST(Check, OneChannelIsNoNormalMap) {
+    Texture texture;
+    texture.format = Format::r8_unorm;
+    texture.swizzle = {Component::other, Component::zero, Component::zero, Component::one};
+    texture.levels.push_back({{32, 32}, std::vector<std::byte>(32 * 32, std::byte{128})});
+    EXPECT_TRUE(ids(texture).contains("N210"));
+}
+
 TEST(Check, LevelsThatFadedToFlatAreRelated) {
     for (const Encoding encoding : {Encoding::rgb8, Encoding::dxt5nm}) {
         MipOptions mips;

@@ -31,6 +31,7 @@ constexpr double kExchangedZ = 0.2;
 constexpr double kExchangedLead = 0.1;
 constexpr double kExchangedLeast = 0.2;
 constexpr double kExchangedConfidence = 0.99;
+constexpr double kExchangedEnergy = 0.25;  // of products of two energies: half the change across that is along
 
 // The mean of |length - 1| over every 7th sampled texel, after `restore` was applied to the stored values of x, y and
 // z.
@@ -120,6 +121,10 @@ void check_exchanged(const Subject& subject, Findings& findings) {
     const bool behind = counts.share(Property::z_behind) > 0.05;
     if (behind || exchanged < as_stored + kExchangedLead || exchanged < kExchangedLeast) return;
     if (subject.curl.exchanged_confidence < kExchangedConfidence) return;
+    // The slopes of most surfaces change more along their own axis than across it: so they must as exchanged. A bowl,
+    // whose slopes do not change across at all, is the picture of a saddle with exchanged channels.
+    const CurlSums& sums = subject.curl.scale[subject.curl.best_scale];
+    if (sums.p_square * sums.q_square < kExchangedEnergy * sums.px_square * sums.qy_square) return;
     Finding& finding = findings.add("N308", "x and y agree better when exchanged (correlation " +
                                                 decimal(exchanged, 2) + " against " + decimal(as_stored, 2) + ")");
     finding.figure = exchanged;

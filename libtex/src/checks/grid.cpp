@@ -122,8 +122,8 @@ Palette palette_of(const Image& image, std::size_t channels, int x, int y) {
     return Palette::fits;
 }
 
-// Of the blocks whose corners lie at `offset` plus multiples of `pitch`.
-double share_at(const Stored& stored, int offset, int pitch) {
+// Of the blocks whose corners lie at `offset` plus multiples of `pitch`; 0 where fewer than `least` count.
+double share_at(const Stored& stored, int offset, int pitch, double least) {
     const std::size_t channels = std::min<std::size_t>(stored.image->planes.size(), 3);
     double fits = 0.0, all = 0.0;
     for (const Rect& window : sample_windows(stored.extent())) {
@@ -136,7 +136,7 @@ double share_at(const Stored& stored, int offset, int pitch) {
             }
         }
     }
-    return all >= kLeastBlocks ? fits / all : 0.0;
+    return all >= least ? fits / all : 0.0;
 }
 
 }  // namespace
@@ -177,7 +177,8 @@ double grid_ratio(const Stored& stored, int block) {
 
 double palette_share(const Stored& stored) {
     // Blocks that lie across those of a codec; and, within a JPEG's blocks of 8x8, those across the middle.
-    return share_at(stored, 0, 4) - std::max(share_at(stored, 2, 4), share_at(stored, 2, 8));
+    const double across = std::max(share_at(stored, 2, 4, 1.0), share_at(stored, 2, 8, 1.0));
+    return share_at(stored, 0, 4, kLeastBlocks) - across;
 }
 
 }  // namespace tex
