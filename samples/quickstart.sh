@@ -35,7 +35,7 @@ Next:
   $bake --help
   $bake your_height_map.png -o your_normals.dds --bumpiness 8
   $preview your_normals.dds -o look.png --shape sphere
-  man ./man/bake-normals.1
+  man ./build/release/man/bake-normals.1
   tests/run.sh                           builds and runs the tests
   cmake --install build/release          installs commands, library and manual in /usr/local
 END

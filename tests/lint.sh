@@ -69,7 +69,7 @@ for source in $(select_files '^libtex/src/(blocks|formats|kernels)/([a-z0-9]+/)?
 done
 for source in $(select_files '^tools/[a-z]+-normals\.cpp$'); do
     name=$(stem "$source")
-    need "man/$name.1" "$source has no man page"
+    need "man/$name.1.in" "$source has no man page"
     [ -n "$(select_files "^tests/cli/${name//-/_}[a-z_]*\.")" ] || complain "$source has no tests/cli/${name//-/_}*"
     grep -q "\`$name\`\|\*\*$name\*\*\|\[$name\]" README.md || complain "README.md does not name $name"
 done
@@ -84,12 +84,12 @@ mapfile -t scripts < <({ select_files '\.sh$'; select_files '^\.ci/run$'; })
 for file in "${sources[@]}" "${scripts[@]}" $(select_files 'CMakeLists\.txt$'); do
     head -n 2 "$file" | grep -q 'SPDX-License-Identifier: Apache-2.0' || complain "$file does not begin with its licence"
 done
-for file in $(select_files '\.(cpp|h|sh|txt|md|1|7)$|^\.ci/run$'); do
+for file in $(select_files '\.(cpp|h|sh|txt|md|in|mdoc)$|^\.ci/run$'); do
     lines=$(wc -l <"$file")
     case $file in libtex/src/kernels/*) most=600 ;; libtex/* | tools/*) most=400 ;; *) most=500 ;; esac
     [ "$lines" -le "$most" ] || complain "$file has $lines lines: more than $most"
 done
-mapfile -t written < <(select_files '\.(cpp|h|sh|md|1|7|txt|json)$|^\.ci/run$' | grep -v '^tests/lint\.sh$')
+mapfile -t written < <(select_files '\.(cpp|h|sh|md|in|mdoc|txt|json)$|^\.ci/run$' | grep -v '^tests/lint\.sh$')
 ban '\b(TODO|FIXME|XXX)\b' 'unfinished work' "${written[@]}"
 ban '[[:blank:]]+$' 'trailing blanks' "${written[@]}"
 ban $'\t' 'tabs' "${written[@]}"
@@ -120,11 +120,17 @@ if [ -e README.md ]; then
         grep -qw -- "$package" README.md || complain "README.md does not name the package $package"
     done
 fi
-pages=$(select_files '^man/')
-# shellcheck disable=SC2086  # a list of names without blanks
-# Pages that are not installed yet refer to each other; all else that mandoc notices counts.
-remarks=$([ -z "$pages" ] || mandoc -T lint -W style $pages 2>&1 | grep -v 'referenced manual not found\|outdated mandoc.db' || true)
-[ -z "$remarks" ] || complain "mandoc has something to say about a man page"$'\n'"$remarks"
-shellcheck -x "${scripts[@]}" || complain "shellcheck has something to say about a script"
+manual=$(mktemp -d)
+trap 'rm -rf "$manual"' EXIT
+for source in $(select_files '^man/[a-z-]+\.[17]\.in$'); do
+    cmake -D IN="$source" -D OUT="$manual/$(basename "$source" .in)" -P man/assemble.cmake || complain "$source cannot be assembled"
+done
+for section in $(select_files '^man/shared/'); do
+    grep -rqx "@include $(basename "$section" .mdoc)@" man || complain "no page includes $section"
+done
+# The pages refer to each other and are not installed; every other remark counts.
+remarks=$(mandoc -T lint -W style "$manual"/* 2>&1 | grep -v 'referenced manual not found\|outdated mandoc.db' || true)
+[ -z "$remarks" ] || complain "mandoc complains about a man page"$'\n'"$remarks"
+shellcheck -x "${scripts[@]}" || complain "shellcheck complains about a script"
 
 [ "$breaches" -eq 0 ] || { echo "lint: $breaches breaches" >&2; exit 1; }

@@ -248,7 +248,7 @@ TEST_F(CheckNormals, AnEmptyListHasItsDocuments) {
 TEST_F(CheckNormals, ListsAndExplainsEveryRule) {
     const Ran list = check({"--list"});
     EXPECT_EQ(list.code, 0);
-    std::ifstream page(TEX_SOURCE_DIR "/man/check-normals.1");
+    std::ifstream page(TEX_BINARY_DIR "/man/check-normals.1");
     const std::string manual{std::istreambuf_iterator<char>(page), {}};
     for (const Rule& rule : rules()) {
         EXPECT_NE(list.out.find(std::string(rule.sentence)), std::string::npos) << rule.id;

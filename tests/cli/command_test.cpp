@@ -101,7 +101,7 @@ TEST_P(EveryCommand, BashCompletesOptionsAndTheirWords) {
 TEST_P(EveryCommand, ManPageHasTheOptionsOfTheTableInItsOrder) {
     const Ran listed = run(scratch_, GetParam(), {"--list-options"});
     ASSERT_EQ(listed.code, 0);
-    std::ifstream page(TEX_SOURCE_DIR "/man/" + GetParam() + ".1");
+    std::ifstream page(TEX_BINARY_DIR "/man/" + GetParam() + ".1");
     const std::string text{std::istreambuf_iterator<char>(page), {}};
     ASSERT_NE(text, "") << "no man page";
     // ".It Fl o Ar FILE , Fl -output Ar FILE", ".It Fl -json": the long names, with or without a value.
@@ -124,7 +124,7 @@ TEST_P(EveryCommand, ManPageHasTheOptionsOfTheTableInItsOrder) {
 }
 
 TEST_P(EveryCommand, ManPageNamesEveryWordThatAnOptionTakes) {
-    std::ifstream page(TEX_SOURCE_DIR "/man/" + GetParam() + ".1");
+    std::ifstream page(TEX_BINARY_DIR "/man/" + GetParam() + ".1");
     const std::string text{std::istreambuf_iterator<char>(page), {}};
     std::set<std::string> bold;  // "Cm word" of mdoc
     const std::regex word(R"(Cm ([^ \n]+))");
