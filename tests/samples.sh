@@ -15,4 +15,10 @@ if [ $# -gt 1 ]; then
     "$3" "$scratch/bricks_normals.png" -o "$scratch/strip.png" --height "$samples/bricks.png" --detail "$scratch/waves_normals.png" --detail-tiling 6 \
         --show height,normals,plain,lit --size 220 --light -1,1,0.9 --tint 0.6,0.28,0.18 --specular 0.12 --no-legend
     cmp "$scratch/strip.png" "$samples/strip.png"
+    # Its picture of +Y and -Y; captions are names of files.
+    "$2" "$samples/hemisphere.png" -o "$scratch/+Y.png" --bumpiness 112 --y up
+    "$2" "$samples/hemisphere.png" -o "$scratch/-Y.png" --bumpiness 112 --y down
+    "$3" "$scratch/+Y.png" "$scratch/-Y.png" -o "$scratch/y_axis.png" --show normals,lit --columns 4 --size 200 \
+        --light -0.3,1,0.8 --specular 0.15 --no-legend
+    cmp "$scratch/y_axis.png" "$samples/y_axis.png"
 fi

@@ -15,7 +15,7 @@
 //
 // Then, under the rules by which processors return 8 bits (decode_rules.h), the errors on a sample of blocks divided by
 // the least that any blocks of DXT5nm have under the same rule; how two threads scale, beside a loop that only counts;
-// and the pooled figures as README.md shows them.
+// and the pooled figures as RESULTS.md shows them.
 
 #include <algorithm>
 #include <chrono>
