@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// bake_and_pack HEIGHT OUTPUT.dds: what bake-normals does, in a program of your own.
+// bake_and_pack HEIGHT OUTPUT.dds: what bake-normals does, in your own program.
 #include <tex/tex.h>
 
 #include <cstdio>

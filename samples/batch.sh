@@ -3,12 +3,13 @@
 # batch.sh HEIGHTS OUT [NINJA_OPTION...]: a folder of height maps to a folder of textures, rebuilding only what changed.
 #
 #     HEIGHTS/NAME.png     a height map (or .exr, .tif) becomes OUT/NAME.dds
-#     HEIGHTS/NAME.bake    its options of bake-normals, on one line:   --bumpiness 12 --wrap clamp
-#     HEIGHTS/NAME.blend   its options of blend-normals, if it gets detail:   --detail ../grain.png --tiling 8 --mask rust.png:a
+#     HEIGHTS/NAME.bake    its options for bake-normals, on one line:   --bumpiness 12 --wrap clamp
+#     HEIGHTS/NAME.blend   its options for blend-normals, if it gets detail:
+#                          --detail ../grain.png --tiling 8 --mask rust.png:a
 #
-# Paths in options start from HEIGHTS. Ninja builds a texture again where its map, its options or the commands are newer or other than before,
-# or any file that an option names: --depfile tells Ninja of those. What no map is there for any more is removed.
-# The commands are those in PATH.
+# Paths in options are relative to HEIGHTS. Ninja builds a texture again if its map, its options, the commands or a file
+# that an option names changed; --depfile lists those files for Ninja. Textures without a map are removed. The commands
+# come from PATH.
 set -euo pipefail
 [ $# -ge 2 ] || { echo "usage: batch.sh HEIGHTS OUT [NINJA_OPTION...]" >&2; exit 2; }
 mkdir -p "$2"
@@ -18,19 +19,19 @@ shift 2
 bake=$(command -v bake-normals)
 blend=$(command -v blend-normals)
 
-# A path as Ninja wants it.
+# Prints a path in the syntax of Ninja.
 escape() {
     local path=${1//\$/\$\$}
     path=${path// /\$ }
     printf '%s' "${path//:/\$:}"
 }
-# The options in a file, or nothing. A $ is a character like others.
+# Prints the options in a file, or nothing if there is none. A $ is an ordinary character.
 options_in() { if [ -e "$1" ]; then sed 's/\$/$$/g' "$1"; fi; }
 
 cd "$heights"
 shopt -s nullglob
 {
-    # One thread for each map: Ninja runs as many maps at once as there are processors.
+    # One thread for each map: Ninja processes as many maps in parallel as there are processors.
     cat <<END
 builddir = $(escape "$out")
 rule bake

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// make_broken: writes samples/broken, one file for each rule of check-normals that makes this rule alone fire.
+// make_broken: writes samples/broken, one file for each rule of check-normals. Only that rule reports the file.
 //
 //     make_broken samples/waves.png FOLDER
 //
-// All come from the sample height map; FOLDER/options.txt says with which options a file is to be checked.
+// All files are made from the sample height map. FOLDER/options.txt lists the options with which they are checked.
 
 #include <algorithm>
 #include <cmath>
@@ -85,7 +85,7 @@ void set_slopes(NormalMap& map, int i, int j, double p, double q) {
     map.z.at(i, j) = static_cast<float>(1.0 / length);
 }
 
-// The map with its slopes turned into others.
+// The map with its slopes changed by `change`.
 template <class Change>
 NormalMap changed(const NormalMap& map, Change&& change) {
     NormalMap result(map.extent());
@@ -105,7 +105,7 @@ void Maker::files() {
     bytes.resize(bytes.size() / 2);
     write("N101-unreadable.dds", bytes);
     bytes = whole;
-    bytes[4] = std::byte{24};  // the header's own size
+    bytes[4] = std::byte{24};  // the size of the header
     write("N102-header-disagrees.dds", bytes);
     auto chain = chain_of(part(64, 64), ChainFault::none);
     chain.resize(3);
@@ -225,7 +225,7 @@ void Maker::levels() {
     for (std::size_t k = 2; k < chain.size(); ++k) chain[k] = faded[k];
     dds("N504-fade-unfinished", texture_of(chain));
     const Codes right = codes();
-    Codes mirrored = right;  // left and right exchanged: sound normals of other heights
+    Codes mirrored = right;  // left and right exchanged: valid normals of other heights
     for (int k = 0; k < 128 * 128; ++k) {
         for (int c = 0; c < 3; ++c) {
             const int code = right.at(127 - k % 128, k / 128, c);

@@ -5,7 +5,7 @@
 //
 //     hemisphere.png  256x256, 16 bits   a half ball of radius 112 texels: --bumpiness 112 gives its true normals
 //     waves.png       128x128, 16 bits   crossing sines; tiles
-//     bricks.png      512x512, 16 bits   a brick wall with worn edges and mortar; tiles (11 bits used: a smaller file)
+//     bricks.png      512x512, 16 bits   a brick wall with worn edges and mortar; tiles (uses 11 bits: a smaller file)
 //     ramp.png         64x64,   8 bits   four codes a column: a constant slope
 //
 // Only + - * / and sqrt in double, so that every machine writes the same bytes; a test compares them with the committed

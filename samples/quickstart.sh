@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# quickstart.sh: from a fresh clone on Debian 12 to a baked normal map. Installs the packages that the build needs (with sudo
-# when not root), builds a release, bakes samples/bricks.png. May be run again: what is done is not done again.
+# quickstart.sh: from a fresh clone on Debian 12 to a baked normal map. Installs the packages that the build needs (with
+# sudo if you are not root), builds a release and bakes samples/bricks.png. A second run repeats only what changed.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=.ci/packages.sh
@@ -29,7 +29,7 @@ cat <<END
 
 Made from samples/bricks.png:
   $out/bricks.dds          DXT5nm (BC3) with all mip levels, for engines
-  $out/strip.png           heights, normals, the normals lit, and with samples/waves.png as detail: the README's picture
+  $out/strip.png           the README's picture: heights, normals, the normals lit, and samples/waves.png as detail
 
 Next:
   $bake --help

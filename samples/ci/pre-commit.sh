@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# .git/hooks/pre-commit: refuses a commit whose normal maps have errors. Looks at the files that are staged, as they are staged.
+# .git/hooks/pre-commit: refuses a commit whose normal maps have errors. Checks the staged contents of the staged files.
 set -eu
 staged=$(mktemp -d)
 trap 'rm -rf "$staged"' EXIT
