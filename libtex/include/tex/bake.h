@@ -15,7 +15,7 @@ namespace tex {
 // How slopes are measured. Each is the product of a derivative d along one axis and a smoothing s across it,
 // normalised so that a plane of slope 1 gives 1:
 //
-//   forward    d = [0 -1 1]                 s = [1]                2 texels; leans by half a texel
+//   forward    d = [0 -1 1]                 s = [1]                2 texels; shifted by half a texel
 //   central    d = [-1 0 1] / 2             s = [1]                second order; a shader's difference
 //   sobel      d = [-1 0 1] / 2             s = [1 2 1] / 4        Sobel, Feldman 1968
 //   scharr     d = [-1 0 1] / 2             s = [3 10 3] / 16      best rotational symmetry of 3x3 (Scharr 2000)
@@ -23,7 +23,7 @@ namespace tex {
 //   sobel5     d = [-1 -2 0 2 1] / 8        s = [1 4 6 4 1] / 16
 //   gaussian   d = k g(k) / sum k^2 g(k)    s = g(k) / sum g(k)    g(k) = exp(-k^2 / (2 sigma^2)), |k| <= ceil(3 sigma)
 //
-// central is what Catlike Coding (Rendering 6, 1.3) samples with bilinear filtering half a texel to each side.
+// central equals the bilinear samples half a texel to each side in Catlike Coding, Rendering 6, 1.3.
 enum class GradientKernel { forward, central, sobel, scharr, prewitt, sobel5, gaussian };
 
 inline constexpr Named<GradientKernel> kGradientKernelNames[] = {
@@ -41,7 +41,7 @@ inline constexpr float kMaxGaussianSigma = 64.0f;
 
 struct BakeOptions {
     GradientKernel kernel = GradientKernel::central;
-    float gaussian_sigma = 1.0f;  // texels, above 0 and at most kMaxGaussianSigma; gaussian alone reads it
+    float gaussian_sigma = 1.0f;  // texels, above 0 and at most kMaxGaussianSigma; only gaussian reads it
 };
 
 // Tangent-space normals of a height field:
@@ -50,9 +50,8 @@ struct BakeOptions {
 //     dv = dh/dy in heights per texel, upwards
 //
 // (Blinn 1978; Catlike Coding, Rendering 6, 1.3.) Computed in float: slopes are exact to rounding, and lengths to 2
-// units in the last place. Slopes are clamped to
-// +-1e15, so that every finite height gives a finite unit normal with z > 0; heights must be finite (see
-// height_field()).
+// units in the last place. Slopes are clamped to +-1e15, so that every finite height gives a finite unit normal with
+// z > 0. Heights must be finite (see height_field()).
 //
 // Preconditions (asserted): 1 <= width, height <= kMaxExtent; finite bumpiness; gaussian_sigma in range.
 // Errors: out_of_memory, cancelled.
@@ -61,8 +60,8 @@ struct BakeOptions {
                                      const Execution& execution = {});
 
 // The range of slopes in a normal map: rise per texel width to the right (x) and upwards (y), -n.x / n.z and
-// -n.y / n.z with z at least 1e-16 (in maps that bake() did not make it may be 0 or below). For reports: a range beyond
-// +-10 tells of a bumpiness that 8 bits hold badly.
+// -n.y / n.z with z at least 1e-16 (maps that bake() did not make may have z = 0 or below). For reports: beyond +-10,
+// 8 bits hold slopes badly.
 struct SlopeRange {
     float min_x = 0.0f, max_x = 0.0f;
     float min_y = 0.0f, max_y = 0.0f;

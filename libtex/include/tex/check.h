@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// check.h: what is wrong with a texture of normals, told from its file and its texels.
+// check.h: finds what is wrong with a texture of normals, from its file and its texels.
 //
-// Every rule has an id that never changes ("N201"), a name, a severity, a sentence, an explanation and, where one
-// exists, a fix in the form of a command. rules() lists them all; the commands, the manual, the reports and the tests
+// Every rule has an id that never changes ("N201"), a name, a severity, a sentence, an explanation and, if there is
+// one, a fix in the form of a command. rules() lists them all; the commands, the manual, the reports and the tests
 // read that one table.
 //
 // Rules that count (values, file) look at every texel. Rules that judge (damage, convention, pair) look at up to 2^20
-// texels, spread over the map, and say how sure they are.
+// texels, spread over the map, and report their confidence.
 
 #pragma once
 
@@ -49,16 +49,16 @@ inline constexpr Named<RuleFamily> kRuleFamilyNames[] = {
 };
 
 struct Rule {
-    std::string_view id;    // "N201": stable for ever
+    std::string_view id;    // "N201": never changes
     std::string_view name;  // "not-unit-length"
     RuleFamily family;
-    Severity severity;             // unless the options say otherwise
-    bool on;                       // off: only where the options enable it or require what it checks
+    Severity severity;             // unless the options change it
+    bool on;                       // off: checked only if the options enable it or require what it checks
     std::string_view sentence;     // what is wrong, as one sentence
-    std::string_view explanation;  // how it is told, why it matters, what causes it
+    std::string_view explanation;  // how it is detected, why it matters, what causes it
     std::string_view fix;          // a command in which FILE stands for the file, a sentence, or empty
-    std::string_view
-        explains;  // ids of rules that this fault makes fire too, separated by blanks: their findings are left out
+    // Ids of rules that this fault triggers too, separated by blanks: their findings are left out.
+    std::string_view explains;
 };
 
 // All rules, by id.
@@ -67,8 +67,7 @@ struct Rule {
 // The rule with this id or name; null if there is none.
 [[nodiscard]] const Rule* find_rule(std::string_view id_or_name);
 
-// What a project demands of its files. Nothing is required by default but a side of at most 16384 texels, the limit of
-// Direct3D 12.
+// What a project requires of its files. By default only the sides are limited, to 16384 texels as in Direct3D 12.
 struct Requirements {
     std::optional<Format> format;
     std::optional<Encoding> encoding;  // a format and a swizzle
@@ -92,15 +91,15 @@ inline constexpr Named<RequirementKey> kRequirementKeyNames[] = {
     {RequirementKey::tiles, "tiles", "no seam where the map repeats; has no value"},
 };
 
-// Adds one requirement, written "KEY=VALUE" ("mips=full") or "KEY" where it has no value ("pow2").
-// Errors: bad_option (the reason says what would be right).
+// Adds one requirement, written "KEY=VALUE" ("mips=full"), or "KEY" if it has no value ("pow2").
+// Errors: bad_option (the reason lists what is allowed).
 [[nodiscard]] Result<void> add_requirement(Requirements& requirements, std::string_view text);
 
 struct CheckOptions {
     Requirements require;
     std::vector<std::string> enable;                         // ids or names
-    std::vector<std::string> disable;                        // wins over enable
-    std::vector<std::pair<std::string, Severity>> severity;  // by id or name; the last one wins
+    std::vector<std::string> disable;                        // takes precedence over enable
+    std::vector<std::pair<std::string, Severity>> severity;  // by id or name; the last one applies
     const HeightField* height = nullptr;                     // the map's heights, for the rules of the pair; not owned
 };
 
@@ -114,27 +113,27 @@ struct Finding {
     const Rule* rule = nullptr;
     Severity severity = Severity::warning;
     std::string message;      // a sentence with its figures: "3.1 % of the texels are not of unit length: 0.71 to 1.02"
-    double figure = 0.0;      // the measured one, in `unit`
+    double figure = 0.0;      // what was measured, in `unit`
     std::string_view unit;    // "share", "degrees", "texels", "ratio", ... or empty
-    double confidence = 1.0;  // 0.5 to 1; 1 where texels were counted
+    double confidence = 1.0;  // 0.5 to 1; 1 if texels were counted
     std::vector<Region> regions;  // where; empty for the whole file
-    bool has_texel = false;       // (column, row) is the first texel concerned, on regions.front().level
+    bool has_texel = false;       // (column, row) is the first affected texel, on regions.front().level
     int column = 0, row = 0;
 };
 
-// Which way green points, from the curl of the slopes: +1 is up, -1 is down.
+// The direction of green, from the curl of the slopes: +1 is up, -1 is down.
 struct YEvidence {
     double correlation = 0.0;
     double confidence = 0.5;
-    std::optional<YAxis> y;  // nullopt: cannot be told
+    std::optional<YAxis> y;  // nullopt: undecidable
 };
 
 // How the normals follow from the height map: slope = strength x difference of heights.
 struct PairEvidence {
     double correlation = 0.0;  // mean of both axes, of magnitudes
-    double strength = 0.0;     // texel widths for the height of value 1; below 0: white is low
+    double strength = 0.0;     // height of value 1 in texel widths; below 0: white is low
     YAxis y = YAxis::up;
-    int offset_x = 0, offset_y = 0;  // texels that the normals lie to the right of and below the heights
+    int offset_x = 0, offset_y = 0;  // texels by which the normals are to the right of and below the heights
 };
 
 struct CheckReport {
@@ -143,19 +142,19 @@ struct CheckReport {
     int explained = 0;              // findings left out because another one explains them
     std::optional<Error> error;     // the file could not be read (then findings hold N101) or checked
 
-    // What the file is, where it could be read.
+    // What the file is, if it could be read.
     Format format = Format::rgba8_unorm;
-    Swizzle swizzle{};  // guess_swizzle(): what the file says or the texels tell
+    Swizzle swizzle{};  // guess_swizzle(): what the file states or the texels suggest
     Extent extent;
     int levels = 0;
     YEvidence y;
     std::optional<PairEvidence> pair;
 };
 
-// Checks the options themselves: rules that do not exist. Errors: bad_option.
+// Checks that all rules in the options exist. Errors: bad_option.
 [[nodiscard]] Result<void> validate(const CheckOptions& options);
 
-// Checks a texture. `file` stands in the report.
+// Checks a texture. `file` is its name in the report.
 //
 // Precondition (asserted): the texture has at least one level, each with level_bytes() bytes.
 // Errors: bad_option (see validate()), out_of_memory, cancelled.
@@ -163,8 +162,8 @@ struct CheckReport {
 [[nodiscard]] Result<CheckReport> check(const std::string& file, const Texture& texture,
                                         const CheckOptions& options = {}, const Execution& execution = {});
 
-// Reads a file and checks it. A file that cannot be read is a finding (N101) and its Error is in the report; so is, for
-// memory that ran out and cancellation, CheckReport::error alone. Errors: bad_option.
+// Reads a file and checks it. If it cannot be read, the report has a finding (N101) and the Error. If memory runs out
+// or the check is cancelled, the report has only CheckReport::error. Errors: bad_option.
 [[nodiscard]] Result<CheckReport> check_file(const std::string& path, const CheckOptions& options = {},
                                              const ReadOptions& read = {}, const Execution& execution = {});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// compare.h: how far two normal maps lie apart, in degrees.
+// compare.h: the angles between two normal maps, in degrees.
 
 #pragma once
 
@@ -13,9 +13,9 @@
 #pragma GCC visibility push(default)
 namespace tex {
 
-// The distribution of the angle between two maps' normals, in degrees (0 to 180).
+// The distribution of the angle between the normals of two maps, in degrees (0 to 180).
 //
-// Percentiles are exact and by nearest rank: p99 is the smallest angle that at least 99 % of the texels do not exceed.
+// Percentiles are exact, by nearest rank: p99 is the smallest angle that at least 99 % of the texels do not exceed.
 struct AngularError {
     std::int64_t texels = 0;
     double mean = 0.0;
@@ -24,7 +24,7 @@ struct AngularError {
     double p99 = 0.0;
     double p999 = 0.0;  // 99.9 %
     double max = 0.0;
-    int max_column = 0;  // the first texel, in rows from the top, at which the largest angle stands
+    int max_column = 0;  // the first texel, in rows from the top, that has the largest angle
     int max_row = 0;
 };
 
@@ -37,9 +37,9 @@ struct Comparison {
 //
 //     angle = 2 asin(|a - b| / 2)
 //
-// which is accurate near 0, where acos(dot(a, b)) is not: in float, acos knows no angle between 0 and 0.02 degrees.
-// Here equal vectors are exactly 0 degrees apart, and the error is below 0.0001 degrees up to 170 degrees and below
-// 0.03 degrees beyond.
+// This is accurate near 0, unlike acos(dot(a, b)): in float, acos returns no angle between 0 and 0.02 degrees. Here
+// equal vectors are exactly 0 degrees apart. The error is below 0.0001 degrees up to 170 degrees, and below 0.03
+// degrees beyond.
 //
 // Preconditions (asserted): both maps have the same extent, at least 1x1.
 // Errors: out_of_memory, cancelled.

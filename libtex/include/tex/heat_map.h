@@ -10,23 +10,24 @@
 #pragma GCC visibility push(default)
 namespace tex {
 
-// Rows of the legend under the picture, and the width that it needs.
+// The rows of the legend under the picture, and its minimum width.
 inline constexpr int kHeatMapLegendRows = 36;
 inline constexpr int kHeatMapLeastWidth = 128;
 
-// A picture of angles in degrees, one for each texel: planes R, G, B in [0, 1]. Black is 0, pale yellow is `full_scale`
-// degrees and more. (The colours of matplotlib's "inferno", Smith and van der Walt 2015, in ten linear pieces: its
-// lightness grows evenly, so that it also reads in grey and by people who do not see red and green apart.) Under the
-// map stands a legend of kHeatMapLegendRows rows: the colours from 0 on the left to full_scale on the right, with the
-// values at both ends. Maps narrower than kHeatMapLeastWidth have black beside them.
+// A picture of angles in degrees, one pixel for each texel: planes R, G, B in [0, 1]. Black is 0, pale yellow is
+// `full_scale` degrees or more. (The colours are those of matplotlib's "inferno", Smith and van der Walt 2015, in ten
+// linear pieces. Their lightness grows evenly, so they are also readable in grey and with red-green colour blindness.)
+// A legend of kHeatMapLegendRows rows is below the map: the colours from 0 on the left to full_scale on the right, with
+// the values at both ends. If a map is narrower than kHeatMapLeastWidth, the rest of the picture is black.
 //
 // Preconditions (asserted): `degrees` is not empty and has no NaN; 0 < full_scale <= 180.
 // Errors: out_of_memory, cancelled.
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] Result<Image> heat_map(const Plane<float>& degrees, double full_scale, const Execution& execution = {});
 
-// The angles for a smaller picture: the longer side divided into at most `side` cells, each holding its largest angle,
-// so that none is lost. Cells are square, of a whole number of texels, but for those at the right and lower border.
+// The angles for a smaller picture. The longer side is divided into at most `side` cells; each cell holds its largest
+// angle, so that none is lost. Cells are square and span a whole number of texels, except those at the right and lower
+// border.
 // Precondition: `degrees` is not empty, side >= 1. Errors: out_of_memory.
 [[nodiscard]] Result<Plane<float>> largest_of_cells(const Plane<float>& degrees, int side);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // height_field.h: heights, what lies beyond their border, and how steep they are.
 //
-// A HeightField is what bake() reads. height_field() makes one from an Image: it picks the channel, replaces
-// what cannot be used, inverts and blurs, in that order.
+// bake() reads a HeightField. height_field() makes one from an Image: it picks the channel, replaces invalid texels,
+// inverts and blurs, in that order.
 
 #pragma once
 
@@ -24,7 +24,7 @@ namespace tex {
 //   clamp     h[-k] = 2 h[0] - h[k]: a ramp keeps its slope  the border texel again
 //   mirror    h[-1 - k] = h[k] (GL_MIRRORED_REPEAT)          the same; vectors are not flipped
 //
-// The rules apply again and again where a filter is wider than the axis. An axis of one texel has slope 0.
+// If a filter is wider than the axis, the rules apply repeatedly. An axis of one texel has slope 0.
 enum class Wrap { repeat, clamp, mirror };
 
 inline constexpr Named<Wrap> kWrapNames[] = {
@@ -33,8 +33,8 @@ inline constexpr Named<Wrap> kWrapNames[] = {
     {Wrap::mirror, "mirror", "the texture is mirrored at its border"},
 };
 
-// Heights, white (greater) is high. bumpiness_x and bumpiness_y are the height of value 1.0 in texel widths along each
-// axis: 0 is flat, negative values turn bumps into dents; finite.
+// Heights; white (greater) is high. bumpiness_x and bumpiness_y are the height of value 1.0 in texel widths along each
+// axis. They are finite; 0 is flat, and negative values turn bumps into dents.
 struct HeightField {
     Plane<float> height;
     float bumpiness_x = 1.0f;
@@ -50,24 +50,24 @@ struct Strength {
 };
 
 // World units: value 1.0 is `range` high, the whole texture is `width` wide and `height` high, all in one unit (metres,
-// say). height = 0 means square texels. x = range * columns / width, y = range * rows / height: the same
-// surface at 512 and at 2048 texels gives the same normals. Limited to what a float holds. Precondition: width > 0,
+// for example). height = 0 means square texels. x = range * columns / width, y = range * rows / height: the same
+// surface at 512 and at 2048 texels gives the same normals. Clamped to the range of float. Precondition: width > 0,
 // height >= 0, all finite.
 [[nodiscard]] Strength strength_from_world(Extent extent, double range, double width, double height = 0.0);
 
-// Value 1.0 is `r` texture widths high, texels are square: x = y = r * columns. Limited to what a float holds.
+// Value 1.0 is `r` texture widths high, texels are square: x = y = r * columns. Clamped to the range of float.
 // Precondition: r is finite.
 [[nodiscard]] Strength strength_from_uv(Extent extent, double r);
 
 // Which value of a texel is its height.
 enum class HeightChannel {
-    automatic,  // the only colour channel; else per texel R where R = G = B, and luma elsewhere
+    automatic,  // the only colour channel; if there are several, for each texel R if R = G = B, else luma
     r,
     g,
     b,
     a,
     y,        // the channel called Y
-    luma,     // 0.2126 R + 0.7152 G + 0.0722 B (ITU-R BT.709), on the values as they are
+    luma,     // 0.2126 R + 0.7152 G + 0.0722 B (ITU-R BT.709), of the unchanged values
     average,  // (R + G + B) / 3
     max,      // the largest of R, G, B
 };
@@ -88,37 +88,37 @@ struct HeightOptions {
     HeightChannel channel = HeightChannel::automatic;
     std::optional<float> no_data;  // texels of exactly this value (after rounding to float) are invalid
     bool fill_invalid = false;     // invalid texels take the value of the nearest valid one
-    bool invert = false;           // h becomes 1 - h: for maps in which white is low
+    bool invert = false;           // h becomes 1 - h, for maps in which white is low
     float blur_sigma = 0.0f;       // standard deviation of a Gaussian blur in texels; 0 is none; at most 256
     Wrap wrap_x = Wrap::repeat;
     Wrap wrap_y = Wrap::repeat;
 };
 
-// What height_field() met on its way, for warnings and reports.
+// What height_field() found, for warnings and reports.
 struct HeightReport {
-    std::int64_t luma_texels = 0;     // texels where `automatic` fell back to luma because R, G, B differ
-    std::int64_t invalid_texels = 0;  // NaN, infinite or no-data texels, all of them filled
+    std::int64_t luma_texels = 0;     // texels for which `automatic` used luma because R, G, B differ
+    std::int64_t invalid_texels = 0;  // NaN, infinite or no-data texels, all of which were filled
 };
 
 // Makes a height field of strength 1 from a picture.
 //
-// Channel: see HeightChannel. A picture has colour where it has planes R, G and B; a picture of any other
-// single plane, or of one plane and A, is grey. Of an EXR file with other names the only non-alpha plane is taken, or
-// the one called "Y", "height", "displacement", "Z" or "depth" (any case) where there are several. Invalid texels (NaN,
-// infinite, equal to no_data): replaced where fill_invalid is set, by the value of the nearest valid texel (Euclidean
-// distance, wrap respected, ties by the smallest row, then column). Blur: a Gaussian of radius ceil(3 sigma), weights
-// normalised to 1, with the field's wrap.
+// Channel: see HeightChannel. A picture with planes R, G and B is coloured; a picture of any other single plane, or of
+// one plane and A, is grey. In an EXR file with other names, the only plane besides alpha holds the heights; if there
+// are several, the plane named "Y", "height", "displacement", "Z" or "depth" (any case) does. If fill_invalid is set,
+// invalid texels (NaN, infinite, equal to no_data) take the value of the nearest valid texel (Euclidean distance, wrap
+// respected, ties by the smallest row, then column). Blur: a Gaussian of radius ceil(3 sigma), weights normalised to
+// 1, with the field's wrap.
 //
-// Errors: bad_option  the channel is not in the picture (the reason lists those that are); blur_sigma out of range
-//         bad_data    invalid texels and no fill_invalid: the reason names the first texel (column, row)
-//                     and the count; or no valid texel at all
+// Errors: bad_option  the picture lacks the channel (the reason lists its channels); blur_sigma out of range
+//         bad_data    invalid texels without fill_invalid (the reason names the column and row of the first texel, and
+//                     the count); or no valid texel at all
 //         out_of_memory, cancelled
 // `report` may be null. The result is the same for every number of threads.
 [[nodiscard]] Result<HeightField> height_field(const Image& image, const HeightOptions& options,
                                                const Execution& execution = {}, HeightReport* report = nullptr);
 
-// Whether `error`, of height_field() or bake_file(), tells of invalid texels that fill_invalid replaces: some are
-// invalid, others are not.
+// Whether `error`, from height_field() or bake_file(), reports invalid texels that fill_invalid would replace: some
+// texels are invalid, but not all.
 [[nodiscard]] bool is_fillable(const Error& error);
 
 }  // namespace tex

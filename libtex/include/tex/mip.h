@@ -17,7 +17,7 @@ namespace tex {
 // The filter between a level and the next. x is the distance from the centre of the smaller level's texel, in texels of
 // the smaller level; weights are normalised to sum 1 for each texel.
 //
-//   box            1 for |x| <= 1/2; each texel weighs what of it is covered, so that odd sizes are exact
+//   box            1 for |x| <= 1/2; each texel is weighted by its covered part, so that odd sizes give exact
 //                  averages (Guthe, Heckbert: Non-Power-of-Two Mipmapping, NVIDIA 2005)
 //   triangle       1 - |x|, |x| < 1
 //   kaiser         sinc(x) times a Kaiser window of radius 3, alpha 4 (as NVIDIA's Texture Tools)
@@ -49,15 +49,14 @@ inline constexpr Named<MipDomain> kMipDomainNames[] = {
 };
 
 // Fading out (Unity's "Fadeout Mip Maps"): level k moves to flat, (0, 0, 1), by t = clamp((k - first) / (last - first),
-// 0, 1); from `last` on all is flat. Precondition: 0 <= first < last.
+// 0, 1). Level `last` and all smaller levels are flat. Precondition: 0 <= first < last.
 struct Fade {
     int first = 1;
     int last = 3;
 };
 
 struct MipOptions {
-    int levels =
-        0;  // levels wanted, counting the base level; 0 is a complete chain; more than that is a complete chain
+    int levels = 0;  // number of levels, counting the base level; 0, or more than there can be, is a complete chain
     MipFilter filter = MipFilter::box;
     MipDomain domain = MipDomain::vector;
     std::optional<Fade> fade;
@@ -65,13 +64,13 @@ struct MipOptions {
     Wrap wrap_y = Wrap::repeat;
 };
 
-// Builds the chain. Each level is filtered from the previous one before that one was normalised, so that a level is the
-// true average of the base level; what is stored is
+// Builds the chain. Each level is filtered from the previous level before that one is normalised, so that a level is
+// the true average of the base level. The stored vector is
 //
 //     normalize(lerp(normalize(average), (0, 0, 1), t))
 //
-// where a vector shorter than 1e-6 becomes (0, 0, 1), and a z below 0 (filters with negative lobes) becomes 0 first.
-// The base level is stored as given, except for the fade (t is 0 there unless first is negative, which is not allowed).
+// A z below 0 (from filters with negative lobes) becomes 0 first, and a vector shorter than 1e-6 becomes (0, 0, 1). The
+// base level is stored as given: t is 0 there.
 //
 // Preconditions (asserted): `base` is not empty; fade as described; levels >= 0.
 // Errors: out_of_memory, cancelled.

@@ -11,8 +11,8 @@
 #pragma GCC visibility push(default)
 namespace tex {
 
-// levels[0] is the base level; level k + 1 is max(1, floor(w / 2)) by max(1, floor(h / 2)) texels, as
-// OpenGL, Vulkan and Direct3D want it. A chain is complete where its last level is 1x1, but need not be.
+// levels[0] is the base level. Level k + 1 has max(1, floor(w / 2)) by max(1, floor(h / 2)) texels, as OpenGL, Vulkan
+// and Direct3D require. A chain is complete if its last level is 1x1; it need not be complete.
 struct MipChain {
     std::vector<NormalMap> levels;
 };

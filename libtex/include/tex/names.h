@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // names.h: the names of enumerators.
 //
-// Every enum of libtex that a user can choose has one table of names beside its definition, called
-// k<Enum>Names. The command line, the help, the reports and the error messages all read that table, so a
-// value has the same name wherever it appears. Tables are in the order in which help lists them.
+// Every enum that a user can choose from has one table of names beside its definition, called k<Enum>Names. The command
+// line, the help, the reports and the error messages all read that table, so a value has the same name everywhere.
+// Tables are in the order in which help lists them.
 
 #pragma once
 
@@ -14,8 +14,8 @@
 #pragma GCC visibility push(default)
 namespace tex {
 
-// One row of a name table: the enumerator, its name as a user types it (lower case, words joined by "-"),
-// and one clause for the help that says what it means.
+// One row of a name table: the enumerator, its name as a user types it (lower case, words joined by "-"), and one
+// clause that explains it in the help.
 template <class E>
 struct Named {
     E value;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // normal_map.h: tangent-space normals in memory.
 //
-// x points right, y points *up* (towards the top row: OpenGL and Unity; "+Y"), z points out of the surface.
-// Components are in [-1, 1], vectors have unit length, z >= 0. Files may hold y down (DirectX, "-Y"): only
-// pack() and unpack() flip it.
+// x points right, y points *up* (towards the top row: OpenGL and Unity; "+Y"), z points out of the surface. Components
+// are in [-1, 1], vectors have unit length, z >= 0. In files y may point down (DirectX, "-Y"): only pack() and unpack()
+// flip it.
 
 #pragma once
 
@@ -16,7 +16,7 @@
 #pragma GCC visibility push(default)
 namespace tex {
 
-// Which way green points in a file.
+// The direction of green in a file.
 enum class YAxis { up, down };
 
 inline constexpr Named<YAxis> kYAxisNames[] = {
@@ -35,14 +35,13 @@ struct NormalMap {
     [[nodiscard]] Extent extent() const { return x.extent(); }
 };
 
-// What a bump scale s does to a normal.
+// The effect of a bump scale s on a normal.
 //
-//   slope    normalize(s x, s y, z): what scaling the height by s does; glTF, Unity's SRP
-//   xy       (s x, s y, reconstruct_z(s x, s y)): Catlike Coding, Rendering 6, 2.3 (UnpackScaleNormal); where s x and s
-//   y
+//   slope    normalize(s x, s y, z), as scaling the height by s does; glTF, Unity's SRP
+//   xy       (s x, s y, reconstruct_z(s x, s y)): Catlike Coding, Rendering 6, 2.3 (UnpackScaleNormal); if s x and s y
 //            leave the unit circle, they are divided by their length and z is 0
 //
-// A normal tilted by 32 degrees differs by 2 degrees between them at s = 0.5, and by 39 at s = 2.
+// For a normal tilted by 32 degrees, the results differ by 2 degrees at s = 0.5 and by 39 degrees at s = 2.
 enum class ScaleMode { slope, xy };
 
 inline constexpr Named<ScaleMode> kScaleModeNames[] = {
@@ -50,9 +49,8 @@ inline constexpr Named<ScaleMode> kScaleModeNames[] = {
     {ScaleMode::xy, "xy", "multiply x and y, then reconstruct z, as UnpackScaleNormal does"},
 };
 
-// z of the unit vector with the given x and y: sqrt(1 - saturate(x^2 + y^2)). The clamp keeps it real where
-// quantisation made x^2 + y^2 greater than 1: the result is then 0, never NaN. (Catlike Coding, Rendering 6,
-// 2.2.)
+// z of the unit vector with the given x and y: sqrt(1 - saturate(x^2 + y^2)). Because of the clamp, the result is 0 and
+// not NaN if quantisation made x^2 + y^2 greater than 1. (Catlike Coding, Rendering 6, 2.2.)
 [[nodiscard]] inline float reconstruct_z(float x, float y) {
     return std::sqrt(1.0f - std::min(std::max(x * x + y * y, 0.0f), 1.0f));
 }

@@ -15,14 +15,17 @@
 #pragma GCC visibility push(default)
 namespace tex {
 
-// How hard the block encoders look for the smallest error (dxt5nm, bc5 and bc5_snorm; the others are exact). With
-// normal and best no channel of a block has a greater squared error than a plain fit gives: endpoints at the extremes,
-// twice refined by linear least squares, of values rounded to 1/128 of a code. Three or more values that lie on a
-// palette with spacings of at least 4/3 codes, as those of blocks do that were decoded before, come out as they went
-// in, to 1/10 of a code. With best no block could have a smaller error. fast does not check what it found: it refines
-// once, and the root mean square error of a block may exceed that of the palette between the extremes, before these are
-// rounded, by what rounding does: half a code (of 255) in BC4 blocks, one where their range is less, 2.8 in dxt5nm's
-// green (where that palette leaves 1/16 of the range at both ends), and 1/400 of the range.
+// How hard the block encoders search for the smallest error (dxt5nm, bc5 and bc5_snorm; the others are exact).
+//
+//   best     no block could have a smaller squared error
+//   normal   no channel of a block has a larger squared error than a plain fit, which puts the endpoints at the
+//            extremes and refines them twice by linear least squares, of values rounded to 1/128 of a code. This holds
+//            for best too. Three or more values that lie on a palette with spacings of at least 4/3 codes, as those of
+//            blocks that were decoded earlier do, are encoded to the same values within 1/10 of a code
+//   fast     refines once and does not check the result. The root mean square error of a block may exceed that of the
+//            palette between the extremes, before rounding, by the effect of rounding: half a code (of 255) in BC4
+//            blocks, or one code if their range is smaller; 2.8 codes in dxt5nm's green (whose palette leaves 1/16 of
+//            the range at both ends); and 1/400 of the range
 enum class Effort { fast, normal, best };
 
 inline constexpr Named<Effort> kEffortNames[] = {
@@ -31,15 +34,17 @@ inline constexpr Named<Effort> kEffortNames[] = {
     {Effort::best, "best", "the least squared error"},
 };
 
-// What Effort::best makes least; the others do not ask.
+// The error that Effort::best minimises; the other efforts ignore it.
 enum class Metric { component, angle };
 
-// component: the squared error of each channel by itself; no block could have a smaller one. angle: the sum of the
-// squared chords between the normals (2 - 2 cos of the angle, for small angles its square). It starts from the blocks
-// that component gives, takes for each texel the best pair of values, and moves the endpoints while any step of up to 3
-// codes of one endpoint, or of both of a channel, gains: no block has a greater sum than before, but that none could
-// have a smaller one is not proved. On the 18 maps of encode_bench the mean angle falls by 4 %, the 99.9th percentile
-// by 12 %, steep maps gain most; it does about a third of the texels a second that component does.
+// component: the squared error of each channel on its own; no block could have a smaller one.
+//
+// angle: the sum of the squared chords between the normals (2 - 2 cos of the angle, for small angles its square). It
+// starts from the blocks of component, takes the best pair of values for each texel, and moves the endpoints while any
+// step of up to 3 codes, of one endpoint or of both endpoints of a channel, reduces the sum. No block has a larger sum
+// than before; that none could have a smaller one is not proved. On the 18 maps of encode_bench the mean angle falls by
+// 4 % and the 99.9th percentile by 12 %, most on steep maps. It encodes about a third as many texels a second as
+// component.
 inline constexpr Named<Metric> kMetricNames[] = {
     {Metric::component, "component", "the squared error of each channel"},
     {Metric::angle, "angle", "the angle between normals, much slower"},
@@ -47,44 +52,43 @@ inline constexpr Named<Metric> kMetricNames[] = {
 
 struct PackOptions {
     Encoding encoding = Encoding::dxt5nm;
-    YAxis y_axis = YAxis::up;  // of the texture: down stores -y
+    YAxis y_axis = YAxis::up;  // of the texture; down stores -y
     Effort effort = Effort::normal;
     Metric metric = Metric::component;
 };
 
 // Packs every level of a chain.
 //
-// Quantisation is described at Encoding (format.h). Block encodings: each channel of a 4x4 block is fitted by
-// itself (x in BC3's alpha or BC5's first block, y in the green of BC3's colour block or BC5's second block).
-// Where an extent is not a multiple of 4, texels outside repeat the last one and carry no weight. In
-// dxt5nm R and B are 1 in both endpoints of every block, so that they decode to exactly 255 on every decoder, and
-// a flat block decodes to 127 or 128 in G and A under the rules of AMD, Intel and NVIDIA, within 0.23 degrees of (0, 0,
-// 1).
+// Quantisation is described at Encoding (format.h). Block encodings: each channel of a 4x4 block is fitted on its own
+// (x in BC3's alpha or BC5's first block, y in the green of BC3's colour block or BC5's second block). If an extent is
+// not a multiple of 4, texels outside repeat the last one and have no weight. In dxt5nm, R and B are 1 in both
+// endpoints of every block, so that every decoder returns exactly 255. A flat block decodes to 127 or 128 in G and A
+// under the rules of AMD, Intel and NVIDIA, within 0.23 degrees of (0, 0, 1).
 //
-// Preconditions (asserted): the chain has at least one level and each level the extent of level_extent();
+// Preconditions (asserted): the chain has at least one level, each level has the extent of level_extent(), and
 // components are finite.
 // Errors: out_of_memory, cancelled.
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] Result<Texture> pack(const MipChain& chain, const PackOptions& options = {},
                                    const Execution& execution = {});
 
-// The block encoders by themselves, for engines with memory and threads of their own: x and y of a level, or of whole
-// rows of blocks of one, to blocks.
+// The block encoders alone, for engines with their own memory and threads. Encodes x and y of a level, or of whole rows
+// of its blocks.
 //
-// Rows need no padding and may have any stride. Row r of blocks (texel rows 4 r to 4 r + 3) goes to blocks + r * pitch,
-// its block b (texel columns 4 b to 4 b + 3) 16 b bytes on; there are (height + 3) / 4 rows of (width + 3) / 4 blocks.
-// A block's 16 bytes are
+// Rows need no padding and may have any stride. Row r of blocks (texel rows 4 r to 4 r + 3) starts at blocks + r *
+// pitch; its block b (texel columns 4 b to 4 b + 3) starts 16 b bytes later. There are (height + 3) / 4 rows of (width
+// + 3) / 4 blocks. The 16 bytes of a block are
 //
 //     dxt5nm            0 to 7: x, as BC3's alpha (BC4's layout); 8 to 15: y in the green of BC3's colours
 //     bc5, bc5_snorm    0 to 7: x; 8 to 15: y; both in BC4's layout
 //
-// with BC4's layout: two endpoints of 8 bits, then 16 indices of 3 bits, texel 0 in the lowest bits, little-endian; and
-// BC3's colours: two of 5, 6 and 5 bits, red highest, then 16 indices of 2 bits (Direct3D 11.3 Functional
-// Specification, 19.5). The bytes are those of pack(), the errors too.
+// BC4's layout is two endpoints of 8 bits, then 16 indices of 3 bits, texel 0 in the lowest bits, little-endian. BC3's
+// colours are two of 5, 6 and 5 bits, red highest, then 16 indices of 2 bits (Direct3D 11.3 Functional Specification,
+// 19.5). Bytes and errors are the same as those of pack().
 //
-// Preconditions (asserted): x and y have one extent, of at least 1x1; options.encoding is one of the three; pitch is at
-// least 16 bytes for each block of a row; components are finite. Takes no memory and starts no threads: different rows
-// of blocks may be encoded at the same time.
+// Preconditions (asserted): x and y have the same extent, at least 1x1; options.encoding is one of the three; pitch is
+// at least 16 bytes for each block of a row; components are finite. Allocates no memory and starts no threads:
+// different rows of blocks may be encoded at the same time.
 void encode_blocks(PlaneView<const float> x, PlaneView<const float> y, const PackOptions& options, std::byte* blocks,
                    std::size_t pitch);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// preview.h: light on a normal map, and false colours.
+// preview.h: pictures of normal maps, lit or in false colours.
 //
-// People judge a normal map by looking at light on it. preview() renders, on the CPU and with the same bytes
-// everywhere, what a GPU would show with the shaders of GLSL/Cg Programming in Unity (wikibook), "Lighting of Bumpy
+// People judge a normal map by how it looks under a light. On the CPU, and with the same bytes everywhere, preview()
+// renders what a GPU would show with the shaders of GLSL/Cg Programming in Unity (wikibook), "Lighting of Bumpy
 // Surfaces" and "Projection of Bumpy Surfaces".
 //
 // World. x right, y up, z towards the viewer (right-handed). Light is computed in linear values and stored as sRGB
@@ -36,16 +36,16 @@ namespace tex {
 //   length         |n| - 1: damage, or filtering without renormalisation             + and -
 //   z-error        z - reconstruct_z(x, y): z that does not belong to x and y        + and -
 //   curl           dq/dx - dp/dy, differences of neighbours: 0 for the normals of    + and -
-//                  a height field, large where green is upside down. r in the legend is the
+//                  a height field, large if green is flipped. r in the legend is the
 //                  correlation that check() measures: 1 with y up, -1 with y down
-//   channels       x, y (+ and -) and z (0 to 1) beside each other
-//   mips           all levels beside each other, (n + 1) / 2
+//   channels       x, y (+ and -) and z (0 to 1) side by side
+//   mips           all levels side by side, (n + 1) / 2
 //   height         the height map, from its lowest value (black) to its highest (white)
 //
-// Values from 0 are shown in viridis, values of both signs in blue, white and red-brown; both order colours by
-// lightness or by blue against orange, which people with any common colour vision deficiency can read. A legend stands
-// below. There are 240 steps between its ends (grey has all codes); values beyond take the end's colour, NaN is
-// magenta.
+// Values from 0 upwards are shown in viridis; values of both signs are shown in blue, white and red-brown. Both order
+// colours by lightness or by blue against orange, which people with any common colour vision deficiency can read. A
+// legend is below the picture. It has 240 steps (grey has all codes); values beyond its ends take the colour of the
+// end, and NaN is magenta.
 enum class Show {
     lit,
     plain,
@@ -76,15 +76,15 @@ inline constexpr Named<Show> kShowNames[] = {
     {Show::height, "height", "the height map in grey"},
 };
 
-// What the map is put on.
+// The shape that carries the map.
 //
-//   plane    2 high, as wide as the map's proportions (and tiles) say, in z = 0; u to the right, v up
-//   sphere   radius 1; the map's centre faces +z, u runs east and v north; a map of w x h texels stands
+//   plane    2 high, as wide as the proportions of the map (and its tiles) require, in z = 0; u to the right, v up
+//   sphere   radius 1; the map's centre faces +z, u runs east and v north; a map of w x h texels repeats
 //            max(1, round(2 h / w)) times around it, so that texels are nearly square at the equator
 //   cube     edges of 1.4; every face shows the whole map, upright on the four sides
 //
 // Tangent frame at every point: N the outward normal, T the direction of growing u, and the binormal
-// B = cross(N, T) w, the direction of growing v, where w is 1, or -1 where the UVs are mirrored.
+// B = cross(N, T) w, the direction of growing v; w is 1, or -1 if the UVs are mirrored.
 enum class Shape { plane, sphere, cube };
 
 inline constexpr Named<Shape> kShapeNames[] = {
@@ -119,20 +119,19 @@ struct Light {
 };
 
 struct Material {
-    Rgb albedo = {0.6f, 0.6f, 0.6f};  // multiplies the albedo map where there is one
+    Rgb albedo = {0.6f, 0.6f, 0.6f};  // multiplies the albedo map, if there is one
     Rgb specular = {0.25f, 0.25f, 0.25f};
     float shininess = 20.0f;  // above 0
     SpecularModel model = SpecularModel::phong;
 };
 
-// The camera orbits the origin, looks at it, and stands as far away as the whole shape needs to be in the picture. A
-// plane seen straight on (yaw and pitch 0) fills a picture of its own proportions exactly, so that texels and pixels
-// coincide where their numbers do; its eye is at (0, 0, 1 / tan(field_of_view / 2)).
+// The camera orbits the origin, looks at it, and is so far away that the whole shape is in the picture. A plane seen
+// straight on (yaw and pitch 0) fills a picture of its own proportions exactly, so that texels and pixels coincide if
+// their numbers are equal; the eye is then at (0, 0, 1 / tan(field_of_view / 2)).
 struct Camera {
-    float yaw = 0.0f;    // degrees to the right
-    float pitch = 0.0f;  // degrees up, -89 to 89
-    float field_of_view =
-        30.0f;  // degrees from the picture's lower edge to its upper one, 0 to 120; 0 is a parallel projection
+    float yaw = 0.0f;             // degrees to the right
+    float pitch = 0.0f;           // degrees up, -89 to 89
+    float field_of_view = 30.0f;  // vertical angle of view in degrees, 0 to 120; 0 is a parallel projection
 };
 
 // Detail, as in Catlike Coding, Rendering 6, 3: sampled at uv * tiling + offset, scaled, then blended over the map by
@@ -149,9 +148,9 @@ struct Detail {
 //
 //     offset = clamp(P (h - 0.5) V.xy / V.z, -L, L)          one step: steps = 0
 //
-// With steps N >= 1 the view ray is marched through the height map (relief mapping: Policarpo, Oliveira, Comba 2005):
-// it is at offset P (t - 0.5) V.xy / V.z, clamped to +-L, at height t; t falls from 1 to 0 in N equal steps until the
-// height map there reaches t, and the crossing is interpolated between the last two. All maps are then sampled at uv +
+// With steps N >= 1 the view ray marches through the height map (relief mapping: Policarpo, Oliveira, Comba 2005). At
+// height t its offset is P (t - 0.5) V.xy / V.z, clamped to +-L. t falls from 1 to 0 in N equal steps until the height
+// map there reaches t, and the crossing is interpolated between the last two steps. All maps are then sampled at uv +
 // offset.
 struct Parallax {
     float amount = 0.0f;  // P: height of value 1.0 in texture widths; negative makes white low
@@ -162,13 +161,13 @@ struct Parallax {
 // What is rendered. The chains must outlive the call. Precondition: `map` has a level; levels have the extents of
 // level_extent().
 struct PreviewScene {
-    const MipChain* map = nullptr;     // sampled from its own levels; one level only is sampled without mip-mapping
+    const MipChain* map = nullptr;     // sampled from its own levels; a single level is sampled without mip-mapping
     const MipChain* detail = nullptr;  // or none
     const Image* albedo = nullptr;     // or none: R, G, B or one grey plane, linear values; mip-mapped by a box filter
-    const Image* detail_albedo = nullptr;  // or none; the same, sampled where the detail is
+    const Image* detail_albedo = nullptr;  // or none; the same, sampled at the place of the detail
     const Plane<float>* height = nullptr;  // or none; mip-mapped by a box filter
 
-    // The texture stores x and y alone (DXT5nm, BC5): z is reconstructed from the filtered x and y, as the shader does.
+    // The texture stores only x and y (DXT5nm, BC5): z is reconstructed from the filtered x and y, as in the shader.
     // Otherwise x, y and z are filtered, and the result is normalised.
     bool map_without_z = false;
     bool detail_without_z = false;
@@ -176,16 +175,16 @@ struct PreviewScene {
 
 struct PreviewOptions {
     Show show = Show::lit;
-    // Pixels, without the legend, at most 16384 a side. {n, 0}: n is the longer side, in the proportions of the plane
-    // (sphere and cube: square). {0, 0}: on a plane the map's extent times the tiles, the longer side at most 1024;
-    // else 512x512.
+    // Pixels without the legend, at most 16384 a side. {n, 0}: n is the longer side, in the proportions of the plane
+    // (sphere and cube: square). {0, 0}: on a plane the map's extent times the tiles, with the longer side at most
+    // 1024; otherwise 512x512.
     Extent size;
 
     Shape shape = Shape::plane;
-    int tiles_x = 1, tiles_y = 1;  // how often the map stands on a plane, 1 to 256
-    bool mirror = false;           // u runs from right to left on the whole shape: T turns round, and w is -1
-    float spin =
-        0.0f;  // degrees: sphere and cube turn to the right about their vertical axis; over a plane the light circles
+    int tiles_x = 1, tiles_y = 1;  // how often the map repeats on a plane, 1 to 256
+    bool mirror = false;           // u runs from right to left on the whole shape: T is reversed, and w is -1
+    // Degrees: a sphere or cube turns to the right about its vertical axis; over a plane the light circles.
+    float spin = 0.0f;
 
     std::optional<Camera> camera;  // none: straight on; a cube from yaw -35, pitch 25
     Light light;
@@ -196,32 +195,31 @@ struct PreviewOptions {
     Detail detail;
     Parallax parallax;
 
-    Wrap wrap_x = Wrap::repeat;  // of every map; clamp repeats the border texel
+    Wrap wrap_x = Wrap::repeat;  // of all maps; clamp repeats the border texel
     Wrap wrap_y = Wrap::repeat;
-    int anisotropy = 8;  // most samples along a texel's long axis, 1 to 16; 1 is trilinear filtering alone
+    int anisotropy = 8;  // maximum of samples along a texel's long axis, 1 to 16; 1 is only trilinear filtering
 
-    float maximum = 0.0f;  // the legend's upper end for slope, tilt, length, z_error and curl; 0 chooses
-    bool legend = true;    // below false colours and mips; adds to the height
+    float maximum = 0.0f;  // the legend's upper end for slope, tilt, length, z_error and curl; 0: automatic
+    bool legend = true;    // below false colours and mips; makes the picture higher
 };
 
 // Renders one picture: rgb8, one level, sRGB.
 //
-// Lighting (wikibook, "Lighting of Bumpy Surfaces"), per pixel, N the perturbed normal, L the direction to the light, V
-// to the viewer:
+// Lighting (wikibook, "Lighting of Bumpy Surfaces") of a pixel, with N the perturbed normal, L the direction to the
+// light and V the direction to the viewer:
 //
 //     N         = normalize(n.x T + n.y B + n.z N_shape)
 //     a         = 1 for directional light, 1 / distance for a point light
 //     R         = 2 (N.L) N - L
-//     specular  = 0 where N.L < 0, else max(0, R.V)^shininess  (blinn: max(0, N.normalize(L + V))^shininess)
+//     specular  = 0 if N.L < 0, else max(0, R.V)^shininess  (blinn: max(0, N.normalize(L + V))^shininess)
 //     color     = ambient albedo + a light (albedo max(0, N.L) + specular_color specular)
 //
-// Filtering. Trilinear between the map's levels, with the footprint of the pixel in the texture (Heckbert 1989) taken
-// from the neighbouring view rays; up to `anisotropy` trilinear samples along the longer axis
+// Filtering is trilinear between the map's levels. The footprint of the pixel in the texture (Heckbert 1989) comes from
+// the neighbouring view rays, with up to `anisotropy` trilinear samples along its longer axis
 // (EXT_texture_filter_anisotropic). Pixels on the outline of a shape are averaged from 16 rays.
 //
 // Errors: bad_option  the show is height but there is no height map; the albedo has neither R, G and B nor one plane;
-// an option
-//                     is outside the range stated beside it
+//                     an option is outside the range stated beside it
 //         out_of_memory, cancelled
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] Result<Texture> preview(const PreviewScene& scene, const PreviewOptions& options = {},

@@ -1,39 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
-// roughness.h: roughness maps that make up for what renormalised mip levels lose.
+// roughness.h: roughness maps that make up for the detail that renormalised mip levels lose.
 //
-// A level of a mip chain holds averages of vectors that do not agree, and so are shorter than 1. Renormalising them
-// throws the disagreement away: from afar a bumpy surface turns into a smooth one, whose highlights are too small, too
+// A level of a mip chain holds averages of vectors that disagree, so the averages are shorter than 1. Renormalising
+// them discards the disagreement: from afar a bumpy surface becomes a smooth one, whose highlights are too small, too
 // bright, and flicker. The length m of the average measures the disagreement, and a rougher material can show what the
-// normals no longer do.
+// normals no longer show.
 //
 // Roughness is perceptual, as in glTF, Unity, Unreal and Filament: the width of the distribution of microfacets
 // (Beckmann's and GGX's alpha) is
 //
 //     alpha = roughness^2
 //
-// From m and the alpha that the material itself has come the alpha' of a level, and roughness' = sqrt(alpha').
+// The alpha' of a level follows from m and the alpha of the material itself, and roughness' = sqrt(alpha').
 //
 //   toksvig   A Blinn-Phong lobe of power s becomes one of power s' = s m / (m + s (1 - m)) (Toksvig: Mipmapping Normal
-//   Maps, NVIDIA 2004 and
-//             Journal of Graphics Tools 2005). With s = 2 / alpha^2 - 2 (Walter et al.: Microfacet Models for
-//             Refraction, 2007) that is
+//             Maps, NVIDIA 2004 and Journal of Graphics Tools 2005). With s = 2 / alpha^2 - 2 (Walter et al.:
+//             Microfacet Models for Refraction, 2007) that is
 //
 //                 alpha'^2 = (m alpha^2 + q) / (m + q),    q = 2 (1 - alpha^2) (1 - m)
 //
-//             On a mirror small slopes with the variance v on either axis give alpha'^2 = 2 v: Beckmann's distribution
-//             of just these slopes.
+//             On a mirror, small slopes with the variance v on either axis give alpha'^2 = 2 v: Beckmann's distribution
+//             of exactly these slopes.
 //
-//   vmf       The vectors are taken for a von Mises-Fisher distribution (Han et al.: Frequency Domain Normal Map
-//   Filtering, SIGGRAPH 2007), whose
-//             concentration kappa follows from m (Banerjee et al.: Clustering on the Unit Hypersphere, 2005):
+//   vmf       The vectors are treated as a von Mises-Fisher distribution (Han et al.: Frequency Domain Normal Map
+//             Filtering, SIGGRAPH 2007), whose concentration kappa follows from m (Banerjee et al.: Clustering on the
+//             Unit Hypersphere, 2005):
 //
 //                 kappa = (3 m - m^3) / (1 - m^2),    alpha'^2 = min(1, alpha^2 + 1 / (2 kappa))
 //
-//             as Neubelt and Pettineo had it (Crafting a Next-Gen Material Pipeline for The Order: 1886, SIGGRAPH 2013,
-//             and its sample) and engines since. It adds a quarter of the variance that toksvig does for the same
-//             vectors: highlights stay tighter than those of the base level.
+//             as in Neubelt and Pettineo (Crafting a Next-Gen Material Pipeline for The Order: 1886, SIGGRAPH 2013, and
+//             its sample) and in engines since. For the same vectors it adds a quarter of the variance that toksvig
+//             adds: highlights stay tighter than those of the base level.
 //
-// Both give alpha where m is 1, and 1 where it is 0.
+// Both give alpha if m is 1, and 1 if m is 0.
 
 #pragma once
 
@@ -65,28 +64,31 @@ struct RoughnessChain {
 
 // The roughness of every level of the chain that build_mip_chain() makes of `base` with the same options.
 //
-// The base level is `roughness` as given, values beyond 0 to 1 cut to it and NaN made 0. A map of another extent is
-// stretched over the base: its alpha^2 is halved by the filter while it is at least twice as large along both axes, and
-// then sampled bilinearly. Below it, vectors and alpha^2 are averaged by options.filter, each level from the averages
-// of the one before, borders as options.wrap_x and wrap_y say; m is the length of the averaged vector and alpha^2 the
-// average, both cut to [0, 1] (filters with negative lobes overshoot). alpha^2 and not roughness is averaged because it
-// is a variance: those of several lobes average, and that of the vectors comes on top (as the moments of Olano, Baker:
-// LEAN Mapping, I3D 2010). Vectors are averaged as such in either options.domain, and options.fade does not matter:
-// flat levels lack what their vectors said as well. 1 - m^2 below 2^-20, vectors that differ by 0.06 degrees, is the
-// rounding of floats and counts as 0.
+// The base level is `roughness` as given; values are clamped to [0, 1], and NaN becomes 0. A map of another extent is
+// stretched over the base: the filter halves its alpha^2 while it is at least twice as large along both axes, and then
+// it is sampled bilinearly.
 //
-// Preconditions (asserted): `base` is not empty, its vectors are of unit length (shorter ones count as averages),
-// `roughness` is not empty; options as in build_mip_chain(). Errors: out_of_memory, cancelled. The same bytes for every
-// number of threads, processor and compiler.
+// For the smaller levels, options.filter averages vectors and alpha^2, each level from the averages of the previous
+// one, with borders by options.wrap_x and wrap_y. m is the length of the averaged vector, and alpha^2 the average;
+// both are clamped to [0, 1] (filters with negative lobes overshoot). alpha^2 is averaged, not roughness, because it
+// is a variance: the variances of several lobes average, and that of the vectors is added (as with the moments of
+// Olano, Baker: LEAN Mapping, I3D 2010). The vectors themselves are averaged in either options.domain. options.fade
+// has no effect: flat levels lack the detail of their vectors too. If 1 - m^2 is below 2^-20, which is a difference of
+// 0.06 degrees, it is the rounding of floats and counts as 0.
+//
+// Preconditions (asserted): `base` is not empty, and its vectors have unit length (shorter ones count as averages);
+// `roughness` is not empty; options as in build_mip_chain().
+// Errors: out_of_memory, cancelled.
+// The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] Result<RoughnessChain> build_roughness_chain(const NormalMap& base, const Plane<float>& roughness,
                                                            RoughnessModel model = RoughnessModel::toksvig,
                                                            const MipOptions& options = {},
                                                            const Execution& execution = {});
 
-// The roughness is in the first channel, and that of no normal.
+// The first channel holds roughness; no channel holds a component of a normal.
 inline constexpr Swizzle kRoughnessSwizzle = {Component::other, Component::zero, Component::zero, Component::one};
 
-// Packs a chain as a texture of one channel: bc4_unorm (with the same promises as pack()), r8_unorm, r16_unorm (codes
+// Packs a chain as a texture of one channel: bc4_unorm (with the guarantees of pack()), r8_unorm, r16_unorm (codes
 // rounded as in format.h, of the value instead of (n + 1) / 2), r16_float or r32_float. Other formats give bad_option.
 //
 // Errors: bad_option, out_of_memory, cancelled.

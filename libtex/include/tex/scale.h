@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// scale.h: normals made steeper or flatter.
+// scale.h: makes normals steeper or flatter.
 
 #pragma once
 
@@ -14,7 +14,7 @@ namespace tex {
 // The greatest magnitude of a scale.
 inline constexpr float kMaxScale = 1e6f;
 
-// What scale() takes, as a value.
+// The arguments of scale() as a value.
 struct Scaling {
     float scale = 1.0f;
     ScaleMode mode = ScaleMode::slope;
@@ -22,16 +22,16 @@ struct Scaling {
 
 // Scales every normal by `scale`, the bump scale of shaders:
 //
-//   slope   normalize(s x, s y, z)                            what scaling the height by s does (glTF's
-//   normalTexture.scale) xy      x' = s x, y' = s y, z' = reconstruct_z(x', y')    UnpackScaleNormal (Catlike Coding,
-//   Rendering 6, 2.3),
-//           and normalize(x', y', z')                         which differs from it only where x'^2 + y'^2 is above 1
+//   slope   normalize(s x, s y, z)                             as scaling the height by s does (glTF's
+//                                                              normalTexture.scale)
+//   xy      x' = s x, y' = s y, z' = reconstruct_z(x', y'),    UnpackScaleNormal (Catlike Coding, Rendering 6, 2.3),
+//           then normalize(x', y', z')                         but normalised, which matters only if x'^2 + y'^2 > 1
 //
-// The two agree at s = 1 and near flat; on a normal tilted by 32 degrees they lie 2 degrees apart at s = 0.5 and 39 at
-// s = 2. Scaling by s and then by 1 / s gives the map back in slope mode. s = 0 gives (0, 0, 1) everywhere. Negative s
-// turns bumps into dents. z below 0 counts as 0, and a vector that scaling makes shorter than 1e-6 becomes (0, 0, 1).
+// The two agree at s = 1 and near flat. On a normal tilted by 32 degrees they differ by 2 degrees at s = 0.5 and by 39
+// at s = 2. In slope mode, scaling by s and then by 1 / s restores the map. s = 0 gives (0, 0, 1) everywhere. Negative
+// s turns bumps into dents. z below 0 counts as 0, and a vector that scaling makes shorter than 1e-6 becomes (0, 0, 1).
 //
-// Every level of a chain is scaled by itself.
+// Each level of a chain is scaled on its own.
 //
 // Preconditions (asserted): `scale` is finite, at most kMaxScale in magnitude; normals have unit length.
 // Errors: out_of_memory, cancelled.

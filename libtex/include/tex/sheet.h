@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// sheet.h: pictures put together: contact sheets, split views and animations.
+// sheet.h: combines pictures into contact sheets, split views and animations.
 
 #pragma once
 
@@ -14,25 +14,25 @@
 #pragma GCC visibility push(default)
 namespace tex {
 
-// A picture here is a texture as preview() makes it: rgb8, one level, sRGB.
+// Here, a picture is a texture as preview() makes it: rgb8, one level, sRGB.
 
-// The planes R, G and B of an image, sRGB values from 0 to 1 (a heat_map(), say), as a picture: floor(255 c + 0.5),
-// clamped. Errors: bad_option (one of the planes is missing), out_of_memory.
+// The planes R, G and B of an image (for example a heat_map()), which are sRGB values from 0 to 1, as a picture:
+// floor(255 c + 0.5), clamped. Errors: bad_option (a plane is missing), out_of_memory.
 [[nodiscard]] Result<Texture> picture_of(const Image& image);
 
-// The bytes of a PNG of the picture with the fewest channels that hold its colours: grey where R, G and B are equal
-// everywhere, a palette where there are at most 256 colours (preview()'s false colours), else R, G, B. Errors:
+// The bytes of a PNG of the picture, with the fewest channels that hold its colours: grey if R, G and B are equal
+// everywhere, a palette if there are at most 256 colours (preview()'s false colours), else R, G, B. Errors:
 // out_of_memory.
 [[nodiscard]] Result<std::vector<std::byte>> encode_picture(const Texture& picture);
 
-// A picture with a caption, a part of a sheet.
+// A picture with a caption: a part of a sheet.
 struct Panel {
     Texture picture;
-    std::string caption;  // printable ASCII; other bytes show as a box; where it is too long, its middle is left out
+    std::string caption;  // printable ASCII; other bytes show as a box; if it is too long, its middle is left out
 };
 
-// Panels in rows of `columns` (0: about as many rows as columns), on a dark ground, each with its caption below. Cells
-// are as large as the largest panel of their column and row. An empty list gives bad_option. Errors: bad_option,
+// Panels in rows of `columns` (0: about as many rows as columns) on a dark background, each with its caption below.
+// Cells are as large as the largest panel of their column and row. Errors: bad_option (the list is empty),
 // out_of_memory.
 [[nodiscard]] Result<Texture> contact_sheet(const std::vector<Panel>& panels, int columns = 0);
 
@@ -40,8 +40,8 @@ struct Panel {
 // (the extents differ), out_of_memory.
 [[nodiscard]] Result<Texture> split_view(const Panel& left, const Panel& right);
 
-// The bytes of an animated PNG that plays the pictures for ever, `frames_per_second` of them in a second (1 to 1000).
-// Programs that know no animation show the first. Errors: bad_option (no picture, or pictures that differ in size),
+// The bytes of an animated PNG that repeats the pictures forever, at `frames_per_second` (1 to 1000). Programs without
+// support for animation show the first picture. Errors: bad_option (no picture, or pictures that differ in size),
 // out_of_memory.
 [[nodiscard]] Result<std::vector<std::byte>> encode_animation(const std::vector<Texture>& pictures,
                                                               int frames_per_second = 20);

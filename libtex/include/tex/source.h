@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// source.h: normals from files: what a file says of its layout, what the caller says, and what the texels show.
+// source.h: normals from files. The layout comes from the caller, from the file, or from the texels.
 
 #pragma once
 
@@ -21,22 +21,22 @@ namespace tex {
 struct SourceOptions {
     ReadOptions read;
 
-    // As for unpack(). Without a swizzle the file's own counts, and where it has none guess_swizzle().
+    // As for unpack(). Without a swizzle the file's own is used, or guess_swizzle() if the file has none.
     UnpackOptions unpack;
 
-    std::optional<Swizzle> bc5_swizzle;  // of BC5 files, instead of their own; unpack.swizzle counts before it
-    bool r_or_a = false;        // x is in A where guess_swizzle() finds it there, else in R, and y in G; unpack.swizzle
-                                // counts before it
-    bool file_y_first = false;  // what a file says of y counts before unpack.y_axis
+    std::optional<Swizzle> bc5_swizzle;  // of BC5 files, instead of their own; unpack.swizzle takes precedence
+    bool r_or_a = false;        // y is in G, and x in A if guess_swizzle() finds it there, else in R; unpack.swizzle
+                                // takes precedence
+    bool file_y_first = false;  // the direction that a file states takes precedence over unpack.y_axis
 };
 
-// What a file turned out to hold.
+// What a file holds.
 struct SourceInfo {
     Format format = Format::rgba8_unorm;
-    Swizzle swizzle = {};      // that it was read with
-    bool guessed = false;      // the texels told the swizzle, and it is not simply rgb in a file that looks like rgb
-    YAxis y_axis = YAxis::up;  // that it was read with: where y points in the file
-    bool srgb = false;         // as these two in Texture
+    Swizzle swizzle = {};      // with which it was read
+    bool guessed = false;      // the swizzle comes from the texels, and is not merely rgb in a file that looks like rgb
+    YAxis y_axis = YAxis::up;  // with which it was read: the direction of y in the file
+    bool srgb = false;         // this and remarks: as in Texture
     std::vector<std::string> remarks;
 };
 
@@ -45,10 +45,10 @@ struct Source {
     SourceInfo info;
 };
 
-// Reads the normals in a file: read_texture(), guess_swizzle() where it is needed, unpack(). With `base_only` the
+// Reads the normals in a file by read_texture(), guess_swizzle() if it is needed, and unpack(). With `base_only` the
 // smaller levels are left out.
 //
-// Errors, all of which name the file: those of the three; unsupported where there is one channel only.
+// Errors, all of which name the file: those of the three functions; unsupported if there is only one channel.
 [[nodiscard]] Result<Source> read_normals(const std::string& path, const SourceOptions& options = {},
                                           bool base_only = false, const Execution& execution = {});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// swizzle.h: the layouts that normal maps come in, by name, and which of them a texture has.
+// swizzle.h: the names of the layouts of normal maps, and how the layout of a texture is found.
 
 #pragma once
 
@@ -20,17 +20,16 @@ inline constexpr Named<Swizzle> kSwizzleNames[] = {
     {{Component::z, Component::y, Component::x, Component::other}, "bgr", "z, y, x in R, G, B"},
 };
 
-// Which channels of `texture` hold the normal. Its own swizzle where the file says it or the format leaves
-// no choice (fewer than four channels); else the texels of the base level decide, up to about 2^20 of them,
+// Finds the channels of `texture` that hold the normal. This is its own swizzle if the file states it or if the format
+// leaves no choice (fewer than four channels). Otherwise the texels of the base level decide, up to about 2^20 of them,
 // spread over the map:
 //
-//   dxt5nm   R and B are constant (within 8/255), and A varies or R, G, B cannot be a unit vector (of floats: neither
-//   as
-//            they are nor as (n + 1) / 2); or A varies and R, G and B are equal (y in all three)
+//   dxt5nm   R and B are constant (within 8/255), and A varies or R, G, B cannot be a unit vector (if they are floats:
+//            neither unchanged nor as (n + 1) / 2); or A varies and R, G and B are equal (y in all three)
 //   rxgb     R is constant, A is not, and A, G, B are nearer to unit vectors than R, G, B
 //   rgb      all others
 //
-// A texture without x or y in its own swizzle (one channel) keeps it: unpack() then says what is missing.
+// A texture without x or y in its own swizzle (one channel) keeps it; unpack() then reports what is missing.
 //
 // Precondition (asserted): there is a base level. Errors: out_of_memory, cancelled. The same result for every number of
 // threads.

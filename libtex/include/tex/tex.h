@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // tex.h: libtex, a toolkit for tangent-space normal maps. Includes all of it; read this first.
 //
-// The way of the data
-// -------------------
+// Data flow
+// ---------
 //
 //     file --read_image--> Image --height_field--> HeightField --bake--> NormalMap --build_mip_chain--> MipChain
 //                                                                                                   |      ^
@@ -27,19 +27,19 @@
 // ----------------
 //
 // 1. One convention in memory, conversions at the border. Planar float; x right, y up (OpenGL, Unity), z out of the
-// surface;
-//    components in [-1, 1]; unit length; rows from the top; linear. Only pack and unpack flip, swizzle and quantise.
-// 2. The border can fail; kernels cannot. Reading, parsing and writing return Result<T>; verbs on whole images do
-//    so for out_of_memory and cancelled (and bad_option where they say so), and assert their preconditions. No
-//    exception leaves libtex.
-// 3. The same bytes everywhere: for every number of threads, instruction set and compiler. (Heights that OpenColorIO
-// converted
-//    are exempt.)
+//    surface; components in [-1, 1]; unit length; rows from the top; linear. Only pack and unpack flip, swizzle and
+//    quantise.
+// 2. The border can fail; kernels cannot. Reading, parsing and writing return Result<T>. Verbs on whole images return
+//    it for out_of_memory and cancelled (and for bad_option if their comment says so), and assert their preconditions.
+//    No exception leaves libtex.
+// 3. The same bytes everywhere: for every number of threads, instruction set and compiler. There are three exceptions:
+//    heights converted by OpenColorIO; EXR inputs compressed with DWAA or DWAB, on processors without AVX; and the
+//    compression of PNG, EXR, TIFF, TGA, BMP and JPEG outputs, with another version of the encoding library.
 // 4. The library is silent: no stdout, stderr, exit, environment or locale. Progress and cancellation are callbacks
 //    (Execution).
 // 5. Units are in the name or in the comment: texels, degrees, bytes. Strides are in elements, pitches in bytes.
 //
-// Threads: every function may be called from any number of threads at once, on different objects or on the same const
+// Threads: any number of threads may call any function at the same time, on different objects or on the same const
 // object.
 
 #pragma once
@@ -81,14 +81,14 @@
 #pragma GCC visibility push(default)
 namespace tex {
 
-// "0.1.0": the version of the library that runs, not of the header.
+// The version of the library that is running, not of the header: "0.1.0".
 [[nodiscard]] const char* version();
 
-// What libtex runs with on this machine, for reports.
+// The environment of libtex on this machine, for reports.
 struct Runtime {
-    std::string instruction_set;  // of the kernels, as Highway names it: "AVX2"; results do not depend on it
-    std::vector<std::pair<std::string, std::string>>
-        dependencies;  // libraries that it links, and their versions: ("libpng", "1.6.39")
+    std::string instruction_set;  // of the kernels, with Highway's name: "AVX2"; results do not depend on it
+    // Linked libraries and their versions: ("libpng", "1.6.39").
+    std::vector<std::pair<std::string, std::string>> dependencies;
 };
 [[nodiscard]] Runtime runtime();
 

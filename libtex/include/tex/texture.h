@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// texture.h: a packed texture: the bytes of its levels, and what they mean.
+// texture.h: a packed texture: the bytes of its levels and their meaning.
 
 #pragma once
 
@@ -25,21 +25,21 @@ struct Texture {
     Format format = Format::rgba8_unorm;
     std::vector<Level> levels;
 
-    // What the channels hold and which way y points. Where a file does not say, the reader leaves
-    // `swizzle_known` or `y_known` false, and the values beside them are the likeliest for its format. A format of one
-    // channel has it in R; where that channel is alpha (DDPF_ALPHA, DXGI_FORMAT_A8_UNORM) the swizzle is 000_.
+    // What the channels hold, and the direction of y. If a file does not state them, the reader leaves `swizzle_known`
+    // or `y_known` false, and the value is the likeliest for the file's format. A format of one channel has it in R;
+    // if that channel is alpha (DDPF_ALPHA, DXGI_FORMAT_A8_UNORM), the swizzle is 000_.
     Swizzle swizzle = {Component::x, Component::y, Component::z, Component::other};
     bool swizzle_known = false;
     YAxis y_axis = YAxis::up;
     bool y_known = false;
 
-    // As Image::normal_encoding: "signed" where floats are components of normals themselves, or empty.
+    // As Image::normal_encoding: "signed" if floats are the components of normals themselves, or empty.
     std::string normal_encoding;
 
     // The file declares its colours as sRGB. That is a mistake for normals; the bytes are used as they are.
     bool srgb = false;
 
-    // What a reader had to overlook ("mip count says 3, the data end after 2"), a sentence each.
+    // Faults that the reader ignored ("mip count says 3, the data end after 2"), one sentence each.
     std::vector<std::string> remarks;
 
     [[nodiscard]] Extent extent() const { return levels.empty() ? Extent{} : levels.front().extent; }

@@ -13,19 +13,18 @@
 #pragma GCC visibility push(default)
 namespace tex {
 
-// Decodes one level to float planes, one for each channel of the format, named R, G, B, A (A alone where the swizzle
-// says that the only channel is alpha): [0, 1] for unorm, [-1, 1] for snorm, as stored for floats. Block formats decode
-// as described here, not as a particular GPU does: 5- and 6-bit endpoints are widened to 8 bits by bit replication,
-// palettes interpolate with exact thirds, fifths and sevenths, and nothing is rounded. The lowest snorm code is -1 as
-// well.
+// Decodes one level to float planes, one for each channel of the format, named R, G, B, A (only A if the swizzle states
+// that the only channel is alpha): [0, 1] for unorm, [-1, 1] for snorm, unchanged for floats. Block formats decode by
+// these rules, not by those of a particular GPU: 5- and 6-bit endpoints are widened to 8 bits by bit replication,
+// palettes interpolate with exact thirds, fifths and sevenths, and nothing is rounded. The lowest snorm code is -1 too.
 //
 // Precondition (asserted): 0 <= level < levels.size(), and the level has level_bytes() bytes.
 // Errors: out_of_memory, cancelled.
 [[nodiscard]] Result<Image> decode(const Texture& texture, int level, const Execution& execution = {});
 
-// How stored floats are to be read. (Integers need no telling: unorm is unsigned, snorm is signed.)
+// How stored floats are read. (Integers are unambiguous: unorm is unsigned, snorm is signed.)
 enum class ValueRange {
-    automatic,  // as the file says; else by the values, see unpack()
+    automatic,  // as the file states; else by the values, see unpack()
     signed_,    // components of the normal themselves
     unsigned_,  // (n + 1) / 2
 };
@@ -38,37 +37,37 @@ inline constexpr Named<ValueRange> kValueRangeNames[] = {
 
 struct UnpackOptions {
     std::optional<Swizzle> swizzle;            // instead of the texture's own
-    std::optional<YAxis> y_axis;               // instead of the texture's own; pictures are up without it
+    std::optional<YAxis> y_axis;               // instead of the texture's own; without it, y is up in pictures
     ValueRange range = ValueRange::automatic;  // for floats only
     bool snap_flat = false;                    // 8-bit unorm values from 127/255 to 128/255 are 0, not -+0.0039
-    bool keep_length =
-        false;  // leave vectors as they are stored, instead of normalising them: to pack them again without loss
+    bool keep_length = false;                  // do not normalise vectors, to pack them again without loss
 };
 
-// Normals from a texture, every level. unorm values become n = 2 c - 1; y is negated where it points down in the
-// texture. Where the swizzle holds z, vectors are normalised (shorter than 1e-6: (0, 0, 1); z below 0: as stored);
-// where it holds x and y only, z = reconstruct_z(x, y) and, where x^2 + y^2 is above 1, x and y are divided by their
-// length, so that the vector is of unit length. A vector that is not finite, or whose squared length is not, becomes
-// (0, 0, 1). 32-bit floats whose vector is of unit length already (x^2 + y^2 + z^2 within 2^-20 of 1) stay as they are
-// stored, so that a chain of commands gives the bytes of one.
+// The normals of every level of a texture. unorm values become n = 2 c - 1; y is negated if it points down in the
+// texture. If the swizzle holds z, vectors are normalised (shorter than 1e-6: (0, 0, 1); z below 0: as stored). If it
+// holds only x and y, z = reconstruct_z(x, y); if x^2 + y^2 is above 1, x and y are divided by their length, so that
+// the vector has unit length. A vector that is not finite, or whose squared length is not, becomes (0, 0, 1). 32-bit
+// floats whose vector already has unit length (x^2 + y^2 + z^2 within 2^-20 of 1) are unchanged, so that several
+// commands in a row give the same bytes as one.
 //
-// Floats in ValueRange::automatic are what Texture::normal_encoding says ("signed" or "unsigned"). Where it is empty
-// the base level decides for all: signed where a value of x, y or z lies below 0; else signed where that reading is
-// nearer to unit vectors, as the sum of |x^2 + y^2 + z^2 - 1| says (without z of max(0, x^2 + y^2 - 1)); else unsigned.
+// Floats in ValueRange::automatic are read as Texture::normal_encoding states ("signed" or "unsigned"). If it is empty,
+// the base level decides for all levels. They are signed if a value of x, y or z is below 0, or if that reading is
+// nearer to unit vectors by the sum of |x^2 + y^2 + z^2 - 1| (without z, of max(0, x^2 + y^2 - 1)). Otherwise they are
+// unsigned.
 //
-// A component that stands in several channels of the swizzle is read from the first of them.
+// If several channels of the swizzle hold a component, it is read from the first of them.
 //
 // Precondition (asserted): every level has the extent of level_extent() and level_bytes() bytes; there is a base level.
-// Errors: bad_option  the swizzle has no x or no y, or has one in a channel that the format lacks
+// Errors: bad_option  the swizzle lacks x or y, or has one of them in a channel that the format lacks
 //         out_of_memory, cancelled
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] Result<MipChain> unpack(const Texture& texture, const UnpackOptions& options = {},
                                       const Execution& execution = {});
 
-// Normals from a picture. The swizzle names planes: R, G, B, A; in a picture without R the plane Y stands for R, G and
-// B; in one that has neither, the planes are R, G, B, A in their order. Without a swizzle in the options x, y and z are
-// R, G and B, and x and y the planes of a picture of two. ValueRange::automatic: by Image::normal_encoding, else as
-// above.
+// The normals of a picture. The swizzle names planes: R, G, B, A. In a picture without R, the plane Y is used for R, G
+// and B; in a picture with neither, the planes are R, G, B, A in their order. Without a swizzle in the options, x, y
+// and z are R, G and B, or the two planes of a picture are x and y. ValueRange::automatic: by Image::normal_encoding,
+// else as above.
 [[nodiscard]] Result<NormalMap> unpack(const Image& image, const UnpackOptions& options = {},
                                        const Execution& execution = {});
 
