@@ -3,8 +3,8 @@
 #
 #     cmake -D IN=man/bake-normals.1.in -D OUT=bake-normals.1 -P man/assemble.cmake
 #
-# A line "@include NAME@" becomes the text of shared/NAME.mdoc. A line "@set KEY TEXT@" gives the text of @KEY@ in the page
-# and in everything that it includes. The first line for a key wins, so a shared file ends with its default.
+# A line "@include NAME@" becomes the text of shared/NAME.mdoc. A line "@set KEY TEXT@" gives the text of @KEY@ in the
+# page and in everything that it includes. The first line for a key wins, so a shared file ends with its default.
 file(READ "${IN}" page)
 while(page MATCHES "(^|\n)@include ([a-z-]+)@\n")
   set(name "${CMAKE_MATCH_2}")

@@ -123,7 +123,8 @@ fi
 manual=$(mktemp -d)
 trap 'rm -rf "$manual"' EXIT
 for source in $(select_files '^man/[a-z-]+\.[17]\.in$'); do
-    cmake -D IN="$source" -D OUT="$manual/$(basename "$source" .in)" -P man/assemble.cmake || complain "$source cannot be assembled"
+    cmake -D IN="$source" -D OUT="$manual/$(basename "$source" .in)" -P man/assemble.cmake ||
+        complain "$source cannot be assembled"
 done
 for section in $(select_files '^man/shared/'); do
     grep -rqx "@include $(basename "$section" .mdoc)@" man || complain "no page includes $section"
