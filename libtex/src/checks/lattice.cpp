@@ -17,13 +17,14 @@ constexpr double kRange = 0.5;
 constexpr double kLeastRate = 16.0;  // teeth per unit of slope
 constexpr double kMostRate = 51.0;
 constexpr double kRateStep = 0.25;
+constexpr float kSteep = 2.0f;  // the other slope: z has few codes of 8 bits there, and quotients by them are a comb
 constexpr double kLeastShare = 0.1;  // of the texels looked at: a few gentle slopes in a steep map say nothing
 
-void add_slopes(const Plane<float>& slopes, std::vector<double>& bins) {
+void add_slopes(const Plane<float>& slopes, const Plane<float>& across, std::vector<double>& bins) {
     for (int j = 0; j < slopes.extent().height; ++j) {
         for (int i = 0; i < slopes.extent().width; ++i) {
             const float s = slopes.at(i, j);
-            if (!(std::abs(s) < static_cast<float>(kRange))) continue;
+            if (!(std::abs(s) < static_cast<float>(kRange)) || std::abs(across.at(i, j)) > kSteep) continue;
             const auto bin = static_cast<int>((s + static_cast<float>(kRange)) * static_cast<float>(kBins));
             bins[static_cast<std::size_t>(std::clamp(bin, 0, kBins - 1))] += 1.0;
         }
@@ -82,8 +83,8 @@ Lattice measure_lattice(const Stored& stored) {
     for (const Rect& window : sample_windows(stored.extent())) {
         looked_at += static_cast<double>(window.width) * window.height;
         const Slopes slopes = slopes_of(stored, window);
-        add_slopes(slopes.p, bins_p);
-        add_slopes(slopes.q, bins_q);
+        add_slopes(slopes.p, slopes.q, bins_p);
+        add_slopes(slopes.q, slopes.p, bins_q);
     }
     Lattice lattice;
     if (std::min(count(bins_p), count(bins_q)) < kLeastShare * looked_at) return lattice;

@@ -18,7 +18,7 @@ constexpr int kRowsPerPiece = 16;
 constexpr float kCodeAndHalf = 1.5f / 255.0f;
 constexpr float kBehind = -0.1f;
 constexpr float kBeyond = 1.0f + kTwoCodes;
-constexpr float kBeyondOfBlocks = 1.2f;
+constexpr float kBeyondOfBlocks = 1.3f;
 
 // One row's share of the counts.
 struct RowCounts {

@@ -37,7 +37,7 @@ enum class Property {
     off_length,     // the length is off 1 by more than kTwoCodes (z stored)
     z_below,        // z below -kTwoCodes (z stored)
     z_behind,       // z below -0.1 (z stored)
-    beyond_unit,    // x^2 + y^2 above (1 + kTwoCodes)^2; in texel blocks, whose texels share a palette, above 1.2^2
+    beyond_unit,    // x^2 + y^2 above (1 + kTwoCodes)^2; in texel blocks, whose texels share a palette, above 1.3^2
     red_not_one,    // R below 1, for the layout (R, y, _, x)
     alpha_not_one,  // A below 1, where A is not x
     above_alpha,    // R, G or B above A by more than a code and a half
