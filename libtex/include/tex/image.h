@@ -14,22 +14,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <memory>
-#include <new>
 #include <string>
 #include <vector>
 
 #include <tex/names.h>
-
-#if defined(__SANITIZE_ADDRESS__)
-#define TEX_ADDRESS_SANITIZER
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define TEX_ADDRESS_SANITIZER
-#endif
-#endif
 
 #pragma GCC visibility push(default)
 namespace tex {
@@ -62,6 +52,12 @@ struct PlaneView {
     operator PlaneView<const T>() const { return {data, extent, stride}; }
 };
 
+// The memory of a Plane: `bytes` bytes that start at a multiple of kRowAlignment, and their release. libtex compiles
+// both, so that programs compiled with -fno-exceptions can use planes. If memory runs out, std::bad_alloc is thrown,
+// and such a program ends.
+[[nodiscard]] void* allocate_rows(std::size_t bytes);
+void free_rows(void* rows) noexcept;
+
 // Owns one plane. Movable, not copyable by accident: clone() copies. The constructor leaves the texels
 // unset and the padding zero, and throws std::bad_alloc like any container of the standard library.
 template <class T>
@@ -70,7 +66,7 @@ public:
     Plane() = default;
     explicit Plane(Extent extent) : extent_(extent), stride_(padded(extent.width)) {
         const std::size_t count = static_cast<std::size_t>(stride_) * static_cast<std::size_t>(extent.height);
-        data_.reset(static_cast<T*>(allocate(count * sizeof(T))));
+        data_.reset(static_cast<T*>(allocate_rows(count * sizeof(T))));
         for (int j = 0; j < extent.height; ++j) {
             std::memset(row(j) + extent.width, 0, static_cast<std::size_t>(stride_ - extent.width) * sizeof(T));
         }
@@ -101,27 +97,8 @@ public:
 
 private:
     struct Free {
-        void operator()(T* rows) const {
-            void* block = nullptr;
-            std::memcpy(&block, reinterpret_cast<char*>(rows) - sizeof block, sizeof block);
-            std::free(block);
-        }
+        void operator()(T* rows) const noexcept { free_rows(rows); }
     };
-    // Not aligned_alloc(): where aligned blocks come and go, the heap of glibc before 2.38 grows without end (its bug
-    // 14581). The block that the rows lie in is noted before them. The address sanitizer watches their end, and so gets
-    // blocks that end there.
-    static void* allocate(std::size_t bytes) {
-#ifdef TEX_ADDRESS_SANITIZER
-        void* const block = std::aligned_alloc(kRowAlignment, bytes + kRowAlignment);
-#else
-        void* const block = std::malloc(bytes + kRowAlignment);
-#endif
-        if (block == nullptr) throw std::bad_alloc();
-        char* const rows =
-            static_cast<char*>(block) + (kRowAlignment - reinterpret_cast<std::uintptr_t>(block) % kRowAlignment);
-        std::memcpy(rows - sizeof block, &block, sizeof block);
-        return rows;
-    }
     static std::ptrdiff_t padded(int width) {
         constexpr std::ptrdiff_t kStep = static_cast<std::ptrdiff_t>(kRowAlignment / sizeof(T));
         return (width + kStep - 1) / kStep * kStep;
@@ -162,4 +139,3 @@ struct Image {
 
 }  // namespace tex
 #pragma GCC visibility pop
-#undef TEX_ADDRESS_SANITIZER

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tex/image.h>
+
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+
+#if defined(__SANITIZE_ADDRESS__)
+#define TEX_ADDRESS_SANITIZER
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define TEX_ADDRESS_SANITIZER
+#endif
+#endif
+
+namespace tex {
+
+// Not aligned_alloc(): where aligned blocks come and go, the heap of glibc before 2.38 grows without end (its bug
+// 14581). The address of the block that the rows lie in is stored before them. The address sanitizer watches the end of
+// the rows, so its blocks end there.
+void* allocate_rows(std::size_t bytes) {
+#ifdef TEX_ADDRESS_SANITIZER
+    void* const block = std::aligned_alloc(kRowAlignment, bytes + kRowAlignment);
+#else
+    void* const block = std::malloc(bytes + kRowAlignment);
+#endif
+    if (block == nullptr) throw std::bad_alloc();
+    char* const rows =
+        static_cast<char*>(block) + (kRowAlignment - reinterpret_cast<std::uintptr_t>(block) % kRowAlignment);
+    std::memcpy(rows - sizeof block, &block, sizeof block);
+    return rows;
+}
+
+void free_rows(void* rows) noexcept {
+    void* block = nullptr;
+    std::memcpy(&block, static_cast<char*>(rows) - sizeof block, sizeof block);
+    std::free(block);
+}
+
+}  // namespace tex
