@@ -13,8 +13,9 @@ test_packages=(
     libgtest-dev libgmock-dev libsquish-dev libosmesa6-dev libgl-dev
     imagemagick openimageio-tools python3-jsonschema libxml2-utils mandoc shellcheck dpkg-dev file git strace zsh fish
 )
+# The browser takes 300 MB: elsewhere its tests say that they skipped.
 # shellcheck disable=SC2034
-gate_packages=(clang-14 clang-tidy-14 ccache libbenchmark-dev chromium)  # the browser takes 300 MB: elsewhere its tests say that they skipped
+gate_packages=(clang-14 clang-format-14 clang-tidy-14 ccache libbenchmark-dev chromium)
 
 as_root() {
     if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi
@@ -22,15 +23,16 @@ as_root() {
 
 # Installs those of the named packages that are missing; asks for nothing and downloads nothing where all are there.
 need_packages() {
-    local missing=() package
+    local missing=() package status
     if ! command -v apt-get >/dev/null; then
-        echo "$0: this script installs packages with apt-get, for Debian 12 and its relatives. Elsewhere, install what" \
-             "these Debian packages hold, then: cmake --preset release && cmake --build --preset release" >&2
+        echo "$0: this script installs packages with apt-get, for Debian 12 and its relatives. Elsewhere, install" \
+             "what these Debian packages hold, then: cmake --preset release && cmake --build --preset release" >&2
         echo "    $*" >&2
         return 1
     fi
     for package in "$@"; do
-        if [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" != installed ]; then missing+=("$package"); fi
+        status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
+        [ "$status" = installed ] || missing+=("$package")
     done
     [ "${#missing[@]}" -gt 0 ] || return 0
     if [ "$(id -u)" -ne 0 ] && ! command -v sudo >/dev/null; then

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# batch.sh COMMANDS: samples/batch.sh builds a folder of maps with the commands of that folder, and again only what changed.
+# batch.sh COMMANDS: samples/batch.sh builds a folder of maps with the commands of that folder, and again only what
+# changed.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 scratch=$(mktemp -d)

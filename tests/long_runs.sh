@@ -4,9 +4,11 @@
 #
 #     tests/long_runs.sh [TEXTURES [PROCESSES [BUILD]]]    default: 10000 64 build/release
 #
-# One bake-normals bakes TEXTURES height maps of all samples; meanwhile its memory and its descriptors are looked at. Then PROCESSES of them write into one folder
-# at once, four for each output. Prints the slope of the memory, in kB per 1000 textures, over the second half of the run, and fails where it is more than 3000 (of each
-# file its names are remembered, for --depfile), where descriptors grow, an output is not what one process alone makes of it, or anything else is left.
+# One bake-normals bakes TEXTURES height maps of all samples; meanwhile the script samples its memory and descriptors.
+# Then PROCESSES of them write into one folder at once, four for each output. Prints the slope of the memory, in kB per
+# 1000 textures, over the second half of the run. Fails if the slope is more than 3000 (a process remembers the names of
+# its files, for --depfile), if descriptors grow, if an output differs from what one process alone makes, or if any
+# other file is left.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 textures=${1:-10000} processes=${2:-64}
@@ -38,7 +40,9 @@ wait "$process" || fail "bake-normals ends with status $?"
 [ "$(cat out/*.dds | sha256sum)" = "$(for name in out/*.dds; do
     k=${name#out/}
     k=${k%.dds}
-    if [ ! -e "one$((k % 4)).dds" ]; then "$build/bake-normals" "in/$((k % 4)).png" -o "one$((k % 4)).dds" --no-sync --quiet; fi
+    if [ ! -e "one$((k % 4)).dds" ]; then
+        "$build/bake-normals" "in/$((k % 4)).png" -o "one$((k % 4)).dds" --no-sync --quiet
+    fi
     cat "one$((k % 4)).dds"
 done | sha256sum)" ] || fail "an output is not what its input makes alone"
 # Least squares over the second half: memory in kB against thousands of textures.
@@ -60,7 +64,9 @@ for ((k = 0; k < processes; ++k)); do
     # Half of them without nameless files, where the test library is there.
     preload=
     if [ $((k % 2)) -eq 1 ] && [ -e "$build/faults.so" ]; then preload=$build/faults.so; fi
-    LD_PRELOAD=$preload TEX_FAULT_NO_TMPFILE=1 "$build/bake-normals" "${inputs[k / 4 % 4]}" "${inputs[(k / 4 + 1) % 4]}" --out-dir together --name "$((k / 4))_{stem}.dds" --no-sync --quiet &
+    pair=("${inputs[k / 4 % 4]}" "${inputs[(k / 4 + 1) % 4]}")
+    LD_PRELOAD=$preload TEX_FAULT_NO_TMPFILE=1 "$build/bake-normals" \
+        "${pair[@]}" --out-dir together --name "$((k / 4))_{stem}.dds" --no-sync --quiet &
     running+=($!)
 done
 for process in "${running[@]}"; do wait "$process" || fail "one of many processes ends with status $?"; done
@@ -70,5 +76,7 @@ for name in together/*; do
     cmp -s alone.dds "$name" || fail "$name is not whole"
 done
 groups=$(((processes + 3) / 4))
-[ "$(find together -mindepth 1 | wc -l)" -eq $((2 * groups)) ] || fail "files are missing in the folder of many, or temporaries are left"
-echo "$processes processes at once in one folder: $(find together -name '*.dds' | wc -l) outputs, all whole, nothing else"
+[ "$(find together -mindepth 1 | wc -l)" -eq $((2 * groups)) ] ||
+    fail "files are missing in the folder of many, or temporaries are left"
+outputs=$(find together -name '*.dds' | wc -l)
+echo "$processes processes at once in one folder: $outputs outputs, all whole, nothing else"

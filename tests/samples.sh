@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# samples.sh MAKE_SAMPLES [BAKE_NORMALS PREVIEW_NORMALS]: the committed pictures are what the programs make today, byte for byte.
+# samples.sh MAKE_SAMPLES [BAKE_NORMALS PREVIEW_NORMALS]: the committed pictures are what the programs make today, byte
+# for byte.
 set -euo pipefail
 samples=$(cd "$(dirname "${BASH_SOURCE[0]}")/../samples" && pwd)
 scratch=$(mktemp -d)
@@ -12,7 +13,8 @@ if [ $# -gt 1 ]; then
     # The README's picture, as quickstart.sh makes it.
     "$2" "$samples/bricks.png" -o "$scratch/bricks_normals.png" --bumpiness 12
     "$2" "$samples/waves.png" -o "$scratch/waves_normals.png" --bumpiness 6
-    "$3" "$scratch/bricks_normals.png" -o "$scratch/strip.png" --height "$samples/bricks.png" --detail "$scratch/waves_normals.png" --detail-tiling 6 \
+    "$3" "$scratch/bricks_normals.png" -o "$scratch/strip.png" --height "$samples/bricks.png" \
+        --detail "$scratch/waves_normals.png" --detail-tiling 6 \
         --show height,normals,plain,lit --size 220 --light -1,1,0.9 --tint 0.6,0.28,0.18 --specular 0.12 --no-legend
     cmp "$scratch/strip.png" "$samples/strip.png"
     # Its picture of +Y and -Y; captions are names of files.

@@ -1,13 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# tidy.sh: clang-tidy's checks for mistakes, safety and speed (.clang-tidy names them) on libtex and the commands; a finding is an error.
+# tidy.sh: clang-tidy's checks for mistakes, safety and speed (.clang-tidy names them) on libtex and the commands; a
+# finding is an error.
 #
 #     tests/tidy.sh [FILE...]    all sources of libtex and tools, or those named
 #
-# Needs clang-tidy-14. The commands to compile are those of the preset `fuzz`, which is clang's and sees each kernel once. The last line counts.
+# Needs clang-tidy-14. The commands to compile are those of the preset `fuzz`, which is clang's and sees each kernel
+# once. The last line counts.
 #
-# clang-tidy spends nine tenths of its time in the headers of others. So sources are looked at many at a time, as one that includes them; those whose names clash
-# with names of others, and programs, come by themselves.
+# clang-tidy spends nine tenths of its time in the headers of others. So sources are looked at many at a time, as one
+# that includes them; those whose names clash with names of others, and programs, come by themselves.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 together=64
@@ -18,7 +20,10 @@ database=build/fuzz/compile_commands.json
 flags() { sed -n "s|.*\"command\": \"[^ ]* \(.*\) -o [^ ]* -c $PWD/$1\",\?\$|\1|p" "$database" | sed 's|\\\(.\)|\1|g'; }
 
 # clashing FILE FLAG...: the lines of includes, but for the first, in which there are errors.
-clashing() { clang++-14 "${@:2}" -w -ferror-limit=0 -fsyntax-only "$1" 2>&1 | sed -n "s|^In file included from $1:\([0-9]*\):.*|\1|p" | sort -un | sed '/^1$/d'; }
+clashing() {
+    clang++-14 "${@:2}" -w -ferror-limit=0 -fsyntax-only "$1" 2>&1 |
+        sed -n "s|^In file included from $1:\([0-9]*\):.*|\1|p" | sort -un | sed '/^1$/d'
+}
 
 # look_at FLAGS SOURCE...: what is found goes to files in $out.
 look_at() {
@@ -32,7 +37,8 @@ look_at() {
         for number in "${clashing[@]}"; do apart+=("${!number}"); done
         sed -i "$(printf '%ds|.*||;' "${clashing[@]}")" "$all"
     done
-    if ! clang-tidy-14 --quiet "$all" -- "${arguments[@]}" -Wno-error >"$all.found" 2>"$all.log" && [ ! -s "$all.found" ]; then
+    if ! clang-tidy-14 --quiet "$all" -- "${arguments[@]}" -Wno-error >"$all.found" 2>"$all.log" &&
+        [ ! -s "$all.found" ]; then
         { echo "$*: error: clang-tidy failed"; cat "$all.log"; } >"$all.found"
     fi
     [ "${#apart[@]}" -eq 0 ] || look_at "$flags" "${apart[@]}"

@@ -241,7 +241,7 @@ std::vector<std::uint16_t> unpack_huffman(std::span<const std::byte> packed, std
     return values;
 }
 
-// ----------------------------------------------------------------------------------------------------------------------------------------------------------
+// ---------------------------------------------------------------------------------------------------------------------
 
 // Whether these terms are those of `blocks` blocks: 63 each, of which runs of zeros and the zeros at the end are one
 // value.
