@@ -11,8 +11,8 @@ need_packages "${build_packages[@]}"
 
 # Tests are left as the build folder has them; a new one is made without, which is faster.
 tests=OFF
-if grep -qs '^TEX_TESTS:BOOL=ON' build/release/CMakeCache.txt; then tests=ON; fi
-cmake --preset release -DTEX_TESTS="$tests"
+if grep -qs '^BUILD_TESTING:BOOL=ON' build/release/CMakeCache.txt; then tests=ON; fi
+cmake --preset release -DBUILD_TESTING="$tests"
 cmake --build --preset release
 
 out=build/quickstart
@@ -22,7 +22,8 @@ preview=build/release/preview-normals
 "$bake" samples/bricks.png -o "$out/bricks.dds" --bumpiness 12
 "$bake" samples/bricks.png -o "$out/bricks_normals.png" --bumpiness 12
 "$bake" samples/waves.png -o "$out/waves_normals.png" --bumpiness 6
-"$preview" "$out/bricks_normals.png" -o "$out/strip.png" --height samples/bricks.png --detail "$out/waves_normals.png" --detail-tiling 6 \
+"$preview" "$out/bricks_normals.png" -o "$out/strip.png" --height samples/bricks.png \
+    --detail "$out/waves_normals.png" --detail-tiling 6 \
     --show height,normals,plain,lit --size 220 --light -1,1,0.9 --tint 0.6,0.28,0.18 --specular 0.12 --no-legend
 
 cat <<END

@@ -1,15 +1,22 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# consumer.sh STEP BUILD [CXX]: what somebody meets who installs libtex, from the build folder BUILD. Steps, each a test:
-#   install    installs into BUILD/stage; the files are those of manifest.txt
-#   move       the installation works from another place, too: a command bakes; and nothing is loaded from the folder that one stands in
-#   exports    the library exports what its headers declare, and nothing else of its own
-#   cmake      a project finds the library with find_package, builds samples/bake_and_pack.cpp, bakes
-#   pkgconfig  the same through pkg-config
-#   package    cpack makes a Debian package whose dependencies are named and whose commands run
+# consumer.sh STEP BUILD [CXX]: libtex as its users meet it, from the build folder BUILD. Steps, each a test:
+#   install       installs into BUILD/stage; the files are those of manifest.txt
+#   move          the installation works from another place: a command bakes. No program loads libraries from the
+#                 current folder
+#   exports       the library exports what its headers declare, and no other function in the namespace tex
+#   find_package  a project finds the installed library and builds samples/bake_and_pack.cpp: with both compilers, as
+#                 C++20 and C++23, with and without exceptions
+#   pkgconfig     the same sample through pkg-config
+#   plain         a configuration without options needs no package of the tests
+#   library       the library alone, static if BUILD has a shared one and the reverse, needs no package of the commands;
+#                 it is installed, and a project finds it
+#   subdirectory  a project adds the sources as a folder, once with a shared and once with a static library
+#   package       cpack makes a Debian package; its dependencies are named, and its commands run
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-samples=$here/../../samples
+source=$(cd "$here/../.." && pwd)
+samples=$source/samples
 step=$1
 build=$2
 cxx=${3:-c++}
@@ -23,28 +30,68 @@ fail() { echo "consumer.sh $step: $*" >&2; exit 1; }
 # A baked DDS begins with its magic and is the same as the one that the installed command makes.
 check_bake() {
     [ "$(head -c 3 "$1")" = DDS ] || fail "$1 is not a DDS file"
-    "$stage/bin/bake-normals" "$samples/bricks.png" -o "$scratch/expected.dds" --bumpiness 12
+    [ -e "$scratch/expected.dds" ] ||
+        "$stage/bin/bake-normals" "$samples/bricks.png" -o "$scratch/expected.dds" --bumpiness 12
     cmp "$1" "$scratch/expected.dds"
 }
 
-# Paths below the prefix $1, sorted, with the library folder written as lib.
+# Paths below the prefix $1, sorted, with the library folder written as lib. The name of the file of imported targets
+# ends in the build type.
 list_files() {
-    (cd "$1" && find . ! -type d | sed -e 's|^\./||' -e 's|^lib/[a-z0-9_]*-linux-gnu/|lib/|' | LC_ALL=C sort)
+    (cd "$1" && find . ! -type d) | sed -e 's|^\./||' -e 's|^lib/[a-z0-9_]*-linux-gnu/|lib/|' \
+        -e 's|\(libtex-targets\)-[a-z]*\.cmake|\1-TYPE.cmake|' | LC_ALL=C sort
+}
+
+# check_files PREFIX [FILTER]: the files below PREFIX are those lines of the manifest that the sed script FILTER leaves.
+check_files() {
+    list_files "$1" >"$scratch/installed.txt"
+    sed -e "${2:-}" "$here/manifest.txt" | LC_ALL=C sort >"$scratch/wanted.txt"
+    diff -u "$scratch/wanted.txt" "$scratch/installed.txt" || fail "the files differ from those of $here/manifest.txt"
+}
+# shellcheck disable=SC2016  # sed's last line
+static_files='/^lib\/libtex\.so/d; $a lib/libtex.a'
+library_files='/^bin\//d; /^libexec\//d; /^share\/doc\//!{/^share\//d}'
+
+# Compiles no object of libtex again: BUILD has them.
+reuse=(-DCMAKE_CXX_COMPILER_LAUNCHER="$here/reuse_objects.sh")
+export TEX_OBJECTS=$build
+
+# without BUILD WORD...: CMake looked for no package whose name has one of the words.
+without() {
+    local folder=$1 word
+    shift
+    for word in "$@"; do
+        ! grep -i -- "^[^=]*$word" "$folder/CMakeCache.txt" || fail "the configuration $folder looked for $word"
+    done
+}
+
+# quietly WHY COMMAND...: prints what the command prints only if it fails.
+quietly() {
+    local why=$1
+    shift
+    "$@" >"$scratch/log" 2>&1 || { cat "$scratch/log"; fail "$why"; }
+}
+
+# use_library FOLDER VARIANTS OPTION...: builds the stranger's project in FOLDER, a program for each of the VARIANTS;
+# each bakes what the command bakes.
+all='20_with 20_without 23_with 23_without' extremes='20_with 23_without'
+use_library() {
+    local folder=$1 variants=$2 name
+    shift 2
+    quietly "the project cannot be configured: $*" cmake -S "$here/project" -B "$folder" -G Ninja \
+        -DCMAKE_CXX_COMPILER="$cxx" -DSAMPLE="$samples/bake_and_pack.cpp" -DVARIANTS="${variants// /;}" "$@"
+    quietly "the project cannot be built: $*" cmake --build "$folder"
+    for name in $variants; do
+        "$folder/bake_${name}_exceptions" "$samples/bricks.png" "$scratch/bricks.dds"
+        check_bake "$scratch/bricks.dds"
+    done
 }
 
 case $step in
 install)
     rm -rf "$stage"
     cmake --install "$build" --prefix "$stage" >/dev/null
-    list_files "$stage" >"$scratch/installed.txt"
-    wanted=$here/manifest.txt
-    if [ -e "$build/libtex.a" ]; then  # a static build has one library file
-        sed -e '/^lib\/libtex\.so/d' -e '$a lib/libtex.a' "$wanted" | LC_ALL=C sort >"$scratch/wanted.txt"
-        wanted=$scratch/wanted.txt
-    fi
-    # The name of the file of imported targets ends in the build type.
-    sed -i 's|\(libtex-targets\)-[a-z]*\.cmake|\1-TYPE.cmake|' "$scratch/installed.txt"
-    diff -u "$wanted" "$scratch/installed.txt" || fail "the installation differs from $here/manifest.txt"
+    if [ -e "$build/libtex.a" ]; then check_files "$stage" "$static_files"; else check_files "$stage"; fi
     ;;
 move)
     cp -a "$stage" "$scratch/elsewhere"
@@ -69,23 +116,27 @@ exports)
         "$cxx" -shared -o "$library" -Wl,--whole-archive "$build/libtex.a" -Wl,--no-whole-archive
     fi
     # Functions of the namespace tex itself: "tex::bake(". What the headers define inline may be there or not.
-    nm -DC --defined-only "$library" | sed -n 's/^[0-9a-f]* [TW] tex::\([a-z][a-z0-9_]*\)\((\|\[abi\).*/\1/p' | sort -u >"$scratch/exported.txt"
+    nm -DC --defined-only "$library" |
+        sed -n 's/^[0-9a-f]* [TW] tex::\([a-z][a-z0-9_]*\)\((\|\[abi\).*/\1/p' | sort -u >"$scratch/exported.txt"
     while read -r name; do
-        grep -rqw -- "$name" "$here/../../libtex/include/tex" || fail "the library exports $name, which no header declares"
+        grep -rqw -- "$name" "$source/libtex/include/tex" || fail "the library exports $name, which no header declares"
     done <"$scratch/exported.txt"
     # The functions that sources define: they begin a line, after [[nodiscard]].
-    grep -h '^\[\[nodiscard\]\]' "$here"/../../libtex/include/tex/*.h | grep -v 'constexpr\|inline' |
+    grep -h '^\[\[nodiscard\]\]' "$source"/libtex/include/tex/*.h | grep -v 'constexpr\|inline' |
         sed -n 's/^\[\[nodiscard\]\] [^(]*[ *]\([a-z][a-z0-9_]*\)(.*/\1/p' | sort -u >"$scratch/declared.txt"
-    [ "$(wc -l <"$scratch/declared.txt")" -ge 30 ] || fail "only $(wc -l <"$scratch/declared.txt") functions were found in the headers"
+    count=$(wc -l <"$scratch/declared.txt")
+    [ "$count" -ge 30 ] || fail "only $count functions were found in the headers"
     missing=$(comm -23 "$scratch/declared.txt" "$scratch/exported.txt")
     [ -z "$missing" ] || fail "the library does not export: $missing"
     ;;
-cmake)
-    cmake -S "$here/project" -B "$scratch/build" -G Ninja -DCMAKE_PREFIX_PATH="$stage" -DCMAKE_CXX_COMPILER="$cxx" \
-        -DSAMPLE="$samples/bake_and_pack.cpp"
-    cmake --build "$scratch/build"
-    "$scratch/build/bake_and_pack" "$samples/bricks.png" "$scratch/bricks.dds"
-    check_bake "$scratch/bricks.dds"
+find_package)
+    use_library "$scratch/build" "$all" -DCMAKE_PREFIX_PATH="$stage"
+    other=$([[ $cxx == *clang* ]] && echo g++ || echo clang++-14)
+    if cxx=$(command -v "$other"); then
+        use_library "$scratch/other" "$all" -DCMAKE_PREFIX_PATH="$stage"
+    else
+        echo "consumer.sh: $other is not installed: one compiler was tried"
+    fi
     ;;
 pkgconfig)
     PKG_CONFIG_PATH=$(dirname "$(find "$stage" -name libtex.pc)")
@@ -94,13 +145,38 @@ pkgconfig)
     if [ -e "$build/libtex.a" ]; then static=(--static); fi
     libdir=$(pkg-config --variable=libdir libtex)
     # shellcheck disable=SC2046  # flags are words
-    "$cxx" -std=c++20 -o "$scratch/bake_and_pack" "$samples/bake_and_pack.cpp" $(pkg-config --cflags --libs "${static[@]}" libtex) \
-        -Wl,-rpath,"$libdir"
+    "$cxx" -std=c++20 -o "$scratch/bake_and_pack" "$samples/bake_and_pack.cpp" \
+        $(pkg-config --cflags --libs "${static[@]}" libtex) -Wl,-rpath,"$libdir"
     "$scratch/bake_and_pack" "$samples/bricks.png" "$scratch/bricks.dds"
     check_bake "$scratch/bricks.dds"
     ;;
+plain)
+    quietly 'libtex cannot be configured' cmake -S "$source" -B "$scratch/build" -DCMAKE_CXX_COMPILER="$cxx"
+    without "$scratch/build" GTest squish osmesa
+    ;;
+library)
+    shared=ON files=$library_files
+    if [ ! -e "$build/libtex.a" ]; then shared=OFF files=$static_files$'\n'$library_files; fi
+    quietly 'the library cannot be configured' cmake -S "$source" -B "$scratch/build" -G Ninja \
+        "${reuse[@]}" -DCMAKE_CXX_COMPILER="$cxx" -DTEX_COMMANDS=OFF -DBUILD_SHARED_LIBS=$shared \
+        -DCMAKE_INSTALL_PREFIX="$scratch/stage"
+    without "$scratch/build" CLI11 fmt_DIR nlohmann OpenImageIO seccomp GTest squish osmesa
+    quietly 'the library cannot be built' cmake --build "$scratch/build" --target install
+    check_files "$scratch/stage" "$files"
+    use_library "$scratch/program" "$extremes" -DCMAKE_PREFIX_PATH="$scratch/stage"
+    ;;
+subdirectory)
+    for shared in ON OFF; do
+        folder=$scratch/shared-$shared
+        use_library "$folder" "$extremes" "${reuse[@]}" -DLIBTEX_SOURCE="$source" -DBUILD_SHARED_LIBS=$shared
+        without "$folder" CLI11 fmt_DIR nlohmann OpenImageIO seccomp GTest squish osmesa
+        cmake --install "$folder" --prefix "$folder/stage" >/dev/null
+        [ ! -e "$folder/stage" ] || fail "a project that adds libtex installs $(list_files "$folder/stage")"
+    done
+    ;;
 package)
-    (cd "$build" && cpack -G DEB -B "$scratch" >"$scratch/cpack.log") || { cat "$scratch/cpack.log"; fail "cpack failed"; }
+    cd "$build"
+    quietly 'cpack failed' cpack -G DEB -B "$scratch"
     package=$(find "$scratch" -maxdepth 1 -name '*.deb')
     dpkg-deb --info "$package"
     depends=$(dpkg-deb --field "$package" Depends)
@@ -108,12 +184,13 @@ package)
         case $depends in *"$wanted"*) ;; *) fail "the package does not depend on $wanted: $depends" ;; esac
     done
     dpkg-deb --extract "$package" "$scratch/root"
-    list_files "$scratch/root/usr" | sed 's|\(libtex-targets\)-[a-z]*\.cmake|\1-TYPE.cmake|' >"$scratch/packaged.txt"
-    diff -u "$here/manifest.txt" "$scratch/packaged.txt" || fail "the package differs from $here/manifest.txt"
+    check_files "$scratch/root/usr"
     "$scratch/root/usr/bin/bake-normals" "$samples/bricks.png" -o "$scratch/bricks.dds" --bumpiness 12
     check_bake "$scratch/bricks.dds"
-    # Hardened as by Debian's hardening=+all: position-independent, read-only relocations, bound at start, no code on the stack, with stack protector and fortified calls.
-    for program in "$scratch"/root/usr/bin/* "$scratch/root/usr/libexec/libtex/tex-reader" "$(find "$scratch/root" -name 'libtex.so.0')"; do
+    # Hardened as by Debian's hardening=+all: position-independent, read-only relocations, bound at start, no code on
+    # the stack, with stack protector and fortified calls.
+    for program in "$scratch"/root/usr/bin/* "$scratch/root/usr/libexec/libtex/tex-reader" \
+        "$(find "$scratch/root" -name 'libtex.so.0')"; do
         readelf --dyn-syms -W "$program" >"$scratch/symbols.txt"
         readelf -hW "$program" | grep -q 'Type: *DYN' || fail "$program is not position-independent"
         readelf -dW "$program" | grep -q BIND_NOW || fail "$program binds lazily"
