@@ -75,8 +75,7 @@ Result<void> UnpackNormals::process(cli::Job& job) {
 }
 
 Encoding UnpackNormals::encoding(const cli::Job& job) const {
-    const bool is_texture = job.task.container == Container::dds || job.task.container == Container::ktx2;
-    return is_texture ? Encoding::rgb8 : default_encoding(job.task.container);
+    return can_hold_blocks(job.task.container) ? Encoding::rgb8 : default_encoding(job.task.container);
 }
 
 }  // namespace

@@ -105,7 +105,7 @@ Result<void> measure(Subject& subject) {
     const auto swizzle = guess_swizzle(subject.texture, subject.execution);
     if (!swizzle) return swizzle.error();
     subject.stored = {&subject.base, *swizzle, is_signed(subject.texture, subject.base, *swizzle),
-                      format_info(subject.texture.format).block > 1};
+                      format_info(subject.texture.format).has_blocks()};
     const Stored& stored = subject.stored;
     subject.has_vectors = stored.channel(Component::x) >= 0 && stored.channel(Component::y) >= 0;
     if (!subject.has_vectors) return {};

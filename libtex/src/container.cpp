@@ -2,32 +2,18 @@
 
 #include <tex/container.h>
 
-#include <algorithm>
-#include <cctype>
 #include <string>
 
+#include "files/atomic_file.h"
 #include "files/input_file.h"
-#include "formats/dds/dds.h"
-#include "formats/exr/exr.h"
-#include "formats/ktx2/ktx2.h"
-#include "formats/png/png.h"
+#include "files/unfinished_files.h"
+#include "formats/codecs.h"
 #include "formats/reader/reader.h"
 #include "formats/texture_rows.h"
 #include "threads/guard.h"
 
 namespace tex {
 namespace {
-
-struct ExtensionRow {
-    std::string_view extension;
-    Container container;
-};
-
-constexpr ExtensionRow kExtensions[] = {
-    {"dds", Container::dds},  {"ktx2", Container::ktx2}, {"png", Container::png}, {"exr", Container::exr},
-    {"tif", Container::tiff}, {"tiff", Container::tiff}, {"tga", Container::tga}, {"bmp", Container::bmp},
-    {"jpg", Container::jpeg}, {"jpeg", Container::jpeg},
-};
 
 // The letters behind the last dot of the path's last part, in lower case; without one the text is empty.
 std::string extension_of(std::string_view path) {
@@ -42,62 +28,40 @@ std::string extension_of(std::string_view path) {
     return extension;
 }
 
+// Whether `list`, ".tif, .tiff", has the extension "tiff".
+bool lists(std::string_view list, const std::string& extension) {
+    const std::size_t at = list.find("." + extension);
+    if (extension.empty() || at == std::string_view::npos) return false;
+    const std::size_t end = at + 1 + extension.size();
+    return end == list.size() || list[end] == ',' || lists(list.substr(end), extension);
+}
+
 }  // namespace
 
 std::optional<Container> container_of(std::string_view path) {
     const std::string extension = extension_of(path);
-    for (const ExtensionRow& row : kExtensions) {
-        if (row.extension == extension) return row.container;
+    for (const Named<Container>& row : kContainerNames) {
+        if (lists(row.meaning, extension)) return row.value;
     }
     return std::nullopt;
 }
 
-bool can_hold(Container container, Encoding encoding) {
-    const auto among = [&](std::initializer_list<Encoding> encodings) {
-        return std::find(encodings.begin(), encodings.end(), encoding) != encodings.end();
-    };
-    switch (container) {
-        case Container::dds:
-        case Container::ktx2: return true;
-        case Container::png: return among({Encoding::rgb8, Encoding::rgba8, Encoding::rgb16, Encoding::ag8});
-        case Container::exr: return among({Encoding::half, Encoding::float_});
-        case Container::tiff:
-            return among(
-                {Encoding::rgb8, Encoding::rgba8, Encoding::rgb16, Encoding::ag8, Encoding::half, Encoding::float_});
-        case Container::tga: return among({Encoding::rgb8, Encoding::rgba8, Encoding::ag8});
-        case Container::bmp:
-        case Container::jpeg: return among({Encoding::rgb8});
-    }
-    return false;
-}
+bool can_hold(Container container, Format format) { return codec_of(container).holds(format_info(format)); }
 
-bool can_hold_levels(Container container) {
-    return container == Container::dds || container == Container::ktx2 || container == Container::exr;
-}
+bool can_hold(Container container, Encoding encoding) { return can_hold(container, encoding_info(encoding).format); }
 
-Encoding default_encoding(Container container) {
-    switch (container) {
-        case Container::dds:
-        case Container::ktx2: return Encoding::dxt5nm;
-        case Container::tiff: return Encoding::rgb16;
-        case Container::exr: return Encoding::half;
-        default: return Encoding::rgb8;
-    }
-}
+bool can_hold_blocks(Container container) { return can_hold(container, Encoding::dxt5nm); }
+
+bool can_hold_levels(Container container) { return codec_of(container).has_levels; }
+
+Encoding default_encoding(Container container) { return codec_of(container).default_encoding; }
 
 Result<std::vector<std::byte>> encode_file(const Texture& texture, Container container, const WriteOptions& options) {
     return guarded([&]() -> Result<std::vector<std::byte>> {
-        switch (container) {
-            case Container::dds: return assemble(texture, dds_layout(head_of(texture), options));
-            case Container::ktx2: return assemble(texture, ktx2_layout(head_of(texture)));
-            case Container::png: return encode_png(texture);
-            case Container::exr: return encode_exr(texture);
-            case Container::tiff:
-            case Container::tga:
-            case Container::bmp:
-            case Container::jpeg: return encode_with_reader(texture, container, options.reader);
-        }
-        return Error{ErrorCode::bad_option, {}, "no such container"};
+        const Codec& codec = codec_of(container);
+        if (codec.layout != nullptr) return assemble(texture, codec.layout(head_of(texture), options));
+        if (codec.open_target != nullptr) return encode_rows(codec.open_target, texture, codec.has_levels);
+        return encode_with_reader(texture, container, options.reader);
     });
 }
 
@@ -107,9 +71,15 @@ Result<void> write_texture(const std::string& path, const Texture& texture, cons
         return Error{ErrorCode::bad_option, path, "the extension names no kind of file that can be written"};
     }
     const Result<std::vector<std::byte>> bytes = encode_file(texture, *container, options);
-    if (!bytes) return Error{bytes.error().code, path, bytes.error().reason};
+    if (!bytes) return bytes.error().of(path);
     return write_file(path, *bytes, options);
 }
+
+Result<void> write_file(const std::string& path, const std::vector<std::byte>& bytes, const WriteOptions& options) {
+    return write_atomically(path, bytes, {options.sync, options.no_clobber});
+}
+
+void remove_unfinished_files() noexcept { UnfinishedFile::remove_all(); }
 
 Result<Texture> read_texture(const std::string& path, const ReadOptions& options) {
     return guarded([&]() -> Result<Texture> {
@@ -122,9 +92,11 @@ Result<Texture> read_texture(const std::string& path, const ReadOptions& options
 Result<Texture> decode_file(const std::byte* data, std::size_t size, const std::string& name,
                             const ReadOptions& options) {
     return guarded([&]() -> Result<Texture> {
-        if (is_dds(data, size)) return decode_dds(data, size, name, options);
-        if (is_ktx2(data, size)) return decode_ktx2(data, size, name, options);
-        return Error{ErrorCode::bad_data, name, size == 0 ? "the file is empty" : "neither a DDS nor a KTX2 file"};
+        const Codec& codec = codec_for({data, size});
+        if (codec.parse == nullptr) {
+            return Error{ErrorCode::bad_data, name, size == 0 ? "the file is empty" : "neither a DDS nor a KTX2 file"};
+        }
+        return load_texture(codec.parse, data, size, name, options);
     });
 }
 

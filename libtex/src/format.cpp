@@ -2,64 +2,94 @@
 
 #include <tex/format.h>
 
+#include <algorithm>
+#include <iterator>
+
+#include "blocks/extent.h"
+
 namespace tex {
 namespace {
 
-constexpr FormatInfo block_info(SampleKind sample, int channels, std::size_t bytes) {
-    return {sample, channels, 8, 4, bytes};
+constexpr SampleKind kUnorm = SampleKind::unorm;
+constexpr SampleKind kSnorm = SampleKind::snorm;
+constexpr SampleKind kFloat = SampleKind::floating;
+
+struct FormatRow {
+    Format format;
+    FormatInfo info;
+};
+
+constexpr FormatRow blocks(Format format, SampleKind sample, int channels, std::size_t bytes) {
+    return {format, {sample, channels, 8, {kBlockEdge, kBlockEdge}, bytes}};
 }
 
-constexpr FormatInfo texel_info(SampleKind sample, int channels, int bits) {
-    return {sample, channels, bits, 1, static_cast<std::size_t>(channels) * static_cast<std::size_t>(bits / 8)};
+constexpr FormatRow texels(Format format, SampleKind sample, int bits, int channels) {
+    const auto bytes = static_cast<std::size_t>(channels * bits / 8);
+    return {format, {sample, channels, bits, {1, 1}, bytes}};
 }
+
+// In the order of Format.
+constexpr FormatRow kFormats[] = {
+    blocks(Format::bc1_unorm, kUnorm, 4, 8),     blocks(Format::bc2_unorm, kUnorm, 4, 16),
+    blocks(Format::bc3_unorm, kUnorm, 4, 16),    blocks(Format::bc4_unorm, kUnorm, 1, 8),
+    blocks(Format::bc4_snorm, kSnorm, 1, 8),     blocks(Format::bc5_unorm, kUnorm, 2, 16),
+    blocks(Format::bc5_snorm, kSnorm, 2, 16),    texels(Format::r8_unorm, kUnorm, 8, 1),
+    texels(Format::rg8_unorm, kUnorm, 8, 2),     texels(Format::rgb8_unorm, kUnorm, 8, 3),
+    texels(Format::rgba8_unorm, kUnorm, 8, 4),   texels(Format::r8_snorm, kSnorm, 8, 1),
+    texels(Format::rg8_snorm, kSnorm, 8, 2),     texels(Format::rgba8_snorm, kSnorm, 8, 4),
+    texels(Format::r16_unorm, kUnorm, 16, 1),    texels(Format::rg16_unorm, kUnorm, 16, 2),
+    texels(Format::rgb16_unorm, kUnorm, 16, 3),  texels(Format::rgba16_unorm, kUnorm, 16, 4),
+    texels(Format::r16_snorm, kSnorm, 16, 1),    texels(Format::rg16_snorm, kSnorm, 16, 2),
+    texels(Format::rgba16_snorm, kSnorm, 16, 4), texels(Format::r16_float, kFloat, 16, 1),
+    texels(Format::rg16_float, kFloat, 16, 2),   texels(Format::rgb16_float, kFloat, 16, 3),
+    texels(Format::rgba16_float, kFloat, 16, 4), texels(Format::r32_float, kFloat, 32, 1),
+    texels(Format::rg32_float, kFloat, 32, 2),   texels(Format::rgb32_float, kFloat, 32, 3),
+    texels(Format::rgba32_float, kFloat, 32, 4),
+};
+
+constexpr Swizzle kXyz1 = {Component::x, Component::y, Component::z, Component::one};
+
+struct EncodingRow {
+    Encoding encoding;
+    EncodingInfo info;
+};
+
+// In the order of Encoding.
+constexpr EncodingRow kEncodings[] = {
+    {Encoding::dxt5nm, {Format::bc3_unorm, kSwizzleDxt5nm}}, {Encoding::bc5, {Format::bc5_unorm, kSwizzleXy}},
+    {Encoding::bc5_snorm, {Format::bc5_snorm, kSwizzleXy}},  {Encoding::rgb8, {Format::rgb8_unorm, kXyz1}},
+    {Encoding::rgba8, {Format::rgba8_unorm, kXyz1}},         {Encoding::rgb16, {Format::rgb16_unorm, kXyz1}},
+    {Encoding::ag8, {Format::rgba8_unorm, kSwizzleDxt5nm}},  {Encoding::rg8, {Format::rg8_unorm, kSwizzleXy}},
+    {Encoding::rg16, {Format::rg16_unorm, kSwizzleXy}},      {Encoding::half, {Format::rgb16_float, kXyz1}},
+    {Encoding::float_, {Format::rgb32_float, kXyz1}},
+};
+
+static_assert([] {
+    for (std::size_t k = 0; k < std::size(kFormats); ++k) {
+        if (kFormats[k].format != static_cast<Format>(k) || kFormatNames[k].value != static_cast<Format>(k))
+            return false;
+    }
+    for (std::size_t k = 0; k < std::size(kEncodings); ++k) {
+        if (kEncodings[k].encoding != static_cast<Encoding>(k)) return false;
+    }
+    return std::size(kFormats) == std::size(kFormatNames) && std::size(kEncodings) == std::size(kEncodingNames);
+}());
 
 }  // namespace
 
-FormatInfo format_info(Format format) {
-    constexpr SampleKind kUnorm = SampleKind::unorm;
-    constexpr SampleKind kSnorm = SampleKind::snorm;
-    constexpr SampleKind kFloat = SampleKind::floating;
-    switch (format) {
-        case Format::bc1_unorm: return block_info(kUnorm, 4, 8);
-        case Format::bc2_unorm:
-        case Format::bc3_unorm: return block_info(kUnorm, 4, 16);
-        case Format::bc4_unorm: return block_info(kUnorm, 1, 8);
-        case Format::bc4_snorm: return block_info(kSnorm, 1, 8);
-        case Format::bc5_unorm: return block_info(kUnorm, 2, 16);
-        case Format::bc5_snorm: return block_info(kSnorm, 2, 16);
-        case Format::r8_unorm: return texel_info(kUnorm, 1, 8);
-        case Format::rg8_unorm: return texel_info(kUnorm, 2, 8);
-        case Format::rgb8_unorm: return texel_info(kUnorm, 3, 8);
-        case Format::rgba8_unorm: return texel_info(kUnorm, 4, 8);
-        case Format::r8_snorm: return texel_info(kSnorm, 1, 8);
-        case Format::rg8_snorm: return texel_info(kSnorm, 2, 8);
-        case Format::rgba8_snorm: return texel_info(kSnorm, 4, 8);
-        case Format::r16_unorm: return texel_info(kUnorm, 1, 16);
-        case Format::rg16_unorm: return texel_info(kUnorm, 2, 16);
-        case Format::rgb16_unorm: return texel_info(kUnorm, 3, 16);
-        case Format::rgba16_unorm: return texel_info(kUnorm, 4, 16);
-        case Format::r16_snorm: return texel_info(kSnorm, 1, 16);
-        case Format::rg16_snorm: return texel_info(kSnorm, 2, 16);
-        case Format::rgba16_snorm: return texel_info(kSnorm, 4, 16);
-        case Format::r16_float: return texel_info(kFloat, 1, 16);
-        case Format::rg16_float: return texel_info(kFloat, 2, 16);
-        case Format::rgb16_float: return texel_info(kFloat, 3, 16);
-        case Format::rgba16_float: return texel_info(kFloat, 4, 16);
-        case Format::r32_float: return texel_info(kFloat, 1, 32);
-        case Format::rg32_float: return texel_info(kFloat, 2, 32);
-        case Format::rgb32_float: return texel_info(kFloat, 3, 32);
-        case Format::rgba32_float: return texel_info(kFloat, 4, 32);
-    }
-    return {};
+FormatInfo format_info(Format format) { return kFormats[static_cast<std::size_t>(format)].info; }
+
+std::optional<Format> format_of(SampleKind sample, int bits, int channels) {
+    const auto* row = std::find_if(std::begin(kFormats), std::end(kFormats), [&](const FormatRow& r) {
+        return !r.info.has_blocks() && r.info.sample == sample && r.info.bits == bits && r.info.channels == channels;
+    });
+    return row == std::end(kFormats) ? std::nullopt : std::optional(row->format);
 }
 
 std::size_t level_bytes(Format format, Extent extent) {
     const FormatInfo info = format_info(format);
-    const auto blocks = [&](int texels) {
-        return (static_cast<std::size_t>(texels) + static_cast<std::size_t>(info.block) - 1) /
-               static_cast<std::size_t>(info.block);
-    };
-    return blocks(extent.width) * blocks(extent.height) * info.block_bytes;
+    return static_cast<std::size_t>(blocks_across(extent.width, info.block.width)) *
+           static_cast<std::size_t>(blocks_across(extent.height, info.block.height)) * info.block_bytes;
 }
 
 std::string to_string(const Swizzle& swizzle) {
@@ -68,26 +98,6 @@ std::string to_string(const Swizzle& swizzle) {
     return letters;
 }
 
-EncodingInfo encoding_info(Encoding encoding) {
-    constexpr Component kZero = Component::zero;
-    constexpr Component kOne = Component::one;
-    constexpr Component kX = Component::x;
-    constexpr Component kY = Component::y;
-    constexpr Component kZ = Component::z;
-    switch (encoding) {
-        case Encoding::dxt5nm: return {Format::bc3_unorm, {kOne, kY, kOne, kX}};
-        case Encoding::bc5: return {Format::bc5_unorm, {kX, kY, kZero, kOne}};
-        case Encoding::bc5_snorm: return {Format::bc5_snorm, {kX, kY, kZero, kOne}};
-        case Encoding::rgb8: return {Format::rgb8_unorm, {kX, kY, kZ, kOne}};
-        case Encoding::rgba8: return {Format::rgba8_unorm, {kX, kY, kZ, kOne}};
-        case Encoding::rgb16: return {Format::rgb16_unorm, {kX, kY, kZ, kOne}};
-        case Encoding::ag8: return {Format::rgba8_unorm, {kOne, kY, kOne, kX}};
-        case Encoding::rg8: return {Format::rg8_unorm, {kX, kY, kZero, kOne}};
-        case Encoding::rg16: return {Format::rg16_unorm, {kX, kY, kZero, kOne}};
-        case Encoding::half: return {Format::rgb16_float, {kX, kY, kZ, kOne}};
-        case Encoding::float_: return {Format::rgb32_float, {kX, kY, kZ, kOne}};
-    }
-    return {};
-}
+EncodingInfo encoding_info(Encoding encoding) { return kEncodings[static_cast<std::size_t>(encoding)].info; }
 
 }  // namespace tex

@@ -38,7 +38,8 @@ Result<Texture> pack_chain(const MipChain& chain, const PackOptions& options, co
         Level packed;
         packed.extent = extent;
         packed.bytes.resize(level_bytes(texture.format, extent));
-        const int grain = std::max(1, kPieceTexels / extent.width / 4) * 4;  // whole rows of blocks
+        const int block = format_info(texture.format).block.height;
+        const int grain = std::max(1, kPieceTexels / extent.width / block) * block;
         const auto fraction = [&] { return static_cast<double>(done) / static_cast<double>(total); };
         ProgressSpan span;
         span.from = fraction();
@@ -64,18 +65,9 @@ void encode_blocks(PlaneView<const float> x, PlaneView<const float> y, const Pac
                    std::size_t pitch) {
     const Extent extent = x.extent;
     assert(extent == y.extent && extent.width >= 1 && extent.height >= 1);
-    assert(pitch >= (static_cast<std::size_t>(extent.width) + 3) / 4 * 16);
-    for (int j = 0; j < extent.height; j += 4, blocks += pitch) {
-        BlockRow row;
-        row.width = extent.width;
-        row.height = std::min(4, extent.height - j);
-        row.negate_y = options.y_axis == YAxis::down;
-        for (int k = 0; k < 4; ++k) {
-            row.x[k] = x.row(j + std::min(k, row.height - 1));
-            row.y[k] = y.row(j + std::min(k, row.height - 1));
-        }
-        encode_blocks(row, options, blocks);
-    }
+    assert(pitch >= level_bytes(encoding_info(options.encoding).format, {extent.width, 1}));
+    for (int j = 0; j < extent.height; j += kBlockEdge, blocks += pitch)
+        encode_blocks(block_row(x, y, extent, j, options.y_axis == YAxis::down), options, blocks);
 }
 
 }  // namespace tex

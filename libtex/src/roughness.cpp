@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "blocks/extent.h"
 #include "kernels/mip.h"
 #include "kernels/roughness.h"
 #include "rows/axis_filter.h"
@@ -167,7 +168,7 @@ Result<Texture> pack_chain(const RoughnessChain& chain, Format format, Effort ef
         Level level{plane.extent(), std::vector<std::byte>(level_bytes(format, plane.extent()))};
         const bool last = &plane == &chain.levels.back();
         const double next = last ? 1.0 : done + (1.0 - done) * 0.75;
-        const int grain = (strip_rows(plane.extent()) + 3) / 4 * 4;  // whole rows of blocks
+        const int grain = whole_blocks(strip_rows(plane.extent()));
         const auto packed = parallel_for(execution, plane.extent().height, grain,
                                          [&](int begin, int end) {
                                              pack_roughness_rows(plane, plane.extent().height, format, effort, begin,

@@ -8,7 +8,8 @@
 #include <cassert>
 #include <cstring>
 
-#include "formats/channel_names.h"
+#include "blocks/extent.h"
+#include "formats/channels.h"
 #include "kernels/decode.h"
 #include "kernels/unpack.h"
 #include "rows/unpack_rows.h"
@@ -19,18 +20,18 @@ namespace tex {
 namespace {
 
 constexpr const char* kChannelNames[] = {"R", "G", "B", "A"};
-constexpr int kStripRows = 4;  // of a block format: one row of blocks
+constexpr int kStripRows = kBlockEdge;  // of a block format: one row of blocks
 
-int strips_of(Extent extent) { return (extent.height + kStripRows - 1) / kStripRows; }
+int strips_of(Extent extent) { return blocks_across(extent.height, kStripRows); }
 
 // Decodes the rows of strip `strip` to `rows`, whose rows lie `stride` apart and must have room for kStripRows rows of
-// the width rounded up to 4.
+// the width rounded up to whole blocks.
 void decode_strip(Format format, const Level& level, int strip, const ChannelRows& rows, std::ptrdiff_t stride) {
     const int width = level.extent.width;
     const std::size_t pitch = level_bytes(format, {width, 1});  // of a row of blocks, where there are blocks
-    if (format_info(format).block > 1) {
-        decode_blocks(format, level.bytes.data() + static_cast<std::size_t>(strip) * pitch, (width + 3) / 4, rows,
-                      stride);
+    if (const FormatInfo info = format_info(format); info.has_blocks()) {
+        decode_blocks(format, level.bytes.data() + static_cast<std::size_t>(strip) * pitch,
+                      blocks_across(width, info.block.width), rows, stride);
         return;
     }
     const int first = strip * kStripRows;
@@ -90,7 +91,7 @@ struct ImageReader {
     }
 };
 
-Plane<float> make_scratch(Extent extent) { return Plane<float>({(extent.width + 3) / 4 * 4, 3 * kStripRows}); }
+Plane<float> make_scratch(Extent extent) { return Plane<float>({whole_blocks(extent.width), 3 * kStripRows}); }
 
 // Strips that one thread takes at once: enough texels to be worth it.
 int grain_of(Extent extent) { return std::max(1, (1 << 16) / (kStripRows * extent.width)); }
@@ -189,7 +190,7 @@ Result<Image> decode_level(const Texture& texture, const Level& level, const Exe
     for (int c = 0; c < info.channels; ++c) image.planes.emplace_back(level.extent);
     const Extent extent = level.extent;
     const auto decoded = parallel_for(execution, strips_of(extent), grain_of(extent), [&](int begin, int end) {
-        Plane<float> scratch({(extent.width + 3) / 4 * 4, 4 * kStripRows});
+        Plane<float> scratch({whole_blocks(extent.width), 4 * kStripRows});
         ChannelRows rows;
         for (int c = 0; c < info.channels; ++c) rows.channel[c] = scratch.row(c * kStripRows);
         for (int strip = begin; strip < end; ++strip) {
@@ -235,13 +236,11 @@ Result<MipChain> unpack_levels(const Texture& texture, const UnpackOptions& opti
 }
 
 Result<NormalMap> unpack_image(const Image& image, const UnpackOptions& options, const Execution& execution) {
-    constexpr Swizzle kXyz = {Component::x, Component::y, Component::z, Component::other};
-    constexpr Swizzle kXy = {Component::x, Component::y, Component::zero, Component::one};
     const std::array<const Plane<float>*, 4> planes = planes_of(image);
     unsigned available = 0;
     for (unsigned c = 0; c < 4; ++c) available |= (planes[c] != nullptr ? 1u : 0u) << c;
     const Result<Sources> sources =
-        sources_of(options.swizzle.value_or(image.planes.size() == 2 ? kXy : kXyz), available);
+        sources_of(options.swizzle.value_or(image.planes.size() == 2 ? kSwizzleXy : kSwizzleXyz), available);
     if (!sources) return sources.error();
     const auto plane = [&](int c) { return c < 0 ? nullptr : planes[static_cast<std::size_t>(c)]; };
     const ImageReader reader{{plane(sources->x), plane(sources->y), plane(sources->z)}};

@@ -102,7 +102,8 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    const auto texture = tex::decode_dds(reinterpret_cast<const std::byte*>(data), size, "fuzz.dds", fuzz_options());
+    const auto texture =
+        tex::load_texture(tex::parse_dds, reinterpret_cast<const std::byte*>(data), size, "fuzz.dds", fuzz_options());
     if (texture) expect_whole(*texture);
     return 0;
 }

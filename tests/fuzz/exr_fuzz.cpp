@@ -50,7 +50,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!file) return 0;
     tex::ReadOptions options;
     options.max_texels = 1 << 16;
-    const auto image = tex::read_exr(*file, options);
+    const auto image = tex::read_all(tex::open_exr_rows(*file, options));
     if (!image && image.error().reason.empty()) std::abort();
     if (image && (image->extent().texels() > options.max_texels || image->names.size() != image->planes.size()))
         std::abort();
@@ -60,7 +60,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (!rows) std::abort();
         compare_some_rows(**rows, choice, !is_dwa(*file));
     }
-    const auto texture = tex::read_exr_texture(*file, options);
+    const auto texture = tex::read_all(tex::open_exr_texture_rows(*file, options));
     if (!texture) return 0;
     if (!image) std::abort();
     const auto levels = tex::open_exr_texture_rows(*file, options);
@@ -70,7 +70,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto again = tex::encode_exr(*texture);
     if (!again) std::abort();
     auto copy = tex::InputFile::from_memory("again.exr", *again);
-    const auto same = tex::read_exr_texture(*copy, options);
+    const auto same = tex::read_all(tex::open_exr_texture_rows(*copy, options));
     if (!same || same->levels.size() != texture->levels.size()) std::abort();
     for (std::size_t k = 0; k < same->levels.size(); ++k) {
         if (same->levels[k].bytes.size() != texture->levels[k].bytes.size()) std::abort();

@@ -7,7 +7,8 @@
 #include "fuzz/whole_texture.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    const auto texture = tex::decode_ktx2(reinterpret_cast<const std::byte*>(data), size, "fuzz.ktx2", fuzz_options());
+    const auto texture =
+        tex::load_texture(tex::parse_ktx2, reinterpret_cast<const std::byte*>(data), size, "fuzz.ktx2", fuzz_options());
     if (texture) expect_whole(*texture);
     return 0;
 }

@@ -180,7 +180,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!file) return 0;
     tex::ReadOptions options;
     options.max_texels = 1 << 20;
-    const auto image = tex::read_png(*file, options);
+    const auto image = tex::read_all(tex::open_png(*file, options));
     if (!image) {
         if (image.error().reason.empty()) std::abort();
         count_refused(image.error().reason);

@@ -155,7 +155,7 @@ void check_decoding(const tex::ReadOptions& options) {
     const auto* bytes = reinterpret_cast<const std::byte*>(mark);
     auto file = tex::InputFile::from_memory("fuzz.tif", {bytes, bytes + sizeof mark});
     if (!file) std::abort();
-    const auto image = tex::read_with_reader(*file, options);
+    const auto image = tex::read_all(tex::open_reader_rows(*file, options));
     if (!image) return check_error(image.error());
     if (image->extent().texels() > options.max_texels || image->planes.empty() ||
         image->planes.size() != image->names.size())

@@ -103,7 +103,7 @@ Result<Detection> detect_planted(const std::string& data) {
         if (!map.intact) continue;
         auto texture = read_texture(data + map.path);
         if (!texture) return texture.error();
-        const bool blocks = format_info(texture->format).block == 4;
+        const bool blocks = format_info(texture->format).has_blocks();
         auto normals = vectors(std::move(*texture));
         if (!normals) return normals.error();
         if (auto done = detect_in(map, *normals, blocks, detection); !done) return done.error();

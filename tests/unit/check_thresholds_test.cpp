@@ -112,7 +112,7 @@ void add_untouched(const reference::RealMap& map, const Texture& texture, int ha
     // Baked from heights of few levels, as the test below shows.
     if (map.path != "normal/water1_256.tga") all.lattice.intact[half].push_back(measure_lattice(base.stored).strength);
     if (map.tiles) all.seam.intact[half].push_back(measure_seam(base.stored).worst());
-    if (format_info(texture.format).block != 4) {
+    if (!format_info(texture.format).has_blocks()) {
         all.jpeg.intact[half].push_back(measure_jpeg(base.stored).weight());
         all.palette.intact[half].push_back(palette_share(base.stored));
     }
@@ -189,7 +189,7 @@ TEST(CheckThresholds, FollowFromTheHalfThatSetsThem) {
         options.y_axis = YAxis::up;
         const auto chain = unpack(base, options);
         ASSERT_TRUE(chain);
-        const bool blocks = format_info(texture->format).block == 4;
+        const bool blocks = format_info(texture->format).has_blocks();
         for (const auto& planted : reference::plant_all(chain->levels[0], map.y, map.tiles, blocks))
             add_planted(planted, half, all);
     }

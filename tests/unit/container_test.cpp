@@ -55,6 +55,16 @@ TEST(Container, HoldsEveryEncodingInDdsAndKtx2) {
     EXPECT_FALSE(can_hold_levels(Container::png));
 }
 
+// Roughness goes into files by its format.
+TEST(Container, HoldsFormats) {
+    EXPECT_TRUE(can_hold(Container::ktx2, Format::bc4_unorm) && can_hold_blocks(Container::ktx2));
+    EXPECT_FALSE(can_hold(Container::tiff, Format::bc4_unorm) || can_hold_blocks(Container::tiff));
+    EXPECT_TRUE(can_hold(Container::tiff, Format::r32_float) && can_hold(Container::png, Format::r16_unorm));
+    EXPECT_FALSE(can_hold(Container::png, Format::r16_float) || can_hold(Container::tga, Format::r16_unorm));
+    EXPECT_TRUE(can_hold(Container::exr, Format::r16_float) && can_hold(Container::jpeg, Format::r8_unorm));
+    EXPECT_FALSE(can_hold(Container::exr, Format::r8_unorm) || can_hold(Container::jpeg, Format::rgba8_unorm));
+}
+
 TEST(Container, GivesEqualBytesForEqualTextures) {
     for (const auto& row : kEncodingNames) {
         for (const Container container : {Container::dds, Container::ktx2}) {

@@ -12,7 +12,7 @@
 
 #include <ImfCompression.h>
 
-#include "formats/exr/exr.h"
+#include "formats/exr/exr_rows.h"
 #include "unit/exr_files.h"
 
 namespace tex {
@@ -78,7 +78,7 @@ std::string read_poisoned(const Bytes& bytes, int poison) {
     std::string said;
     const Result<InputFile> opened = InputFile::from_memory("test.exr", bytes);
     InputFile& file = const_cast<InputFile&>(opened.value());
-    const Result<Image> image = read_exr(file, {});
+    const Result<Image> image = read_all(open_exr_rows(file, {}));
     if (!image) said = image.error().reason;
     for (std::size_t c = 0; image && c < image->planes.size(); ++c) {
         for (int j = 0; j < image->extent().height; ++j) {

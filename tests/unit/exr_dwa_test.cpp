@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "formats/bytes.h"
-#include "formats/exr/exr.h"
+#include "formats/exr/exr_rows.h"
 #include "unit/exr_files.h"
 
 namespace tex {
@@ -21,7 +21,7 @@ const std::vector<std::string> kChannels = {
 
 Result<Image> read(const Bytes& bytes) {
     Result<InputFile> opened = InputFile::from_memory("test.exr", bytes);
-    return read_exr(*opened, {});
+    return read_all(open_exr_rows(*opened, {}));
 }
 
 std::uint64_t load_u64(const Bytes& bytes, std::size_t at) {

@@ -51,7 +51,7 @@ TEST(ExrRows, AnyRowsAreThoseOfTheWholePicture) {
                 const auto bytes =
                     exr_file({37, 41}, {"G", "R", "depth"}, type, static_cast<Imf::Compression>(k), tiled);
                 Result<InputFile> file = InputFile::from_memory("rows.exr", bytes);
-                const Result<Image> whole = read_exr(*file, {});
+                const Result<Image> whole = read_all(open_exr_rows(*file, {}));
                 ASSERT_TRUE(whole) << whole.error().message();
                 const auto rows = open_exr_rows(*file, {});
                 ASSERT_TRUE(rows) << rows.error().message();
@@ -84,7 +84,7 @@ TEST(ExrRows, ChunksAreWhereTheTableSaysInWhateverOrderTheyAreRead) {
                          bytes.begin() + static_cast<std::ptrdiff_t>(table + 16),
                          bytes.begin() + static_cast<std::ptrdiff_t>(table + 16));
         Result<InputFile> file = InputFile::from_memory("table.exr", bytes);
-        const Result<Image> whole = read_exr(*file, {});
+        const Result<Image> whole = read_all(open_exr_rows(*file, {}));
         ASSERT_FALSE(whole);
         EXPECT_EQ(whole.error().code, ErrorCode::bad_data);
         const auto rows = open_exr_rows(*file, {});
@@ -99,14 +99,14 @@ TEST(ExrRows, ChunksAreWhereTheTableSaysInWhateverOrderTheyAreRead) {
 TEST(ExrRows, ScanLinesIgnoreALeftoverTileDescription) {
     const auto plain = exr_file({37, 41}, {"B", "G", "R"}, Imf::HALF, Imf::ZIP_COMPRESSION);
     Result<InputFile> plain_file = InputFile::from_memory("lines.exr", plain);
-    const Result<Image> whole = read_exr(*plain_file, {});
+    const Result<Image> whole = read_all(open_exr_rows(*plain_file, {}));
     ASSERT_TRUE(whole);
     for (const std::uint32_t size : {0u, 1u, 64u, 0x7fffffffu, 0xffffffffu}) {
         for (const char mode : {'\0', '\1', '\2', '\x11', '\x7f'}) {
             SCOPED_TRACE(testing::Message() << size << " mode " << int{mode});
             const auto bytes = with_attribute(plain, "tiles", "tiledesc", tile_description(64, size, mode));
             Result<InputFile> file = InputFile::from_memory("tiles.exr", bytes);
-            const Result<Image> image = read_exr(*file, {});
+            const Result<Image> image = read_all(open_exr_rows(*file, {}));
             ASSERT_TRUE(image) << image.error().message();
             expect_same(*image, *whole, 0);
             const auto rows = open_exr_rows(*file, {});

@@ -2,6 +2,7 @@
 
 #include "formats/exr/exr.h"
 #include "formats/exr/exr_part.h"
+#include "formats/exr/exr_rows.h"
 
 #include <gtest/gtest.h>
 
@@ -36,7 +37,7 @@ Result<InputFile> open(const Bytes& bytes) { return InputFile::from_memory("test
 Result<Image> read(const Bytes& bytes, const ReadOptions& options = {}) {
     Result<InputFile> file = open(bytes);
     if (!file) return file.error();
-    return read_exr(*file, options);
+    return read_all(open_exr_rows(*file, options));
 }
 
 TEST(Exr, ReadsEveryTypeCompressionAndLayoutExactly) {
@@ -265,7 +266,7 @@ TEST(Exr, TexturesComeBackWithTheirLevels) {
             const Result<Bytes> bytes = encode_exr(texture);
             ASSERT_TRUE(bytes) << bytes.error().message();
             Result<InputFile> file = open(*bytes);
-            const Result<Texture> back = read_exr_texture(*file, {});
+            const Result<Texture> back = read_all(open_exr_texture_rows(*file, {}));
             ASSERT_TRUE(back) << back.error().message();
             EXPECT_EQ(back->format, format);
             EXPECT_EQ(back->y_axis, YAxis::down);
@@ -324,7 +325,7 @@ TEST(Exr, RefusesWhatItCannotHold) {
 TEST(Exr, NanAndInfiniteValuesAreAsStored) {
     Result<InputFile> file = InputFile::open(TEX_SOURCE_DIR "/../shared/data/height/reader_nan_inf_800x800.exr");
     if (!file) GTEST_SKIP() << "no shared data";
-    const Result<Image> image = read_exr(*file, {});
+    const Result<Image> image = read_all(open_exr_rows(*file, {}));
     ASSERT_TRUE(image) << image.error().message();
     int nan = 0, infinite = 0;
     for (const Plane<float>& plane : image->planes) {

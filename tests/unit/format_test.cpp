@@ -15,13 +15,24 @@ TEST(Format, HasOneNameAndSoundFactsForEachFormat) {
         EXPECT_TRUE(names.insert(row.name).second) << row.name;
         const FormatInfo info = format_info(row.value);
         EXPECT_TRUE(info.channels >= 1 && info.channels <= 4) << row.name;
-        EXPECT_TRUE(info.block == 1 || info.block == 4) << row.name;
-        if (info.block == 1) {
+        EXPECT_EQ(info.block, info.has_blocks() ? (Extent{4, 4}) : (Extent{1, 1})) << row.name;
+        if (!info.has_blocks()) {
             EXPECT_EQ(info.block_bytes * 8, static_cast<std::size_t>(info.channels * info.bits)) << row.name;
         }
     }
     EXPECT_EQ(format_info(Format::rgba32_float).block_bytes, 16u);  // the last one of the enum is in the table
     EXPECT_EQ(name_of(kFormatNames, Format::rgba32_float), "rgba32-float");
+}
+
+TEST(Format, IsFoundByItsSamples) {
+    for (const auto& row : kFormatNames) {
+        const FormatInfo info = format_info(row.value);
+        if (!info.has_blocks()) {
+            EXPECT_EQ(format_of(info.sample, info.bits, info.channels), row.value) << row.name;
+        }
+    }
+    EXPECT_EQ(format_of(SampleKind::snorm, 8, 3), std::nullopt);
+    EXPECT_EQ(format_of(SampleKind::floating, 8, 1), std::nullopt);
 }
 
 TEST(Format, RoundsBlocksUpAndDoesNotOverflow) {

@@ -19,7 +19,7 @@ using Bytes = std::vector<std::byte>;
 Result<Image> read(Bytes bytes, const ReadOptions& options = {}) {
     Result<InputFile> file = InputFile::from_memory("test.png", std::move(bytes));
     if (!file) return file.error();
-    return read_png(*file, options);
+    return read_all(open_png(*file, options));
 }
 
 // One kind of PNG, as libpng writes it.

@@ -2,6 +2,7 @@
 // The other direction of containers/reader.h: pictures that only OpenImageIO writes.
 
 #include "formats/reader/reader.h"
+#include "formats/reader/reader_rows.h"
 
 #include <gtest/gtest.h>
 
@@ -28,7 +29,7 @@ void put(Bytes& bytes, std::uint32_t value, int count) {
 Result<Image> read(const Bytes& bytes) {
     Result<InputFile> file = InputFile::from_memory("test", bytes);
     if (!file) return file.error();
-    return read_with_reader(*file, quick());
+    return read_all(open_reader_rows(*file, quick()));
 }
 
 Texture texture_of(Format format, Extent extent) {

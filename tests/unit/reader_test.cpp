@@ -17,6 +17,7 @@
 #include <fstream>
 
 #include "formats/reader/reader_process.h"
+#include "formats/reader/reader_rows.h"
 
 namespace tex {
 namespace {
@@ -101,7 +102,7 @@ Bytes raw(std::initializer_list<T> values) {
 Result<Image> read(const Bytes& bytes, const ReadOptions& options = quick()) {
     Result<InputFile> file = InputFile::from_memory("test", bytes);
     if (!file) return file.error();
-    return read_with_reader(*file, options);
+    return read_all(open_reader_rows(*file, options));
 }
 
 void expect_row(const Result<Image>& image, std::size_t plane, const std::vector<float>& values) {
@@ -369,7 +370,7 @@ TEST(Reader, FilesInMemoryGrowButDoNotShrink) {
 TEST(Reader, FilesOnDiskAreReadThroughTheSandbox) {
     const std::string path = testing::TempDir() + "reader_test.ppm";
     std::ofstream(path) << "P5 2 1 255\n" << '\xff' << '\0';
-    const Result<Image> image = read_with_reader(path, quick());
+    const Result<Image> image = read_image(path, quick());
     std::filesystem::remove(path);
     expect_row(image, 0, {1.0f, 0.0f});
 }

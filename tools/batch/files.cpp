@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_block_encoding(Encoding encoding) { return format_info(encoding_info(encoding).format).block > 1; }
+bool is_block_encoding(Encoding encoding) { return format_info(encoding_info(encoding).format).has_blocks(); }
 
 // The names in a list: one on each line or, where the list holds a NUL, up to each NUL.
 std::vector<std::string> names_in(const std::string& text) {

@@ -80,8 +80,7 @@ void MipChainOptions::check(const std::vector<Task>& tasks) const {
 
 int MipChainOptions::levels_for(const Task& task) const {
     if (levels) return *levels;
-    const bool is_texture = task.container == Container::dds || task.container == Container::ktx2;
-    return is_texture || has_level(task.output) ? 0 : 1;
+    return can_hold_blocks(task.container) || has_level(task.output) ? 0 : 1;
 }
 
 }  // namespace tex::cli

@@ -16,21 +16,6 @@
 namespace tex::cli {
 namespace {
 
-bool can_hold(Container container, Format format) {
-    const bool is_float = format_info(format).sample == SampleKind::floating;
-    switch (container) {
-        case Container::dds:
-        case Container::ktx2: return true;
-        case Container::exr: return is_float;
-        case Container::tiff: return format != Format::bc4_unorm;
-        case Container::png: return format == Format::r8_unorm || format == Format::r16_unorm;
-        case Container::tga:
-        case Container::bmp:
-        case Container::jpeg: return format == Format::r8_unorm;
-    }
-    return false;
-}
-
 // Throws UsageError where the name does not tell.
 Container container_for(const std::string& path) {
     if (const auto container = container_of(path)) return *container;
@@ -94,13 +79,8 @@ std::string RoughnessOptions::output_of(const Task& task) const {
 
 Format RoughnessOptions::format_in(Container container) const {
     if (format_) return *format_;
-    switch (container) {
-        case Container::dds:
-        case Container::ktx2: return Format::bc4_unorm;
-        case Container::tiff: return Format::r16_unorm;
-        case Container::exr: return Format::r16_float;
-        default: return Format::r8_unorm;
-    }
+    const FormatInfo info = format_info(encoding_info(default_encoding(container)).format);
+    return info.has_blocks() ? Format::bc4_unorm : *format_of(info.sample, info.bits, 1);
 }
 
 void RoughnessOptions::check(const std::vector<Task>& tasks, int levels) const {

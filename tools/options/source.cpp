@@ -14,9 +14,6 @@
 namespace tex::cli {
 namespace {
 
-constexpr Swizzle kXY = {Component::x, Component::y, Component::zero, Component::one};
-constexpr Swizzle kYX = {Component::y, Component::x, Component::zero, Component::one};
-
 // "rgb" for what is in the table, else the letters: "1y1x".
 std::string swizzle_name(const Swizzle& swizzle) {
     const std::string_view name = name_of(kSwizzleNames, swizzle);
@@ -24,32 +21,24 @@ std::string swizzle_name(const Swizzle& swizzle) {
 }
 
 Encoding exact_encoding(const SourceInfo& source) {
-    switch (source.format) {
-        case Format::bc3_unorm: return Encoding::dxt5nm;
-        case Format::bc5_unorm: return Encoding::bc5;
-        case Format::bc5_snorm: return Encoding::bc5_snorm;
-        case Format::rg8_unorm:
-        case Format::rg8_snorm: return Encoding::rg8;
-        case Format::rg16_unorm:
-        case Format::rg16_snorm: return Encoding::rg16;
-        default: break;
-    }
     const FormatInfo info = format_info(source.format);
+    for (const auto& row : kEncodingNames) {
+        const Format format = encoding_info(row.value).format;
+        if (format == source.format && (info.has_blocks() || info.channels == 2)) return row.value;
+    }
+    if (info.channels == 2 && info.sample == SampleKind::snorm) return info.bits == 8 ? Encoding::rg8 : Encoding::rg16;
     if (info.sample == SampleKind::floating) return info.bits == 16 ? Encoding::half : Encoding::float_;
     if (info.bits == 16) return Encoding::rgb16;
-    if (info.block == 1 && source.swizzle[3] == Component::x) return Encoding::ag8;
+    if (!info.has_blocks() && source.swizzle[3] == Component::x) return Encoding::ag8;
     return source.format == Format::rgba8_unorm ? Encoding::rgba8 : Encoding::rgb8;
 }
 
 }  // namespace
 
 Encoding encoding_of(const SourceInfo& source, const Task& task) {
-    const auto is_texture = [](Container container) {
-        return container == Container::dds || container == Container::ktx2;
-    };
     const std::optional<Container> before = container_of(task.input);
     const Encoding encoding = exact_encoding(source);
-    if (before && is_texture(*before) == is_texture(task.container)) {
+    if (before && can_hold_blocks(*before) == can_hold_blocks(task.container)) {
         if (can_hold(task.container, encoding)) return encoding;
         if (encoding == Encoding::rgba8 && can_hold(task.container, Encoding::rgb8)) return Encoding::rgb8;
     }
@@ -98,7 +87,7 @@ tex::SourceOptions SourceOptions::options(const Job& job, const Reading& reading
     options.unpack.swizzle = swizzle;
     if (reading.y) options.unpack.y_axis = reading.y;
     options.unpack.keep_length = reading.keep_length.value_or(unpack.keep_length);
-    if (bc5_order) options.bc5_swizzle = *bc5_order == Bc5Order::xy ? kXY : kYX;
+    if (bc5_order) options.bc5_swizzle = *bc5_order == Bc5Order::xy ? kSwizzleXy : kSwizzleYx;
     options.r_or_a = rg_or_ag;
     options.file_y_first = reading.is_detail && !reading.y;
     return options;

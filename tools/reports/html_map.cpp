@@ -22,15 +22,10 @@ int longest(Extent extent) { return std::max(extent.width, extent.height); }
 
 std::size_t base64_size(std::size_t bytes) { return (bytes + 2) / 3 * 4; }
 
+// In blocks of a kind that normals come in.
 bool is_packed(Format format) {
-    switch (format) {
-        case Format::bc1_unorm:
-        case Format::bc2_unorm:
-        case Format::bc3_unorm:
-        case Format::bc5_unorm:
-        case Format::bc5_snorm: return true;
-        default: return false;
-    }
+    const FormatInfo info = format_info(format);
+    return info.has_blocks() && info.channels > 1;
 }
 
 struct View {

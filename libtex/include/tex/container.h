@@ -30,9 +30,14 @@ inline constexpr Named<Container> kContainerNames[] = {
 
 // What a container can hold. dds and ktx2: every encoding, mip levels. exr: half, float; mip levels. png: rgb8, rgba8,
 // rgb16, ag8. tiff: rgb8, rgba8, rgb16, ag8, half, float. tga: rgb8, rgba8, ag8. bmp, jpeg: rgb8. (A picture holds
-// three or four channels: rg8 and rg16 go into dds and ktx2 alone.)
+// one, three or four channels: rg8 and rg16 go into dds and ktx2 alone.)
 [[nodiscard]] bool can_hold(Container container, Encoding encoding);
+[[nodiscard]] bool can_hold(Container container, Format format);
 [[nodiscard]] bool can_hold_levels(Container container);
+
+// Whether a container holds block formats, as dds and ktx2 do: files for a GPU, with all mip levels by default. The
+// others are pictures.
+[[nodiscard]] bool can_hold_blocks(Container container);
 
 // The encoding where the user names none: dxt5nm in dds and ktx2, rgb8 in png, tga, bmp, jpeg; rgb16 in tiff; half in
 // exr.

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include <tex/image.h>
@@ -14,7 +15,8 @@
 namespace tex {
 
 // The layout of a level's bytes. Channels are in the order R, G, B, A, little-endian, rows from the top
-// without padding; block formats store 4x4 blocks, rows of blocks from the top, edge blocks whole.
+// without padding; block formats store rows of blocks from the top, edge blocks whole. Blocks of BC1 to BC5 have 4x4
+// texels.
 //
 //   bc1   8 bytes a block: RGB, 5:6:5 endpoints (DXT1)             bc4   8 bytes: R, one BC4 block
 //   bc2  16 bytes: 4-bit alpha, then a BC1 block (DXT3)            bc5  16 bytes: R and G, two BC4 blocks
@@ -88,11 +90,16 @@ struct FormatInfo {
     SampleKind sample;        // unorm, snorm or floating
     int channels;             // 1 to 4, always the first of R, G, B, A
     int bits;                 // of a decoded sample: 8, 16 or 32
-    int block;                // texels along a block's edge: 4 for block formats, else 1
-    std::size_t block_bytes;  // bytes of a block (of a texel where block is 1)
+    Extent block;             // texels of a block: 4x4 in BC1 to BC5; 1x1 if the format has no blocks
+    std::size_t block_bytes;  // bytes of a block (of a texel if the format has no blocks)
+
+    [[nodiscard]] bool has_blocks() const { return block != Extent{1, 1}; }
 };
 
 [[nodiscard]] FormatInfo format_info(Format format);
+
+// The format without blocks that stores such samples; nullopt if there is none (no format has three signed channels).
+[[nodiscard]] std::optional<Format> format_of(SampleKind sample, int bits, int channels);
 
 // Bytes of a level: blocks across times blocks down times bytes of a block, blocks rounded up. Does not
 // overflow for extents up to kMaxExtent.
@@ -117,6 +124,11 @@ inline constexpr Named<Component> kComponentNames[] = {
 // What the stored channels R, G, B and A hold, in this order: DXT5nm is {one, y, one, x}. A format with fewer
 // channels reads 0 for the missing colours and 1 for the missing alpha, as GPUs do: BC5 is {x, y, zero, one}.
 using Swizzle = std::array<Component, 4>;
+
+inline constexpr Swizzle kSwizzleXy = {Component::x, Component::y, Component::zero, Component::one};
+inline constexpr Swizzle kSwizzleYx = {Component::y, Component::x, Component::zero, Component::one};
+inline constexpr Swizzle kSwizzleXyz = {Component::x, Component::y, Component::z, Component::other};
+inline constexpr Swizzle kSwizzleDxt5nm = {Component::one, Component::y, Component::one, Component::x};
 
 // Four letters in the order R, G, B, A of kComponentNames: "1y1x".
 [[nodiscard]] std::string to_string(const Swizzle& swizzle);

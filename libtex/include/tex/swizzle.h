@@ -12,11 +12,11 @@
 namespace tex {
 
 inline constexpr Named<Swizzle> kSwizzleNames[] = {
-    {{Component::x, Component::y, Component::z, Component::other}, "rgb", "x, y, z in R, G, B"},
-    {{Component::one, Component::y, Component::one, Component::x}, "dxt5nm", "x in A, y in G (Unity; also xGxR, AG)"},
+    {kSwizzleXyz, "rgb", "x, y, z in R, G, B"},
+    {kSwizzleDxt5nm, "dxt5nm", "x in A, y in G (Unity; also xGxR, AG)"},
     {{Component::other, Component::y, Component::z, Component::x}, "rxgb", "x in A, y in G, z in B (Doom 3)"},
-    {{Component::x, Component::y, Component::zero, Component::one}, "rg", "x in R, y in G"},
-    {{Component::y, Component::x, Component::zero, Component::one}, "gr", "y in R, x in G (3Dc, ATI2)"},
+    {kSwizzleXy, "rg", "x in R, y in G"},
+    {kSwizzleYx, "gr", "y in R, x in G (3Dc, ATI2)"},
     {{Component::z, Component::y, Component::x, Component::other}, "bgr", "z, y, x in R, G, B"},
 };
 

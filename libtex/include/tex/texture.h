@@ -28,7 +28,7 @@ struct Texture {
     // What the channels hold, and the direction of y. If a file does not state them, the reader leaves `swizzle_known`
     // or `y_known` false, and the value is the likeliest for the file's format. A format of one channel has it in R;
     // if that channel is alpha (DDPF_ALPHA, DXGI_FORMAT_A8_UNORM), the swizzle is 000_.
-    Swizzle swizzle = {Component::x, Component::y, Component::z, Component::other};
+    Swizzle swizzle = kSwizzleXyz;
     bool swizzle_known = false;
     YAxis y_axis = YAxis::up;
     bool y_known = false;

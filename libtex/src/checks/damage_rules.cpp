@@ -147,9 +147,9 @@ void check_blocks(const Subject& subject, Findings& findings) {
         finding.unit = unit;
         finding.confidence = 0.95;
     };
-    if (format_info(subject.texture.format).block == 4) {
-        const double ratio = grid_ratio(subject.stored, 4);
-        if (ratio > kBlockRatio && grid_excess(subject.stored, 4) > kBlockExcess) {
+    if (const FormatInfo info = format_info(subject.texture.format); info.has_blocks()) {
+        const double ratio = grid_ratio(subject.stored, info.block.width);
+        if (ratio > kBlockRatio && grid_excess(subject.stored, info.block.width) > kBlockExcess) {
             add("N306", "steps between 4x4 blocks are " + decimal(ratio, 2) + " times those inside", ratio, "ratio");
         }
         return;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "checks/grid.h"
+#include "blocks/extent.h"
 
 #include <algorithm>
 #include <array>
@@ -74,8 +75,8 @@ enum class Palette { unclear, fits, differs };
 // The different colours of a block; one more than kMostColors stands for all further ones.
 std::vector<Color> colors_of(const Image& image, std::size_t channels, int x, int y) {
     std::vector<Color> seen;
-    for (int j = 0; j < 4; ++j) {
-        for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < kBlockEdge; ++j) {
+        for (int i = 0; i < kBlockEdge; ++i) {
             Color color{};
             for (std::size_t c = 0; c < channels; ++c) color[c] = image.planes[c].at(x + i, y + j);
             if (std::find(seen.begin(), seen.end(), color) != seen.end()) continue;
@@ -127,8 +128,8 @@ double share_at(const Stored& stored, int offset, int pitch, double least) {
     const std::size_t channels = std::min<std::size_t>(stored.image->planes.size(), 3);
     double fits = 0.0, all = 0.0;
     for (const Rect& window : sample_windows(stored.extent())) {
-        for (int y = offset; y + 4 <= window.height; y += pitch) {
-            for (int x = offset; x + 4 <= window.width; x += pitch) {
+        for (int y = offset; y + kBlockEdge <= window.height; y += pitch) {
+            for (int x = offset; x + kBlockEdge <= window.width; x += pitch) {
                 const Palette palette = palette_of(*stored.image, channels, window.x + x, window.y + y);
                 if (palette == Palette::unclear) continue;
                 all += 1.0;
@@ -177,8 +178,8 @@ double grid_ratio(const Stored& stored, int block) {
 
 double palette_share(const Stored& stored) {
     // Blocks that lie across those of a codec; and, within a JPEG's blocks of 8x8, those across the middle.
-    const double across = std::max(share_at(stored, 2, 4, 1.0), share_at(stored, 2, 8, 1.0));
-    return share_at(stored, 0, 4, kLeastBlocks) - across;
+    const double across = std::max(share_at(stored, 2, kBlockEdge, 1.0), share_at(stored, 2, 2 * kBlockEdge, 1.0));
+    return share_at(stored, 0, kBlockEdge, kLeastBlocks) - across;
 }
 
 }  // namespace tex

@@ -338,8 +338,4 @@ Result<void> write_atomically(const std::string& path, std::span<const std::byte
     return file->commit();
 }
 
-Result<void> write_file(const std::string& path, const std::vector<std::byte>& bytes, const WriteOptions& options) {
-    return write_atomically(path, bytes, {options.sync, options.no_clobber});
-}
-
 }  // namespace tex

@@ -9,8 +9,6 @@
 #include <cassert>
 #include <cstring>
 
-#include <tex/container.h>
-
 namespace tex {
 
 // A list that only grows, to as many places as there were files at once: whoever walks through it needs no lock.
@@ -88,7 +86,7 @@ void UnfinishedFile::add(const NameSection&, int folder, const std::string& name
 
 void UnfinishedFile::remove(const NameSection&) { place_->exists = false; }
 
-void remove_unfinished_files() noexcept {
+void UnfinishedFile::remove_all() noexcept {
     block_signals(nullptr);
     if ((UnfinishedFiles::sections.fetch_or(UnfinishedFiles::kClosed) & UnfinishedFiles::kClosed) != 0)
         wait_for_the_end();

@@ -7,7 +7,7 @@
 //
 // * this thread handles no signal: a handler that waits for a section never waits for the thread that it has
 // interrupted;
-// * remove_unfinished_files() waits; once it has begun, no section begins any more.
+// * remove_all() waits; once it has begun, no section begins any more.
 //
 // It so finds exactly the names that exist, nothing moves under it, and nothing comes after it. It waits for calls of
 // the file system and for nothing else, as sections neither take memory nor a lock, which the interrupted thread might
@@ -23,7 +23,7 @@ namespace tex {
 
 class NameSection {
 public:
-    // Never returns once remove_unfinished_files() has begun: the process is about to end.
+    // Never returns once UnfinishedFile::remove_all() has begun: the process is about to end.
     NameSection();
     ~NameSection();
     NameSection(const NameSection&) = delete;
@@ -45,6 +45,9 @@ public:
     void add(const NameSection& section, int folder, const std::string& name);
     // It is not: it has been renamed or removed, or will be before the section ends.
     void remove(const NameSection& section);
+
+    // remove_unfinished_files() (container.h).
+    static void remove_all() noexcept;
 
 private:
     struct Place;

@@ -35,6 +35,11 @@ TextureHead head_of(const Texture& texture) {
     return head;
 }
 
+Format widened(Format format) {
+    const FormatInfo info = format_info(format);
+    return info.channels == 3 && info.bits > 8 ? *format_of(info.sample, info.bits, 4) : format;
+}
+
 std::size_t stored_block_bytes(Format format, Rearrange rearrange) {
     const std::size_t bytes = format_info(format).block_bytes;
     return rearrange == Rearrange::widen ? bytes / 3 * 4 : bytes;

@@ -18,7 +18,7 @@ struct TextureHead {
     Format format = Format::rgba8_unorm;
     Extent extent;
     int levels = 1;
-    Swizzle swizzle = {Component::x, Component::y, Component::z, Component::other};
+    Swizzle swizzle = kSwizzleXyz;
     bool swizzle_known = false;
     YAxis y_axis = YAxis::up;
     bool y_known = false;
@@ -43,6 +43,9 @@ struct FileLayout {
     std::vector<Place> levels;  // [0] is the base level; bytes between head and levels are 0
     std::size_t size = 0;       // of the whole file
 };
+
+// The format that DDS and KTX2 store: three channels of 16 or 32 bits become four (Rearrange::widen).
+[[nodiscard]] Format widened(Format format);
 
 // Bytes of a texel (of a block) of `format` after `rearrange`.
 [[nodiscard]] std::size_t stored_block_bytes(Format format, Rearrange rearrange);

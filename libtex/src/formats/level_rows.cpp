@@ -5,7 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "formats/channel_names.h"
+#include "blocks/extent.h"
+#include "formats/channels.h"
 #include "formats/claims.h"
 #include "kernels/decode.h"
 
@@ -19,11 +20,11 @@ public:
           info_(format_info(texture_->head.format)) {
         const Extent extent = texture_->levels[k].extent;
         pitch_ = level_bytes(texture_->head.format, {extent.width, 1});
-        describe(extent, channel_names(texture_->head), pitch_ / static_cast<std::size_t>(info_.block));
+        describe(extent, channel_names(texture_->head), pitch_ / static_cast<std::size_t>(info_.block.height));
         describe_samples(info_.sample, info_.bits);
     }
 
-    [[nodiscard]] int rows_together() const override { return info_.block; }
+    [[nodiscard]] int rows_together() const override { return info_.block.height; }
     [[nodiscard]] bool is_random() const override { return true; }
     void choose_planes(const std::vector<bool>& wanted) override { wanted_ = wanted; }
 
@@ -64,24 +65,24 @@ Result<void> LevelRows::decode(int first, int count, std::byte* rows) {
         }
         return done;
     }
-    const int block = info_.block;
+    const int block = info_.block.height;
     const int begin = first / block;
-    const int units = (first + count + block - 1) / block - begin;
+    const int units = blocks_across(first + count, block) - begin;
     return texture_->fields || texture_->bgr ? convert(begin, units, rows) : fetch(begin, units, rows);
 }
 
 void LevelRows::store(const std::byte* rows, int first, int end, Image& image) const {
     const Format format = texture_->head.format;
     const int width = extent().width;
-    for (int j = first; j < end; j += info_.block, rows += pitch_) {
+    for (int j = first; j < end; j += info_.block.height, rows += pitch_) {
         ChannelRows out;
         for (std::size_t c = 0; c < image.planes.size(); ++c) {
             if (wanted_[c]) out.channel[c] = image.planes[c].row(j);
         }
-        if (info_.block == 1) {
-            decode_texels(format, rows, width, out);
+        if (info_.has_blocks()) {
+            decode_blocks(format, rows, blocks_across(width, info_.block.width), out, image.planes.front().stride());
         } else {
-            decode_blocks(format, rows, (width + 3) / 4, out, image.planes.front().stride());
+            decode_texels(format, rows, width, out);
         }
     }
 }

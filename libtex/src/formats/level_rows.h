@@ -11,7 +11,7 @@
 
 namespace tex {
 
-// Level k. Rows may be read by several threads at once, blocks four rows at a time; they are stored as decode() would
+// Level k. Rows may be read by several threads at once, rows of blocks at a time; they are stored as decode() would
 // decode them. The file must outlive the rows. Precondition: the size of the file is known.
 std::unique_ptr<RowSource> open_level_rows(const InputFile& file, std::shared_ptr<const StoredTexture> texture,
                                            std::size_t k);

@@ -30,6 +30,10 @@ struct PictureTexture {
 [[nodiscard]] Result<PictureTexture> picture_texture_of(const std::vector<std::string>& names, SampleKind sample,
                                                         int bits);
 
+// Texels of `format` from these planes, one for each channel; values are clamped and rounded to its samples, which are
+// unorm or floating. May throw std::bad_alloc.
+[[nodiscard]] Level level_of(const Image& image, Format format, const std::vector<std::size_t>& planes);
+
 // `count` values of a picture become those that a texel of 16 bits holds.
 void round_to_texels(const float* values, int count, float* out);
 

@@ -4,13 +4,11 @@
 
 #include <algorithm>
 
+#include <tex/unpack.h>
+
 #include "formats/claims.h"
-#include "formats/dds/dds.h"
-#include "formats/exr/exr.h"
-#include "formats/exr/exr_rows.h"
-#include "formats/ktx2/ktx2.h"
-#include "formats/png/png.h"
-#include "formats/reader/reader_rows.h"
+#include "formats/codecs.h"
+#include "threads/guard.h"
 
 namespace tex {
 
@@ -29,17 +27,32 @@ Result<Image> RowSource::read_all() {
     return image;
 }
 
+Result<Image> read_all(Result<std::unique_ptr<RowSource>> rows) {
+    return guarded([&]() -> Result<Image> {
+        if (!rows) return rows.error();
+        return (*rows)->read_all();
+    });
+}
+
 Result<std::unique_ptr<RowSource>> open_rows(InputFile& file, const ReadOptions& options) {
-    Result<std::unique_ptr<RowSource>> rows = std::unique_ptr<RowSource>();
-    if (is_png(file.head())) {
-        rows = open_png(file, options);
-    } else if (is_exr(file.head())) {
-        rows = open_exr_rows(file, options);
-    } else if (!is_dds(file.head().data(), file.head().size()) && !is_ktx2(file.head().data(), file.head().size())) {
-        rows = open_reader_rows(file, options);
-    }
+    const Codec& codec = codec_for(file.head());
+    if (codec.open_rows == nullptr) return std::unique_ptr<RowSource>();
+    Result<std::unique_ptr<RowSource>> rows = codec.open_rows(file, options);
     if (!rows) return rows.error().of(file.path());
     return rows;
+}
+
+Result<Image> read_image(InputFile& file, const ReadOptions& options) {
+    return guarded([&]() -> Result<Image> {
+        if (codec_for(file.head()).parse != nullptr) {
+            const Result<Texture> texture = read_texture(file, options);
+            if (!texture) return texture.error();
+            return decode(*texture, 0);
+        }
+        Result<Image> image = read_all(open_rows(file, options));
+        if (!image) return image.error().of(file.path());
+        return image;
+    });
 }
 
 }  // namespace tex

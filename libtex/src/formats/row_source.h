@@ -47,8 +47,8 @@ public:
     // Only these planes are looked at; what is in the others does not matter. To be called before rows are stored.
     virtual void choose_planes(const std::vector<bool>&) {}
 
-    // Decodes rows [first, first + count) into `rows`, row_bytes() each; there is room for a multiple of four rows.
-    // Throws std::bad_alloc. Errors: bad_data, io, out_of_memory.
+    // Decodes rows [first, first + count) into `rows`, row_bytes() each; there is room for whole blocks
+    // (blocks/extent.h). Throws std::bad_alloc. Errors: bad_data, io, out_of_memory.
     virtual Result<void> decode(int first, int count, std::byte* rows) = 0;
 
     // Whether rows may be looked at before decode() has come to them.
@@ -59,8 +59,8 @@ public:
     // Makes sure, after the last row, that the file ends as it should. Errors: as decode().
     virtual Result<void> finish() { return {}; }
 
-    // Decoded rows become rows [first, end) of `image`, which has a plane for each of names() and room for a multiple
-    // of four rows. Any thread may call, also beside decode().
+    // Decoded rows become rows [first, end) of `image`, which has a plane for each of names() and room for whole
+    // blocks. Any thread may call, also beside decode().
     virtual void store(const std::byte* rows, int first, int end, Image& image) const = 0;
 
     // The planes of the whole picture; instead of decode() and finish(). Throws std::bad_alloc. Errors: as decode().
@@ -90,6 +90,9 @@ private:
 // The picture in `file`, which must outlive it; null where this kind of file is only read as a whole: see
 // read_image(InputFile&). Errors: as read_image(), those that a header tells.
 Result<std::unique_ptr<RowSource>> open_rows(InputFile& file, const ReadOptions& options);
+
+// The whole picture, once it is open. Errors: that of opening; as RowSource::read_all().
+Result<Image> read_all(Result<std::unique_ptr<RowSource>> rows);
 
 // As read_image(path), of an open file. Errors name the file.
 Result<Image> read_image(InputFile& file, const ReadOptions& options);

@@ -6,19 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "formats/exr/exr.h"
-#include "formats/png/png.h"
-
 namespace tex {
 
-bool takes_rows(Container container) { return container == Container::png || container == Container::exr; }
-
-Result<std::unique_ptr<RowTarget>> open_row_target(Container container, const TextureHead& head, WriteBytes write) {
-    return container == Container::png ? open_png_target(head, std::move(write))
-                                       : open_exr_target(head, std::move(write));
-}
-
-Result<std::vector<std::byte>> encode_rows(Container container, const Texture& texture) {
+Result<std::vector<std::byte>> encode_rows(OpenTarget open, const Texture& texture, bool all_levels) {
     if (texture.levels.empty()) return Error{ErrorCode::unsupported, {}, "a texture without levels"};
     std::vector<std::byte> file;
     const WriteBytes write = [&file](std::uint64_t offset, std::span<const std::byte> bytes) -> Result<void> {
@@ -27,9 +17,9 @@ Result<std::vector<std::byte>> encode_rows(Container container, const Texture& t
         std::copy(bytes.begin(), bytes.end(), file.begin() + static_cast<std::ptrdiff_t>(at));
         return {};
     };
-    const Result<std::unique_ptr<RowTarget>> target = open_row_target(container, head_of(texture), write);
+    const Result<std::unique_ptr<RowTarget>> target = open(head_of(texture), write);
     if (!target) return target.error();
-    const std::size_t levels = can_hold_levels(container) ? texture.levels.size() : 1;
+    const std::size_t levels = all_levels ? texture.levels.size() : 1;
     for (std::size_t k = 0; k < levels; ++k) {
         const Level& level = texture.levels[k];
         if (const Result<void> put = (*target)->put(static_cast<int>(k), level.bytes.data(), level.extent.height); !put)

@@ -8,9 +8,10 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <vector>
 
-#include <tex/container.h>
 #include <tex/result.h>
+#include <tex/texture.h>
 
 #include "formats/file_layout.h"
 
@@ -34,13 +35,10 @@ public:
     virtual Result<void> finish() = 0;
 };
 
-// Whether files of this kind can be written row by row: PNG, which gets the base level alone, and EXR.
-[[nodiscard]] bool takes_rows(Container container);
+// Opens a file for a texture. Errors: as encode_file().
+using OpenTarget = Result<std::unique_ptr<RowTarget>> (*)(const TextureHead& head, WriteBytes write);
 
-// A texture as such a file, with the bytes of encode_file(). Precondition: takes_rows(). Errors: as encode_file().
-Result<std::unique_ptr<RowTarget>> open_row_target(Container container, const TextureHead& head, WriteBytes write);
-
-// All rows at once. Errors: as encode_file().
-Result<std::vector<std::byte>> encode_rows(Container container, const Texture& texture);
+// All rows at once, of all levels or of the base level. Errors: those of `open` and of RowTarget.
+Result<std::vector<std::byte>> encode_rows(OpenTarget open, const Texture& texture, bool all_levels);
 
 }  // namespace tex

@@ -4,15 +4,10 @@
 
 #include <utility>
 
+#include "blocks/extent.h"
 #include "formats/file_layout.h"
 
 namespace tex {
-
-FetchBytes fetch_from(const std::byte* data) {
-    return [data](std::uint64_t offset, std::size_t count) -> Result<std::vector<std::byte>> {
-        return std::vector<std::byte>(data + offset, data + offset + count);
-    };
-}
 
 std::size_t stored_pitch(const StoredTexture& texture, int width) {
     if (texture.fields) return static_cast<std::size_t>(width) * static_cast<std::size_t>(texture.fields->texel_bytes);
@@ -31,13 +26,20 @@ void convert_rows(const StoredTexture& texture, const std::byte* source, int wid
                      bytes / format_info(format).block_bytes, target);
 }
 
-Texture load_texture(const StoredTexture& stored, const std::byte* data) {
+Result<Texture> load_texture(ParseTexture parse, const std::byte* data, std::size_t size, const std::string& name,
+                             const ReadOptions& options) {
+    const FetchBytes fetch = [data](std::uint64_t offset, std::size_t count) -> Result<std::vector<std::byte>> {
+        return std::vector<std::byte>(data + offset, data + offset + count);
+    };
+    const Result<StoredTexture> parsed = parse(fetch, size, name, options);
+    if (!parsed) return parsed.error();
+    const StoredTexture& stored = *parsed;
     Texture texture = stored.head;
-    const int block = format_info(texture.format).block;
+    const int block = format_info(texture.format).block.height;
     for (const StoredTexture::Place& place : stored.levels) {
         Level level{place.extent, std::vector<std::byte>(level_bytes(texture.format, place.extent))};
         const int width = place.extent.width;
-        const int rows = (place.extent.height + block - 1) / block;
+        const int rows = blocks_across(place.extent.height, block);
         const std::byte* source = data + place.offset;
         if (!stored.upwards) {
             convert_rows(stored, source, width, rows, level.bytes.data());

@@ -8,8 +8,10 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include <tex/image_io.h>
 #include <tex/result.h>
 #include <tex/texture.h>
 
@@ -19,9 +21,6 @@ namespace tex {
 
 // Some bytes of a file. Precondition: the file has them. Errors: io.
 using FetchBytes = std::function<Result<std::vector<std::byte>>(std::uint64_t offset, std::size_t count)>;
-
-// Those of a file in memory, which must outlive the function.
-FetchBytes fetch_from(const std::byte* data);
 
 struct StoredTexture {
     struct Place {
@@ -41,7 +40,13 @@ struct StoredTexture {
 // `count` rows of the file, of texels or of blocks, become such rows of head.format.
 void convert_rows(const StoredTexture& texture, const std::byte* source, int width, int count, std::byte* target);
 
-// The whole texture, from all bytes of the file. May throw std::bad_alloc.
-[[nodiscard]] Texture load_texture(const StoredTexture& texture, const std::byte* data);
+// Finds the texels of a file of `size` bytes. `name` stands in the messages. Errors: bad_data, unsupported, as
+// read_texture(); those of `fetch`. May throw std::bad_alloc.
+using ParseTexture = Result<StoredTexture> (*)(const FetchBytes& fetch, std::size_t size, const std::string& name,
+                                               const ReadOptions& options);
+
+// The whole texture of a file in memory. Errors: those of `parse`. May throw std::bad_alloc.
+[[nodiscard]] Result<Texture> load_texture(ParseTexture parse, const std::byte* data, std::size_t size,
+                                           const std::string& name, const ReadOptions& options);
 
 }  // namespace tex

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -27,7 +28,16 @@ struct TextureRows {
     std::vector<std::size_t>
         planes;           // of the images that the rows are stored in: those that hold the channels of head.format
     bool rounds = false;  // values are to go through round_to_texels() (picture.h)
+
+    // The planes are those of the channels, in the order of the channels.
+    void take_planes_in_order() {
+        planes.resize(levels.front()->names().size());
+        std::iota(planes.begin(), planes.end(), std::size_t{0});
+    }
 };
+
+// The whole texture, once it is open. Precondition: no `rounds`. Errors: that of opening; as RowSource::read_all().
+Result<Texture> read_all(Result<TextureRows> rows);
 
 // The texture in `file`, which must outlive it. Nothing where it can only be read as a whole: interlaced PNG;
 // read_texture() may follow then. Errors: those of read_texture() that a header tells.

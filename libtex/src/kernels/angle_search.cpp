@@ -179,15 +179,16 @@ bool take_step(const Normals& n, Ends (&ends)[2], float& sum) {
 void improve_angles(const BlockRow& row, Encoding encoding, std::byte* blocks) {
     const Coding x_coding = encoding == Encoding::bc5_snorm ? Coding::bc4_snorm : Coding::bc4_unorm;
     const Coding y_coding = encoding == Encoding::dxt5nm ? Coding::green : x_coding;
-    for (int block = 0; 4 * block < row.width; ++block) {
+    for (int block = 0; block < blocks_across(row.width); ++block) {
         Normals n;
         for (int k = 0; k < 16; ++k) {
-            const int i = std::min(4 * block + k % 4, row.width - 1);
-            const float y = row.y[k / 4][i];
-            n.x[k] = std::clamp(row.x[k / 4][i], -1.0f, 1.0f);
+            const int i = std::min(kBlockEdge * block + k % kBlockEdge, row.width - 1);
+            const float y = row.y[k / kBlockEdge][i];
+            n.x[k] = std::clamp(row.x[k / kBlockEdge][i], -1.0f, 1.0f);
             n.y[k] = std::clamp(row.negate_y ? -y : y, -1.0f, 1.0f);
             n.z[k] = std::sqrt(1.0f - std::min(1.0f, n.x[k] * n.x[k] + n.y[k] * n.y[k]));
-            n.weight[k] = 4 * block + k % 4 < row.width && k / 4 < row.height ? 1.0f : 0.0f;
+            const bool inside = kBlockEdge * block + k % kBlockEdge < row.width && k / kBlockEdge < row.height;
+            n.weight[k] = inside ? 1.0f : 0.0f;
         }
         std::byte* bytes = blocks + 16 * static_cast<std::ptrdiff_t>(block);
         Ends ends[2] = {load_ends(x_coding, bytes), load_ends(y_coding, bytes + 8)};

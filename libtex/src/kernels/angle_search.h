@@ -21,7 +21,7 @@
 
 namespace tex {
 
-// Improves the blocks of a row, which encode_dxt5nm() and its like wrote: dxt5nm, bc5 or bc5_snorm.
+// Improves the blocks of a row, which encode_dxt5nm() and its like wrote.
 void improve_angles(const BlockRow& row, Encoding encoding, std::byte* blocks);
 
 }  // namespace tex

@@ -29,25 +29,26 @@ struct Channel {
     int height;
     bool negate;
 
-    [[nodiscard]] int blocks() const { return (width + 3) / 4; }
+    [[nodiscard]] int blocks() const { return blocks_across(width); }
     // Blocks that lie whole in the level: the others are always searched, as fits weigh all texels alike.
-    [[nodiscard]] int whole_blocks() const { return height == 4 ? width / 4 : 0; }
+    [[nodiscard]] int whole_blocks() const { return height == kBlockEdge ? width / kBlockEdge : 0; }
 
     // Whether a whole block may have the lowest or the greatest code: a quick test.
     [[nodiscard]] bool reaches_extremes(int block) const {
         float most = 0.0f;
-        for (int k = 0; k < 16; ++k) most = std::max(most, std::abs(rows[k / 4][4 * block + k % 4]));
+        for (int k = 0; k < kBlockTexels; ++k)
+            most = std::max(most, std::abs(rows[k / kBlockEdge][kBlockEdge * block + k % kBlockEdge]));
         return most > 0.9999f;
     }
 
     [[nodiscard]] BlockTexels texels(int block, int top) const {
         BlockTexels texels;
         texels.mask = 0;
-        for (int k = 0; k < 16; ++k) {
-            const int i = 4 * block + k % 4;
-            const float n = rows[k / 4][std::min(i, width - 1)];
+        for (int k = 0; k < kBlockTexels; ++k) {
+            const int i = kBlockEdge * block + k % kBlockEdge;
+            const float n = rows[k / kBlockEdge][std::min(i, width - 1)];
             texels.values[k] = to_code_units(negate ? -n : n, top);
-            if (i < width && k / 4 < height) texels.mask |= 1u << k;
+            if (i < width && k / kBlockEdge < height) texels.mask |= 1u << k;
         }
         return texels;
     }
@@ -59,7 +60,7 @@ Channel channel_y(const BlockRow& row) { return {row.y, row.width, row.height, r
 // Whether a block that was decoded before may have had 6 values, and the lowest or the greatest code: it has one of
 // these, and up to eight values.
 bool may_have_six_values(const BlockTexels& texels, int top) {
-    const auto [least, greatest] = std::minmax_element(texels.values, texels.values + 16);
+    const auto [least, greatest] = std::minmax_element(texels.values, texels.values + kBlockTexels);
     if (*least == *greatest || (*least != 0 && *greatest != top * kCodeUnit)) return false;
     std::int32_t values[8];
     int count = 0;
@@ -105,12 +106,12 @@ void search_bc4(const Channel& channel, Bc4Codes codes, int first, bool six_valu
 // Calls encode(run of the row, blocks).
 template <class Encode>
 void for_each_run(const BlockRow& row, std::byte* blocks, Encode encode) {
-    for (int first = 0; 4 * first < row.width; first += kRun) {
+    for (int first = 0; kBlockEdge * first < row.width; first += kRun) {
         BlockRow run = row;
-        run.width = std::min(row.width - 4 * first, 4 * kRun);
-        for (int k = 0; k < 4; ++k) {
-            run.x[k] += 4 * std::ptrdiff_t{first};
-            run.y[k] += 4 * std::ptrdiff_t{first};
+        run.width = std::min(row.width - kBlockEdge * first, kBlockEdge * kRun);
+        for (int k = 0; k < kBlockEdge; ++k) {
+            run.x[k] += kBlockEdge * std::ptrdiff_t{first};
+            run.y[k] += kBlockEdge * std::ptrdiff_t{first};
         }
         encode(run, blocks + 16 * std::ptrdiff_t{first});
     }

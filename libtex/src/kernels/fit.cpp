@@ -215,8 +215,7 @@ HWY_INLINE BlockWords normal_green(const W* texels) {
 
 // Calls encode(rows of x, rows of y, blocks) for groups of lanes() blocks; the last ones in copies.
 template <class Encode>
-HWY_INLINE void for_each_group(const ChannelRows& x, const ChannelRows& y, int count, std::byte* blocks,
-                               Encode encode) {
+HWY_INLINE void for_each_group(const FitRows& x, const FitRows& y, int count, std::byte* blocks, Encode encode) {
     std::ptrdiff_t first = 0;
     for (; first + lanes() <= count; first += lanes()) {
         const float* from[2][4];
@@ -241,7 +240,7 @@ HWY_INLINE void for_each_group(const ChannelRows& x, const ChannelRows& y, int c
     std::memcpy(blocks + 16 * first, last, 16 * rest);
 }
 
-bool fit_dxt5nm_blocks(const ChannelRows& x, const ChannelRows& y, int count, Effort effort, std::byte* blocks) {
+bool fit_dxt5nm_blocks(const FitRows& x, const FitRows& y, int count, Effort effort, std::byte* blocks) {
     bool extremes = false;
     for_each_group(x, y, count, blocks, [&](const float* const* xs, const float* const* ys, std::byte* to) {
         W texels[16];
@@ -255,8 +254,7 @@ bool fit_dxt5nm_blocks(const ChannelRows& x, const ChannelRows& y, int count, Ef
     return extremes;
 }
 
-bool fit_bc5_blocks(const ChannelRows& x, const ChannelRows& y, int count, Bc4Codes codes, Effort effort,
-                    std::byte* blocks) {
+bool fit_bc5_blocks(const FitRows& x, const FitRows& y, int count, Bc4Codes codes, Effort effort, std::byte* blocks) {
     bool extremes = false;
     for_each_group(x, y, count, blocks, [&](const float* const* xs, const float* const* ys, std::byte* to) {
         BlockWords words[2];
@@ -280,12 +278,11 @@ namespace tex {
 HWY_EXPORT(fit_dxt5nm_blocks);
 HWY_EXPORT(fit_bc5_blocks);
 
-bool fit_dxt5nm_blocks(const ChannelRows& x, const ChannelRows& y, int count, Effort effort, std::byte* blocks) {
+bool fit_dxt5nm_blocks(const FitRows& x, const FitRows& y, int count, Effort effort, std::byte* blocks) {
     return HWY_DYNAMIC_DISPATCH(fit_dxt5nm_blocks)(x, y, count, effort, blocks);
 }
 
-bool fit_bc5_blocks(const ChannelRows& x, const ChannelRows& y, int count, Bc4Codes codes, Effort effort,
-                    std::byte* blocks) {
+bool fit_bc5_blocks(const FitRows& x, const FitRows& y, int count, Bc4Codes codes, Effort effort, std::byte* blocks) {
     return HWY_DYNAMIC_DISPATCH(fit_bc5_blocks)(x, y, count, codes, effort, blocks);
 }
 

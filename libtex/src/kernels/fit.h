@@ -48,7 +48,7 @@
 namespace tex {
 
 // The rows of texels of one channel (components in [-1, 1], clamped).
-struct ChannelRows {
+struct FitRows {
     const float* const* rows;  // four
     bool negate;
 };
@@ -58,9 +58,8 @@ struct ChannelRows {
 // Blocks of 6 values hold the lowest and the greatest code besides, which these fits do not use. Return true where, at
 // Effort::normal and in a channel of BC4, texels with one of these were met in a block that has others, too: such
 // blocks may be for a search.
-[[nodiscard]] bool fit_dxt5nm_blocks(const ChannelRows& x, const ChannelRows& y, int count, Effort effort,
-                                     std::byte* blocks);
-[[nodiscard]] bool fit_bc5_blocks(const ChannelRows& x, const ChannelRows& y, int count, Bc4Codes codes, Effort effort,
+[[nodiscard]] bool fit_dxt5nm_blocks(const FitRows& x, const FitRows& y, int count, Effort effort, std::byte* blocks);
+[[nodiscard]] bool fit_bc5_blocks(const FitRows& x, const FitRows& y, int count, Bc4Codes codes, Effort effort,
                                   std::byte* blocks);
 
 }  // namespace tex

@@ -67,7 +67,7 @@ CurlView curl_view(const NormalMap& map) {
     for (const Plane<float>* plane : {&map.x, &map.y, &map.z}) view.image.planes.push_back(plane->clone());
     view.image.names = {"R", "G", "B"};
     view.image.sample = SampleKind::floating;
-    const Stored stored{&view.image, {Component::x, Component::y, Component::z, Component::other}, true};
+    const Stored stored{&view.image, kSwizzleXyz, true};
     view.curl = measure_curl(stored);
     view.slopes = slopes_of(stored, {0, 0, map.extent().width, map.extent().height});
     return view;

@@ -34,17 +34,7 @@ public:
         }
     }
 
-    [[nodiscard]] BlockRow block_row(int j) const {
-        BlockRow row;
-        row.width = extent_.width;
-        row.height = std::min(4, extent_.height - j);
-        row.negate_y = negate_y_;
-        for (int k = 0; k < 4; ++k) {
-            row.x[k] = map_.x.row(j + std::min(k, row.height - 1));
-            row.y[k] = map_.y.row(j + std::min(k, row.height - 1));
-        }
-        return row;
-    }
+    [[nodiscard]] BlockRow blocks(int j) const { return block_row(map_.x, map_.y, extent_, j, negate_y_); }
 
     [[nodiscard]] Extent extent() const { return extent_; }
 
@@ -98,12 +88,12 @@ void pack_rows(const NormalMap& map, int height, const PackOptions& options, int
     const auto [format, swizzle] = encoding_info(options.encoding);
     const FormatInfo info = format_info(format);
     const Rows rows(map, height, swizzle, options.y_axis);
-    const std::size_t row_blocks = (size(rows.extent().width) + 3) / 4;
-    for (int j = begin; j < end && info.block == 4; j += 4) {
-        std::byte* blocks = out + size(j / 4) * row_blocks * info.block_bytes;
-        encode_blocks(rows.block_row(j), options, blocks);
+    if (info.has_blocks()) {
+        const std::size_t pitch = level_bytes(format, {rows.extent().width, 1});
+        for (int j = begin; j < end; j += info.block.height)
+            encode_blocks(rows.blocks(j), options, out + size(j / info.block.height) * pitch);
+        return;
     }
-    if (info.block == 4) return;
     if (info.bits == 8) {
         pack_codes<std::uint8_t>(rows, info.channels, begin, end, out, pack_unorm8);
     } else if (info.bits == 16 && info.sample == SampleKind::unorm) {

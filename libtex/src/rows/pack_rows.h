@@ -11,8 +11,8 @@
 namespace tex {
 
 // Packs rows [begin, end) of a level, or of a strip of one, that is `height` rows high (at most those of `map`).
-// `begin` is a multiple of 4; where blocks are encoded, so is `end`, or it is the height, and rows of the last block
-// that are not there repeat the last one. `out` is where row 0 goes.
+// `begin` is a multiple of the height of a block; where blocks are encoded, so is `end`, or it is the height, and rows
+// of the last block that are not there repeat the last one. `out` is where row 0 goes.
 void pack_rows(const NormalMap& map, int height, const PackOptions& options, int begin, int end, std::byte* out);
 
 }  // namespace tex

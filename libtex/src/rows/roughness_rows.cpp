@@ -18,7 +18,7 @@ namespace {
 // Rows of a row of blocks as 2 roughness - 1: encoders take components of vectors.
 class Components {
 public:
-    explicit Components(const Plane<float>& level) : level_(level), rows_(Extent{level.extent().width, 4}) {}
+    explicit Components(const Plane<float>& level) : level_(level), rows_(Extent{level.extent().width, kBlockEdge}) {}
 
     const float* row(int k, int j) {
         const float* from = level_.row(j);
@@ -36,19 +36,19 @@ private:
 void pack_blocks(const Plane<float>& level, int height, Effort effort, int begin, int end, std::byte* out) {
     constexpr std::size_t kBc4 = 8, kBc5 = 16;
     const int width = level.extent().width;
-    const std::size_t count = (static_cast<std::size_t>(width) + 3) / 4;
+    const auto count = static_cast<std::size_t>(blocks_across(width));
     std::vector<std::byte> pairs(count * kBc5);
     Components components(level);
-    for (int j = begin; j < end; j += 4) {
+    for (int j = begin; j < end; j += kBlockEdge) {
         BlockRow row;
         row.width = width;
-        row.height = std::min(4, height - j);
-        for (int k = 0; k < 4; ++k) {
+        row.height = std::min(kBlockEdge, height - j);
+        for (int k = 0; k < kBlockEdge; ++k) {
             row.x[k] = k < row.height ? components.row(k, j + k) : row.x[k - 1];
             row.y[k] = row.x[k];
         }
         encode_bc5_unorm(row, effort, pairs.data());
-        std::byte* block = out + static_cast<std::size_t>(j / 4) * count * kBc4;
+        std::byte* block = out + static_cast<std::size_t>(j / kBlockEdge) * count * kBc4;
         for (std::size_t k = 0; k < count; ++k) std::memcpy(block + k * kBc4, pairs.data() + k * kBc5, kBc4);
     }
 }

@@ -52,7 +52,7 @@ int levels_of(Extent extent, Container container, const BakeFileOptions& options
 
 // What is written from the top cannot wait for the last rows to come.
 bool needs_last_rows(Container container, const BakeFileOptions& options) {
-    return !is_texture(container) && options.heights.wrap_y == Wrap::repeat;
+    return !takes_any_order(container) && options.heights.wrap_y == Wrap::repeat;
 }
 
 }  // namespace

@@ -6,8 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "blocks/extent.h"
 #include "formats/claims.h"
-#include "formats/png/png.h"
+#include "formats/codecs.h"
 #include "threads/guard.h"
 
 namespace tex {
@@ -28,14 +29,16 @@ Result<void> reopen(InputFile& file, std::unique_ptr<RowSource>& rows, const Rea
 
 }  // namespace
 
-bool knows_last_rows(const InputFile& file, const RowSource& rows) { return rows.can_peek() || is_png(file.head()); }
+bool knows_last_rows(const InputFile& file, const RowSource& rows) {
+    return rows.can_peek() || codec_for(file.head()).decodes_twice;
+}
 
 Result<Image> last_rows(InputFile& file, std::unique_ptr<RowSource>& rows, const ReadOptions& options, int count,
                         const Execution& execution) {
     const Extent extent = rows->extent();
     const int first = extent.height - count, together = rows->rows_together();
-    Image image = make_image({extent.width, (count + 3) / 4 * 4}, rows->names());
-    const int held = (together + 3) / 4 * 4;
+    Image image = make_image({extent.width, whole_blocks(count)}, rows->names());
+    const int held = whole_blocks(together);
     std::vector<std::byte> decoded(rows->row_bytes() * static_cast<std::size_t>(held));
     for (int j = rows->can_peek() ? first / together * together : 0; j < extent.height; j += together) {
         if (execution.progress && !execution.progress(0.0)) return Error{ErrorCode::cancelled, {}, "cancelled"};

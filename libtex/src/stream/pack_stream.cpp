@@ -9,6 +9,7 @@
 
 #include <tex/mip_chain.h>
 
+#include "blocks/extent.h"
 #include "formats/claims.h"
 #include "rows/source_layout.h"
 #include "stream/layout_finder.h"
@@ -95,7 +96,7 @@ Result<void> Attempt::prepare() {
 // Where the base level decides how another one is to be read.
 Result<void> Attempt::look_at_base_level() {
     RowSource& base = rows(0);
-    const int step = (base.rows_together() + 3) / 4 * 4;  // see RowSource::decode() and store()
+    const int step = whole_blocks(base.rows_together());  // see RowSource::decode() and store()
     Image image = make_image({base.extent().width, step}, base.names());
     std::vector<std::byte> decoded(base.row_bytes() * static_cast<std::size_t>(step));
     for (int j = 0; j < base.extent().height; j += step) {

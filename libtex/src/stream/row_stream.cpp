@@ -17,6 +17,7 @@
 
 #include <tbb/global_control.h>
 
+#include "blocks/extent.h"
 #include "formats/claims.h"
 #include "threads/conveyor.h"
 #include "threads/guard.h"
@@ -108,8 +109,7 @@ Batch* RowStream::Work::read() {
     failure.watch([&]() -> Result<void> {
         if (next == height) return {};
         std::shared_ptr<Batch> taken = batches.take([this] {
-            // Decoders of blocks write four rows at a time.
-            const int held = (batch_rows + 3) / 4 * 4;
+            const int held = whole_blocks(batch_rows);  // decoders of blocks write all of their rows
             auto made = std::make_unique<Batch>();
             made->image = make_image({rows.extent().width, held}, rows.names());
             made->rows.resize(rows.row_bytes() * static_cast<std::size_t>(held));

@@ -10,10 +10,7 @@
 
 #include <tex/mip_chain.h>
 
-#include "formats/dds/dds.h"
-#include "formats/file_layout.h"
-#include "formats/ktx2/ktx2.h"
-#include "formats/row_target.h"
+#include "formats/codecs.h"
 #include "rows/pack_rows.h"
 #include "rows/roughness_rows.h"
 #include "threads/guard.h"
@@ -21,7 +18,7 @@
 namespace tex {
 namespace {
 
-// DDS and KTX2: every level has its place from the start.
+// Every level has its place from the start: DDS, KTX2.
 class TextureWriter final : public StripWriter {
 public:
     // `first` is the level that the file begins with.
@@ -69,9 +66,9 @@ public:
     PictureWriter(std::string path, std::unique_ptr<OutputFile> file, StripPacking packing, int first)
         : path_(std::move(path)), file_(std::move(file)), packing_(std::move(packing)), first_(first) {}
 
-    Result<void> begin(Container container, const TextureHead& head) {
+    Result<void> begin(const Codec& codec, const TextureHead& head) {
         Result<std::unique_ptr<RowTarget>> target =
-            open_row_target(container, head, [this](std::uint64_t offset, std::span<const std::byte> bytes) {
+            codec.open_target(head, [this](std::uint64_t offset, std::span<const std::byte> bytes) {
                 size_ = std::max(size_, static_cast<std::size_t>(offset) + bytes.size());
                 return bytes.empty() ? Result<void>() : file_->write_at(offset, bytes);
             });
@@ -190,14 +187,15 @@ using Opening = Result<std::unique_ptr<StripWriter>>;
 Opening open_file(const std::string& path, Container container, const StripPacking& packing, int first, Opened when,
                   const WriteOptions& options) {
     const TextureHead& head = packing.head;
+    const Codec& codec = codec_of(container);
     FileLayout layout;
-    if (is_texture(container)) layout = container == Container::dds ? dds_layout(head, options) : ktx2_layout(head);
-    const std::size_t bytes = is_texture(container) ? layout.size : level_bytes(head.format, head.extent);
+    if (codec.layout != nullptr) layout = codec.layout(head, options);
+    const std::size_t bytes = codec.layout != nullptr ? layout.size : level_bytes(head.format, head.extent);
     Result<std::unique_ptr<OutputFile>> file = OutputFile::open(path, bytes, when, {options.sync, options.no_clobber});
     if (!file) return file.error();
-    if (!is_texture(container)) {
+    if (codec.layout == nullptr) {
         auto picture = std::make_unique<PictureWriter>(path, std::move(*file), packing, first);
-        if (const Result<void> begun = picture->begin(container, head); !begun) return begun.error();
+        if (const Result<void> begun = picture->begin(codec, head); !begun) return begun.error();
         return std::unique_ptr<StripWriter>(std::move(picture));
     }
     auto texture = std::make_unique<TextureWriter>(std::move(*file), std::move(layout), packing, first);
@@ -207,11 +205,13 @@ Opening open_file(const std::string& path, Container container, const StripPacki
 
 }  // namespace
 
-bool is_texture(Container container) { return container == Container::dds || container == Container::ktx2; }
+bool takes_any_order(Container container) { return codec_of(container).layout != nullptr; }
 
 bool holds_levels(Container container, const LevelNames& names) { return names || can_hold_levels(container); }
 
-bool takes_strips(Container container) { return is_texture(container) || takes_rows(container); }
+bool takes_strips(Container container) {
+    return takes_any_order(container) || codec_of(container).open_target != nullptr;
+}
 
 StripPacking packing_of(const PackOptions& options, Extent extent, int levels) {
     const EncodingInfo encoding = encoding_info(options.encoding);

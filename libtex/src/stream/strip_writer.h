@@ -63,13 +63,13 @@ public:
     [[nodiscard]] virtual std::size_t roughness_bytes() const { return 0; }
 };
 
-// DDS and KTX2, whose strips come in any order.
-[[nodiscard]] bool is_texture(Container container);
+// Whether strips may be written in any order: DDS, KTX2.
+[[nodiscard]] bool takes_any_order(Container container);
 
 // Whether all levels are written, or the base level alone.
 [[nodiscard]] bool holds_levels(Container container, const LevelNames& names);
 
-// Whether files of this kind are written strip by strip: DDS, KTX2, and those that takes_rows() knows, in order.
+// Whether files of this type are written strip by strip: DDS, KTX2 and, in order, PNG and EXR.
 [[nodiscard]] bool takes_strips(Container container);
 
 }  // namespace tex

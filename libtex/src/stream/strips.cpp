@@ -7,6 +7,8 @@
 
 #include <tex/mip_chain.h>
 
+#include "blocks/extent.h"
+
 namespace tex {
 Strips::Strips(Extent base, int levels, int strip_texels, int first, Content content)
     : first_(first), content_(content), levels_(static_cast<std::size_t>(levels)) {
@@ -15,7 +17,7 @@ Strips::Strips(Extent base, int levels, int strip_texels, int first, Content con
         level.extent = level_extent(base, k);
         missing_ += level.extent.height;
         // As many rows as there are while one strip of the base level is made, but no fewer than a row of blocks has.
-        level.rows = std::max(4, ((strip_texels / base.width) >> k) / 4 * 4);
+        level.rows = std::max(kBlockEdge, ((strip_texels / base.width) >> k) / kBlockEdge * kBlockEdge);
     }
 }
 
@@ -23,7 +25,7 @@ Strips::Place Strips::place(int level_index, int j) {
     Level& level = levels_[static_cast<std::size_t>(level_index)];
     std::shared_ptr<Strip>& strip = level.open[j / level.rows];
     if (!strip) {
-        const Extent extent{level.extent.width, std::min(level.rows, (level.extent.height + 3) / 4 * 4)};
+        const Extent extent{level.extent.width, std::min(level.rows, whole_blocks(level.extent.height))};
         strip = level.pool.take([extent, this] {
             auto made = std::make_unique<Strip>();
             made->content = content_;

@@ -18,8 +18,8 @@ namespace tex {
 
 enum class Content { normals, roughness };
 
-// Some rows of a level, from the row `first`, a multiple of 4, on: as many as a strip has, or those up to the level's
-// end.
+// Some rows of a level, from the row `first`, where a row of blocks begins, on: as many as a strip has, or those up to
+// the level's end.
 struct Strip {
     Content content = Content::normals;
     int level = 0;  // of the file
@@ -57,7 +57,7 @@ public:
 private:
     struct Level {
         Extent extent;
-        int rows = 4;  // of a strip
+        int rows = 1;  // of a strip
         std::map<int, std::shared_ptr<Strip>> open;
         Pool<Strip> pool;
     };

@@ -12,11 +12,12 @@
 #include "formats/bytes.h"
 #include "formats/claims.h"
 #include "formats/dds/dds_format.h"
+#include "formats/marks.h"
 
 namespace tex {
 namespace {
 
-constexpr std::size_t kMagicBytes = 4;
+constexpr std::size_t kMagicBytes = kDdsMagic.size();
 constexpr std::size_t kHeaderBytes = 124;
 constexpr std::size_t kPixelFormatBytes = 32;
 constexpr std::size_t kDx10Bytes = 20;
@@ -49,54 +50,18 @@ bool is_dxt5nm(const Swizzle& swizzle) {
     return swizzle[0] != Component::x && swizzle[1] == Component::y && swizzle[3] == Component::x;
 }
 
-// The pixel format of a legacy header; nullopt where the format has none.
+// The pixel format of a legacy header; nullopt if Direct3D 9 lacks the format.
 std::optional<DdsPixelFormat> legacy_pixel_format(const TextureHead& head) {
-    const auto coded = [](std::uint32_t code, std::uint32_t swizzle_code = 0) {
-        return DdsPixelFormat{kDdpfFourCc, code, swizzle_code, {}};
-    };
-    switch (head.format) {
-        case Format::bc1_unorm: return coded(fourcc("DXT1"));
-        case Format::bc2_unorm: return coded(fourcc("DXT3"));
-        case Format::bc3_unorm: return coded(fourcc("DXT5"));
-        case Format::bc4_unorm: return coded(fourcc("ATI1"));
-        case Format::bc4_snorm: return coded(fourcc("BC4S"));
-        // Without the code ATI2 means y first.
-        case Format::bc5_unorm: return coded(fourcc("ATI2"), head.swizzle[0] == Component::y ? 0 : fourcc("A2XY"));
-        case Format::bc5_snorm: return coded(fourcc("BC5S"));
-        case Format::r8_unorm: return DdsPixelFormat{kDdpfLuminance, 0, 8, {0xff, 0, 0, 0}};
-        case Format::r16_unorm: return DdsPixelFormat{kDdpfLuminance, 0, 16, {0xffff, 0, 0, 0}};
-        // Blue first, as Direct3D 9 has it: some readers (ImageMagick 6) do not look at the masks.
-        case Format::rgb8_unorm: return DdsPixelFormat{kDdpfRgb, 0, 24, {0xff0000, 0xff00, 0xff, 0}};
-        case Format::rgba8_unorm:
-            return DdsPixelFormat{kDdpfRgb | kDdpfAlphaPixels, 0, 32, {0xff0000, 0xff00, 0xff, 0xff000000}};
-        case Format::rgb16_unorm:
-        case Format::rgba16_unorm: return coded(36);
-        case Format::rgba16_snorm: return coded(110);
-        case Format::r16_float: return coded(111);
-        case Format::rg16_float: return coded(112);
-        case Format::rgb16_float:
-        case Format::rgba16_float: return coded(113);
-        case Format::r32_float: return coded(114);
-        case Format::rg32_float: return coded(115);
-        case Format::rgb32_float:
-        case Format::rgba32_float: return coded(116);
-        default: return std::nullopt;
-    }
-}
-
-// The format of four channels that a format of three is widened to; others as they are.
-Format widened(Format format) {
-    switch (format) {
-        case Format::rgb16_unorm: return Format::rgba16_unorm;
-        case Format::rgb16_float: return Format::rgba16_float;
-        case Format::rgb32_float: return Format::rgba32_float;
-        default: return format;
-    }
+    DdsPixelFormat legacy = marks_of(widened(head.format)).legacy;
+    if (legacy.flags == 0) return std::nullopt;
+    // Without the code ATI2 means y first.
+    if (legacy.four_cc == fourcc("ATI2") && head.swizzle[0] != Component::y) legacy.bit_count = fourcc("A2XY");
+    return legacy;
 }
 
 // dwPitchOrLinearSize: bytes of a row of texels, or of the base level for block formats.
 std::uint32_t pitch_or_size(const TextureHead& head, Rearrange rearrange) {
-    const Extent base = format_info(head.format).block == 1 ? Extent{head.extent.width, 1} : head.extent;
+    const Extent base = format_info(head.format).has_blocks() ? head.extent : Extent{head.extent.width, 1};
     const std::size_t bytes = stored_level_bytes(head.format, base, rearrange);
     return static_cast<std::uint32_t>(std::min<std::size_t>(bytes, 0xffffffffu));
 }
@@ -199,11 +164,9 @@ int wanted_levels(const Header& header, Extent extent, std::vector<std::string>&
 
 }  // namespace
 
-bool is_dds(const std::byte* data, std::size_t size) { return size >= kMagicBytes && load_u32(data) == fourcc("DDS "); }
-
 FileLayout dds_layout(const TextureHead& head, const WriteOptions& options) {
     std::optional<DdsPixelFormat> legacy = legacy_pixel_format(head);
-    const std::uint32_t dxgi = dxgi_of(widened(head.format));
+    const std::uint32_t dxgi = marks_of(widened(head.format)).dxgi.exact;
     const bool dx10 = !legacy || (options.dds_header == DdsHeader::dx10 && dxgi != 0);
     DdsPixelFormat pixel_format = dx10 ? DdsPixelFormat{kDdpfFourCc, fourcc("DX10"), 0, {}} : *legacy;
     if (options.dds_mark) {
@@ -217,10 +180,10 @@ FileLayout dds_layout(const TextureHead& head, const WriteOptions& options) {
     if (widened(head.format) != head.format) layout.rearrange = Rearrange::widen;
     if ((pixel_format.flags & kDdpfRgb) != 0) layout.rearrange = Rearrange::bgr;
     const bool mips = head.levels > 1;
-    const bool block = format_info(head.format).block > 1;
+    const bool block = format_info(head.format).has_blocks();
 
     ByteWriter writer;
-    writer.text("DDS ");
+    writer.text(kDdsMagic);
     writer.u32(kHeaderBytes);
     writer.u32(kDdsdCaps | kDdsdHeight | kDdsdWidth | kDdsdPixelFormat | kDdsdMipMapCount |
                (block ? kDdsdLinearSize : kDdsdPitch));
@@ -267,7 +230,7 @@ Result<StoredTexture> parse_dds(const FetchBytes& fetch, std::size_t size, const
     const Result<Extent> extent = claimed_extent(name, header->width, header->height, options);
     if (!extent) return extent.error();
     Result<DdsTexels> texels = header->has_dx10 ? texels_of_dxgi(header->dxgi) : texels_of(header->pixel_format);
-    if (!texels) return Error{texels.error().code, name, texels.error().reason};
+    if (!texels) return texels.error().of(name);
 
     StoredTexture stored;
     stored.fields = texels->fields;
@@ -301,13 +264,6 @@ Result<StoredTexture> parse_dds(const FetchBytes& fetch, std::size_t size, const
         texture.remarks.push_back(std::to_string(left) + " bytes after the last level were not read");
     }
     return stored;
-}
-
-Result<Texture> decode_dds(const std::byte* data, std::size_t size, const std::string& name,
-                           const ReadOptions& options) {
-    Result<StoredTexture> stored = parse_dds(fetch_from(data), size, name, options);
-    if (!stored) return stored.error();
-    return load_texture(*stored, data);
 }
 
 }  // namespace tex

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 #include <tex/container.h>
 #include <tex/result.h>
@@ -19,20 +20,15 @@
 
 namespace tex {
 
-// True where the bytes begin as a DDS file does.
-[[nodiscard]] bool is_dds(const std::byte* data, std::size_t size);
+inline constexpr std::string_view kDdsMagic = "DDS ";
 
 // Legacy where the options ask for it and Direct3D 9 has the format, else DX10. Three channels of 16 or 32 bits are
 // widened. (DXGI has three floats of 32 bits; few readers know them.)
 [[nodiscard]] FileLayout dds_layout(const TextureHead& head, const WriteOptions& options);
 
-// Where the texels of a file of `size` bytes stand. Errors: as decode_dds(); those of `fetch`. May throw
-// std::bad_alloc.
+// Where the texels of a file of `size` bytes stand. Errors: bad_data, unsupported, as read_texture(); those of `fetch`.
+// May throw std::bad_alloc.
 [[nodiscard]] Result<StoredTexture> parse_dds(const FetchBytes& fetch, std::size_t size, const std::string& name,
                                               const ReadOptions& options);
-
-// Errors: bad_data, unsupported, as read_texture(). May throw std::bad_alloc.
-[[nodiscard]] Result<Texture> decode_dds(const std::byte* data, std::size_t size, const std::string& name,
-                                         const ReadOptions& options);
 
 }  // namespace tex

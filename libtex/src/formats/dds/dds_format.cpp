@@ -6,7 +6,8 @@
 #include <string_view>
 
 #include "formats/bytes.h"
-#include "formats/channel_names.h"
+#include "formats/channels.h"
+#include "formats/marks.h"
 
 namespace tex {
 namespace {
@@ -37,8 +38,8 @@ constexpr FourCcRow kFourCcs[] = {
     {fourcc("BC4U"), Format::bc4_unorm, false, {}},
     {fourcc("BC4S"), Format::bc4_snorm, false, {}},
     // 3Dc (ATI 2005) holds y first. Not known for sure: others wrote x first under the same name.
-    {fourcc("ATI2"), Format::bc5_unorm, false, {kY, kX, Component::zero, Component::one}},
-    {fourcc("A2XY"), Format::bc5_unorm, true, {kX, kY, Component::zero, Component::one}},
+    {fourcc("ATI2"), Format::bc5_unorm, false, kSwizzleYx},
+    {fourcc("A2XY"), Format::bc5_unorm, true, kSwizzleXy},
     {fourcc("BC5U"), Format::bc5_unorm, false, {}},
     {fourcc("BC5S"), Format::bc5_snorm, false, {}},
     {36, Format::rgba16_unorm, false, {}},   // D3DFMT_A16B16G16R16
@@ -51,51 +52,27 @@ constexpr FourCcRow kFourCcs[] = {
     {116, Format::rgba32_float, false, {}},
 };
 
-struct DxgiRow {
-    std::uint32_t dxgi;
-    Format format;
-};
-
-// The first row of a format is the one that dxgi_of() gives.
-constexpr DxgiRow kDxgis[] = {
-    {2, Format::rgba32_float}, {1, Format::rgba32_float},  // typeless after the typed one
-    {6, Format::rgb32_float},  {5, Format::rgb32_float},   {10, Format::rgba16_float}, {11, Format::rgba16_unorm},
-    {9, Format::rgba16_unorm}, {13, Format::rgba16_snorm}, {16, Format::rg32_float},   {15, Format::rg32_float},
-    {28, Format::rgba8_unorm}, {27, Format::rgba8_unorm},  {29, Format::rgba8_unorm},  {31, Format::rgba8_snorm},
-    {34, Format::rg16_float},  {35, Format::rg16_unorm},   {33, Format::rg16_unorm},   {37, Format::rg16_snorm},
-    {41, Format::r32_float},   {39, Format::r32_float},    {49, Format::rg8_unorm},    {48, Format::rg8_unorm},
-    {51, Format::rg8_snorm},   {54, Format::r16_float},    {56, Format::r16_unorm},    {53, Format::r16_unorm},
-    {58, Format::r16_snorm},   {61, Format::r8_unorm},     {60, Format::r8_unorm},     {63, Format::r8_snorm},
-    {71, Format::bc1_unorm},   {70, Format::bc1_unorm},    {72, Format::bc1_unorm},    {74, Format::bc2_unorm},
-    {73, Format::bc2_unorm},   {75, Format::bc2_unorm},    {77, Format::bc3_unorm},    {76, Format::bc3_unorm},
-    {78, Format::bc3_unorm},   {80, Format::bc4_unorm},    {79, Format::bc4_unorm},    {81, Format::bc4_snorm},
-    {83, Format::bc5_unorm},   {82, Format::bc5_unorm},    {84, Format::bc5_snorm},
-};
-
+// DXGI formats of bit fields.
 struct DxgiFieldsRow {
     std::uint32_t dxgi;
     FieldLayout layout;
+    bool srgb = false;
 };
 
 constexpr DxgiFieldsRow kDxgiFields[] = {
-    {23, {4, {0x3ff, 0xffc00, 0x3ff00000, 0xc0000000}, false}},  // R10G10B10A2, typeless
-    {24, {4, {0x3ff, 0xffc00, 0x3ff00000, 0xc0000000}, false}},
-    {65, {1, {0, 0, 0, 0xff}, false}},                       // A8
-    {85, {2, {0xf800, 0x7e0, 0x1f, 0}, false}},              // B5G6R5
-    {86, {2, {0x7c00, 0x3e0, 0x1f, 0x8000}, false}},         // B5G5R5A1
-    {87, {4, {0xff0000, 0xff00, 0xff, 0xff000000}, false}},  // B8G8R8A8
-    {90, {4, {0xff0000, 0xff00, 0xff, 0xff000000}, false}},
-    {91, {4, {0xff0000, 0xff00, 0xff, 0xff000000}, false}},
-    {88, {4, {0xff0000, 0xff00, 0xff, 0}, false}},  // B8G8R8X8
-    {92, {4, {0xff0000, 0xff00, 0xff, 0}, false}},
-    {93, {4, {0xff0000, 0xff00, 0xff, 0}, false}},
-    {115, {2, {0xf00, 0xf0, 0xf, 0xf000}, false}},  // B4G4R4A4
+    {23, {4, {0x3ff, 0xffc00, 0x3ff00000, 0xc0000000}}},  // R10G10B10A2, typeless
+    {24, {4, {0x3ff, 0xffc00, 0x3ff00000, 0xc0000000}}},
+    {65, {1, {0, 0, 0, 0xff}}},                       // A8
+    {85, {2, {0xf800, 0x7e0, 0x1f, 0}}},              // B5G6R5
+    {86, {2, {0x7c00, 0x3e0, 0x1f, 0x8000}}},         // B5G5R5A1
+    {87, {4, {0xff0000, 0xff00, 0xff, 0xff000000}}},  // B8G8R8A8
+    {90, {4, {0xff0000, 0xff00, 0xff, 0xff000000}}},
+    {91, {4, {0xff0000, 0xff00, 0xff, 0xff000000}}, true},
+    {88, {4, {0xff0000, 0xff00, 0xff, 0}}},  // B8G8R8X8
+    {92, {4, {0xff0000, 0xff00, 0xff, 0}}},
+    {93, {4, {0xff0000, 0xff00, 0xff, 0}}, true},
+    {115, {2, {0xf00, 0xf0, 0xf, 0xf000}}},  // B4G4R4A4
 };
-
-bool is_srgb(std::uint32_t dxgi) {
-    constexpr std::uint32_t kSrgb[] = {29, 72, 75, 78, 91, 93};
-    return std::find(std::begin(kSrgb), std::end(kSrgb), dxgi) != std::end(kSrgb);
-}
 
 bool is_printable(std::uint32_t code) {
     for (int shift = 0; shift < 32; shift += 8) {
@@ -117,7 +94,7 @@ std::string code_text(std::uint32_t code) {
 // letter by letter which colour of the original stands in R, G, B and A, with x for none: in xGxR, alpha holds red,
 // that is the normal's x.
 std::optional<Swizzle> swizzle_of_code(std::uint32_t code) {
-    if (code == fourcc("A2XY")) return Swizzle{kX, kY, Component::zero, Component::one};
+    if (code == fourcc("A2XY")) return kSwizzleXy;
     if (code == fourcc("A2D5")) return Swizzle{kNone, kY, kNone, kX};
     Swizzle swizzle;
     for (std::size_t c = 0; c < 4; ++c) {
@@ -212,16 +189,6 @@ Result<DdsTexels> texels_of_masks(const DdsPixelFormat& pixel_format) {
 
 }  // namespace
 
-Swizzle likely_swizzle(Format format) {
-    if (format == Format::bc3_unorm) return {Component::one, kY, Component::one, kX};
-    switch (format_info(format).channels) {
-        case 1: return {kNone, Component::zero, Component::zero, Component::one};
-        case 2: return {kX, kY, Component::zero, Component::one};
-        case 3: return {kX, kY, kZ, Component::one};
-        default: return {kX, kY, kZ, kNone};
-    }
-}
-
 Result<DdsTexels> texels_of(const DdsPixelFormat& pixel_format) {
     constexpr std::uint32_t kMasked = kDdpfAlpha | kDdpfRgb | kDdpfLuminance | kDdpfBumpDudv;
     const bool masked = (pixel_format.flags & kMasked) != 0;
@@ -238,26 +205,18 @@ Result<DdsTexels> texels_of(const DdsPixelFormat& pixel_format) {
 }
 
 Result<DdsTexels> texels_of_dxgi(std::uint32_t dxgi) {
-    for (const DxgiRow& row : kDxgis) {
-        if (row.dxgi != dxgi) continue;
-        DdsTexels texels = texels_in(row.format);
-        texels.srgb = is_srgb(dxgi);
+    if (const auto marked = find_format(&FormatMarks::dxgi, dxgi)) {
+        DdsTexels texels = texels_in(marked->format);
+        texels.srgb = marked->srgb;
         return texels;
     }
     for (const DxgiFieldsRow& row : kDxgiFields) {
         if (row.dxgi != dxgi) continue;
         Result<DdsTexels> texels = texels_of_fields(row.layout);
-        if (texels) texels->srgb = is_srgb(dxgi);
+        if (texels) texels->srgb = row.srgb;
         return texels;
     }
     return Error{ErrorCode::unsupported, {}, "DXGI format " + std::to_string(dxgi) + " is not supported"};
-}
-
-std::uint32_t dxgi_of(Format format) {
-    for (const DxgiRow& row : kDxgis) {
-        if (row.format == format) return row.dxgi;
-    }
-    return 0;
 }
 
 }  // namespace tex

@@ -37,22 +37,16 @@ inline constexpr std::uint32_t kDdpfNormal = 0x80000000u;
 struct DdsTexels {
     Format format = Format::rgba8_unorm;
     std::optional<FieldLayout> fields;  // to be converted to `format`; else the bytes are in `format`
-    Swizzle swizzle = {Component::x, Component::y, Component::z, Component::other};
+    Swizzle swizzle = kSwizzleXyz;
     bool swizzle_known = false;
     bool srgb = false;
     std::vector<std::string> remarks;
 };
-
-// The channels that normals are likeliest in, where nothing says so. BC3 is taken for DXT5nm.
-[[nodiscard]] Swizzle likely_swizzle(Format format);
 
 // From a legacy header. Errors: bad_data, unsupported; Error::file is left to the caller.
 [[nodiscard]] Result<DdsTexels> texels_of(const DdsPixelFormat& pixel_format);
 
 // From the DXGI_FORMAT of a DX10 header. Errors: unsupported.
 [[nodiscard]] Result<DdsTexels> texels_of_dxgi(std::uint32_t dxgi);
-
-// The DXGI_FORMAT that is exactly `format`; 0 where there is none.
-[[nodiscard]] std::uint32_t dxgi_of(Format format);
 
 }  // namespace tex

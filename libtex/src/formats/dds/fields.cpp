@@ -14,17 +14,6 @@ bool is_run(std::uint32_t mask, int bits) {
     return (run & (run + 1)) == 0 && (mask == 0 || 32 - std::countl_zero(mask) <= bits);
 }
 
-Format format_for(int channels, bool wide, bool snorm) {
-    constexpr Format kUnorm[2][4] = {
-        {Format::r8_unorm, Format::rg8_unorm, Format::rgb8_unorm, Format::rgba8_unorm},
-        {Format::r16_unorm, Format::rg16_unorm, Format::rgb16_unorm, Format::rgba16_unorm}};
-    constexpr Format kSnorm[2][4] = {
-        // no format has three signed channels: the fourth is 1
-        {Format::r8_snorm, Format::rg8_snorm, Format::rgba8_snorm, Format::rgba8_snorm},
-        {Format::r16_snorm, Format::rg16_snorm, Format::rgba16_snorm, Format::rgba16_snorm}};
-    return (snorm ? kSnorm : kUnorm)[wide ? 1 : 0][channels - 1];
-}
-
 // A field of `width` bits as a code of `bits` bits, rounded to the nearest.
 std::uint32_t scale_code(std::uint32_t code, int width, int bits) {
     if (width == bits) return code;
@@ -52,7 +41,8 @@ std::optional<Format> format_of(const FieldLayout& layout) {
             narrow = true;
     }
     if (channels == 0 || (layout.snorm && narrow && wide)) return std::nullopt;
-    return format_for(channels, wide, layout.snorm);
+    if (layout.snorm && channels == 3) channels = 4;  // no format has three signed channels: the fourth is 1
+    return format_of(layout.snorm ? SampleKind::snorm : SampleKind::unorm, wide ? 16 : 8, channels);
 }
 
 void convert_fields(const FieldLayout& layout, const std::byte* source, std::size_t texels, Format format,

@@ -143,15 +143,17 @@ Result<std::unique_ptr<RowSource>> open_exr_rows(InputFile& file, const ReadOpti
                      });
 }
 
-Result<ExrTextureRows> open_exr_texture_rows(InputFile& file, const ReadOptions& options) {
+Result<TextureRows> open_exr_texture_rows(InputFile& file, const ReadOptions& options) {
     return with_part(
-        file, options, [&](Pool<ExrReader>& readers, ExrReader& reader, Extent base) -> Result<ExrTextureRows> {
+        file, options, [&](Pool<ExrReader>& readers, ExrReader& reader, Extent base) -> Result<TextureRows> {
             Result<ExrTexture> described = exr_texture_of(file.path(), reader.header(), base);
             if (!described) return std::move(described).error();
-            ExrTextureRows texture{{}, std::move(described->head)};
+            TextureRows texture;
+            texture.head = std::move(described->head);
             for (int level = 0; level < described->levels; ++level) {
                 texture.levels.push_back(std::make_unique<ExrRows>(file, readers, reader, described->channels, level));
             }
+            texture.take_planes_in_order();
             return texture;
         });
 }

@@ -4,26 +4,27 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include <tex/image_io.h>
 #include <tex/result.h>
-#include <tex/texture.h>
 
 #include "files/input_file.h"
 #include "formats/row_source.h"
+#include "formats/texture_rows.h"
 
 namespace tex {
 
-// Opens the first part of an EXR, its largest level, to be read as read_exr() would, a few rows at a time; several
-// threads may decode at once. `file` must outlive the rows. Errors: those of read_exr() that the header tells.
+// Opens an EXR, to be read as read_image() promises, a few rows at a time; several threads may decode at once. It is
+// the data window, at its largest level; of several parts the first. Planes R, G, B and A come first, then the others
+// by name. Half and float are as stored, uint is divided by 2^32 - 1. `file` must outlive the rows.
+//
+// Errors: bad_data (with OpenEXR's reason), unsupported (deep data, subsampled channels, too large), io, out_of_memory.
 Result<std::unique_ptr<RowSource>> open_exr_rows(InputFile& file, const ReadOptions& options);
 
-// The same of a texture: the levels and channels that read_exr_texture() takes.
-struct ExrTextureRows {
-    std::vector<std::unique_ptr<RowSource>> levels;
-    Texture head;  // what read_exr_texture() makes of the file, but for its levels
-};
-Result<ExrTextureRows> open_exr_texture_rows(InputFile& file, const ReadOptions& options);
+// The same of a texture, with its mip levels: the channels R, G, B (and A), else all channels if there are at most
+// four. The attributes normalEncoding and normalYAxis give Texture::normal_encoding and Texture::y_axis. Levels that
+// follow another rule than level_extent() (ripmaps, extents rounded up) are left out, with a remark. Errors: as
+// open_exr_rows(); unsupported if more than four channels lack R, G, B.
+Result<TextureRows> open_exr_texture_rows(InputFile& file, const ReadOptions& options);
 
 }  // namespace tex

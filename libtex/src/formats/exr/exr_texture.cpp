@@ -10,6 +10,8 @@
 
 #include <tex/mip_chain.h>
 
+#include "formats/channels.h"
+
 namespace tex {
 namespace {
 
@@ -26,21 +28,11 @@ Result<std::vector<ExrChannel>> texture_channels(const std::string& path, const 
     return channels;
 }
 
-Format float_format(std::size_t channels, bool half) {
-    constexpr Format kHalf[] = {Format::r16_float, Format::rg16_float, Format::rgb16_float, Format::rgba16_float};
-    constexpr Format kFloat[] = {Format::r32_float, Format::rg32_float, Format::rgb32_float, Format::rgba32_float};
-    return (half ? kHalf : kFloat)[channels - 1];
-}
-
-void describe_normals(const Imf::Header& header, std::size_t channels, Texture& texture) {
-    constexpr Component kX = Component::x, kY = Component::y, kZ = Component::z, kOther = Component::other;
-    if (channels == 1) texture.swizzle = {kOther, Component::zero, Component::zero, Component::one};
-    if (channels == 2) texture.swizzle = {kX, kY, Component::zero, Component::one};
-    if (channels == 3) texture.swizzle = {kX, kY, kZ, Component::one};
-    if (channels == 4) texture.swizzle = {kX, kY, kZ, kOther};
+void describe_normals(const Imf::Header& header, Texture& texture) {
+    texture.swizzle = likely_swizzle(texture.format);
     if (const auto* text = header.findTypedAttribute<Imf::StringAttribute>(kNormalEncoding)) {
         texture.normal_encoding = text->value();
-        texture.swizzle_known = channels >= 2;
+        texture.swizzle_known = format_info(texture.format).channels >= 2;
     }
     if (const auto* text = header.findTypedAttribute<Imf::StringAttribute>(kNormalYAxis)) {
         if (const std::optional<YAxis> axis = find_by_name(kYAxisNames, text->value())) {
@@ -73,8 +65,8 @@ Result<ExrTexture> exr_texture_of(const std::string& path, const Imf::Header& he
     ExrTexture texture;
     const bool half = std::all_of(channels->begin(), channels->end(),
                                   [](const ExrChannel& channel) { return channel.type == Imf::HALF; });
-    texture.head.format = float_format(channels->size(), half);
-    describe_normals(header, channels->size(), texture.head);
+    texture.head.format = *format_of(SampleKind::floating, half ? 16 : 32, static_cast<int>(channels->size()));
+    describe_normals(header, texture.head);
     texture.levels = usable_levels(header, base, texture.head.remarks);
     texture.channels = std::move(*channels);
     return texture;

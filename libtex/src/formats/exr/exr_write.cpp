@@ -3,6 +3,7 @@
 #include "formats/exr/exr.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <exception>
 #include <optional>
@@ -14,6 +15,7 @@
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
 #include <ImfTiledOutputFile.h>
+#include <OpenEXRConfig.h>
 
 #include <tex/mip_chain.h>
 
@@ -23,6 +25,9 @@
 
 namespace tex {
 namespace {
+
+static_assert(std::endian::native == std::endian::little,
+              "levels hold little-endian values, OpenEXR wants native ones");
 
 constexpr int kTileSize = 64;
 constexpr int kNoThreads = 0;
@@ -210,6 +215,8 @@ Result<std::unique_ptr<RowTarget>> open_target(const TextureHead& head, const Im
 
 }  // namespace
 
+const char* exr_version() { return OPENEXR_VERSION_STRING; }
+
 Result<std::unique_ptr<RowTarget>> open_exr_target(const TextureHead& head, WriteBytes write) {
     return guarded([&]() -> Result<std::unique_ptr<RowTarget>> {
         if (format_info(head.format).sample != SampleKind::floating) {
@@ -232,7 +239,7 @@ Result<std::unique_ptr<RowTarget>> open_exr_target(const TextureHead& head, Writ
 }
 
 Result<std::vector<std::byte>> encode_exr(const Texture& texture) {
-    return guarded([&] { return encode_rows(Container::exr, texture); });
+    return guarded([&] { return encode_rows(open_exr_target, texture, true); });
 }
 
 }  // namespace tex

@@ -12,21 +12,20 @@
 #include <tex/mip_chain.h>
 
 #include "formats/bytes.h"
+#include "formats/channels.h"
 #include "formats/claims.h"
-#include "formats/dds/dds_format.h"
 #include "formats/ktx2/ktx2_descriptor.h"
+#include "formats/marks.h"
 
 namespace tex {
 namespace {
 
-constexpr unsigned char kIdentifier[12] = {0xab, 'K', 'T', 'X', ' ', '2', '0', 0xbb, '\r', '\n', 0x1a, '\n'};
 constexpr std::size_t kHeaderBytes = 80;      // identifier, header and index
 constexpr std::size_t kLevelIndexBytes = 24;  // for each level
 
 constexpr std::string_view kNormalKey = "libtex.normal";
-constexpr Swizzle kDxt5nm = {Component::one, Component::y, Component::one, Component::x};
 
-// A VkFormat. Texels with `bgr` store blue first.
+// Other VkFormats that are read. Texels with `bgr` store blue first.
 struct VkRow {
     std::uint32_t vk;
     Format format;
@@ -34,30 +33,19 @@ struct VkRow {
     bool bgr;
 };
 
-// The first row of a format is the one that is written.
 constexpr VkRow kVkFormats[] = {
-    {9, Format::r8_unorm, false, false},      {10, Format::r8_snorm, false, false},
-    {15, Format::r8_unorm, true, false},      {16, Format::rg8_unorm, false, false},
-    {17, Format::rg8_snorm, false, false},    {22, Format::rg8_unorm, true, false},
-    {23, Format::rgb8_unorm, false, false},   {29, Format::rgb8_unorm, true, false},
-    {30, Format::rgb8_unorm, false, true},    {36, Format::rgb8_unorm, true, true},
-    {37, Format::rgba8_unorm, false, false},  {38, Format::rgba8_snorm, false, false},
-    {43, Format::rgba8_unorm, true, false},   {44, Format::rgba8_unorm, false, true},
-    {50, Format::rgba8_unorm, true, true},    {70, Format::r16_unorm, false, false},
-    {71, Format::r16_snorm, false, false},    {76, Format::r16_float, false, false},
-    {77, Format::rg16_unorm, false, false},   {78, Format::rg16_snorm, false, false},
-    {83, Format::rg16_float, false, false},   {84, Format::rgb16_unorm, false, false},
-    {90, Format::rgb16_float, false, false},  {91, Format::rgba16_unorm, false, false},
-    {92, Format::rgba16_snorm, false, false}, {97, Format::rgba16_float, false, false},
-    {100, Format::r32_float, false, false},   {103, Format::rg32_float, false, false},
-    {106, Format::rgb32_float, false, false}, {109, Format::rgba32_float, false, false},
-    {133, Format::bc1_unorm, false, false},   {131, Format::bc1_unorm, false, false},
-    {132, Format::bc1_unorm, true, false},    {134, Format::bc1_unorm, true, false},
-    {135, Format::bc2_unorm, false, false},   {136, Format::bc2_unorm, true, false},
-    {137, Format::bc3_unorm, false, false},   {138, Format::bc3_unorm, true, false},
-    {139, Format::bc4_unorm, false, false},   {140, Format::bc4_snorm, false, false},
-    {141, Format::bc5_unorm, false, false},   {142, Format::bc5_snorm, false, false},
+    {30, Format::rgb8_unorm, false, true},  {36, Format::rgb8_unorm, true, true},
+    {44, Format::rgba8_unorm, false, true}, {50, Format::rgba8_unorm, true, true},
+    {131, Format::bc1_unorm, false, false}, {132, Format::bc1_unorm, true, false},
 };
+
+std::optional<VkRow> find_vk_format(std::uint32_t vk) {
+    if (const auto marked = find_format(&FormatMarks::vk, vk)) return VkRow{vk, marked->format, marked->srgb, false};
+    for (const VkRow& row : kVkFormats) {
+        if (row.vk == vk) return row;
+    }
+    return std::nullopt;
+}
 
 Error bad_data(const std::string& name, std::string reason) { return {ErrorCode::bad_data, name, std::move(reason)}; }
 
@@ -67,24 +55,8 @@ Error unsupported(const std::string& name, std::string reason) {
 
 // -- writing -------------------------------------------------------------------------------------------------
 
-Format stored_format(Format format) {
-    switch (format) {
-        case Format::rgb16_unorm: return Format::rgba16_unorm;
-        case Format::rgb16_float: return Format::rgba16_float;
-        case Format::rgb32_float: return Format::rgba32_float;
-        default: return format;
-    }
-}
-
-std::uint32_t vk_format_of(Format format) {
-    for (const VkRow& row : kVkFormats) {
-        if (row.format == format) return row.vk;
-    }
-    return 0;
-}
-
 std::string normal_value(const TextureHead& head) {
-    std::string value = head.swizzle == kDxt5nm ? "dxt5nm" : to_string(head.swizzle);
+    std::string value = head.swizzle == kSwizzleDxt5nm ? "dxt5nm" : to_string(head.swizzle);
     if (head.y_known) value += head.y_axis == YAxis::up ? " +y" : " -y";
     return value;
 }
@@ -167,7 +139,7 @@ bool apply_normal_key(std::string_view value, Texture& texture) {
     const std::string_view swizzle_text = value.substr(0, blank);
     Swizzle swizzle;
     if (swizzle_text == "dxt5nm") {
-        swizzle = kDxt5nm;
+        swizzle = kSwizzleDxt5nm;
     } else {
         if (swizzle_text.size() != 4) return false;
         for (std::size_t c = 0; c < 4; ++c) {
@@ -255,12 +227,8 @@ Result<StoredTexture::Place> place_of(const std::byte* entry, std::size_t size, 
 
 }  // namespace
 
-bool is_ktx2(const std::byte* data, std::size_t size) {
-    return size >= sizeof kIdentifier && std::memcmp(data, kIdentifier, sizeof kIdentifier) == 0;
-}
-
 FileLayout ktx2_layout(const TextureHead& head) {
-    const Format stored = stored_format(head.format);
+    const Format stored = widened(head.format);
     const FormatInfo info = format_info(stored);
     const auto level_total = static_cast<std::size_t>(head.levels);
     const std::vector<std::byte> descriptor = data_format_descriptor(stored);
@@ -280,9 +248,9 @@ FileLayout ktx2_layout(const TextureHead& head) {
     }
 
     ByteWriter writer;
-    for (const unsigned char c : kIdentifier) writer.u8(c);
-    writer.u32(vk_format_of(stored));
-    writer.u32(info.block > 1 ? 1 : static_cast<std::uint32_t>(info.bits / 8));  // bytes of one value
+    writer.text(kKtx2Magic);
+    writer.u32(marks_of(stored).vk.exact);
+    writer.u32(info.has_blocks() ? 1 : static_cast<std::uint32_t>(info.bits / 8));  // bytes of one value
     writer.u32(static_cast<std::uint32_t>(head.extent.width));
     writer.u32(static_cast<std::uint32_t>(head.extent.height));
     writer.u32(0);  // depth
@@ -315,11 +283,8 @@ Result<StoredTexture> parse_ktx2(const FetchBytes& fetch, std::size_t size, cons
     const Ktx2Header header = parse_header(head->data());
     const Result<Extent> extent = check_header(header, name, options);
     if (!extent) return extent.error();
-    const auto row = std::find_if(std::begin(kVkFormats), std::end(kVkFormats),
-                                  [&](const VkRow& r) { return r.vk == header.vk_format; });
-    if (row == std::end(kVkFormats)) {
-        return unsupported(name, "VkFormat " + std::to_string(header.vk_format) + " is not supported");
-    }
+    const std::optional<VkRow> row = find_vk_format(header.vk_format);
+    if (!row) return unsupported(name, "VkFormat " + std::to_string(header.vk_format) + " is not supported");
     const auto levels = std::max<std::uint32_t>(1, header.levels);  // 0: the reader makes the others
     if (levels > static_cast<std::uint32_t>(level_count(*extent))) {
         return bad_data(
@@ -341,7 +306,7 @@ Result<StoredTexture> parse_ktx2(const FetchBytes& fetch, std::size_t size, cons
     const Result<bool> upwards = apply_key_values(fetch, size, header, texture);
     if (!upwards) return upwards.error();
     stored.upwards = *upwards;
-    if (stored.upwards && format_info(row->format).block > 1) {
+    if (stored.upwards && format_info(row->format).has_blocks()) {
         return unsupported(name, "blocks whose rows run upwards (KTXorientation) are not supported");
     }
     for (std::size_t k = 0; k < levels; ++k) {
@@ -351,13 +316,6 @@ Result<StoredTexture> parse_ktx2(const FetchBytes& fetch, std::size_t size, cons
         stored.levels.push_back(*place);
     }
     return stored;
-}
-
-Result<Texture> decode_ktx2(const std::byte* data, std::size_t size, const std::string& name,
-                            const ReadOptions& options) {
-    Result<StoredTexture> stored = parse_ktx2(fetch_from(data), size, name, options);
-    if (!stored) return stored.error();
-    return load_texture(*stored, data);
 }
 
 }  // namespace tex

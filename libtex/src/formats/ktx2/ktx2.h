@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 #include <tex/image_io.h>
 #include <tex/result.h>
@@ -17,20 +18,15 @@
 
 namespace tex {
 
-// True where the bytes begin as a KTX 2 file does.
-[[nodiscard]] bool is_ktx2(const std::byte* data, std::size_t size);
+inline constexpr std::string_view kKtx2Magic = "\xabKTX 20\xbb\r\n\x1a\n";
 
 // Three channels of 16 or 32 bits are widened. Where the swizzle is known, the key "libtex.normal" holds it: "dxt5nm"
 // or the four letters of to_string(), and behind a blank "+y" or "-y" where that is known.
 [[nodiscard]] FileLayout ktx2_layout(const TextureHead& head);
 
-// Where the texels of a file of `size` bytes stand. Errors: as decode_ktx2(); those of `fetch`. May throw
-// std::bad_alloc.
+// Where the texels of a file of `size` bytes stand. Errors: bad_data, unsupported, as read_texture(); those of `fetch`.
+// May throw std::bad_alloc.
 [[nodiscard]] Result<StoredTexture> parse_ktx2(const FetchBytes& fetch, std::size_t size, const std::string& name,
                                                const ReadOptions& options);
-
-// Errors: bad_data, unsupported, as read_texture(). May throw std::bad_alloc.
-[[nodiscard]] Result<Texture> decode_ktx2(const std::byte* data, std::size_t size, const std::string& name,
-                                          const ReadOptions& options);
 
 }  // namespace tex

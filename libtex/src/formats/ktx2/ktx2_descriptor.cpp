@@ -6,13 +6,12 @@
 #include <cstdint>
 
 #include "formats/bytes.h"
+#include "formats/marks.h"
 
 namespace tex {
 namespace {
 
 // khr_df.h of the Khronos Data Format Specification.
-constexpr std::uint32_t kModelRgbsda = 1;
-constexpr std::uint32_t kModelBc1a = 128;
 constexpr std::uint32_t kTransferLinear = 1;
 constexpr std::uint32_t kPrimariesUnspecified = 0;
 constexpr std::uint32_t kChannelColor = 0;
@@ -29,19 +28,6 @@ struct Sample {
     std::uint32_t upper = 0;  // of 1
 };
 
-std::uint32_t model_of(Format format) {
-    switch (format) {
-        case Format::bc1_unorm: return kModelBc1a;
-        case Format::bc2_unorm: return kModelBc1a + 1;
-        case Format::bc3_unorm: return kModelBc1a + 2;
-        case Format::bc4_unorm:
-        case Format::bc4_snorm: return kModelBc1a + 3;
-        case Format::bc5_unorm:
-        case Format::bc5_snorm: return kModelBc1a + 4;
-        default: return kModelRgbsda;
-    }
-}
-
 Sample block_sample(const FormatInfo& info, std::uint32_t channel, std::uint32_t bit_offset) {
     if (info.sample == SampleKind::snorm) {
         return {channel | kQualifierSigned, bit_offset, 64, 0x80000000u, 0x7fffffffu};
@@ -49,14 +35,12 @@ Sample block_sample(const FormatInfo& info, std::uint32_t channel, std::uint32_t
     return {channel, bit_offset, 64, 0, 0xffffffffu};
 }
 
-std::vector<Sample> block_samples(Format format) {
-    const FormatInfo info = format_info(format);
-    switch (format) {
-        case Format::bc1_unorm: return {block_sample(info, kChannelBc1aAlphaPresent, 0)};
-        case Format::bc2_unorm:
-        case Format::bc3_unorm: return {block_sample(info, kChannelAlpha, 0), block_sample(info, kChannelColor, 64)};
-        case Format::bc5_unorm:
-        case Format::bc5_snorm: return {block_sample(info, 0, 0), block_sample(info, 1, 64)};  // red, green
+std::vector<Sample> block_samples(const FormatInfo& info, std::uint32_t model) {
+    switch (model) {
+        case kKhrBc1: return {block_sample(info, kChannelBc1aAlphaPresent, 0)};
+        case kKhrBc2:
+        case kKhrBc3: return {block_sample(info, kChannelAlpha, 0), block_sample(info, kChannelColor, 64)};
+        case kKhrBc5: return {block_sample(info, 0, 0), block_sample(info, 1, 64)};  // red, green
         default: return {block_sample(info, 0, 0)};
     }
 }
@@ -89,16 +73,16 @@ std::vector<Sample> texel_samples(const FormatInfo& info) {
 
 std::vector<std::byte> data_format_descriptor(Format format) {
     const FormatInfo info = format_info(format);
-    const std::vector<Sample> samples = info.block > 1 ? block_samples(format) : texel_samples(info);
+    const std::uint32_t model = marks_of(format).khr_model;
+    const std::vector<Sample> samples = info.has_blocks() ? block_samples(info, model) : texel_samples(info);
     const auto block_bytes = static_cast<std::uint32_t>(24 + 16 * samples.size());
-    const auto edge = static_cast<std::uint32_t>(info.block - 1);
 
     ByteWriter writer;
     writer.u32(4 + block_bytes);
-    writer.u32(0);                      // vendor Khronos, type basic format
-    writer.u32(2 | block_bytes << 16);  // version 1.3
-    writer.u32(model_of(format) | kPrimariesUnspecified << 8 | kTransferLinear << 16);  // flags 0: straight alpha
-    writer.u32(edge | edge << 8);
+    writer.u32(0);                                                           // vendor Khronos, type basic format
+    writer.u32(2 | block_bytes << 16);                                       // version 1.3
+    writer.u32(model | kPrimariesUnspecified << 8 | kTransferLinear << 16);  // flags 0: straight alpha
+    writer.u32(static_cast<std::uint32_t>((info.block.width - 1) | (info.block.height - 1) << 8));
     writer.u32(static_cast<std::uint32_t>(info.block_bytes));
     writer.u32(0);  // planes 4 to 7
     for (const Sample& sample : samples) {

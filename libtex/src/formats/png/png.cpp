@@ -225,25 +225,11 @@ Result<Image> PngRows::read_all() {
 
 const char* png_version() { return png_get_libpng_ver(nullptr); }
 
-bool is_png(std::span<const std::byte> head) {
-    // The first four bytes: what transfers as text damage are the bytes after them.
-    constexpr unsigned char kMark[4] = {0x89, 'P', 'N', 'G'};
-    return head.size() >= sizeof kMark && std::memcmp(head.data(), kMark, sizeof kMark) == 0;
-}
-
 Result<std::unique_ptr<RowSource>> open_png(InputFile& file, const ReadOptions& options) {
     return guarded([&]() -> Result<std::unique_ptr<RowSource>> {
         auto rows = std::make_unique<PngRows>(file);
         if (const Result<void> opened = rows->open(options); !opened) return opened.error();
         return std::unique_ptr<RowSource>(std::move(rows));
-    });
-}
-
-Result<Image> read_png(InputFile& file, const ReadOptions& options) {
-    return guarded([&]() -> Result<Image> {
-        const Result<std::unique_ptr<RowSource>> rows = open_png(file, options);
-        if (!rows) return rows.error();
-        return (*rows)->read_all();
     });
 }
 

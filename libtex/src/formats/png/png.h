@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <span>
+#include <string_view>
 #include <vector>
 
 #include <tex/image.h>
@@ -21,21 +21,18 @@
 
 namespace tex {
 
-// Whether a file that begins with `head` is a PNG, sound or damaged in transfer.
-bool is_png(std::span<const std::byte> head);
+// The first four bytes of a PNG: a transfer as text damages the bytes after them.
+inline constexpr std::string_view kPngMagic = "\x89PNG";
 
 // Of the libpng that runs.
 const char* png_version();
 
-// Opens a PNG, to be read row by row where it is not interlaced. `file` must outlive the rows. Errors: those of
-// read_png() that the header tells.
-Result<std::unique_ptr<RowSource>> open_png(InputFile& file, const ReadOptions& options);
-
-// Reads a PNG as read_image() promises: grey as Y, colour and palette as R, G, B, alpha or tRNS as A; values are code /
-// (2^bits - 1); gAMA, sRGB, iCCP and sBIT change nothing. Damaged ancillary chunks count as damage too.
+// Opens a PNG, to be read as read_image() promises, row by row if it is not interlaced: grey as Y, colour and palette
+// as R, G, B, alpha or tRNS as A; values are code / (2^bits - 1); gAMA, sRGB, iCCP and sBIT change nothing. Damaged
+// ancillary chunks count as damage too. `file` must outlive the rows.
 //
 // Errors: bad_data (with libpng's reason), unsupported (too large), io, out_of_memory.
-Result<Image> read_png(InputFile& file, const ReadOptions& options);
+Result<std::unique_ptr<RowSource>> open_png(InputFile& file, const ReadOptions& options);
 
 // Writes the base level of a texture row by row, with the bytes of encode_png(). Errors: unsupported (another format),
 // out_of_memory.

@@ -94,7 +94,7 @@ bool end_rows(PngWriter& writer) {
 
 // The colour type of a format, or -1.
 int png_color_type(const FormatInfo& format) {
-    if (format.sample != SampleKind::unorm || format.block != 1) return -1;
+    if (format.sample != SampleKind::unorm || format.has_blocks()) return -1;
     switch (format.channels) {
         case 1: return PNG_COLOR_TYPE_GRAY;
         case 3: return PNG_COLOR_TYPE_RGB;
@@ -155,7 +155,7 @@ Result<std::unique_ptr<RowTarget>> open_png_target(const TextureHead& head, Writ
 }
 
 Result<std::vector<std::byte>> encode_png(const Texture& texture) {
-    return guarded([&] { return encode_rows(Container::png, texture); });
+    return guarded([&] { return encode_rows(open_png_target, texture, false); });
 }
 
 Result<std::vector<std::byte>> encode_indexed_png(const Level& indices, const std::vector<PngColor>& palette) {

@@ -16,9 +16,8 @@
 #include <half.h>
 
 #include "files/system_error.h"
-#include "formats/claims.h"
+#include "formats/codecs.h"
 #include "formats/reader/reader_process.h"
-#include "formats/reader/reader_rows.h"
 #include "threads/guard.h"
 
 namespace tex {
@@ -31,36 +30,13 @@ std::int64_t bytes_in(int fd) {
 
 // -- what goes out -------------------------------------------------------------------------------------------
 
-std::optional<ReaderType> texel_type(const FormatInfo& format) {
-    if (format.block != 1 || format.channels == 2) return std::nullopt;
+// Precondition: the reader's codecs hold the format.
+ReaderType texel_type(const FormatInfo& format) {
     if (format.sample == SampleKind::unorm) return format.bits == 8 ? ReaderType::u8 : ReaderType::u16;
-    if (format.sample == SampleKind::floating) return format.bits == 16 ? ReaderType::f16 : ReaderType::f32;
-    return std::nullopt;
+    return format.bits == 16 ? ReaderType::f16 : ReaderType::f32;
 }
-
-struct Encoder {
-    Container container;
-    const char* format;  // as OpenImageIO names it
-    bool deep;           // more than 8 bits
-    bool alpha;
-};
-
-constexpr Encoder kEncoders[] = {
-    {Container::tiff, "tiff", true, true},
-    {Container::tga, "targa", false, true},
-    {Container::bmp, "bmp", false, false},
-    {Container::jpeg, "jpeg", false, false},
-};
 
 }  // namespace
-
-Result<Image> read_with_reader(InputFile& file, const ReadOptions& options) {
-    return guarded([&]() -> Result<Image> {
-        const Result<std::unique_ptr<RowSource>> rows = open_reader_rows(file, options);
-        if (!rows) return rows.error();
-        return (*rows)->read_all();
-    });
-}
 
 Result<ReaderInfo> reader_info(const ReadOptions& options) {
     return guarded([&]() -> Result<ReaderInfo> {
@@ -80,21 +56,12 @@ Result<ReaderInfo> reader_info(const ReadOptions& options) {
     });
 }
 
-Result<Image> read_with_reader(const std::string& path, const ReadOptions& options) {
-    Result<InputFile> file = InputFile::open(path);
-    if (!file) return std::move(file).error();
-    return read_with_reader(*file, options);
-}
-
 Result<std::vector<std::byte>> encode_with_reader(const Texture& texture, Container container,
                                                   const ReadOptions& options) {
     return guarded([&]() -> Result<std::vector<std::byte>> {
         const FormatInfo info = format_info(texture.format);
-        const std::optional<ReaderType> type = texel_type(info);
-        const auto* encoder = std::find_if(std::begin(kEncoders), std::end(kEncoders),
-                                           [&](const Encoder& e) { return e.container == container; });
-        if (!type || encoder == std::end(kEncoders) || texture.levels.empty() ||
-            (info.channels == 4 && !encoder->alpha) || (*type != ReaderType::u8 && !encoder->deep)) {
+        const Codec& codec = codec_of(container);
+        if (codec.reader_name == nullptr || texture.levels.empty() || !codec.holds(info)) {
             return Error{ErrorCode::unsupported,
                          {},
                          std::string(name_of(kContainerNames, container)) + " does not hold " +
@@ -105,7 +72,7 @@ Result<std::vector<std::byte>> encode_with_reader(const Texture& texture, Contai
         header.width = level.extent.width;
         header.height = level.extent.height;
         header.channels = info.channels;
-        header.type = *type;
+        header.type = texel_type(info);
         const Result<Descriptor> input = memory_file({});
         const Result<Descriptor> result = memory_file({});
         if (!input) return input.error();
@@ -115,7 +82,7 @@ Result<std::vector<std::byte>> encode_with_reader(const Texture& texture, Contai
             return system_error({}, errno, "a file in memory");
         }
         const Result<ReaderHeader> reply =
-            run_reader({{}, "encode", encoder->format, input.value().get(), result.value().get()}, options);
+            run_reader({{}, "encode", codec.reader_name, input.value().get(), result.value().get()}, options);
         if (!reply) return reply.error();
         const auto held = static_cast<std::uint64_t>(bytes_in(result.value().get()));
         if (held < kReaderDataOffset || reply.value().bytes > held - kReaderDataOffset) return nonsense({});

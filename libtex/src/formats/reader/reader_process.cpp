@@ -300,7 +300,7 @@ ReaderProcess::~ReaderProcess() = default;
 Result<ReaderProcess> ReaderProcess::start(const ReaderJob& job, const ReadOptions& options) {
     return guarded([&]() -> Result<ReaderProcess> {
         const Result<std::string> program = find_reader(options);
-        if (!program) return Error{program.error().code, job.path, program.error().reason};
+        if (!program) return program.error().of(job.path);
         auto state = std::make_unique<State>();
         state->job = job;
         state->program = *program;

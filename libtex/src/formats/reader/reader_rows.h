@@ -13,9 +13,18 @@
 
 namespace tex {
 
-// Starts the reader process on a file, which must outlive the rows; it ends with them. Pictures of fewer significant
-// bits than their container has are read to the end first, as only all of them tell what was done to the bits. Errors:
-// those of read_with_reader() that come before the first rows.
+// Starts the reader process on a file, which must outlive the rows; it ends with them. The file's first bytes choose
+// the decoder: TIFF, JPEG, BMP, HDR, PSD, GIF, WebP, PNM, SGI, JPEG 2000, DPX, Cineon, IFF, Softimage PIC; a plausible
+// header alone makes a TGA, which has no mark. Raw values, unassociated alpha, the first picture of several;
+// orientation tags change nothing. Integers of fewer bits than their container (12-bit TIFF) are taken back to code /
+// (2^n - 1); such pictures are read to the end first, as only all of them show what was done to the bits.
+//
+// Errors: io             the reader program is not there or cannot be started
+//         bad_data       not a picture; damaged; the decoder crashed, did not end within options.reader_timeout, or
+//                        handed over nonsense
+//         unsupported    CMYK; WebP with alpha; more than kMaxReaderChannels channels; too large; more memory than
+//                        options.reader_memory
+//         out_of_memory
 Result<std::unique_ptr<RowSource>> open_reader_rows(InputFile& file, const ReadOptions& options);
 
 }  // namespace tex

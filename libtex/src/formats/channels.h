@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// channel_names.h: what the channels of a format are called.
+// channels.h: the names of a format's channels, and what they hold.
 
 #pragma once
 
@@ -19,6 +19,17 @@ inline std::vector<std::string> channel_names(const Texture& head) {
     if (channels == 1 && head.swizzle == kAlphaAlone) return {"A"};
     const char* const names[] = {"R", "G", "B", "A"};
     return {names, names + channels};
+}
+
+// The channels that normals are likeliest in if the file does not say. BC3 is taken for DXT5nm.
+inline Swizzle likely_swizzle(Format format) {
+    if (format == Format::bc3_unorm) return kSwizzleDxt5nm;
+    switch (format_info(format).channels) {
+        case 1: return {Component::other, Component::zero, Component::zero, Component::one};
+        case 2: return kSwizzleXy;
+        case 3: return {Component::x, Component::y, Component::z, Component::one};
+        default: return kSwizzleXyz;
+    }
 }
 
 }  // namespace tex

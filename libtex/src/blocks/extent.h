@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// extent.h: texels in whole blocks.
+
+#pragma once
+
+namespace tex {
+
+// Texels along an edge of a block of BC1 to BC5. Code for every format takes the edges from FormatInfo::block.
+inline constexpr int kBlockEdge = 4;
+inline constexpr int kBlockTexels = kBlockEdge * kBlockEdge;
+
+// The number of blocks that cover `texels` texels along an axis; the last block may be partly outside.
+constexpr int blocks_across(int texels, int edge = kBlockEdge) { return (texels + edge - 1) / edge; }
+
+// The texels of these blocks: `texels`, rounded up.
+constexpr int whole_blocks(int texels, int edge = kBlockEdge) { return blocks_across(texels, edge) * edge; }
+
+}  // namespace tex

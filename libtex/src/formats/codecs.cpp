@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "formats/codecs.h"
+
+#include <algorithm>
+#include <cstring>
+#include <iterator>
+
+#include "formats/dds/dds.h"
+#include "formats/exr/exr.h"
+#include "formats/exr/exr_rows.h"
+#include "formats/ktx2/ktx2.h"
+#include "formats/png/png.h"
+#include "formats/reader/reader_rows.h"
+
+namespace tex {
+namespace {
+
+bool holds_all(const FormatInfo&) { return true; }
+
+bool is_float(const FormatInfo& format) { return format.sample == SampleKind::floating; }
+
+// Grey, RGB or RGBA.
+bool is_unorm_picture(const FormatInfo& format) {
+    return format.sample == SampleKind::unorm && !format.has_blocks() && format.channels != 2;
+}
+
+bool is_tiff(const FormatInfo& format) {
+    return is_unorm_picture(format) || (is_float(format) && format.channels != 2);
+}
+
+bool is_unorm8_picture(const FormatInfo& format) { return is_unorm_picture(format) && format.bits == 8; }
+
+bool is_unorm8_without_alpha(const FormatInfo& format) { return is_unorm8_picture(format) && format.channels != 4; }
+
+// Those of the reader process come last.
+constexpr Codec kCodecs[] = {
+    {
+        .container = Container::dds,
+        .magic = kDdsMagic,
+        .holds = holds_all,
+        .has_levels = true,
+        .default_encoding = Encoding::dxt5nm,
+        .parse = parse_dds,
+        .layout = dds_layout,
+    },
+    {
+        .container = Container::ktx2,
+        .magic = kKtx2Magic,
+        .holds = holds_all,
+        .has_levels = true,
+        .default_encoding = Encoding::dxt5nm,
+        .parse = parse_ktx2,
+        .layout = [](const TextureHead& head, const WriteOptions&) { return ktx2_layout(head); },
+    },
+    {
+        .container = Container::png,
+        .magic = kPngMagic,
+        .holds = is_unorm_picture,
+        .open_rows = open_png,
+        .decodes_twice = true,
+        .open_target = open_png_target,
+    },
+    {
+        .container = Container::exr,
+        .magic = kExrMagic,
+        .holds = is_float,
+        .has_levels = true,
+        .default_encoding = Encoding::half,
+        .open_rows = open_exr_rows,
+        .open_levels = open_exr_texture_rows,
+        .open_target = open_exr_target,
+    },
+    {
+        .container = Container::tiff,
+        .holds = is_tiff,
+        .default_encoding = Encoding::rgb16,
+        .open_rows = open_reader_rows,
+        .reader_name = "tiff",
+    },
+    {
+        .container = Container::tga,
+        .holds = is_unorm8_picture,
+        .open_rows = open_reader_rows,
+        .reader_name = "targa",
+    },
+    {
+        .container = Container::bmp,
+        .holds = is_unorm8_without_alpha,
+        .open_rows = open_reader_rows,
+        .reader_name = "bmp",
+    },
+    {
+        .container = Container::jpeg,
+        .holds = is_unorm8_without_alpha,
+        .open_rows = open_reader_rows,
+        .reader_name = "jpeg",
+    },
+};
+
+}  // namespace
+
+const Codec& codec_of(Container container) {
+    return *std::find_if(std::begin(kCodecs), std::end(kCodecs),
+                         [&](const Codec& codec) { return codec.container == container; });
+}
+
+const Codec& codec_for(std::span<const std::byte> head) {
+    return *std::find_if(std::begin(kCodecs), std::end(kCodecs), [&](const Codec& codec) {
+        if (codec.magic.empty()) return true;
+        return head.size() >= codec.magic.size() &&
+               std::memcmp(head.data(), codec.magic.data(), codec.magic.size()) == 0;
+    });
+}
+
+}  // namespace tex

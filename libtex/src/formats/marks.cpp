@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "formats/marks.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "formats/bytes.h"
+
+namespace tex {
+namespace {
+
+constexpr DdsPixelFormat coded(std::uint32_t code) { return {kDdpfFourCc, code, 0, {}}; }
+
+constexpr DdsPixelFormat kNone = {};
+constexpr DdsPixelFormat kL8 = {kDdpfLuminance, 0, 8, {0xff, 0, 0, 0}};
+constexpr DdsPixelFormat kL16 = {kDdpfLuminance, 0, 16, {0xffff, 0, 0, 0}};
+// Blue first, as Direct3D 9 has it: some readers (ImageMagick 6) do not look at the masks.
+constexpr DdsPixelFormat kRgb8 = {kDdpfRgb, 0, 24, {0xff0000, 0xff00, 0xff, 0}};
+constexpr DdsPixelFormat kRgba8 = {kDdpfRgb | kDdpfAlphaPixels, 0, 32, {0xff0000, 0xff00, 0xff, 0xff000000}};
+
+// In the order of Format. The numbers of Direct3D 9 are D3DFORMATs.
+constexpr FormatMarks kMarks[] = {
+    {Format::bc1_unorm, coded(fourcc("DXT1")), {71, 72, 70}, {133, 134}, kKhrBc1},
+    {Format::bc2_unorm, coded(fourcc("DXT3")), {74, 75, 73}, {135, 136}, kKhrBc2},
+    {Format::bc3_unorm, coded(fourcc("DXT5")), {77, 78, 76}, {137, 138}, kKhrBc3},
+    {Format::bc4_unorm, coded(fourcc("ATI1")), {80, 0, 79}, {139}, kKhrBc4},
+    {Format::bc4_snorm, coded(fourcc("BC4S")), {81}, {140}, kKhrBc4},
+    {Format::bc5_unorm, coded(fourcc("ATI2")), {83, 0, 82}, {141}, kKhrBc5},
+    {Format::bc5_snorm, coded(fourcc("BC5S")), {84}, {142}, kKhrBc5},
+    {Format::r8_unorm, kL8, {61, 0, 60}, {9, 15}, kKhrRgbsda},
+    {Format::rg8_unorm, kNone, {49, 0, 48}, {16, 22}, kKhrRgbsda},
+    {Format::rgb8_unorm, kRgb8, {}, {23, 29}, kKhrRgbsda},
+    {Format::rgba8_unorm, kRgba8, {28, 29, 27}, {37, 43}, kKhrRgbsda},
+    {Format::r8_snorm, kNone, {63}, {10}, kKhrRgbsda},
+    {Format::rg8_snorm, kNone, {51}, {17}, kKhrRgbsda},
+    {Format::rgba8_snorm, kNone, {31}, {38}, kKhrRgbsda},
+    {Format::r16_unorm, kL16, {56, 0, 53}, {70}, kKhrRgbsda},
+    {Format::rg16_unorm, kNone, {35, 0, 33}, {77}, kKhrRgbsda},
+    {Format::rgb16_unorm, kNone, {}, {84}, kKhrRgbsda},
+    {Format::rgba16_unorm, coded(36), {11, 0, 9}, {91}, kKhrRgbsda},
+    {Format::r16_snorm, kNone, {58}, {71}, kKhrRgbsda},
+    {Format::rg16_snorm, kNone, {37}, {78}, kKhrRgbsda},
+    {Format::rgba16_snorm, coded(110), {13}, {92}, kKhrRgbsda},
+    {Format::r16_float, coded(111), {54}, {76}, kKhrRgbsda},
+    {Format::rg16_float, coded(112), {34}, {83}, kKhrRgbsda},
+    {Format::rgb16_float, kNone, {}, {90}, kKhrRgbsda},
+    {Format::rgba16_float, coded(113), {10}, {97}, kKhrRgbsda},
+    {Format::r32_float, coded(114), {41, 0, 39}, {100}, kKhrRgbsda},
+    {Format::rg32_float, coded(115), {16, 0, 15}, {103}, kKhrRgbsda},
+    {Format::rgb32_float, kNone, {6, 0, 5}, {106}, kKhrRgbsda},
+    {Format::rgba32_float, coded(116), {2, 0, 1}, {109}, kKhrRgbsda},
+};
+
+static_assert([] {
+    for (std::size_t k = 0; k < std::size(kMarks); ++k) {
+        if (kMarks[k].format != static_cast<Format>(k)) return false;
+    }
+    return std::size(kMarks) == std::size(kFormatNames);
+}());
+
+}  // namespace
+
+const FormatMarks& marks_of(Format format) { return kMarks[static_cast<std::size_t>(format)]; }
+
+std::optional<MarkedFormat> find_format(FormatNumbers FormatMarks::*registry, std::uint32_t number) {
+    for (const FormatMarks& row : kMarks) {
+        const FormatNumbers& numbers = row.*registry;
+        if (number == 0) break;
+        if (number == numbers.exact || number == numbers.typeless) return MarkedFormat{row.format, false};
+        if (number == numbers.srgb) return MarkedFormat{row.format, true};
+    }
+    return std::nullopt;
+}
+
+}  // namespace tex

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// marks.h: the table of the numbers that mark a format in files, one row for each format.
+
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include <tex/format.h>
+
+#include "formats/dds/dds_format.h"
+
+namespace tex {
+
+// Numbers of one registry for a format; 0 if there is none. They all mean the same bytes.
+struct FormatNumbers {
+    std::uint32_t exact = 0;
+    std::uint32_t srgb = 0;
+    std::uint32_t typeless = 0;
+};
+
+struct FormatMarks {
+    Format format;
+    DdsPixelFormat legacy;    // in a Direct3D 9 header; no flags if Direct3D 9 lacks the format
+    FormatNumbers dxgi;       // DXGI_FORMAT
+    FormatNumbers vk;         // VkFormat
+    std::uint32_t khr_model;  // khr_df_model_e
+};
+
+[[nodiscard]] const FormatMarks& marks_of(Format format);
+
+// The format that a number stands for, and whether the number declares sRGB; nullopt for unknown numbers.
+struct MarkedFormat {
+    Format format;
+    bool srgb;
+};
+[[nodiscard]] std::optional<MarkedFormat> find_format(FormatNumbers FormatMarks::*registry, std::uint32_t number);
+
+// khr_df.h of the Khronos Data Format Specification.
+inline constexpr std::uint32_t kKhrRgbsda = 1;
+inline constexpr std::uint32_t kKhrBc1 = 128;
+inline constexpr std::uint32_t kKhrBc2 = 129;
+inline constexpr std::uint32_t kKhrBc3 = 130;
+inline constexpr std::uint32_t kKhrBc4 = 131;
+inline constexpr std::uint32_t kKhrBc5 = 132;
+
+}  // namespace tex

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "formats/codecs.h"
+
+#include <set>
+#include <string_view>
+
+#include <gtest/gtest.h>
+
+#include "formats/ktx2/ktx2.h"
+#include "formats/marks.h"
+#include "formats/png/png.h"
+
+namespace tex {
+namespace {
+
+std::span<const std::byte> bytes_of(std::string_view text) {
+    return std::as_bytes(std::span(text.data(), text.size()));
+}
+
+TEST(Codecs, HaveOneRowForEachContainer) {
+    for (const auto& row : kContainerNames) {
+        const Codec& codec = codec_of(row.value);
+        EXPECT_EQ(codec.container, row.value);
+        EXPECT_NE(codec.parse == nullptr, codec.open_rows == nullptr) << row.name;
+        const int ways = (codec.layout != nullptr) + (codec.open_target != nullptr) + (codec.reader_name != nullptr);
+        EXPECT_EQ(ways, 1) << row.name;
+        EXPECT_EQ(codec.magic.empty(), codec.reader_name != nullptr) << row.name;
+    }
+}
+
+TEST(Codecs, AreChosenByTheFirstBytes) {
+    for (const auto& row : kContainerNames) {
+        const Codec& codec = codec_of(row.value);
+        if (codec.magic.empty()) continue;
+        EXPECT_EQ(codec_for(bytes_of(codec.magic)).container, row.value) << row.name;
+        EXPECT_LE(codec.magic.size(), InputFile::kHeadBytes);
+        const std::string_view cut = codec.magic.substr(0, codec.magic.size() - 1);
+        EXPECT_NE(codec_for(bytes_of(cut)).reader_name, nullptr) << row.name;
+    }
+    EXPECT_NE(codec_for({}).reader_name, nullptr);
+    EXPECT_NE(codec_for(bytes_of("BM")).reader_name, nullptr);
+}
+
+TEST(Codecs, FilesBeginWithTheMagicOfTheirRow) {
+    EXPECT_EQ(kKtx2Magic.size(), 12u);  // the identifier of the specification, no byte less
+    EXPECT_EQ(kPngMagic, std::string_view("\x89PNG"));
+    EXPECT_EQ(codec_for(bytes_of("DDS |")).container, Container::dds);
+}
+
+TEST(Marks, NumberOneFormatEach) {
+    for (const auto registry : {&FormatMarks::dxgi, &FormatMarks::vk}) {
+        std::set<std::uint32_t> seen;
+        for (const auto& row : kFormatNames) {
+            const FormatNumbers& numbers = marks_of(row.value).*registry;
+            for (const std::uint32_t number : {numbers.exact, numbers.srgb, numbers.typeless}) {
+                if (number == 0) continue;
+                EXPECT_TRUE(seen.insert(number).second) << row.name;
+                const auto found = find_format(registry, number);
+                ASSERT_TRUE(found);
+                EXPECT_EQ(found->format, row.value);
+                EXPECT_EQ(found->srgb, number == numbers.srgb);
+            }
+        }
+        EXPECT_FALSE(find_format(registry, 0));
+        EXPECT_FALSE(find_format(registry, 1000));
+    }
+}
+
+}  // namespace
+}  // namespace tex
