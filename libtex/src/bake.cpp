@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory and threads: strips of rows run in parallel. base/bake_rows.cpp bakes a strip from top to bottom.
+// Memory and threads: strips of rows run in parallel. rows/bake_rows.cpp bakes a strip from top to bottom.
 
 #include <tex/bake.h>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
-#include <mutex>
 
 #include "kernels/bake.h"
 #include "rows/bake_rows.h"
+#include "stream/slope_collector.h"
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
@@ -48,24 +47,13 @@ Result<NormalMap> bake(const HeightField& field, const BakeOptions& options, con
 }
 
 SlopeRange slope_range(const NormalMap& map, const Execution& execution) {
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
     const Extent extent = map.extent();
-    SlopeBounds all{kInfinity, -kInfinity, kInfinity, -kInfinity};
-    std::mutex merging;
-    const auto body = [&](int begin, int end) {
-        SlopeBounds bounds{kInfinity, -kInfinity, kInfinity, -kInfinity};
-        for (int j = begin; j < end; ++j) {
-            widen_slope_bounds(map.x.row(j), map.y.row(j), map.z.row(j), extent.width, bounds);
-        }
-        // Least and greatest do not depend on the order of the threads.
-        const std::lock_guard lock(merging);
-        all = {std::min(all.min_x, bounds.min_x), std::max(all.max_x, bounds.max_x), std::min(all.min_y, bounds.min_y),
-               std::max(all.max_y, bounds.max_y)};
-    };
+    SlopeCollector slopes;
+    const auto body = [&](int begin, int end) { slopes.add(map, begin, end); };
     const Execution silent{execution.threads, {}};
     const auto done = parallel_for(silent, extent.height, strip_rows(extent.width, 1), body);
     if (!done) body(0, extent.height);
-    return {all.min_x, all.max_x, all.min_y, all.max_y};
+    return slopes.range();
 }
 
 }  // namespace tex

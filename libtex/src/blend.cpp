@@ -191,7 +191,8 @@ Result<NormalMap> blend_layers(MipChain& base, std::vector<Layer>& layers, const
     placed.reserve(layers.size());
     for (Layer& layer : layers) {
         const Rotation rotation = rotation_of(layer.rotation);
-        const UvMap map = uv_map_of(layer, extent, rotation.cosine, rotation.sine);
+        const UvMap map = uv_map_of({layer.tiling_x, layer.tiling_y, layer.offset_x, layer.offset_y}, extent,
+                                    rotation.cosine, rotation.sine);
         const Result<Source> source = make_source(layer.detail, map, layer.wrap_x, layer.wrap_y, execution);
         if (!source) return source.error();
         placed.push_back({layer, rotation, *source});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The order of the steps; base/height_source.cpp says which plane is the height, kernels/height_field.cpp computes.
+// The order of the steps; rows/height_source.cpp says which plane is the height, kernels/height_field.cpp computes.
 
 #include <tex/height_field.h>
 
@@ -9,15 +9,19 @@
 #include <cmath>
 #include <limits>
 #include <utility>
+#include <vector>
 
 #include "rows/blur.h"
 #include "rows/height_source.h"
-#include "rows/nearest.h"
+#include "stream/nearest.h"
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
 namespace tex {
 namespace {
+
+// Rows of an extent that are worth a thread's while.
+int strip_rows(Extent extent) { return std::max(1, (1 << 16) / extent.width); }
 
 // The first texel that is NaN. Precondition: there is one.
 std::pair<int, int> first_invalid(const Plane<float>& heights) {
@@ -33,6 +37,24 @@ std::pair<int, int> first_invalid(const Plane<float>& heights) {
 float finite(double strength) {
     constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
     return static_cast<float>(std::clamp(strength, -kMost, kMost));
+}
+
+// Blurs along the rows, then down the columns.
+Result<void> blur(HeightField& field, double sigma, const Execution& execution, ProgressSpan span) {
+    const Extent extent = field.height.extent();
+    const std::vector<float> weights = gaussian_weights(sigma);
+    const int strip = strip_rows(extent);
+    const double half = (span.from + span.to) / 2;
+    Plane<float> across(extent);
+    const auto rows = [&](int begin, int end) {
+        blur_across(field.height.view(), weights, field.wrap_x, begin, end, across);
+    };
+    if (auto done = parallel_for(execution, extent.height, strip, rows, {span.from, half}); !done) return done;
+    const auto columns = [&](int begin, int end) {
+        blur_down(across.view(), weights, field.wrap_y, begin, end, field.height);
+    };
+    const int radius = static_cast<int>(weights.size()) - 1;
+    return parallel_for(execution, extent.height, std::max(strip, radius), columns, {half, span.to});
 }
 
 }  // namespace
@@ -73,8 +95,8 @@ Result<HeightField> height_field(const Image& image, const HeightOptions& option
             luma_texels += all.luma;
             invalid_texels += all.invalid;
         };
-        const int strip = std::max(1, (1 << 16) / extent.width);
-        if (auto done = parallel_for(execution, extent.height, strip, take, {0.0, taken}); !done) return done.error();
+        if (auto done = parallel_for(execution, extent.height, strip_rows(extent), take, {0.0, taken}); !done)
+            return done.error();
 
         if (invalid_texels > 0) {
             if (!options.fill_invalid || invalid_texels == extent.texels()) {
@@ -86,8 +108,7 @@ Result<HeightField> height_field(const Image& image, const HeightOptions& option
             if (!done) return done.error();
         }
         if (options.blur_sigma > 0.0f) {
-            auto done = blur(field.height, static_cast<double>(options.blur_sigma), options.wrap_x, options.wrap_y,
-                             execution, {filled, 1.0});
+            auto done = blur(field, static_cast<double>(options.blur_sigma), execution, {filled, 1.0});
             if (!done) return done.error();
         }
         if (report != nullptr) *report = {luma_texels, invalid_texels};

@@ -35,8 +35,7 @@ struct Step {
     NormalMap& to;
     int level;  // of `from`
     const MipOptions& options;
-    AxisFilter x;
-    AxisFilter y;
+    LevelFilter filter;
 
     [[nodiscard]] int planes() const { return options.domain == MipDomain::vector ? 3 : 2; }
     // The base level is the caller's: it is not averages but vectors, and stays as it is.
@@ -45,24 +44,25 @@ struct Step {
 
 Plane<float>& plane_of(NormalMap& map, int plane) { return plane == 0 ? map.x : plane == 1 ? map.y : map.z; }
 
-// The rows of averages that `to` is made of, with the rows beyond the border. In the slope domain those of
-// the base level are computed here, from its vectors, and held while they are needed.
+// The rows of averages that a row of `to` is made of. In the slope domain those of the base level are computed here,
+// from its vectors, and held while they are needed.
 class SourceRows {
 public:
-    explicit SourceRows(const Step& step) : step_(step), converts_(step.from_base() && step.planes() == 2) {
+    explicit SourceRows(const Step& step)
+        : step_(step), taps_(step.filter.y.taps), converts_(step.from_base() && step.planes() == 2),
+          window_(static_cast<std::size_t>(taps_)) {
         if (!converts_) return;
-        const Extent held{step.from.extent().width, step.y.taps};
+        const Extent held{step.from.extent().width, taps_};
         p_ = Plane<float>(held);
         q_ = Plane<float>(held);
-        held_.assign(static_cast<std::size_t>(step.y.taps), -1);
+        held_.assign(static_cast<std::size_t>(taps_), -1);
     }
 
-    // Makes rows [first, first + taps) ready, those beyond the border included.
-    void prepare(int first) {
-        if (!converts_) return;
-        for (int j = first; j < first + step_.y.taps; ++j) {
-            const int slot = wrap_around(j, step_.y.taps);
-            const int source = inside(j);
+    // Makes the rows for row j of `to` ready.
+    void prepare(int j) {
+        for (int k = 0; converts_ && k < taps_; ++k) {
+            const int slot = slot_of(j, k);
+            const int source = step_.filter.source(j, k);
             int& held = held_[static_cast<std::size_t>(slot)];
             if (held == source) continue;
             const NormalMap& from = step_.from;
@@ -72,48 +72,37 @@ public:
         }
     }
 
-    const float* row(int plane, int j) {
-        if (!converts_) return plane_of(step_.from, plane).row(inside(j));
-        return (plane == 0 ? p_ : q_).row(wrap_around(j, step_.y.taps));
+    // These rows, of one plane. They stand until the next call.
+    const float* const* window(int plane, int j) {
+        for (int k = 0; k < taps_; ++k) {
+            window_[static_cast<std::size_t>(k)] = converts_
+                                                       ? (plane == 0 ? p_ : q_).row(slot_of(j, k))
+                                                       : plane_of(step_.from, plane).row(step_.filter.source(j, k));
+        }
+        return window_.data();
     }
 
 private:
-    [[nodiscard]] int inside(int j) const { return border_index(step_.options.wrap_y, j, step_.from.extent().height); }
+    [[nodiscard]] int slot_of(int j, int k) const { return wrap_around(2 * j + step_.filter.y.first + k, taps_); }
 
     const Step& step_;
+    const int taps_;
     const bool converts_;
     Plane<float> p_, q_;
     std::vector<int> held_;  // the row of the level that each slot holds
+    std::vector<const float*> window_;
 };
 
-// Rows [begin, end) of step.to by any filter.
-void filter_strip(const Step& step, int begin, int end) {
-    const int width = step.from.extent().width;
-    const int taps = step.y.taps;
+// Rows [begin, end) of step.to. Where the filter halves, a row of `from` belongs to one row of `to` only, and is
+// finished as soon as that one is made.
+void make_strip(const Step& step, int begin, int end) {
     SourceRows source(step);
-    MipRows filtered(step.x, step.y, step.options.wrap_x, width);
-    std::vector<const float*> rows(static_cast<std::size_t>(taps));
+    MipRows rows(step.filter);
     for (int j = begin; j < end; ++j) {
-        const int first = 2 * j + step.y.first;
-        source.prepare(first);
-        for (int plane = 0; plane < step.planes(); ++plane) {
-            for (int k = 0; k < taps; ++k) rows[static_cast<std::size_t>(k)] = source.row(plane, first + k);
-            filtered.make(rows.data(), j, plane_of(step.to, plane).row(j));
-        }
-    }
-}
-
-// The same for the box filter from even sizes: one pass, nothing in between. A row of `from` belongs to one
-// row of `to` only, and is finished as soon as that one is made.
-void halve_strip(const Step& step, int begin, int end) {
-    const int count = step.to.extent().width;
-    SourceRows source(step);
-    for (int j = begin; j < end; ++j) {
-        source.prepare(2 * j);
-        for (int plane = 0; plane < step.planes(); ++plane) {
-            halve_rows(source.row(plane, 2 * j), source.row(plane, 2 * j + 1), count, plane_of(step.to, plane).row(j));
-        }
-        if (!step.from_base()) {
+        source.prepare(j);
+        for (int plane = 0; plane < step.planes(); ++plane)
+            rows.make(source.window(plane, j), j, plane_of(step.to, plane).row(j));
+        if (step.filter.halves && !step.from_base()) {
             finish_rows(step.from, step.options.domain, fade_at(step.options.fade, step.level), 2 * j, 2 * j + 2);
         }
     }
@@ -125,19 +114,6 @@ int strip_rows(Extent extent) {
     return std::max(1, kTexels / extent.width);
 }
 
-// Steps that halve, one after the other, strip by strip of the last level: what a step makes is still in
-// the cache when the next one reads it.
-Result<void> halve_levels(const std::vector<Step>& steps, const Execution& execution, ProgressSpan span) {
-    const int last = static_cast<int>(steps.size()) - 1;
-    const Extent extent = steps.back().to.extent();
-    const auto strip = [&](int begin, int end) {
-        for (int k = 0; k <= last; ++k)
-            halve_strip(steps[static_cast<std::size_t>(k)], begin << (last - k), end << (last - k));
-    };
-    const Extent strip_of_first{steps.front().to.extent().width << last, extent.height};
-    return parallel_for(execution, extent.height, strip_rows(strip_of_first), strip, span);
-}
-
 Result<void> finish_level(NormalMap& level, const MipOptions& options, int index, const Execution& execution,
                           ProgressSpan span) {
     const auto strip = [&](int begin, int end) {
@@ -146,36 +122,40 @@ Result<void> finish_level(NormalMap& level, const MipOptions& options, int index
     return parallel_for(execution, level.extent().height, strip_rows(level.extent()), strip, span);
 }
 
-// One step by any filter, and the end of the level that it came from.
-Result<void> filter_level(const Step& step, const Execution& execution, ProgressSpan span) {
-    const auto strip = [&](int begin, int end) { filter_strip(step, begin, end); };
-    auto done = parallel_for(execution, step.to.extent().height, strip_rows(step.to.extent()), strip, span);
-    if (!done || step.from_base()) return done;
-    return finish_level(step.from, step.options, step.level, execution, {span.to, span.to});
-}
-
 Step make_step(MipChain& chain, int level, const MipOptions& options) {
     NormalMap& from = chain.levels[static_cast<std::size_t>(level)];
     NormalMap& to = chain.levels[static_cast<std::size_t>(level) + 1];
-    const Extent extent = from.extent();
-    return {from,
-            to,
-            level,
-            options,
-            make_axis_filter(options.filter, extent.width),
-            make_axis_filter(options.filter, extent.height)};
+    return {from, to, level, options, LevelFilter(from.extent(), options)};
 }
 
-// The steps from `level` on that halve, at most four: a strip of sixteen rows fits into the cache.
-std::vector<Step> halving_steps(MipChain& chain, int level, const MipOptions& options) {
+// The step from `level`, and if it halves those after it that halve too, at most four: a strip of sixteen rows fits
+// into the cache.
+std::vector<Step> next_steps(MipChain& chain, int level, const MipOptions& options) {
     const int end = std::min(level + 4, static_cast<int>(chain.levels.size()) - 1);
     std::vector<Step> steps;
     for (; level < end; ++level) {
-        const Extent extent = chain.levels[static_cast<std::size_t>(level)].extent();
-        if (options.filter != MipFilter::box || extent.width % 2 != 0 || extent.height % 2 != 0) break;
-        steps.push_back(make_step(chain, level, options));
+        Step step = make_step(chain, level, options);
+        const bool halves = step.filter.halves;
+        if (steps.empty() || halves) steps.push_back(std::move(step));
+        if (!halves) break;
     }
     return steps;
+}
+
+// Steps one after the other, strip by strip of the last level: what a step makes is still in the cache when the next
+// one reads it. Ends the levels that they came from.
+Result<void> make_levels(const std::vector<Step>& steps, const Execution& execution, ProgressSpan span) {
+    const int last = static_cast<int>(steps.size()) - 1;
+    const Extent extent = steps.back().to.extent();
+    const auto strip = [&](int begin, int end) {
+        for (int k = 0; k <= last; ++k)
+            make_strip(steps[static_cast<std::size_t>(k)], begin << (last - k), end << (last - k));
+    };
+    const Extent strip_of_first{steps.front().to.extent().width << last, extent.height};
+    auto done = parallel_for(execution, extent.height, strip_rows(strip_of_first), strip, span);
+    const Step& first = steps.front();
+    if (!done || first.filter.halves || first.from_base()) return done;
+    return finish_level(first.from, first.options, first.level, execution, {span.to, span.to});
 }
 
 }  // namespace
@@ -185,8 +165,7 @@ Result<MipChain> build_mip_chain(NormalMap base, const MipOptions& options, cons
     assert(!options.fade || (options.fade->first >= 0 && options.fade->first < options.fade->last));
     return guarded([&]() -> Result<MipChain> {
         const Extent extent = base.extent();
-        const int complete = level_count(extent);
-        const int count = options.levels > 0 ? std::min(options.levels, complete) : complete;
+        const int count = levels_to_build(options, extent);
         MipChain chain;
         chain.levels.push_back(std::move(base));
         for (int k = 1; k < count; ++k) chain.levels.emplace_back(level_extent(extent, k));
@@ -195,11 +174,9 @@ Result<MipChain> build_mip_chain(NormalMap base, const MipOptions& options, cons
         for (int k = 0; k + 1 < count;) {
             // Three quarters of what is left, as each level has a quarter of the texels of the one before.
             const double next = done + (1.0 - done) * 0.75;
-            const std::vector<Step> halving = halving_steps(chain, k, options);
-            const auto made = halving.empty() ? filter_level(make_step(chain, k, options), execution, {done, next})
-                                              : halve_levels(halving, execution, {done, next});
-            if (!made) return made.error();
-            k += halving.empty() ? 1 : static_cast<int>(halving.size());
+            const std::vector<Step> steps = next_steps(chain, k, options);
+            if (const auto made = make_levels(steps, execution, {done, next}); !made) return made.error();
+            k += static_cast<int>(steps.size());
             done = next;
         }
         if (count > 1) {

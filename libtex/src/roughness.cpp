@@ -11,10 +11,8 @@
 #include <vector>
 
 #include "blocks/extent.h"
-#include "kernels/mip.h"
 #include "kernels/roughness.h"
-#include "rows/axis_filter.h"
-#include "rows/border.h"
+#include "rows/mip_rows.h"
 #include "rows/roughness_rows.h"
 #include "rows/sampler.h"
 #include "threads/guard.h"
@@ -36,34 +34,15 @@ AverageViews views_of(const Averages& averages) {
 
 int strip_rows(Extent extent) { return std::max(1, kPieceTexels / extent.width); }
 
-// From the planes of a level to those of the next.
-class LevelFilter {
-public:
-    LevelFilter(Extent from, const MipOptions& options)
-        : from_(from), options_(options), x_(make_axis_filter(options.filter, from.width)),
-          y_(make_axis_filter(options.filter, from.height)) {}
-
-    // Rows [begin, end) of `to`: down the columns, then across.
-    void run(PlaneView<const float> from, Plane<float>& to, int begin, int end) const {
-        RowFilter across(x_, options_.wrap_x, from_.width);
-        std::vector<const float*> rows(static_cast<std::size_t>(y_.taps));
-        std::vector<float> weights(static_cast<std::size_t>(y_.taps));
-        for (int j = begin; j < end; ++j) {
-            for (int k = 0; k < y_.taps; ++k) {
-                const int row = border_index(options_.wrap_y, 2 * j + y_.first + k, from_.height);
-                rows[static_cast<std::size_t>(k)] = from.row(row);
-                weights[static_cast<std::size_t>(k)] = y_.weight(k, j);
-            }
-            filter_rows(rows.data(), weights.data(), y_.taps, from_.width, across.row());
-            across.run(to.row(j));
-        }
+// Rows [begin, end) of a plane of the next level.
+void filter_strip(const LevelFilter& filter, PlaneView<const float> from, Plane<float>& to, int begin, int end) {
+    MipRows rows(filter);
+    std::vector<const float*> window(static_cast<std::size_t>(filter.y.taps));
+    for (int j = begin; j < end; ++j) {
+        for (int k = 0; k < filter.y.taps; ++k) window[static_cast<std::size_t>(k)] = from.row(filter.source(j, k));
+        rows.make(window.data(), j, to.row(j));
     }
-
-private:
-    Extent from_;
-    const MipOptions& options_;
-    AxisFilter x_, y_;
-};
+}
 
 // The roughness and alpha^2 of the base level.
 struct BaseLevel {
@@ -92,7 +71,7 @@ Result<Plane<float>> stretched(Plane<float> alpha2, Extent extent, const MipOpti
         const LevelFilter filter(from, options);
         auto made = parallel_for(
             execution, half.extent().height, strip_rows(half.extent()),
-            [&](int begin, int end) { filter.run(alpha2.view(), half, begin, end); }, start);
+            [&](int begin, int end) { filter_strip(filter, alpha2.view(), half, begin, end); }, start);
         if (!made) return made.error();
         alpha2 = std::move(half);
     }
@@ -126,8 +105,7 @@ Result<BaseLevel> base_level(const Plane<float>& roughness, Extent extent, const
 Result<RoughnessChain> build_chain(const NormalMap& base, const Plane<float>& roughness, RoughnessModel model,
                                    const MipOptions& options, const Execution& execution) {
     const Extent extent = base.extent();
-    const int complete = level_count(extent);
-    const int count = options.levels > 0 ? std::min(options.levels, complete) : complete;
+    const int count = levels_to_build(options, extent);
     double done = count > 1 ? 0.1 : 1.0;
     auto level0 = base_level(roughness, extent, options, execution, {0.0, done});
     if (!level0) return level0.error();
@@ -143,7 +121,8 @@ Result<RoughnessChain> build_chain(const NormalMap& base, const Plane<float>& ro
         Plane<float>& rougher = chain.levels.emplace_back(smaller);
         const LevelFilter filter(from[0].extent, options);
         const auto strip = [&](int begin, int end) {
-            for (std::size_t plane = 0; plane < to.size(); ++plane) filter.run(from[plane], to[plane], begin, end);
+            for (std::size_t plane = 0; plane < to.size(); ++plane)
+                filter_strip(filter, from[plane], to[plane], begin, end);
             for (int j = begin; j < end; ++j) {
                 roughness_of_averages(model, to[0].row(j), to[1].row(j), to[2].row(j), to[kAlpha2].row(j),
                                       smaller.width, rougher.row(j));

@@ -6,9 +6,7 @@
 #include <vector>
 
 #include <tex/height_field.h>
-#include <tex/result.h>
-
-#include "threads/parallel.h"
+#include <tex/image.h>
 
 namespace tex {
 
@@ -16,9 +14,13 @@ namespace tex {
 // weigh. Precondition: sigma > 0.
 std::vector<float> gaussian_weights(double sigma);
 
-// Blurs heights with gaussian_weights(sigma) along both axes; beyond the border lies what Wrap says of
-// heights. Heights are cut to +-kMaxHeight (kernels/bake.h). Errors: out_of_memory, cancelled.
-Result<void> blur(Plane<float>& heights, double sigma, Wrap wrap_x, Wrap wrap_y, const Execution& execution,
-                  ProgressSpan span);
+// Rows [begin, end) of `heights` with those weights along them; beyond their ends lies what Wrap says of heights.
+// Heights are cut to +-kMaxHeight (kernels/bake.h).
+void blur_across(PlaneView<const float> heights, const std::vector<float>& weights, Wrap wrap_x, int begin, int end,
+                 Plane<float>& across);
+
+// The same down the columns of what blur_across() made of all rows.
+void blur_down(PlaneView<const float> across, const std::vector<float>& weights, Wrap wrap_y, int begin, int end,
+               Plane<float>& out);
 
 }  // namespace tex

@@ -51,6 +51,14 @@ HeightIndex height_index(Wrap wrap, int i, int n) {
     return {last - seen.index, last, last - seen.other, seen.drift, seen.reflected};
 }
 
+const float* height_row(const RowOf& heights, Extent extent, Wrap wrap, int j, float* beyond) {
+    const HeightIndex at = height_index(wrap, j, extent.height);
+    if (at.plain()) return heights(at.index);
+    continue_heights(heights(at.index), heights(at.edge), heights(at.other), at.reflected, static_cast<float>(at.drift),
+                     extent.width, beyond);
+    return beyond;
+}
+
 int aligned_count(int count) {
     constexpr int kStep = static_cast<int>(kRowAlignment / sizeof(float));
     return (count + kStep - 1) / kStep * kStep;

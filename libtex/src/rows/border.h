@@ -35,6 +35,10 @@ struct HeightIndex {
 };
 HeightIndex height_index(Wrap wrap, int i, int n);
 
+// Row j, any integer, of a height field whose rows are `heights`: one of them, or computed into `beyond`, which has
+// room for whole vectors.
+const float* height_row(const RowOf& heights, Extent extent, Wrap wrap, int j, float* beyond);
+
 // Rows of a height field with `apron` more heights to the left and the right, for filters of that radius;
 // rows beyond the top and the bottom exist as well. The last `kept` rows are held: a filter moves down the
 // field row by row.

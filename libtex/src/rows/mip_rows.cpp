@@ -5,8 +5,14 @@
 #include <algorithm>
 
 #include "kernels/mip.h"
+#include "rows/border.h"
 
 namespace tex {
+
+int levels_to_build(const MipOptions& options, Extent base) {
+    const int complete = level_count(base);
+    return options.levels > 0 ? std::min(options.levels, complete) : complete;
+}
 
 float fade_at(const std::optional<Fade>& fade, int level) {
     if (!fade) return 0.0f;
@@ -19,13 +25,25 @@ void finish_row(NormalRow row, int width, MipDomain domain, float fade) {
     finish(row.x, row.y, row.z, width, fade);
 }
 
-MipRows::MipRows(const AxisFilter& x, const AxisFilter& y, Wrap wrap_x, int width)
-    : y_(y), width_(width), across_(x, wrap_x, width), weights_(static_cast<std::size_t>(y.taps)) {}
+LevelFilter::LevelFilter(Extent from_extent, const MipOptions& options)
+    : from(from_extent), to(level_extent(from_extent, 1)), wrap_x(options.wrap_x), wrap_y(options.wrap_y),
+      x(make_axis_filter(options.filter, from.width)), y(make_axis_filter(options.filter, from.height)),
+      halves(options.filter == MipFilter::box && from.width % 2 == 0 && from.height % 2 == 0) {}
+
+int LevelFilter::source(int j, int k) const { return border_index(wrap_y, 2 * j + y.first + k, from.height); }
+
+MipRows::MipRows(const LevelFilter& filter) : filter_(filter) {
+    if (filter.halves) return;
+    across_.emplace(filter.x, filter.wrap_x, filter.from.width);
+    weights_.resize(static_cast<std::size_t>(filter.y.taps));
+}
 
 void MipRows::make(const float* const* rows, int j, float* out) {
-    for (int k = 0; k < y_.taps; ++k) weights_[static_cast<std::size_t>(k)] = y_.weight(k, j);
-    filter_rows(rows, weights_.data(), y_.taps, width_, across_.row());
-    across_.run(out);
+    if (!across_) return halve_rows(rows[0], rows[1], filter_.to.width, out);
+    const AxisFilter& y = filter_.y;
+    for (int k = 0; k < y.taps; ++k) weights_[static_cast<std::size_t>(k)] = y.weight(k, j);
+    filter_rows(rows, weights_.data(), y.taps, filter_.from.width, across_->row());
+    across_->run(out);
 }
 
 }  // namespace tex

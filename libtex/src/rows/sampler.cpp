@@ -25,18 +25,19 @@ UvMap stretch(Extent result) {
 
 // From the middle of the result, x to the right and y upwards in its texels, the turn by -rotation gives
 // x' = c x + s y, y' = c y - s x; then u = (x' / width + 1/2) tiling + offset, and v upwards likewise.
-UvMap uv_map_of(const Layer& layer, Extent result, double cosine, double sine) {
+UvMap uv_map_of(const Placement& placement, Extent result, double cosine, double sine) {
     const double width = result.width;
     const double height = result.height;
-    const double scale_u = static_cast<double>(layer.tiling_x) / width;
-    const double scale_v = static_cast<double>(layer.tiling_y) / height;
+    const double scale_u = static_cast<double>(placement.tiling_x) / width;
+    const double scale_v = static_cast<double>(placement.tiling_y) / height;
     UvMap map;
     map.ux = cosine * scale_u;
     map.uy = -sine * scale_u;
     map.vx = sine * scale_v;
     map.vy = cosine * scale_v;
-    const double middle_u = 0.5 * static_cast<double>(layer.tiling_x) + static_cast<double>(layer.offset_x);
-    const double middle_v = 1.0 - (0.5 * static_cast<double>(layer.tiling_y) + static_cast<double>(layer.offset_y));
+    const double middle_u = 0.5 * static_cast<double>(placement.tiling_x) + static_cast<double>(placement.offset_x);
+    const double middle_v =
+        1.0 - (0.5 * static_cast<double>(placement.tiling_y) + static_cast<double>(placement.offset_y));
     map.u0 = middle_u - map.ux * width / 2 - map.uy * height / 2;
     map.v0 = middle_v - map.vx * width / 2 - map.vy * height / 2;
     return map;

@@ -5,7 +5,6 @@
 
 #include <cstdint>
 
-#include <tex/blend.h>
 #include <tex/height_field.h>
 #include <tex/image.h>
 
@@ -23,8 +22,14 @@ struct UvMap {
 // The source lies over the whole result.
 [[nodiscard]] UvMap stretch(Extent result);
 
-// As a Layer says. `cosine` and `sine` are those of its rotation.
-[[nodiscard]] UvMap uv_map_of(const Layer& layer, Extent result, double cosine, double sine);
+// How a source lies on the result, but for its rotation: see Layer in blend.h.
+struct Placement {
+    float tiling_x = 1.0f, tiling_y = 1.0f;
+    float offset_x = 0.0f, offset_y = 0.0f;
+};
+
+// `cosine` and `sine` are those of the rotation.
+[[nodiscard]] UvMap uv_map_of(const Placement& placement, Extent result, double cosine, double sine);
 
 // How many texels of a source lie in one texel of the result, in the direction in which they are more.
 [[nodiscard]] double texels_per_texel(const UvMap& map, Extent source);

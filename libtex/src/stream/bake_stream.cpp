@@ -3,41 +3,18 @@
 #include "stream/bake_stream.h"
 
 #include <algorithm>
-#include <limits>
-#include <mutex>
 #include <optional>
 #include <utility>
 
-#include "kernels/bake.h"
+#include "rows/mip_rows.h"
 #include "stream/height_stage.h"
 #include "stream/last_rows.h"
 #include "stream/level_stage.h"
+#include "stream/slope_collector.h"
 #include "stream/strip_writer.h"
 
 namespace tex {
 namespace {
-
-// The slopes of strips, in any order.
-class SlopeCollector {
-public:
-    void add(const Strip& strip) {
-        constexpr float kInfinity = std::numeric_limits<float>::infinity();
-        SlopeBounds bounds{kInfinity, -kInfinity, kInfinity, -kInfinity};
-        for (int j = 0; j < strip.height; ++j) {
-            widen_slope_bounds(strip.map.x.row(j), strip.map.y.row(j), strip.map.z.row(j), strip.map.extent().width,
-                               bounds);
-        }
-        const std::lock_guard lock(mutex_);
-        if (!range_) range_ = SlopeRange{bounds.min_x, bounds.max_x, bounds.min_y, bounds.max_y};
-        range_ = SlopeRange{std::min(range_->min_x, bounds.min_x), std::max(range_->max_x, bounds.max_x),
-                            std::min(range_->min_y, bounds.min_y), std::max(range_->max_y, bounds.max_y)};
-    }
-    [[nodiscard]] SlopeRange range() const { return range_.value_or(SlopeRange()); }
-
-private:
-    std::mutex mutex_;
-    std::optional<SlopeRange> range_;
-};
 
 HeightFieldHead head_of(Extent extent, const BakeFileOptions& options) {
     const Strength strength = options.strength ? options.strength(extent) : Strength();
@@ -45,9 +22,7 @@ HeightFieldHead head_of(Extent extent, const BakeFileOptions& options) {
 }
 
 int levels_of(Extent extent, Container container, const BakeFileOptions& options) {
-    if (!holds_levels(container, options.level_names)) return 1;
-    const int complete = level_count(extent);
-    return options.mip.levels > 0 ? std::min(options.mip.levels, complete) : complete;
+    return holds_levels(container, options.level_names) ? levels_to_build(options.mip, extent) : 1;
 }
 
 // What is written from the top cannot wait for the last rows to come.
@@ -91,7 +66,7 @@ Result<BakeFileReport> bake_stream(InputFile& file, std::unique_ptr<RowSource> r
     SlopeCollector slopes;
     if (options.slopes) {
         stream.watch([&slopes](const Strip& strip) {
-            if (strip.level == 0) slopes.add(strip);
+            if (strip.level == 0) slopes.add(strip.map, 0, strip.height);
         });
     }
     HeightStage heights(extent, *source, options.heights, gradient, head_of(extent, options), stream.sink(),

@@ -55,16 +55,11 @@ struct HeightStage::Blur {
 
     // The row j, which may lie beyond the border.
     const float* row_at(int j) {
-        const HeightIndex at = height_index(wrap_y, j, extent.height);
-        const float* inner = window.shelf.at(at.index).planes[0];
-        if (at.plain()) return inner;
         float* out = beyond.row(wrap_around(j, beyond.extent().height));
-        if (j >= beyond_from) {
-            continue_heights(inner, window.shelf.at(at.edge).planes[0], window.shelf.at(at.other).planes[0],
-                             at.reflected, static_cast<float>(at.drift), extent.width, out);
-            beyond_from = j + 1;
-        }
-        return out;
+        const bool plain = height_index(wrap_y, j, extent.height).plain();
+        if (!plain && j < beyond_from) return out;
+        if (!plain) beyond_from = j + 1;
+        return height_row([this](int k) { return window.shelf.at(k).planes[0]; }, extent, wrap_y, j, out);
     }
 
     const Extent extent;

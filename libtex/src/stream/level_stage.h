@@ -5,7 +5,6 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include <tex/mip.h>
 
@@ -22,19 +21,21 @@ public:
     // level_count(base).
     LevelStage(Extent base, int levels, int start, const MipOptions& options, Strips& strips);
 
+    LevelStage(const LevelStage&) = delete;
+    LevelStage& operator=(const LevelStage&) = delete;
+
     // Row j of the base level is finished; it stays as it is while `owner` lives. Makes all rows of other levels that
     // can be made with it.
     void put(int j, const NormalRow& row, std::shared_ptr<const void> owner);
 
 private:
-    void put_row(std::size_t step, int j, ShelfRow row);
-    void make_row(std::size_t step);
+    ShelfRow make_row(LevelStep& step, bool last);
 
     const MipOptions options_;
     Strips& strips_;
-    std::vector<std::unique_ptr<LevelStep>> steps_;  // [k] makes level k + 1 of level k
-    std::unique_ptr<RowMaker> slopes_;               // of the base level, in the slope domain
-    int width_;
+    std::unique_ptr<RowMaker> slopes_;  // of the base level, in the slope domain
+    const int width_;
+    LevelSteps steps_;
 };
 
 }  // namespace tex

@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 #include <tex/mip_chain.h>
-
-#include "rows/border.h"
 
 namespace tex {
 namespace {
@@ -37,34 +36,50 @@ Keep rows_to_keep(const AxisFilter& y, int from, int start, int first) {
 
 }  // namespace
 
-LevelStep::LevelStep(Extent from_extent, int level, int planes, int start, const MipOptions& options)
-    : from(from_extent), to(level_extent(from_extent, 1)), to_level(level + 1),
-      halves(options.filter == MipFilter::box && from.width % 2 == 0 && from.height % 2 == 0),
-      x(make_axis_filter(options.filter, from.width)), y(make_axis_filter(options.filter, from.height)),
-      filter(x, y, options.wrap_x, from.width), first(first_row(y, options.wrap_y, from.height, start)), next(first),
-      shelf(from.height, start, rows_to_keep(y, from.height, start, first)), rows(to.width, planes),
-      window_(static_cast<std::size_t>(y.taps)), wrap_y_(options.wrap_y) {}
+LevelStep::LevelStep(Extent from, int level, int planes, int start, const MipOptions& options)
+    : filter(from, options), to(filter.to), to_level(level + 1), maker(filter),
+      first(first_row(filter.y, options.wrap_y, from.height, start)), next(first),
+      shelf(from.height, start, rows_to_keep(filter.y, from.height, start, first)), rows(to.width, planes),
+      window_(static_cast<std::size_t>(filter.y.taps)) {}
 
-int LevelStep::begin() const { return 2 * row() + y.first + (next >= to.height ? from.height : 0); }
-
-int LevelStep::source(int k) const { return border_index(wrap_y_, 2 * row() + y.first + k, from.height); }
+int LevelStep::begin() const { return 2 * row() + filter.y.first + (next >= to.height ? filter.from.height : 0); }
 
 bool LevelStep::is_ready() const {
     if (next == first + to.height) return false;
-    for (int k = y.taps - 1; k >= 0; --k) {
+    for (int k = filter.y.taps - 1; k >= 0; --k) {
         if (!shelf.has(source(k))) return false;
     }
     return true;
 }
 
 const float* const* LevelStep::window(int plane) {
-    for (int k = 0; k < y.taps; ++k) window_[static_cast<std::size_t>(k)] = shelf.at(source(k)).planes[plane];
+    for (int k = 0; k < filter.y.taps; ++k) window_[static_cast<std::size_t>(k)] = shelf.at(source(k)).planes[plane];
     return window_.data();
 }
 
 void LevelStep::advance() {
     ++next;
     shelf.release_before(begin());
+}
+
+LevelSteps::LevelSteps(Extent base, int levels, int planes, int start, const MipOptions& options, MakeRow make)
+    : make_(std::move(make)) {
+    for (int k = 0; k + 1 < levels; ++k) {
+        steps_.push_back(std::make_unique<LevelStep>(level_extent(base, k), k, planes, start, options));
+        start = steps_.back()->start();
+    }
+}
+
+void LevelSteps::put(std::size_t k, int j, ShelfRow row) {
+    LevelStep& step = *steps_[k];
+    const bool last = k + 1 == steps_.size();
+    step.shelf.put(j, std::move(row));
+    while (step.is_ready()) {
+        const int made = step.row();
+        ShelfRow averages = make_(step, last);
+        step.advance();
+        if (!last) put(k + 1, made, std::move(averages));
+    }
 }
 
 }  // namespace tex

@@ -11,6 +11,7 @@
 
 #include "blocks/extent.h"
 #include "formats/claims.h"
+#include "rows/mip_rows.h"
 #include "rows/source_layout.h"
 #include "stream/layout_finder.h"
 #include "stream/level_stage.h"
@@ -20,12 +21,6 @@
 
 namespace tex {
 namespace {
-
-// How many levels build_mip_chain() makes.
-int levels_built(const MipOptions& options, Extent base) {
-    const int complete = level_count(base);
-    return options.levels > 0 ? std::min(options.levels, complete) : complete;
-}
 
 // One reading of the file, under an assumption about its layout.
 class Attempt {
@@ -88,7 +83,7 @@ Result<void> Attempt::prepare() {
     report_.pack = pack_options(options_, container_, report_.source);
     report_.levels = static_cast<int>(end_ - first_);
     if (options_.mip && holds_levels(container_, options_.level_names)) {
-        report_.levels = levels_built(*options_.mip, report_.extent);
+        report_.levels = levels_to_build(*options_.mip, report_.extent);
     }
     return {};
 }

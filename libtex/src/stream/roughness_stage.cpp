@@ -5,22 +5,16 @@
 #include <cstring>
 #include <utility>
 
-#include <tex/mip_chain.h>
-
 #include "kernels/roughness.h"
 
 namespace tex {
 
 RoughnessStage::RoughnessStage(Extent base, int levels, const MipOptions& options, RoughnessModel model, float own,
                                Strips& strips)
-    : model_(model), strips_(strips), own_(Extent{base.width, 2}) {
+    : model_(model), strips_(strips), own_(Extent{base.width, 2}),
+      steps_(base, levels, 4, 0, options, [this](LevelStep& step, bool) { return make_row(step); }) {
     const Plane<float> given(Extent{base.width, 1}, own);
     clean_roughness(given.row(0), base.width, own_.row(0), own_.row(1));
-    int start = 0;
-    for (int k = 0; k + 1 < levels; ++k) {
-        steps_.push_back(std::make_unique<LevelStep>(level_extent(base, k), k, 4, start, options));
-        start = steps_.back()->start();
-    }
 }
 
 void RoughnessStage::put(int j, const NormalRow& row, std::shared_ptr<const void> owner) {
@@ -28,30 +22,22 @@ void RoughnessStage::put(int j, const NormalRow& row, std::shared_ptr<const void
     const auto bytes = static_cast<std::size_t>(own_.extent().width) * sizeof(float);
     std::memcpy(strips_.place(kBase, j).row.x, own_.row(0), bytes);
     strips_.finish(kBase, j);
-    if (!steps_.empty()) put_row(0, j, {{row.x, row.y, row.z, own_.row(1)}, std::move(owner)});
+    steps_.put(j, {{row.x, row.y, row.z, own_.row(1)}, std::move(owner)});
 }
 
-void RoughnessStage::put_row(std::size_t k, int j, ShelfRow row) {
-    LevelStep& step = *steps_[k];
-    step.shelf.put(j, std::move(row));
-    while (step.is_ready()) make_row(k);
-}
-
-void RoughnessStage::make_row(std::size_t k) {
-    LevelStep& step = *steps_[k];
+ShelfRow RoughnessStage::make_row(LevelStep& step) {
     const int j = step.row();
     const std::shared_ptr<Plane<float>> made = step.rows.make();
     ShelfRow averages;
     for (int plane = 0; plane < 4; ++plane) {
-        step.filter.make(step.window(plane), j, made->row(plane));
+        step.maker.make(step.window(plane), j, made->row(plane));
         averages.planes[plane] = made->row(plane);
     }
     averages.owner = made;
     roughness_of_averages(model_, made->row(0), made->row(1), made->row(2), made->row(3), step.to.width,
                           strips_.place(step.to_level, j).row.x);
     strips_.finish(step.to_level, j);
-    step.advance();
-    if (k + 1 < steps_.size()) put_row(k + 1, j, std::move(averages));
+    return averages;
 }
 
 }  // namespace tex

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include <tex/mip.h>
 #include <tex/roughness.h>
@@ -20,17 +19,18 @@ class RoughnessStage {
 public:
     // `own` is the material's roughness everywhere. Otherwise as LevelStage, from the top.
     RoughnessStage(Extent base, int levels, const MipOptions& options, RoughnessModel model, float own, Strips& strips);
+    RoughnessStage(const RoughnessStage&) = delete;
+    RoughnessStage& operator=(const RoughnessStage&) = delete;
 
     void put(int j, const NormalRow& row, std::shared_ptr<const void> owner);
 
 private:
-    void put_row(std::size_t step, int j, ShelfRow row);
-    void make_row(std::size_t step);
+    ShelfRow make_row(LevelStep& step);
 
     const RoughnessModel model_;
     Strips& strips_;
-    std::vector<std::unique_ptr<LevelStep>> steps_;  // [k] makes level k + 1 of level k: x, y, z and alpha^2
-    Plane<float> own_;                               // a row of roughness, and one of alpha^2
+    Plane<float> own_;  // a row of roughness, and one of alpha^2
+    LevelSteps steps_;  // of x, y, z and alpha^2
 };
 
 }  // namespace tex

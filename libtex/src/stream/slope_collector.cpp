@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "stream/slope_collector.h"
+
+#include <algorithm>
+
+namespace tex {
+
+void SlopeCollector::add(const NormalMap& map, int begin, int end) {
+    SlopeBounds bounds = kNone;
+    for (int j = begin; j < end; ++j)
+        widen_slope_bounds(map.x.row(j), map.y.row(j), map.z.row(j), map.extent().width, bounds);
+    // Least and greatest do not depend on the order of the threads.
+    const std::lock_guard lock(mutex_);
+    all_ = {std::min(all_.min_x, bounds.min_x), std::max(all_.max_x, bounds.max_x), std::min(all_.min_y, bounds.min_y),
+            std::max(all_.max_y, bounds.max_y)};
+}
+
+SlopeRange SlopeCollector::range() const {
+    if (all_.min_x > all_.max_x) return {};
+    return {all_.min_x, all_.max_x, all_.min_y, all_.max_y};
+}
+
+}  // namespace tex
