@@ -16,6 +16,7 @@
 #include "formats/row_source.h"
 #include "formats/texture_rows.h"
 #include "stream/bake_stream.h"
+#include "stream/blend_stream.h"
 #include "stream/normal_source.h"
 #include "stream/pack_stream.h"
 #include "stream/strip_writer.h"
@@ -183,6 +184,15 @@ Result<PackFileReport> pack_file(const std::string& input, const std::string& ou
         }
         return pack_whole(*file, output, container, options, execution);
     });
+}
+
+Layer LayerFile::layer() const {
+    return {{}, scale, tiling_x, tiling_y, offset_x, offset_y, rotation, wrap_x, wrap_y, strength, {}};
+}
+
+Result<BlendFileReport> blend_file(const std::string& input, const std::string& output, Container container,
+                                   const BlendFileOptions& options, const Execution& execution) {
+    return guarded([&] { return blend_stream(input, output, container, options, execution); });
 }
 
 }  // namespace tex

@@ -11,8 +11,10 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <tex/bake.h>
+#include <tex/blend.h>
 #include <tex/color.h>
 #include <tex/container.h>
 #include <tex/execution.h>
@@ -143,6 +145,63 @@ struct PackFileReport {
 // The same bytes for every number of threads, and on either path.
 [[nodiscard]] Result<PackFileReport> pack_file(const std::string& input, const std::string& output, Container container,
                                                const PackFileOptions& options = {}, const Execution& execution = {});
+
+// A detail map in a file.
+struct LayerFile {
+    std::string input;
+    SourceOptions source;
+
+    // As in Layer.
+    float scale = 1.0f;
+    float tiling_x = 1.0f, tiling_y = 1.0f;
+    float offset_x = 0.0f, offset_y = 0.0f;
+    float rotation = 0.0f;
+    Wrap wrap_x = Wrap::repeat, wrap_y = Wrap::repeat;
+    float strength = 1.0f;
+    std::function<Result<Plane<float>>()> mask = {};  // what this reads; empty: 1 everywhere
+
+    // A Layer without detail and mask.
+    [[nodiscard]] Layer layer() const;
+};
+
+// What blend_file() does: read_normals() of all maps, blend(), build_mip_chain(), pack(), write_texture().
+struct BlendFileOptions {
+    SourceOptions source;  // of the base
+    std::vector<LayerFile> layers;
+    BlendOptions blend;
+    MipOptions mip;
+
+    // As in PackFileOptions, told by what the base is.
+    std::function<PackOptions(const SourceInfo& base)> pack;
+    WriteOptions write;
+    LevelNames level_names;  // as in BakeFileOptions
+};
+
+struct BlendFileReport {
+    Extent extent;  // of the base level
+    int levels = 1;
+    std::size_t bytes = 0;  // of the output, of all its files
+    PackOptions pack;
+    SourceInfo source;                // of the base
+    std::vector<SourceInfo> details;  // of the layers
+};
+
+// Blends the maps of the layers on the normal map `input` ("-" is standard input, for one of them) and writes the
+// result to `output` as a file of the kind `container`.
+//
+// The base, and details of the result's extent that are not turned, tiled or moved up or down, come row by row, side by
+// side. The others are held as whole maps, as any row of the result may need any of their rows; so are interlaced PNGs
+// and masks. Layouts that the texels decide are assumed as pack_file() says. TIFF, TGA, BMP and JPEG are encoded as
+// whole pictures.
+//
+// The output appears whole or not at all, and files for each level as bake_file() says. What goes to standard output or
+// a FIFO is held in memory until it is whole.
+//
+// Preconditions (asserted): as those of the verbs.
+// Errors: those of the verbs. Of several errors any may be told. The same bytes for every number of threads.
+[[nodiscard]] Result<BlendFileReport> blend_file(const std::string& input, const std::string& output,
+                                                 Container container, const BlendFileOptions& options = {},
+                                                 const Execution& execution = {});
 
 }  // namespace tex
 #pragma GCC visibility pop

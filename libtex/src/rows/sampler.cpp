@@ -77,19 +77,26 @@ void Sampler::place(int j) {
         tap_row(map_.v0, map_.vx, map_.vy * y, wrap_y_, source_.height, rows_.padded(), rows_.row());
 }
 
+Sampler::Rows Sampler::rows() {
+    if (is_whole()) return {row_, row_};
+    return {rows_.row().first[0], rows_.row().second[0]};
+}
+
+void Sampler::sample(const float* upper, const float* lower, float* out) {
+    if (is_whole()) {
+        std::memcpy(out, upper, static_cast<std::size_t>(result_.width) * sizeof(float));
+    } else {
+        bilinear_row(upper, lower, columns_.row(), runs_.row(0), rows_.row().weight[0], result_.width, out);
+    }
+}
+
 void Sampler::sample(const Plane<float>& plane, float* out) {
+    if (is_along_rows()) {
+        const Rows at = rows();
+        return sample(plane.row(at.upper), plane.row(at.lower), out);
+    }
     const TapRow columns = columns_.row();
     const TapRow rows = rows_.row();
-    switch (kind_) {
-        case Kind::same:
-            std::memcpy(out, plane.row(row_), static_cast<std::size_t>(result_.width) * sizeof(float));
-            return;
-        case Kind::axes:
-            bilinear_row(plane.row(rows.first[0]), plane.row(rows.second[0]), columns, runs_.row(0), rows.weight[0],
-                         result_.width, out);
-            return;
-        case Kind::any: break;
-    }
     for (int i = 0; i < result_.width; ++i) {
         const float* upper = plane.row(rows.first[i]);
         const float* lower = plane.row(rows.second[i]);

@@ -58,8 +58,20 @@ public:
     void sample(const Plane<float>& plane, float* out);
     // The same where they are a row of the plane as it is; null elsewhere.
     [[nodiscard]] const float* row_of(const Plane<float>& plane) const {
-        return kind_ == Kind::same ? plane.row(row_) : nullptr;
+        return is_whole() ? plane.row(row_) : nullptr;
     }
+
+    // The samples are a row of the source as it is.
+    [[nodiscard]] bool is_whole() const { return kind_ == Kind::same; }
+    // The samples lie between two rows of the source.
+    [[nodiscard]] bool is_along_rows() const { return kind_ != Kind::any; }
+    struct Rows {
+        int upper;
+        int lower;
+    };
+    // These rows, and the samples between them, after place(). Precondition: is_along_rows().
+    [[nodiscard]] Rows rows();
+    void sample(const float* upper, const float* lower, float* out);
 
 private:
     enum class Kind {

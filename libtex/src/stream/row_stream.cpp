@@ -139,7 +139,11 @@ void RowStream::Work::decode(Batch& batch) {
 void RowStream::Work::store(Batch& batch) {
     if (failure.happened()) return;
     if (rows.is_random()) decode(batch);
-    if (!batch.error) rows.store(batch.rows.data(), 0, batch.count, batch.image);
+    if (batch.error) return;
+    failure.watch([&]() -> Result<void> {
+        rows.store(batch.rows.data(), 0, batch.count, batch.image);
+        return {};
+    });
 }
 
 void RowStream::Work::make(Batch& batch, NormalStage& stage) {

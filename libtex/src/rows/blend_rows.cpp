@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "rows/blend_rows.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/blend.h"
+#include "kernels/scale.h"
+#include "rows/math.h"
+
+namespace tex {
+
+Rotation rotation_of(float degrees) {
+    const double turn = std::fmod(static_cast<double>(degrees), 360.0);
+    const double positive = turn < 0.0 ? turn + 360.0 : turn;
+    if (positive == 0.0 || positive == 360.0) return {1.0, 0.0};
+    if (positive == 90.0) return {0.0, 1.0};
+    if (positive == 180.0) return {-1.0, 0.0};
+    if (positive == 270.0) return {0.0, -1.0};
+    const double radians = positive * (math::kPi / 180.0);
+    return {math::cos(radians), math::sin(radians)};
+}
+
+UvMap uv_map_of(const Layer& layer, Extent result) {
+    const Rotation rotation = rotation_of(layer.rotation);
+    return uv_map_of({layer.tiling_x, layer.tiling_y, layer.offset_x, layer.offset_y}, result, rotation.cosine,
+                     rotation.sine);
+}
+
+double level_wanted(const UvMap& map, Extent source) {
+    const double count = texels_per_texel(map, source);
+    if (!(count > 1.0)) return 0.0;
+    return std::floor(math::log(count) / math::log(2.0) * 256.0 + 0.5) / 256.0;
+}
+
+// Samples rows of a map.
+class BlendRows::MapSampler {
+public:
+    MapSampler(const PlacedMap& map, Extent result)
+        : map_(map), width_(result.width), near_(sampler(map.level, result)) {
+        if (map.mix > 0.0f) {
+            far_.emplace(sampler(map.level + 1, result));
+            scratch_ = Plane<float>({result.width, 1});
+        }
+    }
+
+    // Unit vectors.
+    void row(int j, NormalRow out) {
+        near_.place(j);
+        if (far_) far_->place(j);
+        scale_row(map_.chain == nullptr ? between_rows(out) : between_texels(out), 1.0f, ScaleMode::slope, width_, out);
+    }
+
+private:
+    [[nodiscard]] Sampler sampler(std::size_t level, Extent result) const {
+        const Extent extent = map_.chain == nullptr ? map_.extent : map_.chain->levels[level].extent();
+        return {extent, result, map_.map, map_.wrap_x, map_.wrap_y};
+    }
+
+    // Samples, in `out` unless nothing is between texels.
+    VectorRow between_rows(NormalRow out) {
+        const Sampler::Rows rows = near_.rows();
+        const VectorRow upper = map_.rows(rows.upper);
+        if (near_.is_whole()) return upper;
+        const VectorRow lower = map_.rows(rows.lower);
+        near_.sample(upper.x, lower.x, out.x);
+        near_.sample(upper.y, lower.y, out.y);
+        near_.sample(upper.z, lower.z, out.z);
+        return {out.x, out.y, out.z};
+    }
+    VectorRow between_texels(NormalRow out) {
+        return {component(&NormalMap::x, out.x), component(&NormalMap::y, out.y), component(&NormalMap::z, out.z)};
+    }
+    const float* component(Plane<float> NormalMap::*plane, float* row) {
+        const Plane<float>& texels = map_.chain->levels[map_.level].*plane;
+        if (!far_ && near_.row_of(texels) != nullptr) return near_.row_of(texels);
+        near_.sample(texels, row);
+        if (!far_) return row;
+        far_->sample(map_.chain->levels[map_.level + 1].*plane, scratch_.row(0));
+        mix_row(row, scratch_.row(0), map_.mix, width_);
+        return row;
+    }
+
+    const PlacedMap& map_;
+    int width_;
+    Sampler near_;
+    std::optional<Sampler> far_;
+    Plane<float> scratch_;
+};
+
+class BlendRows::LayerRows {
+public:
+    LayerRows(const PlacedLayer& placed, const BlendOptions& options, Extent result)
+        : layer_(placed.layer), rotation_(rotation_of(layer_.rotation)), options_(options), width_(result.width),
+          detail_(placed.detail, result), rows_({result.width, 4}) {
+        const Plane<float>& mask = layer_.mask;
+        if (!mask.empty()) mask_.emplace(mask.extent(), result, stretch(result), Wrap::clamp, Wrap::clamp);
+    }
+
+    void blend(int j, NormalRow base) {
+        const NormalRow detail{rows_.row(0), rows_.row(1), rows_.row(2)};
+        detail_.row(j, detail);
+        if (layer_.scale != 1.0f) scale_row(detail, layer_.scale, options_.scale_mode, width_, detail);
+        if (rotation_.cosine != 1.0) {
+            rotate_row(detail, static_cast<float>(rotation_.cosine), static_cast<float>(rotation_.sine), width_);
+        }
+        blend_row(options_.mode, base, detail, weights(j), width_);
+    }
+
+private:
+    // strength mask; null where that is 1 everywhere.
+    const float* weights(int j) {
+        if (!mask_ && layer_.strength == 1.0f) return nullptr;
+        float* weight = rows_.row(3);
+        if (mask_) {
+            mask_->place(j);
+            mask_->sample(layer_.mask, weight);
+            for (int i = 0; i < width_; ++i) weight[i] = layer_.strength * std::clamp(weight[i], 0.0f, 1.0f);
+        } else {
+            std::fill(weight, weight + width_, layer_.strength);
+        }
+        return weight;
+    }
+
+    const Layer& layer_;
+    Rotation rotation_;
+    const BlendOptions& options_;
+    int width_;
+    MapSampler detail_;
+    std::optional<Sampler> mask_;
+    Plane<float> rows_;  // x, y and z of the detail, and the weights
+};
+
+BlendRows::BlendRows(const PlacedMaps& maps) : maps_(maps) {
+    base_.emplace_back(maps.base, maps.extent);
+    layers_.reserve(maps.layers.size());
+    for (const PlacedLayer& layer : maps.layers) layers_.emplace_back(layer, maps.options, maps.extent);
+}
+
+BlendRows::~BlendRows() = default;
+BlendRows::BlendRows(BlendRows&&) noexcept = default;
+
+void BlendRows::make(int j, NormalRow out) {
+    base_.front().row(j, out);
+    const BlendOptions& options = maps_.options;
+    if (options.base_scale != 1.0f) scale_row(out, options.base_scale, options.scale_mode, maps_.extent.width, out);
+    for (LayerRows& layer : layers_) layer.blend(j, out);
+}
+
+}  // namespace tex

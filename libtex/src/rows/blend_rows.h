@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// blend_rows.h: rows of the maps that lie on one another to rows of the blended map: see blend().
+
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include <tex/blend.h>
+
+#include "kernels/normal_row.h"
+#include "rows/sampler.h"
+
+namespace tex {
+
+// Exact for right angles.
+struct Rotation {
+    double cosine = 1.0;
+    double sine = 0.0;
+};
+[[nodiscard]] Rotation rotation_of(float degrees);
+
+// The place of a layer on a result of this extent.
+[[nodiscard]] UvMap uv_map_of(const Layer& layer, Extent result);
+
+// The level at which a map of this extent is sampled, in steps of 1/256.
+[[nodiscard]] double level_wanted(const UvMap& map, Extent source);
+
+// Row j of a map that is there one row at a time.
+using NormalRowOf = std::function<VectorRow(int j)>;
+
+// A map and how it lies on the result: a chain of which `level` is sampled, and where `mix` is above 0 the next one; or
+// `rows` of a map of the extent `extent`, with no chain.
+struct PlacedMap {
+    const MipChain* chain = nullptr;
+    NormalRowOf rows;
+    Extent extent;
+    UvMap map;
+    Wrap wrap_x = Wrap::repeat;
+    Wrap wrap_y = Wrap::repeat;
+    std::size_t level = 0;
+    float mix = 0.0f;
+};
+
+struct PlacedLayer {
+    const Layer& layer;  // without regard to its detail
+    PlacedMap detail;
+};
+
+struct PlacedMaps {
+    PlacedMap base;
+    std::vector<PlacedLayer> layers;
+    const BlendOptions& options;
+    Extent extent;  // of the result
+};
+
+// Makes rows of the result, on one thread.
+class BlendRows {
+public:
+    // `maps` must outlive this.
+    explicit BlendRows(const PlacedMaps& maps);
+    ~BlendRows();
+    BlendRows(BlendRows&&) noexcept;
+
+    // Row j. `out` has room for whole vectors.
+    void make(int j, NormalRow out);
+
+private:
+    class MapSampler;
+    class LayerRows;
+
+    const PlacedMaps& maps_;
+    std::vector<MapSampler> base_;  // one
+    std::vector<LayerRows> layers_;
+};
+
+}  // namespace tex

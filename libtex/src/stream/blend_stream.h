@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// blend_stream.h: blend_file() row by row.
+
+#pragma once
+
+#include <string>
+
+#include <tex/pipeline.h>
+
+#include "stream/row_stream.h"
+
+namespace tex {
+
+// May throw std::bad_alloc.
+Result<BlendFileReport> blend_stream(const std::string& input, const std::string& output, Container container,
+                                     const BlendFileOptions& options, const Execution& execution,
+                                     const StreamSizes& sizes = {});
+
+}  // namespace tex
