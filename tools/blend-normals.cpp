@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // blend-normals: detail normals on top of base normals.
 
-#include <fmt/format.h>
 #include <tex/tex.h>
 
 #include "batch/batch.h"
+#include "batch/repack.h"
 #include "cli/usage_error.h"
 #include "options/groups.h"
 #include "options/layers.h"
@@ -91,18 +91,27 @@ void BlendNormals::check(const std::vector<cli::Task>& tasks) const {
 
 Result<void> BlendNormals::process(cli::Job& job) {
     for (const std::string& name : job.task.also) job.depends_on(name);
-    auto base = source.read(job, 0.2, false);
-    if (!base) return base.error();
-    auto details = layers.read(job, details_of(job.task), source, 0.2, 0.4);
-    if (!details) return details.error();
-    auto blended = tex::blend(std::move(base->chain), std::move(*details), blend, job.until(0.6));
+    BlendFileOptions options;
+    options.source = source.options(job);
+    options.layers = layers.files(job, details_of(job.task), source);
+    options.blend = blend;
+    options.mip = mips.mip;
+    options.mip.levels = mips.levels_for(job.task);
+    options.pack = [&](const SourceInfo& base) {
+        return output.pack_options(output.format ? *output.format : cli::encoding_of(base, job.task),
+                                   output.y.value_or(base.y_axis));
+    };
+    options.write = output.write_options(job);
+    options.level_names = cli::level_names(job.task.output);
+    const auto blended = blend_file(job.task.input, job.task.output, job.task.container, options, job.until(1.0));
     if (!blended) return blended.error();
-    MipOptions mip = mips.mip;
-    mip.levels = mips.levels_for(job.task);
-    auto chain = build_mip_chain(std::move(*blended), mip, job.until(0.7));
-    if (!chain) return chain.error();
-    const Encoding encoding = output.format.value_or(cli::encoding_of(base->info, job.task));
-    return cli::write_chain(job, std::move(*chain), output, encoding, output.y.value_or(base->info.y_axis));
+    source.note(job, job.task.input, blended->source);
+    for (std::size_t k = 0; k < blended->details.size(); ++k)
+        source.note(job, options.layers[k].input, blended->details[k]);
+    cli::report_source(job, blended->source);
+    cli::wrote_levels(job, job.task.output, blended->levels);
+    cli::report_texture(job, blended->extent, blended->levels, blended->pack, blended->bytes);
+    return {};
 }
 
 }  // namespace

@@ -109,36 +109,24 @@ std::vector<std::string> LayerOptions::mask_files() const {
     return files;
 }
 
-Result<Layer> LayerOptions::read_layer(Job& job, std::size_t k, const std::string& name, SourceOptions& source,
-                                       const Execution& execution) const {
-    auto detail = source.read(job, name, execution, {false, true, y_in_.of(k, std::nullopt)});
-    if (!detail) return detail.error();
-    Layer layer;
-    layer.detail = std::move(detail->chain);
-    layer.scale = scale_.of(k, layer.scale);
-    std::tie(layer.tiling_x, layer.tiling_y) = tiling_.of(k, {layer.tiling_x, layer.tiling_y});
-    std::tie(layer.offset_x, layer.offset_y) = offset_.of(k, {layer.offset_x, layer.offset_y});
-    layer.rotation = rotation_.of(k, layer.rotation);
-    std::tie(layer.wrap_x, layer.wrap_y) = wrap_.of(k, {layer.wrap_x, layer.wrap_y});
-    layer.strength = strength_.of(k, layer.strength);
-    const ChannelFile mask = mask_.of(k, {});
-    if (mask.file.empty()) return layer;
-    auto values = read_channel(job, mask, execution);
-    if (!values) return values.error();
-    layer.mask = std::move(*values);
-    return layer;
-}
-
-Result<std::vector<Layer>> LayerOptions::read(Job& job, const std::vector<std::string>& names, SourceOptions& source,
-                                              double from, double until) const {
-    std::vector<Layer> layers;
+std::vector<LayerFile> LayerOptions::files(Job& job, const std::vector<std::string>& names,
+                                           const SourceOptions& source) const {
+    std::vector<LayerFile> files;
     for (std::size_t k = 0; k < names.size(); ++k) {
-        const double share = static_cast<double>(k + 1) / static_cast<double>(names.size());
-        auto layer = read_layer(job, k, names[k], source, job.until(from + (until - from) * share));
-        if (!layer) return layer.error();
-        layers.push_back(std::move(*layer));
+        LayerFile& layer = files.emplace_back();
+        layer.input = names[k];
+        layer.source = source.options(job, {false, true, y_in_.of(k, std::nullopt)});
+        layer.scale = scale_.of(k, layer.scale);
+        std::tie(layer.tiling_x, layer.tiling_y) = tiling_.of(k, {layer.tiling_x, layer.tiling_y});
+        std::tie(layer.offset_x, layer.offset_y) = offset_.of(k, {layer.offset_x, layer.offset_y});
+        layer.rotation = rotation_.of(k, layer.rotation);
+        std::tie(layer.wrap_x, layer.wrap_y) = wrap_.of(k, {layer.wrap_x, layer.wrap_y});
+        layer.strength = strength_.of(k, layer.strength);
+        const ChannelFile mask = mask_.of(k, {});
+        if (mask.file.empty()) continue;
+        layer.mask = [&job, mask] { return read_channel(job, mask, {job.threads(), {}}); };
     }
-    return layers;
+    return files;
 }
 
 }  // namespace tex::cli

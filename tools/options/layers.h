@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <tex/blend.h>
+#include <tex/pipeline.h>
 
 #include "batch/job.h"
 #include "cli/command.h"
@@ -40,16 +40,14 @@ public:
     // The files of all masks.
     [[nodiscard]] std::vector<std::string> mask_files() const;
 
-    // Reads the layers: `names` are their files. Each advances the job towards `until`.
-    [[nodiscard]] Result<std::vector<Layer>> read(Job& job, const std::vector<std::string>& names,
-                                                  SourceOptions& source, double from, double until) const;
+    // The layers: `names` are their files. The job must outlive them.
+    [[nodiscard]] std::vector<LayerFile> files(Job& job, const std::vector<std::string>& names,
+                                               const SourceOptions& source) const;
 
 private:
     using Pair = std::pair<float, float>;
 
     void add_placement(Command& command);
-    [[nodiscard]] Result<Layer> read_layer(Job& job, std::size_t layer, const std::string& name, SourceOptions& source,
-                                           const Execution& execution) const;
 
     std::vector<std::string> details_;
     PerLayer<float> scale_, rotation_, strength_;

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "batch/job.h"
-#include "batch/name_pattern.h"
 #include "cli/stream.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
@@ -37,34 +36,6 @@ std::string containers_for(Encoding encoding) {
         if (can_hold(row.value, encoding)) names.emplace_back(row.meaning);
     }
     return join(names);
-}
-
-// One file of the job's output: the texture itself, or one of its levels.
-Result<std::size_t> write_file_of(Job& job, const Texture& texture, const std::string& path, Container container,
-                                  const WriteOptions& options) {
-    auto bytes = encode_file(texture, container, options);
-    if (!bytes) return bytes.error().of(path);
-    if (auto written = write_file(path, *bytes, options); !written) return written.error();
-    job.wrote(path);
-    return bytes->size();
-}
-
-// Writes `texture` to `name` as a `container`: one file, or one for each level where the name has {level}. Returns the
-// bytes of all.
-Result<std::size_t> write_levels(Job& job, Texture texture, const std::string& name, Container container,
-                                 const OutputOptions& options) {
-    const WriteOptions write = options.write_options(job);
-    if (!has_level(name)) return write_file_of(job, texture, name, container, write);
-    std::size_t bytes = 0;
-    std::vector<Level> levels = std::exchange(texture.levels, {});
-    for (std::size_t k = 0; k < levels.size(); ++k) {
-        texture.levels.clear();
-        texture.levels.push_back(std::move(levels[k]));
-        auto size = write_file_of(job, texture, with_level(name, static_cast<int>(k)), container, write);
-        if (!size) return size.error();
-        bytes += *size;
-    }
-    return bytes;
 }
 
 }  // namespace
@@ -141,21 +112,6 @@ void report_texture(Job& job, Extent extent, int levels, const PackOptions& pack
     job.report["format"] = name_of(kEncodingNames, pack.encoding);
     job.report["y"] = name_of(kYAxisNames, pack.y_axis);
     job.report["bytes"] = bytes;
-}
-
-Result<void> write_chain(Job& job, MipChain chain, const OutputOptions& options, Encoding encoding, YAxis y) {
-    if (!can_hold_levels(job.task.container) && !has_level(job.task.output)) chain.levels.resize(1);
-    const PackOptions pack_options = options.pack_options(encoding, y);
-    auto texture = pack(chain, pack_options, job.until(0.95));
-    if (!texture) return texture.error();
-    chain.levels.clear();
-
-    const Extent extent = texture->extent();
-    const int count = static_cast<int>(texture->levels.size());
-    const auto bytes = write_levels(job, std::move(*texture), job.task.output, job.task.container, options);
-    if (!bytes) return bytes.error();
-    report_texture(job, extent, count, pack_options, *bytes);
-    return {};
 }
 
 }  // namespace tex::cli

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// output.h: the option group that says what is written, and the step that ends every command: pack, encode,
-// write.
+// output.h: the option group that says what is written.
 
 #pragma once
 
@@ -50,10 +49,5 @@ struct OutputOptions {
 
 // Tells the job's report extent, levels, format, y and bytes.
 void report_texture(Job& job, Extent extent, int levels, const PackOptions& pack, std::size_t bytes);
-
-// Packs `chain` as `encoding` and writes it where the job says: one file, or one for each level where the
-// name has {level}; a picture gets the base level. See report_texture().
-[[nodiscard]] Result<void> write_chain(Job& job, MipChain chain, const OutputOptions& options, Encoding encoding,
-                                       YAxis y);
 
 }  // namespace tex::cli
