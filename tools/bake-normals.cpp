@@ -91,7 +91,6 @@ Result<void> BakeNormals::process(cli::Job& job) {
     cli::report_texture(job, baked->extent, baked->levels, options.pack, baked->bytes);
     const SlopeRange& slopes = baked->slopes;
     job.report["slopes"] = {{"x", {slopes.min_x, slopes.max_x}}, {"y", {slopes.min_y, slopes.max_y}}};
-    cli::report_path(job, baked->path);
     return {};
 }
 

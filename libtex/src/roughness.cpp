@@ -13,8 +13,8 @@
 #include "blocks/extent.h"
 #include "kernels/roughness.h"
 #include "rows/mip_rows.h"
+#include "rows/own_roughness.h"
 #include "rows/roughness_rows.h"
-#include "rows/sampler.h"
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
@@ -44,62 +44,17 @@ void filter_strip(const LevelFilter& filter, PlaneView<const float> from, Plane<
     }
 }
 
-// The roughness and alpha^2 of the base level.
-struct BaseLevel {
-    Plane<float> roughness, alpha2;
-};
-
-Result<BaseLevel> clean_level(const Plane<float>& roughness, const Execution& execution, ProgressSpan span) {
+// The material's own roughness and alpha^2 at the base level.
+Result<void> fill_base(const Plane<float>& own, const MipOptions& options, const Execution& execution,
+                       ProgressSpan span, Plane<float>& roughness, Plane<float>& alpha2) {
     const Extent extent = roughness.extent();
-    BaseLevel level{Plane<float>(extent), Plane<float>(extent)};
-    const auto clean = [&](int begin, int end) {
-        for (int j = begin; j < end; ++j)
-            clean_roughness(roughness.row(j), extent.width, level.roughness.row(j), level.alpha2.row(j));
+    const double middle = own.extent() == extent ? span.from : (span.from + span.to) / 2.0;
+    const auto rows = OwnRoughness::of(own, extent, options, execution, {span.from, middle});
+    if (!rows) return rows.error();
+    const auto fill = [&](int begin, int end) {
+        for (int j = begin; j < end; ++j) rows->row(j, roughness.row(j), alpha2.row(j));
     };
-    auto cleaned = parallel_for(execution, extent.height, strip_rows(extent), clean, span);
-    if (!cleaned) return cleaned.error();
-    return level;
-}
-
-// The alpha^2 of another extent: halved while it is twice as large, then sampled.
-Result<Plane<float>> stretched(Plane<float> alpha2, Extent extent, const MipOptions& options,
-                               const Execution& execution, ProgressSpan span) {
-    const ProgressSpan start{span.from, span.from};
-    while (alpha2.extent().width >= 2 * extent.width && alpha2.extent().height >= 2 * extent.height) {
-        const Extent from = alpha2.extent();
-        Plane<float> half(level_extent(from, 1));
-        const LevelFilter filter(from, options);
-        auto made = parallel_for(
-            execution, half.extent().height, strip_rows(half.extent()),
-            [&](int begin, int end) { filter_strip(filter, alpha2.view(), half, begin, end); }, start);
-        if (!made) return made.error();
-        alpha2 = std::move(half);
-    }
-    Plane<float> result(extent);
-    const auto sample = [&](int begin, int end) {
-        Sampler sampler(alpha2.extent(), extent, stretch(extent), options.wrap_x, options.wrap_y);
-        for (int j = begin; j < end; ++j) {
-            sampler.place(j);
-            sampler.sample(alpha2, result.row(j));
-        }
-    };
-    auto sampled = parallel_for(execution, extent.height, strip_rows(extent), sample, span);
-    if (!sampled) return sampled.error();
-    return result;
-}
-
-Result<BaseLevel> base_level(const Plane<float>& roughness, Extent extent, const MipOptions& options,
-                             const Execution& execution, ProgressSpan span) {
-    if (roughness.extent() == extent) return clean_level(roughness, execution, span);
-    const double middle = (span.from + span.to) / 2.0;
-    auto level = clean_level(roughness, execution, {span.from, middle});
-    if (!level) return level.error();
-    auto alpha2 = stretched(std::move(level->alpha2), extent, options, execution, {middle, span.to});
-    if (!alpha2) return alpha2.error();
-    BaseLevel result{Plane<float>(extent), std::move(*alpha2)};
-    for (int j = 0; j < extent.height; ++j)
-        roughness_of_alpha2(result.alpha2.row(j), extent.width, result.roughness.row(j));
-    return result;
+    return parallel_for(execution, extent.height, strip_rows(extent), fill, {middle, span.to});
 }
 
 Result<RoughnessChain> build_chain(const NormalMap& base, const Plane<float>& roughness, RoughnessModel model,
@@ -107,12 +62,13 @@ Result<RoughnessChain> build_chain(const NormalMap& base, const Plane<float>& ro
     const Extent extent = base.extent();
     const int count = levels_to_build(options, extent);
     double done = count > 1 ? 0.1 : 1.0;
-    auto level0 = base_level(roughness, extent, options, execution, {0.0, done});
-    if (!level0) return level0.error();
     RoughnessChain chain;
-    chain.levels.push_back(std::move(level0->roughness));
+    Plane<float> alpha2(extent);
+    const auto filled =
+        fill_base(roughness, options, execution, {0.0, done}, chain.levels.emplace_back(extent), alpha2);
+    if (!filled) return filled.error();
 
-    AverageViews from = {base.x.view(), base.y.view(), base.z.view(), level0->alpha2.view()};
+    AverageViews from = {base.x.view(), base.y.view(), base.z.view(), alpha2.view()};
     Averages held;  // what `from` shows, below the base level
     for (int level = 1; level < count; ++level) {
         const Extent smaller = level_extent(extent, level);

@@ -15,8 +15,6 @@
 
 #include <tex/image_io.h>
 
-#include "formats/row_source.h"
-#include "formats/texture_rows.h"
 #include "stream/bake_stream.h"
 #include "stream/pack_stream.h"
 #include "unit/normal_maps.h"
@@ -95,22 +93,17 @@ TEST_F(OutputFiles, LevelsOfBakedMapsHaveTheBytesOfTheVerbs) {
         const MipChain chain = build_mip_chain(bake(field).value(), bake_.mip).value();
 
         Result<InputFile> file = InputFile::open(input);
-        auto rows = open_rows(*file, {});
-        ASSERT_TRUE(can_stream(*file, **rows, container, bake_));
         const StreamSizes sizes{1 << (2 + random() % 10), 0};
-        const auto report =
-            bake_stream(*file, std::move(*rows), "", container, bake_, {1 + static_cast<int>(random() % 3), {}}, sizes);
+        const auto report = bake_stream(*file, "", container, bake_, {1 + static_cast<int>(random() % 3), {}}, sizes);
         ASSERT_TRUE(report) << report.error().message();
         EXPECT_EQ(report->levels, static_cast<int>(chain.levels.size()));
         expect_files(chain, container, report->bytes);
         remove_outputs();
-        // The path of whole images.
         bake_.heights.fill_invalid = true;
-        const auto whole = bake_file(input, "", container, bake_);
+        const auto filled = bake_file(input, "", container, bake_);
         bake_.heights.fill_invalid = false;
-        ASSERT_TRUE(whole) << whole.error().message();
-        EXPECT_EQ(whole->path, Path::whole);
-        expect_files(chain, container, whole->bytes);
+        ASSERT_TRUE(filled) << filled.error().message();
+        expect_files(chain, container, filled->bytes);
         remove_outputs();
     }
 }
@@ -131,17 +124,15 @@ TEST_F(OutputFiles, LevelsOfRepackedMapsHaveTheBytesOfTheVerbs) {
             chain = build_mip_chain(std::move(chain.levels.front()), *pack_.mip).value();
         }
         Result<InputFile> file = InputFile::open(input);
-        Result<std::optional<TextureRows>> texture = open_texture_rows(*file, {});
         const StreamSizes sizes{1 << (2 + random() % 10), 0};
-        const auto report = pack_stream(*file, std::move(**texture), "", container, pack_,
-                                        {1 + static_cast<int>(random() % 3), {}}, sizes);
+        const auto report = pack_stream(*file, "", container, pack_, {1 + static_cast<int>(random() % 3), {}}, sizes);
         ASSERT_TRUE(report) << report.error().message();
         expect_files(chain, container, report->bytes);
         remove_outputs();
     }
 }
 
-// Roughness beside the normals, of values and of maps, streamed and not.
+// Roughness beside the normals, of values and of maps.
 TEST_F(OutputFiles, RoughnessHasTheBytesOfTheVerbs) {
     constexpr Format kFormats[] = {Format::bc4_unorm, Format::r8_unorm, Format::r16_unorm, Format::r16_float,
                                    Format::r32_float};
@@ -175,20 +166,26 @@ TEST_F(OutputFiles, RoughnessHasTheBytesOfTheVerbs) {
             encode_file(pack_roughness(chain, file.format, file.effort).value(), file.container, pack_.write).value();
 
         Result<InputFile> opened = InputFile::open(input);
-        Result<std::optional<TextureRows>> texture = open_texture_rows(*opened, {});
         const StreamSizes sizes{1 << (2 + random() % 10), 0};
-        const auto report = pack_stream(*opened, std::move(**texture), path("out"), Container::dds, pack_,
-                                        {1 + static_cast<int>(random() % 3), {}}, sizes);
+        const auto report =
+            pack_stream(*opened, path("out"), Container::dds, pack_, {1 + static_cast<int>(random() % 3), {}}, sizes);
         ASSERT_TRUE(report) << report.error().message();
         ASSERT_TRUE(bytes_of(path("rough")) == expected);
         EXPECT_EQ(report->roughness_bytes, expected.size());
         const Bytes normals = bytes_of(path("out"));
-        pack_.roughness->map = [&]() -> Result<Plane<float>> { return Plane<float>(extent, file.own); };
-        const auto whole = pack_file(input, path("out"), Container::dds, pack_);
-        ASSERT_TRUE(whole) << whole.error().message();
-        EXPECT_EQ(whole->path, Path::whole);
-        EXPECT_EQ(whole->roughness_bytes, expected.size());
-        EXPECT_TRUE(bytes_of(path("rough")) == expected);
+        // A map, of the same extent or of another.
+        const Extent its = round % 2 == 0 ? extent : Extent{kSides[random() % 11], kSides[random() % 11]};
+        Plane<float> map(its);
+        for (int j = 0; j < its.height; ++j) {
+            for (int i = 0; i < its.width; ++i) map.at(i, j) = static_cast<float>(random() % 300) / 256.0f;
+        }
+        pack_.roughness->map = [&]() -> Result<Plane<float>> { return map; };
+        const auto mapped = pack_file(input, path("out"), Container::dds, pack_, {1 + round % 3, {}});
+        ASSERT_TRUE(mapped) << mapped.error().message();
+        const RoughnessChain rough = build_roughness_chain(base, map, file.model, mip).value();
+        const Texture packed = pack_roughness(rough, file.format, file.effort).value();
+        EXPECT_TRUE(bytes_of(path("rough")) == encode_file(packed, file.container, pack_.write).value());
+        EXPECT_EQ(mapped->roughness_bytes, bytes_of(path("rough")).size());
         EXPECT_TRUE(bytes_of(path("out")) == normals);
         pack_.roughness.reset();
         ASSERT_TRUE(pack_file(input, path("out"), Container::dds, pack_));

@@ -23,7 +23,6 @@ Result<void> repack(Job& job, SourceOptions& source, const OutputOptions& output
     report_source(job, packed->source);
     wrote_levels(job, job.task.output, packed->levels);
     report_texture(job, packed->extent, packed->levels, packed->pack, packed->bytes);
-    report_path(job, packed->path);
     if (also_tell) also_tell(*packed);
     return {};
 }
@@ -36,7 +35,5 @@ LevelNames level_names(const std::string& name) {
 void wrote_levels(Job& job, const std::string& name, int levels) {
     for (int k = 0; k < (has_level(name) ? levels : 1); ++k) job.wrote(with_level(name, k));
 }
-
-void report_path(Job& job, Path path) { job.report["path"] = name_of(kPathNames, path); }
 
 }  // namespace tex::cli

@@ -28,7 +28,4 @@ using EncodingOf = std::function<Encoding(const SourceInfo& source)>;
 // Tells the job that `name`, of so many levels, has been written.
 void wrote_levels(Job& job, const std::string& name, int levels);
 
-// Tells the job's report which way the file went.
-void report_path(Job& job, Path path);
-
 }  // namespace tex::cli

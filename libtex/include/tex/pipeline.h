@@ -20,7 +20,6 @@
 #include <tex/execution.h>
 #include <tex/height_field.h>
 #include <tex/mip.h>
-#include <tex/names.h>
 #include <tex/pack.h>
 #include <tex/result.h>
 #include <tex/roughness.h>
@@ -29,14 +28,6 @@
 
 #pragma GCC visibility push(default)
 namespace tex {
-
-// Which way a file went: as a stream of rows, or as a whole image through the verbs.
-enum class Path { streamed, whole };
-
-inline constexpr Named<Path> kPathNames[] = {
-    {Path::streamed, "streamed", "row by row, in the memory of a few rows"},
-    {Path::whole, "whole", "as a whole image"},
-};
 
 // The names of files that hold one level each, by the level. May throw std::bad_alloc only.
 using LevelNames = std::function<std::string(int level)>;
@@ -57,7 +48,6 @@ struct BakeFileOptions {
 };
 
 struct BakeFileReport {
-    Path path = Path::whole;
     Extent extent;  // of the base level
     int levels = 1;
     std::size_t bytes = 0;  // of the output, of all its files
@@ -67,11 +57,14 @@ struct BakeFileReport {
 
 // Bakes the height map `input` ("-" is standard input) and writes it to `output` as a file of the kind `container`.
 //
-// Streamed: PNG that is not interlaced, EXR, and what the reader process decodes (TIFF, TGA, JPEG ...), into DDS, KTX2,
-// PNG and EXR, without fill_invalid and without a colour space. PNG and EXR are written from the top: where the heights
-// repeat from bottom to top, the last rows are decoded first (a PNG twice; of what the reader process decodes all rows
-// wait, as they are stored). Everything else takes the path of whole images. Pictures that hold one level get the base
-// level. EXR keeps the compressed tiles of smaller levels in memory until the base level is done.
+// Memory holds a few rows, and beyond that what a step needs that reaches over all rows:
+//   an interlaced PNG   all rows, as they are decoded
+//   fill_invalid        all heights, and for each the row of its nearest valid neighbour: 8 bytes a texel
+//   TIFF, TGA ... out   all packed texels: the reader process encodes whole pictures
+//   EXR out             the compressed tiles of smaller levels, until the base level is done
+// PNG and EXR are written from the top: if the heights repeat from bottom to top, the last rows are decoded first
+// (those of a PNG by decoding it twice; the reader process holds all rows of a TIFF, TGA, JPEG ..., as its file stores
+// them). Pictures that hold one level get the base level.
 //
 // The output appears whole or not at all, see write_file(). Of files for each level none appears before all rows are
 // done; then they do one after the other, up to one that fails. What goes to standard output or a FIFO is held in
@@ -79,8 +72,7 @@ struct BakeFileReport {
 //
 // Preconditions (asserted): as those of the verbs.
 // Errors: those of the verbs. `file` is empty where the heights are concerned, not a file. Of several errors (a damaged
-// picture, a directory that is not there) any may be told. The same bytes for every number of threads, and on either
-// path.
+// picture, a directory that is not there) any may be told. The same bytes for every number of threads.
 [[nodiscard]] Result<BakeFileReport> bake_file(const std::string& input, const std::string& output, Container container,
                                                const BakeFileOptions& options = {}, const Execution& execution = {});
 
@@ -114,7 +106,6 @@ struct PackFileOptions {
 };
 
 struct PackFileReport {
-    Path path = Path::whole;
     Extent extent;  // of the base level that was written
     int levels = 1;
     std::size_t bytes = 0;  // of the output, of all its files
@@ -126,11 +117,9 @@ struct PackFileReport {
 // Reads the normal map `input` ("-" is standard input) and writes it to `output` as a file of the kind `container`, in
 // another encoding, with levels built of it, scaled, or one level of it.
 //
-// Streamed: DDS, KTX2 and EXR, level by level, PNG that is not interlaced, and what the reader process decodes (TIFF,
-// TGA, JPEG ...), into DDS, KTX2, PNG and EXR, which keeps the compressed tiles of built levels in memory until the
-// base level is done. Everything else takes the path of whole images: the reader process encodes whole pictures.
-// Pictures that hold one level get the base level. A map of roughness streams beside the normals where both files do
-// and RoughnessFile::map is empty; its file appears after theirs.
+// Levels come one after the other. Memory holds a few rows, and beyond that what bake_file() says of an interlaced PNG
+// and of outputs, and the plane of RoughnessFile::map. Pictures that hold one level get the base level. The file of
+// roughness appears after those of normals.
 //
 // Streams cannot look at all texels before the first is written. Where these decide (four channels without a swizzle;
 // floats without a range), the likeliest layout of the format is assumed: x, y, z in R, G, B; x in A and y in G in BC3;
@@ -142,7 +131,7 @@ struct PackFileReport {
 //
 // Preconditions (asserted): as those of the verbs.
 // Errors: those of the verbs; bad_option where the source has no such level. Of several errors any may be told.
-// The same bytes for every number of threads, and on either path.
+// The same bytes for every number of threads.
 [[nodiscard]] Result<PackFileReport> pack_file(const std::string& input, const std::string& output, Container container,
                                                const PackFileOptions& options = {}, const Execution& execution = {});
 

@@ -6,6 +6,7 @@
 
 #include <tex/unpack.h>
 
+#include "blocks/extent.h"
 #include "formats/claims.h"
 #include "formats/codecs.h"
 #include "threads/guard.h"
@@ -34,9 +35,27 @@ Result<Image> read_all(Result<std::unique_ptr<RowSource>> rows) {
     });
 }
 
+Result<void> RowSource::visit(const std::string& name, const TakeRows& take) {
+    const int together = rows_together(), held = whole_blocks(together);
+    Image image = make_image({extent().width, held}, names());
+    std::vector<std::byte> rows(row_bytes() * static_cast<std::size_t>(held));
+    for (int j = 0; j < extent().height; j += together) {
+        const int count = std::min(together, extent().height - j);
+        if (const Result<void> decoded = decode(j, count, rows.data()); !decoded) return decoded.error().of(name);
+        store(rows.data(), 0, count, image);
+        if (Result<void> taken = take(image, j, count); !taken) return taken;
+    }
+    const Result<void> ended = finish();
+    return ended ? ended : Result<void>(ended.error().of(name));
+}
+
 Result<std::unique_ptr<RowSource>> open_rows(InputFile& file, const ReadOptions& options) {
     const Codec& codec = codec_for(file.head());
-    if (codec.open_rows == nullptr) return std::unique_ptr<RowSource>();
+    if (codec.open_rows == nullptr) {
+        Result<TextureRows> texture = open_texture_rows(file, options);
+        if (!texture) return texture.error();
+        return std::move(texture->levels.front());
+    }
     Result<std::unique_ptr<RowSource>> rows = codec.open_rows(file, options);
     if (!rows) return rows.error().of(file.path());
     return rows;

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -33,9 +34,6 @@ public:
     [[nodiscard]] SampleKind sample() const { return sample_; }                     // this and the next two as in Image
     [[nodiscard]] int bits() const { return bits_; }
     [[nodiscard]] const std::string& normal_encoding() const { return normal_encoding_; }
-
-    // Rows come a few at a time. Where not, read_all() is the only way.
-    [[nodiscard]] virtual bool is_sequential() const { return true; }
 
     // Rows that the file holds together: decode() costs least where `first` is a multiple of it, and `count` too or up
     // to the last row.
@@ -64,7 +62,13 @@ public:
     virtual void store(const std::byte* rows, int first, int end, Image& image) const = 0;
 
     // The planes of the whole picture; instead of decode() and finish(). Throws std::bad_alloc. Errors: as decode().
-    virtual Result<Image> read_all();
+    Result<Image> read_all();
+
+    // Shows all rows, some at a time, to take(image, first, count): rows 0 to count - 1 of the image are rows first,
+    // first + 1, ... of the picture. Instead of decode() and finish(). Throws std::bad_alloc. Errors: as decode(), of
+    // the file `name`; those of take().
+    using TakeRows = std::function<Result<void>(Image& rows, int first, int count)>;
+    Result<void> visit(const std::string& name, const TakeRows& take);
 
 protected:
     void describe(Extent extent, std::vector<std::string> names, std::size_t row_bytes) {
@@ -87,8 +91,7 @@ private:
     std::string normal_encoding_;
 };
 
-// The picture in `file`, which must outlive it; null where this kind of file is only read as a whole: see
-// read_image(InputFile&). Errors: as read_image(), those that a header tells.
+// The picture in `file`, which must outlive it. Errors: as read_image(), those that a header tells.
 Result<std::unique_ptr<RowSource>> open_rows(InputFile& file, const ReadOptions& options);
 
 // The whole picture, once it is open. Errors: that of opening; as RowSource::read_all().

@@ -15,26 +15,26 @@
 namespace tex {
 namespace {
 
-using Opened = Result<std::optional<TextureRows>>;
-
 // A picture, from its rows.
-Opened picture_rows(const InputFile& file, Result<std::unique_ptr<RowSource>> rows) {
+Result<TextureRows> picture_rows(const InputFile& file, Result<std::unique_ptr<RowSource>> rows) {
     if (!rows) return rows.error().of(file.path());
     Result<PictureTexture> picture = picture_texture_of((*rows)->names(), (*rows)->sample(), (*rows)->bits());
-    // What is wrong with a picture shows when it has been read.
-    if (!picture || !(*rows)->is_sequential()) return std::optional<TextureRows>();
+    if (!picture) {  // but one that is damaged as well is damaged first
+        const Result<Image> image = (*rows)->read_all();
+        return (image ? picture.error() : image.error()).of(file.path());
+    }
     TextureRows texture;
     texture.head = std::move(picture->head);
     texture.levels.push_back(std::move(*rows));
     texture.planes = std::move(picture->planes);
     texture.rounds = picture->rounds;
-    return std::optional(std::move(texture));
+    return texture;
 }
 
 // The levels of a file that holds their texels as they are.
-Opened stored_rows(InputFile& file, const Codec& codec, const ReadOptions& options) {
+Result<TextureRows> stored_rows(InputFile& file, const Codec& codec, const ReadOptions& options) {
     if (const Result<void> settled = file.settle(largest_file(options)); !settled) return settled.error();
-    if (*file.size() > largest_file(options)) return std::optional<TextureRows>();  // read_texture() says so
+    if (*file.size() > largest_file(options)) return file.read_rest(largest_file(options)).error();
     const FetchBytes fetch = [&file](std::uint64_t offset, std::size_t count) -> Result<std::vector<std::byte>> {
         std::vector<std::byte> bytes(count);
         const Result<std::size_t> got = file.read_at(static_cast<std::int64_t>(offset), bytes.data(), count);
@@ -49,25 +49,21 @@ Opened stored_rows(InputFile& file, const Codec& codec, const ReadOptions& optio
     texture.head = stored->head;
     for (std::size_t k = 0; k < stored->levels.size(); ++k) texture.levels.push_back(open_level_rows(file, stored, k));
     texture.take_planes_in_order();
-    return std::optional(std::move(texture));
+    return texture;
 }
 
-Opened open_any(InputFile& file, const Codec& codec, const ReadOptions& options) {
+Result<TextureRows> open_any(InputFile& file, const Codec& codec, const ReadOptions& options) {
     if (codec.parse != nullptr) return stored_rows(file, codec, options);
     if (codec.open_levels != nullptr) {
         Result<TextureRows> texture = codec.open_levels(file, options);
         if (!texture) return texture.error().of(file.path());
-        return std::optional(std::move(*texture));
+        return texture;
     }
     if (codec.reader_name != nullptr) {  // so that it can be read once more
         const Result<void> settled = file.settle(std::min(largest_file(options), options.reader_memory));
         if (!settled) return settled.error();
     }
-    Opened rows = picture_rows(file, codec.open_rows(file, options));
-    if (rows && !*rows) {
-        if (const Result<void> again = file.rewind(); !again) return again.error();
-    }
-    return rows;
+    return picture_rows(file, codec.open_rows(file, options));
 }
 
 }  // namespace
@@ -106,8 +102,8 @@ Result<Texture> read_texture(InputFile& file, const ReadOptions& options) {
     });
 }
 
-Opened open_texture_rows(InputFile& file, const ReadOptions& options) {
-    return guarded([&]() -> Opened { return open_any(file, codec_for(file.head()), options); });
+Result<TextureRows> open_texture_rows(InputFile& file, const ReadOptions& options) {
+    return guarded([&]() -> Result<TextureRows> { return open_any(file, codec_for(file.head()), options); });
 }
 
 }  // namespace tex

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <memory>
 #include <numeric>
-#include <optional>
 #include <vector>
 
 #include <tex/image_io.h>
@@ -39,8 +38,7 @@ struct TextureRows {
 // The whole texture, once it is open. Precondition: no `rounds`. Errors: that of opening; as RowSource::read_all().
 Result<Texture> read_all(Result<TextureRows> rows);
 
-// The texture in `file`, which must outlive it. Nothing where it can only be read as a whole: interlaced PNG;
-// read_texture() may follow then. Errors: those of read_texture() that a header tells.
-Result<std::optional<TextureRows>> open_texture_rows(InputFile& file, const ReadOptions& options);
+// The texture in `file`, which must outlive it. Errors: those of read_texture() that a header tells.
+Result<TextureRows> open_texture_rows(InputFile& file, const ReadOptions& options);
 
 }  // namespace tex

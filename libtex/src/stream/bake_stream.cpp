@@ -3,15 +3,20 @@
 #include "stream/bake_stream.h"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <utility>
 
+#include "formats/row_source.h"
+#include "rows/color.h"
 #include "rows/mip_rows.h"
+#include "stream/filled_heights.h"
 #include "stream/height_stage.h"
 #include "stream/last_rows.h"
 #include "stream/level_stage.h"
 #include "stream/slope_collector.h"
 #include "stream/strip_writer.h"
+#include "threads/parallel.h"
 
 namespace tex {
 namespace {
@@ -25,57 +30,110 @@ int levels_of(Extent extent, Container container, const BakeFileOptions& options
     return holds_levels(container, options.level_names) ? levels_to_build(options.mip, extent) : 1;
 }
 
+// A picture, and what becomes of its rows before there are normals.
+struct Heights {
+    std::unique_ptr<RowSource> rows;
+    HeightSource source;
+    std::optional<LinearRows> linear;  // in another colour space
+    HeightOptions options;
+    HeightCounts counts;        // met so far
+    std::optional<Image> last;  // the last rows, if they are needed first
+};
+
+// Errors: an option that does not fit the picture.
+Result<void> prepare(const BakeFileOptions& options, Heights& heights) {
+    const RowSource& rows = *heights.rows;
+    if (!options.color.space.empty()) {
+        auto linear = LinearRows::make(rows.names(), rows.sample(), rows.bits(), options.color);
+        if (!linear) return linear.error();
+        heights.linear = std::move(*linear);
+    }
+    if (std::optional<Error> wrong = check_blur(options.heights)) return std::move(*wrong);
+    Result<HeightSource> source = find_height_source(rows.names(), options.heights.channel);
+    if (!source) return source.error();
+    heights.source = *source;
+    heights.options = options.heights;
+    return {};
+}
+
+// The stage that reaches over all rows.
+Result<void> fill(InputFile& file, const Execution& execution, Heights& heights) {
+    Result<std::unique_ptr<RowSource>> filled =
+        fill_heights(*heights.rows, file.path(), heights.source, heights.options,
+                     heights.linear ? &*heights.linear : nullptr, execution, heights.counts);
+    if (!filled) return filled.error();
+    heights.rows = std::move(*filled);
+    heights.source = {HeightChannel::automatic, 0};
+    heights.linear.reset();
+    heights.options.invert = false;
+    heights.options.no_data.reset();
+    return {};
+}
+
 // What is written from the top cannot wait for the last rows to come.
-bool needs_last_rows(Container container, const BakeFileOptions& options) {
-    return !takes_any_order(container) && options.heights.wrap_y == Wrap::repeat;
+Result<void> find_last_rows(InputFile& file, const BakeFileOptions& options, const Gradient& gradient,
+                            const Execution& execution, Heights& heights) {
+    const int count = std::min(HeightStage::reach(heights.options, gradient), heights.rows->extent().height);
+    Result<Image> last = last_rows(file, heights.rows, options.read, count, execution);
+    if (!last) return last.error();
+    heights.last = std::move(*last);
+    return heights.linear ? heights.linear->convert(*heights.last, count) : Result<void>();
+}
+
+Result<Heights> open_heights(InputFile& file, Container container, const BakeFileOptions& options,
+                             const Gradient& gradient, const Execution& execution) {
+    Result<std::unique_ptr<RowSource>> rows = open_rows(file, options.read);
+    if (!rows) return rows.error();
+    Heights heights;
+    heights.rows = std::move(*rows);
+    if (const Result<void> fits = prepare(options, heights); !fits)
+        return after_all_rows(*heights.rows, file.path(), fits.error());
+    if (options.heights.fill_invalid) {
+        if (const Result<void> filled = fill(file, execution, heights); !filled) return filled.error();
+    }
+    if (!takes_any_order(container) && options.heights.wrap_y == Wrap::repeat) {
+        const double done = options.heights.fill_invalid ? 1.0 : 0.0;
+        const Result<void> found = find_last_rows(file, options, gradient, part_of(execution, done, 1.0), heights);
+        if (!found) return found.error();
+    }
+    return heights;
 }
 
 }  // namespace
 
-bool can_stream(const InputFile& file, const RowSource& rows, Container container, const BakeFileOptions& options) {
-    if (!rows.is_sequential() || !options.color.space.empty() || options.heights.fill_invalid) return false;
-    if (!takes_strips(container)) return false;
-    return !needs_last_rows(container, options) || knows_last_rows(file, rows);
-}
-
-Result<BakeFileReport> bake_stream(InputFile& file, std::unique_ptr<RowSource> rows, const std::string& output,
-                                   Container container, const BakeFileOptions& options, const Execution& execution,
+Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, Container container,
+                                   const BakeFileOptions& options, const Execution& execution,
                                    const StreamSizes& sizes) {
-    const std::string& input = file.path();
-    const Extent extent = rows->extent();
-    const std::optional<Error> wrong_blur = check_blur(options.heights);
-    const Result<HeightSource> source = find_height_source(rows->names(), options.heights.channel);
-    if (wrong_blur || !source) return after_all_rows(*rows, input, wrong_blur ? *wrong_blur : source.error());
+    // Filling comes before the rest of the work.
+    const double filled = options.heights.fill_invalid ? 0.5 : 0.0;
     const Gradient gradient = gradient_of(options.bake);
-    std::optional<Image> last;
-    if (needs_last_rows(container, options)) {
-        const int count = std::min(HeightStage::reach(options.heights, gradient), extent.height);
-        Result<Image> known = last_rows(file, rows, options.read, count, execution);
-        if (!known) return known.error();
-        last = std::move(*known);
-    }
+    Result<Heights> heights = open_heights(file, container, options, gradient, part_of(execution, 0.0, filled));
+    if (!heights) return heights.error();
+    const Execution onward = part_of(execution, filled, 1.0);
+    const Extent extent = heights->rows->extent();
     BakeFileReport report;
-    report.path = Path::streamed;
     report.extent = extent;
     report.levels = levels_of(extent, container, options);
     const Result<std::unique_ptr<StripWriter>> opened = StripWriter::open(
         {output, options.level_names}, container, packing_of(options.pack, extent, report.levels), options.write);
     if (!opened) return opened.error();
     StripWriter& writer = **opened;
-    RowStream stream(*rows, input, 0, report.levels, writer, execution, sizes);
+    RowStream stream(*heights->rows, file.path(), 0, report.levels, writer, onward, sizes);
+    if (heights->linear) stream.convert([&](Image& rows, int count) { return heights->linear->convert(rows, count); });
     SlopeCollector slopes;
     if (options.slopes) {
         stream.watch([&slopes](const Strip& strip) {
             if (strip.level == 0) slopes.add(strip.map, 0, strip.height);
         });
     }
-    HeightStage heights(extent, *source, options.heights, gradient, head_of(extent, options), stream.sink(),
-                        std::move(last));
-    LevelStage levels(extent, report.levels, heights.start(), options.mip, stream.strips());
-    if (const Result<void> done = stream.run(heights, levels); !done) return done.error();
+    HeightStage stage(extent, heights->source, heights->options, gradient, head_of(extent, options), stream.sink(),
+                      std::move(heights->last));
+    LevelStage levels(extent, report.levels, stage.start(), options.mip, stream.strips());
+    if (const Result<void> done = stream.run(stage, levels); !done) return done.error();
     if (const Result<void> done = writer.commit(); !done) return done.error();
     report.bytes = writer.file_bytes();
-    report.heights = {heights.counts().luma, heights.counts().invalid};
+    const HeightCounts& counts = stage.counts();
+    report.heights = {heights->counts.luma + counts.luma, heights->counts.invalid + counts.invalid};
     report.slopes = slopes.range();
     return report;
 }

@@ -10,7 +10,6 @@
 
 #include "rows/mip_rows.h"
 #include "stream/blend_stage.h"
-#include "stream/gathering_writer.h"
 #include "stream/joined_rows.h"
 #include "stream/level_stage.h"
 #include "stream/map_file.h"
@@ -140,10 +139,7 @@ Result<void> Blending::prepare() {
 
 Result<std::unique_ptr<StripWriter>> Blending::open_writer() const {
     const OutputNames names{output_, options_.level_names};
-    StripPacking packing = packing_of(report_.pack, report_.extent, report_.levels);
-    if (takes_strips(container_)) return StripWriter::open(names, container_, std::move(packing), options_.write);
-    return std::unique_ptr<StripWriter>(
-        std::make_unique<GatheringWriter>(names, container_, std::move(packing), options_.write));
+    return StripWriter::open(names, container_, packing_of(report_.pack, report_.extent, report_.levels), options_.write);
 }
 
 Result<PlacedMap> Blending::place(Input& input, std::deque<ArrivingMap>& arriving, const Execution& execution) {

@@ -8,7 +8,6 @@
 
 #include "blocks/extent.h"
 #include "formats/claims.h"
-#include "formats/codecs.h"
 #include "threads/guard.h"
 
 namespace tex {
@@ -23,15 +22,11 @@ Result<void> reopen(InputFile& file, std::unique_ptr<RowSource>& rows, const Rea
     Result<std::unique_ptr<RowSource>> opened = open_rows(file, options);
     if (!opened) return opened.error();
     rows = std::move(*opened);
-    if (rows && rows->extent() == extent && rows->names() == names) return {};
+    if (rows->extent() == extent && rows->names() == names) return {};
     return Error{ErrorCode::io, file.path(), "changed while it was read"};
 }
 
 }  // namespace
-
-bool knows_last_rows(const InputFile& file, const RowSource& rows) {
-    return rows.can_peek() || codec_for(file.head()).decodes_twice;
-}
 
 Result<Image> last_rows(InputFile& file, std::unique_ptr<RowSource>& rows, const ReadOptions& options, int count,
                         const Execution& execution) {

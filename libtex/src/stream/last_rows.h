@@ -15,13 +15,10 @@
 
 namespace tex {
 
-// Whether last_rows() knows a way: where rows can be looked at before their turn (EXR, and what the reader process
-// decodes), and PNG, which decodes fast and is decoded twice.
-[[nodiscard]] bool knows_last_rows(const InputFile& file, const RowSource& rows);
-
 // The last `count` rows, as an image of that height or a little more. No row of `rows`, the picture in `file`, has been
-// decoded, nor has one afterwards: where need be it is opened once more. Precondition: knows_last_rows(); 1 <= count <=
-// the picture's height. May throw std::bad_alloc. Errors: those of reading, which name the file; cancelled.
+// decoded, nor has one afterwards: a picture whose rows cannot be looked at before their turn (a PNG, which decodes
+// fast) is opened and decoded once more. Precondition: 1 <= count <= the picture's height. May throw std::bad_alloc.
+// Errors: those of reading, which name the file; cancelled.
 Result<Image> last_rows(InputFile& file, std::unique_ptr<RowSource>& rows, const ReadOptions& options, int count,
                         const Execution& execution);
 

@@ -12,7 +12,7 @@
 namespace tex {
 
 Result<void> MapFile::open_texture() {
-    Result<std::optional<TextureRows>> opened = open_texture_rows(*file_, options_.read);
+    Result<TextureRows> opened = open_texture_rows(*file_, options_.read);
     if (!opened) return opened.error();
     texture_ = std::move(*opened);
     return {};

@@ -22,8 +22,7 @@ public:
     MapFile(const MapFile&) = delete;
     MapFile& operator=(const MapFile&) = delete;
 
-    // Opens the file; rows() is there if it can be read row by row. Errors: those of read_normals() that a header
-    // tells.
+    // Opens the file, after which rows() is there. Errors: those of read_normals() that a header tells.
     Result<void> open();
     // Reads all of the map into chain(), instead of rows. Errors: as read_normals().
     Result<void> hold(bool base_only, const Execution& execution);

@@ -9,9 +9,9 @@
 
 #include <tex/mip_chain.h>
 
-#include "blocks/extent.h"
-#include "formats/claims.h"
+#include "formats/texture_rows.h"
 #include "rows/mip_rows.h"
+#include "rows/own_roughness.h"
 #include "rows/source_layout.h"
 #include "stream/layout_finder.h"
 #include "stream/level_stage.h"
@@ -22,14 +22,29 @@
 namespace tex {
 namespace {
 
+// How pack_file() packs what `source` says.
+PackOptions pack_options(const PackFileOptions& options, Container container, const SourceInfo& source) {
+    if (options.pack) return options.pack(source);
+    PackOptions pack;
+    pack.encoding = default_encoding(container);
+    pack.y_axis = source.y_axis;
+    return pack;
+}
+
+// What one attempt leaves to the next.
+struct Kept {
+    std::unique_ptr<StripWriter> writer;  // until that one has its own
+    std::optional<Plane<float>> own;      // RoughnessFile::map, which is read once
+};
+
 // One reading of the file, under an assumption about its layout.
 class Attempt {
 public:
     Attempt(TextureRows& texture, const std::string& input, const std::string& output, Container container,
             const PackFileOptions& options, const Execution& execution, const StreamSizes& sizes,
-            const KnownLayout& known, std::unique_ptr<StripWriter>& writer)
+            const KnownLayout& known, Kept& kept)
         : texture_(texture), input_(input), output_(output), container_(container), options_(options),
-          execution_(execution), sizes_(sizes), writer_(writer), finder_(texture, options.source, known) {}
+          execution_(execution), sizes_(sizes), kept_(kept), finder_(texture, options.source, known) {}
 
     // Nothing in the result, but correction(), where the texels say that the assumption was wrong.
     Result<std::optional<PackFileReport>> run();
@@ -38,6 +53,7 @@ public:
 private:
     Result<void> prepare();
     Result<void> look_at_base_level();
+    [[nodiscard]] Result<std::optional<OwnRoughness>> own_roughness() const;
     Result<std::unique_ptr<StripWriter>> open_writer() const;
     Result<void> stream_level(std::size_t k, StripWriter& writer, const Execution& execution);
     [[nodiscard]] int roughness_levels() const {
@@ -52,11 +68,12 @@ private:
     const PackFileOptions& options_;
     const Execution& execution_;
     const StreamSizes& sizes_;
-    std::unique_ptr<StripWriter>& writer_;  // that of the attempt before, until this one has its own
+    Kept& kept_;
     LayoutFinder finder_;
     std::optional<KnownLayout> correction_;
     Sources sources_;
     UnpackRule rule_;
+    std::optional<OwnRoughness> own_;
     std::size_t first_ = 0;  // the level that becomes the base level
     std::size_t end_ = 1;    // of the levels that are read
     PackFileReport report_;
@@ -76,9 +93,11 @@ Result<void> Attempt::prepare() {
 
     const std::size_t held = texture_.levels.size();
     first_ = static_cast<std::size_t>(options_.level.value_or(0));
-    if (first_ >= held) return no_such_level(input_, *options_.level, held);
+    if (first_ >= held) {
+        const std::string asked = std::to_string(*options_.level);
+        return Error{ErrorCode::bad_option, input_, "has no level " + asked + ", only " + std::to_string(held)};
+    }
     end_ = options_.level || options_.mip || !holds_levels(container_, options_.level_names) ? first_ + 1 : held;
-    report_.path = Path::streamed;
     report_.extent = rows(first_).extent();
     report_.pack = pack_options(options_, container_, report_.source);
     report_.levels = static_cast<int>(end_ - first_);
@@ -90,23 +109,34 @@ Result<void> Attempt::prepare() {
 
 // Where the base level decides how another one is to be read.
 Result<void> Attempt::look_at_base_level() {
-    RowSource& base = rows(0);
-    const int step = whole_blocks(base.rows_together());  // see RowSource::decode() and store()
-    Image image = make_image({base.extent().width, step}, base.names());
-    std::vector<std::byte> decoded(base.row_bytes() * static_cast<std::size_t>(step));
-    for (int j = 0; j < base.extent().height; j += step) {
-        const int count = std::min(step, base.extent().height - j);
-        if (Result<void> done = base.decode(j, count, decoded.data()); !done) return done;
-        base.store(decoded.data(), 0, count, image);
+    const Result<void> seen = rows(0).visit(input_, [this](const Image& image, int, int count) {
         for (int k = 0; k < count; ++k) {
             const float* channels[4] = {};
             for (std::size_t c = 0; c < texture_.planes.size(); ++c)
                 channels[c] = image.planes[texture_.planes[c]].row(k);
             finder_.add_row(channels);
         }
-    }
+        return Result<void>();
+    });
+    if (!seen) return seen;
     correction_ = finder_.correction();
     return {};
+}
+
+// Of the base level, if a map of roughness is written.
+Result<std::optional<OwnRoughness>> Attempt::own_roughness() const {
+    if (!options_.roughness) return std::optional<OwnRoughness>();
+    const RoughnessFile& file = *options_.roughness;
+    if (!file.map) return std::optional(OwnRoughness(file.own, report_.extent.width));
+    if (!kept_.own) {
+        Result<Plane<float>> map = file.map();
+        if (!map) return map.error();
+        kept_.own = std::move(*map);
+    }
+    const Execution silent{execution_.threads, {}};
+    Result<OwnRoughness> own = OwnRoughness::of(*kept_.own, report_.extent, *options_.mip, silent);
+    if (!own) return own.error();
+    return std::optional(std::move(*own));
 }
 
 Result<std::unique_ptr<StripWriter>> Attempt::open_writer() const {
@@ -141,7 +171,7 @@ Result<void> Attempt::stream_level(std::size_t k, StripWriter& writer, const Exe
     std::optional<RoughnessStage> roughness;
     if (options_.roughness) {
         const RoughnessFile& file = *options_.roughness;
-        roughness.emplace(extent, roughness_levels(), *options_.mip, file.model, file.own,
+        roughness.emplace(extent, roughness_levels(), *options_.mip, file.model, *own_,
                           stream.roughness_strips(roughness_levels()));
     }
     Result<void> done = stream.run(normals, mips, roughness ? &*roughness : nullptr);
@@ -152,14 +182,17 @@ Result<void> Attempt::stream_level(std::size_t k, StripWriter& writer, const Exe
 Result<std::optional<PackFileReport>> Attempt::run() {
     if (const Result<void> ready = prepare(); !ready) return after_all_rows(rows(0), input_, ready.error().of(input_));
     if (first_ > 0 && finder_.depends_on_texels()) {
-        if (const Result<void> seen = look_at_base_level(); !seen) return seen.error().of(input_);
+        if (const Result<void> seen = look_at_base_level(); !seen) return seen.error();
         if (correction_) return std::optional<PackFileReport>();
     }
+    Result<std::optional<OwnRoughness>> own = own_roughness();
+    if (!own) return own.error();
+    own_ = std::move(*own);
     Result<std::unique_ptr<StripWriter>> opened = open_writer();
     if (!opened) return opened.error();
     // Not earlier: who reads from a FIFO takes its last writer's end for that of the file.
-    writer_ = std::move(*opened);
-    StripWriter& writer = *writer_;
+    kept_.writer = std::move(*opened);
+    StripWriter& writer = *kept_.writer;
     double texels = 0.0;
     for (std::size_t k = first_; k < end_; ++k) texels += static_cast<double>(rows(k).extent().texels());
     double done = 0.0;
@@ -178,19 +211,7 @@ Result<std::optional<PackFileReport>> Attempt::run() {
 
 }  // namespace
 
-PackOptions pack_options(const PackFileOptions& options, Container container, const SourceInfo& source) {
-    if (options.pack) return options.pack(source);
-    PackOptions pack;
-    pack.encoding = default_encoding(container);
-    pack.y_axis = source.y_axis;
-    return pack;
-}
-
-Error no_such_level(const std::string& input, int level, std::size_t levels) {
-    return {ErrorCode::bad_option, input, "has no level " + std::to_string(level) + ", only " + std::to_string(levels)};
-}
-
-Result<PackFileReport> pack_stream(InputFile& file, TextureRows texture, const std::string& output, Container container,
+Result<PackFileReport> pack_stream(InputFile& file, const std::string& output, Container container,
                                    const PackFileOptions& options, const Execution& execution,
                                    const StreamSizes& sizes) {
     double told = 0.0;  // no attempt falls behind one before
@@ -199,19 +220,17 @@ Result<PackFileReport> pack_stream(InputFile& file, TextureRows texture, const s
         onward.progress = [&](double fraction) { return execution.progress(told = std::max(told, fraction)); };
     }
     KnownLayout known;
-    std::unique_ptr<StripWriter> writer;
+    Kept kept;
     while (true) {
-        Attempt attempt(texture, file.path(), output, container, options, onward, sizes, known, writer);
+        Result<TextureRows> texture = open_texture_rows(file, options.source.read);
+        if (!texture) return texture.error();
+        Attempt attempt(*texture, file.path(), output, container, options, onward, sizes, known, kept);
         Result<std::optional<PackFileReport>> done = attempt.run();
         if (!done) return done.error();
         if (*done) return **done;
         known = attempt.correction();
-        texture = {};
+        *texture = {};
         if (const Result<void> again = file.rewind(); !again) return again.error();
-        Result<std::optional<TextureRows>> opened = open_texture_rows(file, options.source.read);
-        if (!opened) return opened.error();
-        if (!*opened) return Error{ErrorCode::io, file.path(), "changed while it was read"};
-        texture = std::move(**opened);
     }
 }
 

@@ -2,27 +2,26 @@
 
 #include "stream/roughness_stage.h"
 
-#include <cstring>
 #include <utility>
 
 #include "kernels/roughness.h"
 
 namespace tex {
 
-RoughnessStage::RoughnessStage(Extent base, int levels, const MipOptions& options, RoughnessModel model, float own,
-                               Strips& strips)
-    : model_(model), strips_(strips), own_(Extent{base.width, 2}),
+RoughnessStage::RoughnessStage(Extent base, int levels, const MipOptions& options, RoughnessModel model,
+                               const OwnRoughness& own, Strips& strips)
+    : model_(model), strips_(strips), own_(own), alpha2_(base.width, 1),
       steps_(base, levels, 4, 0, options, [this](LevelStep& step, bool) { return make_row(step); }) {
-    const Plane<float> given(Extent{base.width, 1}, own);
-    clean_roughness(given.row(0), base.width, own_.row(0), own_.row(1));
 }
 
 void RoughnessStage::put(int j, const NormalRow& row, std::shared_ptr<const void> owner) {
     constexpr int kBase = 0;
-    const auto bytes = static_cast<std::size_t>(own_.extent().width) * sizeof(float);
-    std::memcpy(strips_.place(kBase, j).row.x, own_.row(0), bytes);
+    const std::shared_ptr<Plane<float>> alpha2 = alpha2_.make();
+    own_.row(j, strips_.place(kBase, j).row.x, alpha2->row(0));
     strips_.finish(kBase, j);
-    steps_.put(j, {{row.x, row.y, row.z, own_.row(1)}, std::move(owner)});
+    auto both = std::make_shared<const std::pair<std::shared_ptr<const void>, std::shared_ptr<const void>>>(
+        std::move(owner), alpha2);
+    steps_.put(j, {{row.x, row.y, row.z, alpha2->row(0)}, std::move(both)});
 }
 
 ShelfRow RoughnessStage::make_row(LevelStep& step) {

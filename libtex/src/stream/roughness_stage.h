@@ -8,6 +8,7 @@
 #include <tex/mip.h>
 #include <tex/roughness.h>
 
+#include "rows/own_roughness.h"
 #include "stream/level_step.h"
 #include "stream/row_shelf.h"
 #include "stream/strips.h"
@@ -17,8 +18,10 @@ namespace tex {
 // The same values as build_roughness_chain().
 class RoughnessStage {
 public:
-    // `own` is the material's roughness everywhere. Otherwise as LevelStage, from the top.
-    RoughnessStage(Extent base, int levels, const MipOptions& options, RoughnessModel model, float own, Strips& strips);
+    // `own` is the material's roughness at the base level, which must outlive this. Otherwise as LevelStage, from the
+    // top.
+    RoughnessStage(Extent base, int levels, const MipOptions& options, RoughnessModel model, const OwnRoughness& own,
+                   Strips& strips);
     RoughnessStage(const RoughnessStage&) = delete;
     RoughnessStage& operator=(const RoughnessStage&) = delete;
 
@@ -29,7 +32,8 @@ private:
 
     const RoughnessModel model_;
     Strips& strips_;
-    Plane<float> own_;  // a row of roughness, and one of alpha^2
+    const OwnRoughness& own_;
+    RowMaker alpha2_;
     LevelSteps steps_;  // of x, y, z and alpha^2
 };
 

@@ -95,6 +95,7 @@ struct RowStream::Work {
     LevelStage* levels = nullptr;
     RoughnessStage* roughness = nullptr;
     Strips::Place place;  // of the row that the stage makes
+    std::function<Result<void>(Image&, int)> change;
     std::function<void(const Strip&)> seen;
     Pool<Batch> batches;
     const int batch_rows;
@@ -140,10 +141,11 @@ void RowStream::Work::store(Batch& batch) {
     if (failure.happened()) return;
     if (rows.is_random()) decode(batch);
     if (batch.error) return;
-    failure.watch([&]() -> Result<void> {
+    const Result<void> done = guarded([&]() -> Result<void> {
         rows.store(batch.rows.data(), 0, batch.count, batch.image);
-        return {};
+        return change ? change(batch.image, batch.count) : Result<void>();
     });
+    if (!done) batch.error = done.error();
 }
 
 void RowStream::Work::make(Batch& batch, NormalStage& stage) {
@@ -194,6 +196,8 @@ Strips& RowStream::roughness_strips(int levels) {
     return work_->beside.emplace(work_->rows.extent(), levels, work_->strip_texels, 0, Content::roughness);
 }
 
+void RowStream::convert(std::function<Result<void>(Image&, int)> change) { work_->change = std::move(change); }
+
 void RowStream::watch(std::function<void(const Strip&)> seen) { work_->seen = std::move(seen); }
 
 NormalSink RowStream::sink() {
@@ -234,14 +238,8 @@ Result<void> RowStream::run(NormalStage& stage, LevelStage& levels, RoughnessSta
 }
 
 Error after_all_rows(RowSource& rows, const std::string& input, const Error& error) {
-    const int together = rows.rows_together();
-    std::vector<std::byte> decoded(rows.row_bytes() * static_cast<std::size_t>(together));
-    Result<void> done;
-    for (int j = 0; done && j < rows.extent().height; j += together) {
-        done = rows.decode(j, std::min(together, rows.extent().height - j), decoded.data());
-    }
-    if (done) done = rows.finish();
-    return done ? error : done.error().of(input);
+    const Result<void> read = rows.visit(input, [](const Image&, int, int) { return Result<void>(); });
+    return read ? error : read.error();
 }
 
 }  // namespace tex

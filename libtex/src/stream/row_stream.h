@@ -41,6 +41,9 @@ public:
     [[nodiscard]] Strips& strips();
     // Where the roughness of so many levels goes, where there is any. To be called once.
     [[nodiscard]] Strips& roughness_strips(int levels);
+    // Changes rows 0 to count - 1 of each image that was read, before the stage gets them; several threads may call at
+    // once.
+    void convert(std::function<Result<void>(Image& rows, int count)> change);
     // Is shown each strip when it has been written; several threads may call at once. May throw std::bad_alloc.
     void watch(std::function<void(const Strip& strip)> seen);
 
@@ -53,8 +56,8 @@ private:
     std::unique_ptr<Work> work_;
 };
 
-// `error`, an option that does not fit the picture; but a picture that is damaged as well is damaged first, as on the
-// path of whole images. Precondition: no row has been decoded yet.
+// `error`, an option that does not fit the picture; but a picture that is damaged as well is damaged first.
+// Precondition: no row has been decoded yet.
 Error after_all_rows(RowSource& rows, const std::string& input, const Error& error);
 
 }  // namespace tex

@@ -11,6 +11,8 @@
 #include <tex/mip_chain.h>
 
 #include "formats/codecs.h"
+#include "formats/file_layout.h"
+#include "formats/reader/reader.h"
 #include "rows/pack_rows.h"
 #include "rows/roughness_rows.h"
 #include "threads/guard.h"
@@ -129,6 +131,38 @@ Result<void> PictureWriter::commit() {
     return ended ? file_->commit() : Result<void>(ended.error().of(path_));
 }
 
+// Pictures that the reader process encodes, as a whole.
+class EncodedWriter final : public StripWriter {
+public:
+    EncodedWriter(std::string path, std::unique_ptr<OutputFile> file, StripPacking packing, ReaderPicture picture)
+        : path_(std::move(path)), file_(std::move(file)), packing_(std::move(packing)), picture_(std::move(picture)) {}
+
+    [[nodiscard]] bool is_in_order(const Strip&) const override { return false; }
+    Result<void> write(Strip& strip) override {
+        const Result<void> done = guarded([&] {
+            strip.bytes.resize(level_bytes(packing_.head.format, {strip.map.extent().width, strip.height}));
+            packing_.pack(strip, strip.bytes.data());
+            return picture_.put(strip.first, strip.bytes);
+        });
+        return done ? done : Result<void>(done.error().of(path_));
+    }
+    Result<void> commit() override {
+        const Result<std::vector<std::byte>> bytes = guarded([&] { return picture_.encode(); });
+        if (!bytes) return bytes.error().of(path_);
+        size_ = bytes->size();
+        const Result<void> written = file_->write_at(0, *bytes);
+        return written ? file_->commit() : written;
+    }
+    [[nodiscard]] std::size_t file_bytes() const override { return size_; }
+
+private:
+    const std::string path_;
+    const std::unique_ptr<OutputFile> file_;
+    const StripPacking packing_;
+    const ReaderPicture picture_;
+    std::size_t size_ = 0;
+};
+
 // A file for each level.
 class LevelWriter final : public StripWriter {
 public:
@@ -193,10 +227,16 @@ Opening open_file(const std::string& path, Container container, const StripPacki
     const std::size_t bytes = codec.layout != nullptr ? layout.size : level_bytes(head.format, head.extent);
     Result<std::unique_ptr<OutputFile>> file = OutputFile::open(path, bytes, when, {options.sync, options.no_clobber});
     if (!file) return file.error();
-    if (codec.layout == nullptr) {
+    if (codec.open_target != nullptr) {
         auto picture = std::make_unique<PictureWriter>(path, std::move(*file), packing, first);
         if (const Result<void> begun = picture->begin(codec, head); !begun) return begun.error();
         return std::unique_ptr<StripWriter>(std::move(picture));
+    }
+    if (codec.layout == nullptr) {
+        Result<ReaderPicture> picture = ReaderPicture::open(container, head, options.reader);
+        if (!picture) return picture.error().of(path);
+        return std::unique_ptr<StripWriter>(
+            std::make_unique<EncodedWriter>(path, std::move(*file), packing, std::move(*picture)));
     }
     auto texture = std::make_unique<TextureWriter>(std::move(*file), std::move(layout), packing, first);
     if (const Result<void> begun = texture->begin(); !begun) return begun.error();
@@ -208,10 +248,6 @@ Opening open_file(const std::string& path, Container container, const StripPacki
 bool takes_any_order(Container container) { return codec_of(container).layout != nullptr; }
 
 bool holds_levels(Container container, const LevelNames& names) { return names || can_hold_levels(container); }
-
-bool takes_strips(Container container) {
-    return takes_any_order(container) || codec_of(container).open_target != nullptr;
-}
 
 StripPacking packing_of(const PackOptions& options, Extent extent, int levels) {
     const EncodingInfo encoding = encoding_info(options.encoding);

@@ -39,8 +39,8 @@ public:
     StripWriter& operator=(const StripWriter&) = delete;
     virtual ~StripWriter() = default;
 
-    // Opens the output and writes what stands before the texels. Precondition: takes_strips(). Errors: io,
-    // out_of_memory; unsupported (the container cannot hold the encoding, or so many levels).
+    // Opens the output and writes what stands before the texels. Errors: io, out_of_memory;
+    // unsupported (the container cannot hold the encoding, or so many levels).
     static Result<std::unique_ptr<StripWriter>> open(const OutputNames& names, Container container,
                                                      StripPacking packing, const WriteOptions& options,
                                                      Opened when = Opened::at_once);
@@ -68,8 +68,5 @@ public:
 
 // Whether all levels are written, or the base level alone.
 [[nodiscard]] bool holds_levels(Container container, const LevelNames& names);
-
-// Whether files of this type are written strip by strip: DDS, KTX2 and, in order, PNG and EXR.
-[[nodiscard]] bool takes_strips(Container container);
 
 }  // namespace tex

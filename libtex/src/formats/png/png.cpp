@@ -168,11 +168,8 @@ public:
     // Reads the header; the rows come next.
     Result<void> open(const ReadOptions& options);
 
-    [[nodiscard]] bool is_sequential() const override { return reader_.passes == 1; }
-    Result<void> decode(int, int count, std::byte* rows) override {
-        if (!decode_rows(reader_, count, reinterpret_cast<png_byte*>(rows), row_bytes())) return reader_.error();
-        return {};
-    }
+    [[nodiscard]] bool can_peek() const override { return is_interlaced(); }
+    Result<void> decode(int first, int count, std::byte* rows) override;
     Result<void> finish() override {
         if (!decode_end(reader_)) return reader_.error();
         return {};
@@ -181,10 +178,16 @@ public:
         const auto* bytes = reinterpret_cast<const png_byte*>(rows);
         reader_.sample_bits == 16 ? store_rows16(bytes, first, end, image) : store_rows8(bytes, first, end, image);
     }
-    Result<Image> read_all() override;
 
 private:
+    [[nodiscard]] bool is_interlaced() const { return reader_.passes > 1; }
+    Result<void> decode_next(int count, std::byte* rows) {
+        if (!decode_rows(reader_, count, reinterpret_cast<png_byte*>(rows), row_bytes())) return reader_.error();
+        return {};
+    }
+
     PngReader reader_;
+    std::vector<std::byte> all_;  // rows of an interlaced picture
 };
 
 Result<void> PngRows::open(const ReadOptions& options) {
@@ -204,21 +207,19 @@ Result<void> PngRows::open(const ReadOptions& options) {
     return {};
 }
 
-Result<Image> PngRows::read_all() {
-    const int height = extent().height;
-    Image image = make_image(extent(), names());
-    image.bits = bits();
-    // All rows where they are interlaced, else one at a time.
-    const int held = is_sequential() ? 1 : height;
-    std::vector<std::byte> rows(row_bytes() * static_cast<std::size_t>(held));
-    for (int j = 0; j < height; j += held) {
+// Every pass of an interlaced picture adds to all of its rows.
+Result<void> PngRows::decode(int first, int count, std::byte* rows) {
+    if (!is_interlaced()) return decode_next(count, rows);
+    if (all_.empty()) {
+        std::vector<std::byte> all(row_bytes() * static_cast<std::size_t>(extent().height));
         for (int pass = 0; pass < reader_.passes; ++pass) {
-            if (Result<void> decoded = decode(j, held, rows.data()); !decoded) return decoded.error();
+            if (Result<void> decoded = decode_next(extent().height, all.data()); !decoded) return decoded;
         }
-        store(rows.data(), j, j + held, image);
+        all_ = std::move(all);
     }
-    if (Result<void> ended = finish(); !ended) return ended.error();
-    return image;
+    std::memcpy(rows, all_.data() + row_bytes() * static_cast<std::size_t>(first),
+                row_bytes() * static_cast<std::size_t>(count));
+    return {};
 }
 
 }  // namespace

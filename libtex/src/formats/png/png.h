@@ -27,9 +27,9 @@ inline constexpr std::string_view kPngMagic = "\x89PNG";
 // Of the libpng that runs.
 const char* png_version();
 
-// Opens a PNG, to be read as read_image() promises, row by row if it is not interlaced: grey as Y, colour and palette
-// as R, G, B, alpha or tRNS as A; values are code / (2^bits - 1); gAMA, sRGB, iCCP and sBIT change nothing. Damaged
-// ancillary chunks count as damage too. `file` must outlive the rows.
+// Opens a PNG, to be read row by row as read_image() promises: grey as Y, colour and palette as R, G, B, alpha or tRNS
+// as A; values are code / (2^bits - 1); gAMA, sRGB, iCCP and sBIT change nothing. Damaged ancillary chunks count as
+// damage too. The rows of an interlaced one are held in memory, as they are decoded. `file` must outlive the rows.
 //
 // Errors: bad_data (with libpng's reason), unsupported (too large), io, out_of_memory.
 Result<std::unique_ptr<RowSource>> open_png(InputFile& file, const ReadOptions& options);

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include <half.h>
 
@@ -56,39 +57,58 @@ Result<ReaderInfo> reader_info(const ReadOptions& options) {
     });
 }
 
+Result<ReaderPicture> ReaderPicture::open(Container container, const TextureHead& head, const ReadOptions& options) {
+    const FormatInfo info = format_info(head.format);
+    const Codec& codec = codec_of(container);
+    if (codec.reader_name == nullptr || !codec.holds(info)) {
+        return Error{ErrorCode::unsupported,
+                     {},
+                     std::string(name_of(kContainerNames, container)) + " does not hold " +
+                         std::string(name_of(kFormatNames, head.format))};
+    }
+    ReaderHeader header;
+    header.width = head.extent.width;
+    header.height = head.extent.height;
+    header.channels = info.channels;
+    header.type = texel_type(info);
+    Result<Descriptor> rows = memory_file({});
+    if (!rows) return rows.error();
+    if (!write_exactly(rows->get(), 0, std::as_bytes(std::span(&header, 1))))
+        return system_error({}, errno, "a file in memory");
+    ReaderPicture picture;
+    picture.options_ = options;
+    picture.format_ = codec.reader_name;
+    picture.rows_ = std::move(*rows);
+    picture.row_bytes_ = row_bytes(header);
+    return picture;
+}
+
+Result<void> ReaderPicture::put(int first, std::span<const std::byte> rows) const {
+    const std::uint64_t offset = kReaderDataOffset + static_cast<std::uint64_t>(first) * row_bytes_;
+    if (!write_exactly(rows_.get(), offset, rows)) return system_error({}, errno, "a file in memory");
+    return {};
+}
+
+Result<std::vector<std::byte>> ReaderPicture::encode() const {
+    const Result<Descriptor> result = memory_file({});
+    if (!result) return result.error();
+    const Result<ReaderHeader> reply = run_reader({{}, "encode", format_, rows_.get(), result->get()}, options_);
+    if (!reply) return reply.error();
+    const auto held = static_cast<std::uint64_t>(bytes_in(result->get()));
+    if (held < kReaderDataOffset || reply->bytes > held - kReaderDataOffset) return nonsense({});
+    std::vector<std::byte> bytes(reply->bytes);
+    if (!read_exactly(result->get(), kReaderDataOffset, bytes.data(), bytes.size())) return nonsense({});
+    return bytes;
+}
+
 Result<std::vector<std::byte>> encode_with_reader(const Texture& texture, Container container,
                                                   const ReadOptions& options) {
     return guarded([&]() -> Result<std::vector<std::byte>> {
-        const FormatInfo info = format_info(texture.format);
-        const Codec& codec = codec_of(container);
-        if (codec.reader_name == nullptr || texture.levels.empty() || !codec.holds(info)) {
-            return Error{ErrorCode::unsupported,
-                         {},
-                         std::string(name_of(kContainerNames, container)) + " does not hold " +
-                             std::string(name_of(kFormatNames, texture.format))};
-        }
-        const Level& level = texture.levels.front();
-        ReaderHeader header;
-        header.width = level.extent.width;
-        header.height = level.extent.height;
-        header.channels = info.channels;
-        header.type = texel_type(info);
-        const Result<Descriptor> input = memory_file({});
-        const Result<Descriptor> result = memory_file({});
-        if (!input) return input.error();
-        if (!result) return result.error();
-        if (!write_exactly(input.value().get(), 0, std::as_bytes(std::span(&header, 1))) ||
-            !write_exactly(input.value().get(), kReaderDataOffset, level.bytes)) {
-            return system_error({}, errno, "a file in memory");
-        }
-        const Result<ReaderHeader> reply =
-            run_reader({{}, "encode", codec.reader_name, input.value().get(), result.value().get()}, options);
-        if (!reply) return reply.error();
-        const auto held = static_cast<std::uint64_t>(bytes_in(result.value().get()));
-        if (held < kReaderDataOffset || reply.value().bytes > held - kReaderDataOffset) return nonsense({});
-        std::vector<std::byte> bytes(reply.value().bytes);
-        if (!read_exactly(result.value().get(), kReaderDataOffset, bytes.data(), bytes.size())) return nonsense({});
-        return bytes;
+        if (texture.levels.empty()) return Error{ErrorCode::unsupported, {}, "a texture without levels"};
+        const Result<ReaderPicture> picture = ReaderPicture::open(container, head_of(texture), options);
+        if (!picture) return picture.error();
+        if (const Result<void> put = picture->put(0, texture.levels.front().bytes); !put) return put.error();
+        return picture->encode();
     });
 }
 

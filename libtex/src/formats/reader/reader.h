@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,7 +14,30 @@
 #include <tex/result.h>
 #include <tex/texture.h>
 
+#include "files/input_file.h"
+#include "formats/file_layout.h"
+
 namespace tex {
+
+// A picture that the reader process encodes once all of its rows are there; until then they wait in a file in memory.
+class ReaderPicture {
+public:
+    // Errors: unsupported (the container does not hold the format), io, out_of_memory.
+    static Result<ReaderPicture> open(Container container, const TextureHead& head, const ReadOptions& options);
+
+    // Rows of head.format, the row `first` and those below it. They may come in any order, from several threads.
+    // Errors: io, out_of_memory.
+    [[nodiscard]] Result<void> put(int first, std::span<const std::byte> rows) const;
+
+    // After the last row. Errors: as encode_with_reader().
+    [[nodiscard]] Result<std::vector<std::byte>> encode() const;
+
+private:
+    ReadOptions options_;
+    std::string format_;  // as OpenImageIO names it
+    Descriptor rows_;
+    std::uint64_t row_bytes_ = 0;
+};
 
 // Encodes the base level of a texture as tiff, tga, bmp or jpeg: 8- and 16-bit unorm, half and float, as far as the
 // container goes (see can_hold()). No date, host or program name in the bytes. JPEG: quality 95, no chroma subsampling.

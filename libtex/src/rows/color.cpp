@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "rows/color.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <exception>
+#include <string_view>
+#include <utility>
+
+#include <OpenColorIO/OpenColorIO.h>
+
+#include "files/input_file.h"
+#include "rows/math.h"
+
+namespace tex {
+namespace {
+
+namespace OCIO = OCIO_NAMESPACE;
+
+// The planes that hold colour: R, G and B, or the one that is not alpha. Empty if there is neither.
+std::vector<std::size_t> colour_planes(const std::vector<std::string>& names) {
+    std::vector<std::size_t> planes;
+    for (const char* name : {"R", "G", "B"}) {
+        const auto at = std::find(names.begin(), names.end(), name);
+        if (at != names.end()) planes.push_back(static_cast<std::size_t>(at - names.begin()));
+    }
+    if (planes.size() == 3) return planes;
+    planes.clear();
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        if (names[k] != "A") planes.push_back(k);
+    }
+    if (planes.size() > 1) planes.clear();
+    return planes;
+}
+
+// -- without a configuration -----------------------------------------------------------------------------------
+
+// IEC 61966-2-1:1999, continued beyond [0, 1] by its own formula and below 0 by symmetry.
+float srgb_to_linear(float encoded) {
+    const double c = std::abs(static_cast<double>(encoded));
+    const double linear = c <= 0.04045 ? c / 12.92 : math::pow((c + 0.055) / 1.055, 2.4);
+    return static_cast<float>(encoded < 0.0f ? -linear : linear);
+}
+
+// Pictures of few bits hold few values: a table of all codes is quicker than the power of each texel.
+std::vector<float> srgb_table(int bits) {
+    const int top = (1 << bits) - 1;
+    std::vector<float> table;
+    table.reserve(static_cast<std::size_t>(top) + 1);
+    for (int code = 0; code <= top; ++code) {
+        table.push_back(srgb_to_linear(static_cast<float>(code) / static_cast<float>(top)));
+    }
+    return table;
+}
+
+void look_up(const std::vector<float>& table, float* row, int width) {
+    const auto top = static_cast<float>(table.size() - 1);
+    for (int i = 0; i < width; ++i) {
+        row[i] = table[static_cast<std::size_t>(std::clamp(row[i], 0.0f, 1.0f) * top + 0.5f)];
+    }
+}
+
+bool is_word(std::string_view text, std::string_view lower) {
+    return std::equal(text.begin(), text.end(), lower.begin(), lower.end(), [](char a, char b) {
+        return (a >= 'A' && a <= 'Z' ? static_cast<char>(a - 'A' + 'a') : a) == b;
+    });
+}
+
+Result<ConvertRow> built_in(SampleKind sample, int bits, const std::string& space) {
+    if (is_word(space, "linear")) return ConvertRow([](const ColorRows&, int) {});
+    if (!is_word(space, "srgb")) {
+        return Error{ErrorCode::bad_option,
+                     {},
+                     "no colour space \"" + space + "\": without a configuration there are sRGB and linear"};
+    }
+    constexpr int kMostBitsOfTable = 16;
+    if (sample == SampleKind::unorm && bits <= kMostBitsOfTable) {
+        return ConvertRow([table = srgb_table(bits)](const ColorRows& rows, int width) {
+            for (int k = 0; k < rows.given; ++k) look_up(table, rows.row[k], width);
+        });
+    }
+    return ConvertRow([](const ColorRows& rows, int width) {
+        for (int k = 0; k < rows.given; ++k)
+            std::transform(rows.row[k], rows.row[k] + width, rows.row[k], srgb_to_linear);
+    });
+}
+
+// -- with a configuration --------------------------------------------------------------------------------------
+
+// One line of what OpenColorIO threw.
+std::string reason_of(const std::exception& thrown) {
+    std::string reason = thrown.what();
+    if (const std::size_t line = reason.find('\n'); line != std::string::npos) reason.erase(line);
+    while (!reason.empty() && (reason.back() == '.' || reason.back() == ' ' || reason.back() == ':')) reason.pop_back();
+    return reason;
+}
+
+std::string some_spaces(const OCIO::ConstConfigRcPtr& config) {
+    constexpr int kMost = 8;
+    std::string names;
+    const int count = config->getNumColorSpaces();
+    for (int k = 0; k < std::min(count, kMost); ++k) {
+        if (k > 0) names += ", ";
+        names += config->getColorSpaceNameByIndex(k);
+    }
+    return count > kMost ? names + " ..." : names;
+}
+
+Error conversion_fails(const ColorOptions& options, const std::exception& thrown) {
+    return {ErrorCode::bad_data, options.config, "the conversion fails: " + reason_of(thrown)};
+}
+
+Result<OCIO::ConstConfigRcPtr> load(const std::string& path) {
+    if (!path.starts_with("ocio://")) {  // OpenColorIO does not say why a file cannot be read
+        const Result<InputFile> file = InputFile::open(path);
+        if (!file) return file.error();
+    }
+    try {
+        return OCIO::Config::CreateFromFile(path.c_str());
+    } catch (const OCIO::Exception& thrown) {
+        return Error{ErrorCode::bad_data, path, "not a sound OpenColorIO configuration: " + reason_of(thrown)};
+    }
+}
+
+Result<ConvertRow> by_config(const ColorOptions& options) {
+    OCIO::SetLoggingLevel(OCIO::LOGGING_LEVEL_NONE);  // libtex is silent
+    const Result<OCIO::ConstConfigRcPtr> loaded = load(options.config);
+    if (!loaded) return loaded.error();
+    const OCIO::ConstConfigRcPtr& config = loaded.value();
+    if (!config->getColorSpace(options.space.c_str())) {
+        return Error{ErrorCode::bad_option, options.config,
+                     "no colour space \"" + options.space + "\"; there are " + some_spaces(config)};
+    }
+    if (!config->getColorSpace(OCIO::ROLE_SCENE_LINEAR)) {
+        return Error{ErrorCode::bad_option, options.config, "the configuration has no role scene_linear"};
+    }
+    try {
+        const auto processor = config->getProcessor(options.space.c_str(), OCIO::ROLE_SCENE_LINEAR);
+        return ConvertRow([on_cpu = processor->getDefaultCPUProcessor()](const ColorRows& rows, int width) {
+            OCIO::PlanarImageDesc row(rows.row[0], rows.row[1], rows.row[2], nullptr, width, 1);
+            on_cpu->apply(row);
+        });
+    } catch (const OCIO::Exception& thrown) {
+        return conversion_fails(options, thrown);
+    }
+}
+
+}  // namespace
+
+const char* opencolorio_version() { return OCIO::GetVersion(); }
+
+Result<LinearRows> LinearRows::make(const std::vector<std::string>& names, SampleKind sample, int bits,
+                                    const ColorOptions& options) {
+    LinearRows rows;
+    rows.options_ = options;
+    rows.planes_ = colour_planes(names);
+    if (rows.planes_.empty()) {
+        return Error{ErrorCode::bad_option, {}, "a colour space needs the channels R, G and B, or a single one"};
+    }
+    Result<ConvertRow> convert = options.config.empty() ? built_in(sample, bits, options.space) : by_config(options);
+    if (!convert) return convert.error();
+    rows.convert_ = std::move(*convert);
+    return rows;
+}
+
+Result<void> LinearRows::convert(Image& image, int count) const {
+    const int width = image.extent().width;
+    ColorRows rows{{}, static_cast<int>(planes_.size())};
+    Plane<float> copies;  // of a grey row
+    if (rows.given == 1) copies = Plane<float>(Extent{width, 2});
+    try {
+        for (int j = 0; j < count; ++j) {
+            for (int k = 0; k < rows.given; ++k)
+                rows.row[k] = image.planes[planes_[static_cast<std::size_t>(k)]].row(j);
+            for (int k = rows.given; k < 3; ++k) {
+                rows.row[k] = copies.row(k - 1);
+                std::copy_n(rows.row[0], width, rows.row[k]);
+            }
+            convert_(rows, width);
+        }
+        return {};
+    } catch (const OCIO::Exception& thrown) {
+        return conversion_fails(options_, thrown);
+    }
+}
+
+}  // namespace tex

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// color.h: rows of a picture from a colour space to linear values.
+
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <tex/color.h>
+#include <tex/image.h>
+#include <tex/result.h>
+
+namespace tex {
+
+// A row of R, of G and of B. Of a grey picture one is given; the others are copies, whose values nobody reads.
+struct ColorRows {
+    float* row[3] = {};
+    int given = 3;
+};
+using ConvertRow = std::function<void(const ColorRows& rows, int width)>;
+
+class LinearRows {
+public:
+    // For pictures with these channels and samples. May throw std::bad_alloc. Errors: those of to_linear().
+    static Result<LinearRows> make(const std::vector<std::string>& names, SampleKind sample, int bits,
+                                   const ColorOptions& options);
+
+    // Converts rows 0 to count - 1 of an image, as to_linear() does. Several threads may call at once. May throw
+    // std::bad_alloc. Errors: bad_data.
+    [[nodiscard]] Result<void> convert(Image& image, int count) const;
+
+private:
+    ColorOptions options_;
+    std::vector<std::size_t> planes_;  // that hold colour: three, or one
+    ConvertRow convert_;
+};
+
+}  // namespace tex

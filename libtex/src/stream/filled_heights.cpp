@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "stream/filled_heights.h"
+
+#include <cstring>
+#include <utility>
+
+#include "rows/nearest.h"
+
+namespace tex {
+namespace {
+
+// Rows of a plane in memory.
+class PlaneRows final : public RowSource {
+public:
+    explicit PlaneRows(Plane<float> plane) : plane_(std::move(plane)) {
+        const Extent extent = plane_.extent();
+        describe(extent, {"Y"}, static_cast<std::size_t>(extent.width) * sizeof(float));
+        describe_samples(SampleKind::floating, 32);
+    }
+
+    [[nodiscard]] bool is_random() const override { return true; }
+    Result<void> decode(int first, int count, std::byte* rows) override {
+        for (int j = first; j < first + count; ++j, rows += row_bytes()) std::memcpy(rows, plane_.row(j), row_bytes());
+        return {};
+    }
+    void store(const std::byte* rows, int first, int end, Image& image) const override {
+        for (int j = first; j < end; ++j, rows += row_bytes())
+            std::memcpy(image.planes.front().row(j), rows, row_bytes());
+    }
+
+private:
+    const Plane<float> plane_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<RowSource>> fill_heights(RowSource& rows, const std::string& input, const HeightSource& source,
+                                                const HeightOptions& options, const LinearRows* linear,
+                                                const Execution& execution, HeightCounts& counts) {
+    constexpr double kRead = 0.6;  // of the progress
+    const Extent extent = rows.extent();
+    Plane<float> heights(extent);
+    const auto take = [&](Image& image, int first, int count) -> Result<void> {
+        if (linear != nullptr) {
+            if (Result<void> converted = linear->convert(image, count); !converted) return converted;
+        }
+        for (int k = 0; k < count; ++k) {
+            const HeightCounts met = take_heights(image, source, options, k, heights.row(first + k));
+            counts.luma += met.luma;
+            counts.invalid += met.invalid;
+        }
+        const double done = kRead * (first + count) / extent.height;
+        if (execution.progress && !execution.progress(done)) return Error{ErrorCode::cancelled, {}, "cancelled"};
+        return {};
+    };
+    if (const Result<void> read = rows.visit(input, take); !read) return read.error();
+    if (counts.invalid == extent.texels()) return invalid_heights(counts.invalid, 0, 0, extent, options);
+    if (counts.invalid > 0) {
+        const auto filled = fill_from_nearest(heights.view(), options.wrap_x, options.wrap_y, execution, {kRead, 1.0});
+        if (!filled) return filled.error();
+    }
+    return std::unique_ptr<RowSource>(std::make_unique<PlaneRows>(std::move(heights)));
+}
+
+}  // namespace tex

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// filled_heights.h: heights whose invalid texels take the value of the nearest valid one, which may be anywhere: this
+// stage reaches over all rows, so it reads the picture to its end and is a source of its own.
+
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <tex/execution.h>
+#include <tex/result.h>
+
+#include "formats/row_source.h"
+#include "rows/color.h"
+#include "rows/height_source.h"
+
+namespace tex {
+
+// The heights of the picture `rows`, one channel, taken as `source` and `options` say and filled. `linear` may be null;
+// `input` stands in messages; what was met is added to `counts`. No row has been decoded yet. Errors: those of reading
+// and of LinearRows; bad_data (no texel is valid); cancelled. May throw std::bad_alloc.
+Result<std::unique_ptr<RowSource>> fill_heights(RowSource& rows, const std::string& input, const HeightSource& source,
+                                                const HeightOptions& options, const LinearRows* linear,
+                                                const Execution& execution, HeightCounts& counts);
+
+}  // namespace tex
