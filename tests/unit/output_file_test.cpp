@@ -175,14 +175,18 @@ TEST_F(OutputFiles, RoughnessHasTheBytesOfTheVerbs) {
         const Bytes normals = bytes_of(path("out"));
         // A map, of the same extent or of another.
         const Extent its = round % 2 == 0 ? extent : Extent{kSides[random() % 11], kSides[random() % 11]};
-        Plane<float> map(its);
-        for (int j = 0; j < its.height; ++j) {
-            for (int i = 0; i < its.width; ++i) map.at(i, j) = static_cast<float>(random() % 300) / 256.0f;
-        }
-        pack_.roughness->map = [&]() -> Result<Plane<float>> { return map; };
+        const auto make_map = [its, seed = random()] {
+            std::mt19937 values(seed);
+            Plane<float> map(its);
+            for (int j = 0; j < its.height; ++j) {
+                for (int i = 0; i < its.width; ++i) map.at(i, j) = static_cast<float>(values() % 300) / 256.0f;
+            }
+            return map;
+        };
+        pack_.roughness->map = [&]() -> Result<Plane<float>> { return make_map(); };
         const auto mapped = pack_file(input, path("out"), Container::dds, pack_, {1 + round % 3, {}});
         ASSERT_TRUE(mapped) << mapped.error().message();
-        const RoughnessChain rough = build_roughness_chain(base, map, file.model, mip).value();
+        const RoughnessChain rough = build_roughness_chain(base, make_map(), file.model, mip).value();
         const Texture packed = pack_roughness(rough, file.format, file.effort).value();
         EXPECT_TRUE(bytes_of(path("rough")) == encode_file(packed, file.container, pack_.write).value());
         EXPECT_EQ(mapped->roughness_bytes, bytes_of(path("rough")).size());

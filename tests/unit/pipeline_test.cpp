@@ -75,7 +75,8 @@ protected:
     // The picture, in linear values.
     [[nodiscard]] Image linear(const std::string& input) const {
         Image image = read_image(input).value();
-        if (!options_.color.space.empty()) EXPECT_TRUE(to_linear(image, options_.color));
+        if (options_.color.space.empty()) return image;
+        EXPECT_TRUE(to_linear(image, options_.color));
         return image;
     }
 
@@ -213,8 +214,8 @@ TEST_F(Pipeline, StepsThatReachOverAllRowsGiveTheBytesOfTheVerbs) {
 }
 
 TEST_F(Pipeline, HeightsInTexturesGiveTheBytesOfTheVerbs) {
-    const NormalMap map = bake(height_field(read_image(write("in.png", make_png({45, 31}))).value()).value()).value();
-    const MipChain chain = build_mip_chain(map).value();
+    const HeightField field = height_field(read_image(write("in.png", make_png({45, 31}))).value(), {}).value();
+    const MipChain chain = build_mip_chain(bake(field).value()).value();
     options_.heights.channel = HeightChannel::g;
     options_.heights.wrap_y = Wrap::repeat;
     for (const Encoding encoding : {Encoding::rgb8, Encoding::bc5, Encoding::float_}) {
@@ -378,7 +379,7 @@ TEST_F(Pipeline, HeightsThatCannotBeUsedAreTheSameErrors) {
     options_.heights = {};
     options_.pack.encoding = PackOptions().encoding;
     options_.color.space = "nonsense";
-    Image copy = image;
+    Image copy = read_image(input).value();
     EXPECT_EQ(bake_file(input, path("out"), Container::dds, options_).error().message(),
               to_linear(copy, options_.color).error().message());
     options_.color.space.clear();
