@@ -301,7 +301,7 @@ TEST_F(PackStream, PicturesOfTheReaderHaveTheBytesOfTheVerbs) {
     }
     pack_.encoding = Encoding::bc5;
     EXPECT_EQ(pack_file(plain, path("none.tga"), Container::tga, options_).error().message(),
-              path("none.tga") + ": tga does not hold bc5_unorm");
+              path("none.tga") + ": tga does not hold bc5-unorm");
     EXPECT_EQ(files(), 2u);
 }
 
