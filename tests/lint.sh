@@ -24,10 +24,6 @@ verb      libtex/src/rows/unpack_rows.h libtex/src/rows/roughness_rows.h libtex/
 verb      libtex/src/rows/sampler.h libtex/src/rows/bake_rows.h
 verb      libtex/src/kernels/blend.h libtex/src/kernels/roughness.h libtex/src/kernels/encode.h libtex/src/kernels/fit.h
 two-ways  libtex/src/pipeline.cpp libtex/src/stream/bake_stream.cpp libtex/src/stream/bake_stream.h
-container libtex/src/container.cpp libtex/src/image_io.cpp libtex/src/formats/texture_rows.cpp
-container libtex/src/stream/bake_stream.cpp libtex/src/stream/strip_writer.cpp libtex/src/stream/strip_writer.h
-container tools/options/groups.cpp tools/options/roughness.cpp tools/options/source.cpp tools/unpack-normals.cpp
-type      tex::ChannelRows
 '
 declare -A allowed=()  # RULE NAME
 while read -r rule names; do
@@ -184,6 +180,7 @@ ban_but container '\bis_texture\b|case (tex::)?Container::' 'only the table of f
     "${outside_formats_and_tools[@]}"
 ban '#include <OpenColorIO' 'only color knows OpenColorIO' "${outside_color[@]}"
 ban '#include <(png\.h|OpenEXR/|Imf)' 'only formats/ knows libpng and OpenEXR' "${outside_formats[@]}"
+ban '\+ 3\) / 4' 'blocks/extent.h counts blocks' "${library[@]}"
 ban '#include <OpenImageIO' 'only the reader knows OpenImageIO' "${outside_reader[@]}"
 ban '#include ("|<(hwy|png|OpenEXR|Imath|Imf|OpenColorIO|OpenImageIO|tbb|fmt))' \
     'a public header shows a private name' "${public[@]}"

@@ -59,7 +59,12 @@ Encoding default_encoding(Container container) { return codec_of(container).defa
 Result<std::vector<std::byte>> encode_file(const Texture& texture, Container container, const WriteOptions& options) {
     return guarded([&]() -> Result<std::vector<std::byte>> {
         const Codec& codec = codec_of(container);
-        if (codec.layout != nullptr) return assemble(texture, codec.layout(head_of(texture), options));
+        if (codec.layout != nullptr) {
+            if (const Result<void> held = check_holds(codec, texture.format); !held) return held.error();
+            TextureHead head = head_of(texture);
+            if (!codec.has_levels) head.levels = 1;
+            return assemble(texture, codec.layout(head, options));
+        }
         if (codec.open_target != nullptr) return encode_rows(codec.open_target, texture, codec.has_levels);
         return encode_with_reader(texture, container, options.reader);
     });

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 #include <iterator>
+#include <string>
 
 #include "formats/dds/dds.h"
 #include "formats/exr/exr.h"
@@ -103,6 +104,14 @@ constexpr Codec kCodecs[] = {
 const Codec& codec_of(Container container) {
     return *std::find_if(std::begin(kCodecs), std::end(kCodecs),
                          [&](const Codec& codec) { return codec.container == container; });
+}
+
+Result<void> check_holds(const Codec& codec, Format format) {
+    if (codec.holds(format_info(format))) return {};
+    return Error{ErrorCode::unsupported,
+                 {},
+                 std::string(name_of(kContainerNames, codec.container)) + " does not hold " +
+                     std::string(name_of(kFormatNames, format))};
 }
 
 const Codec& codec_for(std::span<const std::byte> head) {

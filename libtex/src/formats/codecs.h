@@ -49,6 +49,9 @@ struct Codec {
 
 [[nodiscard]] const Codec& codec_of(Container container);
 
+// Errors: unsupported (the file type does not hold the format).
+[[nodiscard]] Result<void> check_holds(const Codec& codec, Format format);
+
 // The codec that reads a file which begins with `head`: by its magic, else the reader's.
 [[nodiscard]] const Codec& codec_for(std::span<const std::byte> head);
 

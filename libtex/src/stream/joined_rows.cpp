@@ -7,12 +7,14 @@
 #include <numeric>
 #include <utility>
 
+#include "blocks/extent.h"
+
 namespace tex {
 namespace {
 
 // Bytes of `count` rows and of those that a decoder may write beside them.
 std::size_t room(const RowSource& rows, int count) {
-    return rows.row_bytes() * static_cast<std::size_t>((count + 3) / 4 * 4);
+    return rows.row_bytes() * static_cast<std::size_t>(whole_blocks(count));
 }
 
 }  // namespace

@@ -223,7 +223,10 @@ Opening open_file(const std::string& path, Container container, const StripPacki
     const TextureHead& head = packing.head;
     const Codec& codec = codec_of(container);
     FileLayout layout;
-    if (codec.layout != nullptr) layout = codec.layout(head, options);
+    if (codec.layout != nullptr) {
+        if (const Result<void> held = check_holds(codec, head.format); !held) return held.error().of(path);
+        layout = codec.layout(head, options);
+    }
     const std::size_t bytes = codec.layout != nullptr ? layout.size : level_bytes(head.format, head.extent);
     Result<std::unique_ptr<OutputFile>> file = OutputFile::open(path, bytes, when, {options.sync, options.no_clobber});
     if (!file) return file.error();

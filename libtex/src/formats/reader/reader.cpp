@@ -60,12 +60,8 @@ Result<ReaderInfo> reader_info(const ReadOptions& options) {
 Result<ReaderPicture> ReaderPicture::open(Container container, const TextureHead& head, const ReadOptions& options) {
     const FormatInfo info = format_info(head.format);
     const Codec& codec = codec_of(container);
-    if (codec.reader_name == nullptr || !codec.holds(info)) {
-        return Error{ErrorCode::unsupported,
-                     {},
-                     std::string(name_of(kContainerNames, container)) + " does not hold " +
-                         std::string(name_of(kFormatNames, head.format))};
-    }
+    if (Result<void> held = check_holds(codec, head.format); !held) return held.error();
+    if (codec.reader_name == nullptr) return Error{ErrorCode::unsupported, {}, "nothing that the reader process encodes"};
     ReaderHeader header;
     header.width = head.extent.width;
     header.height = head.extent.height;
