@@ -22,14 +22,14 @@ struct Subject {
     const Texture& texture;
     const CheckOptions& options;
     const Execution& execution;
-    Image base;
-    Stored stored;
+    Image base = {};
+    Stored stored = {};
     bool has_vectors = false;
     bool constant = false;    // no channel varies
     bool sampled_ok = false;  // large and varied enough for statistics
-    TexelCounts counts;
-    Curl curl;
-    YEvidence y;  // as far as the curl tells
+    TexelCounts counts = {};
+    Curl curl = {};
+    YEvidence y = {};  // as far as the curl tells
 };
 
 class Findings {
