@@ -7,48 +7,44 @@
 #include "batch/batch.h"
 #include "batch/repack.h"
 #include "cli/usage_error.h"
-#include "options/groups.h"
 #include "options/heights.h"
+#include "options/mips.h"
 
 namespace {
 
 using namespace tex;
 
-struct BakeNormals {
-    cli::Command command{"bake-normals",
-                         "Turns height maps into tangent-space normal maps: bakes the normals, builds the mip chain, "
-                         "packs and writes it."};
-    cli::FileOptions files;
-    cli::HeightReader reader;
-    cli::WrapOptions wrap;
-    BakeOptions bake;
-    cli::OutputOptions output;
-    cli::MipChainOptions mips;
-    cli::RunOptions run;
+class BakeNormals : public cli::Converter {
+public:
+    explicit BakeNormals(const cli::ProgramRow& row);
 
-    BakeNormals();
+private:
     void add_kernel();
-    Result<void> process(cli::Job& job);
-    [[nodiscard]] Encoding encoding(const cli::Job& job) const;
+    [[nodiscard]] cli::OutputRules rules() const override;
+    [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
+    [[nodiscard]] Result<void> process(cli::Job& job) override;
+    [[nodiscard]] cli::ExitCode finish(cli::Console& console) override;
+
+    cli::HeightReader reader_;
+    cli::WrapOptions wrap_;
+    BakeOptions bake_;
+    cli::MipChainOptions mips_;
 };
 
-BakeNormals::BakeNormals() {
+BakeNormals::BakeNormals(const cli::ProgramRow& row) : Converter(row) {
     command.usage("HEIGHT... -o FILE");
     command.usage("HEIGHT... --out-dir DIR [--name PATTERN]");
     command.input("HEIGHT...", "height maps; - is standard input");
     files.add(command);
-    reader.strength.add(command);
+    reader_.strength.add(command);
     command.group("Heights and slopes");
     add_kernel();
-    wrap.add(command, "what lies beyond the border, or for x and y apart");
-    reader.heights.add(command);
-    reader.color.add(command);
-    command.check([this] {
-        if (const std::string config = reader.color.config_file(); !config.empty()) files.shared = {config};
-    });
+    wrap_.add(command, "what lies beyond the border; two words set x and y separately");
+    reader_.heights.add(command);
+    reader_.color.add(command);
     output.add(command, cli::default_encodings(), "up");
-    mips.add(command, false, "all in dds and ktx2, else none");
-    run.add(command);
+    mips_.add(command, false, "all in dds and ktx2, else none");
+    running.add(command);
     command.example("bake-normals bricks.png -o bricks.dds --bumpiness 8", "A DXT5nm texture with all its mip levels.");
     command.example("bake-normals rock.exr -o rock.ktx2 --format bc5 --height-range 0.15 --size 2 --y down",
                     "A rock face 2 m wide with 15 cm of relief, as BC5 for a renderer with green down.");
@@ -58,35 +54,49 @@ BakeNormals::BakeNormals() {
 void BakeNormals::add_kernel() {
     cli::Row& row = command.option("--kernel", "K", "how slopes are measured", [this](const std::string& text) {
         const auto [name, sigma] = cli::cut(text, ':');
-        bake.kernel = cli::parse_word(name, kGradientKernelNames);
+        bake_.kernel = cli::parse_word(name, kGradientKernelNames);
         if (text.find(':') == std::string::npos) return;
-        if (bake.kernel != GradientKernel::gaussian) {
+        if (bake_.kernel != GradientKernel::gaussian) {
             throw cli::UsageError(fmt::format("{} takes no sigma, only gaussian does", name));
         }
-        bake.gaussian_sigma = cli::parse_float(sigma, {0.0, kMaxGaussianSigma, false});
+        bake_.gaussian_sigma = cli::parse_float(sigma, {0.0, kMaxGaussianSigma, false});
     });
     row.words = cli::words_of(kGradientKernelNames);
     row.completes = cli::Completes::words;
-    row.preset = name_of(kGradientKernelNames, bake.kernel);
-    row.help += fmt::format("; gaussian:SIGMA sets its width in texels (default {})", bake.gaussian_sigma);
+    row.preset = name_of(kGradientKernelNames, bake_.kernel);
+    row.help += fmt::format("; gaussian:SIGMA sets its width in texels (default {})", bake_.gaussian_sigma);
+}
+
+cli::OutputRules BakeNormals::rules() const {
+    cli::OutputRules rules;
+    rules.batch = Container::dds;
+    rules.shared = reader_.color.files();
+    return rules;
+}
+
+Result<void> BakeNormals::check(const std::vector<cli::Task>& tasks) {
+    mips_.check(tasks);
+    return reader_.color.check();
 }
 
 Result<void> BakeNormals::process(cli::Job& job) {
     BakeFileOptions options;
     options.read = job.read_options;
-    options.heights = reader.heights.options;
-    options.color = reader.color.color;
-    options.strength = [this](Extent extent) { return reader.strength.strength(extent); };
-    options.bake = bake;
-    options.mip = mips.mip;
-    options.mip.levels = mips.levels_for(job.task);
-    options.pack = output.pack_options(encoding(job), output.y.value_or(YAxis::up));
+    options.heights = reader_.heights.options;
+    options.heights.wrap_x = wrap_.x;
+    options.heights.wrap_y = wrap_.y;
+    options.color = reader_.color.options();
+    options.strength = [this](Extent extent) { return reader_.strength.strength(extent); };
+    options.bake = bake_;
+    options.mip = mips_.options(mips_.levels_for(job.task), wrap_);
+    options.pack =
+        output.pack_options(output.format.value_or(default_encoding(job.task.container)), output.y.value_or(YAxis::up));
     options.write = output.write_options(job);
     options.level_names = cli::level_names(job.task.output);
-    options.slopes = run.json;
+    options.slopes = running.json;
     const auto baked = bake_file(job.task.input, job.task.output, job.task.container, options, job.until(1.0));
     if (!baked) return cli::HeightReader::with_remedy(baked.error());
-    reader.note(job, baked->heights);
+    reader_.note(baked->heights);
     cli::wrote_levels(job, job.task.output, baked->levels);
     cli::report_texture(job, baked->extent, baked->levels, options.pack, baked->bytes);
     const SlopeRange& slopes = baked->slopes;
@@ -94,27 +104,13 @@ Result<void> BakeNormals::process(cli::Job& job) {
     return {};
 }
 
-Encoding BakeNormals::encoding(const cli::Job& job) const {
-    return output.format.value_or(default_encoding(job.task.container));
+cli::ExitCode BakeNormals::finish(cli::Console& console) {
+    reader_.warn_of_luma(console);
+    return cli::ExitCode::done;
 }
+
+const cli::Registered<BakeNormals> kRegistered(
+    "bake-normals",
+    "Turns height maps into tangent-space normal maps: bakes the normals, builds the mip chain, packs and writes it.");
 
 }  // namespace
-
-int main(int argc, char** argv) {
-    return cli::run_main("bake-normals", [&] {
-        BakeNormals self;
-        if (const auto ended = self.command.parse(argc, argv)) return *ended;
-        HeightOptions& heights = self.reader.heights.options;
-        heights.wrap_x = self.mips.mip.wrap_x = self.wrap.x;
-        heights.wrap_y = self.mips.mip.wrap_y = self.wrap.y;
-        cli::Steps steps;
-        steps.defaults.batch = Container::dds;
-        steps.check = [&](const std::vector<cli::Task>& tasks) {
-            self.mips.check(tasks);
-            return self.reader.color.check();
-        };
-        steps.process = [&](cli::Job& job) { return self.process(job); };
-        steps.finish = [&] { self.reader.warn_of_luma(); };
-        return cli::run_batch(self.command, self.files, self.run, self.output, steps);
-    });
-}

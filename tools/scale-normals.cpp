@@ -3,42 +3,45 @@
 
 #include <tex/tex.h>
 
-#include "batch/batch.h"
 #include "batch/repack.h"
 #include "cli/usage_error.h"
-#include "options/source.h"
 
 namespace {
 
 using namespace tex;
 
-struct ScaleNormals {
-    cli::Command command{"scale-normals", "Makes normal maps steeper or flatter, every level of them."};
-    cli::FileOptions files;
-    float scale = 1.0f;
-    ScaleMode mode = ScaleMode::slope;
-    cli::SourceOptions source;
-    cli::OutputOptions output;
-    cli::RunOptions run;
+class ScaleNormals : public cli::Repacker {
+public:
+    explicit ScaleNormals(const cli::ProgramRow& row);
 
-    ScaleNormals();
-    Result<void> process(cli::Job& job);
+private:
+    [[nodiscard]] PackFileOptions options(cli::Job&) const override {
+        PackFileOptions options;
+        options.scale = {scale_, mode_};
+        return options;
+    }
+    [[nodiscard]] Encoding encoding(const SourceInfo& input, const cli::Task& task) const override {
+        return cli::encoding_of(input, task);
+    }
+
+    float scale_ = 1.0f;
+    ScaleMode mode_ = ScaleMode::slope;
 };
 
-ScaleNormals::ScaleNormals() {
+ScaleNormals::ScaleNormals(const cli::ProgramRow& row) : Repacker(row) {
     command.usage("NORMALS... -o FILE --scale S");
     command.usage("NORMALS... --out-dir DIR --scale S");
     command.input("NORMALS...", "normal maps; - is standard input");
     files.add(command);
     command.group("Scale");
     command
-        .number(scale, "--scale", "S", {-kMaxScale, kMaxScale},
-                "the factor, needed; 0 is flat, negative turns bumps into dents")
+        .number(scale_, "--scale", "S", {-kMaxScale, kMaxScale},
+                "the factor, required; 0 is flat, negative turns bumps into dents")
         .preset = "";
-    command.choice(mode, "--scale-mode", "M", kScaleModeNames, "how normals are scaled");
-    source.add(command);
-    output.add(command, "as in the input where it fits, else " + cli::default_encodings(), "as in the input");
-    run.add(command);
+    command.choice(mode_, "--scale-mode", "M", kScaleModeNames, "how normals are scaled");
+    normals.add(command);
+    output.add(command, "as in the input if it fits, else " + cli::default_encodings(), "as in the input");
+    running.add(command);
     command.example("scale-normals bricks.dds -o strong.dds --scale 2",
                     "Twice as steep, all levels, the same encoding.");
     command.example("scale-normals *.png --out-dir dents --scale -1", "Bumps become dents.");
@@ -47,22 +50,7 @@ ScaleNormals::ScaleNormals() {
     });
 }
 
-Result<void> ScaleNormals::process(cli::Job& job) {
-    PackFileOptions options;
-    options.scale = {scale, mode};
-    return cli::repack(job, source, output, options,
-                       [&](const SourceInfo& info) { return cli::encoding_of(info, job.task); });
-}
+const cli::Registered<ScaleNormals> kRegistered("scale-normals",
+                                                "Makes normal maps steeper or flatter, every level of them.");
 
 }  // namespace
-
-int main(int argc, char** argv) {
-    return cli::run_main("scale-normals", [&] {
-        ScaleNormals self;
-        if (const auto ended = self.command.parse(argc, argv)) return *ended;
-        cli::Steps steps;
-        steps.process = [&](cli::Job& job) { return self.process(job); };
-        steps.finish = [&] { self.source.warn_of_guesses(); };
-        return cli::run_batch(self.command, self.files, self.run, self.output, steps);
-    });
-}

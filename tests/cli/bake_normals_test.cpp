@@ -115,9 +115,9 @@ TEST_F(BakeNormals, NumbersAreChecked) {
     refuses({"--kernel", "gaussian:0"}, "--kernel: 0 is not greater than 0 and at most 64");
     refuses({"--kernel", "sobel:2"}, "sobel takes no sigma");
     refuses({"--wrap", "clamp,mirrro"}, "did you mean mirror?");
-    refuses({"--wrap", "clamp,"}, "--wrap: ''");
-    refuses({"--mips", "0"}, "neither all nor none nor a number");
-    refuses({"--mips", "keep"}, "neither all nor none nor a number");
+    refuses({"--wrap", "clamp,"}, "not ''");
+    refuses({"--mips", "0"}, "must be all, none or a number of at least 1");
+    refuses({"--mips", "keep"}, "must be all, none or a number of at least 1");
     refuses({"--fade", "3,3"}, "--fade: 3 is not less than 3");
     refuses({"--fade", "-1,3"}, "--fade: -1 is not at least 0");
     refuses({"--no-data", "none"}, "--no-data: 'none' is not a number");

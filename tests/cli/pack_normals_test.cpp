@@ -79,7 +79,7 @@ TEST_F(PackNormals, LevelsAreKeptUnlessOthersAreAskedFor) {
     EXPECT_TRUE(scratch_.read("again.dds") == scratch_.read("faded.dds"));
     const Ran idle = go("pack-normals", {"n.dds", "-o", "z.dds", "--fade", "1,3"});
     EXPECT_EQ(idle.code, 2);
-    EXPECT_NE(idle.err.find("--fade does nothing where levels are kept"), std::string::npos) << idle.err;
+    EXPECT_NE(idle.err.find("--fade does nothing if levels are kept"), std::string::npos) << idle.err;
 }
 
 TEST_F(PackNormals, FlippingTwiceGivesTheSameWhereLengthsAreKept) {
@@ -92,7 +92,8 @@ TEST_F(PackNormals, FlippingTwiceGivesTheSameWhereLengthsAreKept) {
 
 TEST_F(PackNormals, LayoutsWithoutAMarkAreToldFromTheirTexels) {
     does("pack-normals", {"n.dds", "-o", "ag.png", "--format", "ag8"});
-    does("pack-normals", {"ag.png", "-o", "guessed.dds", "--format", "float"}, "ag.png: taken for dxt5nm");
+    does("pack-normals", {"ag.png", "-o", "guessed.dds", "--format", "float"},
+         "ag.png: layout not stated; guessed dxt5nm from the texels");
     does("pack-normals", {"ag.png", "-o", "told.dds", "--format", "float", "--swizzle", "dxt5nm"});
     does("pack-normals", {"ag.png", "-o", "either.dds", "--format", "float", "--swizzle", "rgorag"});
     EXPECT_TRUE(scratch_.read("guessed.dds") == scratch_.read("told.dds"));
@@ -104,8 +105,8 @@ TEST_F(PackNormals, LayoutsWithoutAMarkAreToldFromTheirTexels) {
     std::filesystem::copy_file(scratch_.path("ag.png"), scratch_.path("more.png"));
     const Ran many = go("pack-normals", {"rgb.png", "ag.png", "more.png", "--out-dir", "out", "--json"});
     EXPECT_EQ(many.err,
-              "pack-normals: warning: ag.png and 1 more: taken for dxt5nm, as the texels look; "
-              "--swizzle says otherwise\n");
+              "pack-normals: warning: ag.png and 1 more: layout not stated; guessed dxt5nm from the "
+              "texels; --swizzle sets it\n");
     EXPECT_EQ(nlohmann::json::parse(lines_of(many.out).at(1))["source"]["swizzle"], "dxt5nm");
     const Ran wrong = go("pack-normals", {"n.dds", "-o", "z.dds", "--swizzle", "dxt5n"});
     EXPECT_EQ(wrong.code, 2);

@@ -131,7 +131,7 @@ TEST_F(PreviewNormals, ReadsMapsAsTheOtherCommandsDo) {
     };
     bake_as("ag.png", "ag8");
     const std::string told = bytes({"ag.png", "--swizzle", "dxt5nm"});
-    EXPECT_EQ(bytes({"ag.png"}, "ag.png: taken for dxt5nm"), told);
+    EXPECT_EQ(bytes({"ag.png"}, "ag.png: layout not stated; guessed dxt5nm from the texels"), told);
     EXPECT_NE(bytes({"ag.png", "--swizzle", "rgb"}), told);
     bake_as("xy.dds", "bc5");
     const std::string xy = bytes({"xy.dds"});
@@ -142,7 +142,8 @@ TEST_F(PreviewNormals, ReadsMapsAsTheOtherCommandsDo) {
     bake_as("rgb.png", "rgb8");
     EXPECT_NE(bytes({"rgb.png", "--snap-flat", "--show", "tilt"}), bytes({"rgb.png", "--show", "tilt"}));
     // A detail is read alike.
-    const std::string detailed = bytes({"rgb.png", "--detail", "ag.png"}, "ag.png: taken for dxt5nm");
+    const std::string detailed =
+        bytes({"rgb.png", "--detail", "ag.png"}, "ag.png: layout not stated; guessed dxt5nm from the texels");
     EXPECT_NE(bytes({"rgb.png", "--swizzle", "rgb", "--detail", "ag.png"}), detailed);
     EXPECT_EQ(preview({"ag.png", "-o", "x.png", "--swizzle", "rg_"}).code, 2);
 }
@@ -235,11 +236,11 @@ TEST_F(PreviewNormals, RefusesMisuse) {
         arguments.insert(arguments.begin(), {"bricks.dds", "-o", "x.png"});
         return arguments;
     };
-    refuses(with({"--show", "lti"}), "'lti' is none of lit, plain");
+    refuses(with({"--show", "lti"}), "must be one of lit, plain");
     refuses(with({"--show", "height"}), "--show height needs --height");
     refuses(with({"--shape", "spere"}), "did you mean sphere?");
     refuses(with({"--shape", "tiled:0x2"}), "--shape: 0 is not at least 1");
-    refuses(with({"--shape", "tiled"}), "'tiled' is none of");
+    refuses(with({"--shape", "tiled"}), "not 'tiled'");
     refuses(with({"--size", "0"}), "--size: 0 is not at least 1");
     refuses(with({"--size", "10x"}), "--size");
     refuses(with({"--light", "0,0,0"}), "0,0,0 is neither a direction nor a place beside the surface");

@@ -96,7 +96,7 @@ TEST_P(EveryUsage, ValuesAreChecked) {
     refuses({"a.png", "-o", "a.dds", "--threads", "-1"}, "--threads: -1 is not at least 0");
     refuses({"a.png", "-o", "a.dds", "--threads", "two"}, "--threads: 'two' is not a whole number");
     refuses({"a.png", "-o", "a.dds", "--progress", "allways"},
-            "'allways' is none of auto, always, never; did you mean always?");
+            "--progress: must be one of auto, always, never, not 'allways'; did you mean always?");
     refuses({"a.png", "-o", "a.dds", "--max-texels", "1.5M"}, "--max-texels: '1.5M' is not a count");
     refuses({"a.png", "-o", "a.dds", "--json=yes"}, "--json takes no value");
     refuses({"a.png", "-o", "a.dds", "--threads="}, "--threads needs a value");

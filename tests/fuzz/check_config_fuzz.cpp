@@ -6,7 +6,7 @@
 #include <string>
 
 #include "cli/usage_error.h"
-#include "reports/check_config.h"
+#include "options/check_config.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     try {

@@ -11,16 +11,13 @@
 #include <string>
 #include <vector>
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include "batch/batch.h"
 #include "cli/usage_error.h"
-#include "options/groups.h"
 #include "options/heights.h"
 #include "options/layers.h"
+#include "options/mips.h"
+#include "options/normals.h"
 #include "options/scene.h"
-#include "options/source.h"
 
 namespace {
 
@@ -34,7 +31,7 @@ struct Everything {
     cli::WrapOptions wrap;
     cli::OutputOptions output;
     cli::MipChainOptions mips;
-    cli::RunOptions run;
+    cli::RunOptions running;
 
     Everything() {
         command.input("FILE...", "files");
@@ -45,7 +42,7 @@ struct Everything {
         wrap.add(command, "the border");
         output.add(command, "any", "up");
         mips.add(command, true, "all");
-        run.add(command);
+        running.add(command);
     }
 };
 
@@ -53,11 +50,11 @@ struct Everything {
 struct Layers {
     cli::Command command{"layer-normals", "Has layers."};
     cli::LayerOptions layers;
-    cli::SourceOptions source;
+    cli::NormalsReader normals;
 
     Layers() {
         layers.add(command);
-        source.add(command);
+        normals.add(command);
     }
 };
 
@@ -69,7 +66,7 @@ struct Scene {
 };
 
 std::vector<std::string> arguments_of(const std::uint8_t* data, std::size_t size, const cli::Command& command) {
-    std::vector<std::string> arguments = {command.name()};
+    std::vector<std::string> arguments;
     std::string line;
     const auto end_line = [&] {
         line = line.substr(0, line.find('\0'));
@@ -96,10 +93,12 @@ std::vector<std::string> arguments_of(const std::uint8_t* data, std::size_t size
 // False where the command line was refused, or has done what it asked for.
 bool parse(cli::Command& command, const std::uint8_t* data, std::size_t size) {
     const std::vector<std::string> arguments = arguments_of(data, size, command);
-    std::vector<const char*> argv;
-    for (const std::string& argument : arguments) argv.push_back(argument.c_str());
+    std::vector<const char*> pointers;
+    for (const std::string& argument : arguments) pointers.push_back(argument.c_str());
+    cli::MemoryHost host;  // --help and its like print
+    cli::Console console("every-normals", host);
     try {
-        return !command.parse(static_cast<int>(argv.size()), argv.data());
+        return !command.parse(pointers, console);
     } catch (const cli::UsageError& error) {
         const std::string text = error.what();
         if (text.empty() || text.find('\n') != std::string::npos) std::abort();
@@ -108,14 +107,6 @@ bool parse(cli::Command& command, const std::uint8_t* data, std::size_t size) {
 }
 
 }  // namespace
-
-extern "C" int LLVMFuzzerInitialize(int*, char***) {
-    // --help and its like print.
-    const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
-    dup2(nowhere, STDOUT_FILENO);
-    close(nowhere);
-    return 0;
-}
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     constexpr std::size_t kLongest = 4096;
@@ -128,7 +119,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (!parse(everything.command, data, size)) return 0;
         const cli::StrengthOptions& strength = everything.reader.strength;
         if (!std::isfinite(strength.bumpiness)) std::abort();
-        if (everything.run.read.max_texels < 1 || everything.run.threads < 0) std::abort();
+        if (everything.running.read.max_texels < 1 || everything.running.threads < 0) std::abort();
     } else if (choice == 1) {
         Layers layers;
         parse(layers.command, data, size);

@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
-#include <cstring>
 #include <exception>
-#include <memory>
 #include <new>
 #include <optional>
 #include <system_error>
@@ -20,88 +18,79 @@
 
 #include "batch/depfile.h"
 #include "batch/name_pattern.h"
-#include "cli/console.h"
-#include "cli/interrupt.h"
-#include "cli/stream.h"
+#include "batch/outcome.h"
+#include "batch/text_file.h"
 #include "cli/usage_error.h"
-#include "reports/report.h"
 #include "threads/fork_join.h"
-
-// When Highway's library is loaded, it asks this function of its own for the resolution of the processor's clock, for
-// its benchmarks, and takes 3 ms to find out: a third of what a small texture takes from start to finish. A program's
-// functions come before those of its libraries.
-namespace hwy::platform {
-__attribute__((visibility("default"))) double TimerResolution();
-double TimerResolution() { return 1e-8; }
-}  // namespace hwy::platform
 
 namespace tex::cli {
 namespace {
 
-// Files in work at once, whatever the number of processors: what is beyond them speeds up each file, and
-// memory stays that of a few textures.
-constexpr int kMostFilesAtOnce = 8;
+// Files processed at once, whatever the number of processors: more threads speed up each file, and memory stays that of
+// a few textures.
+constexpr std::size_t kMostFilesAtOnce = 8;
 
-constexpr const char* kBug = "this is a bug: please report it with the command line and, if you can, the file";
+using Process = std::function<Result<void>(Job& job)>;
 
 class Runner {
 public:
-    Runner(const std::vector<Task>& tasks, const FileOptions& files, const RunOptions& run, const Steps& steps)
-        : tasks_(tasks), run_(run), steps_(steps), reporter_(tasks.size(), run.json),
-          shows_progress_(run.shows_progress()) {
-        write_options_.sync = !files.no_sync;
-        write_options_.no_clobber = files.no_clobber;
-        write_options_.reader = run.read;
-    }
+    Runner(const std::vector<Task>& tasks, Console& console, const WriteOptions& write, const RunOptions& running,
+           Process process)
+        : tasks_(tasks), console_(console), write_(write), running_(running), process_(std::move(process)),
+          reporter_(console, tasks.size(), running.json), shows_progress_(running.shows_progress(console.host())) {}
 
     // Every worker takes the next file that nobody has: files are begun in the order of the inputs.
     void run() {
-        const int threads = run_.threads > 0 ? run_.threads : tbb::info::default_concurrency();
-        const int workers =
-            std::min({threads, static_cast<int>(std::min<std::size_t>(tasks_.size(), kMostFilesAtOnce))});
+        const int threads = running_.threads > 0 ? running_.threads : tbb::info::default_concurrency();
+        // TBB allows fewer threads while another run in this process has a smaller --threads.
+        const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+        const std::size_t most = std::min({tasks_.size(), kMostFilesAtOnce, allowed});
+        const int workers = std::min(threads, static_cast<int>(most));
         const auto work = [this](int) {
             for (std::size_t k = next_++; k < tasks_.size() && !stopped(); k = next_++)
-                reporter_.finish(k, process(tasks_[k]));
+                reporter_.finish(k, outcome_of(tasks_[k]));
         };
         if (workers <= 1) {
             work(0);
         } else {
             try {
                 fork_join(workers, workers, work);
-            } catch (const std::runtime_error&) {  // of TBB: process() lets nothing through
+            } catch (const std::runtime_error&) {  // of TBB: outcome_of() lets nothing through
                 throw std::system_error(EAGAIN, std::generic_category(), "the system refuses threads");
             }
         }
-        clear_progress();
+        console_.clear_progress();
     }
 
     [[nodiscard]] const Reporter& reporter() const { return reporter_; }
-    [[nodiscard]] const WriteOptions& write_options() const { return write_options_; }
 
 private:
-    [[nodiscard]] bool stopped() const { return caught_signal() != 0 || reporter_.is_abandoned(); }
+    [[nodiscard]] bool stopped() const { return !console_.host().interruption().empty() || reporter_.is_abandoned(); }
 
-    Outcome process(const Task& task) {
+    // Counts the progress of one file from `counted` to `fraction`.
+    void advance(const Task& task, double& counted, double fraction) {
+        const double done = done_ += fraction - counted;
+        counted = fraction;
+        console_.draw_progress(
+            done / static_cast<double>(tasks_.size()),
+            tasks_.size() == 1 ? task.input : fmt::format("{} of {} files", finished_.load(), tasks_.size()));
+    }
+
+    Outcome outcome_of(const Task& task) {
         double counted = 0.0;  // of this file, in done_
-        Job job(task, run_.read, write_options_, run_.threads, [&](double fraction) {
-            if (shows_progress_) {
-                const double done = done_ += fraction - counted;
-                counted = fraction;
-                draw_progress(
-                    done / static_cast<double>(tasks_.size()),
-                    tasks_.size() == 1 ? task.input : fmt::format("{} of {} files", finished_.load(), tasks_.size()));
-            }
+        Job job(task, console_, running_.read, write_, running_.threads, [&](double fraction) {
+            if (shows_progress_) advance(task, counted, fraction);
             return !stopped();
         });
         Outcome outcome;
         try {
             auto result = would_clobber(task) ? Error{ErrorCode::io, task.output, "exists, and --no-clobber is given"}
-                                              : steps_.process(job);
+                                              : process_(job);
             if (!result) outcome.error = result.error();
         } catch (const std::bad_alloc&) {
             outcome.error = Error{ErrorCode::out_of_memory, {}, "out of memory"};
         } catch (const std::exception& exception) {
-            outcome.error = Error{ErrorCode::io, {}, fmt::format("{}; {}", exception.what(), kBug)};
+            outcome.error = Error{ErrorCode::io, {}, fmt::format("{}; {}", exception.what(), kBugReport)};
             outcome.is_bug = true;
         }
         outcome.input = task.input;
@@ -110,27 +99,27 @@ private:
         outcome.code = job.code();
         outcome.warnings = job.warnings();
         outcome.outputs = job.outputs();
-        outcome.prerequisites = job.prerequisites();
+        outcome.prerequisites = task.prerequisites();
         outcome.has_levels = has_level(task.output);
-        // The library cannot tell a full disk from a reader that went away; a reader that is content is not
-        // an error to talk about.
-        outcome.is_silent = outcome.error && task.output == "-" && stdout_is_abandoned();
+        // The library cannot tell a full disk from a reader that went away. A reader that has read enough is not an
+        // error to report.
+        outcome.is_silent = outcome.error && task.output == "-" && console_.host().out_is_abandoned();
         done_ += 1.0 - counted;
         ++finished_;
         return outcome;
     }
 
-    // Known before the work is done; the library makes sure once more when it writes.
+    // Found before the work is done; the library makes sure once more when it writes.
     [[nodiscard]] bool would_clobber(const Task& task) const {
         struct stat status {};
-        return write_options_.no_clobber && stat(with_level(task.output, 0).c_str(), &status) == 0 &&
-               S_ISREG(status.st_mode);
+        return write_.no_clobber && stat(with_level(task.output, 0).c_str(), &status) == 0 && S_ISREG(status.st_mode);
     }
 
     const std::vector<Task>& tasks_;
-    const RunOptions& run_;
-    const Steps& steps_;
-    WriteOptions write_options_;
+    Console& console_;
+    const WriteOptions& write_;
+    const RunOptions& running_;
+    Process process_;
     Reporter reporter_;
     bool shows_progress_;
     std::atomic<std::size_t> next_{0};
@@ -138,118 +127,64 @@ private:
     std::atomic<double> done_{0.0};
 };
 
-ExitCode write_depfile(const std::string& path, const std::vector<Dependency>& dependencies,
-                       const WriteOptions& options) {
-    const std::string text = depfile_text(dependencies);
-    const auto* bytes = reinterpret_cast<const std::byte*>(text.data());
-    WriteOptions write = options;
-    write.no_clobber = false;  // a depfile is rewritten by every run
-    const auto written = write_file(path, std::vector<std::byte>(bytes, bytes + text.size()), write);
-    if (written) return ExitCode::done;
-    print_error(written.error().message());
-    return exit_code(written.error().code);
+ExitCode code_of(const Result<void>& result, Console& console) {
+    if (result) return ExitCode::done;
+    console.error(result.error().message());
+    return exit_code(result.error().code);
 }
 
 }  // namespace
 
-bool RunOptions::shows_progress() const {
-    return !quiet &&
-           (progress == ShowProgress::always || (progress == ShowProgress::automatic && stderr_is_terminal()));
+Result<std::vector<Task>> Batch::plan() const {
+    const auto inputs = files.list_inputs(command);
+    if (!inputs) return inputs.error();
+    std::vector<Task> tasks;
+    for (const std::string& input : *inputs) tasks.push_back({input, ""});
+    return tasks;
 }
 
-void RunOptions::add(Command& command) {
-    command.group("Running");
-    command.number(threads, "--threads", "N", 0, 1024, "the most threads at once").preset = "0, one for each processor";
-    command.flag(json, "--json",
-                 "tell the results on standard output, a JSON object for each file on a line of its own");
-    command.flag(quiet, "--quiet", "no warnings and no progress; errors are always told");
-    command.choice(progress, "--progress", "WHEN", kShowProgressNames, "show a progress bar");
-    const auto count = [](auto& target) { return [&target](const std::string& text) { target = parse_count(text); }; };
-    command.option("--max-texels", "N", "refuse files of more texels (K, M, G: powers of 1024)", count(read.max_texels))
-        .preset = count_text(read.max_texels);
-    command
-        .option("--reader-memory", "BYTES", "memory limit of the process that reads TIFF, TGA, JPEG and the like",
-                count(read.reader_memory))
-        .preset = count_text(read.reader_memory);
-    command.number(read.reader_timeout, "--reader-timeout", "SECONDS", 1, 86400, "time limit of that process");
-    command.check([this] {
-        if (quiet) set_quiet();
-    });
+ExitCode Batch::work(Console& console) {
+    if (running.quiet) console.be_quiet();
+    if (files.output == "-" && console.host().out_is_terminal())
+        throw UsageError("-o -: standard output is a terminal");
+    const auto tasks = plan();
+    if (!tasks) return code_of(tasks.error(), console);
+    if (const auto checked = check(*tasks); !checked) return code_of(checked, console);
+    if (const auto created = create_folders(files, *tasks); !created) return code_of(created, console);
+    return run_tasks(*tasks, console);
 }
 
-namespace {
-
-ExitCode failed(const Error& error) {
-    print_error(error.message());
-    return exit_code(error.code);
-}
-
-ExitCode run_tasks(const std::vector<Task>& tasks, const FileOptions& files, const RunOptions& run,
-                   const Steps& steps) {
+ExitCode Batch::run_tasks(const std::vector<Task>& tasks, Console& console) {
     std::optional<tbb::global_control> limit;
-    if (run.threads > 1)
-        limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(run.threads));
-    catch_signals();
-    Runner runner(tasks, files, run, steps);
+    if (running.threads > 1)
+        limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(running.threads));
+    Host& host = console.host();
+    host.begin();
+    WriteOptions write;
+    write.sync = !files.no_sync;
+    write.no_clobber = files.no_clobber;
+    write.reader = running.read;
+    Runner runner(tasks, console, write, running, [this](Job& job) { return process(job); });
     runner.run();
-    if (const int signal = caught_signal(); signal != 0) {
-        print_error(fmt::format("interrupted by SIG{}; {} of {} files are done", sigabbrev_np(signal),
-                                runner.reporter().done(), tasks.size()));
-        end_by_signal(signal);
+    const Reporter& reporter = runner.reporter();
+    if (const std::string_view by = host.interruption(); !by.empty()) {
+        console.error(fmt::format("interrupted by {}; {} of {} files are done", by, reporter.done(), tasks.size()));
+        host.end_interrupted();
+        return ExitCode::io;
     }
-    if (steps.finish) steps.finish();
-    ExitCode code = runner.reporter().exit_code();
+    ExitCode code = std::max(finish(console), reporter.exit_code());
     if (!files.depfile.empty()) {
-        code = std::max(code, write_depfile(files.depfile, runner.reporter().dependencies(), runner.write_options()));
+        write.no_clobber = false;  // every run writes its depfile again
+        code = std::max(code,
+                        code_of(write_text_file(files.depfile, depfile_text(reporter.dependencies()), write), console));
     }
     return code;
 }
 
-}  // namespace
-
-ExitCode run_batch(const Command& command, const FileOptions& files, const RunOptions& run, const OutputOptions& output,
-                   const Steps& steps) {
-    const auto tasks = files.plan(command, output, steps.defaults);
-    if (!tasks) return failed(tasks.error());
-    if (steps.check) {
-        if (const auto checked = steps.check(*tasks); !checked) return failed(checked.error());
-    }
-    if (const auto created = files.create_folders(*tasks); !created) return failed(created.error());
-    return run_tasks(*tasks, files, run, steps);
-}
-
-ExitCode run_readers(const Command& command, const FileOptions& files, const RunOptions& run, const Steps& steps) {
+Result<std::vector<Task>> Converter::plan() const {
     const auto inputs = files.list_inputs(command);
-    if (!inputs) return failed(inputs.error());
-    std::vector<Task> tasks;
-    for (const std::string& input : *inputs) tasks.push_back({input, "", Container::dds});
-    if (steps.check) {
-        if (const auto checked = steps.check(tasks); !checked) return failed(checked.error());
-    }
-    return run_tasks(tasks, files, run, steps);
-}
-
-int run_main(const char* program, const std::function<ExitCode()>& body) {
-    ExitCode code = ExitCode::bug;
-    try {
-        set_program(program);
-        secure_streams();
-        code = body();
-    } catch (const UsageError& error) {
-        print_error(error.what());
-        code = ExitCode::usage;
-    } catch (const std::bad_alloc&) {
-        print_error("out of memory");
-        code = ExitCode::io;
-    } catch (const std::system_error& error) {
-        print_error(error.what());
-        code = ExitCode::io;
-    } catch (const std::exception& error) {
-        print_error(fmt::format("{}; {}", error.what(), kBug));
-    } catch (...) {
-        print_error(kBug);
-    }
-    return static_cast<int>(code);
+    if (!inputs) return inputs.error();
+    return plan_outputs(*inputs, files, output, rules());
 }
 
 }  // namespace tex::cli

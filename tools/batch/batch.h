@@ -1,63 +1,58 @@
 // SPDX-License-Identifier: Apache-2.0
-// batch.h: the frame of every command: files in, one job for each on several threads, reports out in the
-// order of the inputs.
+// batch.h: commands that take many inputs: one job for each on several threads, reports in the order of the inputs.
+//
+// A run plans (which input becomes which output), checks the plan, processes each task and finishes. A failure does not
+// stop the other files; the exit code is the highest.
 
 #pragma once
 
-#include <functional>
 #include <vector>
 
-#include "batch/files.h"
 #include "batch/job.h"
-#include "cli/command.h"
+#include "batch/plan.h"
+#include "cli/programs.h"
+#include "options/files.h"
 #include "options/output.h"
+#include "options/run.h"
 
 namespace tex::cli {
 
-enum class ShowProgress { automatic, always, never };
+// A command that only reads its inputs (FileOptions::add_inputs): tasks have no output.
+class Batch : public Program {
+public:
+    using Program::Program;
 
-inline constexpr Named<ShowProgress> kShowProgressNames[] = {
-    {ShowProgress::automatic, "auto", "on a terminal"},
-    {ShowProgress::always, "always", "also where standard error is no terminal"},
-    {ShowProgress::never, "never", "not at all"},
+    FileOptions files;
+    RunOptions running;
+
+    [[nodiscard]] ExitCode work(Console& console) override;
+
+protected:
+    [[nodiscard]] virtual Result<std::vector<Task>> plan() const;
+
+    // Looks at the plan before anything is written; throws UsageError, and returns other errors.
+    [[nodiscard]] virtual Result<void> check(const std::vector<Task>&) { return {}; }
+
+    // Does one task. Called from several threads at once.
+    [[nodiscard]] virtual Result<void> process(Job& job) = 0;
+
+    // Called once at the end, for what concerns the run as a whole.
+    [[nodiscard]] virtual ExitCode finish(Console&) { return ExitCode::done; }
+
+private:
+    [[nodiscard]] ExitCode run_tasks(const std::vector<Task>& tasks, Console& console);
 };
 
-struct RunOptions {
-    int threads = Execution{}.threads;
-    bool json = false;
-    bool quiet = false;
-    ShowProgress progress = ShowProgress::automatic;
-    ReadOptions read;
+// A command that makes an output of each input (FileOptions::add).
+class Converter : public Batch {
+public:
+    using Batch::Batch;
 
-    void add(Command& command);
-    [[nodiscard]] bool shows_progress() const;
+    OutputOptions output;
+
+protected:
+    [[nodiscard]] virtual OutputRules rules() const { return {}; }
+    [[nodiscard]] Result<std::vector<Task>> plan() const override;
 };
-
-// What a command does.
-struct Steps {
-    OutputDefaults defaults;
-
-    // Looks at the plan, before anything is read or written; throws UsageError, and returns other errors.
-    // May be empty.
-    std::function<Result<void>(const std::vector<Task>& tasks)> check;
-
-    // Turns one input into its output. Called from several threads at once.
-    std::function<Result<void>(Job& job)> process;
-
-    // Called once at the end, for warnings about the run as a whole. May be empty.
-    std::function<void()> finish;
-};
-
-// Runs the steps over all inputs: plan, check, process, report. A failure does not stop the other files;
-// the exit code is the highest. Ends the process by its signal where one came.
-[[nodiscard]] ExitCode run_batch(const Command& command, const FileOptions& files, const RunOptions& run,
-                                 const OutputOptions& output, const Steps& steps);
-
-// The same for commands that write nothing for each input (FileOptions::add_inputs): tasks have no output.
-[[nodiscard]] ExitCode run_readers(const Command& command, const FileOptions& files, const RunOptions& run,
-                                   const Steps& steps);
-
-// The frame of main(): streams, signals, and every exception turned into a sentence and an exit code.
-[[nodiscard]] int run_main(const char* program, const std::function<ExitCode()>& body);
 
 }  // namespace tex::cli

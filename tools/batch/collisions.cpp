@@ -13,10 +13,11 @@
 #include <tex/mip_chain.h>
 #include <unistd.h>
 
-#include "batch/files.h"
 #include "batch/name_pattern.h"
+#include "batch/task.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "options/files.h"
 
 namespace tex::cli {
 namespace {
@@ -56,13 +57,11 @@ std::string canonical(const std::string& path) {
     return (folder / at.filename()).string();
 }
 
-// The files that a task writes: many where each level has its own. As many as the largest extent
+// The files that a task writes: many if each level has its own. As many as the largest extent
 // could have.
 std::vector<std::string> files_of(const Task& task) {
-    std::vector<std::string> outputs = task.beside;
-    outputs.push_back(task.output);
     std::vector<std::string> files;
-    for (const std::string& output : outputs) {
+    for (const std::string& output : task.outputs()) {
         const int levels = has_level(output) ? level_count({kMaxExtent, 1}) : 1;
         for (int level = 0; level < levels; ++level) files.push_back(with_level(output, level));
     }
@@ -76,7 +75,7 @@ void check_collisions(const std::vector<Task>& tasks, const std::string& depfile
     if (const auto file = input_identity(list)) inputs.emplace(*file, list);
     for (const Task& task : tasks) {
         if (const auto file = input_identity(task.input)) inputs.emplace(*file, task.input);
-        for (const std::string& input : task.also) {
+        for (const std::string& input : task.prerequisites()) {
             if (const auto file = input_identity(input)) inputs.emplace(*file, input);
         }
     }

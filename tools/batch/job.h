@@ -12,7 +12,8 @@
 #include <tex/container.h>
 #include <tex/execution.h>
 
-#include "batch/files.h"
+#include "batch/task.h"
+#include "cli/console.h"
 #include "cli/exit_code.h"
 #include "reports/json.h"
 
@@ -20,15 +21,17 @@ namespace tex::cli {
 
 class Job {
 public:
-    // `advance` takes the fraction of the job that is done and returns false where the job is to stop.
-    Job(const Task& its_task, const ReadOptions& read, const WriteOptions& write, int threads,
+    // `advance` takes the fraction of the job that is done and returns false if the job is to stop.
+    Job(const Task& its_task, Console& its_console, const ReadOptions& read, const WriteOptions& write, int threads,
         std::function<bool(double fraction)> advance)
-        : task(its_task), read_options(read), write_options(write), threads_(threads), advance_(std::move(advance)) {}
+        : task(its_task), console(its_console), read_options(read), write_options(write), threads_(threads),
+          advance_(std::move(advance)) {}
 
     const Task& task;
+    Console& console;
     const ReadOptions& read_options;
     const WriteOptions& write_options;
-    Json report;  // what --json tells of this file, beside input and output
+    Json report;  // what --json prints about this file, beside input and output
 
     // How the next verb runs: its progress counts as that of the job from where the last one ended up to
     // `fraction`.
@@ -37,7 +40,7 @@ public:
         reached_ = fraction;
         return {threads_, [this, from, fraction](double done) { return advance_(from + (fraction - from) * done); }};
     }
-    // The same for steps that take no Execution. False where the job is to stop.
+    // The same for steps that take no Execution. False if the job is to stop.
     [[nodiscard]] bool reached(double fraction) {
         reached_ = fraction;
         return advance_(fraction);
@@ -45,14 +48,12 @@ public:
 
     [[nodiscard]] int threads() const { return threads_; }
 
-    void warn(std::string sentence) { warnings_.push_back(std::move(sentence)); }  // told after "FILE: "
-    void depends_on(std::string path) { prerequisites_.push_back(std::move(path)); }
+    void warn(std::string sentence) { warnings_.push_back(std::move(sentence)); }  // printed after "FILE: "
     void say(std::string_view text) { text_ += text; }            // on standard output, unless --json is given
     void raise(ExitCode code) { code_ = std::max(code_, code); }  // the run ends with this code or a higher one
     void wrote(std::string path) { outputs_.push_back(std::move(path)); }
 
     [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
-    [[nodiscard]] const std::vector<std::string>& prerequisites() const { return prerequisites_; }
     [[nodiscard]] const std::vector<std::string>& outputs() const { return outputs_; }
     [[nodiscard]] const std::string& text() const { return text_; }
     [[nodiscard]] ExitCode code() const { return code_; }
@@ -62,7 +63,6 @@ private:
     std::function<bool(double)> advance_;
     double reached_ = 0.0;
     std::vector<std::string> warnings_;
-    std::vector<std::string> prerequisites_;
     std::vector<std::string> outputs_;
     std::string text_;
     ExitCode code_ = ExitCode::done;

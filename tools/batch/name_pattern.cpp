@@ -60,8 +60,8 @@ NamePattern::NamePattern(std::string_view text) {
                 throw UsageError(fmt::format("'{}' has a {{ without its }}", printable(text)));
             const std::string field(text.substr(k + 1, close - k - 1));
             if (std::find(known_fields().begin(), known_fields().end(), field) == known_fields().end()) {
-                throw UsageError(fmt::format("the field {{{}}} is none of {}{}", printable(field), join(known_fields()),
-                                             did_you_mean(field, known_fields())));
+                throw UsageError(fmt::format("a field must be one of {}, not '{}'{}", join(known_fields()),
+                                             printable(field), did_you_mean(field, known_fields())));
             }
             end_literal();
             pieces_.push_back({true, field});

@@ -9,21 +9,37 @@
 
 namespace tex::cli {
 
-Result<void> repack(Job& job, SourceOptions& source, const OutputOptions& output, PackFileOptions options,
-                    const EncodingOf& encoding, const std::function<void(const PackFileReport&)>& also_tell) {
-    options.source = source.options(job);
-    options.pack = [&](const SourceInfo& info) {
-        return output.pack_options(output.format ? *output.format : encoding(info), output.y.value_or(info.y_axis));
+ExitCode NormalsConverter::finish(Console& console) {
+    normals.warn_of_guesses(console);
+    return ExitCode::done;
+}
+
+void Repacker::add_files(const char* inputs) {
+    command.usage("NORMALS... -o FILE");
+    command.usage("NORMALS... --out-dir DIR [--name PATTERN]");
+    command.input("NORMALS...", inputs);
+    files.add(command);
+    normals.add(command);
+}
+
+Encoding Repacker::encoding(const SourceInfo&, const Task& task) const { return default_encoding(task.container); }
+
+Result<void> Repacker::process(Job& job) {
+    PackFileOptions with = options(job);
+    with.source = normals.options(job);
+    with.pack = [&](const SourceInfo& info) {
+        return output.pack_options(output.format ? *output.format : encoding(info, job.task),
+                                   output.y.value_or(info.y_axis));
     };
-    options.write = output.write_options(job);
-    options.level_names = level_names(job.task.output);
-    const auto packed = pack_file(job.task.input, job.task.output, job.task.container, options, job.until(1.0));
+    with.write = output.write_options(job);
+    with.level_names = level_names(job.task.output);
+    const auto packed = pack_file(job.task.input, job.task.output, job.task.container, with, job.until(1.0));
     if (!packed) return packed.error();
-    source.note(job, job.task.input, packed->source);
-    report_source(job, packed->source);
+    normals.note(job, job.task.input, packed->source);
+    report_input(job, packed->source);
     wrote_levels(job, job.task.output, packed->levels);
     report_texture(job, packed->extent, packed->levels, packed->pack, packed->bytes);
-    if (also_tell) also_tell(*packed);
+    report(job, *packed);
     return {};
 }
 

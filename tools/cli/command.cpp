@@ -5,11 +5,9 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include "cli/completion.h"
 #include "cli/help.h"
-#include "cli/stream.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "cli/version.h"
@@ -17,12 +15,28 @@
 namespace tex::cli {
 namespace {
 
-std::vector<std::string> split_names(const std::string& names) {
-    auto [first, second] = cut(names, ',');
-    return second.empty() ? std::vector<std::string>{first} : std::vector<std::string>{first, second};
+template <class Rows>
+auto* find_row(Rows& rows, std::string_view name) {
+    const auto found = std::find_if(rows.begin(), rows.end(), [name](const Row& row) {
+        return std::find(row.names.begin(), row.names.end(), name) != row.names.end();
+    });
+    return found == rows.end() ? nullptr : &*found;
 }
 
 bool is_option(std::string_view argument) { return argument.size() > 1 && argument.front() == '-'; }
+
+// The value of `row` that its argument holds itself, if it does.
+std::optional<std::string> value_of(const Row& row, std::string_view argument) {
+    const bool is_long = argument.starts_with("--");
+    const std::size_t place = is_long ? argument.find('=') : 2;
+    const bool is_flag = row.value.empty();
+    if (is_flag && !is_long) return "";  // the only one is -h, and what follows does not matter beside it
+    if (place >= argument.size()) return is_flag ? std::optional<std::string>("") : std::nullopt;
+    if (is_flag) throw UsageError(fmt::format("{} takes no value", row.name()));
+    const std::string_view value = argument.substr(is_long ? place + 1 : place);
+    if (value.empty()) throw UsageError(fmt::format("{} needs a value after the =", row.name()));
+    return std::string(value);
+}
 
 }  // namespace
 
@@ -35,60 +49,35 @@ std::vector<std::string> names_of(const std::vector<Word>& words) {
 
 void check_word(const std::string& name, const std::vector<std::string>& names) {
     if (std::find(names.begin(), names.end(), name) != names.end()) return;
-    throw UsageError(fmt::format("'{}' is none of {}{}", printable(name), join(names), did_you_mean(name, names)));
+    throw UsageError(
+        fmt::format("must be one of {}, not '{}'{}", join(names), printable(name), did_you_mean(name, names)));
 }
 
-Command::Command(std::string name, std::string summary)
-    : name_(std::move(name)), summary_(std::move(summary)), app_(std::make_unique<CLI::App>()) {
-    app_->set_help_flag();
-    app_->allow_extras();  // inputs, and unknown options: take_inputs() tells them apart
-    // CLI11 runs what belongs to an option in the order of definition: with these first, --help wins over a
-    // mistake beside it.
+Command::Command(std::string_view name, std::string_view summary) : name_(name), summary_(summary) {
+    // These come first, because values are taken in the order of the rows: --help works beside a mistake.
     group(kHelpGroup);
     flag(help_, "-h,--help", "print this help and exit");
     flag(version_, "--version", "print the version and exit; with --json also how the program was built");
-    text(completion_, "--completion", "SHELL", "print the completion script for bash, zsh or fish and exit").hidden =
-        true;
+    choice_row("--completion", "SHELL", "print a completion script and exit", {{"bash", ""}, {"zsh", ""}, {"fish", ""}},
+               [this](const std::string& shell) { completion_ = shell; })
+        .hidden = true;
     flag(list_options_, "--list-options", "print the option table and exit").hidden = true;
 }
-
-Command::~Command() = default;
 
 Row& Command::option(const std::string& names, std::string value, std::string help,
                      std::function<void(const std::string& text)> take) {
     Row& row = rows_.emplace_back();
     row.group = group_;
-    row.names = split_names(names);
+    row.names = split(names, ',');
     row.value = std::move(value);
     row.help = std::move(help);
-    const auto callback = [&row, take = std::move(take)](const CLI::results_t& texts) {
-        if (texts.size() > 1 && !row.repeatable)
-            throw UsageError(fmt::format("{} is given more than once", row.name()));
-        for (const std::string& text : texts) {
-            try {
-                take(text);
-            } catch (const UsageError& error) {
-                throw UsageError(fmt::format("{}: {}", row.name(), error.what()));
-            }
-        }
-        return true;
-    };
-    // TakeAll hands every occurrence to the callback above; one value for each occurrence, so that inputs
-    // may follow.
-    app_->add_option(names, callback)
-        ->expected(1)
-        ->allow_extra_args(false)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    row.take = std::move(take);
     return row;
 }
 
 Row& Command::flag(bool& target, const std::string& names, std::string help) {
-    Row& row = rows_.emplace_back();
-    row.group = group_;
-    row.names = split_names(names);
-    row.help = std::move(help);
+    Row& row = option(names, {}, std::move(help), [&target](const std::string&) { target = true; });
     row.repeatable = true;
-    app_->add_flag_function(names, [&target](std::int64_t) { target = true; })->disable_flag_override();
     return row;
 }
 
@@ -130,72 +119,74 @@ Row& Command::choice_row(const std::string& names, std::string value, std::strin
     return row;
 }
 
-const Row* Command::find(std::string_view name) const {
+std::string Command::unknown_option(const std::string& name) const {
+    std::vector<std::string> names;
     for (const Row& row : rows_) {
-        if (std::find(row.names.begin(), row.names.end(), name) != row.names.end()) return &row;
+        if (!row.hidden) names.insert(names.end(), row.names.begin(), row.names.end());
     }
-    return nullptr;
+    return fmt::format("unknown option {}{}", printable(name), did_you_mean(name, names));
 }
 
-// CLI11 reads "--name=" as "--name", which then takes the next argument for its value, and "--flag=false"
-// as a value.
-void Command::check_equals_signs(int argc, const char* const* argv) const {
-    for (int k = 1; k < argc; ++k) {
-        const std::string_view argument = argv[k];
-        if (argument == "--") return;
-        const std::size_t place = argument.find('=');
-        if (!argument.starts_with("--") || place == std::string_view::npos) continue;
-        const Row* row = find(argument.substr(0, place));
-        if (row == nullptr) continue;
-        if (row->value.empty()) throw UsageError(fmt::format("{} takes no value", row->name()));
-        if (place + 1 == argument.size()) throw UsageError(fmt::format("{} needs a value after the =", row->name()));
-    }
-}
-
-// What CLI11 could not assign: unknown options, inputs, and all that follows "--".
-void Command::take_inputs() {
+// Gives each row its values, and keeps the inputs. Returns the first mistake that --help makes up for: an unknown
+// option or an empty name.
+std::string Command::sort(Arguments arguments) {
+    std::string mistake;
     bool only_inputs = false;
-    for (const std::string& argument : app_->remaining()) {
+    for (std::size_t k = 0; k < arguments.size(); ++k) {
+        const std::string_view argument = arguments[k];
         if (only_inputs || !is_option(argument)) {
-            if (argument.empty()) throw UsageError("an input name is empty");
-            inputs_.push_back(argument);
-        } else if (argument == "--") {
-            only_inputs = true;
-        } else {
-            std::vector<std::string> names;
-            for (const Row& row : rows_) {
-                if (!row.hidden) names.insert(names.end(), row.names.begin(), row.names.end());
+            if (argument.empty() && mistake.empty()) mistake = "an input name is empty";
+            inputs_.emplace_back(argument);
+            continue;
+        }
+        only_inputs = argument == "--";
+        if (only_inputs) continue;
+        const bool is_long = argument.starts_with("--");
+        Row* row = find_row(rows_, argument.substr(0, is_long ? argument.find('=') : 2));
+        if (row == nullptr) {
+            if (mistake.empty()) mistake = unknown_option(cut(argument, '=').first);
+            continue;
+        }
+        auto value = value_of(*row, argument);
+        if (!value && ++k == arguments.size()) throw UsageError(fmt::format("{} needs a value", printable(argument)));
+        row->given.push_back(value ? std::move(*value) : arguments[k]);
+    }
+    return mistake;
+}
+
+void Command::take_values() {
+    for (const Row& row : rows_) {
+        if (row.given.size() > 1 && !row.repeatable)
+            throw UsageError(fmt::format("{} is given more than once", row.name()));
+        for (const std::string& text : row.given) {
+            try {
+                row.take(text);
+            } catch (const UsageError& error) {
+                throw UsageError(fmt::format("{}: {}", row.name(), error.what()));
             }
-            const std::string name = cut(argument, '=').first;
-            throw UsageError(fmt::format("unknown option {}{}", printable(name), did_you_mean(name, names)));
         }
     }
 }
 
-std::optional<ExitCode> Command::parse(int argc, const char* const* argv) {
+std::optional<ExitCode> Command::parse(Arguments arguments, Console& console) {
+    const std::string mistake = sort(arguments);
     try {
-        check_equals_signs(argc, argv);
-        app_->parse(argc, argv);
-    } catch (const CLI::ArgumentMismatch&) {
-        // Each option takes the argument after it, whatever it is: a value can only be missing at the end.
-        throw UsageError(fmt::format("{} needs a value", printable(argv[argc - 1])));
-    } catch (const CLI::ParseError& error) {
-        throw UsageError(printable(error.what()));
+        take_values();
     } catch (const UsageError&) {
         if (!help_ && !version_) throw;
     }
-    if (help_) return print(help_text(*this));
-    if (version_) return print(given("--json") ? version_json(*this) : version_text(*this));
-    if (list_options_) return print(option_list(*this));
-    if (!completion_.empty()) return print(completion_script(*this, completion_));
-    take_inputs();
+    if (help_) return console.print(help_text(*this));
+    if (version_) return console.print(given("--json") ? version_json(*this) : version_text(*this));
+    if (list_options_) return console.print(option_list(*this));
+    if (!completion_.empty()) return console.print(completion_script(*this, completion_));
+    if (!mistake.empty()) throw UsageError(mistake);
     for (const auto& check : checks_) check();
     return std::nullopt;
 }
 
 bool Command::given(std::string_view name) const {
-    const CLI::Option* option = app_->get_option_no_throw(std::string(name));
-    return option != nullptr && option->count() > 0;
+    const Row* row = find_row(rows_, name);
+    return row != nullptr && !row->given.empty();
 }
 
 std::vector<std::string> Command::given_of(const std::vector<std::string>& names) const {

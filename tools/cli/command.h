@@ -1,31 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-// command.h: the table of a command's options, and the command line read by it.
+// command.h: the table of a command's options, and the parser that reads a command line by it.
 //
-// One row says everything about an option: its names, its value, what it means, its default and the words
-// that it takes. The parser (CLI11), --help, the shell completions, --list-options and with it the test of
-// the man pages all read these rows. Defaults are what the target holds when its row is added: the
-// library's own.
+// One row says everything about an option: its names, its value, what it means, its default and the words that it
+// takes. The parser, --help, the shell completions, --list-options and with it the test of the man pages all read these
+// rows. Defaults are what the target holds when its row is added: the library's own.
+//
+// An option takes the argument after it, whatever it is, or what follows in the same one: "--name VALUE",
+// "--name=VALUE", "-o FILE", "-oFILE". Everything after "--" is an input.
 
 #pragma once
 
 #include <deque>
 #include <functional>
-#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <tex/names.h>
 
+#include "cli/console.h"
 #include "cli/exit_code.h"
 #include "cli/value.h"
 
-namespace CLI {
-class App;
-}
-
 namespace tex::cli {
+
+// A command line without the name of the program.
+using Arguments = std::span<const char* const>;
 
 // A word that an option takes, and what it means.
 struct Word {
@@ -51,8 +53,12 @@ struct Row {
     std::string preset;              // the default as a user would type it, or empty
     std::vector<Word> words;         // the words that the option takes
     Completes completes = Completes::nothing;
-    bool hidden = false;                                                    // not in the help
-    bool repeatable = false;                                                // may be given more than once
+    bool hidden = false;      // not in the help
+    bool repeatable = false;  // may be given more than once
+
+    std::vector<std::string> given;                     // the values on the command line, in order; empty for a flag
+    std::function<void(const std::string& text)> take;  // called with each of them; throws UsageError
+
     [[nodiscard]] const std::string& name() const { return names.back(); }  // the long one
 };
 
@@ -67,8 +73,8 @@ struct Example {
 class Command {
 public:
     // `summary` is a sentence: "Turns height maps into normal maps."
-    Command(std::string name, std::string summary);
-    ~Command();
+    Command(std::string_view name, std::string_view summary);
+    ~Command() = default;
     Command(const Command&) = delete;
     Command& operator=(const Command&) = delete;
 
@@ -76,11 +82,10 @@ public:
     // What the positional arguments are: "HEIGHT...", "height maps; - is standard input".
     void input(std::string value, std::string help) { input_ = {std::move(value), std::move(help)}; }
     void example(std::string line, std::string meaning) { examples_.push_back({std::move(line), std::move(meaning)}); }
-    void finds_things() { finds_ = true; }  // ExitCode::findings is one of the command's
+    void finds_things() { finds_ = true; }  // the command can end with ExitCode::findings
     void group(std::string title) { group_ = std::move(title); }
 
-    // The row of an option with a value; `take` gets the text and throws UsageError. References to rows
-    // stay valid.
+    // The row of an option with a value; `take` gets the text and throws UsageError. References to rows stay valid.
     Row& option(const std::string& names, std::string value, std::string help,
                 std::function<void(const std::string& text)> take);
     Row& flag(bool& target, const std::string& names, std::string help);
@@ -102,12 +107,13 @@ public:
                           [&target, &table](const std::string& name) { target = *find_by_name(table, name); });
     }
 
-    // Called after all options were read: throws UsageError where they contradict each other.
+    // `body` is called after all options have been read: it throws UsageError if they contradict each other, and
+    // changes nothing.
     void check(std::function<void()> body) { checks_.push_back(std::move(body)); }
 
-    // Reads the command line. An exit code where the command has done what was asked: --help, --version,
-    // ...; throws UsageError.
-    [[nodiscard]] std::optional<ExitCode> parse(int argc, const char* const* argv);
+    // Reads the command line, once. Returns an exit code if that was all: --help, --version and the like, which print.
+    // Throws UsageError.
+    [[nodiscard]] std::optional<ExitCode> parse(Arguments arguments, Console& console);
 
     [[nodiscard]] bool given(std::string_view name) const;
     // Those of `names` that were given.
@@ -125,9 +131,9 @@ public:
 private:
     Row& choice_row(const std::string& names, std::string value, std::string help, std::vector<Word> words,
                     std::function<void(const std::string& name)> take);
-    void check_equals_signs(int argc, const char* const* argv) const;
-    void take_inputs();
-    [[nodiscard]] const Row* find(std::string_view name) const;
+    [[nodiscard]] std::string sort(Arguments arguments);
+    [[nodiscard]] std::string unknown_option(const std::string& name) const;
+    void take_values();
 
     std::string name_;
     std::string summary_;
@@ -138,7 +144,6 @@ private:
     std::vector<std::string> inputs_;
     std::deque<Row> rows_;
     std::vector<std::function<void()>> checks_;
-    std::unique_ptr<CLI::App> app_;
     bool finds_ = false;
     bool help_ = false;
     bool version_ = false;
@@ -146,8 +151,8 @@ private:
     std::string completion_;
 };
 
-// The choice of a word by name, for options whose value is made of several: throws UsageError with the
-// names and a suggestion.
+// The choice of a word by name, for options whose value is made of several: throws UsageError with the names and a
+// suggestion.
 void check_word(const std::string& name, const std::vector<std::string>& names);
 template <class E, std::size_t N>
 [[nodiscard]] E parse_word(const std::string& name, const Named<E> (&table)[N]) {

@@ -9,7 +9,7 @@
 
 namespace tex::cli {
 
-// The script for `shell`; throws UsageError for a shell that is none of the three.
+// The script for `shell`: bash, zsh or fish.
 [[nodiscard]] std::string completion_script(const Command& command, const std::string& shell);
 
 }  // namespace tex::cli

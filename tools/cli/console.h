@@ -1,30 +1,51 @@
 // SPDX-License-Identifier: Apache-2.0
-// console.h: what a command says to people, on standard error: errors, warnings, and the progress bar that
-// they must not tear.
+// console.h: what one run of a program prints: results on standard output; errors, warnings and the progress bar, which
+// they must not tear, on standard error.
 //
 // All functions may be called from any thread.
 
 #pragma once
 
-#include <string>
+#include <atomic>
+#include <chrono>
+#include <mutex>
 #include <string_view>
+
+#include "cli/exit_code.h"
+#include "cli/host.h"
 
 namespace tex::cli {
 
-// The name that messages begin with.
-void set_program(std::string name);
+class Console {
+public:
+    // Messages begin with `program`. Both must outlive this.
+    Console(std::string_view program, Host& host) : program_(program), host_(host) {}
 
-// No warnings and no progress from now on. Errors are always told.
-void set_quiet();
+    // No warnings and no progress from now on. Errors are always printed.
+    void be_quiet() { quiet_ = true; }
 
-// "bake-normals: error: MESSAGE". Control characters in the message are escaped: a line stays a line.
-void print_error(std::string_view message);
-void print_warning(std::string_view message);
+    // "bake-normals: error: MESSAGE". Control characters in the message are escaped: a line stays a line.
+    void error(std::string_view message) { message_of("error", "31", message); }
+    void warning(std::string_view message);
 
-// Draws the bar, at most ten times a second: fraction 0 to 1, and a few words beside it.
-void draw_progress(double fraction, std::string_view words);
+    // Prints a result. ExitCode::io if that fails, with a message, unless the reader has gone away.
+    [[nodiscard]] ExitCode print(std::string_view text);
 
-// Takes the bar away.
-void clear_progress();
+    // Draws the bar, at most ten times a second: fraction 0 to 1, and a few words beside it.
+    void draw_progress(double fraction, std::string_view words);
+    void clear_progress();
+
+    [[nodiscard]] Host& host() const { return host_; }
+
+private:
+    void message_of(std::string_view label, std::string_view color, std::string_view message);
+
+    std::string_view program_;
+    Host& host_;
+    std::mutex mutex_;
+    std::atomic<bool> quiet_{false};
+    bool bar_is_drawn_ = false;
+    std::chrono::steady_clock::time_point last_drawn_;
+};
 
 }  // namespace tex::cli

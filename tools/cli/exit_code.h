@@ -19,8 +19,11 @@ inline constexpr Named<ExitCode> kExitCodeNames[] = {
     {ExitCode::bug, "5", "a bug of ours"},
 };
 
-// The exit code of a failure that happened while files were processed. (bad_option is then a matter of the
-// file: it lacks the channel that was asked for, say.) Cancelled runs end by their signal, see interrupt.h.
+inline constexpr const char* kBugReport =
+    "this is a bug: please report it with the command line and, if you can, the file";
+
+// The exit code of a failure that happened while files were processed. (bad_option then concerns the file: it lacks the
+// channel that was asked for, say.) A command that a signal cancels ends by that signal, see process.h.
 constexpr ExitCode exit_code(ErrorCode code) {
     switch (code) {
         case ErrorCode::io:

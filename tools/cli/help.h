@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// help.h: what a command tells about itself, from its table.
+// help.h: what a command says about itself, from its table.
 
 #pragma once
 

@@ -28,7 +28,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     return last[b.size()];
 }
 
-// The bytes of the character that `text` begins with, in UTF-8 and in its shortest form; 0 where there is none, or a
+// The bytes of the character that `text` begins with, in UTF-8 and in its shortest form; 0 if there is none, or a
 // control character.
 std::size_t character_length(std::string_view text) {
     const auto byte = [&](std::size_t k) { return k < text.size() ? static_cast<unsigned char>(text[k]) : 0u; };

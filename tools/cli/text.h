@@ -21,7 +21,7 @@ namespace tex::cli {
 // "a, b, c".
 [[nodiscard]] std::string join(const std::vector<std::string>& words, std::string_view between = ", ");
 
-// `text` with control characters (those of C1, U+0080 to U+009F, too) and bytes that are no UTF-8 written as \xNN, so
+// `text` with control characters (those of C1, U+0080 to U+009F, too) and bytes that are not UTF-8 written as \xNN, so
 // that a file name can neither break a line nor drive the terminal.
 [[nodiscard]] std::string printable(std::string_view text);
 

@@ -89,4 +89,13 @@ std::pair<std::string, std::string> cut(std::string_view text, char separator) {
     return {std::string(text.substr(0, place)), std::string(text.substr(place + 1))};
 }
 
+std::vector<std::string> split(std::string_view text, char separator) {
+    std::vector<std::string> parts;
+    std::size_t place = 0;
+    for (std::size_t end = 0; (end = text.find(separator, place)) != std::string_view::npos; place = end + 1)
+        parts.emplace_back(text.substr(place, end - place));
+    parts.emplace_back(text.substr(place));
+    return parts;
+}
+
 }  // namespace tex::cli

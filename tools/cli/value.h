@@ -13,7 +13,7 @@
 
 namespace tex::cli {
 
-// The numbers that an option takes: from least to greatest, least itself only where `least_too`.
+// The numbers that an option takes: from least to greatest; least itself only if `least_too`.
 struct Range {
     double least = -std::numeric_limits<double>::infinity();
     double greatest = std::numeric_limits<double>::infinity();
@@ -29,7 +29,9 @@ inline constexpr Range kPositive{0.0, std::numeric_limits<double>::infinity(), f
 [[nodiscard]] std::int64_t parse_count(std::string_view text);
 [[nodiscard]] std::string count_text(std::int64_t count);  // "4G": the shortest such form
 
-// `text` cut at the first `separator`; the second part is empty where there is none.
+// `text` cut at the first `separator`; the second part is empty if there is none.
 [[nodiscard]] std::pair<std::string, std::string> cut(std::string_view text, char separator);
+// `text` cut at every `separator`: at least one part.
+[[nodiscard]] std::vector<std::string> split(std::string_view text, char separator);
 
 }  // namespace tex::cli

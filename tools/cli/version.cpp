@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <tbb/version.h>
 #include <tex/tex.h>
-#include <CLI/Version.hpp>
 
 #include "reports/json.h"
 
@@ -35,7 +34,6 @@ std::string version_json(const Command& command) {
 #else
     json["assertions"] = true;
 #endif
-    json["dependencies"]["cli11"] = CLI11_VERSION;
     json["dependencies"]["fmt"] =
         fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100);
     json["dependencies"]["nlohmann-json"] =

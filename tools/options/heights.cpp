@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 #include <tex/image_io.h>
 
-#include "cli/console.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
 
@@ -15,17 +14,21 @@ namespace tex::cli {
 
 void ColorGroup::add(Command& command) {
     command.text(color.space, "--color-space", "NAME",
-                 "the colour space that the heights were saved in, to make them linear; without a "
-                 "configuration sRGB or linear");
+                 "the colour space of the file's heights, which become linear; without a configuration, sRGB or "
+                 "linear");
     Row& config = command.text(color.config, "--ocio-config", "FILE", "the OpenColorIO configuration");
     config.preset = "$OCIO";
     config.completes = Completes::files;
     command.check([this, &command] {
         if (command.given("--ocio-config") && color.space.empty())
             throw UsageError("--ocio-config does nothing without --color-space");
-        if (const char* variable = std::getenv("OCIO"); variable != nullptr && color.config.empty())
-            color.config = variable;
     });
+}
+
+ColorOptions ColorGroup::options() const {
+    ColorOptions with = color;
+    if (const char* variable = std::getenv("OCIO"); variable != nullptr && with.config.empty()) with.config = variable;
+    return with;
 }
 
 Result<void> ColorGroup::check() const {
@@ -33,15 +36,17 @@ Result<void> ColorGroup::check() const {
     Image texel;
     texel.planes.emplace_back(Extent{1, 1}, 0.5f);
     texel.names = {"Y"};
-    auto converted = to_linear(texel, color);
+    auto converted = to_linear(texel, options());
     if (!converted && converted.error().code == ErrorCode::bad_option) {
         throw UsageError(fmt::format("--color-space: {}", converted.error().reason));
     }
     return converted;
 }
 
-std::string ColorGroup::config_file() const {
-    return is_given() && !color.config.starts_with("ocio://") ? color.config : std::string();
+std::vector<std::string> ColorGroup::files() const {
+    const std::string config = options().config;
+    if (!is_given() || config.empty() || config.starts_with("ocio://")) return {};
+    return {config};
 }
 
 void StrengthOptions::add(Command& command) {
@@ -50,7 +55,7 @@ void StrengthOptions::add(Command& command) {
                    "the height of value 1.0 in texels, as a shader measures it; negative: dents");
     command.option("--height-range", "R", "the height of value 1.0 in the unit of --size",
                    [this](const std::string& text) { height_range = parse_double(text); });
-    command.option("--size", "W[xH]", "the width and height of the whole map; without H texels are square",
+    command.option("--size", "W[xH]", "the width and height of the whole map; without H, texels are square",
                    [this](const std::string& text) {
                        const auto [first, second] = cut(text, 'x');
                        width = parse_double(first, kPositive);
@@ -101,7 +106,7 @@ Result<Plane<float>> read_channel(Job& job, const ChannelFile& source, const Exe
     HeightOptions channel;
     channel.channel = source.channel;
     auto values = height_field(*image, channel, execution);
-    if (!values) return Error{values.error().code, source.file, values.error().reason};
+    if (!values) return values.error().of(source.file);
     return std::move(values->height);
 }
 
@@ -110,15 +115,14 @@ Error HeightReader::with_remedy(const Error& error) {
     return {error.code, error.file, error.reason + "; --fill-invalid fills in the nearest valid ones"};
 }
 
-void HeightReader::note(Job& job, const HeightReport& report) {
-    if (const std::string config = color.config_file(); !config.empty()) job.depends_on(config);
+void HeightReader::note(const HeightReport& report) {
     if (report.luma_texels > 0) ++luma_files_;
     luma_texels_ += report.luma_texels;
 }
 
-void HeightReader::warn_of_luma() const {
+void HeightReader::warn_of_luma(Console& console) const {
     if (luma_files_ == 0) return;
-    print_warning(
+    console.warning(
         fmt::format("R, G and B differ in {} texels of {} file{}: their luma is the height; --channel chooses another",
                     luma_texels_.load(), luma_files_.load(), luma_files_ == 1 ? "" : "s"));
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <tex/color.h>
 #include <tex/height_field.h>
@@ -18,17 +19,18 @@ namespace tex::cli {
 
 // --color-space, --ocio-config and the variable OCIO.
 struct ColorGroup {
-    ColorOptions color;
+    ColorOptions color;  // without the variable
 
     void add(Command& command);
     [[nodiscard]] bool is_given() const { return !color.space.empty(); }
+    [[nodiscard]] ColorOptions options() const;
 
-    // Tries the conversion, so that a name that the configuration does not know is found before any file is
-    // read: throws UsageError; errors of Result: the configuration cannot be read.
+    // Tries the conversion, so that a name that the configuration does not know is found before any file is read:
+    // throws UsageError; errors of Result: the configuration cannot be read.
     [[nodiscard]] Result<void> check() const;
 
-    // The configuration as a file that outputs depend on, or empty.
-    [[nodiscard]] std::string config_file() const;
+    // The configuration, if it is a file: outputs depend on it.
+    [[nodiscard]] std::vector<std::string> files() const;
 };
 
 // Strength: --bumpiness, --height-range with --size, --uv-height. At most one of the three.
@@ -50,7 +52,7 @@ struct HeightGroup {
     void add(Command& command);
 };
 
-// FILE[:CHANNEL]: a picture of which one channel is read, a mask or a roughness map.
+// FILE[:CHANNEL]: one channel of a picture, for a mask or a roughness map.
 struct ChannelFile {
     std::string file;
     HeightChannel channel = HeightChannel::automatic;
@@ -58,21 +60,21 @@ struct ChannelFile {
 [[nodiscard]] ChannelFile parse_channel_file(const std::string& text);
 [[nodiscard]] Result<Plane<float>> read_channel(Job& job, const ChannelFile& source, const Execution& execution);
 
-// How the heights of jobs are read: all of the groups above, and what is told of it.
+// How the heights of jobs are read: all of the groups above, and the warnings about it.
 class HeightReader {
 public:
     StrengthOptions strength;
     ColorGroup color;
     HeightGroup heights;
 
-    // `error`, of reading or baking heights, with the option that avoids it, where there is one.
+    // `error`, of reading or baking heights, with the option that avoids it, if there is one.
     [[nodiscard]] static Error with_remedy(const Error& error);
 
-    // What the reading of a job's heights met; the job depends on the colour configuration.
-    void note(Job& job, const HeightReport& report);
+    // Counts what was found when a job's heights were read. Any thread may call.
+    void note(const HeightReport& report);
 
     // One warning for all files whose height had to be guessed from colours.
-    void warn_of_luma() const;
+    void warn_of_luma(Console& console) const;
 
 private:
     std::atomic<std::int64_t> luma_files_{0};

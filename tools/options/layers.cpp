@@ -8,6 +8,7 @@
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "options/mips.h"
 
 namespace tex::cli {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 constexpr Range kTilingRange{0.0, kMaxTiling, false};
 constexpr Range kOffsetRange{-kMaxTiling, kMaxTiling};
 
-// "X" or "X,Y"; without a comma Y is X where `square`, else an error.
+// "X" or "X,Y"; without a comma Y is X if `square`, else an error.
 std::pair<float, float> parse_pair(const std::string& text, Range range, bool square) {
     const auto [first, second] = cut(text, ',');
     const float x = parse_float(first, range);
@@ -41,7 +42,7 @@ void LayerOptions::add(Command& command) {
                 })
         .repeatable = true;
     add_placement(command);
-    Row& mask = command.option("--mask", "FILE[:CHANNEL]", "where the detail shows: white is all of it",
+    Row& mask = command.option("--mask", "FILE[:CHANNEL]", "a mask for the detail: white shows all of it",
                                [this](const std::string& text) { mask_.values.push_back(parse_channel_file(text)); });
     mask.completes = Completes::files;
     mask.repeatable = true;
@@ -52,7 +53,7 @@ void LayerOptions::add(Command& command) {
                 })
         .repeatable = true;
     Row& y =
-        command.option("--detail-y-in", "AXIS", "where green points in the detail",
+        command.option("--detail-y-in", "AXIS", "which way green points in the detail",
                        [this](const std::string& text) { y_in_.values.emplace_back(parse_word(text, kYAxisNames)); });
     y.words = words_of(kYAxisNames);
     y.completes = Completes::words;
@@ -67,20 +68,16 @@ void LayerOptions::add_placement(Command& command) {
     tiling.preset = "1,1";
     tiling.repeatable = true;
     Row& offset = command.option(
-        "--offset", "X,Y", "moves the detail, in its widths and heights; y upwards",
+        "--offset", "X,Y", "move the detail, in its own widths and heights; y is up",
         [this](const std::string& text) { offset_.values.push_back(parse_pair(text, kOffsetRange, false)); });
     offset.preset = "0,0";
     offset.repeatable = true;
     command
-        .option("--rotate", "DEGREES", "turns the detail counter-clockwise, its vectors too",
+        .option("--rotate", "DEGREES", "turn the detail counter-clockwise, its vectors too",
                 [this](const std::string& text) { rotation_.values.push_back(parse_float(text)); })
         .repeatable = true;
-    Row& wrap = command.option(
-        "--detail-wrap", "W[,W]", "what lies beyond the detail's border", [this](const std::string& text) {
-            const auto [first, second] = cut(text, ',');
-            const Wrap x = parse_word(first, kWrapNames);
-            wrap_.values.emplace_back(x, text.find(',') == std::string::npos ? x : parse_word(second, kWrapNames));
-        });
+    Row& wrap = command.option("--detail-wrap", "W[,W]", "what lies beyond the detail's border",
+                               [this](const std::string& text) { wrap_.values.push_back(parse_wraps(text)); });
     wrap.words = words_of(kWrapNames);
     wrap.completes = Completes::words;
     wrap.preset = name_of(kWrapNames, Layer{}.wrap_x);
@@ -103,19 +100,19 @@ void LayerOptions::check(std::size_t count) const {
     fits("--detail-y-in", y_in_.values.size());
 }
 
-std::vector<std::string> LayerOptions::mask_files() const {
-    std::vector<std::string> files;
+std::vector<std::string> LayerOptions::files() const {
+    std::vector<std::string> files = details_;
     for (const ChannelFile& mask : mask_.values) files.push_back(mask.file);
     return files;
 }
 
-std::vector<LayerFile> LayerOptions::files(Job& job, const std::vector<std::string>& names,
-                                           const SourceOptions& source) const {
+std::vector<LayerFile> LayerOptions::layers(Job& job, const std::vector<std::string>& names,
+                                            const NormalsReader& normals) const {
     std::vector<LayerFile> files;
     for (std::size_t k = 0; k < names.size(); ++k) {
         LayerFile& layer = files.emplace_back();
         layer.input = names[k];
-        layer.source = source.options(job, {false, true, y_in_.of(k, std::nullopt)});
+        layer.source = normals.options(job, {false, true, y_in_.of(k, std::nullopt)});
         layer.scale = scale_.of(k, layer.scale);
         std::tie(layer.tiling_x, layer.tiling_y) = tiling_.of(k, {layer.tiling_x, layer.tiling_y});
         std::tie(layer.offset_x, layer.offset_y) = offset_.of(k, {layer.offset_x, layer.offset_y});

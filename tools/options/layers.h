@@ -13,7 +13,7 @@
 #include "batch/job.h"
 #include "cli/command.h"
 #include "options/heights.h"
-#include "options/source.h"
+#include "options/normals.h"
 
 namespace tex::cli {
 
@@ -33,16 +33,16 @@ class LayerOptions {
 public:
     void add(Command& command);
 
-    // Throws UsageError where an option is given neither once nor once for each of `count` layers.
+    // Throws UsageError if an option is given neither once nor once for each of `count` layers.
     void check(std::size_t count) const;
 
     [[nodiscard]] const std::vector<std::string>& details() const { return details_; }
-    // The files of all masks.
-    [[nodiscard]] std::vector<std::string> mask_files() const;
+    // The files of --detail and --mask.
+    [[nodiscard]] std::vector<std::string> files() const;
 
     // The layers: `names` are their files. The job must outlive them.
-    [[nodiscard]] std::vector<LayerFile> files(Job& job, const std::vector<std::string>& names,
-                                               const SourceOptions& source) const;
+    [[nodiscard]] std::vector<LayerFile> layers(Job& job, const std::vector<std::string>& names,
+                                               const NormalsReader& normals) const;
 
 private:
     using Pair = std::pair<float, float>;

@@ -66,30 +66,32 @@ void OutputOptions::add(Command& command, std::string format_default, std::strin
         std::move(format_default);
     command
         .choice(container, "--container", "KIND", kContainerNames,
-                "the kind of file, where the output's name does not tell (a pipe)")
+                "the file type, if the output's name does not say it (a pipe)")
         .preset = "by extension; dds for -";
-    command.choice(y, "--y", "AXIS", kYAxisNames, "where green points in the output").preset = std::move(y_default);
-    command.choice(effort, "--effort", "E", kEffortNames, "how hard block encoders look for the smallest error");
-    command.choice(metric, "--metric", "M", kMetricNames, "which error --effort best makes smallest; angle implies it");
+    command.choice(y, "--y", "AXIS", kYAxisNames, "which way green points in the output").preset = std::move(y_default);
+    command.choice(effort, "--effort", "E", kEffortNames, "how hard block encoders search for the smallest error");
+    command.choice(metric, "--metric", "M", kMetricNames, "the error that --effort best minimises; angle implies best");
     command.choice(dds_header, "--dds-header", "H", kDdsHeaderNames, "the header of DDS files");
     command.flag(dds_mark, "--dds-mark", "mark DDS files as normal maps, as NVIDIA's tools do");
 }
 
 Container OutputOptions::container_for(const std::string& output, Container standard_output) const {
-    const std::optional<Container> told = container_of(output);
+    const std::optional<Container> named = container_of(output);
     if (container) {
-        if (told && *told != *container) {
+        if (named && *named != *container) {
             throw UsageError(fmt::format("{} says {}, --container says {}", printable(output),
-                                         name_of(kContainerNames, *told), name_of(kContainerNames, *container)));
+                                         name_of(kContainerNames, *named), name_of(kContainerNames, *container)));
         }
         return *container;
     }
-    if (told) return *told;
+    if (named) return *named;
     if (output == "-") return standard_output;
     const std::string extension = std::filesystem::path(output).extension().string();
-    throw UsageError(fmt::format(
-        "{}: {} is no kind of file that can be written ({}); --container names one", printable(output),
-        extension.empty() ? "a name without an extension" : "'" + printable(extension) + "'", known_extensions()));
+    throw UsageError(fmt::format("{}: {}; it must be one of {}, or give --container", printable(output),
+                                 extension.empty()
+                                     ? "a name without an extension"
+                                     : fmt::format("unsupported output format '{}'", printable(extension)),
+                                 known_extensions()));
 }
 
 void OutputOptions::check_holds(const std::string& output, Container container, Encoding encoding) {

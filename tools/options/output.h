@@ -27,17 +27,17 @@ struct OutputOptions {
     // `format_default` and `y_default` stand in the help.
     void add(Command& command, std::string format_default, std::string y_default);
 
-    // The container of `output` ("-" is `standard_output`'s); throws UsageError where its name does not tell.
+    // The container of `output` ("-" is `standard_output`'s). Throws UsageError if its name does not say.
     [[nodiscard]] Container container_for(const std::string& output, Container standard_output) const;
 
     // A metric of angles implies the best effort.
     [[nodiscard]] PackOptions pack_options(Encoding encoding, YAxis y_axis) const {
         return {encoding, y_axis, metric == Metric::angle ? Effort::best : effort, metric};
     }
-    // Those of the job, with what is asked for here.
+    // Those of the job, with the user's choices.
     [[nodiscard]] WriteOptions write_options(const Job& job) const;
 
-    // Throws UsageError where `encoding` does not fit into the container.
+    // Throws UsageError if the container cannot hold `encoding`.
     static void check_holds(const std::string& output, Container container, Encoding encoding);
 };
 
@@ -47,7 +47,7 @@ struct OutputOptions {
 // ".dds" for Container::dds: the first of its extensions.
 [[nodiscard]] std::string extension_of(Container container);
 
-// Tells the job's report extent, levels, format, y and bytes.
+// Puts extent, levels, format, y and bytes into the job's report.
 void report_texture(Job& job, Extent extent, int levels, const PackOptions& pack, std::size_t bytes);
 
 }  // namespace tex::cli

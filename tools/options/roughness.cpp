@@ -16,15 +16,15 @@
 namespace tex::cli {
 namespace {
 
-// Throws UsageError where the name does not tell.
+// Throws UsageError if the name does not say.
 Container container_for(const std::string& path) {
     if (const auto container = container_of(path)) return *container;
-    throw UsageError(fmt::format("--roughness-out: {} is no kind of file that can be written", printable(path)));
+    throw UsageError(fmt::format("--roughness-out: {}: unsupported output format", printable(path)));
 }
 
 }  // namespace
 
-void RoughnessOptions::add(Command& command, FileOptions& files) {
+void RoughnessOptions::add(Command& command, const FileOptions& files) {
     files_ = &files;
     command.group("Roughness");
     command
@@ -46,12 +46,13 @@ void RoughnessOptions::add(Command& command, FileOptions& files) {
             throw UsageError("--roughness-out: needs a value that is not empty");
         if (output_ == "-") throw UsageError("--roughness-out: needs a file, not standard output");
         if (!is_given() && !idle.empty()) throw UsageError(idle.front() + " does nothing without --roughness-out");
-        if (!is_given()) return;
-        files_->amend = [this](Task& task) {
-            task.beside.push_back(output_of(task));
-            if (!input_.file.empty()) task.also.push_back(input_of(task).file);
-        };
     });
+}
+
+void RoughnessOptions::amend(Task& task) const {
+    if (!is_given()) return;
+    task.more_outputs.push_back(output_of(task));
+    if (!input_.file.empty()) task.own.push_back(input_of(task).file);
 }
 
 void RoughnessOptions::take_input(const std::string& text) {
@@ -63,7 +64,7 @@ void RoughnessOptions::take_input(const std::string& text) {
     }
     input_ = parse_channel_file(text);
     if (input_.file == "-") throw UsageError("needs a file or a number, not standard input");
-    if (NamePattern(input_.file).uses("level")) throw UsageError("{level} has no meaning for what is read");
+    if (NamePattern(input_.file).uses("level")) throw UsageError("{level} has no meaning for an input");
 }
 
 ChannelFile RoughnessOptions::input_of(const Task& task) const {
@@ -95,7 +96,7 @@ void RoughnessOptions::check(const std::vector<Task>& tasks, int levels) const {
         }
         if (levels == 1 || can_hold_levels(container) || has_level(path)) continue;
         throw UsageError(
-            fmt::format("{}: a {} file holds one level; --roughness-out wants .dds, .ktx2 or .exr, or {{level}}",
+            fmt::format("{}: a {} file holds one level; --roughness-out needs .dds, .ktx2 or .exr, or {{level}}",
                         printable(path), kind));
     }
 }
@@ -111,14 +112,12 @@ RoughnessFile RoughnessOptions::file(Job& job, Effort effort) const {
     file.own = value_;
     if (input_.file.empty()) return file;
     file.map = [this, &job]() -> Result<Plane<float>> {
-        const ChannelFile source = input_of(job.task);
-        job.depends_on(source.file);
-        return read_channel(job, source, {job.threads(), {}});
+        return read_channel(job, input_of(job.task), {job.threads(), {}});
     };
     return file;
 }
 
-void RoughnessOptions::tell(Job& job, const PackFileReport& packed) const {
+void RoughnessOptions::report(Job& job, const PackFileReport& packed) const {
     if (!is_given()) return;
     const std::string path = output_of(job.task);
     const std::vector<std::string> normals = job.outputs();
@@ -126,15 +125,15 @@ void RoughnessOptions::tell(Job& job, const PackFileReport& packed) const {
     wrote_levels(job, path, packed.levels);
     const std::vector<std::string> written(job.outputs().begin() + static_cast<std::ptrdiff_t>(normals.size()),
                                            job.outputs().end());
-    Json report;
+    Json map;
     if (has_level(path))
-        report["output"] = written;
+        map["output"] = written;
     else
-        report["output"] = path;
-    report["format"] = name_of(kRoughnessFormatNames, format_in(container_for(path)));
-    report["model"] = name_of(kRoughnessModelNames, model_);
-    report["bytes"] = packed.roughness_bytes;
-    job.report["roughness"] = std::move(report);
+        map["output"] = path;
+    map["format"] = name_of(kRoughnessFormatNames, format_in(container_for(path)));
+    map["model"] = name_of(kRoughnessModelNames, model_);
+    map["bytes"] = packed.roughness_bytes;
+    job.report["roughness"] = std::move(map);
 }
 
 }  // namespace tex::cli

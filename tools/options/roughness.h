@@ -10,9 +10,9 @@
 #include <tex/pipeline.h>
 #include <tex/roughness.h>
 
-#include "batch/files.h"
 #include "batch/job.h"
 #include "cli/command.h"
+#include "options/files.h"
 #include "options/heights.h"
 
 namespace tex::cli {
@@ -29,18 +29,21 @@ inline constexpr Named<Format> kRoughnessFormatNames[] = {
 // --roughness-out, --roughness-in, --roughness-model, --roughness-format.
 class RoughnessOptions {
 public:
-    // Tells `files` of what is read and written besides; it must outlive this.
-    void add(Command& command, FileOptions& files);
+    // `files` must outlive this.
+    void add(Command& command, const FileOptions& files);
 
     [[nodiscard]] bool is_given() const { return !output_.empty(); }
 
-    // Throws UsageError where an output cannot hold the levels. `levels` are those asked for, 0 for all.
+    // Adds the files that are read and written besides.
+    void amend(Task& task) const;
+
+    // Throws UsageError if an output cannot hold the levels that the user asks for (0 for all).
     void check(const std::vector<Task>& tasks, int levels) const;
 
-    // What the library makes of them; it reads what --roughness-in names when it needs it. The job must outlive it.
+    // What the library makes of them; it reads the file of --roughness-in when it needs it. The job must outlive it.
     [[nodiscard]] RoughnessFile file(Job& job, Effort effort) const;
-    // Tells the job's report of a map that has been written after the normals; nothing where none was asked for.
-    void tell(Job& job, const PackFileReport& packed) const;
+    // Puts the map, if one was written after the normals, into the job's report.
+    void report(Job& job, const PackFileReport& packed) const;
 
 private:
     void take_input(const std::string& text);
@@ -48,7 +51,7 @@ private:
     [[nodiscard]] std::string output_of(const Task& task) const;
     [[nodiscard]] Format format_in(Container container) const;
 
-    FileOptions* files_ = nullptr;
+    const FileOptions* files_ = nullptr;
     std::string output_;  // a pattern
     ChannelFile input_;   // its file is a pattern; empty: value_
     float value_ = 0.0f;

@@ -3,6 +3,7 @@
 #include "options/scene.h"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,7 +13,7 @@
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
-#include "options/groups.h"
+#include "options/mips.h"
 
 namespace tex::cli {
 namespace {
@@ -22,13 +23,7 @@ constexpr int kLargestPicture = 16384;
 // Numbers with commas between them.
 std::vector<float> parse_floats(const std::string& text, std::size_t least, std::size_t most, Range range = {}) {
     std::vector<float> values;
-    std::string rest = text;
-    for (bool more = true; more;) {
-        more = rest.find(',') != std::string::npos;
-        auto [first, second] = cut(rest, ',');
-        values.push_back(parse_float(first, range));
-        rest = std::move(second);
-    }
+    for (const std::string& part : split(text, ',')) values.push_back(parse_float(part, range));
     if (values.size() < least || values.size() > most) {
         throw UsageError(
             least == most
@@ -136,7 +131,7 @@ void SceneOptions::add_light(Command& command) {
                     light.z = v[2];
                 })
         .preset = fmt::format("{},{},{}", light.x, light.y, light.z);
-    command.choice(light.kind, "--light-kind", "KIND", kLightKindNames, "what kind of light");
+    command.choice(light.kind, "--light-kind", "KIND", kLightKindNames, "which type of light");
     add_color(command, light.color, "--light-color", "its colour");
     add_color(command, preview.ambient, "--ambient", "light from everywhere");
 }
@@ -144,7 +139,7 @@ void SceneOptions::add_light(Command& command) {
 void SceneOptions::add_material(Command& command) {
     command.group("Material");
     Material& material = preview.material;
-    add_file(command, albedo, "--albedo", "the albedo map, in sRGB; linear where it holds floats");
+    add_file(command, albedo, "--albedo", "the albedo map, in sRGB; linear if it holds floats");
     add_color(command, material.albedo, "--tint", "the albedo, multiplied with its map");
     add_color(command, material.specular, "--specular", "the colour of highlights");
     command.number(material.shininess, "--shininess", "S", kPositive, "the exponent of highlights");
@@ -160,10 +155,10 @@ void SceneOptions::add_detail(Command& command) {
     add_file(command, detail, "--detail", "a normal map blended over each map by whiteout");
     add_file(command, detail_albedo, "--detail-albedo",
              "an albedo map multiplied with the albedo; grey 0.5 changes nothing");
-    add_pair(command, fine.tiling_x, fine.tiling_y, "--detail-tiling", "how often it stands on the map");
+    add_pair(command, fine.tiling_x, fine.tiling_y, "--detail-tiling", "how often it repeats across the map");
     add_pair(command, fine.offset_x, fine.offset_y, "--detail-offset", "its offset in its own widths");
     command.number(fine.scale, "--detail-scale", "S", {}, "its strength");
-    command.choice(detail_y_in, "--detail-y-in", "AXIS", kYAxisNames, "where green points in it").preset =
+    command.choice(detail_y_in, "--detail-y-in", "AXIS", kYAxisNames, "which way green points in it").preset =
         "as the file says, else as --y-in";
     check_needs(command, "--detail", {"--detail-scale", "--detail-y-in"});
     command.check([&command] {
@@ -188,13 +183,9 @@ void SceneOptions::add_parallax(Command& command) {
 
 void SceneOptions::add_sampling(Command& command) {
     command.group("Sampling");
-    Row& row = command.option("--wrap", "W[,W]", "what lies beyond the border of all maps, or for x and y apart",
-                              [this](const std::string& text) {
-                                  const auto [first, second] = cut(text, ',');
-                                  preview.wrap_x = parse_word(first, kWrapNames);
-                                  preview.wrap_y = text.find(',') == std::string::npos ? preview.wrap_x
-                                                                                       : parse_word(second, kWrapNames);
-                              });
+    Row& row = command.option(
+        "--wrap", "W[,W]", "what lies beyond the border of all maps; two words set x and y separately",
+        [this](const std::string& text) { std::tie(preview.wrap_x, preview.wrap_y) = parse_wraps(text); });
     row.words = {
         {"repeat", "the texture tiles"}, {"clamp", "the border texel again"}, {"mirror", "the texture is mirrored"}};
     row.completes = Completes::words;
@@ -211,9 +202,9 @@ std::vector<std::string> SceneOptions::files() const {
     return names;
 }
 
-Result<SampledMap> read_sampled_map(Job& job, const std::string& path, SourceOptions& source, const Reading& reading,
+Result<SampledMap> read_sampled_map(Job& job, const std::string& path, NormalsReader& normals, const Reading& reading,
                                     const PreviewOptions& preview, const Execution& execution) {
-    auto read = source.read(job, path, execution, reading);
+    auto read = normals.read(job, path, execution, reading);
     if (!read) return read.error();
     SampledMap map;
     map.without_z =
@@ -224,16 +215,16 @@ Result<SampledMap> read_sampled_map(Job& job, const std::string& path, SourceOpt
         mip.wrap_x = preview.wrap_x;
         mip.wrap_y = preview.wrap_y;
         auto built = build_mip_chain(std::move(map.chain.levels.front()), mip, execution);
-        if (!built) return Error{built.error().code, path, built.error().reason};
+        if (!built) return built.error().of(path);
         map.chain = std::move(*built);
     }
     return map;
 }
 
-Result<SceneFiles> SceneOptions::read(Job& job, SourceOptions& source, const Execution& execution) const {
+Result<SceneFiles> SceneOptions::read(Job& job, NormalsReader& normals, const Execution& execution) const {
     SceneFiles files;
     if (!detail.empty()) {
-        auto map = read_sampled_map(job, detail, source, {false, true, detail_y_in, false}, preview, execution);
+        auto map = read_sampled_map(job, detail, normals, {false, true, detail_y_in, false}, preview, execution);
         if (!map) return map.error();
         files.detail = std::move(*map);
     }
@@ -242,8 +233,7 @@ Result<SceneFiles> SceneOptions::read(Job& job, SourceOptions& source, const Exe
         auto image = read_image(*path, job.read_options);
         if (!image) return image.error();
         if (image->sample != SampleKind::floating) {
-            if (auto linear = to_linear(*image, {"sRGB", {}}); !linear)
-                return Error{linear.error().code, *path, linear.error().reason};
+            if (auto linear = to_linear(*image, {"sRGB", {}}); !linear) return linear.error().of(*path);
         }
         *target = std::move(*image);
     }
@@ -251,7 +241,7 @@ Result<SceneFiles> SceneOptions::read(Job& job, SourceOptions& source, const Exe
         auto image = read_image(height, job.read_options);
         if (!image) return image.error();
         auto field = height_field(*image, {}, execution);
-        if (!field) return Error{field.error().code, height, field.error().reason};
+        if (!field) return field.error().of(height);
         files.height = std::move(field->height);
     }
     return files;

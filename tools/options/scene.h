@@ -11,18 +11,18 @@
 
 #include "batch/job.h"
 #include "cli/command.h"
-#include "options/source.h"
+#include "options/normals.h"
 
 namespace tex::cli {
 
-// A normal map as it is sampled: its own levels or, where the file has one only, levels made from it.
+// A normal map as it is sampled: its own levels or, if the file has one only, levels made from it.
 struct SampledMap {
     MipChain chain;
     bool without_z = false;
 };
 
 // Reading::keep_length is for pictures that show what is wrong with a map.
-[[nodiscard]] Result<SampledMap> read_sampled_map(Job& job, const std::string& path, SourceOptions& source,
+[[nodiscard]] Result<SampledMap> read_sampled_map(Job& job, const std::string& path, NormalsReader& normals,
                                                   const Reading& reading, const PreviewOptions& preview,
                                                   const Execution& execution);
 
@@ -43,8 +43,8 @@ struct SceneOptions {
     void add(Command& command);
 
     [[nodiscard]] std::vector<std::string> files() const;
-    // The detail is read as `source` says, but for its y.
-    [[nodiscard]] Result<SceneFiles> read(Job& job, SourceOptions& source, const Execution& execution) const;
+    // The detail is read as `normals` says, but for its y.
+    [[nodiscard]] Result<SceneFiles> read(Job& job, NormalsReader& normals, const Execution& execution) const;
 
 private:
     void add_shape(Command& command);

@@ -49,7 +49,7 @@ std::string_view unsupported_reason(const std::string& format, const OIIO::Image
     }
     if (spec.deep) return "deep data have no single value for a texel";
     if (spec.depth > 1) return "volumes are not read";
-    // This decoder has no unassociated alpha: it multiplies colour by alpha, whatever it is asked.
+    // This decoder has no unassociated alpha: it multiplies colour by alpha in any case.
     if (format == "webp" && spec.alpha_channel >= 0) return "WebP pictures with alpha are not read";
     return {};
 }

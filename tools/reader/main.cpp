@@ -53,7 +53,7 @@ void put_header(const ReaderHeader& header) {
 
 void put_progress() {
     const char strip = 0;
-    if (write(kProgressDescriptor, &strip, 1) != 1) _exit(1);  // nobody listens any more
+    if (write(kProgressDescriptor, &strip, 1) != 1) _exit(1);  // the parent has gone
 }
 
 bool refuse(ReaderHeader& header, ErrorCode code, const std::string& reason) {
@@ -102,7 +102,7 @@ void refuse_memory(ReaderHeader& header, const Task& task) {
            "needs more memory than the " + in_units(std::min(most, task.memory)) + " that a decoder may have");
 }
 
-// A thread is refused where there is no room for its stack, too, and the system's words for both are the same.
+// A thread is also refused if there is no room for its stack, and the system's words for both are the same.
 bool has_room_for_a_thread() {
     constexpr std::size_t kStack = std::size_t{9} << 20;
     void* const stack = mmap(nullptr, kStack, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // reader.h: the parts of tex-reader, the one program that links OpenImageIO.
 //
-// reader_protocol.h says what it is asked and what it answers. It reads one file, or encodes one picture, and ends.
+// reader_protocol.h describes requests and answers. It reads one file, or encodes one picture, and ends.
 
 #pragma once
 
@@ -28,15 +28,15 @@ void limit_process(const Task& task);
 // Bytes of address space and of one file that this process may have: the lesser of both.
 std::int64_t memory_limit();
 
-// Takes away all files but the input, which may be read (Landlock). False where the kernel does not know it, or
+// Takes away all files but the input, which may be read (Landlock). False if the kernel does not know it, or
 // refuses.
 bool restrict_files();
 
-// The kernel's version of Landlock; 0 where it has none.
+// The kernel's version of Landlock; 0 if it has none.
 int landlock_version();
 
 // Takes away the system calls that a decoder needs no more: the network, opening files for writing, other programs,
-// other processes (seccomp). False where the kernel refuses the filter. Where either is refused, the other and the
+// other processes (seccomp). False if the kernel refuses the filter. If either is refused, the other and the
 // limits stay.
 bool filter_calls();
 
@@ -44,9 +44,9 @@ bool filter_calls();
 bool decode(const Task& task, ReaderHeader& header);
 bool encode(const Task& task, ReaderHeader& header);
 
-// Writes the header; where that fails, the process ends with kNoRoom.
+// Writes the header; if that fails, the process ends with kNoRoom.
 void put_header(const ReaderHeader& header);
-// Throws std::bad_alloc where the result has no room for them.
+// Throws std::bad_alloc if the result has no room for them.
 void put_bytes(std::uint64_t offset, const void* data, std::uint64_t count);
 // Tells the parent that rows have arrived.
 void put_progress();

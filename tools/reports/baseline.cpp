@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "batch/text_file.h"
 #include "cli/text.h"
 #include "reports/json.h"
-#include "reports/text_file.h"
 
 namespace tex::cli {
 

@@ -68,6 +68,14 @@ std::string findings_text(const CheckReport& report, const Requirements& require
     return text;
 }
 
+std::string pair_text(const CheckReport& report) {
+    if (!report.pair) return {};
+    const PairEvidence& pair = *report.pair;
+    return fmt::format("{}: fits the height map with correlation {:.2f}, strength {:.2f}, y {}, offset {}, {}\n",
+                       printable(report.file), pair.correlation, pair.strength, name_of_y(pair.y), pair.offset_x,
+                       pair.offset_y);
+}
+
 Json findings_json(const CheckReport& report, const Requirements& require) {
     Json json;
     if (report.error) {
@@ -132,8 +140,24 @@ std::string rule_text(const Rule& rule) {
         for (const std::string& line : wrapped(part, 78)) text += line + "\n";
     }
     if (!rule.fix.empty()) text += fmt::format("\nFix: {}\n", rule.fix);
-    if (!rule.explains.empty()) text += fmt::format("\nWhere it is found, these are left out: {}\n", rule.explains);
+    if (!rule.explains.empty()) text += fmt::format("\nIf it is found, these are left out: {}\n", rule.explains);
     return text;
+}
+
+void CheckTotals::add(const CheckReport& report, int its_known) {
+    ++files;
+    known += its_known;
+    if (report.error) ++unreadable;
+    for (const Finding& finding : report.findings) ++by_severity[static_cast<int>(finding.severity)];
+}
+
+std::string CheckTotals::text() const {
+    const auto count = [](int n, const char* one) { return fmt::format("{} {}{}", n, one, n == 1 ? "" : "s"); };
+    std::string line = fmt::format("{}: {}, {}, {}", count(files, "file"), count(by_severity[2], "error"),
+                                   count(by_severity[1], "warning"), count(by_severity[0], "note"));
+    if (unreadable > 0) line += fmt::format("; {} unreadable", unreadable);
+    if (known > 0) line += fmt::format("; {} known and accepted", known);
+    return line;
 }
 
 }  // namespace tex::cli

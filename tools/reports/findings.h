@@ -18,11 +18,24 @@ namespace tex::cli {
 // instead of up".
 [[nodiscard]] std::string findings_text(const CheckReport& report, const Requirements& require);
 
-// The report, as --json tells it.
+// What was fitted to the height map, whether or not that is a finding; empty without one.
+[[nodiscard]] std::string pair_text(const CheckReport& report);
+
+// The report, as --json prints it.
 [[nodiscard]] Json findings_json(const CheckReport& report, const Requirements& require);
 
 // All rules in a table, and one of them at length.
 [[nodiscard]] std::string rules_text();
 [[nodiscard]] std::string rule_text(const Rule& rule);
+
+// Counts of files and of findings by severity, for the last line.
+struct CheckTotals {
+    int files = 0, unreadable = 0, known = 0;
+    int by_severity[3] = {};
+
+    // `its_known`: findings that a baseline took out of the report.
+    void add(const CheckReport& report, int its_known);
+    [[nodiscard]] std::string text() const;
+};
 
 }  // namespace tex::cli

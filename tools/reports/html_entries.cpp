@@ -17,7 +17,7 @@
 namespace tex::cli {
 namespace {
 
-constexpr std::size_t kMostRegions = 4;  // told of a finding
+constexpr std::size_t kMostRegions = 4;  // listed for a finding
 
 std::string fact(const char* name, const std::string& value) {
     return fmt::format("<dt>{}</dt><dd>{}</dd>\n", name, html_text(value));

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// html_report.h: what a command found, as one HTML file that needs no other: --report.
+// html_report.h: what a command found, as one HTML file that needs no other file: --report.
 //
 // The page holds a table of its entries, and for each entry its figures, still pictures and the levels of its maps, on
-// which a reader with JavaScript and WebGL moves a light. Its parts are tools/cli/report_page.html, .css and .js, which
-// the build puts into the program.
+// which a reader with JavaScript and WebGL moves a light. Its parts are tools/reports/report_page.html, .css and .js,
+// which the build puts into the program.
 //
 // The bytes depend on the entries alone: no time, no host, no order in which files ended.
 
@@ -32,7 +32,7 @@ struct HtmlEntry {
     std::string row;                  // the cells after the title's, as HTML
     std::string words;                // what the page's filter looks at: "error", "warning", "note", "clean"
     std::string body;                 // facts and figures, as HTML
-    std::vector<HtmlMap> maps;        // one, two that are compared, or none where the file could not be read
+    std::vector<HtmlMap> maps;        // one, two that are compared, or none if the file could not be read
     std::vector<HtmlPicture> extras;  // pictures of both maps together
 };
 

@@ -16,7 +16,7 @@ namespace tex::cli {
 using Json =
     nlohmann::basic_json<nlohmann::ordered_map, std::vector, std::string, bool, std::int64_t, std::uint64_t, float>;
 
-// What --json tells of a failure. The file is named where it is another one than `input`: another input, or an output.
+// What --json prints about a failure. The file is named if it is not `input`: another input, or an output.
 [[nodiscard]] inline Json error_json(const Error& error, const std::string& input) {
     Json json = {{"code", name_of(kErrorCodeNames, error.code)}, {"reason", error.reason}};
     if (!error.file.empty() && error.file != input) json["file"] = error.file;

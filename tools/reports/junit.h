@@ -10,7 +10,7 @@
 
 namespace tex::cli {
 
-// One test case for each file: a failure with the findings at or above `fail_on`, an error where it could not be read;
+// One test case for each file: a failure with the findings at or above `fail_on`, an error if it could not be read;
 // lesser findings are its output.
 [[nodiscard]] std::string junit_text(const std::vector<CheckReport>& reports, const Requirements& require,
                                      Severity fail_on);

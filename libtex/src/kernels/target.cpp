@@ -18,6 +18,16 @@ std::int64_t KernelTarget() { return HWY_TARGET; }
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+// A stopgap, by symbol interposition. When Highway's library (1.0.3) is loaded, a constructor of it measures the
+// resolution of the processor's clock, which only Highway's benchmarks use, and takes 3 to 4 ms to do so: a third of
+// what a small texture takes from start to finish. The constructor finds this function instead in every process that
+// links libtex before Highway. It can go with a Highway that does not measure when it is loaded, or if libtex
+// dispatches kernels itself, without Highway's library.
+namespace hwy::platform {
+__attribute__((visibility("default"))) double TimerResolution();
+double TimerResolution() { return 1e-8; }
+}  // namespace hwy::platform
+
 namespace tex {
 
 HWY_EXPORT(KernelTarget);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// check_config.h: what a project wants of its textures, in a TOML file.
+// check_config.h: what a project requires of its textures, in a TOML file.
 //
 //     require = ["format=dxt5nm", "mips=full", "y=up"]
 //     enable  = ["not-power-of-two"]
@@ -25,7 +25,7 @@ struct CheckConfig {
     std::optional<Severity> fail_on;
 };
 
-// Throws UsageError where the file says what does not exist (with its line where that is known). Errors: io.
+// Throws UsageError if the file names something that does not exist (with the line if it is known). Errors: io.
 [[nodiscard]] Result<CheckConfig> read_check_config(const std::string& path);
 
 // The same from memory; `path` is for messages.

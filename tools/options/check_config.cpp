@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "reports/check_config.h"
+#include "options/check_config.h"
 
 #include <algorithm>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "batch/text_file.h"
 #include "cli/command.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
-#include "reports/text_file.h"
 
 // toml++ 3.3 asserts what a file can break (a table whose name begins with a colon), and in releases assumes it: here
 // that is an error of the file.
@@ -60,9 +60,9 @@ private:
         std::vector<std::pair<std::string, const toml::node*>> list;
         const toml::node* node = table_.get(key);
         if (node == nullptr) return list;
-        if (!node->is_array()) fail(*node, fmt::format("{} is not a list of strings", key));
+        if (!node->is_array()) fail(*node, fmt::format("{} must be a list of strings", key));
         for (const toml::node& item : *node->as_array()) {
-            if (!item.is_string()) fail(item, fmt::format("{} holds what is no string", key));
+            if (!item.is_string()) fail(item, fmt::format("{} must hold strings only", key));
             list.emplace_back(item.as_string()->get(), &item);
         }
         return list;
@@ -75,14 +75,14 @@ private:
 
     Severity severity(const toml::node& node) const {
         const auto found = node.is_string() ? find_by_name(kSeverityNames, node.as_string()->get()) : std::nullopt;
-        if (!found) fail(node, fmt::format("severities are {}", join(names_of(words_of(kSeverityNames)))));
+        if (!found) fail(node, fmt::format("a severity must be one of {}", join(names_of(words_of(kSeverityNames)))));
         return *found;
     }
 
     void read_severities(CheckConfig& config) const {
         const toml::node* node = table_.get("severity");
         if (node == nullptr) return;
-        if (!node->is_table()) fail(*node, "severity is not a table");
+        if (!node->is_table()) fail(*node, "severity must be a table");
         for (const auto& [key, value] : *node->as_table()) {
             config.options.severity.emplace_back(rule_name(std::string(key.str()), value), severity(value));
         }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "options/groups.h"
+#include "options/mips.h"
 
 #include <limits>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -12,12 +13,15 @@
 
 namespace tex::cli {
 
+std::pair<Wrap, Wrap> parse_wraps(const std::string& text) {
+    const auto [first, second] = cut(text, ',');
+    const Wrap x = parse_word(first, kWrapNames);
+    return {x, text.find(',') == std::string::npos ? x : parse_word(second, kWrapNames)};
+}
+
 void WrapOptions::add(Command& command, std::string help) {
-    Row& row = command.option("--wrap", "W[,W]", std::move(help), [this](const std::string& text) {
-        const auto [first, second] = cut(text, ',');
-        x = parse_word(first, kWrapNames);
-        y = text.find(',') == std::string::npos ? x : parse_word(second, kWrapNames);
-    });
+    Row& row = command.option("--wrap", "W[,W]", std::move(help),
+                              [this](const std::string& text) { std::tie(x, y) = parse_wraps(text); });
     row.words = words_of(kWrapNames);
     row.completes = Completes::words;
     row.preset = name_of(kWrapNames, x);
@@ -37,13 +41,13 @@ void MipChainOptions::add(Command& command, bool with_keep, std::string levels_d
                 try {
                     levels = parse_int(text, 1, std::numeric_limits<int>::max());
                 } catch (const UsageError&) {
-                    throw UsageError(fmt::format("'{}' is neither all{} nor none nor a number of at least 1",
-                                                 printable(text), with_keep ? " nor keep" : ""));
+                    throw UsageError(fmt::format("must be all, {}none or a number of at least 1, not '{}'",
+                                                 with_keep ? "keep, " : "", printable(text)));
                 }
             }
         });
     row.words = {{"all", "down to 1x1"}, {"none", "the base level alone"}};
-    if (with_keep) row.words.insert(row.words.begin() + 1, {"keep", "those that the source has"});
+    if (with_keep) row.words.insert(row.words.begin() + 1, {"keep", "those of the source"});
     row.completes = Completes::words;
     row.preset = std::move(levels_default);
 
@@ -65,7 +69,7 @@ void MipChainOptions::check_builds(const Command& command) const {
     if (levels && !keep) return;
     const std::vector<std::string> idle = command.given_of({"--mip-filter", "--mip-domain", "--fade", "--wrap"});
     if (idle.empty()) return;
-    throw UsageError(fmt::format("{} does nothing where levels are kept; --mips all builds them", idle.front()));
+    throw UsageError(fmt::format("{} does nothing if levels are kept; --mips all builds them", idle.front()));
 }
 
 void MipChainOptions::check(const std::vector<Task>& tasks) const {
@@ -73,7 +77,7 @@ void MipChainOptions::check(const std::vector<Task>& tasks) const {
     for (const Task& task : tasks) {
         if (can_hold_levels(task.container) || has_level(task.output)) continue;
         throw UsageError(
-            fmt::format("{}: a {} file holds one level; --mips wants .dds, .ktx2 or .exr, or --name with {{level}}",
+            fmt::format("{}: a {} file holds one level; --mips needs .dds, .ktx2 or .exr, or --name with {{level}}",
                         printable(task.output), name_of(kContainerNames, task.container)));
     }
 }
@@ -81,6 +85,14 @@ void MipChainOptions::check(const std::vector<Task>& tasks) const {
 int MipChainOptions::levels_for(const Task& task) const {
     if (levels) return *levels;
     return can_hold_blocks(task.container) || has_level(task.output) ? 0 : 1;
+}
+
+MipOptions MipChainOptions::options(int count, const WrapOptions& wrap) const {
+    MipOptions with = mip;
+    with.levels = count;
+    with.wrap_x = wrap.x;
+    with.wrap_y = wrap.y;
+    return with;
 }
 
 }  // namespace tex::cli

@@ -1,29 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "reports/report.h"
+#include "batch/outcome.h"
 
 #include <fmt/format.h>
-
-#include "cli/console.h"
-#include "cli/stream.h"
 
 namespace tex::cli {
 
 void Reporter::finish(std::size_t place, Outcome outcome) {
     const std::lock_guard lock(mutex_);
     waiting_[place] = std::move(outcome);
-    for (; told_ < waiting_.size() && waiting_[told_]; ++told_) {
-        tell(*waiting_[told_]);
-        waiting_[told_].reset();
+    for (; reported_ < waiting_.size() && waiting_[reported_]; ++reported_) {
+        report(*waiting_[reported_]);
+        waiting_[reported_].reset();
     }
 }
 
-void Reporter::tell(const Outcome& outcome) {
-    for (const std::string& warning : outcome.warnings) print_warning(fmt::format("{}: {}", outcome.input, warning));
+void Reporter::report(const Outcome& outcome) {
+    for (const std::string& warning : outcome.warnings) console_.warning(fmt::format("{}: {}", outcome.input, warning));
     if (outcome.error) {
         if (outcome.error->code == ErrorCode::cancelled) return;
         const Error error = outcome.error->of(outcome.input);
-        if (!outcome.is_silent) print_error(error.message());
+        if (!outcome.is_silent) console_.error(error.message());
         raise(outcome.is_bug ? ExitCode::bug : cli::exit_code(error.code));
     } else {
         ++done_;
@@ -35,13 +32,13 @@ void Reporter::tell(const Outcome& outcome) {
     raise(outcome.code);
     if (is_abandoned_) return;
     if (json_) {
-        tell_json(outcome);
+        print_result(json_line(outcome));
     } else if (!outcome.text.empty()) {
         print_result(outcome.text);
     }
 }
 
-void Reporter::tell_json(const Outcome& outcome) {
+std::string Reporter::json_line(const Outcome& outcome) {
     Json line;
     line["input"] = outcome.input;
     if (outcome.error) {
@@ -54,12 +51,11 @@ void Reporter::tell_json(const Outcome& outcome) {
         }
         line.update(outcome.report);
     }
-    print_result(to_line(line));
+    return to_line(line);
 }
 
 void Reporter::print_result(const std::string& text) {
-    clear_progress();
-    if (print(text) == ExitCode::done) return;
+    if (console_.print(text) == ExitCode::done) return;
     raise(ExitCode::io);
     is_abandoned_ = true;
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "reports/text_file.h"
+#include "batch/text_file.h"
 
 #include <cerrno>
 #include <cstdio>
 #include <memory>
+#include <vector>
 
 #include "files/system_error.h"
 
@@ -25,6 +26,11 @@ Result<std::string> read_text_file(const std::string& path) {
     while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, file)) text.append(buffer, count);
     if (std::ferror(file) != 0) return failed();
     return text;
+}
+
+Result<void> write_text_file(const std::string& path, const std::string& text, const WriteOptions& options) {
+    const auto* bytes = reinterpret_cast<const std::byte*>(text.data());
+    return write_file(path, std::vector<std::byte>(bytes, bytes + text.size()), options);
 }
 
 }  // namespace tex::cli

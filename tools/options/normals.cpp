@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "options/source.h"
+#include "options/normals.h"
 
 #include <algorithm>
 
 #include <fmt/format.h>
 #include <tex/swizzle.h>
 
-#include "cli/console.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
 
@@ -20,24 +19,24 @@ std::string swizzle_name(const Swizzle& swizzle) {
     return name.empty() ? to_string(swizzle) : std::string(name);
 }
 
-Encoding exact_encoding(const SourceInfo& source) {
-    const FormatInfo info = format_info(source.format);
+Encoding exact_encoding(const SourceInfo& input) {
+    const FormatInfo info = format_info(input.format);
     for (const auto& row : kEncodingNames) {
         const Format format = encoding_info(row.value).format;
-        if (format == source.format && (info.has_blocks() || info.channels == 2)) return row.value;
+        if (format == input.format && (info.has_blocks() || info.channels == 2)) return row.value;
     }
     if (info.channels == 2 && info.sample == SampleKind::snorm) return info.bits == 8 ? Encoding::rg8 : Encoding::rg16;
     if (info.sample == SampleKind::floating) return info.bits == 16 ? Encoding::half : Encoding::float_;
     if (info.bits == 16) return Encoding::rgb16;
-    if (!info.has_blocks() && source.swizzle[3] == Component::x) return Encoding::ag8;
-    return source.format == Format::rgba8_unorm ? Encoding::rgba8 : Encoding::rgb8;
+    if (!info.has_blocks() && input.swizzle[3] == Component::x) return Encoding::ag8;
+    return input.format == Format::rgba8_unorm ? Encoding::rgba8 : Encoding::rgb8;
 }
 
 }  // namespace
 
-Encoding encoding_of(const SourceInfo& source, const Task& task) {
+Encoding encoding_of(const SourceInfo& input, const Task& task) {
     const std::optional<Container> before = container_of(task.input);
-    const Encoding encoding = exact_encoding(source);
+    const Encoding encoding = exact_encoding(input);
     if (before && can_hold_blocks(*before) == can_hold_blocks(task.container)) {
         if (can_hold(task.container, encoding)) return encoding;
         if (encoding == Encoding::rgba8 && can_hold(task.container, Encoding::rgb8)) return Encoding::rgb8;
@@ -45,13 +44,13 @@ Encoding encoding_of(const SourceInfo& source, const Task& task) {
     return default_encoding(task.container);
 }
 
-void report_source(Job& job, const SourceInfo& info) {
+void report_input(Job& job, const SourceInfo& info) {
     job.report["source"] = {{"format", name_of(kFormatNames, info.format)}, {"swizzle", swizzle_name(info.swizzle)}};
 }
 
-void SourceOptions::add(Command& command, bool with_keep_length) {
+void NormalsReader::add(Command& command, bool with_keep_length) {
     command.group("Input");
-    command.choice(unpack.y_axis, "--y-in", "AXIS", kYAxisNames, "where green points in the input").preset =
+    command.choice(unpack.y_axis, "--y-in", "AXIS", kYAxisNames, "which way green points in the input").preset =
         "as the file says, else up";
     Row& row = command.option("--swizzle", "S", "which channels hold what", [this](const std::string& text) {
         std::vector<std::string> names = names_of(words_of(kSwizzleNames));
@@ -61,27 +60,27 @@ void SourceOptions::add(Command& command, bool with_keep_length) {
         rg_or_ag = text == "rgorag";
     });
     row.words = words_of(kSwizzleNames);
-    row.words.insert(row.words.begin(), {"auto", "as the file says, else as its texels look"});
+    row.words.insert(row.words.begin(), {"auto", "as the file says, else guessed from the texels"});
     row.words.push_back({"rgorag", "x in R or A, whichever varies, y in G: R * A in a shader"});
     row.preset = "auto";
     row.completes = Completes::words;
     command.choice(bc5_order, "--bc5-order", "ORDER", kBc5OrderNames, "the channels of BC5 files that do not say")
         .preset = "yx in ATI2, else xy";
-    command.choice(unpack.range, "--range", "R", kValueRangeNames, "how stored floats are to be read");
+    command.choice(unpack.range, "--range", "R", kValueRangeNames, "how stored floats are read");
     command.flag(unpack.snap_flat, "--snap-flat", "read 127 and 128 of 8-bit files as 0");
     if (with_keep_length) command.flag(unpack.keep_length, "--keep-length", "do not normalise what is read");
 }
 
-void SourceOptions::warn_of_guesses() const {
+void NormalsReader::warn_of_guesses(Console& console) const {
     for (const auto& [name, guesses] : guesses_) {
         const std::string more = guesses.count > 1 ? fmt::format(" and {} more", guesses.count - 1) : std::string();
-        print_warning(
-            fmt::format("{}{}: taken for {}, as the texels look; --swizzle says otherwise", guesses.first, more, name));
+        console.warning(fmt::format("{}{}: layout not stated; guessed {} from the texels; --swizzle sets it",
+                                    guesses.first, more, name));
     }
 }
 
-tex::SourceOptions SourceOptions::options(const Job& job, const Reading& reading) const {
-    tex::SourceOptions options;
+SourceOptions NormalsReader::options(const Job& job, const Reading& reading) const {
+    SourceOptions options;
     options.read = job.read_options;
     options.unpack = unpack;
     options.unpack.swizzle = swizzle;
@@ -93,27 +92,27 @@ tex::SourceOptions SourceOptions::options(const Job& job, const Reading& reading
     return options;
 }
 
-void SourceOptions::note(Job& job, const std::string& path, const SourceInfo& info) {
+void NormalsReader::note(Job& job, const std::string& path, const SourceInfo& info) {
     const std::string prefix = path == job.task.input ? std::string() : path + ": ";
     for (const std::string& remark : info.remarks) job.warn(prefix + remark);
     if (info.srgb) job.warn(prefix + "declares sRGB colours, which normals are not; its values are used as they are");
     if (!info.guessed) return;
     const std::lock_guard lock(mutex_);
     Guesses& guesses = guesses_[swizzle_name(info.swizzle)];
-    // Of files that are read at once any may come first: the first in the alphabet is named.
+    // Files that are read at once come in any order: the first in the alphabet is named.
     if (guesses.count++ == 0 || path < guesses.first) guesses.first = path;
 }
 
-Result<Source> SourceOptions::read(Job& job, const std::string& path, const Execution& execution,
+Result<Source> NormalsReader::read(Job& job, const std::string& path, const Execution& execution,
                                    const Reading& reading) {
     auto source = read_normals(path, options(job, reading), reading.base_only, execution);
     if (source) note(job, path, source->info);
     return source;
 }
 
-Result<Source> SourceOptions::read(Job& job, double until, bool base_only) {
+Result<Source> NormalsReader::read(Job& job, double until, bool base_only) {
     auto source = read(job, job.task.input, job.until(until), {base_only});
-    if (source) report_source(job, source->info);
+    if (source) report_input(job, source->info);
     return source;
 }
 

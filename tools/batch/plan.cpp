@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "batch/plan.h"
+
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "batch/collisions.h"
+#include "batch/name_pattern.h"
+#include "cli/text.h"
+#include "cli/usage_error.h"
+#include "files/system_error.h"
+
+namespace tex::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_block_encoding(Encoding encoding) { return format_info(encoding_info(encoding).format).block > 1; }
+
+// The pattern of names with --out-dir, if the user gives none.
+std::string default_pattern(const OutputOptions& output, const OutputRules& rules) {
+    std::optional<Container> container = output.container;
+    if (!container && output.format) {
+        if (is_block_encoding(*output.format)) container = Container::dds;
+    } else if (!container) {
+        container = rules.batch;
+    }
+    return "{stem}" + (container ? extension_of(*container) : "{ext}");
+}
+
+std::string output_name(const std::string& input, const FileOptions& files, const OutputOptions& output,
+                        const OutputRules& rules) {
+    NameFields fields = name_fields(input);
+    const std::string pattern = files.name.empty() ? default_pattern(output, rules) : files.name;
+    if (output.format) {
+        fields.format = name_of(kEncodingNames, *output.format);
+    } else if (const NamePattern parsed(pattern); parsed.uses("format")) {
+        const Container container = output.container_for(parsed.expand(fields), rules.standard_output);
+        fields.format = name_of(kEncodingNames, default_encoding(container));
+    }
+    return files.place(pattern, fields);
+}
+
+}  // namespace
+
+std::vector<Task> plan_outputs(std::vector<std::string> inputs, const FileOptions& files, const OutputOptions& output,
+                               const OutputRules& rules) {
+    std::vector<std::string> joined;
+    if (rules.joins && !files.output.empty() && !inputs.empty()) {
+        joined.assign(inputs.begin() + 1, inputs.end());
+        inputs.resize(1);
+    }
+    if (!files.output.empty() && inputs.size() > 1) {
+        throw UsageError(fmt::format("-o takes one input, {} are given; --out-dir takes many", inputs.size()));
+    }
+    if (!files.output.empty() && inputs.empty())
+        throw UsageError(fmt::format("no input for -o: {} names none", printable(files.files_from)));
+    std::vector<Task> tasks;
+    for (const std::string& input : inputs) {
+        Task task{input, files.output.empty() ? output_name(input, files, output, rules) : files.output};
+        task.joined = joined;
+        task.shared = rules.shared;
+        task.container = output.container_for(with_level(task.output, 0), rules.standard_output);
+        if (output.format) OutputOptions::check_holds(with_level(task.output, 0), task.container, *output.format);
+        if (rules.amend) rules.amend(task);
+        tasks.push_back(std::move(task));
+    }
+    check_collisions(tasks, files.depfile, files.files_from);
+    return tasks;
+}
+
+Result<void> create_folders(const FileOptions& files, const std::vector<Task>& tasks) {
+    if (files.out_dir.empty()) return {};
+    const auto failed = [](const fs::path& path, const std::error_code& error) {
+        return Error{ErrorCode::io, path.string(), "cannot create this folder: " + system_reason(error.value())};
+    };
+    std::error_code error;
+    fs::create_directory(fs::path(files.out_dir) / "", error);
+    if (error && !is_folder(files.out_dir)) return failed(files.out_dir, error);
+    for (const Task& task : tasks) {
+        for (const std::string& output : task.outputs()) {
+            const fs::path folder = fs::path(output).parent_path();
+            fs::create_directories(folder, error);
+            if (error) return failed(folder, error);
+        }
+    }
+    return {};
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// plan.h: which input becomes which output.
+
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tex/container.h>
+
+#include "batch/task.h"
+#include "options/files.h"
+#include "options/output.h"
+
+namespace tex::cli {
+
+// What a command says about its outputs.
+struct OutputRules {
+    std::optional<Container> batch = {};  // with --out-dir: "{stem}" and its extension; none: the input's extension
+    Container standard_output = Container::dds;  // of "-o -"
+    bool joins = false;                          // -o takes many inputs and makes one output of them
+    std::vector<std::string> shared = {};        // Task::shared
+    std::function<void(Task& task)> amend = {};  // adds the files that options name for this task; may be empty
+};
+
+// Pairs every input with its output. Throws UsageError if two inputs have one output, if an output is an input (also
+// through links), or if a name says nothing about its file type. Nothing is created.
+[[nodiscard]] std::vector<Task> plan_outputs(std::vector<std::string> inputs, const FileOptions& files,
+                                             const OutputOptions& output, const OutputRules& rules);
+
+// Creates --out-dir (not its parents), and below it the folders that {dir} asks for.
+[[nodiscard]] Result<void> create_folders(const FileOptions& files, const std::vector<Task>& tasks);
+
+}  // namespace tex::cli

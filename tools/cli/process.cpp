@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cli/process.h"
+
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/mman.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <tex/container.h>
+
+#include "cli/exit_code.h"
+
+namespace tex::cli {
+namespace {
+
+bool write_all(int fd, std::string_view text) {
+    while (!text.empty()) {
+        const ssize_t written = write(fd, text.data(), text.size());
+        if (written >= 0) {
+            text.remove_prefix(static_cast<std::size_t>(written));
+        } else if (errno == EAGAIN) {
+            pollfd ready{fd, POLLOUT, 0};
+            poll(&ready, 1, -1);
+        } else if (errno != EINTR) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Before the libraries' constructors, which end with abort() if they get no memory, and before the standard library
+// has set memory for exceptions aside (without which throwing one ends with abort(), too): a command that cannot have
+// even this much says so.
+void check_memory(int, char** argv, char**) {
+    constexpr std::size_t kStart = std::size_t{4} << 20;
+    // Not through the C library: libraries that put calls of their own before it are not ready.
+    const long memory = syscall(SYS_mmap, 0L, kStart, long{PROT_NONE}, long{MAP_PRIVATE | MAP_ANONYMOUS}, -1L, 0L);
+    if (memory != -1) {
+        syscall(SYS_munmap, memory, kStart);
+        return;
+    }
+    const char* const slash = std::strrchr(argv[0], '/');
+    write_all(STDERR_FILENO, slash == nullptr ? argv[0] : slash + 1);
+    write_all(STDERR_FILENO, ": error: out of memory\n");
+    _exit(static_cast<int>(ExitCode::io));
+}
+[[gnu::section(".preinit_array"), gnu::used]] void (*const g_check_memory)(int, char**, char**) = check_memory;
+
+// Opens /dev/null in the wrong direction for each of the three streams that is closed, so that no file that we open
+// becomes standard output by accident; reading or writing such a stream then fails.
+void fill_closed_streams() {
+    for (int fd = 0; fd <= 2; ++fd) {
+        if (fcntl(fd, F_GETFD) == -1 && errno == EBADF) {
+            // The lowest free descriptor is this one.
+            [[maybe_unused]] const int same = open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY);
+        }
+    }
+}
+
+std::atomic<int> g_signal{0};  // lock-free, so a signal handler may use it
+static_assert(std::atomic<int>::is_always_lock_free);
+constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
+constexpr unsigned kPatience = 1;  // seconds
+
+// Ends the process by `signal`, as if it had never been caught. Leaves no temporary file behind, whatever other threads
+// do.
+[[noreturn]] void end_by_signal(int signal) {
+    // Only functions that a signal handler may call: both handlers come here. Threads may be anywhere, so nothing
+    // unwinds. (A wait that can be cancelled would serve decoders that hang, but neither a file system that is slow nor
+    // a second signal.)
+    remove_unfinished_files();
+    struct sigaction action {};
+    action.sa_handler = SIG_DFL;
+    sigaction(signal, &action, nullptr);
+    sigset_t mask;
+    sigemptyset(&mask);
+    sigaddset(&mask, signal);
+    pthread_sigmask(SIG_UNBLOCK, &mask, nullptr);
+    static_cast<void>(raise(signal));
+    _exit(128 + signal);
+}
+
+extern "C" void on_signal(int signal) {
+    if (g_signal != 0) end_by_signal(signal);
+    g_signal = signal;
+    alarm(kPatience);
+}
+
+extern "C" void on_alarm(int) { end_by_signal(g_signal); }
+
+void catch_signals() {
+    for (const int signal : kSignals) {
+        struct sigaction before {};
+        sigaction(signal, nullptr, &before);
+        if (before.sa_handler == SIG_IGN) continue;  // nohup, or a shell that put us in the background
+        struct sigaction action {};
+        action.sa_handler = on_signal;
+        sigaction(signal, &action, nullptr);  // no SA_RESTART: a blocked read returns
+    }
+    struct sigaction action {};
+    action.sa_handler = on_alarm;
+    sigaction(SIGALRM, &action, nullptr);
+}
+
+}  // namespace
+
+ProcessHost::ProcessHost() {
+    fill_closed_streams();
+    static_cast<void>(std::signal(SIGPIPE, SIG_IGN));
+    static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));
+}
+
+bool ProcessHost::write_out(std::string_view text) { return write_all(STDOUT_FILENO, text); }
+void ProcessHost::write_err(std::string_view text) { write_all(STDERR_FILENO, text); }
+
+bool ProcessHost::out_is_terminal() const { return isatty(STDOUT_FILENO) == 1; }
+
+bool ProcessHost::out_is_abandoned() const {
+    pollfd state{STDOUT_FILENO, POLLOUT, 0};
+    return poll(&state, 1, 0) > 0 && (state.revents & POLLERR) != 0;
+}
+
+bool ProcessHost::err_is_terminal() const {
+    const char* terminal = std::getenv("TERM");
+    return isatty(STDERR_FILENO) == 1 && terminal != nullptr && std::strcmp(terminal, "dumb") != 0;
+}
+
+bool ProcessHost::err_has_color() const {
+    const char* no_color = std::getenv("NO_COLOR");
+    return err_is_terminal() && (no_color == nullptr || *no_color == '\0');
+}
+
+void ProcessHost::begin() { catch_signals(); }
+
+std::string_view ProcessHost::interruption() const {
+    switch (g_signal) {
+        case 0: return {};
+        case SIGINT: return "SIGINT";
+        case SIGTERM: return "SIGTERM";
+        default: return "SIGHUP";
+    }
+}
+
+void ProcessHost::end_interrupted() { end_by_signal(g_signal); }
+
+}  // namespace tex::cli

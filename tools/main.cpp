@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// main() of every command: the one that is linked into it, run in the process.
+
+#include <cstddef>
+
+#include "cli/process.h"
+#include "cli/programs.h"
+
+int main(int argc, char** argv) {
+    tex::cli::ProcessHost host;
+    const auto count = static_cast<std::size_t>(argc > 0 ? argc - 1 : 0);
+    return static_cast<int>(tex::cli::run(tex::cli::programs().front(), {argv + 1, count}, host));
+}

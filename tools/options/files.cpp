@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "options/files.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "batch/text_file.h"
+#include "cli/text.h"
+#include "cli/usage_error.h"
+#include "files/through_file.h"
+
+namespace tex::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The names in a list: one on each line or, if the list holds a NUL, up to each NUL.
+std::vector<std::string> names_in(const std::string& text) {
+    const char separator = text.find('\0') == std::string::npos ? '\n' : '\0';
+    std::vector<std::string> names;
+    for (std::string_view rest = text; !rest.empty();) {
+        const std::size_t end = std::min(rest.find(separator), rest.size());
+        if (end > 0) names.emplace_back(rest.substr(0, end));
+        rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+    return names;
+}
+
+}  // namespace
+
+bool is_folder(const std::string& path) {
+    std::error_code error;
+    return path.ends_with('/') || fs::is_directory(path, error);
+}
+
+void FileOptions::add(Command& command, bool joins) {
+    command.group("Files");
+    Row& row = command.text(output, "-o,--output", "FILE",
+                            joins ? "the output, of all inputs together; - is standard output"
+                                  : "the output of a single input; - is standard output");
+    row.completes = Completes::files;
+    row.take = [take = row.take](const std::string& text) {  // /dev/stdout and its other names
+        take(named_descriptor(text) == STDOUT_FILENO ? "-" : text);
+    };
+    command.text(out_dir, "--out-dir", "DIR", "the folder for the outputs of many inputs, created if missing")
+        .completes = Completes::directories;
+    command.text(name, "--name", "PATTERN", "names of outputs, made of {dir} {stem} {ext} {level} {format}");
+    add_list(command);
+    command.text(depfile, "--depfile", "FILE", "write what each output was made from, for Make and Ninja").completes =
+        Completes::files;
+    command.flag(no_clobber, "--no-clobber", "never replace a file");
+    command.flag(no_sync, "--no-sync", "do not wait until outputs are on the disk");
+    command.check([this, &command] { check(command); });
+}
+
+void FileOptions::check(const Command& command) const {
+    if (!output.empty() && !out_dir.empty()) throw UsageError("--output and --out-dir contradict each other");
+    if (!output.empty() && !name.empty()) throw UsageError("--output and --name contradict each other");
+    check_inputs(command);
+    if (output.empty() && out_dir.empty() && name.empty()) throw UsageError("no output: give -o FILE or --out-dir DIR");
+    if (depfile == "-") throw UsageError("--depfile: needs a file, not standard output");
+    if (is_folder(output)) {
+        throw UsageError(fmt::format("-o {}: is a folder; --out-dir writes into one", printable(output)));
+    }
+    if (output != "-") return;
+    if (command.given("--json")) throw UsageError("-o - and --json both want standard output");
+    if (no_clobber) throw UsageError("-o - and --no-clobber contradict each other");
+    if (!depfile.empty()) throw UsageError("--depfile has no name for standard output");
+}
+
+void FileOptions::add_inputs(Command& command, std::function<bool()> needless) {
+    command.group("Files");
+    add_list(command);
+    command.check([this, &command, needless = std::move(needless)] {
+        if (!needless || !needless()) check_inputs(command);
+    });
+}
+
+void FileOptions::add_list(Command& command) {
+    command
+        .text(files_from, "--files-from", "LIST",
+              "read names of inputs from a file, one a line or separated by NUL; - is standard input")
+        .completes = Completes::files;
+}
+
+void FileOptions::check_inputs(const Command& command) const {
+    if (command.inputs().empty() && files_from.empty()) throw UsageError("no input; see " + command.name() + " --help");
+    const auto dashes = std::count(command.inputs().begin(), command.inputs().end(), "-") + (files_from == "-" ? 1 : 0);
+    if (dashes > 1) throw UsageError("standard input can only be read once");
+}
+
+Result<std::vector<std::string>> FileOptions::list_inputs(const Command& command) const {
+    std::vector<std::string> inputs = command.inputs();
+    if (!files_from.empty()) {
+        const auto list = read_text_file(files_from);
+        if (!list) return list.error();
+        const std::vector<std::string> listed = names_in(*list);
+        inputs.insert(inputs.end(), listed.begin(), listed.end());
+    }
+    return inputs;
+}
+
+std::string FileOptions::place(const std::string& pattern, const NameFields& fields) const {
+    const NamePattern parsed(pattern);
+    std::string file = parsed.expand(fields);
+    if (file == "-") throw UsageError("a name made of a pattern is -, which is standard output; -o - writes there");
+    if (out_dir.empty()) return file;
+    const fs::path dir = fs::path(fields.dir).lexically_normal();
+    if (parsed.uses("dir") && (dir.is_absolute() || *dir.begin() == "..")) {
+        throw UsageError(fmt::format("{}: its {{dir}} leads out of --out-dir",
+                                     printable(fields.dir + "/" + fields.stem + fields.ext)));
+    }
+    return (fs::path(out_dir) / fs::path(file).relative_path()).string();
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// files.h: the option group of inputs and outputs. batch/plan.h pairs them.
+
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <tex/result.h>
+
+#include "batch/name_pattern.h"
+#include "cli/command.h"
+
+namespace tex::cli {
+
+// Whether `path` can only be a folder: it is one, or ends in a slash.
+[[nodiscard]] bool is_folder(const std::string& path);
+
+struct FileOptions {
+    std::string output;  // "-" for standard output by any of its names
+    std::string out_dir;
+    std::string name;
+    std::string files_from;
+    std::string depfile;
+    bool no_clobber = false;
+    bool no_sync = false;
+
+    // `joins`: -o can take many inputs and make one output of them, which the help says.
+    void add(Command& command, bool joins = false);
+    // --files-from alone, for commands that only read. No inputs are needed if `needless` returns true.
+    void add_inputs(Command& command, std::function<bool()> needless = {});
+
+    // The inputs of the command line and of --files-from. Errors: the list cannot be read.
+    [[nodiscard]] Result<std::vector<std::string>> list_inputs(const Command& command) const;
+
+    // The output that `pattern` names: below --out-dir if it is given.
+    [[nodiscard]] std::string place(const std::string& pattern, const NameFields& fields) const;
+
+private:
+    void add_list(Command& command);
+    void check(const Command& command) const;
+    void check_inputs(const Command& command) const;
+};
+
+}  // namespace tex::cli

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// mips.h: the option groups of borders and mip chains.
+
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <tex/height_field.h>
+#include <tex/mip.h>
+
+#include "batch/task.h"
+#include "cli/command.h"
+
+namespace tex::cli {
+
+// "W" or "WX,WY".
+[[nodiscard]] std::pair<Wrap, Wrap> parse_wraps(const std::string& text);
+
+// --wrap.
+struct WrapOptions {
+    Wrap x = Wrap::repeat;
+    Wrap y = Wrap::repeat;
+
+    void add(Command& command, std::string help);
+};
+
+// --mips, --mip-filter, --mip-domain, --fade.
+struct MipChainOptions {
+    std::optional<int> levels;  // 0 is all; none: what the container suggests
+    bool keep = false;          // the levels of the source as they are
+    MipOptions mip;             // without levels and wrap, see options()
+
+    // `with_keep`: --mips takes "keep"; `levels_default`: its default in the help.
+    void add(Command& command, bool with_keep, std::string levels_default);
+
+    // Throws UsageError if an output cannot hold the levels that the user asks for.
+    void check(const std::vector<Task>& tasks) const;
+
+    // For commands that keep levels by default: throws UsageError if an option says how to build levels that are not
+    // built.
+    void check_builds(const Command& command) const;
+
+    // The levels of a task's output: those that the user asks for, else all in dds, in ktx2 and if every level has its
+    // own file, and one in pictures.
+    [[nodiscard]] int levels_for(const Task& task) const;
+
+    // How `count` levels are built.
+    [[nodiscard]] MipOptions options(int count, const WrapOptions& wrap) const;
+};
+
+}  // namespace tex::cli

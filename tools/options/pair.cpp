@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "options/pair.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <tex/tex.h>
+
+namespace tex::cli {
+
+void PairOptions::add(Command& command) {
+    command.group("What is compared");
+    command.choice(y_[0], "--y-a", "Y", kYAxisNames, "which way green points in A, instead of what the file says");
+    command.choice(y_[1], "--y-b", "Y", kYAxisNames, "which way green points in B");
+    command
+        .option("--level", "N", "the level, 0 being the base level, or all that both have",
+                [this](const std::string& text) {
+                    all_levels_ = text == "all";
+                    if (!all_levels_) level_ = parse_int(text, 0, 31);
+                })
+        .preset = std::to_string(level_);
+    command.group("Limits");
+    const auto add_limit = [&](std::optional<double>& limit, const char* name, const char* figure) {
+        command.option(name, "DEGREES", fmt::format("fail (exit 1) if the {} is greater", figure),
+                       [&limit](const std::string& text) {
+                           limit = parse_double(text, {0.0, 180.0});
+                       });
+    };
+    add_limit(max_mean_, "--max-mean", "mean");
+    add_limit(max_p999_, "--max-p999", "99.9th percentile");
+    add_limit(max_, "--max", "largest angle");
+}
+
+Result<Texture> PairOptions::read(const std::string& path, int which, const ReadOptions& read, Console& console,
+                                  const Execution& execution) {
+    auto texture = read_texture(path, read);
+    if (!texture) return texture.error();
+    const auto silent = [&console](double) { return console.host().interruption().empty(); };
+    const auto swizzle = guess_swizzle(*texture, {execution.threads, silent});
+    if (!swizzle) return swizzle.error().of(path);
+    if (*swizzle != texture->swizzle && warned_of_.insert(path).second) {
+        console.warning(
+            fmt::format("{}: layout not stated; guessed {} from the texels", path, name_of(kSwizzleNames, *swizzle)));
+    }
+    texture->swizzle = *swizzle;
+    texture->y_axis = y_[which].value_or(texture->y_axis);
+    return texture;
+}
+
+Result<MipChain> PairOptions::read_levels(const std::string& path, int which, const ReadOptions& read_options,
+                                          Console& console, const Execution& execution) {
+    const auto texture = read(path, which, read_options, console, execution);
+    if (!texture) return texture.error();
+    auto chain = unpack(*texture, {}, execution);
+    if (!chain) return chain.error().of(path);
+    return chain;
+}
+
+std::pair<std::size_t, std::size_t> PairOptions::levels(const MipChain& a, const MipChain& b,
+                                                        const std::vector<std::string>& names, Console& console) const {
+    const auto first = static_cast<std::size_t>(level_);
+    if (!all_levels_) return {first, first + 1};
+    if (a.levels.size() != b.levels.size()) {
+        console.warning(fmt::format("levels: {} of {}, {} of {}; only those that both have are compared",
+                                    a.levels.size(), names[0], b.levels.size(), names[1]));
+    }
+    return {0, std::min(a.levels.size(), b.levels.size())};
+}
+
+Result<void> PairOptions::check_level(std::size_t level, const MipChain& a, const MipChain& b,
+                                      const std::vector<std::string>& names) {
+    const MipChain* const chains[] = {&a, &b};
+    for (std::size_t k = 0; k < 2; ++k) {
+        const std::size_t count = chains[k]->levels.size();
+        if (level < count) continue;
+        return Error{ErrorCode::bad_option, names[k],
+                     fmt::format("has {} level{}, so none of number {}", count, count == 1 ? "" : "s", level)};
+    }
+    const Extent p = a.levels[level].extent(), q = b.levels[level].extent();
+    if (p == q) return {};
+    return Error{ErrorCode::bad_option, names[1],
+                 fmt::format("is {}x{} texels, {} is {}x{}", q.width, q.height, names[0], p.width, p.height)};
+}
+
+ExitCode PairOptions::judge(Console& console, int level, const AngularError& error) const {
+    ExitCode code = ExitCode::done;
+    const auto hold = [&](const char* name, double figure, std::optional<double> limit) {
+        if (!limit || figure <= *limit) return;
+        console.error(fmt::format("level {}: {} {:.4f} degrees is over the limit of {}", level, name, figure, *limit));
+        code = ExitCode::findings;
+    };
+    hold("mean", error.mean, max_mean_);
+    hold("p99.9", error.p999, max_p999_);
+    hold("max", error.max, max_);
+    return code;
+}
+
+}  // namespace tex::cli

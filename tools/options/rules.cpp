@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "options/rules.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+#include <tex/image_io.h>
+
+#include "cli/text.h"
+#include "cli/usage_error.h"
+#include "options/check_config.h"
+
+namespace tex::cli {
+namespace {
+
+const Rule& parse_rule(const std::string& name) {
+    if (const Rule* rule = find_rule(name)) return *rule;
+    std::vector<std::string> names;
+    for (const Rule& rule : rules()) names.emplace_back(rule.name);
+    throw UsageError(fmt::format("there is no rule '{}'{}", name, did_you_mean(name, names)));
+}
+
+void require(Requirements& requirements, const std::string& text) {
+    if (const auto added = add_requirement(requirements, text); !added) throw UsageError(added.error().reason);
+}
+
+template <class T>
+void append(std::vector<T>& list, const std::vector<T>& more) {
+    list.insert(list.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+void RuleOptions::add(Command& command) {
+    command.group("Rules");
+    command
+        .option("--require", "KEY[=VALUE]", "demand something of every file",
+                [this](const std::string& text) {
+                    require(given_.require, text);
+                    required_.push_back(text);
+                })
+        .repeatable = true;
+    const auto name_into = [](std::vector<std::string>& names) {
+        return [&names](const std::string& text) {
+            static_cast<void>(parse_rule(text));
+            names.push_back(text);
+        };
+    };
+    command.option("--enable", "ID", "check a rule (id or name) that is off by default", name_into(given_.enable))
+        .repeatable = true;
+    command.option("--disable", "ID", "do not check a rule", name_into(given_.disable)).repeatable = true;
+    command
+        .option("--severity", "ID=SEVERITY", "make a rule an error, a warning or a note",
+                [this](const std::string& text) {
+                    const auto [name, severity] = cut(text, '=');
+                    static_cast<void>(parse_rule(name));
+                    given_.severity.emplace_back(name, parse_word(severity, kSeverityNames));
+                })
+        .repeatable = true;
+    command.text(config_, "--config", "FILE", "read requirements, rules and severities from a TOML file").completes =
+        Completes::files;
+    command.choice(least_failing_, "--fail-on", "SEVERITY", kSeverityNames,
+                   "the lowest severity that makes the command fail (exit 1)");
+    command
+        .text(height_file_, "--height", "FILE",
+              "the height map that the (single) input was made from: check that it matches")
+        .completes = Completes::files;
+    command.flag(list_, "--list", "list all rules and exit");
+    command.option("--explain", "ID", "explain one rule and exit",
+                   [this](const std::string& text) { explain_ = &parse_rule(text); });
+}
+
+// The file's words come first, so that the command line's win.
+Result<void> RuleOptions::merge_config(const Command& command) {
+    checks_ = given_;
+    fail_on_ = least_failing_;
+    if (config_.empty()) return {};
+    const auto config = read_check_config(config_);
+    if (!config) return config.error();
+    checks_ = config->options;
+    for (const std::string& text : required_) require(checks_.require, text);
+    append(checks_.enable, given_.enable);
+    append(checks_.severity, given_.severity);
+    // A rule may be called by its id in one place and by its name in the other.
+    for (const std::string& name : given_.enable) {
+        std::erase_if(checks_.disable, [&](const std::string& other) { return find_rule(other) == find_rule(name); });
+    }
+    append(checks_.disable, given_.disable);
+    if (config->fail_on && !command.given("--fail-on")) fail_on_ = *config->fail_on;
+    return {};
+}
+
+Result<void> RuleOptions::read(const Command& command, const std::vector<Task>& tasks, const ReadOptions& read) {
+    if (auto merged = merge_config(command); !merged) return merged;
+    if (height_file_.empty()) return {};
+    if (tasks.size() != 1) throw UsageError("--height goes with a single file");
+    const auto image = read_image(height_file_, read);
+    if (!image) return image.error();
+    auto field = height_field(*image, {});
+    if (!field) return field.error().of(height_file_);
+    height_ = std::move(*field);
+    checks_.height = &*height_;
+    return {};
+}
+
+}  // namespace tex::cli

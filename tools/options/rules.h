@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// rules.h: the option group of which rules are checked, and how severe their findings are.
+
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tex/check.h>
+#include <tex/height_field.h>
+
+#include "batch/task.h"
+#include "cli/command.h"
+
+namespace tex::cli {
+
+// --require, --enable, --disable, --severity, --config, --fail-on, --height, --list, --explain.
+class RuleOptions {
+public:
+    void add(Command& command);
+
+    [[nodiscard]] const std::string& config() const { return config_; }
+    [[nodiscard]] const std::string& height_file() const { return height_file_; }
+    [[nodiscard]] bool list() const { return list_; }
+    [[nodiscard]] const Rule* explain() const { return explain_; }  // or null
+
+    // Reads the files that the options name. Throws UsageError if they do not fit the tasks; errors of Result: a file
+    // cannot be read.
+    [[nodiscard]] Result<void> read(const Command& command, const std::vector<Task>& tasks, const ReadOptions& read);
+
+    // After read(): the options and the configuration together.
+    [[nodiscard]] const CheckOptions& checks() const { return checks_; }
+    [[nodiscard]] bool fails(const Finding& finding) const { return finding.severity >= fail_on_; }
+    [[nodiscard]] Severity fail_on() const { return fail_on_; }
+
+private:
+    [[nodiscard]] Result<void> merge_config(const Command& command);
+
+    CheckOptions given_;                        // those of the command line, without `require`
+    std::vector<std::string> required_;         // --require
+    std::string config_, height_file_;          // paths, or empty
+    Severity least_failing_ = Severity::error;  // --fail-on
+    bool list_ = false;
+    const Rule* explain_ = nullptr;
+
+    CheckOptions checks_;
+    Severity fail_on_ = Severity::error;
+    std::optional<HeightField> height_;
+};
+
+}  // namespace tex::cli

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// sheet.h: the option group of what a picture shows: one view of one map, a sheet of many, or two maps side by side;
+// and the step that draws it.
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <tex/preview.h>
+
+#include "batch/task.h"
+#include "cli/command.h"
+#include "options/scene.h"
+
+namespace tex::cli {
+
+// --show, --size, --columns, --split, --difference, --turntable, --legend-max, --no-legend, --no-captions.
+class SheetOptions {
+public:
+    // `scene` gets the size and the legend's end; it must outlive this.
+    void add(Command& command, SceneOptions& scene);
+
+    // Throws UsageError if the task's maps or output do not fit the options.
+    void check(const Task& task) const;
+
+    [[nodiscard]] bool is_animated() const { return turntable_ > 0; }
+    [[nodiscard]] bool is_difference() const { return difference_; }
+
+    // The frames of the picture, one unless it is animated: `maps` are those of the files `names`, `with` what the
+    // scene needs beside them. Errors: those of the verbs.
+    [[nodiscard]] Result<std::vector<Texture>> draw(const std::vector<std::string>& names,
+                                                    const std::vector<SampledMap>& maps, const SceneFiles& with,
+                                                    const Execution& execution) const;
+
+private:
+    void add_shows(Command& command);
+    [[nodiscard]] Result<Texture> draw_frame(const std::vector<std::string>& names, const std::vector<SampledMap>& maps,
+                                             const SceneFiles& with, PreviewOptions options,
+                                             const Execution& execution) const;
+    [[nodiscard]] Result<Texture> draw_difference(const std::string& name, const NormalMap& a, const NormalMap& b,
+                                                  const Execution& execution) const;
+    [[nodiscard]] std::string caption(const std::vector<std::string>& names, std::size_t map, Show show) const;
+
+    const SceneOptions* scene_ = nullptr;
+    std::vector<Show> shows_ = {Show::lit};
+    int columns_ = 0;
+    int turntable_ = 0;
+    bool split_ = false;
+    bool difference_ = false;
+    bool no_legend_ = false;
+    bool no_captions_ = false;
+};
+
+}  // namespace tex::cli

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "reports/check_documents.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <tex/container.h>
+
+#include "batch/text_file.h"
+#include "reports/html_map.h"
+#include "reports/junit.h"
+#include "reports/sarif.h"
+
+namespace tex::cli {
+
+void CheckDocuments::add(Command& command) {
+    command.group("Documents");
+    const auto add_file = [&](std::string& path, const char* name, const char* help) {
+        command.text(path, name, "FILE", help).completes = Completes::files;
+    };
+    add_file(page_path_, "--report", "write a page with the findings and pictures, on which the light can be moved");
+    add_file(sarif_, "--sarif", "write the findings as SARIF 2.1.0");
+    add_file(junit_, "--junit", "write the findings as JUnit XML");
+    add_file(baseline_path_, "--baseline", "accept the findings that this file lists");
+    add_file(baseline_written_, "--baseline-write", "write such a file with all findings, and do not fail for them");
+}
+
+// No two documents are one file; only the baseline that is written may be the one that is read.
+void CheckDocuments::check(const std::vector<std::string>& inputs, std::vector<NamedFile> others) {
+    for (const NamedFile& document : std::initializer_list<NamedFile>{{"--baseline-write", baseline_written_},
+                                                                      {"--baseline", baseline_path_},
+                                                                      {"--report", page_path_},
+                                                                      {"--sarif", sarif_},
+                                                                      {"--junit", junit_}}) {
+        if (!document.path.empty() && document.option != "--baseline") check_document(document, inputs, others);
+        others.push_back(document);
+    }
+    if (has_page()) check_read_twice("--report", inputs);
+    sizes_ = html_sizes(inputs.size());
+}
+
+Result<void> CheckDocuments::read() {
+    if (baseline_path_.empty()) return {};
+    auto read = Baseline::read(baseline_path_);
+    if (!read) return read.error();
+    baseline_ = std::move(*read);
+    return {};
+}
+
+int CheckDocuments::accept(CheckReport& report) {
+    if (writes_baseline()) {
+        const std::lock_guard lock(mutex_);
+        new_baseline_.add(report);  // with what --baseline accepts
+    }
+    return baseline_ ? baseline_->accept(report) : 0;
+}
+
+Result<void> CheckDocuments::add(Job& job, const CheckReport& report, const Requirements& require) {
+    if (has_page()) {
+        if (auto added = add_to_page(job, report, require); !added) return added;
+    }
+    const std::lock_guard lock(mutex_);
+    if (!sarif_.empty() || !junit_.empty()) reports_.insert_or_assign(job.task.input, report);
+    return {};
+}
+
+Result<void> CheckDocuments::add_to_page(Job& job, const CheckReport& report, const Requirements& require) {
+    for (const Finding& finding : report.findings) page_.explain(*finding.rule);
+    std::optional<HtmlMap> map;
+    if (!report.error) {
+        const auto texture = read_texture(job.task.input, job.read_options);
+        if (!texture) return texture.error();
+        auto drawn = draw_html_map(job.task.input, *texture, report.swizzle, sizes_, job.until(1.0));
+        // A file that holds no normals has findings, and no pictures.
+        if (drawn)
+            map = std::move(*drawn);
+        else if (drawn.error().code != ErrorCode::bad_option)
+            return drawn.error();
+    }
+    page_.add(job.task.input, check_entry(report, require, map ? &*map : nullptr));
+    return {};
+}
+
+ExitCode CheckDocuments::write(Console& console, const Requirements& require, Severity fail_on,
+                               const std::string& summary) const {
+    std::vector<CheckReport> all;
+    for (const auto& [file, report] : reports_) all.push_back(report);
+    ExitCode code = ExitCode::done;
+    const auto write = [&](const std::string& path, const std::string& text) {
+        const auto written = write_text_file(path, text);
+        if (written) return;
+        console.error(written.error().message());
+        code = std::max(code, exit_code(written.error().code));
+    };
+    if (!sarif_.empty()) write(sarif_, sarif_text(all, require));
+    if (!junit_.empty()) write(junit_, junit_text(all, require, fail_on));
+    if (has_page()) write(page_path_, page_.page(summary));
+    if (writes_baseline()) write(baseline_written_, new_baseline_.text());
+    return code;
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// check_documents.h: the option group of the files that check-normals writes, and what goes into them.
+
+#pragma once
+
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tex/check.h>
+
+#include "batch/collisions.h"
+#include "batch/job.h"
+#include "cli/command.h"
+#include "reports/baseline.h"
+#include "reports/html_report.h"
+
+namespace tex::cli {
+
+// --report, --sarif, --junit, --baseline, --baseline-write.
+class CheckDocuments {
+public:
+    void add(Command& command);
+
+    [[nodiscard]] bool has_page() const { return !page_path_.empty(); }
+    [[nodiscard]] bool writes_baseline() const { return !baseline_written_.empty(); }
+
+    // Throws UsageError if a document is an input or one of `others`.
+    void check(const std::vector<std::string>& inputs, std::vector<NamedFile> others);
+
+    // Reads the baseline. Errors: io, bad_data.
+    [[nodiscard]] Result<void> read();
+
+    // Takes the findings that the baseline knows out of the report; returns how many. Any thread may call.
+    [[nodiscard]] int accept(CheckReport& report);
+
+    // Adds a file to the documents. Any thread may call. Errors: those of reading it once more, for its pictures.
+    [[nodiscard]] Result<void> add(Job& job, const CheckReport& report, const Requirements& require);
+
+    // Writes all of them; `summary` is the first sentence of the page.
+    [[nodiscard]] ExitCode write(Console& console, const Requirements& require, Severity fail_on,
+                                 const std::string& summary) const;
+
+private:
+    [[nodiscard]] Result<void> add_to_page(Job& job, const CheckReport& report, const Requirements& require);
+
+    std::string page_path_, sarif_, junit_, baseline_path_, baseline_written_;  // or empty
+    std::mutex mutex_;
+    std::optional<Baseline> baseline_;
+    Baseline new_baseline_;
+    HtmlReport page_{"check-normals", check_columns()};
+    HtmlSizes sizes_;  // of the page's pictures
+    std::map<std::string, CheckReport>
+        reports_;  // by file: the documents do not depend on the order in which files end
+};
+
+}  // namespace tex::cli

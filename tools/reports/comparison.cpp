@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "reports/comparison.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+#include <tex/container.h>
+#include <tex/heat_map.h>
+#include <tex/sheet.h>
+
+#include "batch/collisions.h"
+#include "batch/text_file.h"
+#include "cli/text.h"
+#include "cli/usage_error.h"
+#include "reports/json.h"
+
+namespace tex::cli {
+namespace {
+
+Json json_of(const std::vector<std::string>& inputs) {
+    Json line;
+    line["a"] = inputs[0];
+    line["b"] = inputs[1];
+    return line;
+}
+
+}  // namespace
+
+ExitCode print_level(Console& console, const std::vector<std::string>& inputs, const ComparedLevel& level, bool as_json,
+                     bool is_first) {
+    const AngularError& e = level.error;
+    if (as_json) {
+        const auto degrees = [](double angle) { return static_cast<float>(angle); };
+        Json line = json_of(inputs);
+        line["level"] = level.number;
+        line["extent"] = {level.extent.width, level.extent.height};
+        line["texels"] = e.texels;
+        line["degrees"] = {{"mean", degrees(e.mean)}, {"rms", degrees(e.rms)},    {"p50", degrees(e.p50)},
+                           {"p99", degrees(e.p99)},   {"p99.9", degrees(e.p999)}, {"max", degrees(e.max)}};
+        line["max_at"] = {e.max_column, e.max_row};
+        return console.print(to_line(line));
+    }
+    std::string text;
+    if (is_first) {
+        text = fmt::format("{:>5} {:>11} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}  in degrees; largest at\n", "level",
+                           "texels", "mean", "rms", "p50", "p99", "p99.9", "max");
+    }
+    text += fmt::format("{:>5} {:>11} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f}  column {}, row {}\n",
+                        level.number, fmt::format("{}x{}", level.extent.width, level.extent.height), e.mean, e.rms,
+                        e.p50, e.p99, e.p999, e.max, e.max_column, e.max_row);
+    return console.print(text);
+}
+
+ExitCode print_failure(Console& console, const std::vector<std::string>& inputs, const Error& error) {
+    Json line = json_of(inputs);
+    line["error"] = error_json(error, "");
+    return console.print(to_line(line));
+}
+
+void CompareDocuments::add(Command& command) {
+    command.group("Heat map");
+    command
+        .text(heat_map_path_, "--heatmap", "FILE",
+              "write a picture of the angles with a legend (of the first level compared)")
+        .completes = Completes::files;
+    command
+        .option("--heatmap-scale", "DEGREES", "the angle at the end of the legend",
+                [this](const std::string& text) {
+                    heat_map_scale_ = parse_double(text, {0.0, 180.0, false});
+                })
+        .preset = "the largest angle";
+    command.group("Report");
+    command
+        .text(page_path_, "--report", "FILE",
+              "write a page with the figures and pictures of both maps, on which the light can be moved")
+        .completes = Completes::files;
+}
+
+void CompareDocuments::check(const std::vector<std::string>& inputs) const {
+    if (heat_map_scale_ && heat_map_path_.empty()) throw UsageError("--heatmap-scale needs --heatmap");
+    const NamedFile heat_map_file = {"--heatmap", heat_map_path_}, page = {"--report", page_path_};
+    if (!heat_map_path_.empty()) {
+        check_document(heat_map_file, inputs, {});
+        const auto container = container_of(heat_map_path_);
+        if (!container || !can_hold(*container, Encoding::rgb8))
+            throw UsageError(fmt::format("--heatmap: {}: unsupported picture format", printable(heat_map_path_)));
+    }
+    if (page_path_.empty()) return;
+    check_document(page, inputs, {heat_map_file});
+    check_read_twice("--report", inputs);
+}
+
+Result<void> CompareDocuments::write_heat_map(const Comparison& comparison) const {
+    if (heat_map_path_.empty()) return {};
+    const double scale = heat_map_scale_.value_or(std::clamp(comparison.error.max, 0.01, 180.0));
+    const auto image = heat_map(comparison.degrees, scale);
+    if (!image) return image.error();
+    const auto picture = picture_of(*image);
+    if (!picture) return picture.error();
+    return write_texture(heat_map_path_, *picture);
+}
+
+Result<void> CompareDocuments::write_page(const std::vector<ComparedLevel>& levels, HtmlMap a, HtmlMap b,
+                                          const Plane<float>& degrees) const {
+    auto entry = compare_entry(levels, std::move(a), std::move(b), degrees, heat_map_scale_);
+    if (!entry) return entry.error();
+    HtmlReport page("compare-normals", compare_columns());
+    page.add("", std::move(*entry));
+    const AngularError& e = levels.front().error;
+    return write_text_file(
+        page_path_, page.page(fmt::format("level {}: mean {:.4f}, 99.9th percentile {:.4f}, largest {:.4f} degrees",
+                                          levels.front().number, e.mean, e.p999, e.max)));
+}
+
+}  // namespace tex::cli

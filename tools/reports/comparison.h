@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// comparison.h: the figures of compare-normals, for people and as JSON, and the option groups of the files that it
+// writes.
+
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tex/compare.h>
+
+#include "cli/command.h"
+#include "reports/html_report.h"
+
+namespace tex::cli {
+
+// Prints the figures of a level: a line of a table (below its heading for the first one) or of JSON. `inputs` are the
+// two files.
+[[nodiscard]] ExitCode print_level(Console& console, const std::vector<std::string>& inputs, const ComparedLevel& level,
+                                   bool as_json, bool is_first);
+// Prints a failure as JSON.
+[[nodiscard]] ExitCode print_failure(Console& console, const std::vector<std::string>& inputs, const Error& error);
+
+// --heatmap, --heatmap-scale, --report.
+class CompareDocuments {
+public:
+    void add(Command& command);
+
+    [[nodiscard]] bool has_page() const { return !page_path_.empty(); }
+
+    // Throws UsageError if a document cannot be written, is an input, or is another document.
+    void check(const std::vector<std::string>& inputs) const;
+
+    // Writes the picture of the angles, if the user asks for it.
+    [[nodiscard]] Result<void> write_heat_map(const Comparison& comparison) const;
+
+    // Writes the page: `degrees` are the angles of the first of `levels`.
+    [[nodiscard]] Result<void> write_page(const std::vector<ComparedLevel>& levels, HtmlMap a, HtmlMap b,
+                                          const Plane<float>& degrees) const;
+
+private:
+    std::string heat_map_path_, page_path_;  // or empty
+    std::optional<double> heat_map_scale_;   // degrees; none: the largest angle
+};
+
+}  // namespace tex::cli
