@@ -2,18 +2,27 @@
 // What tex-reader gives up before it looks at a file, tried from inside: in a process of its own, which then tells what
 // it could still do.
 
+#include <asm/ioctls.h>
 #include <fcntl.h>
+#include <sched.h>
 #include <signal.h>
+#include <sys/file.h>
+#include <sys/ioctl.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
+#include <sys/uio.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <future>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -31,6 +40,12 @@ struct Attempt {
 };
 
 long open_with(const std::string& path, int flags) { return syscall(SYS_openat, AT_FDCWD, path.c_str(), flags, 0600); }
+
+bool queue_signal(pid_t process) {
+    siginfo_t info{};
+    info.si_code = SI_QUEUE;
+    return syscall(SYS_rt_sigqueueinfo, process, 0, &info) == 0;
+}
 
 // The names of the attempts that succeed after `prepare`, in a process of its own.
 std::string possible(const std::function<bool()>& prepare, const std::vector<Attempt>& attempts) {
@@ -70,8 +85,17 @@ protected:
         ASSERT_NE(mkdtemp(pattern.data()), nullptr);
         folder_ = pattern;
         std::ofstream(file_ = folder_ + "/file") << "text";
+        ASSERT_EQ(pipe(pipe_), 0);
+        std::ofstream(folder_ + "/nameless") << "text";  // one that nobody has open for writing, or no lease is given
+        opened_ = open((folder_ + "/nameless").c_str(), O_RDONLY);
+        std::filesystem::remove(folder_ + "/nameless");
+        opened_folder_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY);
+        memory_ = memfd_create("memory", MFD_ALLOW_SEALING);
     }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
+    void TearDown() override {
+        for (const int fd : {pipe_[0], pipe_[1], opened_, opened_folder_, memory_}) close(fd);
+        std::filesystem::remove_all(folder_);
+    }
 
     // All of them must be possible without the sandbox, or the test proves nothing. (Not all are for everybody
     // everywhere: `certain` ones are.)
@@ -103,6 +127,7 @@ protected:
             {"datagrams", [] { return syscall(SYS_socket, AF_INET, SOCK_DGRAM, 0) >= 0; }},
             {"signal to the parent", [=] { return syscall(SYS_kill, parent, 0) == 0; }},
             {"signal to a thread of the parent", [=] { return syscall(SYS_tgkill, parent, parent, 0) == 0; }},
+            {"queued signal to the parent", [=] { return queue_signal(parent); }},
             {"file in memory", [] { return syscall(SYS_memfd_create, "x", 0) >= 0; }},
             {"own limits",
              [] {
@@ -116,7 +141,16 @@ protected:
                  return child > 0;
              }},
         };
+        const std::vector<Attempt> more = attempts_by_descriptors(parent);
+        all.insert(all.end(), more.begin(), more.end());
+        const std::vector<Attempt> others = attempts_on_the_parent(parent);
+        all.insert(all.end(), others.begin(), others.end());
         if (certain) return all;
+        all.push_back({"memory of the parent", [=, this] {
+                           char text[8];
+                           const iovec here{text, 1}, there{const_cast<char*>(folder_.data()), 1};
+                           return syscall(SYS_process_vm_readv, parent, &here, 1, &there, 1, 0) > 0;
+                       }});
         all.push_back({"trace the parent", [=] { return syscall(SYS_ptrace, 16, parent, nullptr, nullptr) == 0; }});
         all.push_back({"handle of the parent", [=] { return syscall(SYS_pidfd_open, parent, 0) >= 0; }});
         all.push_back(
@@ -130,7 +164,71 @@ protected:
         return all;
     }
 
+    // What fcntl() and ioctl() can ask the kernel to do beyond this process: signals to anybody when a pipe becomes
+    // readable, locks and leases that others wait for, memory.
+    [[nodiscard]] std::vector<Attempt> attempts_by_descriptors(pid_t parent) const {
+        return {
+            {"owner of signals", [=, this] { return fcntl(pipe_[0], F_SETOWN, parent) == 0; }},
+            {"owner of signals, extended",
+             [=, this] {
+                 const f_owner_ex owner{F_OWNER_PID, parent};
+                 return fcntl(pipe_[0], F_SETOWN_EX, &owner) == 0;
+             }},
+            {"signal of choice", [this] { return fcntl(pipe_[0], F_SETSIG, SIGWINCH) == 0; }},
+            {"signals when readable", [this] { return fcntl(pipe_[0], F_SETFL, O_ASYNC) == 0; }},
+            {"signals by ioctl",
+             [this] {
+                 const int on = 1;
+                 return ioctl(pipe_[0], FIOASYNC, &on) == 0;
+             }},
+            {"size of a pipe", [this] { return fcntl(pipe_[0], F_SETPIPE_SZ, 1 << 17) > 0; }},
+            {"lease", [this] { return fcntl(opened_, F_SETLEASE, F_RDLCK) == 0; }},
+            {"notes of a folder", [this] { return fcntl(opened_folder_, F_NOTIFY, DN_CREATE) == 0; }},
+            {"lock",
+             [this] {
+                 const struct flock lock { F_RDLCK, SEEK_SET, 0, 0, 0 };
+                 return fcntl(opened_, F_SETLK, &lock) == 0;
+             }},
+            {"whole lock", [this] { return flock(opened_, LOCK_SH) == 0; }},
+            {"seal", [this] { return fcntl(memory_, F_ADD_SEALS, F_SEAL_WRITE) == 0; }},
+            {"another number", [this] { return fcntl(opened_, F_DUPFD, 50) >= 0; }},
+        };
+    }
+
+    // Calls that take the number of a process.
+    [[nodiscard]] static std::vector<Attempt> attempts_on_the_parent(pid_t parent) {
+        return {
+            {"processors of the parent",
+             [=] {
+                 cpu_set_t set;
+                 CPU_ZERO(&set);
+                 for (int k = 0; k < CPU_SETSIZE; ++k) CPU_SET(k, &set);
+                 return sched_setaffinity(parent, sizeof set, &set) == 0;
+             }},
+            {"which are its processors",
+             [=] {
+                 cpu_set_t set;
+                 return syscall(SYS_sched_getaffinity, parent, sizeof set, &set) > 0;
+             }},
+            {"limits of the parent",
+             [=] {
+                 rlimit limit{};
+                 return syscall(SYS_prlimit64, parent, RLIMIT_CORE, nullptr, &limit) == 0;
+             }},
+            {"schedule of the parent",
+             [=] {
+                 const sched_param none{};
+                 return sched_setscheduler(parent, SCHED_OTHER, &none) == 0;
+             }},
+            {"priority of the parent", [=] { return setpriority(PRIO_PROCESS, static_cast<id_t>(parent), 19) == 0; }},
+            {"session of the parent", [=] { return syscall(SYS_getsid, parent) > 0; }},
+            {"survival of the parent", [] { return prctl(PR_SET_PDEATHSIG, 0) == 0; }},
+        };
+    }
+
     std::string folder_, file_;
+    int pipe_[2] = {-1, -1};
+    int opened_ = -1, opened_folder_ = -1, memory_ = -1;
 };
 
 TEST_F(Sandbox, NothingOfThisIsForbiddenOutside) {
@@ -150,8 +248,26 @@ TEST_F(Sandbox, LetsADecoderDoItsWork) {
         {"signal to itself", [] { return syscall(SYS_tgkill, getpid(), syscall(SYS_gettid), 0) == 0; }},
         {"memory", [] { return syscall(SYS_mmap, nullptr, 4096L, 3L, 0x22L, -1L, 0L) != -1; }},
         {"read", [this] { return open_with(file_, O_RDONLY) >= 0; }},
+        {"flags of a descriptor", [this] { return fcntl(opened_, F_GETFL) >= 0 && fcntl(opened_, F_GETFD) >= 0; }},
+        {"own limits",
+         [] {
+             rlimit limit{};
+             return getrlimit(RLIMIT_AS, &limit) == 0;
+         }},
+        {"own processors",
+         [] {
+             cpu_set_t set;
+             return sched_getaffinity(0, sizeof set, &set) == 0 && sched_setaffinity(0, sizeof set, &set) == 0;
+         }},
+        {"a thread",
+         [] {
+             bool ran = false;
+             std::thread([&] { ran = true; }).join();
+             return ran;
+         }},
     };
-    EXPECT_EQ(possible(filter_calls, work), "signal to itself\nmemory\nread\n");
+    EXPECT_EQ(possible(filter_calls, work),
+              "signal to itself\nmemory\nread\nflags of a descriptor\nown limits\nown processors\na thread\n");
 }
 
 TEST_F(Sandbox, HasNoFilesButTheInput) {
@@ -170,6 +286,46 @@ TEST_F(Sandbox, HasNoFilesButTheInput) {
         return;
     }
     EXPECT_EQ(possible([&] { return with_input() && restrict_files(); }, reading), "input\n");
+}
+
+// A thread that a library started before: whoever is in the process can make it do anything.
+TEST_F(Sandbox, HasNoFilesInAThreadThatWasThereBefore) {
+#if defined(__SANITIZE_THREAD__)
+    return;  // has a thread of its own that cannot be asked
+#endif
+    std::promise<void> go;
+    std::promise<bool> done;
+    std::thread other;
+    const auto start_thread = [&] {
+        other = std::thread([&] {
+            sigset_t all;  // as some libraries do in theirs
+            sigfillset(&all);
+            pthread_sigmask(SIG_BLOCK, &all, nullptr);
+            go.get_future().wait();
+            done.set_value(open_with(file_, O_RDONLY) >= 0);
+        });
+        return true;
+    };
+    const std::vector<Attempt> reading = {{"file in another thread", [&] {
+                                               go.set_value();
+                                               const bool opened = done.get_future().get();
+                                               other.join();
+                                               return opened;
+                                           }}};
+    EXPECT_EQ(possible(start_thread, reading), "file in another thread\n");
+    if (landlock_version() == 0) return;
+    EXPECT_EQ(possible([&] { return start_thread() && restrict_files(); }, reading), "");
+}
+
+// The filter of calls is one reason why it cannot; this is the other.
+TEST_F(Sandbox, SendsNoSignalsWhereTheKernelCanScopeThem) {
+    const pid_t parent = getpid();
+    const std::vector<Attempt> signals = {{"to the parent", [=] { return kill(parent, 0) == 0; }},
+                                          {"to itself", [] { return kill(getpid(), 0) == 0; }}};
+    EXPECT_EQ(possible([] { return true; }, signals), "to the parent\nto itself\n");
+    constexpr int kFirstWithScopes = 6;
+    if (landlock_version() < kFirstWithScopes) return;
+    EXPECT_EQ(possible(restrict_files, signals), "to itself\n");
 }
 
 }  // namespace

@@ -28,8 +28,8 @@ void limit_process(const Task& task);
 // Bytes of address space and of one file that this process may have: the lesser of both.
 std::int64_t memory_limit();
 
-// Takes away all files but the input, which may be read (Landlock). False if the kernel does not know it, or
-// refuses.
+// Takes away all files but the input, which may be read, from every thread; if the kernel can, TCP and signals to
+// other processes, too (Landlock). False if the kernel does not know it, or refuses.
 bool restrict_files();
 
 // The kernel's version of Landlock; 0 if it has none.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <fcntl.h>
-#include <linux/landlock.h>
 #include <sched.h>
 #include <seccomp.h>
 #include <signal.h>
@@ -13,6 +12,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
+#include <initializer_list>
 #include <limits>
 
 #include "reader.h"
@@ -60,7 +60,6 @@ constexpr int kAllowed[] = {
     SCMP_SYS(readlink),
     SCMP_SYS(readlinkat),
     SCMP_SYS(getcwd),
-    SCMP_SYS(fcntl),
     SCMP_SYS(dup),
     SCMP_SYS(ftruncate),
     SCMP_SYS(fadvise64),
@@ -78,8 +77,6 @@ constexpr int kAllowed[] = {
     SCMP_SYS(set_robust_list),
     SCMP_SYS(rseq),
     SCMP_SYS(sched_yield),
-    SCMP_SYS(sched_getaffinity),
-    SCMP_SYS(sched_setaffinity),
     SCMP_SYS(gettid),
     SCMP_SYS(getpid),
     SCMP_SYS(rt_sigaction),
@@ -114,19 +111,35 @@ constexpr int kAllowed[] = {
     SCMP_SYS(getcpu),
 };
 
-bool rule(scmp_filter_ctx filter, std::uint32_t action, int call, scmp_arg_cmp condition) {
-    return seccomp_rule_add_array(filter, action, call, 1, &condition) == 0;
+bool allow(scmp_filter_ctx filter, int call, std::initializer_list<scmp_arg_cmp> conditions) {
+    return seccomp_rule_add_array(filter, SCMP_ACT_ALLOW, call, static_cast<unsigned>(conditions.size()),
+                                  conditions.begin()) == 0;
 }
 
-// Opening for reading only, reading limits only, threads only, and signals to this process only; glibc falls back from
-// clone3 (whose flags a filter cannot see) to clone.
+// Calls that can reach beyond this process, or ask for more than is needed, depending on what they are given:
+// * files are opened for reading only;
+// * of a descriptor its flags are read, no more: the other commands of fcntl() make the kernel send signals to any
+//   process of this user (F_SETOWN, F_SETSIG, O_ASYNC), hold up those who open a file (F_SETLEASE, F_SETLK), or take
+//   memory that no limit counts (F_SETPIPE_SZ);
+// * limits are read, and processors chosen, for this process only (0);
+// * signals go to this process only;
+// * a new process is a thread; glibc falls back to clone from clone3, whose flags a filter cannot see.
 bool allow_conditional(scmp_filter_ctx filter) {
     constexpr scmp_datum_t kWriting = O_WRONLY | O_RDWR | O_CREAT | O_TRUNC | O_APPEND;
-    return rule(filter, SCMP_ACT_ALLOW, SCMP_SYS(open), {1, SCMP_CMP_MASKED_EQ, kWriting, 0}) &&
-           rule(filter, SCMP_ACT_ALLOW, SCMP_SYS(openat), {2, SCMP_CMP_MASKED_EQ, kWriting, 0}) &&
-           rule(filter, SCMP_ACT_ALLOW, SCMP_SYS(prlimit64), {2, SCMP_CMP_EQ, 0, 0}) &&
-           rule(filter, SCMP_ACT_ALLOW, SCMP_SYS(tgkill), {0, SCMP_CMP_EQ, static_cast<scmp_datum_t>(getpid()), 0}) &&
-           rule(filter, SCMP_ACT_ALLOW, SCMP_SYS(clone), {0, SCMP_CMP_MASKED_EQ, CLONE_THREAD, CLONE_THREAD}) &&
+    const auto self = static_cast<scmp_datum_t>(getpid());
+    return allow(filter, SCMP_SYS(open), {{1, SCMP_CMP_MASKED_EQ, kWriting, 0}}) &&
+           allow(filter, SCMP_SYS(openat), {{2, SCMP_CMP_MASKED_EQ, kWriting, 0}}) &&
+           allow(filter, SCMP_SYS(fcntl), {{1, SCMP_CMP_EQ, F_GETFD, 0}}) &&
+           allow(filter, SCMP_SYS(fcntl), {{1, SCMP_CMP_EQ, F_GETFL, 0}}) &&
+           allow(filter, SCMP_SYS(prlimit64), {{0, SCMP_CMP_EQ, 0, 0}, {2, SCMP_CMP_EQ, 0, 0}}) &&
+           allow(filter, SCMP_SYS(sched_setaffinity), {{0, SCMP_CMP_EQ, 0, 0}}) &&
+#ifdef TEX_READER_SHADOW  // whose runtime asks for its threads by their numbers
+           allow(filter, SCMP_SYS(sched_getaffinity), {}) &&
+#else
+           allow(filter, SCMP_SYS(sched_getaffinity), {{0, SCMP_CMP_EQ, 0, 0}}) &&
+#endif
+           allow(filter, SCMP_SYS(tgkill), {{0, SCMP_CMP_EQ, self, 0}}) &&
+           allow(filter, SCMP_SYS(clone), {{0, SCMP_CMP_MASKED_EQ, CLONE_THREAD, CLONE_THREAD}}) &&
            seccomp_rule_add(filter, SCMP_ACT_ERRNO(ENOSYS), SCMP_SYS(clone3), 0) == 0 &&
            seccomp_rule_add(filter, SCMP_ACT_ERRNO(ENOSYS), SCMP_SYS(openat2), 0) == 0;
 }
@@ -153,35 +166,6 @@ std::int64_t memory_limit() {
         if (getrlimit(what, &now) == 0) most = std::min(most, now.rlim_cur);
     }
     return static_cast<std::int64_t>(most);
-}
-
-int landlock_version() {
-    const long version = syscall(SYS_landlock_create_ruleset, nullptr, 0L, LANDLOCK_CREATE_RULESET_VERSION);
-    return version < 1 ? 0 : static_cast<int>(version);
-}
-
-bool restrict_files() {
-    // What the first version of Landlock knows (Linux 5.13), and from its second and third on renames across folders
-    // and truncation.
-    constexpr std::uint64_t kFirst = (std::uint64_t{1} << 13) - 1;
-    const int version = landlock_version();
-    if (version < 1) return false;
-    landlock_ruleset_attr attributes{};
-    attributes.handled_access_fs =
-        kFirst | (version >= 2 ? std::uint64_t{1} << 13 : 0) | (version >= 3 ? std::uint64_t{1} << 14 : 0);
-    const auto rules = static_cast<int>(syscall(SYS_landlock_create_ruleset, &attributes, sizeof attributes, 0));
-    if (rules < 0) return false;
-    // Decoders open their input by its name in /proc. Files in memory cannot be named in a rule, and need none;
-    // `tex-reader --version` has no input.
-    landlock_path_beneath_attr input{};
-    input.allowed_access = LANDLOCK_ACCESS_FS_READ_FILE;
-    input.parent_fd = kInputDescriptor;
-    const bool named = syscall(SYS_landlock_add_rule, rules, LANDLOCK_RULE_PATH_BENEATH, &input, 0) == 0 ||
-                       errno == EBADFD || errno == EBADF;
-    const bool done =
-        named && prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 && syscall(SYS_landlock_restrict_self, rules, 0) == 0;
-    close(rules);
-    return done && open("/", O_RDONLY | O_DIRECTORY | O_CLOEXEC) < 0;
 }
 
 bool filter_calls() {
