@@ -34,6 +34,20 @@ TEST(Text, PrintableTextCannotDriveATerminal) {
     EXPECT_EQ(printable("\xef\xbf\xbe\xef\xbf\xbd"), "\\xef\\xbf\\xbe\xef\xbf\xbd");  // no character, and one
 }
 
+TEST(Text, PrintableTextReadsInItsOwnOrder) {
+    EXPECT_EQ(printable("a\u202egnp.exe"), "a\\xe2\\x80\\xaegnp.exe");
+    for (const char* const hidden : {"\u061c", "\u200b", "\u200e", "\u200f", "\u2028", "\u2029",     "\u202a",
+                                     "\u202b", "\u202c", "\u202d", "\u202e", "\u2060", "\u2066",     "\u2067",
+                                     "\u2068", "\u2069", "\u206f", "\ufeff", "\ufff9", "\U000e0041", "\u0085"}) {
+        const std::string text = printable(hidden);
+        EXPECT_EQ(text.size(), 4 * std::string_view(hidden).size()) << text;
+        EXPECT_TRUE(text.starts_with("\\x")) << text;
+    }
+    // Joiners are part of words, and neighbours of what is escaped are characters like any other.
+    for (const char* const shown : {"\u200c", "\u200d", "\u2010", "\u2027", "\u202f", "\u2070", "\ufeee", "\U0001f9f1"})
+        EXPECT_EQ(printable(shown), shown);
+}
+
 TEST(Text, WrapsAtBlanks) {
     EXPECT_EQ(wrapped("the quick brown fox", 10), (std::vector<std::string>{"the quick", "brown fox"}));
     EXPECT_EQ(wrapped("a verylongword b", 6), (std::vector<std::string>{"a", "verylongword", "b"}));

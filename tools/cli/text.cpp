@@ -3,6 +3,8 @@
 #include "cli/text.h"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -28,6 +30,16 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     return last[b.size()];
 }
 
+// Characters that show nothing themselves but change what is around them: they turn the direction of a line, so that a
+// name reads backwards, break it, or make two names look the same. (Joiners, U+200C and U+200D, belong to words.)
+bool is_format_control(char32_t code) {
+    constexpr std::pair<char32_t, char32_t> kRanges[] = {{0x61c, 0x61c},   {0x200b, 0x200b},  {0x200e, 0x200f},
+                                                         {0x2028, 0x202e}, {0x2060, 0x206f},  {0xfeff, 0xfeff},
+                                                         {0xfff9, 0xfffb}, {0xe0000, 0xe007f}};
+    return std::any_of(std::begin(kRanges), std::end(kRanges),
+                       [code](const auto& range) { return code >= range.first && code <= range.second; });
+}
+
 // The bytes of the character that `text` begins with, in UTF-8 and in its shortest form; 0 if there is none, or a
 // control character.
 std::size_t character_length(std::string_view text) {
@@ -44,7 +56,7 @@ std::size_t character_length(std::string_view text) {
     constexpr char32_t kLeast[] = {0, 0, 0xa0, 0x800,
                                    0x10000};  // those of two bytes begin after the control characters
     const bool is_character = (code < 0xd800 || code >= 0xe000) && code != 0xfffe && code != 0xffff;
-    return code >= kLeast[length] && code <= 0x10ffff && is_character ? length : 0;
+    return code >= kLeast[length] && code <= 0x10ffff && is_character && !is_format_control(code) ? length : 0;
 }
 
 }  // namespace

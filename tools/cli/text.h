@@ -21,8 +21,9 @@ namespace tex::cli {
 // "a, b, c".
 [[nodiscard]] std::string join(const std::vector<std::string>& words, std::string_view between = ", ");
 
-// `text` with control characters (those of C1, U+0080 to U+009F, too) and bytes that are not UTF-8 written as \xNN, so
-// that a file name can neither break a line nor drive the terminal.
+// `text` with control characters (also U+0080 to U+009F), invisible format characters (U+202E, which turns the
+// direction of what follows, and its kin) and bytes that are not UTF-8 written as \xNN, so that a file name can neither
+// break a line, drive the terminal nor look like another one.
 [[nodiscard]] std::string printable(std::string_view text);
 
 // `text` broken at blanks into lines of at most `width` characters; longer words stand alone.
