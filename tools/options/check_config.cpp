@@ -11,6 +11,7 @@
 #include "cli/command.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "options/toml_bounds.h"
 
 // toml++ 3.3 asserts what a file can break (a table whose name begins with a colon), and in releases assumes it: here
 // that is an error of the file.
@@ -101,6 +102,7 @@ Result<CheckConfig> read_check_config(const std::string& path) {
 }
 
 CheckConfig parse_check_config(const std::string& path, const std::string& text) {
+    check_toml_bounds(path, text);
     // toml++ 3.3 has no defined behaviour for letters beyond ASCII outside strings and comments. No key or value of
     // ours has one: they become question marks, which are refused like any other mistake. A mark of the encoding may
     // stand first.

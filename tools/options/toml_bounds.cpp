@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "options/toml_bounds.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "cli/text.h"
+#include "cli/usage_error.h"
+
+namespace tex::cli {
+namespace {
+
+// Goes over the text once. Where it is not TOML, the parser stops: what this makes of the rest does not matter.
+class Scanner {
+public:
+    explicit Scanner(std::string_view text) : text_(text) {}
+
+    // The line of the first statement that nests too deep, from 1; 0 if there is none.
+    int line_of_excess() {
+        while (at_ < text_.size()) {
+            const char c = text_[at_];
+            if (c == '"' || c == '\'') {
+                skip_string(c);
+            } else if (c == '#') {
+                at_ = std::min(text_.find('\n', at_), text_.size());
+            } else {
+                ++at_;
+                count(c);
+            }
+            if (levels_ > kMostTomlLevels) return line_;
+        }
+        return 0;
+    }
+
+private:
+    void count(char c) {
+        if (c == '\n') ++line_;
+        if (c == '[' || c == '{') {
+            outer_.push_back(levels_);
+            ++levels_;
+        } else if ((c == ']' || c == '}') && !outer_.empty()) {
+            levels_ = outer_.back();
+            outer_.pop_back();
+        } else if (c == '.') {
+            ++levels_;
+        } else if (c == ',' || c == '\n') {  // the next element or statement
+            levels_ = outer_.empty() ? 0 : outer_.back() + 1;
+        }
+    }
+
+    [[nodiscard]] std::size_t quotes_at(std::size_t at, char quote) const {
+        return std::min(text_.find_first_not_of(quote, at), text_.size()) - at;
+    }
+
+    void skip_string(char quote) {
+        constexpr std::size_t kLong = 3;
+        const std::size_t begin = quotes_at(at_, quote);
+        if (begin == 2) {  // an empty string
+            at_ += 2;
+            return;
+        }
+        const bool is_long = begin >= kLong;
+        at_ += is_long ? kLong : 1;
+        while (at_ < text_.size()) {
+            const char c = text_[at_];
+            if (c == quote) {
+                if (!is_long) {
+                    ++at_;
+                    return;
+                }
+                // Its last one or two characters may be quotes.
+                const std::size_t quotes = quotes_at(at_, quote);
+                at_ += std::min(quotes, kLong + 2);
+                if (quotes >= kLong) return;
+                continue;
+            }
+            if (c == '\n' && !is_long) return;
+            if (c == '\n') ++line_;
+            at_ += c == '\\' && quote == '"' ? 2 : 1;
+            if (c == '\\' && quote == '"' && at_ <= text_.size() && text_[at_ - 1] == '\n') ++line_;
+        }
+    }
+
+    std::string_view text_;
+    std::size_t at_ = 0;
+    int line_ = 1;
+    int levels_ = 0;          // around what stands at at_
+    std::vector<int> outer_;  // around each bracket that is open
+};
+
+}  // namespace
+
+void check_toml_bounds(const std::string& path, std::string_view text) {
+    if (text.size() > kMostTomlBytes) {
+        throw UsageError(fmt::format("{}: {} bytes; a file of settings has at most {}", printable(path), text.size(),
+                                     kMostTomlBytes));
+    }
+    if (const int line = Scanner(text).line_of_excess(); line > 0) {
+        throw UsageError(fmt::format("{}: line {}: keys and lists nest deeper than {} levels", printable(path), line,
+                                     kMostTomlLevels));
+    }
+}
+
+}  // namespace tex::cli
