@@ -8,12 +8,32 @@
 namespace tex::cli {
 
 TEST(Depfile, OneRuleForEachOutput) {
-    EXPECT_EQ(depfile_text({{{"a.dds"}, {"a.png", "config.ocio"}}, {{"b0.png", "b1.png"}, {"b.png"}}}),
+    EXPECT_EQ(*depfile_text({{{"a.dds"}, {"a.png", "config.ocio"}}, {{"b0.png", "b1.png"}, {"b.png"}}}),
               "a.dds: \\\n  a.png \\\n  config.ocio\nb0.png b1.png: \\\n  b.png\n");
 }
 
 TEST(Depfile, WhatHasNoNameIsLeftOut) {
-    EXPECT_EQ(depfile_text({{{"a.dds"}, {"-"}}, {{"-"}, {"a.png"}}, {{"two\nlines.dds"}, {"a.png"}}}), "a.dds:\n");
+    EXPECT_EQ(*depfile_text({{{"a.dds"}, {"-"}}, {{"-"}, {"a.png"}}}), "a.dds:\n");
+}
+
+// They were left out in silence, and what was made from them was never made again.
+TEST(Depfile, NamesThatItCannotHoldAreRefused) {
+    const auto text = depfile_text({{{"a.dds"}, {"a.png", "two\nlines.ocio"}}});
+    ASSERT_FALSE(text);
+    EXPECT_EQ(text.error().file, "two\nlines.ocio");
+
+    const Scratch scratch;
+    scratch.add_sample("ramp.png", "two\nlines.png");
+    scratch.add_sample("ramp.png", "plain.png");
+    const auto before = scratch.list();
+    for (const std::string name : {"two\nlines", "plain"}) {
+        const std::string output = name == "plain" ? "two\nlines.dds" : "plain.dds";
+        const Ran ran = run(scratch, "bake-normals", {name + ".png", "-o", output, "--depfile", "d"});
+        EXPECT_EQ(ran.code, 2);
+        EXPECT_TRUE(ran.err.starts_with("bake-normals: error: --depfile: two\\x0alines.")) << ran.err;
+        EXPECT_EQ(scratch.list(), before);
+    }
+    EXPECT_EQ(run(scratch, "bake-normals", {"two\nlines.png", "-o", "plain.dds"}).code, 0);
 }
 
 // Names that Make would take for something else, all of them at once: Make must build the output after the
@@ -24,7 +44,7 @@ TEST(Depfile, MakeReadsEveryName) {
         const Scratch scratch;
         const std::string input = name + ".png", output = name + ".dds";
         scratch.write(input, "");
-        scratch.write("d", depfile_text({{{output}, {input}}}));
+        scratch.write("d", *depfile_text({{{output}, {input}}}));
         scratch.write("Makefile", "include d\n%.dds:\n\t@echo built\n.DEFAULT_GOAL :=\n");
         EXPECT_EQ(run(scratch, "/usr/bin/make", {"-s", "-f", "Makefile", output}).out, "built\n") << name;
         scratch.write(output, "");

@@ -175,8 +175,9 @@ ExitCode Batch::run_tasks(const std::vector<Task>& tasks, Console& console) {
     ExitCode code = std::max(finish(console), reporter.exit_code());
     if (!files.depfile.empty()) {
         write.no_clobber = false;  // every run writes its depfile again
-        code = std::max(code,
-                        code_of(write_text_file(files.depfile, depfile_text(reporter.dependencies()), write), console));
+        const auto text = depfile_text(reporter.dependencies());
+        const auto written = text ? write_text_file(files.depfile, *text, write) : Result<void>(text.error());
+        code = std::max(code, code_of(written, console));
     }
     return code;
 }

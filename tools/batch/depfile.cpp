@@ -2,6 +2,14 @@
 
 #include "batch/depfile.h"
 
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "batch/task.h"
+#include "cli/text.h"
+#include "cli/usage_error.h"
+
 namespace tex::cli {
 namespace {
 
@@ -23,19 +31,34 @@ std::string escaped(const std::string& path, bool is_target) {
     return text;
 }
 
-bool is_named(const std::string& path) { return path.find('\n') == std::string::npos && path != "-"; }
+bool has_no_spelling(const std::string& path) { return path.find('\n') != std::string::npos; }
+constexpr const char* kNoSpelling = "a depfile cannot hold a name with a line feed";
 
 void add_paths(std::string& text, const std::vector<std::string>& paths, const char* between, bool are_targets) {
     for (const std::string& path : paths) {
-        if (is_named(path)) text += between + escaped(path, are_targets);
+        if (path != "-") text += between + escaped(path, are_targets);
     }
 }
 
 }  // namespace
 
-std::string depfile_text(const std::vector<Dependency>& dependencies) {
+void check_depfile_names(const std::vector<Task>& tasks) {
+    for (const Task& task : tasks) {
+        std::vector<std::string> paths = task.outputs();
+        for (const std::string& input : task.inputs()) paths.push_back(input);
+        for (const std::string& file : task.prerequisites()) paths.push_back(file);
+        const auto bad = std::find_if(paths.begin(), paths.end(), has_no_spelling);
+        if (bad != paths.end()) throw UsageError(fmt::format("--depfile: {}: {}", printable(*bad), kNoSpelling));
+    }
+}
+
+Result<std::string> depfile_text(const std::vector<Dependency>& dependencies) {
     std::string text;
     for (const Dependency& dependency : dependencies) {
+        for (const std::vector<std::string>* paths : {&dependency.outputs, &dependency.inputs}) {
+            const auto refused = std::find_if(paths->begin(), paths->end(), has_no_spelling);
+            if (refused != paths->end()) return Error{ErrorCode::unsupported, *refused, kNoSpelling};
+        }
         std::string targets;
         add_paths(targets, dependency.outputs, " ", true);
         if (targets.empty()) continue;

@@ -6,16 +6,23 @@
 #include <string>
 #include <vector>
 
+#include <tex/result.h>
+
 namespace tex::cli {
+
+struct Task;
 
 struct Dependency {
     std::vector<std::string> outputs;
     std::vector<std::string> inputs;
 };
 
+// Throws UsageError if a task reads or writes a file whose name holds a line feed, which has no escape.
+void check_depfile_names(const std::vector<Task>& tasks);
+
 // One rule for each dependency: "out.dds: bricks.png\n". Blanks, #, $, :, % and backslashes are escaped as
-// GNU Make wants it. A line feed has no escape: names that hold one are left out. (Nor have = and ;, with
-// which Make cannot cope, but Ninja can.)
-[[nodiscard]] std::string depfile_text(const std::vector<Dependency>& dependencies);
+// GNU Make wants it. (There is no escape for = and ;, with which Make cannot cope, but Ninja can.) Standard input and
+// output are left out. Errors: unsupported (a line feed in a name).
+[[nodiscard]] Result<std::string> depfile_text(const std::vector<Dependency>& dependencies);
 
 }  // namespace tex::cli

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "batch/collisions.h"
+#include "batch/depfile.h"
 #include "batch/name_pattern.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
@@ -69,6 +70,7 @@ std::vector<Task> plan_outputs(std::vector<std::string> inputs, const FileOption
         if (rules.amend) rules.amend(task);
         tasks.push_back(std::move(task));
     }
+    if (!files.depfile.empty()) check_depfile_names(tasks);
     check_collisions(tasks, files.depfile, files.files_from);
     return tasks;
 }
