@@ -17,6 +17,7 @@
 
 #include <tex/container.h>
 
+#include "files/file_rights.h"
 #include "files/input_file.h"
 #include "files/system_error.h"
 #include "files/through_file.h"
@@ -92,21 +93,9 @@ Result<Target> find_target(const std::string& path) {
     return target;
 }
 
-// Gives the new file the owner, group and mode of the old one, as far as this user may; never more rights to anybody.
-void keep_rights(int fd, const struct stat& old) {
-    mode_t mode = old.st_mode & 07777;
-    struct stat now {};
-    if (fstat(fd, &now) != 0) return;
-    const bool owner_kept = now.st_uid == old.st_uid || fchown(fd, old.st_uid, static_cast<gid_t>(-1)) == 0;
-    const bool group_kept = now.st_gid == old.st_gid || fchown(fd, static_cast<uid_t>(-1), old.st_gid) == 0;
-    if (!owner_kept) mode &= ~static_cast<mode_t>(S_ISUID);
-    if (!group_kept) mode = (mode & ~static_cast<mode_t>(S_ISGID | S_IRWXG)) | (mode & S_IRWXO) << 3;
-    if (fchmod(fd, mode) != 0) return;  // the file stays readable by its writer alone
-}
-
 // The last steps before a file gets its name. 0, or the errno of what failed.
 int settle(int fd, const Target& target, bool sync) {
-    if (target.existing) keep_rights(fd, *target.existing);
+    if (target.existing) keep_rights(fd, target.folder.get(), target.name, *target.existing);
     while (sync && fdatasync(fd) != 0) {
         if (errno == EINVAL) break;  // this kind of file cannot be synchronised
         if (errno != EINTR) return errno;
