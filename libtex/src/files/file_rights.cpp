@@ -117,7 +117,7 @@ mode_t mode_without_acl(mode_t mode, std::span<const std::byte> acl) {
         }
     }
     if (!of_group) return mode & ~kAllButOwner;
-    return (mode & ~(S_IRWXG | S_IRWXO)) | (*of_group & of_users) << 3 | (mode & of_named);
+    return (mode & ~static_cast<mode_t>(S_IRWXG | S_IRWXO)) | (*of_group & of_users) << 3 | (mode & of_named);
 }
 
 void keep_rights(int fd, int folder, const std::string& name, const struct stat& old) {
