@@ -115,6 +115,8 @@ bool decode(const Task& task, ReaderHeader& header) {
     const NativeType type = native_type(spec);
     describe(spec, type, header);
     put_header(header);
+    put_progress();
+    wait_for_room();
 
     const std::uint64_t bytes_of_row = row_bytes(header);
     const int rows = strip_rows(spec, bytes_of_row);

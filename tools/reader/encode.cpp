@@ -76,6 +76,9 @@ bool encode(const Task& task, ReaderHeader& header) {
     }
     if (!output->close()) return refuse(header, ErrorCode::unsupported, output->geterror());
     header.bytes = bytes.size();
+    put_header(header);
+    put_progress();
+    wait_for_room();
     put_bytes(kReaderDataOffset, bytes.buffer().data(), bytes.size());
     return true;
 }

@@ -107,11 +107,11 @@ private:
     KernelAction before_{};
 };
 
-// Has a thread restrict itself. True where it has, or is gone; false where it did not within a second.
+// Has a thread restrict itself. True where it has, or is gone; false where it did not within ten seconds.
 bool restrict_thread(pid_t thread) {
     order.obeyed = false;
     if (syscall(SYS_tgkill, getpid(), thread, kOrder) != 0) return errno == ESRCH;
-    for (int tries = 0; tries < 100; ++tries) {
+    for (int tries = 0; tries < 1000; ++tries) {  // on a busy machine a thread may wait long for a processor
         timespec until{};
         clock_gettime(CLOCK_REALTIME, &until);
         until.tv_nsec += 10'000'000;

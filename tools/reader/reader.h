@@ -17,7 +17,7 @@ namespace tex::reader {
 struct Task {
     std::string format;           // as OpenImageIO names it
     std::int64_t max_texels = 0;  // more are refused
-    std::int64_t memory = 0;      // bytes of address space, and of the result
+    std::int64_t memory = 0;      // bytes of address space and of the result, together
     int seconds = 1;              // of processor time
     int parent = 0;               // ends with it
 };
@@ -25,11 +25,13 @@ struct Task {
 // Limits of memory, time and descriptors; no core file; ends when the parent does.
 void limit_process(const Task& task);
 
-// Bytes of address space and of one file that this process may have: the lesser of both.
+// Bytes that this process may have: Task::memory, or less where it came with lower limits.
 std::int64_t memory_limit();
 
-// Takes away all files but the input, which may be read, from every thread; if the kernel can, TCP and signals to
-// other processes, too (Landlock). False if the kernel does not know it, or refuses.
+// Waits until libtex has answered the header with room for the result (reader_memory.h). The room may be too small:
+// then put_bytes() fails. The time limit of the process is the one of this, too.
+void wait_for_room();
+
 bool restrict_files();
 
 // The kernel's version of Landlock; 0 if it has none.

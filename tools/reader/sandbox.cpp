@@ -30,14 +30,18 @@
 namespace tex::reader {
 namespace {
 
-void limit(__rlimit_resource what, std::int64_t value) {
+// Lowers a limit; the process may raise it again up to `most`. What it may be at most then.
+rlim_t limit(__rlimit_resource what, std::int64_t value, std::int64_t most) {
     rlimit now{};
-    if (getrlimit(what, &now) != 0) return;
-    const auto wanted = static_cast<rlim_t>(value);
-    const rlim_t at_most = now.rlim_max < wanted ? now.rlim_max : wanted;
-    const rlimit limits{at_most, at_most};
+    if (getrlimit(what, &now) != 0) return RLIM_INFINITY;
+    const rlim_t highest = std::min(now.rlim_max, static_cast<rlim_t>(most));
+    const rlimit limits{std::min(highest, static_cast<rlim_t>(value)), highest};
     setrlimit(what, &limits);
+    return highest;
 }
+rlim_t limit(__rlimit_resource what, std::int64_t value) { return limit(what, value, value); }
+
+rlim_t highest = RLIM_INFINITY;  // of memory_limit()
 
 // What decoders, the C library, the loader and threads call. Everything else fails with EPERM.
 constexpr int kAllowed[] = {
@@ -151,21 +155,24 @@ void limit_process(const Task& task) {
     if (getppid() != task.parent) _exit(1);  // it was gone before
     constexpr int kDescriptors = 64;
 #ifndef TEX_READER_SHADOW
-    limit(RLIMIT_AS, task.memory);
+    highest = limit(RLIMIT_AS, task.memory);
 #endif
-    limit(RLIMIT_FSIZE, task.memory);
+    highest = std::min(highest, limit(RLIMIT_FSIZE, kReaderDataOffset, task.memory));
     limit(RLIMIT_CPU, task.seconds + 1);
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_NOFILE, kDescriptors);
 }
 
 std::int64_t memory_limit() {
-    auto most = static_cast<rlim_t>(std::numeric_limits<std::int64_t>::max());
-    for (const auto what : {RLIMIT_AS, RLIMIT_FSIZE}) {
-        rlimit now{};
-        if (getrlimit(what, &now) == 0) most = std::min(most, now.rlim_cur);
-    }
-    return static_cast<std::int64_t>(most);
+    return static_cast<std::int64_t>(std::min<rlim_t>(highest, std::numeric_limits<std::int64_t>::max()));
+}
+
+void wait_for_room() {
+    rlimit size{};
+    do {
+        if (getrlimit(RLIMIT_FSIZE, &size) != 0 || size.rlim_max <= kReaderDataOffset) return;
+        usleep(50);
+    } while (size.rlim_cur == kReaderDataOffset);
 }
 
 bool filter_calls() {

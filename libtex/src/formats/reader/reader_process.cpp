@@ -25,6 +25,7 @@
 
 #include "files/system_error.h"
 #include "formats/reader/reader.h"
+#include "formats/reader/reader_memory.h"
 #include "threads/guard.h"
 
 namespace tex {
@@ -268,6 +269,7 @@ struct ReaderProcess::State {
     Descriptor progress;
     pid_t child = -1;
     bool has_spoken = false;  // the header is there
+    bool has_room = false;    // grant_result() has been called
     bool in_time = true;
     std::optional<Ending> ending;
 
@@ -280,11 +282,21 @@ struct ReaderProcess::State {
         whole = got == static_cast<ssize_t>(sizeof header) && header.magic == kReaderMagic;
         return header;
     }
+    // Once, when the process has said how large its result is going to be.
+    void grant_room() {
+        bool whole = false;
+        const ReaderHeader header = read_header(whole);
+        const auto result = whole ? claimed_result(header, job.verb, memory) : std::nullopt;
+        if (!result) return;
+        has_room = true;
+        grant_result(child, *result, memory);
+    }
     // Waits for the next strip; false where the process has ended.
     bool wait() {
         if (ending) return false;
         const News news = wait_for_news(progress.get(), deadline);
         has_spoken = has_spoken || news == News::strip;
+        if (news == News::strip && !has_room) grant_room();
         if (news == News::strip) return true;
         in_time = news == News::end;
         ending = collect(child);

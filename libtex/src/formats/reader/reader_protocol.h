@@ -20,6 +20,10 @@
 // row_bytes(). rows_done in the header grows while they arrive, so that a consumer may follow. An encoded file is
 // `bytes` long.
 //
+// Room for data has to be asked for: with the extent (encode: `bytes`) in the header and a byte in the pipe. libtex
+// then raises the process's limit on the size of files, which was kReaderDataOffset, and lowers that on its address
+// space by as much, so that MEMORY bounds both together (reader_memory.h).
+//
 // The header is there, as `working`, once the process is ready: one that ends earlier has not seen its input. It ends
 // with status kNoRoom where even the header cannot be written.
 //
