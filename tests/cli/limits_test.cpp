@@ -178,6 +178,26 @@ TEST_F(Limits, SmallFilesAreOneSentence) {
     }
 }
 
+// From what the loader needs to what the work needs: each run says what is short.
+TEST_F(Limits, FewDescriptorsAreOneSentence) {
+    for (const std::string command : {"bake-normals a.tif -o out.dds", "unpack-normals a.dds -o out.tif"}) {
+        int refused = 0;
+        for (int limit = 5; limit <= 24; ++limit) {
+            SCOPED_TRACE(testing::Message() << command << " with " << limit << " descriptors");
+            const Ran ran = run_after(fmt::format("ulimit -n {}", limit), command + " --no-sync --quiet");
+            if (ran.code == 0) {
+                fs::remove(scratch_.path(command.substr(command.find("out."))));
+                continue;
+            }
+            expect_refused(ran, command);
+            EXPECT_NE(ran.err.find("too many open files"), std::string::npos) << ran.err;
+            ++refused;
+        }
+        EXPECT_GE(refused, 1);
+        EXPECT_LE(refused, 10);
+    }
+}
+
 // -- rights ----------------------------------------------------------------------------------------------------
 
 TEST_F(Limits, FilesOfOthersAndFoldersThatAreClosedStayAsTheyAre) {

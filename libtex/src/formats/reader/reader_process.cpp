@@ -72,11 +72,12 @@ public:
 // ends with it. 0 or an errno.
 int spawn(const std::string& program, std::vector<std::string> arguments, int result, int input, int progress,
           pid_t& child) {
-    // Out of the way of the numbers that they are to have.
-    const Descriptor from[] = {Descriptor(fcntl(result, F_DUPFD_CLOEXEC, 16)),
-                               Descriptor(fcntl(input, F_DUPFD_CLOEXEC, 16)),
-                               Descriptor(fcntl(progress, F_DUPFD_CLOEXEC, 16))};
-    if (!from[0] || !from[1] || !from[2]) return errno;
+    // Out of the way of the numbers that they are to have. Beyond the limit of descriptors fcntl() knows no numbers.
+    constexpr int kFree = kProgressDescriptor + 1;
+    const Descriptor from[] = {Descriptor(fcntl(result, F_DUPFD_CLOEXEC, kFree)),
+                               Descriptor(fcntl(input, F_DUPFD_CLOEXEC, kFree)),
+                               Descriptor(fcntl(progress, F_DUPFD_CLOEXEC, kFree))};
+    if (!from[0] || !from[1] || !from[2]) return errno == EINVAL ? EMFILE : errno;
     SpawnPlan plan;
     int failed = 0;
     const auto check = [&failed](int status) { failed = failed != 0 ? failed : status; };
