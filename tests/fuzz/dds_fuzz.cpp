@@ -11,17 +11,14 @@
 
 #include "formats/dds/dds.h"
 #include "fuzz/whole_texture.h"
+#include "reference/dds_file.h"
 
 namespace {
 
-// Offsets in the file, and what is likely to stand there.
-constexpr std::size_t kFlags = 8, kHeight = 12, kWidth = 16, kMipCount = 28, kFormatFlags = 80, kFourCc = 84,
-                      kBitCount = 88, kMasks = 92, kCaps2 = 112, kDxgi = 128, kMiscFlag = 136, kArraySize = 140,
-                      kHeader = 128, kHeader10 = 148;
-constexpr std::uint32_t four_cc(const char (&text)[5]) {
-    return static_cast<std::uint32_t>(text[0]) | static_cast<std::uint32_t>(text[1]) << 8 |
-           static_cast<std::uint32_t>(text[2]) << 16 | static_cast<std::uint32_t>(text[3]) << 24;
-}
+using tex::reference::four_cc;
+using namespace tex::reference::dds;
+
+// What is likely to stand in a field.
 constexpr std::uint32_t kFourCcs[] = {four_cc("DXT1"),
                                       four_cc("DXT2"),
                                       four_cc("DXT3"),
@@ -60,7 +57,9 @@ std::uint32_t one_of(const std::uint32_t (&values)[N], std::minstd_rand& random)
 }
 
 void change_a_field(std::uint8_t* data, std::size_t size, std::minstd_rand& random) {
-    switch (random() % 10) {
+    constexpr std::uint32_t kEdges[] = {0,       1,          0x7f,       0xff,       0x7fff,    0xffff,
+                                        0x10000, 0x7fffffff, 0x80000000, 0xfffffffe, 0xffffffff};
+    switch (random() % 12) {
         case 0: return put(data, kHeight, static_cast<std::uint32_t>(random() % 70));
         case 1: return put(data, kWidth, static_cast<std::uint32_t>(random() % 70));
         case 2: return put(data, kMipCount, static_cast<std::uint32_t>(random() % 9));
@@ -69,9 +68,10 @@ void change_a_field(std::uint8_t* data, std::size_t size, std::minstd_rand& rand
         case 5: return put(data, kBitCount, static_cast<std::uint32_t>(random() % 9 * 8));
         case 6: return put(data, kMasks + random() % 4 * 4, one_of(kMaskValues, random));
         case 7: return put(data, random() % 2 == 0 ? kCaps2 : kFlags, static_cast<std::uint32_t>(random()) & 0xfe00u);
+        case 8: return put(data, 4 + random() % (kHeader10End / 4 - 1) * 4, one_of(kEdges, random));
         default: break;
     }
-    if (size < kHeader10) return;
+    if (size < kHeader10End) return;
     put(data, kFourCc, four_cc("DX10"));
     put(data, kFormatFlags, 0x4);
     if (random() % 8 == 0)
@@ -86,7 +86,7 @@ extern "C" [[gnu::weak]] std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::s
 
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed) {
     std::minstd_rand random(seed);
-    if (size < kHeader10 || random() % 2 == 0) return LLVMFuzzerMutate(data, size, most);
+    if (size < kHeader10End || random() % 2 == 0) return LLVMFuzzerMutate(data, size, most);
     std::memcpy(data, "DDS ", 4);
     put(data, 4, 124);
     put(data, 76, 32);
@@ -94,9 +94,9 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
     // A new end: sizes are multiples of blocks. What is added is what was there.
     if (random() % 4 == 0) {
         const std::size_t wanted =
-            std::min<std::size_t>(most, kHeader + random() % 600 * 16 + random() % 2 * (kHeader10 - kHeader));
-        for (std::size_t k = size; k < wanted; ++k) data[k] = data[kHeader + (k - kHeader) % (size - kHeader)];
-        return std::max<std::size_t>(wanted, kHeader10);
+            std::min<std::size_t>(most, kHeaderEnd + random() % 600 * 16 + random() % 2 * (kHeader10End - kHeaderEnd));
+        for (std::size_t k = size; k < wanted; ++k) data[k] = data[kHeaderEnd + (k - kHeaderEnd) % (size - kHeaderEnd)];
+        return std::max<std::size_t>(wanted, kHeader10End);
     }
     return size;
 }

@@ -83,45 +83,4 @@ inline std::vector<std::byte> exr_file(Extent extent, const std::vector<std::str
     return bytes;
 }
 
-// The same file of one part with one attribute more. The offsets in the table of chunks move by its size.
-inline std::vector<std::byte> with_attribute(const std::vector<std::byte>& file, const std::string& name,
-                                             const std::string& type, const std::string& value) {
-    std::string attribute = name + '\0' + type + '\0';
-    const auto size = static_cast<std::uint32_t>(value.size());
-    attribute.append(reinterpret_cast<const char*>(&size), sizeof size).append(value);
-    constexpr std::size_t kFirst = 8;  // after the magic number and the version
-    const auto text_end = [&](std::size_t at) {
-        while (file[at] != std::byte{0}) ++at;
-        return at + 1;
-    };
-    std::size_t table = kFirst;
-    while (file[table] != std::byte{0}) {
-        table = text_end(text_end(table));
-        std::uint32_t bytes = 0;
-        std::memcpy(&bytes, file.data() + table, sizeof bytes);
-        table += sizeof bytes + bytes;
-    }
-    ++table;
-    std::vector<std::byte> longer = file;
-    std::uint64_t chunk = 0;
-    std::uint64_t first_chunk = file.size();
-    for (std::size_t at = table; at < first_chunk; at += sizeof chunk) {
-        std::memcpy(&chunk, file.data() + at, sizeof chunk);
-        first_chunk = std::min(first_chunk, chunk);
-        chunk += attribute.size();
-        std::memcpy(longer.data() + at, &chunk, sizeof chunk);
-    }
-    const auto* bytes = reinterpret_cast<const std::byte*>(attribute.data());
-    longer.insert(longer.begin() + kFirst, bytes, bytes + attribute.size());
-    return longer;
-}
-
-// An attribute of the type tiledesc.
-inline std::string tile_description(std::uint32_t width, std::uint32_t height, char mode) {
-    std::string value(9, mode);
-    std::memcpy(value.data(), &width, sizeof width);
-    std::memcpy(value.data() + sizeof width, &height, sizeof height);
-    return value;
-}
-
 }  // namespace tex

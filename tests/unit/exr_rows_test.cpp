@@ -12,6 +12,7 @@
 #include "formats/claims.h"
 #include "formats/exr/exr.h"
 #include "formats/exr/exr_chunk.h"
+#include "reference/exr_file.h"
 #include "unit/exr_files.h"
 
 namespace tex {
@@ -101,11 +102,16 @@ TEST(ExrRows, ScanLinesIgnoreALeftoverTileDescription) {
     Result<InputFile> plain_file = InputFile::from_memory("lines.exr", plain);
     const Result<Image> whole = read_all(open_exr_rows(*plain_file, {}));
     ASSERT_TRUE(whole);
+    const auto parsed = reference::parse_exr({reinterpret_cast<const char*>(plain.data()), plain.size()});
+    ASSERT_TRUE(parsed);
     for (const std::uint32_t size : {0u, 1u, 64u, 0x7fffffffu, 0xffffffffu}) {
         for (const char mode : {'\0', '\1', '\2', '\x11', '\x7f'}) {
             SCOPED_TRACE(testing::Message() << size << " mode " << int{mode});
-            const auto bytes = with_attribute(plain, "tiles", "tiledesc", tile_description(64, size, mode));
-            Result<InputFile> file = InputFile::from_memory("tiles.exr", bytes);
+            auto with_tiles = parsed;
+            with_tiles->parts[0].push_back({"tiles", "tiledesc", reference::exr_tiles(64, size, mode)});
+            const std::string text = reference::write_exr(*with_tiles);
+            const auto* bytes = reinterpret_cast<const std::byte*>(text.data());
+            Result<InputFile> file = InputFile::from_memory("tiles.exr", {bytes, bytes + text.size()});
             const Result<Image> image = read_all(open_exr_rows(*file, {}));
             ASSERT_TRUE(image) << image.error().message();
             expect_same(*image, *whole, 0);

@@ -32,6 +32,8 @@ std::int64_t memory_limit();
 // then put_bytes() fails. The time limit of the process is the one of this, too.
 void wait_for_room();
 
+// Takes away all files but the input, which may be read, from every thread; if the kernel can, TCP and signals to other
+// processes, too (Landlock). False if the kernel does not know it, or refuses.
 bool restrict_files();
 
 // The kernel's version of Landlock; 0 if it has none.
