@@ -23,7 +23,7 @@ struct ReadOptions {
     // The reader program; empty: the one that the installation (libexec/libtex/tex-reader) or the build put beside
     // libtex.
     std::string reader;
-    std::int64_t reader_memory = std::int64_t{4} << 30;  // bytes of address space
+    std::int64_t reader_memory = std::int64_t{4} << 30;  // bytes: its address space and its result
     int reader_timeout = 120;                            // seconds of wall-clock time
 };
 
