@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_block_encoding(Encoding encoding) { return format_info(encoding_info(encoding).format).block > 1; }
+bool is_block_encoding(Encoding encoding) { return format_info(encoding_info(encoding).format).has_blocks(); }
 
 // The pattern of names with --out-dir, if the user gives none.
 std::string default_pattern(const OutputOptions& output, const OutputRules& rules) {

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "batch/job.h"
-#include "cli/stream.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "cli/value.h"

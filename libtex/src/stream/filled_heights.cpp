@@ -5,7 +5,7 @@
 #include <cstring>
 #include <utility>
 
-#include "rows/nearest.h"
+#include "stream/nearest.h"
 
 namespace tex {
 namespace {
