@@ -17,7 +17,7 @@ Result<Texture> read(const DdsFile& file) {
     const std::string bytes = reference::write_dds(file);
     ReadOptions options;
     options.max_texels = 1 << 20;
-    return decode_dds(reinterpret_cast<const std::byte*>(bytes.data()), bytes.size(), "a.dds", options);
+    return load_texture(parse_dds, reinterpret_cast<const std::byte*>(bytes.data()), bytes.size(), "a.dds", options);
 }
 
 // 12x8 and the three levels below it: BC5 in both headers, and RGBA of 8 bits.

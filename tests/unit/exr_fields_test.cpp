@@ -64,7 +64,7 @@ bool is_plain(const Image& image) {
 // Read whole and by rows, both with one result, or refused with a reason. Whether it was read.
 bool expect_read_or_refused(const ExrFile& file) {
     InputFile input = input_of(file);
-    const Result<Image> image = read_exr(input, limited());
+    const Result<Image> image = read_all(open_exr_rows(input, limited()));
     if (!image) {
         EXPECT_FALSE(image.error().reason.empty());
         EXPECT_TRUE(image.error().code == ErrorCode::bad_data || image.error().code == ErrorCode::unsupported)
@@ -75,7 +75,7 @@ bool expect_read_or_refused(const ExrFile& file) {
     if (!source) return false;
     const Result<Image> by_rows = (*source)->read_all();
     EXPECT_EQ(static_cast<bool>(by_rows), static_cast<bool>(image));
-    const auto texture = read_exr_texture(input, limited());
+    const auto texture = read_all(open_exr_texture_rows(input, limited()));
     if (texture && texture->levels.empty()) ADD_FAILURE() << "no levels";
     return static_cast<bool>(image);
 }
@@ -90,7 +90,7 @@ constexpr std::uint32_t kIntegers[] = {0,          1,          2,          3,   
 TEST(ExrFields, WhatTheyAreMadeOfIsRead) {
     for (const ExrFile& file : plain_files()) {
         InputFile input = input_of(file);
-        const Result<Image> image = read_exr(input, limited());
+        const Result<Image> image = read_all(open_exr_rows(input, limited()));
         ASSERT_TRUE(image) << image.error().message();
         EXPECT_TRUE(is_plain(*image));
         const std::string text = reference::write_exr(file);
@@ -165,7 +165,7 @@ TEST(ExrFields, AttributesOfOtherPartsChangeNothing) {
                 continue;
             }
             InputFile input = input_of(file);
-            const Result<Image> image = read_exr(input, limited());
+            const Result<Image> image = read_all(open_exr_rows(input, limited()));
             ASSERT_TRUE(image) << image.error().message();
             EXPECT_TRUE(is_plain(*image));
             EXPECT_TRUE(expect_read_or_refused(file));

@@ -43,7 +43,7 @@ Result<Image> read(const std::vector<PngChunk>& chunks) {
     Result<InputFile> file = InputFile::from_memory("a.png", {bytes, bytes + text.size()});
     ReadOptions options;
     options.max_texels = 1 << 20;
-    return read_png(*file, options);
+    return read_all(open_png(*file, options));
 }
 
 void expect_read_or_refused(const std::vector<PngChunk>& chunks) {

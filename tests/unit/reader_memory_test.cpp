@@ -114,7 +114,7 @@ TEST(ReaderMemory, OneBoundHoldsForBothTogether) {
     ASSERT_EQ(truncate(path.c_str(), kHeader + std::int64_t{kData}), 0);  // all the rest is a hole
     ReadOptions options;
     options.reader_memory = 1024 * kMiB;
-    const Result<Image> image = read_with_reader(path, options);
+    const Result<Image> image = read_image(path, options);
     std::filesystem::remove(path);
     ASSERT_FALSE(image);
     EXPECT_EQ(image.error().reason, "needs more memory than the 1024 MiB that a decoder may have");
