@@ -13,8 +13,8 @@
 #include "blocks/extent.h"
 #include "kernels/roughness.h"
 #include "rows/mip_rows.h"
-#include "rows/own_roughness.h"
 #include "rows/roughness_rows.h"
+#include "stream/own_roughness.h"
 #include "threads/guard.h"
 #include "threads/parallel.h"
 

@@ -42,7 +42,7 @@ public:
 
     // The layers: `names` are their files. The job must outlive them.
     [[nodiscard]] std::vector<LayerFile> layers(Job& job, const std::vector<std::string>& names,
-                                               const NormalsReader& normals) const;
+                                                const NormalsReader& normals) const;
 
 private:
     using Pair = std::pair<float, float>;

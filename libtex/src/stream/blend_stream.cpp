@@ -139,7 +139,8 @@ Result<void> Blending::prepare() {
 
 Result<std::unique_ptr<StripWriter>> Blending::open_writer() const {
     const OutputNames names{output_, options_.level_names};
-    return StripWriter::open(names, container_, packing_of(report_.pack, report_.extent, report_.levels), options_.write);
+    return StripWriter::open(names, container_, packing_of(report_.pack, report_.extent, report_.levels),
+                             options_.write);
 }
 
 Result<PlacedMap> Blending::place(Input& input, std::deque<ArrivingMap>& arriving, const Execution& execution) {

@@ -11,8 +11,7 @@ namespace tex {
 RoughnessStage::RoughnessStage(Extent base, int levels, const MipOptions& options, RoughnessModel model,
                                const OwnRoughness& own, Strips& strips)
     : model_(model), strips_(strips), own_(own), alpha2_(base.width, 1),
-      steps_(base, levels, 4, 0, options, [this](LevelStep& step, bool) { return make_row(step); }) {
-}
+      steps_(base, levels, 4, 0, options, [this](LevelStep& step, bool) { return make_row(step); }) {}
 
 void RoughnessStage::put(int j, const NormalRow& row, std::shared_ptr<const void> owner) {
     constexpr int kBase = 0;

@@ -8,8 +8,8 @@
 #include <tex/mip.h>
 #include <tex/roughness.h>
 
-#include "rows/own_roughness.h"
 #include "stream/level_step.h"
+#include "stream/own_roughness.h"
 #include "stream/row_shelf.h"
 #include "stream/strips.h"
 

@@ -61,7 +61,8 @@ Result<ReaderPicture> ReaderPicture::open(Container container, const TextureHead
     const FormatInfo info = format_info(head.format);
     const Codec& codec = codec_of(container);
     if (Result<void> held = check_holds(codec, head.format); !held) return held.error();
-    if (codec.reader_name == nullptr) return Error{ErrorCode::unsupported, {}, "nothing that the reader process encodes"};
+    if (codec.reader_name == nullptr)
+        return Error{ErrorCode::unsupported, {}, "nothing that the reader process encodes"};
     ReaderHeader header;
     header.width = head.extent.width;
     header.height = head.extent.height;

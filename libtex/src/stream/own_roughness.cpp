@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "rows/own_roughness.h"
+#include "stream/own_roughness.h"
 
 #include <algorithm>
 #include <utility>
