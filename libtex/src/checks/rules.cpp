@@ -82,7 +82,8 @@ constexpr Rule kRules[] = {
     {"N210", "grey-picture", values, error, true, "The picture is grey.",
      "R, G and B are equal everywhere: this is a height or bump map, not a normal map.",
      "bake-normals FILE -o FIXED.dds",
-     "N201 N202 N203 N205 N206 N207 N208 N209 N213 N301 N302 N303 N304 N305 N306 N308 N401 N402 N403 N404 N501 N502 "
+     "N201 N202 N203 N205 N206 N207 N208 N209 N213 N214 N301 N302 N303 N304 N305 N306 N308 N401 N402 N403 N404 N501 "
+     "N502 "
      "N503 N504"},
     {"N211", "dxt5nm-red", values, note, true, "R is not 255 in the layout of DXT5nm.",
      "Unity's shaders multiply R and A to read x from either; where R is not 255, x comes out too small (or 0). "
@@ -98,19 +99,19 @@ constexpr Rule kRules[] = {
      "", "N201 N202 N205 N207 N305 N401 N402 N403 N404 N501 N502 N504"},
     {"N214", "not-a-normal-map", values, error, true, "The picture is no normal map.",
      "Nearly all texels are far from unit length and many point away from the surface: colours, not vectors.", "",
-     "N201 N202 N205 N207 N213 N301 N302 N303 N304 N305 N306 N308 N401 N402 N403 N404 N501 N502 N504"},
+     "N201 N202 N205 N207 N213 N304 N305 N306 N401 N402 N403 N404 N501 N502 N504"},
 
     // -- damage -----------------------------------------------------------------------------------------------
     {"N301", "srgb-decoded", damage, error, true, "The map went through the sRGB curve: it is too dark.",
      "x and y centre on 0.21 instead of 0.5: somebody read the file as colour and stored linear values.", "",
-     "N201 N202 N203 N205 N206 N207 N213 N305 N307 N308 N401 N402 N403 N404 N501 N502 N504"},
+     "N201 N202 N203 N205 N206 N207 N213 N214 N305 N307 N308 N401 N402 N403 N404 N501 N502 N504"},
     {"N302", "srgb-encoded", damage, error, true, "The map went through the sRGB curve: it is too light.",
      "x and y centre on 0.74 instead of 0.5: linear values were stored as if they were colour.", "",
-     "N201 N202 N203 N205 N206 N207 N305 N307 N308 N401 N402 N403 N404 N501 N502 N504"},
+     "N201 N202 N203 N205 N206 N207 N214 N305 N307 N308 N401 N402 N403 N404 N501 N502 N504"},
     {"N303", "premultiplied", damage, error, true, "R, G and B were multiplied by alpha.",
      "No channel exceeds alpha, and dividing by it makes the vectors longer and even. Image libraries do this on "
      "reading unless told otherwise (OpenImageIO: oiio:UnassociatedAlpha).",
-     "", "N201 N202 N205 N207 N212 N213 N301 N305 N308 N401 N402 N403 N404 N501 N502 N504"},
+     "", "N201 N202 N205 N207 N212 N213 N214 N301 N305 N308 N401 N402 N403 N404 N501 N502 N504"},
     {"N304", "jpeg-blocks", damage, warning, true, "The map shows the 8x8 blocks of lossy JPEG.",
      "The cosine transform of aligned blocks is quantised as JPEG of about quality 65 or less does it, or steps stand "
      "out at every eighth column and row. Chroma subsampling halves the resolution of x; go back to a lossless source.",
@@ -129,7 +130,7 @@ constexpr Rule kRules[] = {
     {"N308", "channels-exchanged", damage, error, true, "Two channels are exchanged.",
      "Either another channel than the third holds z (blue, green, red order), or x and y changed places: the slopes "
      "have curl as they stand and none when exchanged (so also where the order of BC5's blocks was mistaken).",
-     "", "N201 N202 N205 N207 N209 N213 N401 N402 N403 N404"},
+     "", "N201 N202 N205 N207 N209 N213 N214 N401 N402 N403 N404"},
 
     // -- convention -------------------------------------------------------------------------------------------
     {"N401", "wrong-y", convention, error, true, "Green points the other way than required.",
