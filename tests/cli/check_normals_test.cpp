@@ -239,7 +239,8 @@ TEST_F(CheckNormals, ABaselineKnowsNamesOfAnyBytes) {
 
 TEST_F(CheckNormals, AnEmptyListHasItsDocuments) {
     scratch_.write("list", "");
-    const Ran ran = check({"--files-from", "list", "--sarif", "out.sarif", "--junit", "out.xml"});
+    EXPECT_EQ(check({"--files-from", "list"}).code, 2);
+    const Ran ran = check({"--files-from", "list", "--allow-empty", "--sarif", "out.sarif", "--junit", "out.xml"});
     EXPECT_EQ(ran.code, 0);
     EXPECT_EQ(ran.out, "0 files: 0 errors, 0 warnings, 0 notes\n");
     EXPECT_TRUE(nlohmann::json::parse(scratch_.read("out.sarif"))["runs"][0]["results"].empty());

@@ -113,7 +113,10 @@ TEST_F(Files, ListsMayHoldLinesOrNulSeparatedNames) {
     EXPECT_TRUE(scratch_.has("both/b.dds"));
     EXPECT_EQ(bake({"--files-from", "nowhere", "--out-dir", "out"}).code, 3);
     scratch_.write("empty", "");
-    EXPECT_EQ(bake({"--files-from", "empty", "--out-dir", "out"}).code, 0);
+    const Ran refused = bake({"--files-from", "empty", "--out-dir", "out"});
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_EQ(refused.err, "bake-normals: error: --files-from: empty names no input; --allow-empty accepts that\n");
+    EXPECT_EQ(bake({"--files-from", "empty", "--allow-empty", "--out-dir", "out"}).code, 0);
 }
 
 TEST_F(Files, TheOutputFolderIsCreatedButNotItsParents) {

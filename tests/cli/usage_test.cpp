@@ -134,7 +134,7 @@ TEST_P(EveryUsage, NamePatternsAreChecked) {
 TEST_P(EveryUsage, AListNeedsANameWhereOneOutputIsWanted) {
     scratch_.write("list", "\n");
     before_ = scratch_.list();
-    refuses({"--files-from", "list", "-o", "x.dds"}, "no input for -o: list names none");
+    refuses({"--files-from", "list", "--allow-empty", "-o", "x.dds"}, "no input for -o: list names none");
 }
 
 TEST_P(EveryUsage, OnlyOneInputGoesToStandardOutput) {

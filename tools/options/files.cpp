@@ -87,6 +87,7 @@ void FileOptions::add_list(Command& command) {
         .text(files_from, "--files-from", "LIST",
               "read names of inputs from a file, one a line or separated by NUL; - is standard input")
         .completes = Completes::files;
+    command.flag(allow_empty, "--allow-empty", "accept a list of --files-from that names no input");
 }
 
 void FileOptions::check_inputs(const Command& command) const {
@@ -102,6 +103,10 @@ Result<std::vector<std::string>> FileOptions::list_inputs(const Command& command
         if (!list) return list.error();
         const std::vector<std::string> listed = names_in(*list);
         inputs.insert(inputs.end(), listed.begin(), listed.end());
+        if (inputs.empty() && !allow_empty) {
+            throw UsageError(
+                fmt::format("--files-from: {} names no input; --allow-empty accepts that", printable(files_from)));
+        }
     }
     return inputs;
 }

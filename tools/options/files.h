@@ -22,6 +22,7 @@ struct FileOptions {
     std::string out_dir;
     std::string name;
     std::string files_from;
+    bool allow_empty = false;
     std::string depfile;
     bool no_clobber = false;
     bool no_sync = false;
@@ -31,7 +32,8 @@ struct FileOptions {
     // --files-from alone, for commands that only read. No inputs are needed if `needless` returns true.
     void add_inputs(Command& command, std::function<bool()> needless = {});
 
-    // The inputs of the command line and of --files-from. Errors: the list cannot be read.
+    // The inputs of the command line and of --files-from. Errors: the list cannot be read. Throws UsageError if there
+    // is no input at all, unless allow_empty is set: a list that a script made wrongly must not pass for success.
     [[nodiscard]] Result<std::vector<std::string>> list_inputs(const Command& command) const;
 
     // The output that `pattern` names: below --out-dir if it is given.
