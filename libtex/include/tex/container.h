@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// container.h: textures from and to files: DDS, KTX2, and pictures.
+// container.h: reads and writes textures as files: DDS, KTX2, and pictures.
 
 #pragma once
 
@@ -16,7 +16,7 @@
 #pragma GCC visibility push(default)
 namespace tex {
 
-// Kinds of file that libtex writes, by extension: .dds .ktx2 .png .exr .tif .tiff .tga .bmp .jpg .jpeg
+// File types that libtex writes, by extension: .dds .ktx2 .png .exr .tif .tiff .tga .bmp .jpg .jpeg
 enum class Container { dds, ktx2, png, exr, tiff, tga, bmp, jpeg };
 
 inline constexpr Named<Container> kContainerNames[] = {
@@ -25,22 +25,21 @@ inline constexpr Named<Container> kContainerNames[] = {
     {Container::bmp, "bmp", ".bmp"}, {Container::jpeg, "jpeg", ".jpg, .jpeg"},
 };
 
-// By the extension of `path` (case does not matter); nullopt for others.
+// The file type that the extension of `path` names (case does not matter); nullopt for any other extension.
 [[nodiscard]] std::optional<Container> container_of(std::string_view path);
 
 // What a container can hold. dds and ktx2: every encoding, mip levels. exr: half, float; mip levels. png: rgb8, rgba8,
-// rgb16, ag8. tiff: rgb8, rgba8, rgb16, ag8, half, float. tga: rgb8, rgba8, ag8. bmp, jpeg: rgb8. (A picture holds
-// one, three or four channels: rg8 and rg16 go into dds and ktx2 alone.)
+// rgb16, ag8. tiff: rgb8, rgba8, rgb16, ag8, half, float. tga: rgb8, rgba8, ag8. bmp, jpeg: rgb8. (A picture holds one,
+// three or four channels, so only dds and ktx2 can hold rg8 and rg16.)
 [[nodiscard]] bool can_hold(Container container, Encoding encoding);
 [[nodiscard]] bool can_hold(Container container, Format format);
 [[nodiscard]] bool can_hold_levels(Container container);
 
-// Whether a container holds block formats, as dds and ktx2 do: files for a GPU, with all mip levels by default. The
-// others are pictures.
+// Whether a container can hold block formats. dds and ktx2 can: they are files for a GPU and hold all mip levels by
+// default. The others are pictures.
 [[nodiscard]] bool can_hold_blocks(Container container);
 
-// The encoding where the user names none: dxt5nm in dds and ktx2, rgb8 in png, tga, bmp, jpeg; rgb16 in tiff; half in
-// exr.
+// The encoding if the user names none: dxt5nm in dds and ktx2, rgb8 in png, tga, bmp, jpeg; rgb16 in tiff; half in exr.
 [[nodiscard]] Encoding default_encoding(Container container);
 
 enum class DdsHeader { legacy, dx10 };
@@ -54,44 +53,47 @@ struct WriteOptions {
     DdsHeader dds_header = DdsHeader::legacy;
     bool dds_mark = false;    // DDPF_NORMAL, and the swizzle code 'A2D5' for dxt5nm, as NVIDIA's tools write them
     bool sync = true;         // fdatasync before the rename
-    bool no_clobber = false;  // an existing file is an error (io), not replaced
+    bool no_clobber = false;  // do not replace an existing file; report an error (io)
     ReadOptions reader;       // the reader process also encodes TIFF, TGA, BMP and JPEG
 };
 
-// The bytes of a file that holds `texture`. DDS and KTX2 hold all levels, EXR too where there is more than one; other
-// pictures hold the base level. Formats that a container lacks in three channels are widened with A = 1 (rgb16, half
-// and float in DDS and KTX2). No time, host or path is in the bytes: equal textures give equal files.
+// The bytes of a file that holds `texture`. DDS and KTX2 hold all levels, and so does EXR if there is more than one;
+// other pictures hold the base level. If a container lacks a format with three channels, the format is widened with
+// A = 1 (rgb16, half and float in DDS and KTX2). The bytes contain no time, host or path: equal textures give equal
+// files.
 //
 // KTX2 carries the key "libtex.normal" with the swizzle's name and y, for example "dxt5nm +y"; EXR the attributes
 // normalEncoding = "signed" and normalYAxis = "up" or "down".
 //
-// Errors: unsupported  the container cannot hold the format (the reason says what it can)
-//         io           the reader process cannot be started; bad_data where it crashed, or did not end in time
+// Errors: unsupported  the container cannot hold the format (the reason says what it can hold)
+//         io           the reader process cannot be started
+//         bad_data     the reader process crashed or did not end in time
 //         out_of_memory
 [[nodiscard]] Result<std::vector<std::byte>> encode_file(const Texture& texture, Container container,
                                                          const WriteOptions& options = {});
 
-// encode_file() by the extension of `path`, then write_file(). Errors: bad_option (an extension of none of the
-// containers), and theirs.
+// Calls encode_file() with the container that the extension of `path` names, then write_file(). Errors: bad_option (the
+// extension belongs to no container), and those of both functions.
 [[nodiscard]] Result<void> write_texture(const std::string& path, const Texture& texture,
                                          const WriteOptions& options = {});
 
-// Writes `bytes` to `path` so that the path holds its old content or the new one, whole, whatever happens in between:
-// a nameless temporary (O_TMPFILE) in the same directory, fdatasync, link and rename; symbolic links are followed, so
-// that the link stays. The mode of an existing file is kept, as far as this user may. Standard output ("-"), FIFOs and
-// devices are written through.
+// Writes `bytes` to `path`. Whatever happens during the call, the path holds either its complete old content or its
+// complete new content. The bytes go to a nameless temporary file (O_TMPFILE) in the same directory, followed by
+// fdatasync, link and rename. A symbolic link is followed and stays a link. The mode of an existing file is kept, as
+// far as this user may. Standard output ("-"), FIFOs and devices are written directly.
 //
-// Errors: io  the directory does not exist or may not be written; the disk is full; the path is a directory; ...;
-// out_of_memory, also of descriptors;
-//         cancelled  the process caught a signal, without SA_RESTART, while a FIFO waited for its reader
+// Errors: io             the directory does not exist or is not writable; the disk is full; the path is a directory; or
+//                        another failure of the file system
+//         out_of_memory  memory or file descriptors ran out
+//         cancelled      the process caught a signal, without SA_RESTART, while a FIFO waited for its reader
 [[nodiscard]] Result<void> write_file(const std::string& path, const std::vector<std::byte>& bytes,
                                       const WriteOptions& options = {});
 
-// For the handler of a signal that ends the process at once: removes what files that are being written have under
-// temporary names. (Only some file systems need such names from the beginning, see write_file(). Without this call such
-// a file stays until the target is written again.) Safe to call in signal handlers. From here on no file begins or gets
-// its name: a thread that tries waits for ever, and so does a second call. It leaves all signals blocked in this
-// thread. The process must end right after it.
+// For the handler of a signal that ends the process at once: removes the temporary names of files that are still being
+// written. (Only some file systems need such names from the beginning, see write_file(). Without this call such a file
+// stays until the target is written again.) Safe to call in signal handlers. After this call no file can be started or
+// get its name: a thread that tries waits forever, and so does a second call. The call leaves all signals blocked in
+// this thread. The process must end right after it.
 void remove_unfinished_files() noexcept;
 
 // Reads a texture with all its levels.
@@ -99,16 +101,17 @@ void remove_unfinished_files() noexcept;
 // DDS: legacy and DX10 headers; BC1 to BC5 (DXT1 to DXT5, ATI1, ATI2, BC4U, BC4S, BC5U, BC5S, RXGB), the swizzle codes
 // that ATI's and NVIDIA's tools leave in dwRGBBitCount (xGxR, A2XY, A2D5, RxBG ...), uncompressed formats by masks (8,
 // 16, 24 and 32 bits) and by FourCC (36, 110 to 116), the DXGI formats of Format in their unorm, snorm, float, typeless
-// and sRGB forms. Missing header flags are overlooked; what was overlooked is in Texture::remarks. Cube maps, volumes
-// and arrays are unsupported. KTX2: the VkFormats of Format, without supercompression, one layer, one face, one depth.
+// and sRGB forms. Missing header flags are accepted; Texture::remarks lists them. Cube maps, volumes and arrays are
+// unsupported. KTX2: the VkFormats of Format, without supercompression, one layer, one face, one depth.
 // ATI2 without a swizzle code holds y first (3Dc, ATI 2005); with 'A2XY' x is first.
-// EXR: all levels of a mip-mapped file (but those rounded up). Anything else is read as a picture: one level.
+// EXR: all levels of a mip-mapped file; the base level only if the extents of the levels are rounded up. Anything else
+// is read as a picture: one level.
 //
-// Every size computed from a header is checked against the file's length before memory is taken. Errors: as
+// Every size computed from a header is checked against the file's length before memory is allocated. Errors: as
 // read_image().
 [[nodiscard]] Result<Texture> read_texture(const std::string& path, const ReadOptions& options = {});
 
-// The same for a DDS or KTX2 file that is in memory. `name` stands in the messages.
+// The same for a DDS or KTX2 file that is in memory. Error messages call it `name`.
 [[nodiscard]] Result<Texture> decode_file(const std::byte* data, std::size_t size, const std::string& name,
                                           const ReadOptions& options = {});
 

@@ -14,9 +14,9 @@
 #pragma GCC visibility push(default)
 namespace tex {
 
-// The layout of a level's bytes. Channels are in the order R, G, B, A, little-endian, rows from the top
-// without padding; block formats store rows of blocks from the top, edge blocks whole. Blocks of BC1 to BC5 have 4x4
-// texels.
+// The layout of a level's bytes. Channels are in the order R, G, B, A, little-endian, rows from the top without
+// padding. Block formats store rows of blocks from the top; blocks at the edges are stored whole. Blocks of BC1 to BC5
+// have 4x4 texels.
 //
 //   bc1   8 bytes a block: RGB, 5:6:5 endpoints (DXT1)             bc4   8 bytes: R, one BC4 block
 //   bc2  16 bytes: 4-bit alpha, then a BC1 block (DXT3)            bc5  16 bytes: R and G, two BC4 blocks
@@ -98,11 +98,11 @@ struct FormatInfo {
 
 [[nodiscard]] FormatInfo format_info(Format format);
 
-// The format without blocks that stores such samples; nullopt if there is none (no format has three signed channels).
+// The format without blocks for these samples; nullopt if there is none (no format has three signed channels).
 [[nodiscard]] std::optional<Format> format_of(SampleKind sample, int bits, int channels);
 
-// Bytes of a level: blocks across times blocks down times bytes of a block, blocks rounded up. Does not
-// overflow for extents up to kMaxExtent.
+// Bytes of a level: blocks across times blocks down times bytes of a block. The numbers of blocks are rounded up. Does
+// not overflow for extents up to kMaxExtent.
 [[nodiscard]] std::size_t level_bytes(Format format, Extent extent);
 
 // What one stored channel holds.
@@ -130,7 +130,7 @@ inline constexpr Swizzle kSwizzleYx = {Component::y, Component::x, Component::ze
 inline constexpr Swizzle kSwizzleXyz = {Component::x, Component::y, Component::z, Component::other};
 inline constexpr Swizzle kSwizzleDxt5nm = {Component::one, Component::y, Component::one, Component::x};
 
-// Four letters in the order R, G, B, A of kComponentNames: "1y1x".
+// The names of the components (kComponentNames) in the order R, G, B, A, as four characters: "1y1x".
 [[nodiscard]] std::string to_string(const Swizzle& swizzle);
 
 // The encodings of normal maps that pack() makes: a format and a swizzle.

@@ -5,10 +5,9 @@
 //
 //     data[j * stride + i]          0 <= i < extent.width,  0 <= j < extent.height
 //
-// with the stride in elements, not bytes. Rows of a Plane start on kRowAlignment bytes and are padded to a
-// multiple of it, so that a kernel may load and store whole vectors past the last texel of a row; what
-// it stores there means nothing. Rows of a PlaneView that a caller makes need no padding: whole-image verbs
-// accept any stride >= width.
+// with the stride in elements, not bytes. Rows of a Plane start on kRowAlignment bytes and are padded to a multiple of
+// it, so that a kernel may load and store whole vectors past the last texel of a row; the values in the padding have no
+// meaning. Rows of a PlaneView that a caller makes need no padding: verbs on whole images accept any stride >= width.
 
 #pragma once
 
@@ -40,7 +39,7 @@ inline constexpr int kMaxExtent = 1 << 20;
 // Rows of a Plane start at multiples of this many bytes: the widest vector of any kernel.
 inline constexpr std::size_t kRowAlignment = 64;
 
-// A view of a plane that somebody else owns. `stride` is in elements, at least extent.width.
+// A view of a plane that another object owns. `stride` is in elements, at least extent.width.
 template <class T>
 struct PlaneView {
     T* data = nullptr;
@@ -52,9 +51,9 @@ struct PlaneView {
     operator PlaneView<const T>() const { return {data, extent, stride}; }
 };
 
-// The memory of a Plane: `bytes` bytes that start at a multiple of kRowAlignment, and their release. libtex compiles
-// both, so that programs compiled with -fno-exceptions can use planes. If memory runs out, std::bad_alloc is thrown,
-// and such a program ends.
+// allocate_rows() returns the memory of a Plane: `bytes` bytes that start at a multiple of kRowAlignment. free_rows()
+// releases it. Both are compiled in libtex, so that programs compiled with -fno-exceptions can use planes. If memory
+// runs out, std::bad_alloc is thrown, and such a program ends.
 [[nodiscard]] void* allocate_rows(std::size_t bytes);
 void free_rows(void* rows) noexcept;
 
@@ -109,7 +108,7 @@ private:
     std::unique_ptr<T, Free> data_;
 };
 
-// How the values of a file were stored, before they became float.
+// How a file stored the values before they were converted to float.
 enum class SampleKind { unorm, snorm, floating };
 
 // A picture as read from a file: planes of one extent, in the order of the file, each with its channel's
@@ -124,7 +123,7 @@ struct Image {
     SampleKind sample = SampleKind::unorm;
     int bits = 8;  // significant bits of a sample in the file: 1 to 16, or 32; 16 or 32 for half and float
 
-    // The EXR attribute normalEncoding, or empty: "signed" where values are components of normals themselves.
+    // The EXR attribute normalEncoding, or empty: "signed" if the values are the components of normals themselves.
     std::string normal_encoding;
 
     [[nodiscard]] Extent extent() const { return planes.empty() ? Extent{} : planes.front().extent(); }

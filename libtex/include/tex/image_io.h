@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// image_io.h: pictures from files.
+// image_io.h: reads pictures from files.
 //
 // The first bytes of a file, not its name, decide how it is read. PNG and EXR are decoded in this process, by libpng
 // and OpenEXR; DDS and KTX2 by libtex; everything else (TIFF, TGA, JPEG, BMP, HDR, PSD ...) by OpenImageIO in a
-// separate reader process, under limits of memory and time. A crash or a hang of such a decoder becomes an Error.
+// separate reader process, under limits of memory and time. If such a decoder crashes or hangs, the result is an Error.
 
 #pragma once
 
@@ -17,11 +17,10 @@
 namespace tex {
 
 struct ReadOptions {
-    // Files that claim more texels than this are refused (unsupported) before memory is taken.
+    // Files that claim more texels than this are refused (unsupported) before memory is allocated.
     std::int64_t max_texels = std::int64_t{1} << 30;
 
-    // The reader program; empty: the one that the installation (libexec/libtex/tex-reader) or the build put beside
-    // libtex.
+    // The reader program. Empty: the program that was installed (libexec/libtex/tex-reader) or built beside libtex.
     std::string reader;
     std::int64_t reader_memory = std::int64_t{4} << 30;  // bytes: its address space and its result
     int reader_timeout = 120;                            // seconds of wall-clock time
@@ -30,28 +29,28 @@ struct ReadOptions {
 // Reads the base level of a picture with all its channels: raw values (see Image), unassociated alpha, top row first.
 // PNG: 1 to 16 bits, grey, RGB, alpha, palette (expanded), transparency (as A), interlaced; colour chunks (gAMA, sRGB,
 // iCCP, sBIT) change nothing. EXR: half, float and uint, scanline and tiled, mip-mapped, any channel names (R, G, B, A
-// come first, the others by name); the data window; the first of several parts. Deep data and subsampled channels are
-// unsupported. `path` "-" reads standard input.
+// come first, the others by name); the data window; the first part of a multi-part file. Deep data and subsampled
+// channels are unsupported. `path` "-" reads standard input.
 //
 // Errors: io           cannot be opened or read; is a directory; the reader program cannot be started
 //         bad_data     empty, truncated, damaged; not a picture at all
 //         unsupported  valid, but of a type not handled; more texels than max_texels; a side above kMaxExtent
 //         out_of_memory
-// Nothing in a file makes this function crash, hang beyond reader_timeout, or use memory out of proportion to the
-// smaller of what the file claims and what it can hold.
+// No file content makes this function crash or hang beyond reader_timeout. The memory that it uses stays in proportion
+// to the smaller of two sizes: the size that the file claims and the size that its bytes can hold.
 [[nodiscard]] Result<Image> read_image(const std::string& path, const ReadOptions& options = {});
 
-// The reader process, and the rights that it gives up before it opens a file.
+// The reader process, and the access rights that it gives up before it opens a file.
 struct ReaderInfo {
     std::string program;
-    std::string openimageio;        // its version
+    std::string openimageio;        // OpenImageIO's version
     int landlock = 0;               // the kernel's version of Landlock; 0: none
-    bool files_restricted = false;  // by Landlock: no file but the input
+    bool files_restricted = false;  // by Landlock: it can open no file except the input
     bool calls_filtered = false;    // by seccomp: no network, no writing, no other programs
 };
 
-// Starts the process once to ask it, which takes a tenth of a second. Errors: as read_image(), if the process does not
-// run.
+// Starts the reader process once to query it, which takes a tenth of a second. Errors: as read_image(), if the process
+// does not run.
 [[nodiscard]] Result<ReaderInfo> reader_info(const ReadOptions& options = {});
 
 }  // namespace tex

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // result.h: how libtex reports failure.
 //
-// Functions that can fail return Result<T>: the value, or an Error that says which file is concerned and
-// why, in one sentence that a technical artist understands. libtex throws no exception across its
-// interface, prints nothing and never ends the process. (The constructors of Plane and the standard
-// containers in its structs may throw std::bad_alloc in the caller's own code.)
+// Functions that can fail return Result<T>: the value, or an Error that says which file is concerned and why, in one
+// sentence that a technical artist understands. libtex throws no exception across its interface, prints nothing and
+// never ends the process. (The constructors of Plane and the standard containers in its structs may throw
+// std::bad_alloc in the caller's own code.)
 
 #pragma once
 
@@ -21,10 +21,10 @@ namespace tex {
 enum class ErrorCode {
     io,             // a file cannot be opened, read, written or renamed; the disk is full
     bad_data,       // a file is damaged, truncated, or holds values that cannot be used (NaN heights)
-    unsupported,    // a file is sound but of a kind that libtex does not handle
+    unsupported,    // a file is sound but of a type that libtex does not handle
     bad_option,     // the options contradict each other or the data (a channel that the file does not have)
     out_of_memory,  // memory, threads or another resource of the system ran out
-    cancelled,      // the progress callback asked to stop, or a signal came while a FIFO waited for its reader
+    cancelled,      // the progress callback asked to stop, or a signal arrived while a FIFO waited for its reader
 };
 
 inline constexpr Named<ErrorCode> kErrorCodeNames[] = {
@@ -36,22 +36,22 @@ inline constexpr Named<ErrorCode> kErrorCodeNames[] = {
     {ErrorCode::cancelled, "cancelled", "cancelled"},
 };
 
-// A failure. `file` is the path concerned, as the caller gave it, or empty where no file is involved;
-// `reason` is one clause without a final full stop ("truncated: level 3 wants 64 bytes, 12 are left").
+// A failure. `file` is the path concerned, as the caller gave it, or empty if no file is involved; `reason` is one
+// clause without a final full stop ("truncated: level 3 wants 64 bytes, 12 are left").
 struct Error {
     ErrorCode code = ErrorCode::io;
     std::string file;
     std::string reason;
 
-    // "FILE: reason", or just the reason where there is no file.
+    // "FILE: reason", or just the reason if no file is named.
     [[nodiscard]] std::string message() const { return file.empty() ? reason : file + ": " + reason; }
 
-    // The same, of the file `path` where it names none.
+    // The same error for the file `path`, unless the error already names a file.
     [[nodiscard]] Error of(const std::string& path) const { return {code, file.empty() ? path : file, reason}; }
 };
 
-// A value or an Error. Test it, then use value() or error(); asking for the one that is not there is a
-// programming error (std::bad_variant_access, as std::variant defines it).
+// A value or an Error. Test it, then use value() or error(). Asking for the one that is absent is a programming error
+// (std::bad_variant_access, as std::variant defines it).
 template <class T>
 class [[nodiscard]] Result {
 public:
