@@ -27,7 +27,7 @@ constexpr std::uint32_t fourcc(const char (&text)[5]) {
     return code;
 }
 
-// Builds the head of a file.
+// Builds the header of a file.
 class ByteWriter {
 public:
     void u8(std::uint32_t value) { bytes_.push_back(static_cast<std::byte>(value & 0xff)); }

@@ -10,10 +10,11 @@
 
 namespace tex {
 
-// The swizzle of a texture that has one channel, and that one is alpha.
+// The swizzle of a texture whose only channel is alpha.
 inline constexpr Swizzle kAlphaAlone = {Component::zero, Component::zero, Component::zero, Component::other};
 
-// R, G, B, A: as many as the format has channels; A where that is the only one. The texture needs no levels.
+// The names of the format's channels: the first of R, G, B, A, or only A if alpha is the only channel. The texture
+// needs no levels.
 inline std::vector<std::string> channel_names(const Texture& head) {
     const auto channels = static_cast<std::size_t>(format_info(head.format).channels);
     if (channels == 1 && head.swizzle == kAlphaAlone) return {"A"};
@@ -21,7 +22,7 @@ inline std::vector<std::string> channel_names(const Texture& head) {
     return {names, names + channels};
 }
 
-// The channels that normals are likeliest in if the file does not say. BC3 is taken for DXT5nm.
+// The likeliest swizzle of normals in this format, for files that do not state one. BC3 is taken for DXT5nm.
 inline Swizzle likely_swizzle(Format format) {
     if (format == Format::bc3_unorm) return kSwizzleDxt5nm;
     switch (format_info(format).channels) {

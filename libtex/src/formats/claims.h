@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// claims.h: what a picture's header claims, checked before memory is taken for it.
+// claims.h: checks what a picture's header claims before memory is allocated for it.
 
 #pragma once
 
@@ -12,22 +12,21 @@
 
 namespace tex {
 
-// The extent that a header claims. Errors: bad_data (a side below 1), unsupported (a side above kMaxExtent, more texels
-// than max_texels).
+// Checks and returns the extent that a header claims. Errors: bad_data (a side below 1), unsupported (a side above
+// kMaxExtent, more texels than max_texels).
 Result<Extent> claimed_extent(const std::string& path, std::int64_t width, std::int64_t height,
                               const ReadOptions& options);
 
-// Errors: bad_data where `decoded` bytes are more than `size` bytes of a file can stand for when they are compressed by
-// `ratio` to 1 at best.
+// Errors: bad_data if `size` bytes of a file, compressed by at best `ratio` to 1, cannot hold `decoded` bytes.
 Result<void> check_claim(const std::string& path, Extent extent, double decoded, std::int64_t size, double ratio);
 
 // Deflate codes at most 258 bytes with 2 bits: 1032 to 1 (zlib's technical notes).
 inline constexpr double kDeflateRatio = 1032.0;
 
-// A picture of planes with these names, values unset. Throws std::bad_alloc.
+// A picture of planes with these names. The values are unset. Throws std::bad_alloc.
 Image make_image(Extent extent, std::vector<std::string> names);
 
-// R, G, B, A as far as there are channels; Y, or Y and A for one or two. Throws std::bad_alloc.
+// The first `channels` names of R, G, B, A; with one or two channels Y, or Y and A. Throws std::bad_alloc.
 std::vector<std::string> channel_names(int channels);
 
 }  // namespace tex

@@ -34,7 +34,7 @@ bool is_unorm8_picture(const FormatInfo& format) { return is_unorm_picture(forma
 
 bool is_unorm8_without_alpha(const FormatInfo& format) { return is_unorm8_picture(format) && format.channels != 4; }
 
-// Those of the reader process come last.
+// The codecs of the reader process come last.
 constexpr Codec kCodecs[] = {
     {.container = Container::dds,
      .magic = kDdsMagic,

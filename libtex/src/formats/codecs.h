@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// codecs.h: the table of file types, one row each.
+// codecs.h: the table of file types, one row for each type.
 //
-// A new file type is a folder beside this file, a row in codecs.cpp, and an enumerator with its name and extensions in
-// container.h. No other code depends on which type a file has.
+// A new file type needs a folder beside this file, a row in codecs.cpp, and an enumerator with its name and extensions
+// in container.h. No other code depends on the type of a file.
 
 #pragma once
 
@@ -27,21 +27,21 @@ struct Codec {
     std::string_view magic =
         {};  // the first bytes of every such file; empty: the reader process recognises and decodes it
 
-    // What it holds.
+    // What the file type can hold.
     bool (*holds)(const FormatInfo& format);
     bool has_levels = false;
     Encoding default_encoding = Encoding::rgb8;
 
-    // Reading: a file in which the texels of all levels lie uncompressed has `parse`, others have `open_rows`, and
+    // Reading. File types that store the texels of all levels uncompressed set `parse`. The others set `open_rows`, and
     // `open_levels` if there may be smaller levels.
     ParseTexture parse = nullptr;
     Result<std::unique_ptr<RowSource>> (*open_rows)(InputFile& file, const ReadOptions& options) = nullptr;
     Result<TextureRows> (*open_levels)(InputFile& file, const ReadOptions& options) = nullptr;
-    bool decodes_twice = false;  // decoding a file twice costs less than keeping its rows
+    bool decodes_twice = false;  // decoding a file twice costs less than keeping its rows in memory
 
-    // Writing: a file that knows the place of every byte before the first texel has `layout`, and takes strips in any
-    // order; one that takes rows in their order has `open_target`; one that is encoded as a whole by the reader
-    // process has the name that OpenImageIO knows it by.
+    // Writing. A file type sets `layout` if the place of every byte is known before the first texel; it then takes
+    // strips in any order. It sets `open_target` if it takes rows in their order. If the reader process encodes the
+    // file as a whole, `reader_name` is OpenImageIO's name for the type.
     FileLayout (*layout)(const TextureHead& head, const WriteOptions& options) = nullptr;
     OpenTarget open_target = nullptr;
     const char* reader_name = nullptr;
@@ -49,10 +49,10 @@ struct Codec {
 
 [[nodiscard]] const Codec& codec_of(Container container);
 
-// Errors: unsupported (the file type does not hold the format).
+// Errors: unsupported (the file type cannot hold the format).
 [[nodiscard]] Result<void> check_holds(const Codec& codec, Format format);
 
-// The codec that reads a file which begins with `head`: by its magic, else the reader's.
+// The codec that reads a file beginning with `head`: the one with this magic, otherwise the reader's.
 [[nodiscard]] const Codec& codec_for(std::span<const std::byte> head);
 
 }  // namespace tex

@@ -8,10 +8,10 @@
 namespace tex {
 namespace {
 
-// Texel bytes are copied from memory as they are, and the files are little-endian.
+// Texel bytes are copied from memory unchanged, and the files are little-endian.
 static_assert(std::endian::native == std::endian::little);
 
-// The bytes of A = 1 in a format of three channels.
+// The bytes of A = 1 for a format of three channels.
 std::size_t alpha_one(const FormatInfo& info, std::byte (&alpha)[4]) {
     const std::size_t bytes = static_cast<std::size_t>(info.bits) / 8;
     std::uint32_t code = info.bits == 8 ? 0xffu : 0xffffu;

@@ -32,7 +32,7 @@ public:
     void store(const std::byte* rows, int first, int end, Image& image) const override;
 
 private:
-    // Reads rows of the file, of blocks or of texels.
+    // Reads rows of blocks or of texels from the file.
     [[nodiscard]] Result<void> fetch(int first, int count, std::byte* out) const {
         const std::size_t pitch = stored_pitch(*texture_, extent().width);
         const std::uint64_t offset = offset_ + static_cast<std::uint64_t>(first) * pitch;
@@ -53,7 +53,7 @@ private:
     const std::shared_ptr<const StoredTexture> texture_;
     const std::uint64_t offset_;
     const FormatInfo info_;
-    std::size_t pitch_ = 0;  // of a row of blocks or texels, in head.format
+    std::size_t pitch_ = 0;  // bytes of a row of blocks or texels, in head.format
     std::vector<bool> wanted_ = std::vector<bool>(4, true);
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// level_rows.h: the rows of a level of a DDS or KTX2 file, read where they stand.
+// level_rows.h: reads the rows of a level of a DDS or KTX2 file from their place in the file.
 
 #pragma once
 
@@ -11,8 +11,8 @@
 
 namespace tex {
 
-// Level k. Rows may be read by several threads at once, rows of blocks at a time; they are stored as decode() would
-// decode them. The file must outlive the rows. Precondition: the size of the file is known.
+// Opens level k. Several threads may read rows at once, whole rows of blocks at a time. The stored values are those
+// that decode() gives. The file must outlive the rows. Precondition: the size of the file is known.
 std::unique_ptr<RowSource> open_level_rows(const InputFile& file, std::shared_ptr<const StoredTexture> texture,
                                            std::size_t k);
 

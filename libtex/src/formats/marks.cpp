@@ -15,11 +15,11 @@ constexpr DdsPixelFormat coded(std::uint32_t code) { return {kDdpfFourCc, code, 
 constexpr DdsPixelFormat kNone = {};
 constexpr DdsPixelFormat kL8 = {kDdpfLuminance, 0, 8, {0xff, 0, 0, 0}};
 constexpr DdsPixelFormat kL16 = {kDdpfLuminance, 0, 16, {0xffff, 0, 0, 0}};
-// Blue first, as Direct3D 9 has it: some readers (ImageMagick 6) do not look at the masks.
+// Blue first, as Direct3D 9 stores it: some readers (ImageMagick 6) ignore the masks.
 constexpr DdsPixelFormat kRgb8 = {kDdpfRgb, 0, 24, {0xff0000, 0xff00, 0xff, 0}};
 constexpr DdsPixelFormat kRgba8 = {kDdpfRgb | kDdpfAlphaPixels, 0, 32, {0xff0000, 0xff00, 0xff, 0xff000000}};
 
-// In the order of Format. The numbers of Direct3D 9 are D3DFORMATs.
+// In the order of Format. The Direct3D 9 numbers are D3DFORMATs.
 constexpr FormatMarks kMarks[] = {
     {Format::bc1_unorm, coded(fourcc("DXT1")), {71, 72, 70}, {133, 134}, kKhrBc1},
     {Format::bc2_unorm, coded(fourcc("DXT3")), {74, 75, 73}, {135, 136}, kKhrBc2},

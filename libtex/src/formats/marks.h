@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// marks.h: the table of the numbers that mark a format in files, one row for each format.
+// marks.h: the table of the numbers that identify a format in files, one row for each format.
 
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace tex {
 
-// Numbers of one registry for a format; 0 if there is none. They all mean the same bytes.
+// The numbers of one registry for a format; 0 if there is none. All of them describe the same bytes.
 struct FormatNumbers {
     std::uint32_t exact = 0;
     std::uint32_t srgb = 0;
@@ -21,7 +21,7 @@ struct FormatNumbers {
 
 struct FormatMarks {
     Format format;
-    DdsPixelFormat legacy;    // in a Direct3D 9 header; no flags if Direct3D 9 lacks the format
+    DdsPixelFormat legacy;    // in a Direct3D 9 header; flags are 0 if Direct3D 9 lacks the format
     FormatNumbers dxgi;       // DXGI_FORMAT
     FormatNumbers vk;         // VkFormat
     std::uint32_t khr_model;  // khr_df_model_e
@@ -29,14 +29,14 @@ struct FormatMarks {
 
 [[nodiscard]] const FormatMarks& marks_of(Format format);
 
-// The format that a number stands for, and whether the number declares sRGB; nullopt for unknown numbers.
+// The format that a number identifies, and whether the number declares sRGB; nullopt for unknown numbers.
 struct MarkedFormat {
     Format format;
     bool srgb;
 };
 [[nodiscard]] std::optional<MarkedFormat> find_format(FormatNumbers FormatMarks::*registry, std::uint32_t number);
 
-// khr_df.h of the Khronos Data Format Specification.
+// From khr_df.h of the Khronos Data Format Specification.
 inline constexpr std::uint32_t kKhrRgbsda = 1;
 inline constexpr std::uint32_t kKhrBc1 = 128;
 inline constexpr std::uint32_t kKhrBc2 = 129;

@@ -14,7 +14,7 @@
 namespace tex {
 namespace {
 
-// The smallest samples of a Format that hold those of a picture as they are.
+// The smallest sample type of a Format that holds the samples of a picture unchanged.
 struct Sample {
     SampleKind kind;
     int bits;
@@ -27,7 +27,7 @@ Sample sample_of(SampleKind kind, int bits) {
     return {kind, exact ? 8 : 16};
 }
 
-// The planes of the channels, in their order.
+// The plane for each channel, in the order of the channels.
 std::vector<std::size_t> planes_of(const std::vector<std::string>& names) {
     std::vector<std::size_t> planes;
     const auto find = [&](const char* name) { return std::find(names.begin(), names.end(), name); };
@@ -49,7 +49,7 @@ std::uint32_t code_of(float value, float greatest) {
     return static_cast<std::uint32_t>(std::floor(std::min(std::max(value, 0.0f), 1.0f) * greatest + 0.5f));
 }
 
-// Stores `value` as a sample. Values come from samples of at most this depth: nothing is lost.
+// Stores `value` as a sample. The values come from samples of at most this depth, so nothing is lost.
 template <class Code>
 void store_as(Code code, std::byte* out) {
     std::memcpy(out, &code, sizeof code);

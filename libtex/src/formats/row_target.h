@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// row_target.h: a picture that is written a few rows at a time, each level from the top.
+// row_target.h: writes a picture a few rows at a time, each level from the top.
 
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace tex {
 
-// Puts bytes into a file, each of them once, in any order. Errors: io, out_of_memory.
+// Writes bytes to a file, each byte once, in any order. Errors: io, out_of_memory.
 using WriteBytes = std::function<Result<void>(std::uint64_t offset, std::span<const std::byte> bytes)>;
 
 class RowTarget {
@@ -27,18 +27,19 @@ public:
     RowTarget& operator=(const RowTarget&) = delete;
     virtual ~RowTarget() = default;
 
-    // The next `count` rows of a level, in the format of the head. Levels may come in any order, also some rows of one
-    // and then of another. Throws std::bad_alloc. Errors: unsupported, with the library's reason; those of WriteBytes.
+    // Takes the next `count` rows of a level, in the format of the head. Levels may come in any order, and rows of
+    // different levels may alternate. Throws std::bad_alloc. Errors: unsupported, with the library's reason; those of
+    // WriteBytes.
     virtual Result<void> put(int level, const std::byte* rows, int count) = 0;
 
-    // After the last row: what is left goes into the file. Errors: as put().
+    // Writes what is left to the file, after the last row. Errors: as put().
     virtual Result<void> finish() = 0;
 };
 
 // Opens a file for a texture. Errors: as encode_file().
 using OpenTarget = Result<std::unique_ptr<RowTarget>> (*)(const TextureHead& head, WriteBytes write);
 
-// All rows at once, of all levels or of the base level. Errors: those of `open` and of RowTarget.
+// Encodes all rows at once, of all levels or of the base level. Errors: those of `open` and of RowTarget.
 Result<std::vector<std::byte>> encode_rows(OpenTarget open, const Texture& texture, bool all_levels);
 
 }  // namespace tex

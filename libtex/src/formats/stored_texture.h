@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// stored_texture.h: where the texels of a DDS or KTX2 file stand, as its header tells, and how they become those of a
-// Format.
+// stored_texture.h: where the texels of a DDS or KTX2 file are, according to its header, and how they are converted to
+// a Format.
 
 #pragma once
 
@@ -19,7 +19,7 @@
 
 namespace tex {
 
-// Some bytes of a file. Precondition: the file has them. Errors: io.
+// Reads bytes of a file. Precondition: the file has them. Errors: io.
 using FetchBytes = std::function<Result<std::vector<std::byte>>(std::uint64_t offset, std::size_t count)>;
 
 struct StoredTexture {
@@ -28,24 +28,24 @@ struct StoredTexture {
         std::uint64_t offset = 0;
     };
     Texture head;                       // without levels
-    std::vector<Place> levels;          // all of their bytes are in the file
-    std::optional<FieldLayout> fields;  // of the file's texels; else they are in head.format,
-    bool bgr = false;                   // but for red and blue, which have changed places
+    std::vector<Place> levels;          // all of their bytes are within the file
+    std::optional<FieldLayout> fields;  // of the file's texels; none: they are in head.format,
+    bool bgr = false;                   // except that red and blue may be exchanged
     bool upwards = false;               // the bottom row comes first; never with blocks
 };
 
-// Bytes in the file of a row of texels, or of a row of blocks.
+// The number of bytes that the file uses for a row of texels, or for a row of blocks.
 [[nodiscard]] std::size_t stored_pitch(const StoredTexture& texture, int width);
 
-// `count` rows of the file, of texels or of blocks, become such rows of head.format.
+// Converts `count` rows of texels or blocks from the file to rows of head.format.
 void convert_rows(const StoredTexture& texture, const std::byte* source, int width, int count, std::byte* target);
 
-// Finds the texels of a file of `size` bytes. `name` stands in the messages. Errors: bad_data, unsupported, as
+// Finds the texels of a file of `size` bytes. Error messages call the file `name`. Errors: bad_data, unsupported, as
 // read_texture(); those of `fetch`. May throw std::bad_alloc.
 using ParseTexture = Result<StoredTexture> (*)(const FetchBytes& fetch, std::size_t size, const std::string& name,
                                                const ReadOptions& options);
 
-// The whole texture of a file in memory. Errors: those of `parse`. May throw std::bad_alloc.
+// The whole texture in a file that is in memory. Errors: those of `parse`. May throw std::bad_alloc.
 [[nodiscard]] Result<Texture> load_texture(ParseTexture parse, const std::byte* data, std::size_t size,
                                            const std::string& name, const ReadOptions& options);
 

@@ -15,11 +15,11 @@
 namespace tex {
 namespace {
 
-// A picture, from its rows.
+// A picture as a texture of one level, read by rows.
 Result<TextureRows> picture_rows(const InputFile& file, Result<std::unique_ptr<RowSource>> rows) {
     if (!rows) return rows.error().of(file.path());
     Result<PictureTexture> picture = picture_texture_of((*rows)->names(), (*rows)->sample(), (*rows)->bits());
-    if (!picture) {  // but one that is damaged as well is damaged first
+    if (!picture) {  // a damaged picture is reported as damaged first
         const Result<Image> image = (*rows)->read_all();
         return (image ? picture.error() : image.error()).of(file.path());
     }
@@ -31,7 +31,7 @@ Result<TextureRows> picture_rows(const InputFile& file, Result<std::unique_ptr<R
     return texture;
 }
 
-// The levels of a file that holds their texels as they are.
+// The levels of a file that stores their texels unchanged.
 Result<TextureRows> stored_rows(InputFile& file, const Codec& codec, const ReadOptions& options) {
     if (const Result<void> settled = file.settle(largest_file(options)); !settled) return settled.error();
     if (*file.size() > largest_file(options)) return file.read_rest(largest_file(options)).error();
@@ -59,7 +59,7 @@ Result<TextureRows> open_any(InputFile& file, const Codec& codec, const ReadOpti
         if (!texture) return texture.error().of(file.path());
         return texture;
     }
-    if (codec.reader_name != nullptr) {  // so that it can be read once more
+    if (codec.reader_name != nullptr) {  // so that the file can be read a second time
         const Result<void> settled = file.settle(std::min(largest_file(options), options.reader_memory));
         if (!settled) return settled.error();
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// texture_rows.h: textures, and pictures as textures, from open files: whole, or a few rows at a time.
+// texture_rows.h: reads textures, and pictures as textures, from open files, whole or a few rows at a time.
 
 #pragma once
 
@@ -17,28 +17,29 @@
 
 namespace tex {
 
-// As read_texture(path), of an open file. Errors name the file.
+// As read_texture(path), for an open file. Errors name the file.
 Result<Texture> read_texture(InputFile& file, const ReadOptions& options);
 
-// A texture whose levels come as rows.
+// A texture whose levels are read as rows.
 struct TextureRows {
-    Texture head;                                    // what read_texture() says of it, but for the levels
+    Texture head;                                    // what read_texture() returns for it, except the levels
     std::vector<std::unique_ptr<RowSource>> levels;  // [0] is the base level
     std::vector<std::size_t>
-        planes;           // of the images that the rows are stored in: those that hold the channels of head.format
-    bool rounds = false;  // values are to go through round_to_texels() (picture.h)
+        planes;           // of the images in which the rows are stored: those that hold the channels of head.format
+    bool rounds = false;  // values must go through round_to_texels() (picture.h)
 
-    // The planes are those of the channels, in the order of the channels.
+    // Sets `planes` if the planes are the channels, in the same order.
     void take_planes_in_order() {
         planes.resize(levels.front()->names().size());
         std::iota(planes.begin(), planes.end(), std::size_t{0});
     }
 };
 
-// The whole texture, once it is open. Precondition: no `rounds`. Errors: that of opening; as RowSource::read_all().
+// Reads the whole texture if it could be opened. Precondition: `rounds` is false. Errors: that of opening; as
+// RowSource::read_all().
 Result<Texture> read_all(Result<TextureRows> rows);
 
-// The texture in `file`, which must outlive it. Errors: those of read_texture() that a header tells.
+// Opens the texture in `file`, which must outlive the rows. Errors: those of read_texture() that the header reveals.
 Result<TextureRows> open_texture_rows(InputFile& file, const ReadOptions& options);
 
 }  // namespace tex

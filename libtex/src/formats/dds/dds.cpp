@@ -54,12 +54,12 @@ bool is_dxt5nm(const Swizzle& swizzle) {
 std::optional<DdsPixelFormat> legacy_pixel_format(const TextureHead& head) {
     DdsPixelFormat legacy = marks_of(widened(head.format)).legacy;
     if (legacy.flags == 0) return std::nullopt;
-    // Without the code ATI2 means y first.
+    // ATI2 without this code means that y is first.
     if (legacy.four_cc == fourcc("ATI2") && head.swizzle[0] != Component::y) legacy.bit_count = fourcc("A2XY");
     return legacy;
 }
 
-// dwPitchOrLinearSize: bytes of a row of texels, or of the base level for block formats.
+// dwPitchOrLinearSize: the number of bytes of a row of texels, or of the base level for block formats.
 std::uint32_t pitch_or_size(const TextureHead& head, Rearrange rearrange) {
     const Extent base = format_info(head.format).has_blocks() ? head.extent : Extent{head.extent.width, 1};
     const std::size_t bytes = stored_level_bytes(head.format, base, rearrange);
@@ -95,7 +95,7 @@ Result<Header> parse_header(const std::byte* data, std::size_t size, const std::
     if (size < kMagicBytes + kHeaderBytes) return bad_data(name, "truncated: the DDS header is not complete");
     const auto field = [&](std::size_t index) { return load_u32(data + kMagicBytes + 4 * index); };
     Header header;
-    // Tools have written 24 in both places; the fields stand where they always do.
+    // Some tools wrote 24 to both size fields; the other fields are at their usual places.
     const std::uint32_t header_bytes = field(0);
     const std::uint32_t format_bytes = field(18);
     if (header_bytes != kHeaderBytes && header_bytes != 24) {
@@ -129,7 +129,7 @@ Result<Header> parse_header(const std::byte* data, std::size_t size, const std::
     return header;
 }
 
-// Refuses what is not one two-dimensional texture.
+// Refuses everything that is not a single two-dimensional texture.
 Result<void> check_kind(Header& header, const std::string& name) {
     const bool cube = (header.caps2 & kCaps2CubeMap) != 0 || (header.has_dx10 && (header.misc & kMiscTextureCube) != 0);
     const bool volume = (header.caps2 & kCaps2Volume) != 0 || ((header.flags & kDdsdDepth) != 0 && header.depth > 1) ||
@@ -151,7 +151,7 @@ std::size_t file_bytes(const DdsTexels& texels, Extent extent) {
     return static_cast<std::size_t>(extent.texels()) * static_cast<std::size_t>(texels.fields->texel_bytes);
 }
 
-// How many levels the header means.
+// The number of levels that the header asks for.
 int wanted_levels(const Header& header, Extent extent, std::vector<std::string>& remarks) {
     const int most = level_count(extent);
     if (header.mip_map_count <= static_cast<std::uint32_t>(most)) {
@@ -192,7 +192,7 @@ FileLayout dds_layout(const TextureHead& head, const WriteOptions& options) {
     writer.u32(pitch_or_size(head, layout.rearrange));
     writer.u32(0);  // depth
     writer.u32(static_cast<std::uint32_t>(head.levels));
-    writer.zeros(11 * sizeof(std::uint32_t));  // reserved: where tools sign
+    writer.zeros(11 * sizeof(std::uint32_t));  // reserved: some tools write their signature here
     writer.u32(kPixelFormatBytes);
     writer.u32(pixel_format.flags);
     writer.u32(pixel_format.four_cc);

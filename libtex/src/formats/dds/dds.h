@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// dds.h: DirectDraw Surface files, both directions (Microsoft: Programming Guide for DDS).
+// dds.h: reads and writes DirectDraw Surface files (Microsoft: Programming Guide for DDS).
 //
 //     "DDS "  DDS_HEADER (124 bytes)  [DDS_HEADER_DXT10 (20 bytes)]  level 0  level 1 ...
 //
@@ -22,12 +22,12 @@ namespace tex {
 
 inline constexpr std::string_view kDdsMagic = "DDS ";
 
-// Legacy where the options ask for it and Direct3D 9 has the format, else DX10. Three channels of 16 or 32 bits are
-// widened. (DXGI has three floats of 32 bits; few readers know them.)
+// The header is legacy if the options ask for it and Direct3D 9 has the format, otherwise DX10. Formats of three
+// channels with 16 or 32 bits are widened. (DXGI has a format of three 32-bit floats, but few readers support it.)
 [[nodiscard]] FileLayout dds_layout(const TextureHead& head, const WriteOptions& options);
 
-// Where the texels of a file of `size` bytes stand. Errors: bad_data, unsupported, as read_texture(); those of `fetch`.
-// May throw std::bad_alloc.
+// Finds the texels of a file of `size` bytes. Errors: bad_data, unsupported, as read_texture(); those of `fetch`. May
+// throw std::bad_alloc.
 [[nodiscard]] Result<StoredTexture> parse_dds(const FetchBytes& fetch, std::size_t size, const std::string& name,
                                               const ReadOptions& options);
 

@@ -17,7 +17,7 @@ constexpr Component kY = Component::y;
 constexpr Component kZ = Component::z;
 constexpr Component kNone = Component::other;
 
-// A FourCC, or the number of a D3DFORMAT in its place. `swizzle` is empty (all zero) where the code says nothing.
+// A FourCC, or the number of a D3DFORMAT in its place. `swizzle` is all zero if the code does not state one.
 struct FourCcRow {
     std::uint32_t code;
     Format format;
@@ -31,13 +31,13 @@ constexpr FourCcRow kFourCcs[] = {
     {fourcc("DXT3"), Format::bc2_unorm, false, {}},
     {fourcc("DXT4"), Format::bc3_unorm, false, {}},
     {fourcc("DXT5"), Format::bc3_unorm, false, {}},
-    // id Software's: red went into alpha, blue stayed.
+    // id Software's format: red was moved to alpha, and blue was kept.
     {fourcc("RXGB"), Format::bc3_unorm, true, {kNone, kY, kZ, kX}},
     {fourcc("A2D5"), Format::bc3_unorm, true, {kNone, kY, kNone, kX}},
     {fourcc("ATI1"), Format::bc4_unorm, false, {}},
     {fourcc("BC4U"), Format::bc4_unorm, false, {}},
     {fourcc("BC4S"), Format::bc4_snorm, false, {}},
-    // 3Dc (ATI 2005) holds y first. Not known for sure: others wrote x first under the same name.
+    // 3Dc (ATI 2005) holds y first. This is not certain: other tools wrote x first under the same name.
     {fourcc("ATI2"), Format::bc5_unorm, false, kSwizzleYx},
     {fourcc("A2XY"), Format::bc5_unorm, true, kSwizzleXy},
     {fourcc("BC5U"), Format::bc5_unorm, false, {}},
@@ -82,7 +82,7 @@ bool is_printable(std::uint32_t code) {
     return true;
 }
 
-// A code as its four letters, or as a number where it has none.
+// A code as its four letters, or as a number if they are not printable.
 std::string code_text(std::uint32_t code) {
     if (!is_printable(code)) return std::to_string(code);
     std::string text = "'";
@@ -90,9 +90,9 @@ std::string code_text(std::uint32_t code) {
     return text + "'";
 }
 
-// The swizzle codes that ATI's Compressonator and NVIDIA's tools write. 'A2XY' and 'A2D5' are names; the others say
-// letter by letter which colour of the original stands in R, G, B and A, with x for none: in xGxR, alpha holds red,
-// that is the normal's x.
+// The swizzle codes that ATI's Compressonator and NVIDIA's tools write. 'A2XY' and 'A2D5' are names. The others state
+// letter by letter which original colour is in R, G, B and A, with x for none: in xGxR, alpha holds red, which is the
+// normal's x.
 std::optional<Swizzle> swizzle_of_code(std::uint32_t code) {
     if (code == fourcc("A2XY")) return kSwizzleXy;
     if (code == fourcc("A2D5")) return Swizzle{kNone, kY, kNone, kX};
@@ -122,7 +122,7 @@ DdsTexels texels_in(Format format) {
 Result<DdsTexels> texels_of_fields(FieldLayout layout) {
     const auto& [red, green, blue, alpha] = layout.fields;
     const bool alpha_alone = red == 0 && green == 0 && blue == 0 && alpha != 0;
-    if (alpha_alone) layout.fields = {alpha, 0, 0, 0};  // a format of one channel; its swizzle says which
+    if (alpha_alone) layout.fields = {alpha, 0, 0, 0};  // a format of one channel; the swizzle states that it is alpha
     const std::optional<Format> format = format_of(layout);
     if (!format) return Error{ErrorCode::bad_data, {}, "the channel masks of the pixel format make no sense"};
     DdsTexels texels = texels_in(*format);
@@ -133,7 +133,7 @@ Result<DdsTexels> texels_of_fields(FieldLayout layout) {
 
 std::optional<DdsTexels> texels_of_four_cc(const DdsPixelFormat& pixel_format) {
     std::uint32_t code = pixel_format.four_cc;
-    // Some tools put the swizzle code in the FourCC's place: it is BC3 then.
+    // Some tools write the swizzle code in place of the FourCC: the format is then BC3.
     const std::optional<Swizzle> in_place = swizzle_of_code(code);
     for (const FourCcRow& row : kFourCcs) {
         if (row.code != code) continue;

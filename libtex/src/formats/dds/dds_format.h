@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// dds_format.h: what the pixel format of a DDS file means, by FourCC, masks or DXGI number.
+// dds_format.h: what the pixel format of a DDS file means, given as FourCC, masks or DXGI number.
 
 #pragma once
 
@@ -16,11 +16,11 @@
 
 namespace tex {
 
-// DDS_PIXELFORMAT without its size.
+// DDS_PIXELFORMAT without the size field.
 struct DdsPixelFormat {
     std::uint32_t flags = 0;
     std::uint32_t four_cc = 0;
-    std::uint32_t bit_count = 0;  // of a texel; tools leave a swizzle code here where there is a FourCC
+    std::uint32_t bit_count = 0;  // bits of a texel; with a FourCC, tools put a swizzle code here
     std::array<std::uint32_t, 4> masks = {};
 };
 
@@ -33,17 +33,17 @@ inline constexpr std::uint32_t kDdpfLuminance = 0x20000;
 inline constexpr std::uint32_t kDdpfBumpDudv = 0x80000;
 inline constexpr std::uint32_t kDdpfNormal = 0x80000000u;
 
-// How the texels of a file are stored and what they hold.
+// How the texels of a file are stored and what they mean.
 struct DdsTexels {
     Format format = Format::rgba8_unorm;
-    std::optional<FieldLayout> fields;  // to be converted to `format`; else the bytes are in `format`
+    std::optional<FieldLayout> fields;  // to be converted to `format`; none: the bytes are in `format`
     Swizzle swizzle = kSwizzleXyz;
     bool swizzle_known = false;
     bool srgb = false;
     std::vector<std::string> remarks;
 };
 
-// From a legacy header. Errors: bad_data, unsupported; Error::file is left to the caller.
+// From a legacy header. Errors: bad_data, unsupported; the caller fills in Error::file.
 [[nodiscard]] Result<DdsTexels> texels_of(const DdsPixelFormat& pixel_format);
 
 // From the DXGI_FORMAT of a DX10 header. Errors: unsupported.

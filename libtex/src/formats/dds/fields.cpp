@@ -8,7 +8,7 @@
 namespace tex {
 namespace {
 
-// True where `mask` is one run of bits within the first `bits`.
+// Whether `mask` is one run of bits within the first `bits` bits.
 bool is_run(std::uint32_t mask, int bits) {
     const std::uint32_t run = mask >> std::countr_zero(mask);
     return (run & (run + 1)) == 0 && (mask == 0 || 32 - std::countl_zero(mask) <= bits);
@@ -41,7 +41,7 @@ std::optional<Format> format_of(const FieldLayout& layout) {
             narrow = true;
     }
     if (channels == 0 || (layout.snorm && narrow && wide)) return std::nullopt;
-    if (layout.snorm && channels == 3) channels = 4;  // no format has three signed channels: the fourth is 1
+    if (layout.snorm && channels == 3) channels = 4;  // no format has three signed channels: add one, 1
     return format_of(layout.snorm ? SampleKind::snorm : SampleKind::unorm, wide ? 16 : 8, channels);
 }
 

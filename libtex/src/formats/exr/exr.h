@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// exr.h: OpenEXR, both directions, through the OpenEXR library.
+// exr.h: reads and writes OpenEXR files with the OpenEXR library.
 
 #pragma once
 
@@ -17,20 +17,21 @@ namespace tex {
 
 inline constexpr std::string_view kExrMagic = "\x76\x2f\x31\x01";
 
-// Of the OpenEXR that libtex was built with.
+// The version of OpenEXR that libtex was built with.
 const char* exr_version();
-// Of the libdeflate that it was built with, which inflates ZIP.
+// The version of libdeflate, which inflates ZIP, that libtex was built with.
 const char* inflater_version();
 
-// Writes a half or float texture row by row, with the bytes of encode_exr(). The tiles of smaller levels wait in
-// memory, compressed, for the end of the larger ones. Errors: those of encode_exr().
+// Writes a half or float texture row by row, with the bytes of encode_exr(). The compressed tiles of smaller levels
+// wait in memory until the larger levels are complete. Errors: those of encode_exr().
 Result<std::unique_ptr<RowTarget>> open_exr_target(const TextureHead& head, WriteBytes write);
 
-// Encodes a half or float texture: ZIP compression; tiles of 64x64 and mip levels where the texture has more than one
-// level, else scanlines. Attributes: normalEncoding "signed", normalYAxis "up" or "down". No date, owner or comment:
-// equal textures give equal bytes.
+// Encodes a half or float texture with ZIP compression. A texture of more than one level is stored in tiles of 64x64
+// with mip levels, others in scanlines. Attributes: normalEncoding "signed", normalYAxis "up" or "down". No date, owner
+// or comment: equal textures give equal bytes.
 //
-// Errors: unsupported (another format; more than one level, but not all that EXR wants: level_count()), out_of_memory.
+// Errors: unsupported (another format; more than one level, but not all that EXR requires: level_count()),
+// out_of_memory.
 Result<std::vector<std::byte>> encode_exr(const Texture& texture);
 
 }  // namespace tex

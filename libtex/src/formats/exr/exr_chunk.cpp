@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::byte kPredicted{128};
 
-// ZIP stores of each byte how it differs from the one before, and of all bytes first those at even places, then the
-// others.
+// ZIP stores the difference of each byte from the previous one. Before that, it sorts the bytes: first all at even
+// places, then the others.
 void undo_prediction(std::byte* bytes, std::size_t size) {
     auto last = static_cast<unsigned>(kPredicted);
     for (std::size_t k = 0; k < size; ++k) {
@@ -32,7 +32,8 @@ void interleave(const std::byte* sorted, std::size_t size, std::byte* out) {
     if (size % 2 != 0) out[size - 1] = sorted[size / 2];
 }
 
-// Runs: a byte n of 0 to 127 repeats the next byte n + 1 times, one of -1 to -128 stands before that many bytes.
+// Runs: a byte n from 0 to 127 repeats the next byte n + 1 times; a byte -n from -1 to -128 precedes n bytes that are
+// copied.
 std::size_t unrolled_size(std::span<const std::byte> runs) {
     std::size_t total = 0;
     for (std::size_t at = 0; at + 1 < runs.size();) {
@@ -65,7 +66,8 @@ Unzipper::Unzipper() : inflater_(libdeflate_alloc_decompressor(), libdeflate_fre
 }
 
 std::span<const std::byte> Unzipper::texels(std::span<const std::byte> chunk, std::size_t wanted, std::size_t most) {
-    if (chunk.size() >= wanted) return chunk.first(wanted);  // stored as it is, for not getting smaller
+    if (chunk.size() >= wanted)
+        return chunk.first(wanted);  // stored uncompressed, because compression would not make it smaller
     inflated_.resize(most);
     std::size_t size = 0;
     const libdeflate_result result =
@@ -79,7 +81,7 @@ std::span<const std::byte> Unzipper::texels(std::span<const std::byte> chunk, st
 
 bool chunk_is_whole(Imf::Compression compression, std::span<const std::byte> chunk, std::size_t wanted) {
     if (chunk.empty()) return wanted == 0;
-    if (chunk.size() >= wanted) return true;  // stored as it is, whatever the compression
+    if (chunk.size() >= wanted) return true;  // stored uncompressed, whatever the compression
     switch (compression) {
         case Imf::NO_COMPRESSION: return false;
         case Imf::RLE_COMPRESSION: return unrolled_size(chunk) >= wanted;

@@ -20,15 +20,16 @@ namespace {
 enum class Scheme { rest, cosine, runs };
 enum class AcCoding : std::uint64_t { huffman, deflate };
 
-// The head of a chunk: eleven numbers.
+// The header of a chunk: eleven numbers.
 struct Head {
     std::uint64_t version, rest_bytes, rest_packed, ac_packed, dc_packed, runs_packed, runs_bytes, runs_unrolled,
         ac_count, dc_count, ac_coding;
 };
 
-constexpr int kNoColor = -1;  // else 0, 1, 2: red, green and blue of one layer are decoded together
+constexpr int kNoColor = -1;  // otherwise 0, 1, 2: red, green and blue of one layer are decoded together
 
-// How a chunk codes channels whose name ends so and whose values have this type. `any_case` compares small letters.
+// How a chunk codes channels with this suffix and this type of values. With `any_case`, the suffix is compared in lower
+// case.
 struct Rule {
     std::string suffix;
     Scheme scheme = Scheme::rest;
@@ -37,7 +38,7 @@ struct Rule {
     int color = kNoColor;
 };
 
-// Reads on, as long as there is something; what is not there is nothing.
+// Reads bytes one after the other. A read beyond the end returns nothing.
 class Cursor {
 public:
     explicit Cursor(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -66,7 +67,7 @@ std::string small_letters(std::string text) {
     return text;
 }
 
-// Those of chunks that bring none (versions 0 and 1).
+// The rules of chunks that do not contain any (versions 0 and 1).
 std::vector<Rule> first_rules() {
     std::vector<Rule> rules;
     for (const std::string name : {"r", "red", "g", "grn", "green", "b", "blu", "blue", "y", "by", "ry"}) {
@@ -78,10 +79,10 @@ std::vector<Rule> first_rules() {
     return rules;
 }
 
-// Each a name that ends with a zero, a byte with the colour and 1 in bits 4 to 7, the scheme in 2 and 3 and `any_case`
-// in bit 0, and a byte with the type.
+// Reads the rules. Each is a name that ends with a zero; a byte with the colour plus 1 in bits 4 to 7, the scheme in
+// bits 2 and 3 and `any_case` in bit 0; and a byte with the type.
 std::optional<std::vector<Rule>> read_rules(Cursor& chunk) {
-    std::uint16_t bytes = 0;  // with these two
+    std::uint16_t bytes = 0;  // of the rules, including this number
     if (!chunk.read(bytes) || bytes < sizeof bytes) return std::nullopt;
     const auto all = chunk.take(bytes - sizeof bytes);
     if (!all) return std::nullopt;
@@ -102,10 +103,10 @@ std::optional<std::vector<Rule>> read_rules(Cursor& chunk) {
     return rules;
 }
 
-// What the rules say of one channel. The last one that fits counts.
+// What the rules state for one channel. If several rules match, the last one applies.
 struct Coding {
     Scheme scheme = Scheme::rest;
-    int rules = 0;  // that fit
+    int rules = 0;  // number of rules that match
     int color = kNoColor;
     std::string layer;
 };
@@ -124,8 +125,8 @@ Coding coding_of(const std::vector<Rule>& rules, const std::string& name, Imf::P
     return coding;
 }
 
-// Whether all cosine terms of the chunk are decoded at once: of one channel, or of the three colours of a layer. Of
-// only the first decoder OpenEXR knows where its terms end.
+// Whether all cosine terms of the chunk are decoded together, as those of one channel or of the three colours of a
+// layer. OpenEXR knows the end of the terms only for its first decoder.
 bool are_decoded_at_once(const std::vector<Coding>& codings) {
     std::vector<const Coding*> cosine;
     std::size_t colors = 0;
@@ -142,7 +143,7 @@ bool are_decoded_at_once(const std::vector<Coding>& codings) {
     return cosine.size() == 3 && colors == 3 && seen == 7;
 }
 
-// What zlib has packed: the first `most` bytes; nothing where it is damaged.
+// Inflates data that zlib has compressed: at most the first `most` bytes; nullopt if the data are damaged.
 std::optional<std::vector<std::byte>> inflated(std::span<const std::byte> packed, std::uint64_t most) {
     const std::unique_ptr<libdeflate_decompressor, void (*)(libdeflate_decompressor*)> inflater(
         libdeflate_alloc_decompressor(), libdeflate_free_decompressor);
@@ -157,21 +158,21 @@ std::optional<std::vector<std::byte>> inflated(std::span<const std::byte> packed
     return bytes;
 }
 
-// -- Huffman: a table of the lengths of codes, six bits each (59 to 62: 2 to 5 zeros, 63 and eight bits: 6 and more),
-// then codes. The symbol `run_mark` and eight
-// -- bits repeat the symbol before. Codes of one length are numbers that follow each other, those of shorter ones lie
-// above.
+// Huffman coding. A table of code lengths comes first, six bits for each symbol: 59 to 62 stand for 2 to 5 unused
+// symbols; 63, followed by eight bits, stands for 6 or more. The codes follow. The symbol `run_mark`, followed by eight
+// bits, repeats the previous symbol. Codes of the same length are consecutive numbers; shorter codes lie above longer
+// ones.
 
 class Bits {
 public:
     explicit Bits(std::span<const std::byte> bytes) : bytes_(bytes), left_(8 * bytes.size()) {}
     [[nodiscard]] std::size_t left() const { return left_; }
-    [[nodiscard]] unsigned take(int count) {  // zeros where there are none
+    [[nodiscard]] unsigned take(int count) {  // zeros beyond the end
         unsigned value = 0;
         for (; count > 0; --count) value = value << 1 | next();
         return value;
     }
-    // Skips to a whole byte.
+    // Skips to the next whole byte.
     void align() { left_ -= left_ % 8; }
 
 private:
@@ -216,8 +217,8 @@ public:
 
 private:
     static constexpr std::size_t kLongest = 58;
-    std::array<std::vector<std::uint32_t>, kLongest + 1> symbols_;  // by the length of their codes
-    std::array<std::uint64_t, kLongest + 1> lowest_ = {};           // code of a length
+    std::array<std::vector<std::uint32_t>, kLongest + 1> symbols_;  // by the length of their code
+    std::array<std::uint64_t, kLongest + 1> lowest_ = {};           // the lowest code of each length
 };
 
 std::vector<std::uint16_t> unpack_huffman(std::span<const std::byte> packed, std::uint64_t count) {
@@ -243,8 +244,8 @@ std::vector<std::uint16_t> unpack_huffman(std::span<const std::byte> packed, std
 
 // ---------------------------------------------------------------------------------------------------------------------
 
-// Whether these terms are those of `blocks` blocks: 63 each, of which runs of zeros and the zeros at the end are one
-// value.
+// Whether these values are the AC terms of `blocks` blocks, 63 for each block. One value stands for a run of zeros or
+// for all the zeros at the end of a block.
 bool fill_blocks(const std::vector<std::uint16_t>& values, std::uint64_t blocks) {
     std::size_t at = 0;
     for (; blocks > 0; --blocks) {
@@ -292,8 +293,8 @@ bool dwa_is_whole(std::span<const std::byte> chunk, int width, int height, const
             case Scheme::cosine: blocks += blocks_of(width) * blocks_of(height); break;
         }
     }
-    // OpenEXR checks that there are as many values of DC and of runs as the chunk claims, but of the rest and of AC
-    // takes the claim for it.
+    // OpenEXR checks that there are as many values of DC and of runs as the chunk claims. For AC and the rest, it
+    // relies on the claim.
     if (head.dc_count < blocks || head.runs_unrolled < runs_bytes) return false;
     if (blocks > 0 && (ac->empty() || !(are_decoded_at_once(codings) || ac_is_whole(head, *ac, blocks)))) return false;
     if (rest_bytes == 0) return true;

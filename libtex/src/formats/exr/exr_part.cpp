@@ -15,7 +15,7 @@
 namespace tex {
 namespace {
 
-// How many bytes one byte of the file can stand for at best.
+// The greatest number of bytes that one byte of the file can stand for.
 double best_ratio(Imf::Compression compression) {
     switch (compression) {
         case Imf::NO_COMPRESSION: return 1.0;
@@ -29,12 +29,12 @@ double best_ratio(Imf::Compression compression) {
     }
 }
 
-// Reasons quote names from the file, which may hold anything: what is not plain text is left out.
+// Reasons quote names from the file, which may contain anything. Everything except plain text is removed.
 void keep_plain_text(std::string& text) {
     std::erase_if(text, [](char c) { return c < 0x20 || c > 0x7e; });
 }
 
-// The types whose values always have one size, in bytes.
+// The types whose values have a fixed size, in bytes.
 struct FixedType {
     std::string_view name;
     std::uint64_t bytes;
@@ -67,8 +67,8 @@ constexpr FixedType kFixedTypes[] = {
     {"v3i", 12},
 };
 
-// Steps through the headers as OpenEXR will. OpenEXR reads most values without regard to the size that stands before
-// them; a size that is not the value's own would lead the two apart, and is damage.
+// Walks the headers in the same way as OpenEXR. OpenEXR reads most values without using the size that precedes them. A
+// size that differs from that of the value would make the two walks diverge; it counts as damage.
 class HeaderWalk {
 public:
     explicit HeaderWalk(ExrStream& stream) : stream_(stream) {}
@@ -135,8 +135,8 @@ private:
 
 }  // namespace
 
-// OpenEXR adds its own opening ('Cannot read image file "NAME". ') to every reason, sometimes twice; it stands before
-// what matters.
+// OpenEXR puts its own introduction ('Cannot read image file "NAME". ') before every reason, sometimes twice. It is
+// removed.
 Error exr_error(const std::string& path, const std::exception& thrown) {
     std::string reason = thrown.what();
     constexpr std::string_view kOpening = "image file \"\". ";
@@ -205,7 +205,7 @@ std::vector<ExrChannel> channels_of(const Imf::Header& header) {
 }
 
 std::optional<Imf::TileDescription> tiles_of(const Imf::Header& header) {
-    // OpenEXR sets the type of a file of one part by its version field.
+    // For a file of one part, OpenEXR sets the type from the version field.
     if (!header.hasType() || !Imf::isTiled(header.type()) || !header.hasTileDescription()) return std::nullopt;
     return header.tileDescription();
 }
@@ -234,7 +234,8 @@ Result<Extent> check_header(const std::string& path, const Imf::Header& header, 
     const double decoded = static_cast<double>(extent->texels()) * static_cast<double>(texel_bytes);
     const Result<void> claim = check_claim(path, *extent, decoded, file_size, best_ratio(header.compression()));
     if (!claim) return claim.error();
-    if (const auto tiles = tiles_of(header)) {  // OpenEXR takes memory for a whole tile, however small the picture
+    if (const auto tiles =
+            tiles_of(header)) {  // OpenEXR allocates memory for a whole tile, even if the picture is small
         const std::uint64_t tile = std::uint64_t{tiles->xSize} * tiles->ySize;
         constexpr std::int64_t kSmall = std::int64_t{1} << 20;
         if (tile > static_cast<std::uint64_t>(std::max(kSmall, 4 * extent->texels()))) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// exr_part.h: the first part of an EXR file, as its header tells: checked before it is believed.
+// exr_part.h: the header of the first part of an EXR file, which is checked before it is used.
 
 #pragma once
 
@@ -24,15 +24,15 @@
 
 namespace tex {
 
-// Attributes of ours.
+// libtex's own attributes.
 inline constexpr const char* kNormalEncoding = "normalEncoding";
 inline constexpr const char* kNormalYAxis = "normalYAxis";
 
-// What OpenEXR threw, as bad_data.
+// An exception of OpenEXR, as bad_data.
 Error exr_error(const std::string& path, const std::exception& thrown);
 
-// A file as OpenEXR reads it. OpenEXR asks for single bytes of the header: a buffer stands between. Precondition: the
-// file's size is known.
+// The stream from which OpenEXR reads a file. It is buffered, because OpenEXR reads the header in single bytes.
+// Precondition: the file's size is known.
 class ExrStream final : public Imf::IStream {
 public:
     explicit ExrStream(const InputFile& file);
@@ -41,11 +41,11 @@ public:
     void seekg(std::uint64_t at) override { at_ = at; }
     [[nodiscard]] std::uint64_t size() const { return size_; }
 
-    // Where the last read() put its bytes, and where in the file it began.
+    // Where the last read() put its bytes, and where in the file they began.
     [[nodiscard]] std::span<const std::byte> last_read() const { return last_; }
     [[nodiscard]] std::uint64_t last_place() const { return last_place_; }
 
-    // What the system said, where it was not the format that failed.
+    // The system's error, if reading failed for another reason than the format.
     [[nodiscard]] const std::optional<Error>& failure() const { return failure_; }
 
 private:
@@ -62,9 +62,9 @@ private:
     std::optional<Error> failure_;
 };
 
-// Walks the attributes of all headers, then goes back to the beginning: OpenEXR takes whatever memory an attribute
-// claims, before it finds that the file does not hold it. Returns where the table of chunks begins, in a file of one
-// part. Throws Iex::InputExc.
+// Walks the attributes of all headers, then goes back to the beginning. Without this check, OpenEXR would allocate as
+// much memory as an attribute claims before it finds that the file does not hold it. Returns where the table of chunks
+// begins, if the file has one part. Throws Iex::InputExc.
 std::optional<std::uint64_t> check_attributes(ExrStream& stream);
 
 struct ExrChannel {
@@ -72,15 +72,15 @@ struct ExrChannel {
     Imf::PixelType type = Imf::HALF;
 };
 
-// The channels of a part: R, G, B, A first, then the others by name, as the header lists them.
+// The channels of a part: R, G, B, A first, then the others by name.
 std::vector<ExrChannel> channels_of(const Imf::Header& header);
 
-// The tiles of a part that is stored in tiles. A part stored in scan lines may carry the attribute `tiles` too, which
-// then means nothing (and is not checked by OpenEXR: its sizes may be 0).
+// The tiles of a part that is stored in tiles. A part stored in scan lines may have the attribute `tiles` too. It then
+// means nothing, and OpenEXR does not check it: its sizes may be 0.
 std::optional<Imf::TileDescription> tiles_of(const Imf::Header& header);
 
-// The extent of a part. Refuses, before a pixel is read, what is not handled and what cannot be true. Errors:
-// unsupported (deep data, subsampled channels, too large), bad_data.
+// Checks a part and returns its extent. Refuses unsupported parts and impossible claims before a pixel is read.
+// Errors: unsupported (deep data, subsampled channels, too large), bad_data.
 Result<Extent> check_header(const std::string& path, const Imf::Header& header, std::int64_t file_size,
                             const ReadOptions& options);
 

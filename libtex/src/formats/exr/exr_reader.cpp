@@ -17,7 +17,7 @@ std::size_t value_bytes(Imf::PixelType type) {
     return type == Imf::HALF ? sizeof(std::uint16_t) : sizeof(std::uint32_t);
 }
 
-// Of a texel, all channels.
+// Bytes of a texel, over all channels.
 std::size_t texel_bytes(const Imf::Header& header) {
     std::size_t bytes = 0;
     for (auto it = header.channels().begin(); it != header.channels().end(); ++it)
@@ -35,7 +35,7 @@ std::size_t size_of(int width, int height, std::size_t each) {
 
 int width_of(const Imath::Box2i& window) { return window.max.x - window.min.x + 1; }
 
-// Chunks of scan lines that hold lines [first, last].
+// The chunks of scan lines that hold lines [first, last].
 struct Chunks {
     Chunks(const Imf::Header& header, int first, int last)
         : window(header.dataWindow()), lines(chunk_lines(header.compression())), begin((first - window.min.y) / lines),
@@ -49,7 +49,7 @@ struct Chunks {
     int end = 0;
 };
 
-// Where OpenEXR puts `count` lines from `top`, of those in `window`.
+// The frame buffer into which OpenEXR writes `count` lines from line `top` of `window`.
 Imf::FrameBuffer buffer_of(const Imath::Box2i& window, int top, int count, const ExrTarget& target) {
     Imf::FrameBuffer buffer;
     for (const ExrPlane& plane : target.planes) {
@@ -66,7 +66,7 @@ const Imf::Header& ExrReader::header() {
     if (!exr_) {
         table_ = check_attributes(stream_);
         constexpr int kNoThreads = 0;
-        constexpr bool kKeepTable = false;  // a table that has to be guessed is damage
+        constexpr bool kKeepTable = false;  // a file whose table would have to be guessed is damaged
         exr_.emplace(stream_, kNoThreads, kKeepTable);
     }
     return exr_->header(0);
@@ -90,7 +90,7 @@ void ExrReader::read(int level, int first, int count, const ExrTarget& target) {
         const int top = all.min.y + first;
         return is_zip(header()) ? unzip_lines(top, top + count - 1, target) : read_lines(top, top + count - 1, target);
     }
-    // OpenEXR writes whole tiles.
+    // OpenEXR can only write whole tiles to the buffer.
     const auto tile = static_cast<int>(tiles_->tileYSize());
     const int begin = first / tile * tile;
     const int end = std::min(((first + count - 1) / tile + 1) * tile, all.max.y - all.min.y + 1);
@@ -157,11 +157,11 @@ void ExrReader::read_tiles(int level, int begin, int end, const ExrTarget& targe
     }
 }
 
-// In a file of one part OpenEXR looks at the table only where lines do not follow those it read last. What is taken of
-// a file must not depend on that.
+// In a file of one part, OpenEXR uses the table only if the requested lines do not follow those that it read last. The
+// result must not depend on that, so the table is always checked.
 void ExrReader::check_place(int chunk) const {
     if (!table_) return;
-    constexpr std::uint64_t kChunkHead = 8;  // the first line, the size
+    constexpr std::uint64_t kChunkHead = 8;  // number of the first line, and size
     std::uint64_t place = 0;
     const std::uint64_t entry = *table_ + sizeof place * static_cast<std::uint64_t>(chunk);
     const Result<std::size_t> got =
@@ -170,7 +170,7 @@ void ExrReader::check_place(int chunk) const {
         throw Iex::InputExc("the table of chunks does not say where they are");
 }
 
-// OpenEXR reads a chunk's bytes with one call, after all else, and keeps them.
+// OpenEXR reads the bytes of a chunk with a single call, which is its last, so the stream still holds them.
 void ExrReader::check_chunk(int width, int height) {
     const std::size_t texel = texel_bytes(header());
     const std::size_t wanted = size_of(width, height, texel);

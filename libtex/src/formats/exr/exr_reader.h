@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// exr_reader.h: rows of texels of the first part of an EXR file. OpenEXR's objects are for one thread at a time: each
-// thread has a reader of its own.
+// exr_reader.h: reads rows of texels of the first part of an EXR file. Only one thread at a time may use an OpenEXR
+// object, so each thread has its own reader.
 
 #pragma once
 
@@ -21,7 +21,7 @@
 
 namespace tex {
 
-// Where texels of some rows go: of each row all of a channel, each value as the file has it, then those of the next
+// Where the texels of some rows go. A row holds all values of one channel, each as in the file, then those of the next
 // channel.
 struct ExrPlane {
     ExrChannel channel;
@@ -34,40 +34,40 @@ struct ExrTarget {
     std::size_t row_bytes = 0;
 };
 
-// All but the constructor throw what OpenEXR throws, also for chunks that do not hold all of their texels, and
-// std::bad_alloc.
+// All functions except the constructor throw std::bad_alloc and what OpenEXR throws. They also throw if a chunk does
+// not hold all of its texels.
 class ExrReader {
 public:
     explicit ExrReader(const InputFile& file) : file_(file), stream_(file) {}
 
-    // The header, read when it is first asked for.
+    // The header. It is read when this is first called.
     const Imf::Header& header();
 
-    // The texels of a level, in the file's coordinates. Precondition: as read().
+    // The data window of a level, in the file's coordinates. Precondition: as read().
     Imath::Box2i window(int level);
 
-    // Reads rows [first, first + count) of a level. Precondition: the header has proved sound, as this takes memory by
-    // it; the level exists.
+    // Reads rows [first, first + count) of a level. Preconditions: the header has been checked, because it determines
+    // how much memory is allocated; the level exists.
     void read(int level, int first, int count, const ExrTarget& target);
 
-    // What the system said, where it was not the format that failed.
+    // The system's error, if reading failed for another reason than the format.
     [[nodiscard]] const std::optional<Error>& failure() const { return stream_.failure(); }
 
 private:
     void open_part();
-    // Lines in the file's coordinates.
+    // Lines are in the file's coordinates.
     void read_lines(int first, int last, const ExrTarget& target);
     void unzip_lines(int first, int last, const ExrTarget& target);
-    // Rows [begin, end) of a level, whole tiles.
+    // Reads rows [begin, end) of a level, whole tiles.
     void read_tiles(int level, int begin, int end, const ExrTarget& target);
-    // Makes sure that the chunk read last holds `width` x `height` texels.
+    // Checks that the chunk read last holds `width` x `height` texels.
     void check_chunk(int width, int height);
-    // Makes sure that it is the one that the table of chunks tells of.
+    // Checks that the chunk read last is at the place that the table of chunks states.
     void check_place(int chunk) const;
 
     const InputFile& file_;
     ExrStream stream_;
-    std::optional<std::uint64_t> table_;  // of chunks, in a file of one part
+    std::optional<std::uint64_t> table_;  // where the table of chunks begins, in a file of one part
     std::optional<Imf::MultiPartInputFile> exr_;
     std::optional<Imf::InputPart> lines_;
     std::optional<Imf::TiledInputPart> tiles_;

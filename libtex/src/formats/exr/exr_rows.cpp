@@ -18,7 +18,7 @@
 namespace tex {
 namespace {
 
-// Runs body(), which returns a Result and may throw what OpenEXR throws; `reader` does the reading.
+// Runs body(), which returns a Result and may throw what OpenEXR throws. body() reads with `reader`.
 template <class Body>
 auto with_reader(const InputFile& file, const ExrReader& reader, const Body& body) -> decltype(body()) {
     try {
@@ -33,8 +33,8 @@ auto with_reader(const InputFile& file, const ExrReader& reader, const Body& bod
 
 class ExrRows final : public RowSource {
 public:
-    // Rows of a level; `reader`, one of `readers`, tells of it. Throws what OpenEXR throws. Precondition: the header
-    // has proved sound.
+    // Rows of a level. `reader`, one of `readers`, describes the level. Throws what OpenEXR throws. Precondition: the
+    // header has been checked.
     ExrRows(const InputFile& file, Pool<ExrReader> readers, ExrReader& reader, const std::vector<ExrChannel>& channels,
             int level);
 
@@ -50,7 +50,7 @@ private:
     int rows_together_ = 1;
     std::vector<ExrPlane> planes_;
     std::vector<bool> wanted_;
-    Pool<ExrReader> readers_;  // those of all levels
+    Pool<ExrReader> readers_;  // shared by all levels
 };
 
 std::shared_ptr<ExrReader> take_reader(Pool<ExrReader>& readers, const InputFile& file) {
@@ -116,8 +116,8 @@ void ExrRows::store(const std::byte* rows, int first, int end, Image& image) con
     }
 }
 
-// Opens the first part and runs body(readers, reader, base). The reader has read the header, and is the first that
-// decodes.
+// Opens the first part and runs body(readers, reader, base). The reader has read the header, and is the first to
+// decode.
 template <class Body>
 auto with_part(InputFile& file, const ReadOptions& options, const Body& body) {
     using Opened = decltype(body(std::declval<Pool<ExrReader>&>(), std::declval<ExrReader&>(), Extent()));

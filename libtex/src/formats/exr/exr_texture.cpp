@@ -15,7 +15,7 @@
 namespace tex {
 namespace {
 
-// The channels of a texture: colour where there is colour, else everything.
+// The channels of a texture: R, G, B (and A) if they are present, otherwise all channels.
 Result<std::vector<ExrChannel>> texture_channels(const std::string& path, const Imf::Header& header) {
     std::vector<ExrChannel> channels = channels_of(header);
     const Imf::ChannelList& list = header.channels();
@@ -42,7 +42,7 @@ void describe_normals(const Imf::Header& header, Texture& texture) {
     }
 }
 
-// How many levels of a part follow our rule.
+// The number of levels of a part that follow the rule of level_extent().
 int usable_levels(const Imf::Header& header, Extent base, std::vector<std::string>& remarks) {
     const std::optional<Imf::TileDescription> tiles = tiles_of(header);
     if (!tiles || tiles->mode == Imf::ONE_LEVEL) return 1;

@@ -32,8 +32,8 @@ static_assert(std::endian::native == std::endian::little,
 constexpr int kTileSize = 64;
 constexpr int kNoThreads = 0;
 
-// A file as OpenEXR writes it: everything once, from the beginning to the end, but for the table of offsets, which it
-// goes back to. What is written before pixels() stays here until finish().
+// A file that OpenEXR writes. OpenEXR writes everything once, from beginning to end, except the table of offsets, to
+// which it goes back. Bytes written before pixels() is called stay in memory until finish().
 class TargetStream final : public Imf::OStream {
 public:
     explicit TargetStream(WriteBytes write) : Imf::OStream(""), write_(std::move(write)) {}
@@ -90,8 +90,8 @@ Imf::Header header_of(const TextureHead& texture) {
     return header;
 }
 
-// Interleaved texels, `first` being the row that they begin with. OpenEXR's slices point to mutable bytes even where it
-// only reads.
+// Describes interleaved texels that begin with row `first`. OpenEXR's slices point to mutable bytes even if it only
+// reads them.
 Imf::FrameBuffer frame_buffer(const std::byte* texels, Extent extent, int first, const FormatInfo& format) {
     Imf::FrameBuffer buffer;
     const auto channel_bytes = static_cast<std::size_t>(format.bits / 8);
@@ -106,7 +106,7 @@ Imf::FrameBuffer frame_buffer(const std::byte* texels, Extent extent, int first,
     return buffer;
 }
 
-// What files of scanlines and of tiles have in common. `File` is OpenEXR's.
+// The common part of scanline and tiled files. `File` is OpenEXR's class.
 template <class File>
 class ExrTargetOf : public RowTarget {
 public:
@@ -120,7 +120,7 @@ public:
         });
     }
     Result<void> finish() override {
-        file_.reset();  // writes the table, and keeps quiet about errors
+        file_.reset();  // writes the table, and ignores errors
         return stream_.finish();
     }
 
@@ -155,9 +155,9 @@ public:
     }
 };
 
-// All levels. OpenEXR keeps the compressed tiles of the smaller ones until those of the larger ones are in the file: so
-// the order of its tiles is always the same, and a third of what it holds is in memory. (With tiles in the order in
-// which they come the bytes would depend on the path that a texture takes.)
+// Writes all levels. OpenEXR keeps the compressed tiles of the smaller levels until those of the larger ones are in the
+// file. The order of its tiles is therefore always the same, and a third of the tiles that it holds is in memory. (If
+// the tiles were stored in the order in which they arrive, the bytes would depend on the path that a texture takes.)
 class TilesTarget final : public ExrTargetOf<Imf::TiledOutputFile> {
 public:
     TilesTarget(const TextureHead& head, WriteBytes write)
@@ -166,12 +166,12 @@ public:
     Result<void> put(int level, const std::byte* rows, int count) override;
 
 private:
-    // Rows of a row of tiles that is not whole yet.
+    // Rows of a row of tiles that is not complete yet.
     struct Open {
-        int next = 0;  // the row of the level that comes next
+        int next = 0;  // the next row of the level
         std::vector<std::byte> rows;
     };
-    // Rows [first, first + count) of a level, whole rows of tiles.
+    // Writes rows [first, first + count) of a level, whole rows of tiles.
     void write(int level, int first, int count, const std::byte* rows) {
         file_->setFrameBuffer(frame_buffer(rows, {level_extent(head_.extent, level).width, count}, first, format_));
         file_->writeTiles(0, file_->numXTiles(level) - 1, first / kTileSize, (first + count - 1) / kTileSize, level);
@@ -188,7 +188,7 @@ Result<void> TilesTarget::put(int level, const std::byte* rows, int count) {
         while (count > 0) {
             const int begin = open.next / kTileSize * kTileSize, end = std::min(begin + kTileSize, extent.height);
             const int all =
-                open.next + count == extent.height ? count : count / kTileSize * kTileSize;  // in whole rows of tiles
+                open.next + count == extent.height ? count : count / kTileSize * kTileSize;  // whole rows of tiles
             const bool whole = open.next == begin && all > 0;
             const int taken = whole ? all : std::min(count, end - open.next);
             if (whole) {

@@ -25,7 +25,7 @@ constexpr std::size_t kLevelIndexBytes = 24;  // for each level
 
 constexpr std::string_view kNormalKey = "libtex.normal";
 
-// Other VkFormats that are read. Texels with `bgr` store blue first.
+// Other VkFormats that can be read. Texels with `bgr` store blue first.
 struct VkRow {
     std::uint32_t vk;
     Format format;
@@ -70,7 +70,7 @@ void write_entry(ByteWriter& writer, std::string_view key, std::string_view valu
     writer.align(4);
 }
 
-// Keys in the order of their code points, as the specification wants them.
+// Keys in the order of their code points, as the specification requires.
 std::vector<std::byte> key_values(const TextureHead& head) {
     ByteWriter writer;
     write_entry(writer, "KTXorientation", "rd");
@@ -114,7 +114,7 @@ struct KeyValue {
     std::string_view value;  // without the final zero of a string
 };
 
-// nullopt where the entries do not add up.
+// nullopt if the entries are inconsistent.
 std::optional<std::vector<KeyValue>> parse_key_values(const std::byte* data, std::size_t size) {
     std::vector<KeyValue> entries;
     while (size >= 4) {
@@ -133,7 +133,7 @@ std::optional<std::vector<KeyValue>> parse_key_values(const std::byte* data, std
     return entries;
 }
 
-// The value of "libtex.normal". False where it is none that ktx2_layout() writes.
+// Applies the value of "libtex.normal". False unless it is a value that ktx2_layout() writes.
 bool apply_normal_key(std::string_view value, Texture& texture) {
     const std::size_t blank = value.find(' ');
     const std::string_view swizzle_text = value.substr(0, blank);
@@ -160,7 +160,7 @@ bool apply_normal_key(std::string_view value, Texture& texture) {
     return true;
 }
 
-// KTXswizzle says which stored channel a shader finds in its R, G, B and A: "ag01" shows x in R and y in G.
+// KTXswizzle names the stored channel that a shader reads as R, G, B and A: "ag01" means that A holds x and G holds y.
 bool apply_ktx_swizzle(std::string_view value, Texture& texture) {
     constexpr std::string_view kChannels = "rgba";
     if (value.size() != 4) return false;
@@ -177,11 +177,11 @@ bool apply_ktx_swizzle(std::string_view value, Texture& texture) {
     return true;
 }
 
-// What the key/value data say. Returns true where rows run upwards. Errors: those of `fetch`.
+// Applies the key/value data. Returns true if rows run upwards. Errors: those of `fetch`.
 Result<bool> apply_key_values(const FetchBytes& fetch, std::size_t size, const Ktx2Header& header, Texture& texture) {
     if (header.key_values_bytes == 0) return false;
     const std::size_t offset = header.key_values_offset;
-    std::vector<std::byte> bytes;  // that the entries point into
+    std::vector<std::byte> bytes;  // the entries point into these bytes
     std::optional<std::vector<KeyValue>> entries;
     if (offset <= size && header.key_values_bytes <= size - offset) {
         Result<std::vector<std::byte>> fetched = fetch(offset, header.key_values_bytes);
@@ -208,7 +208,7 @@ Result<bool> apply_key_values(const FetchBytes& fetch, std::size_t size, const K
     return upwards;
 }
 
-// Where level k stands, by its entry in the level index.
+// The place of level k, from its entry in the level index.
 Result<StoredTexture::Place> place_of(const std::byte* entry, std::size_t size, std::size_t k, Format format,
                                       Extent extent, const std::string& name) {
     const std::uint64_t offset = load_u64(entry);
@@ -285,7 +285,7 @@ Result<StoredTexture> parse_ktx2(const FetchBytes& fetch, std::size_t size, cons
     if (!extent) return extent.error();
     const std::optional<VkRow> row = find_vk_format(header.vk_format);
     if (!row) return unsupported(name, "VkFormat " + std::to_string(header.vk_format) + " is not supported");
-    const auto levels = std::max<std::uint32_t>(1, header.levels);  // 0: the reader makes the others
+    const auto levels = std::max<std::uint32_t>(1, header.levels);  // 0: the reader generates the other levels
     if (levels > static_cast<std::uint32_t>(level_count(*extent))) {
         return bad_data(
             name, std::to_string(levels) + " levels, a complete chain has " + std::to_string(level_count(*extent)));

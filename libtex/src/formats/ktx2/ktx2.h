@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ktx2.h: KTX 2.0 files, both directions (Khronos: KTX File Format Specification, version 2.0).
+// ktx2.h: reads and writes KTX 2.0 files (Khronos: KTX File Format Specification, version 2.0).
 //
 //     identifier  header  level index  data format descriptor  key/value data  levels, the smallest first
 
@@ -20,12 +20,12 @@ namespace tex {
 
 inline constexpr std::string_view kKtx2Magic = "\xabKTX 20\xbb\r\n\x1a\n";
 
-// Three channels of 16 or 32 bits are widened. Where the swizzle is known, the key "libtex.normal" holds it: "dxt5nm"
-// or the four letters of to_string(), and behind a blank "+y" or "-y" where that is known.
+// Formats of three channels with 16 or 32 bits are widened. If the swizzle is known, the key "libtex.normal" holds it:
+// "dxt5nm" or the four letters of to_string(), followed by a blank and "+y" or "-y" if the direction of y is known.
 [[nodiscard]] FileLayout ktx2_layout(const TextureHead& head);
 
-// Where the texels of a file of `size` bytes stand. Errors: bad_data, unsupported, as read_texture(); those of `fetch`.
-// May throw std::bad_alloc.
+// Finds the texels of a file of `size` bytes. Errors: bad_data, unsupported, as read_texture(); those of `fetch`. May
+// throw std::bad_alloc.
 [[nodiscard]] Result<StoredTexture> parse_ktx2(const FetchBytes& fetch, std::size_t size, const std::string& name,
                                                const ReadOptions& options);
 

@@ -11,7 +11,7 @@
 namespace tex {
 namespace {
 
-// khr_df.h of the Khronos Data Format Specification.
+// From khr_df.h of the Khronos Data Format Specification.
 constexpr std::uint32_t kTransferLinear = 1;
 constexpr std::uint32_t kPrimariesUnspecified = 0;
 constexpr std::uint32_t kChannelColor = 0;
@@ -21,11 +21,11 @@ constexpr std::uint32_t kQualifierSigned = 0x40;
 constexpr std::uint32_t kQualifierFloat = 0x80;
 
 struct Sample {
-    std::uint32_t channel = 0;  // with its qualifiers
+    std::uint32_t channel = 0;  // including its qualifiers
     std::uint32_t bit_offset = 0;
     std::uint32_t bit_length = 0;
-    std::uint32_t lower = 0;  // the code (the bits of the float) of 0, or of -1 where it is signed
-    std::uint32_t upper = 0;  // of 1
+    std::uint32_t lower = 0;  // the code (for floats, the bits) of 0, or of -1 if the sample is signed
+    std::uint32_t upper = 0;  // the code of 1
 };
 
 Sample block_sample(const FormatInfo& info, std::uint32_t channel, std::uint32_t bit_offset) {

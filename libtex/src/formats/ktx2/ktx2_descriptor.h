@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ktx2_descriptor.h: how a KTX 2 file describes its format beside the VkFormat.
+// ktx2_descriptor.h: the descriptor that a KTX 2 file holds in addition to the VkFormat.
 
 #pragma once
 
@@ -10,8 +10,8 @@
 
 namespace tex {
 
-// The basic data format descriptor block of a format (Khronos Data Format Specification 1.3, section 5), with the
-// total size in front: linear transfer, no colour primaries, as normals are not colours.
+// The basic data format descriptor block of a format (Khronos Data Format Specification 1.3, section 5), preceded by
+// the total size. It states linear transfer and no colour primaries, because normals are not colours.
 [[nodiscard]] std::vector<std::byte> data_format_descriptor(Format format);
 
 }  // namespace tex

@@ -55,7 +55,7 @@ std::vector<Chunk> chunks_of(const Bytes& file) {
     return chunks;
 }
 
-// fcTL: which part of the picture a frame replaces (all of it), and for how long.
+// fcTL: which part of the picture a frame replaces (all of it), and how long the frame is shown.
 Bytes frame_control(std::uint32_t sequence, std::span<const std::byte> header, int frames_per_second) {
     Bytes control;
     put(control, sequence, 4);
@@ -64,7 +64,7 @@ Bytes frame_control(std::uint32_t sequence, std::span<const std::byte> header, i
     put(control, 0, 4);                                                 // top
     put(control, 1, 2);
     put(control, static_cast<std::uint32_t>(frames_per_second), 2);
-    put(control, 0, 2);  // nothing is disposed of, nothing is blended
+    put(control, 0, 2);  // no disposal, no blending
     return control;
 }
 
@@ -79,9 +79,9 @@ Result<std::vector<std::byte>> join_png_frames(const std::vector<std::vector<std
         put_chunk(file, "IHDR", header);
         Bytes animation;
         put(animation, static_cast<std::uint32_t>(frames.size()), 4);
-        put(animation, 0, 4);  // for ever
+        put(animation, 0, 4);  // repeat forever
         put_chunk(file, "acTL", animation);
-        for (const Chunk& chunk : first) {  // sRGB and the like, which all frames share
+        for (const Chunk& chunk : first) {  // sRGB and similar chunks, which all frames share
             if (chunk.type != "IHDR" && chunk.type != "IDAT" && chunk.type != "IEND")
                 put_chunk(file, chunk.type, chunk.content);
         }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// apng.h: animated PNG (W3C PNG specification, third edition, 2025): a PNG whose frames after the first stand in chunks
-// of their own.
+// apng.h: animated PNG (W3C PNG specification, third edition, 2025): a PNG that stores the frames after the first in
+// chunks of another type.
 
 #pragma once
 
@@ -11,11 +11,11 @@
 
 namespace tex {
 
-// Joins PNG files of one extent and kind, as encode_png() makes them, into one that plays for ever, each frame for 1 /
-// frames_per_second seconds. Programs that know no animation show the first frame.
+// Joins PNG files of the same extent and format, as encode_png() makes them, into one animation that repeats forever
+// and shows each frame for 1 / frames_per_second seconds. Programs without support for animation show the first frame.
 //
 // Precondition: at least one file, frames_per_second from 1 to 1000. Errors: bad_option (the files differ in extent or
-// kind), out_of_memory.
+// format), out_of_memory.
 Result<std::vector<std::byte>> join_png_frames(const std::vector<std::vector<std::byte>>& frames,
                                                int frames_per_second);
 

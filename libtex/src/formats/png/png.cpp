@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// libpng reports errors by longjmp, which must not pass over a C++ object that has a destructor. So everything with one
-// lives in the structs PngReader and, in png_write.cpp, PngWriter; the functions that call setjmp, and the callbacks
-// that call png_error, hold plain values only.
+// libpng reports errors by longjmp, which must not skip the destructor of a C++ object. All objects that have a
+// destructor are therefore in the structs PngReader and, in png_write.cpp, PngWriter. The functions that call setjmp,
+// and the callbacks that call png_error, hold plain values only.
 
 #include "formats/png/png.h"
 
@@ -30,7 +30,7 @@ struct PngReader : PngState {
     ~PngReader() { png_destroy_read_struct(&png, &info, nullptr); }
     PngReader(const PngReader&) = delete;
 
-    // Puts the next `count` bytes at `to`; false at the end of the file or where it cannot be read.
+    // Puts the next `count` bytes at `to`; false if the file ends before them or cannot be read.
     bool take(png_bytep to, std::size_t count);
     [[nodiscard]] Error error() const;
 
@@ -90,9 +90,9 @@ bool read_header(PngReader& reader) {
     if (reader.info == nullptr) png_error(png, "out of memory");
     png_set_read_fn(png, &reader, on_read);
     png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
-    // Only IHDR, PLTE, tRNS, IDAT and IEND mean something here; the rest is not even parsed.
+    // Only IHDR, PLTE, tRNS, IDAT and IEND have an effect; other chunks are not parsed.
     png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
-    // Limits are ours to check, with reasons of our own, once the header has proved sound.
+    // libtex checks the limits itself, with its own reasons, after the header has been checked.
     png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
     png_read_info(png, reader.info);
     reader.width = png_get_image_width(png, reader.info);
@@ -115,7 +115,7 @@ bool start_rows(PngReader& reader) {
     return true;
 }
 
-// Rows [first, end) of `image` from rows of bytes.
+// Converts rows of bytes to rows [first, end) of `image`.
 void store_rows8(const png_byte* rows, int first, int end, Image& image) {
     static constexpr std::array<float, 256> kValues = [] {
         std::array<float, 256> values{};
@@ -154,7 +154,7 @@ bool decode_rows(PngReader& reader, int count, png_byte* rows, std::size_t row_b
     return true;
 }
 
-// A file without its end is damaged.
+// A file without its end chunk is damaged.
 bool decode_end(PngReader& reader) {
     if (setjmp(png_jmpbuf(reader.png))) return false;
     png_read_end(reader.png, nullptr);
@@ -165,7 +165,7 @@ class PngRows final : public RowSource {
 public:
     explicit PngRows(InputFile& file) : reader_(file) {}
 
-    // Reads the header; the rows come next.
+    // Reads the header; decode() can then read the rows.
     Result<void> open(const ReadOptions& options);
 
     [[nodiscard]] bool can_peek() const override { return is_interlaced(); }
@@ -187,7 +187,7 @@ private:
     }
 
     PngReader reader_;
-    std::vector<std::byte> all_;  // rows of an interlaced picture
+    std::vector<std::byte> all_;  // all rows of an interlaced picture
 };
 
 Result<void> PngRows::open(const ReadOptions& options) {
@@ -207,7 +207,7 @@ Result<void> PngRows::open(const ReadOptions& options) {
     return {};
 }
 
-// Every pass of an interlaced picture adds to all of its rows.
+// Every pass of an interlaced picture adds texels to all of its rows.
 Result<void> PngRows::decode(int first, int count, std::byte* rows) {
     if (!is_interlaced()) return decode_next(count, rows);
     if (all_.empty()) {

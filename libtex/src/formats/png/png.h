@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// png.h: PNG, both directions, through libpng.
+// png.h: reads and writes PNG files with libpng.
 
 #pragma once
 
@@ -21,15 +21,15 @@
 
 namespace tex {
 
-// The first four bytes of a PNG: a transfer as text damages the bytes after them.
+// The first four bytes of a PNG. A transfer in text mode damages the bytes after them.
 inline constexpr std::string_view kPngMagic = "\x89PNG";
 
-// Of the libpng that runs.
+// The version of the libpng that is running.
 const char* png_version();
 
-// Opens a PNG, to be read row by row as read_image() promises: grey as Y, colour and palette as R, G, B, alpha or tRNS
-// as A; values are code / (2^bits - 1); gAMA, sRGB, iCCP and sBIT change nothing. Damaged ancillary chunks count as
-// damage too. The rows of an interlaced one are held in memory, as they are decoded. `file` must outlive the rows.
+// Opens a PNG to be read row by row as read_image() describes: grey as Y, colour and palette as R, G, B, alpha or tRNS
+// as A; values are code / (2^bits - 1); gAMA, sRGB, iCCP and sBIT change nothing. Damaged ancillary chunks also count
+// as damage. The rows of an interlaced PNG are held in memory, as they are decoded. `file` must outlive the rows.
 //
 // Errors: bad_data (with libpng's reason), unsupported (too large), io, out_of_memory.
 Result<std::unique_ptr<RowSource>> open_png(InputFile& file, const ReadOptions& options);
@@ -44,8 +44,8 @@ Result<std::unique_ptr<RowTarget>> open_png_target(const TextureHead& head, Writ
 // Errors: unsupported (another format), out_of_memory.
 Result<std::vector<std::byte>> encode_png(const Texture& texture);
 
-// Encodes a level of one byte for each texel, the number of a colour. Precondition: 1 to 256 colours, and no byte
-// beyond them. Errors: unsupported (libpng's reason), out_of_memory.
+// Encodes a level with one byte for each texel, which is an index into the colours. Precondition: 1 to 256 colours, and
+// every byte is the index of a colour. Errors: unsupported (libpng's reason), out_of_memory.
 struct PngColor {
     std::uint8_t r, g, b;
     friend auto operator<=>(const PngColor&, const PngColor&) = default;

@@ -17,8 +17,9 @@
 namespace tex {
 namespace {
 
-// After an adaptive filter a normal map holds hardly any repetition that deflate could find, so run lengths alone give
-// the same size as zlib's level 6, two to five times as fast (measured on baked and on painted maps, 8 and 16 bits).
+// After an adaptive filter, a normal map has hardly any repetition that deflate could find. Run lengths alone therefore
+// give the same size as zlib's level 6, two to five times as fast (measured on baked and on painted maps, 8 and 16
+// bits).
 constexpr int kStrategy = Z_RLE;
 constexpr int kFilters = PNG_ALL_FILTERS;
 
@@ -30,7 +31,7 @@ struct PngWriter : PngState {
     bool append(png_const_bytep data, std::size_t count);
     [[nodiscard]] Error error() const;
 
-    std::vector<std::byte> bytes;  // that libpng has written
+    std::vector<std::byte> bytes;  // what libpng has written
 };
 
 bool PngWriter::append(png_const_bytep data, std::size_t count) {
@@ -55,7 +56,7 @@ void on_write(png_structp png, png_bytep data, std::size_t count) {
 
 void on_flush(png_structp) {}
 
-// `palette` is null but for indexed colours.
+// `palette` is null unless the colours are indexed.
 bool begin_rows(PngWriter& writer, Extent extent, int color_type, int bits, const std::vector<png_color>* palette) {
     writer.png =
         png_create_write_struct_2(PNG_LIBPNG_VER_STRING, static_cast<PngState*>(&writer), on_png_error, on_png_warning,

@@ -31,7 +31,7 @@ std::int64_t bytes_in(int fd) {
 
 // -- what goes out -------------------------------------------------------------------------------------------
 
-// Precondition: the reader's codecs hold the format.
+// Precondition: the reader's codecs can hold the format.
 ReaderType texel_type(const FormatInfo& format) {
     if (format.sample == SampleKind::unorm) return format.bits == 8 ? ReaderType::u8 : ReaderType::u16;
     return format.bits == 16 ? ReaderType::f16 : ReaderType::f32;

@@ -15,7 +15,7 @@
 namespace tex {
 namespace {
 
-// Nothing where there is no /proc.
+// nullopt if there is no /proc.
 std::optional<std::uint64_t> address_space(pid_t process) {
     const Descriptor file(::open(("/proc/" + std::to_string(process) + "/statm").c_str(), O_RDONLY | O_CLOEXEC));
     char text[64];
@@ -48,12 +48,12 @@ void grant_result(pid_t process, std::uint64_t result, std::int64_t memory) {
         prlimit(process, RLIMIT_AS, nullptr, &space) != 0)
         return;
     bool has_room = result > 0;
-    if (has_room && space.rlim_cur != RLIM_INFINITY) {  // with sanitizers it is not limited
+    if (has_room && space.rlim_cur != RLIM_INFINITY) {  // with sanitizers the address space is not limited
         const rlim_t left = std::min<rlim_t>(space.rlim_cur, static_cast<std::uint64_t>(memory) - result);
         const rlimit lower{left, left};
         has_room = prlimit(process, RLIMIT_AS, &lower, nullptr) == 0 && address_space(process).value_or(0) <= left;
     }
-    // Any other limit than the first one is the answer.
+    // A limit that differs from the first one is the answer.
     size.rlim_cur = std::min<rlim_t>(size.rlim_max, has_room ? result : kReaderDataOffset + 1);
     prlimit(process, RLIMIT_FSIZE, &size, nullptr);
 }

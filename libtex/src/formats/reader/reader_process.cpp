@@ -33,7 +33,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// The folder of the object that this code is in: of libtex, or of the program that it is linked into.
+// The folder of the binary that contains this code: libtex, or the program that it is linked into.
 std::string own_folder() {
     Dl_info info{};
     link_map* map = nullptr;
@@ -49,7 +49,7 @@ std::string own_folder() {
     return folder.erase(folder.rfind('/'));
 }
 
-// Attributes and file actions of a spawned process, freed with it.
+// Attributes and file actions for a spawned process, freed together.
 class SpawnPlan {
 public:
     SpawnPlan() {
@@ -67,12 +67,13 @@ public:
     posix_spawn_file_actions_t actions{};
 };
 
-// Starts the program with exactly the descriptors of the protocol, no environment, default signals, and as the leader
-// of its own process group: a Ctrl-C at the terminal is the caller's to handle, and what the reader might have started
-// ends with it. 0 or an errno.
+// Starts the program with only the descriptors of the protocol, no environment, default signals, and as the leader of
+// its own process group. A Ctrl-C at the terminal therefore reaches only the caller, and any process that the reader
+// has started ends with the reader. Returns 0 or an errno.
 int spawn(const std::string& program, std::vector<std::string> arguments, int result, int input, int progress,
           pid_t& child) {
-    // Out of the way of the numbers that they are to have. Beyond the limit of descriptors fcntl() knows no numbers.
+    // Moves the descriptors to numbers above those that the protocol needs. fcntl() finds no number beyond the limit of
+    // descriptors.
     constexpr int kFree = kProgressDescriptor + 1;
     const Descriptor from[] = {Descriptor(fcntl(result, F_DUPFD_CLOEXEC, kFree)),
                                Descriptor(fcntl(input, F_DUPFD_CLOEXEC, kFree)),
@@ -109,8 +110,8 @@ int spawn(const std::string& program, std::vector<std::string> arguments, int re
 
 enum class News { strip, end, late };
 
-// Time has run out. But whoever waits may have come late, after long work on what was there: an end that came until now
-// counts, and whatever the process still says does not prolong it.
+// The time is up. But the caller may have waited too late, after long work on the rows that were there. So an end that
+// came before now counts, but anything else that the process still sends does not prolong the wait.
 News last_news(int progress) {
     int there = 0;
     if (ioctl(progress, FIONREAD, &there) != 0) return News::late;
@@ -126,8 +127,8 @@ News last_news(int progress) {
     return has_ended ? News::end : News::late;
 }
 
-// Waits for word from the process: a strip of rows is there, or the pipe has ended, that is every process that holds it
-// is gone, or time has run out.
+// Waits for one of three events: a strip of rows is there; the pipe has ended, because every process that holds it is
+// gone; or the time is up.
 News wait_for_news(int progress, Clock::time_point deadline) {
     for (;;) {
         const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
@@ -144,14 +145,14 @@ News wait_for_news(int progress, Clock::time_point deadline) {
     }
 }
 
-// How a process ended; nothing where somebody else in this program collected it.
+// How a process ended; all zeros if another part of this program collected it.
 struct Ending {
     int signal = 0;
     int status = 0;
 };
 
 Ending collect(pid_t child) {
-    kill(-child, SIGKILL);  // nothing to a process that has ended; the end of one that only closed its pipe
+    kill(-child, SIGKILL);  // no effect on a process that has ended; ends a process that only closed its pipe
     int status = 0;
     pid_t got = -1;
     do {
@@ -163,16 +164,16 @@ Ending collect(pid_t child) {
 
 std::string does(const ReaderJob& job) { return job.verb == "encode" ? "the encoder" : "the decoder"; }
 
-// Whether this process may have less memory than the reader: so the reader has that little, too.
+// Whether this process is limited to less memory than the reader may use. The reader inherits that limit.
 bool is_short_of_memory(std::int64_t reader_memory) {
     rlimit now{};
     return getrlimit(RLIMIT_AS, &now) == 0 &&
            now.rlim_cur < static_cast<rlim_t>(std::max<std::int64_t>(reader_memory, 0));
 }
 
-// `begun`: it was ready to look at the file.
+// `begun`: the reader was ready to look at the file.
 Error abnormal_end(const ReaderJob& job, const std::string& program, Ending ending, bool begun, bool is_short) {
-    constexpr int kNotLoaded = 127;  // of the dynamic loader, and of shells
+    constexpr int kNotLoaded = 127;  // exit status of the dynamic loader and of shells
     const std::string signal = " (signal " + std::to_string(ending.signal) + ")";
     if (ending.signal == SIGKILL) {
         return {ErrorCode::out_of_memory, job.path, does(job) + " was killed by the system: out of memory?"};
@@ -196,7 +197,8 @@ Error abnormal_end(const ReaderJob& job, const std::string& program, Ending endi
             does(job) + " ended without a result (exit status " + std::to_string(ending.status) + ")"};
 }
 
-// The reader's own words, which may be anything: one line, printable, without the name under which it knew the file.
+// The reason that the reader gives, which may contain anything, as one printable line without the name that the reader
+// has for the file.
 std::string clean_reason(const ReaderHeader& header) {
     std::string reason(header.reason, strnlen(header.reason, sizeof header.reason));
     if (const std::size_t line = reason.find('\n'); line != std::string::npos) reason.erase(line);
@@ -283,7 +285,7 @@ struct ReaderProcess::State {
         whole = got == static_cast<ssize_t>(sizeof header) && header.magic == kReaderMagic;
         return header;
     }
-    // Once, when the process has said how large its result is going to be.
+    // Grants room for the result. Called until the process has stated the size of its result.
     void grant_room() {
         bool whole = false;
         const ReaderHeader header = read_header(whole);
@@ -292,7 +294,7 @@ struct ReaderProcess::State {
         has_room = true;
         grant_result(child, *result, memory);
     }
-    // Waits for the next strip; false where the process has ended.
+    // Waits for the next strip; false if the process has ended.
     bool wait() {
         if (ending) return false;
         const News news = wait_for_news(progress.get(), deadline);

@@ -17,17 +17,17 @@
 
 namespace tex {
 
-// A file in memory that other processes can grow and fill, but not shorten. Errors: out_of_memory.
+// A file in memory that other processes can enlarge and fill, but not shorten. Errors: out_of_memory.
 Result<Descriptor> memory_file(const std::string& path);
 
-// Whole transfers at an offset; false where the file ends or the system refuses.
+// Read or write all the bytes at an offset; false if the file ends or the system refuses.
 bool read_exactly(int fd, std::uint64_t offset, std::byte* to, std::size_t count);
 bool write_exactly(int fd, std::uint64_t offset, std::span<const std::byte> bytes);
 
-// The process said what cannot be.
+// The Error for a result that is impossible.
 Error nonsense(const std::string& path);
 
-// One run of the reader: what it does, on which descriptor, and where the result goes.
+// One run of the reader: what it does, the descriptor that it works on, and where the result goes.
 struct ReaderJob {
     std::string path;  // for messages
     std::string verb;  // "decode" or "encode"
@@ -42,13 +42,13 @@ public:
     static Result<ReaderProcess> start(const ReaderJob& job, const ReadOptions& options);
     ReaderProcess(ReaderProcess&& other) noexcept;
     ReaderProcess& operator=(ReaderProcess&& other) noexcept;
-    ~ReaderProcess();  // ends it
+    ~ReaderProcess();  // ends the process
 
-    // Waits until so many rows are there, or it has ended. The header says how many there are; they may be fewer.
-    // Errors: as finish().
+    // Waits until this number of rows is there, or until the process has ended. The returned header gives the number of
+    // rows, which may be smaller. Errors: as finish().
     Result<ReaderHeader> wait_for_rows(std::uint64_t rows);
 
-    // Waits for its end. Returns its header, in which magic and state are checked and nothing else.
+    // Waits for the process to end. Returns its header, of which only magic and state have been checked.
     //
     // Errors: bad_data (crash, time limit, no result), and what the reader itself reported; out_of_memory.
     Result<ReaderHeader> finish();
@@ -59,7 +59,7 @@ private:
     std::unique_ptr<State> state_;
 };
 
-// Runs the reader from its start to its end. Errors: those of both.
+// Runs the reader from start to end. Errors: those of start() and finish().
 Result<ReaderHeader> run_reader(const ReaderJob& job, const ReadOptions& options);
 
 }  // namespace tex

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// reader_protocol.h: what libtex and its reader process tell each other.
+// reader_protocol.h: the protocol between libtex and its reader process.
 //
 // libtex starts
 //
@@ -9,25 +9,26 @@
 // others:
 //
 //     kResultDescriptor    a file in memory, empty: ReaderHeader at 0, the data at kReaderDataOffset
-//     kInputDescriptor     decode: the picture file; encode: a file in memory, ReaderHeader at 0 (extent, channels,
-//     type), the texels at kReaderDataOffset
+//     kInputDescriptor     decode: the picture file
+//                          encode: a file in memory, ReaderHeader at 0 (extent, channels, type), the texels at
+//                          kReaderDataOffset
 //                          describe: an empty file in memory; the answer is in `sandboxed`, `landlock` and, as the
 //                          version of OpenImageIO, `reason`
-//     kProgressDescriptor  a pipe: a byte for each strip of rows that is in place; its end tells that the process is
-//     gone
+//     kProgressDescriptor  a pipe: one byte for each strip of rows that is in place; the pipe ends when the process is
+//                          gone
 //
-// Texels are interleaved, native byte order, rows from the top without padding: row j is at kReaderDataOffset + j *
-// row_bytes(). rows_done in the header grows while they arrive, so that a consumer may follow. An encoded file is
+// Texels are interleaved, in native byte order, with rows from the top without padding: row j is at kReaderDataOffset +
+// j * row_bytes(). rows_done in the header grows as rows arrive, so that a consumer may follow. An encoded file is
 // `bytes` long.
 //
-// Room for data has to be asked for: with the extent (encode: `bytes`) in the header and a byte in the pipe. libtex
-// then raises the process's limit on the size of files, which was kReaderDataOffset, and lowers that on its address
-// space by as much, so that MEMORY bounds both together (reader_memory.h).
+// The reader must ask for room for its data: it writes the extent (encode: `bytes`) to the header and a byte to the
+// pipe. libtex then raises the process's limit on the size of files, which was kReaderDataOffset, and lowers the limit
+// on its address space by the same amount, so that MEMORY limits both together (reader_memory.h).
 //
-// The header is there, as `working`, once the process is ready: one that ends earlier has not seen its input. It ends
-// with status kNoRoom where even the header cannot be written.
+// The process writes the header, with state `working`, when it is ready. A process that ends before that has not seen
+// its input. It ends with status kNoRoom if even the header cannot be written.
 //
-// The reader is not trusted: whatever it hands over is checked as if it came from the file itself.
+// The reader is not trusted: everything that it hands over is checked as if it came from the file itself.
 
 #pragma once
 
@@ -72,14 +73,14 @@ inline constexpr std::size_t reader_type_bytes(ReaderType type) {
 struct ReaderHeader {
     std::uint32_t magic = kReaderMagic;
     ReaderState state = ReaderState::working;
-    std::uint32_t error = 0;      // an ErrorCode, where the state is `refused`
+    std::uint32_t error = 0;      // an ErrorCode, if the state is `refused`
     std::uint32_t sandboxed = 0;  // what the kernel granted: kCallsFiltered, kFilesRestricted
     std::int32_t width = 0;
     std::int32_t height = 0;
     std::int32_t channels = 0;
     ReaderType type = ReaderType::u8;
     std::uint32_t bits = 0;      // significant bits of a sample in the file
-    std::uint32_t landlock = 0;  // the kernel's version of it
+    std::uint32_t landlock = 0;  // the kernel's version of Landlock
     std::uint64_t rows_done = 0;
     std::uint64_t bytes = 0;  // of an encoded file
     char reason[1024] = {};

@@ -24,7 +24,7 @@
 namespace tex {
 namespace {
 
-// The first bytes of a kind of file, and OpenImageIO's name for it.
+// The first bytes of a file type, and OpenImageIO's name for it.
 struct Mark {
     std::string_view bytes;
     std::string_view format;
@@ -62,7 +62,7 @@ constexpr Mark kMarks[] = {
     {"\x53\x80\xf6\x34"sv, "softimage"},
 };
 
-// TGA begins with its header at once: an id's length, the kind of palette (0, 1), the kind of picture, the palette,
+// A TGA begins directly with its header: length of the id, type of the palette (0, 1), type of the picture, palette,
 // origin, extent and depth.
 bool may_be_tga(std::span<const std::byte> head) {
     constexpr std::size_t kHeader = 18;
@@ -85,15 +85,15 @@ std::optional<std::string> format_of(std::span<const std::byte> head) {
     return std::nullopt;
 }
 
-// How the integers of one type become floats.
+// How integers of one type become floats.
 struct Scale {
     SampleKind kind = SampleKind::unorm;
-    int bits = 8;   // significant ones
-    int shift = 0;  // unsigned: from the container to the significant bits
+    int bits = 8;   // the significant bits
+    int shift = 0;  // for unsigned integers: right shift from the container to the significant bits
 };
 
-// Decoders widen integers of n bits to whole bytes: by repeating bits, or by rounding v (2^m - 1) / (2^n - 1). Either
-// way the upper n bits are v, and a value that came about otherwise (a palette's colour) betrays itself.
+// Decoders widen integers of n bits to whole bytes, either by repeating bits or by rounding v (2^m - 1) / (2^n - 1). In
+// both cases the upper n bits are v. A value that was made in another way (a palette's colour) does not match.
 bool widened(std::uint32_t code, int n, int m) {
     const std::uint64_t v = code >> (m - n);
     std::uint64_t repeated = 0;
@@ -142,7 +142,7 @@ void store_row(const std::byte* row, const Scale& scale, Image& image, int j) {
     }
 }
 
-// Calls visit(T{}) with the C++ type that stands for a ReaderType.
+// Calls visit(T{}) with the C++ type for a ReaderType.
 template <class Visit>
 auto with_type(ReaderType type, const Visit& visit) {
     switch (type) {
@@ -158,7 +158,7 @@ auto with_type(ReaderType type, const Visit& visit) {
     return visit(float{});
 }
 
-// Names as the decoder gives them, as far as they are names.
+// The names that the decoder gives. Names that are not plain text are replaced.
 std::vector<std::string> plane_names(const ReaderHeader& header) {
     std::vector<std::string> names;
     for (int c = 0; c < header.channels; ++c) {
@@ -174,13 +174,13 @@ std::vector<std::string> plane_names(const ReaderHeader& header) {
     return names;
 }
 
-// All of the header that is relied on.
+// Checks every field of the header that later code relies on.
 bool plausible(const ReaderHeader& header) {
     return header.channels >= 1 && header.channels <= kMaxReaderChannels && header.type <= ReaderType::f32 &&
            header.bits >= 1 && header.bits <= 8 * reader_type_bytes(header.type);
 }
 
-// The file as a descriptor that a process can open again: a stream goes to memory first.
+// The file as a descriptor that another process can open again. A stream is first copied to memory.
 Result<Descriptor> copy_to_memory(InputFile& file, const ReadOptions& options) {
     const Result<std::vector<std::byte>> bytes = file.read_rest(std::min(largest_file(options), options.reader_memory));
     if (!bytes) return bytes.error();
@@ -214,7 +214,7 @@ private:
     Descriptor memory_;  // a copy of a stream
     Descriptor result_;
     std::optional<ReaderProcess> process_;
-    ReaderHeader header_;  // as it was when the first rows came
+    ReaderHeader header_;  // as it was when the first rows arrived
     Scale scale_;
 };
 
@@ -252,7 +252,7 @@ Result<void> ReaderRows::open(const ReadOptions& options) {
     if (!plausible(*header)) return nonsense(file_.path());
     const Result<Extent> extent = claimed_extent(file_.path(), header->width, header->height, options);
     if (!extent) return extent.error();
-    // Of what the process may write, before memory is taken for it.
+    // Checks what the process claims before memory is allocated for it.
     const std::uint64_t claimed = tex::row_bytes(*header) * static_cast<std::uint64_t>(extent->height);
     if (claimed > static_cast<std::uint64_t>(std::max<std::int64_t>(options.reader_memory, 0)))
         return nonsense(file_.path());
@@ -265,7 +265,7 @@ Result<void> ReaderRows::open(const ReadOptions& options) {
     return {};
 }
 
-// Whether integers of fewer bits than their container have been widened shows only when all of them have been seen.
+// Whether integers of fewer bits than their container have been widened is known only when all of them have been read.
 Result<Scale> ReaderRows::find_scale() {
     return with_type(header_.type, [&](auto zero) -> Result<Scale> {
         using T = decltype(zero);
@@ -287,7 +287,7 @@ Result<Scale> ReaderRows::find_scale() {
     });
 }
 
-// Up to them all rows wait in memory as they were decoded.
+// All rows up to the requested ones are in memory, as they were decoded.
 Result<void> ReaderRows::peek(int first, int count, std::byte* rows) {
     const Result<ReaderHeader> there =
         process_->wait_for_rows(static_cast<std::uint64_t>(first) + static_cast<std::uint64_t>(count));
@@ -298,9 +298,9 @@ Result<void> ReaderRows::peek(int first, int count, std::byte* rows) {
 
 Result<void> ReaderRows::decode(int first, int count, std::byte* rows) {
     if (Result<void> there = peek(first, count, rows); !there) return there;
-    // What has been read need not stay in memory. Where that fails, it stays.
+    // Rows that have been read are no longer needed in memory. If they cannot be released, they stay.
     const auto page = static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
-    const auto page_of = [&](int row) {  // begins at or before the row, but never in the header
+    const auto page_of = [&](int row) {  // begins at or before the row, but never within the header
         const std::uint64_t offset = kReaderDataOffset + static_cast<std::uint64_t>(row) * row_bytes();
         return std::max(offset / page * page, (kReaderDataOffset + page - 1) / page * page);
     };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// reader_rows.h: the rows of a picture that the reader process decodes, while it decodes them.
+// reader_rows.h: the rows of a picture, available while the reader process decodes it.
 
 #pragma once
 
@@ -13,11 +13,12 @@
 
 namespace tex {
 
-// Starts the reader process on a file, which must outlive the rows; it ends with them. The file's first bytes choose
-// the decoder: TIFF, JPEG, BMP, HDR, PSD, GIF, WebP, PNM, SGI, JPEG 2000, DPX, Cineon, IFF, Softimage PIC; a plausible
-// header alone makes a TGA, which has no mark. Raw values, unassociated alpha, the first picture of several;
-// orientation tags change nothing. Integers of fewer bits than their container (12-bit TIFF) are taken back to code /
-// (2^n - 1); such pictures are read to the end first, as only all of them show what was done to the bits.
+// Starts the reader process on a file, which must outlive the rows. The process ends with the rows. The file's first
+// bytes choose the decoder: TIFF, JPEG, BMP, HDR, PSD, GIF, WebP, PNM, SGI, JPEG 2000, DPX, Cineon, IFF, Softimage PIC.
+// A TGA has no magic number and is recognised by a plausible header alone. Raw values, unassociated alpha, the first
+// picture of several; orientation tags change nothing. Integers of fewer bits than their container (12-bit TIFF) are
+// converted back to code / (2^n - 1). Such pictures are read to the end first, because only all values together show
+// how the bits were widened.
 //
 // Errors: io             the reader program is not there or cannot be started
 //         bad_data       not a picture; damaged; the decoder crashed, did not end within options.reader_timeout, or
