@@ -17,7 +17,7 @@ constexpr int widen5(int code) { return code << 3 | code >> 2; }
 
 Color widen(int c) { return {widen5(c >> 11 & 31), widen_green(c >> 5 & 63), widen5(c & 31)}; }
 
-// (w0 e0 + w1 e1) / (w0 + w1), one rounding.
+// (w0 e0 + w1 e1) / (w0 + w1), rounded once.
 float mix(int w0, int e0, int w1, int e1) {
     return static_cast<float>(w0 * e0 + w1 * e1) / static_cast<float>((w0 + w1) * 255);
 }
@@ -32,7 +32,7 @@ void decode_bc1(const std::byte* block, Bc1Mode mode, float r[16], float g[16], 
     const Color e0 = widen(c0);
     const Color e1 = widen(c1);
     const bool four = mode == Bc1Mode::four_colors || c0 > c1;
-    // The weights of c0 and c1 in each entry of the palette; 0 and 0 is transparent black.
+    // The weights of c0 and c1 in each entry of the palette; 0 and 0 mean transparent black.
     constexpr int kFour[4][2] = {{1, 0}, {0, 1}, {2, 1}, {1, 2}};
     constexpr int kThree[4][2] = {{1, 0}, {0, 1}, {1, 1}, {0, 0}};
     float palette[4][4];
@@ -86,7 +86,7 @@ Nearest nearest(const std::int64_t palette[4], std::int32_t value) {
     return best;
 }
 
-// The error, or any number above `limit` where it is greater.
+// The error, or any number above `limit` if the error is greater than `limit`.
 std::int64_t error_up_to(std::int64_t limit, const BlockTexels& texels, GreenEndpoints endpoints) {
     std::int64_t palette[4];
     make_palette(endpoints, palette);

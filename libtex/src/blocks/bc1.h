@@ -26,37 +26,38 @@ enum class Bc1Mode {
     four_colors,  // always four: BC2 and BC3
 };
 
-// Decodes a block into texels in row-major order, each channel in [0, 1]. In four_colors mode a is 1. Every 8 bytes
-// are a valid block.
+// Decodes a block into texels in row-major order, each channel in [0, 1]. In four_colors mode a is 1. Any 8 bytes are a
+// valid block.
 void decode_bc1(const std::byte* block, Bc1Mode mode, float r[16], float g[16], float b[16], float a[16]);
 
 // Decodes the first 8 bytes of a BC2 block: 4 bits of alpha for each texel, row-major, texel 0 in the lowest bits.
 void decode_bc2_alpha(const std::byte* block, float a[16]);
 
-// Encoding: the green of a DXT5nm colour block, whose R and B are 31 in both colours, so that they decode to exactly
-// 255 whatever the index and the decoder. Green alone is fitted, to codes 0 to 255.
+// Encoding: the green of a DXT5nm colour block. R and B are 31 in both colours, so that they decode to exactly 255 for
+// every index and decoder. Only green is fitted, to codes 0 to 255.
 
-// Two greens of 6 bits, e0 <= e1. The block holds the greater one first, so c0 > c1 where they differ.
+// Two 6-bit greens, e0 <= e1. The block holds the greater one first, so c0 > c1 if they differ.
 struct GreenEndpoints {
     int e0 = 0;
     int e1 = 0;
 };
 
-// A green of 6 bits as the code of 8 bits that decoders widen it to.
+// The 8-bit code to which decoders widen a 6-bit green.
 constexpr int widen_green(int code) { return code << 2 | code >> 4; }
 
-// The squared error of a block whose texels take the nearest value of the palette, in units of (code /
+// The squared error of a block if each texel takes the nearest value of the palette, in units of (code /
 // kGreenErrorUnit)^2. Exact.
 inline constexpr std::int64_t kGreenErrorUnit = std::int64_t{3} * kCodeUnit;
 [[nodiscard]] std::int64_t green_error(const BlockTexels& texels, GreenEndpoints endpoints);
 
-// The endpoints with the least squared error of all whose lower one lies within `reach` 6-bit codes of the least value
-// and whose greater one within `reach` of the greatest: of all that there are, for reach = 63. Of equals the nearest
-// endpoints, then the greatest: flat, 127.5, takes 31 and 33, whose mean with weights 2:1 is 128 under every vendor's
-// rounding.
+// The endpoints with the least squared error among all pairs whose lower endpoint is within `reach` 6-bit codes of the
+// least value and whose greater one is within `reach` of the greatest; for reach = 63 these are all pairs. Of pairs
+// with equal errors, the one whose endpoints are nearest to each other is taken, then the greatest: flat, 127.5, takes
+// 31 and 33, whose mean with weights 2:1 is 128 under every vendor's rounding.
 [[nodiscard]] GreenEndpoints search_green(const BlockTexels& texels, int reach);
 
-// Writes the colour block: each texel takes the nearest value, of equals the first; equal endpoints use index 0 only.
+// Writes the colour block. Each texel takes the nearest value, or the first of equally near ones. Equal endpoints use
+// index 0 only.
 void write_green(const BlockTexels& texels, GreenEndpoints endpoints, std::byte* block);
 
 }  // namespace tex

@@ -9,8 +9,8 @@
 namespace tex {
 namespace {
 
-// The palette of endpoints e0 and e1, `scale` being the code of 1. Numerators and denominators are whole numbers that
-// float holds exactly, so that each value is rounded once, by its division.
+// The palette of endpoints e0 and e1; `scale` is the code of 1. Numerators and denominators are whole numbers that
+// float holds exactly, so each value is rounded once, by its division.
 void make_palette(int e0, int e1, bool eight_values, int lowest, int scale, float palette[8]) {
     const int steps = eight_values ? 7 : 5;
     palette[0] = static_cast<float>(e0) / static_cast<float>(scale);
@@ -78,7 +78,7 @@ Nearest nearest(const std::int64_t palette[8], std::int32_t value) {
     return best;
 }
 
-// The error, or any number above `limit` where it is greater.
+// The error, or any number above `limit` if the error is greater than `limit`.
 std::int64_t error_up_to(std::int64_t limit, const BlockTexels& texels, Bc4Codes codes, Bc4Endpoints endpoints) {
     std::int64_t palette[8];
     make_palette(codes, endpoints, palette);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// bc4.h: one BC4 block (ATI1, RGTC1): one channel of 4x4 texels in 8 bytes. BC3 stores its alpha so, BC5 each of
-// its channels.
+// bc4.h: one BC4 block (ATI1, RGTC1): one channel of 4x4 texels in 8 bytes. BC3 stores its alpha in this form, and BC5
+// each of its channels.
 //
 //     byte 0, 1   endpoints e0 and e1: 8 bits each, unsigned (unorm) or two's complement (snorm)
 //     byte 2-7    48 bits, little-endian: a 3-bit index for each texel, row-major, texel 0 in the lowest bits
@@ -22,11 +22,11 @@
 
 namespace tex {
 
-// Decodes a block into texels in row-major order: [0, 1], or [-1, 1] of snorm. Every 8 bytes are a valid block.
+// Decodes a block into texels in row-major order: [0, 1], or [-1, 1] for snorm. Any 8 bytes are a valid block.
 void decode_bc4_unorm(const std::byte* block, float values[16]);
 void decode_bc4_snorm(const std::byte* block, float values[16]);
 
-// What an encoder fits: codes 0 to `top`, stored with `bias` subtracted. Signed blocks use -127 to 127 only.
+// The codes to which an encoder fits: 0 to `top`, stored with `bias` subtracted. Signed blocks use -127 to 127 only.
 struct Bc4Codes {
     int top;
     int bias;
@@ -34,23 +34,25 @@ struct Bc4Codes {
 inline constexpr Bc4Codes kBc4Unorm{255, 0};
 inline constexpr Bc4Codes kBc4Snorm{254, 127};
 
-// Endpoints as compared in the block, bias not yet subtracted: e0 > e1 has 8 values, else 6.
+// Endpoints in the order in which the block compares them, before bias is subtracted: e0 > e1 has 8 values, otherwise
+// 6.
 struct Bc4Endpoints {
     int e0 = 0;
     int e1 = 0;
 };
 
-// The squared error of a block whose texels take the nearest value of the palette, in units of (code /
+// The squared error of a block if each texel takes the nearest value of the palette, in units of (code /
 // kBc4ErrorUnit)^2. Exact.
 inline constexpr std::int64_t kBc4ErrorUnit = std::int64_t{35} * kCodeUnit;
 [[nodiscard]] std::int64_t bc4_error(const BlockTexels& texels, Bc4Codes codes, Bc4Endpoints endpoints);
 
-// The endpoints with the least squared error of all whose lower one lies within `reach` codes of the least value and
-// whose greater one within `reach` codes of the greatest, with 8 and with 6 values: of all that there are, for reach =
-// codes.top. Of equals the nearest endpoints, then those with 8 values, then the greatest.
+// The endpoints with the least squared error, with 8 and with 6 values, among all pairs whose lower endpoint is within
+// `reach` codes of the least value and whose greater one is within `reach` codes of the greatest; for reach = codes.top
+// these are all pairs. Of pairs with equal errors, the one whose endpoints are nearest to each other is taken, then one
+// with 8 values, then the greatest.
 [[nodiscard]] Bc4Endpoints search_bc4(const BlockTexels& texels, Bc4Codes codes, int reach);
 
-// Writes the block: each texel takes the nearest value, of equals the first.
+// Writes the block. Each texel takes the nearest value, or the first of equally near ones.
 void write_bc4(const BlockTexels& texels, Bc4Codes codes, Bc4Endpoints endpoints, std::byte* block);
 
 }  // namespace tex

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// extent.h: texels in whole blocks.
+// extent.h: converts between texels and whole blocks.
 
 #pragma once
 
@@ -12,7 +12,7 @@ inline constexpr int kBlockTexels = kBlockEdge * kBlockEdge;
 // The number of blocks that cover `texels` texels along an axis; the last block may be partly outside.
 constexpr int blocks_across(int texels, int edge = kBlockEdge) { return (texels + edge - 1) / edge; }
 
-// The texels of these blocks: `texels`, rounded up.
+// The number of texels in these blocks: `texels`, rounded up.
 constexpr int whole_blocks(int texels, int edge = kBlockEdge) { return blocks_across(texels, edge) * edge; }
 
 }  // namespace tex

@@ -8,17 +8,17 @@
 
 namespace tex {
 
-// Encoders count in whole numbers, so that they compare errors exactly: values are multiples of 1/1024 of a code, which
-// holds 8-bit sources exactly and moves others by less than 0.0003 degrees.
+// Encoders use whole numbers, so that they compare errors exactly. Values are multiples of 1/1024 of a code. This
+// represents 8-bit sources exactly and changes others by less than 0.0003 degrees.
 inline constexpr std::int32_t kCodeUnit = 1024;
 
 struct BlockTexels {
     std::int32_t values[16];      // row-major, in units of 1/kCodeUnit of a code, 0 to top * kCodeUnit
-    std::uint32_t mask = 0xFFFF;  // bit k is set where texel k lies in the level; the others carry no weight
+    std::uint32_t mask = 0xFFFF;  // bit k is set if texel k lies in the level; other texels have no weight
 };
 
 // A component in [-1, 1] (clamped), mapped to the codes 0 to `top`, in units of 1/kCodeUnit. Computed in float, from
-// left to right; halves up.
+// left to right; halves are rounded up.
 inline std::int32_t to_code_units(float n, int top) {
     const float half_range = 0.5f * static_cast<float>(top) * static_cast<float>(kCodeUnit);
     const float clamped = std::fmin(std::fmax(n, -1.0f), 1.0f);

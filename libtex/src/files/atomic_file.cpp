@@ -27,7 +27,7 @@
 namespace tex {
 namespace {
 
-// 0, or the errno of what failed.
+// Returns 0 or an errno.
 int write_fully(int fd, std::uint64_t offset, std::span<const std::byte> bytes) {
     constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;
     while (!bytes.empty()) {
@@ -40,7 +40,7 @@ int write_fully(int fd, std::uint64_t offset, std::span<const std::byte> bytes) 
     return 0;
 }
 
-// Where the file shall be, as seen from its open directory.
+// Where the file goes, relative to its open directory.
 struct Target {
     std::string path;  // as the caller gave it, for messages
     Descriptor folder;
@@ -48,15 +48,15 @@ struct Target {
     std::optional<struct stat> existing;
 };
 
-// Follows the last component of `path` through symbolic links, dangling ones too: the link stays, its target is
-// written.
+// Follows the last component of `path` through symbolic links, even to a missing target. The link stays, and its target
+// is written.
 Result<std::string> follow_links(const std::string& path) {
     std::string at = path;
-    constexpr int kMostLinks = 40;  // as the kernel
+    constexpr int kMostLinks = 40;  // the kernel's limit
     for (int k = 0; k < kMostLinks; ++k) {
         char target[PATH_MAX];
         const ssize_t n = readlink(at.c_str(), target, sizeof target);
-        if (n < 0) return at;  // no link, or not there at all
+        if (n < 0) return at;  // not a link, or missing
         const std::string_view to(target, static_cast<std::size_t>(n));
         const std::size_t slash = at.rfind('/');
         if (to.starts_with('/') || slash == std::string::npos) {
@@ -93,17 +93,17 @@ Result<Target> find_target(const std::string& path) {
     return target;
 }
 
-// The last steps before a file gets its name. 0, or the errno of what failed.
+// The last steps before a file gets its name. Returns 0 or an errno.
 int settle(int fd, const Target& target, bool sync) {
     if (target.existing) keep_rights(fd, target.folder.get(), target.name, *target.existing);
     while (sync && fdatasync(fd) != 0) {
-        if (errno == EINVAL) break;  // this kind of file cannot be synchronised
+        if (errno == EINVAL) break;  // files of this type cannot be synchronised
         if (errno != EINTR) return errno;
     }
     return 0;
 }
 
-// 0, or the errno of what failed: EWOULDBLOCK where somebody else has the lock.
+// Returns 0 or an errno: EWOULDBLOCK if another process or descriptor holds the lock.
 int lock(int fd) {
     int failed = -1;
     do {
@@ -119,7 +119,7 @@ bool same_file(const Target& target, const std::string& name, int fd) {
            named.st_dev == open.st_dev && named.st_ino == open.st_ino;
 }
 
-// Removes the temporary called `name` if its writer is gone.
+// Removes the temporary file called `name` if its writer is gone.
 void sweep(const Target& target, const std::string& name) {
     const Descriptor file(::openat(target.folder.get(), name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
     struct stat status {};
@@ -127,11 +127,11 @@ void sweep(const Target& target, const std::string& name) {
     if (lock(file.get()) == 0 && same_file(target, name, file.get())) unlinkat(target.folder.get(), name.c_str(), 0);
 }
 
-// Calls make(name) for temporary names until it succeeds; sweeps what dead writers left under them. Returns the
-// name, or an empty string and errno.
+// Calls make(name) for temporary names until it succeeds. Removes files that dead writers left under these names.
+// Returns the name, or an empty string and errno.
 template <class Make>
 std::string temporary_name(const Target& target, const Make& make) {
-    constexpr std::size_t kMostOfName = 200;  // of 255 bytes that a name may have
+    constexpr std::size_t kMostOfName = 200;  // of the 255 bytes that a name may have
     constexpr int kMostWriters = 4096;
     std::string stem(1, '.');
     stem.append(target.name, 0, kMostOfName).append(".tex-tmp");
@@ -149,8 +149,8 @@ std::string temporary_name(const Target& target, const Make& make) {
 
 Error exists_error(const Target& target) { return {ErrorCode::io, target.path, "exists already"}; }
 
-// Renames a temporary to the target; on failure it is removed. 0, or the errno of what failed. The section is that of
-// all that the caller does to the temporary's name.
+// Renames a temporary file to the target; if this fails, removes the file. Returns 0 or an errno. The section must also
+// cover all that the caller does with the temporary name.
 int move_into_place(const NameSection&, const Target& target, const std::string& temporary, bool no_clobber) {
     const int folder = target.folder.get();
     const char* from = temporary.c_str();
@@ -178,14 +178,14 @@ Result<void> moved(const Target& target, int failed, bool no_clobber) {
     return system_error(target.path, failed, "cannot be put into place");
 }
 
-// The mode of a new file: the umask decides; a replacement is private until keep_rights().
+// The mode of a new file: the umask decides. A replacement is private until keep_rights().
 mode_t first_mode(const Target& target) { return target.existing ? 0600 : 0666; }
 
-// A file without a name; an empty one where there are no nameless files here. Errors: io.
+// Opens a file without a name; returns an empty descriptor if nameless files are not possible here. Errors: io.
 Result<Descriptor> open_nameless(const Target& target) {
     Descriptor file(::openat(target.folder.get(), ".", O_TMPFILE | O_WRONLY | O_CLOEXEC, first_mode(target)));
     if (file) {
-        // Its name will come through /proc.
+        // The file will get its name through /proc.
         const std::string path = "/proc/self/fd/" + std::to_string(file.get());
         if (faccessat(AT_FDCWD, path.c_str(), F_OK, 0) != 0) return Descriptor();
         lock(file.get());
@@ -196,7 +196,7 @@ Result<Descriptor> open_nameless(const Target& target) {
     return system_error(target.path, errno, "the directory cannot be written");
 }
 
-// A file with a temporary name, which goes to `name` and to `unfinished`. Errors: io.
+// Opens a file with a temporary name and stores the name in `name` and `unfinished`. Errors: io.
 Result<Descriptor> open_named(const Target& target, std::string& name, UnfinishedFile& unfinished) {
     Descriptor file;
     name = temporary_name(target, [&](const std::string& temporary) {
@@ -204,7 +204,8 @@ Result<Descriptor> open_named(const Target& target, std::string& name, Unfinishe
         file = Descriptor(::openat(target.folder.get(), temporary.c_str(),
                                    O_CREAT | O_EXCL | O_WRONLY | O_NOFOLLOW | O_CLOEXEC, first_mode(target)));
         if (!file) return false;
-        // Somebody may take it for a dead writer's before it is locked: then it is gone, or about to be.
+        // Before the file is locked, another process may take it for a dead writer's file. It has then been removed, or
+        // will be soon.
         if (lock(file.get()) == EWOULDBLOCK || !same_file(target, temporary, file.get())) {
             errno = EEXIST;
             return false;
@@ -243,9 +244,9 @@ struct AtomicFile::State {
     Target target;
     AtomicFileOptions options;
     Descriptor file;
-    std::string temporary;                     // the name of a file that has one
+    std::string temporary;                     // the name of the temporary file, if it has one
     std::optional<UnfinishedFile> unfinished;  // the same for remove_unfinished_files()
-    std::optional<ThroughFile> through;        // instead of all of the above
+    std::optional<ThroughFile> through;        // if set, nothing above is used
 
     ~State() {
         if (temporary.empty()) return;
@@ -273,7 +274,8 @@ Result<AtomicFile> AtomicFile::open(const std::string& path, const AtomicFileOpt
         Result<Target> target = find_target(path);
         if (!target) return target.error();
         if (target->existing && options.no_clobber) return exists_error(*target);
-        // A rename would replace a file that its owner has protected; who may not write it shall not.
+        // A rename would replace a file that its owner has protected. A user who may not write the file may not replace
+        // it.
         if (target->existing && faccessat(target->folder.get(), target->name.c_str(), W_OK, AT_EACCESS) != 0) {
             return system_error(path, errno);
         }

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // atomic_file.h: files that appear whole or not at all.
 //
-// The bytes go to a nameless file (O_TMPFILE) in the target's directory, which is then linked into place; a target that
-// exists already needs a detour, since the system has no call that links over a name: link to a temporary name, then
-// rename. Where there are no nameless files (some network and FUSE file systems), the temporary has its name from the
-// beginning.
+// The bytes go to a nameless file (O_TMPFILE) in the target's directory, which is then linked into place. If the target
+// already exists, another step is needed, because the system has no call that links over an existing name: the file is
+// linked to a temporary name, then renamed. If there are no nameless files (some network and FUSE file systems), the
+// temporary file has its name from the beginning.
 //
-// Temporary names are .NAME.tex-tmp0, 1, 2 ... beside the target. While its writer lives, it holds a lock on the file
-// (flock). Whoever finds a name taken and can get its lock knows that the writer was killed, and sweeps the file; so a
-// crash leaves at most one file behind, until the next write to the same target. A process that ends itself leaves
-// none: see unfinished_files.h.
+// Temporary names are .NAME.tex-tmp0, 1, 2 ... beside the target. As long as its writer lives, it holds a lock on the
+// file (flock). A process that finds a name taken and can get the lock knows that the writer was killed, and removes
+// the file. A crash therefore leaves at most one file behind, until the next write to the same target. A process that
+// ends by itself leaves none: see unfinished_files.h.
 
 #pragma once
 
@@ -25,21 +25,23 @@ namespace tex {
 
 struct AtomicFileOptions {
     bool sync = true;         // fdatasync before the name appears
-    bool no_clobber = false;  // an existing file is an error
+    bool no_clobber = false;  // do not replace an existing file; report an error
 };
 
 class AtomicFile {
 public:
-    // Finds the target and opens the temporary. Errors: io, out_of_memory.
+    // Finds the target and opens the temporary file. Errors: io, out_of_memory.
     static Result<AtomicFile> open(const std::string& path, const AtomicFileOptions& options);
     AtomicFile(AtomicFile&& other) noexcept;
-    ~AtomicFile();  // a file that was not committed leaves nothing behind
+    ~AtomicFile();  // unless the file was committed, nothing is left behind
 
-    // Places bytes, in any order; what is never written is 0. Any number of threads may call at once. For what is
-    // written through (standard output, FIFOs, devices) bytes wait in memory until commit(). Errors: io, out_of_memory.
+    // Writes bytes at an offset, in any order; bytes that are never written are 0. Any number of threads may call this
+    // at once. If the output is written directly (standard output, FIFOs, devices), the bytes wait in memory until
+    // commit().
+    // Errors: io, out_of_memory.
     Result<void> write_at(std::uint64_t offset, std::span<const std::byte> bytes);
 
-    // Puts the file into place. To be called once, after all writing. Errors: io, out_of_memory.
+    // Puts the file into place. Call it once, after all writing. Errors: io, out_of_memory.
     Result<void> commit();
 
 private:
@@ -49,7 +51,7 @@ private:
     std::unique_ptr<State> state_;
 };
 
-// All at once: writes `bytes` to `path` as write_file() (container.h) promises. Errors: io, out_of_memory.
+// In one step: writes `bytes` to `path` as write_file() (container.h) describes. Errors: io, out_of_memory.
 Result<void> write_atomically(const std::string& path, std::span<const std::byte> bytes,
                               const AtomicFileOptions& options);
 

@@ -21,15 +21,15 @@ namespace {
 constexpr const char* kAcl = "system.posix_acl_access";
 constexpr mode_t kAllButOwner = S_ISGID | S_IRWXG | S_IRWXO;
 
-// The extended attributes of a file that need not be readable.
+// The extended attributes of a file, which need not be readable.
 class Attributes {
 public:
-    // The name through /proc needs no right to read the file; without /proc it is opened.
+    // Access through /proc needs no right to read the file. Without /proc, the file is opened.
     Attributes(int folder, const std::string& name)
         : path_("/proc/self/fd/" + std::to_string(folder) + "/" + name),
           file_(::openat(folder, name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC)) {}
 
-    // Nothing, and errno, where there is none.
+    // nullopt, and errno, if the file lacks the attribute.
     [[nodiscard]] std::optional<std::vector<std::byte>> get(const char* attribute) const {
         return whole([&](void* to, std::size_t size) {
             return file_ ? fgetxattr(file_.get(), attribute, to, size) : lgetxattr(path_.c_str(), attribute, to, size);
@@ -49,7 +49,7 @@ public:
     }
 
 private:
-    // Calls read(to, size) with the size that it asks for, which may change in between.
+    // Calls read(to, size) with the size that read() requests. The size may change between two calls.
     template <class Read>
     static std::optional<std::vector<std::byte>> whole(const Read& read) {
         for (int tries = 0; tries < 8; ++tries) {
@@ -70,7 +70,7 @@ private:
     Descriptor file_;
 };
 
-// An entry of an ACL, after a version number of 32 bits; all of it little-endian.
+// ACL entries follow a version number of 32 bits; everything is little-endian.
 constexpr std::size_t kVersionBytes = 4, kEntryBytes = 8;
 constexpr std::uint32_t kVersion = 2;
 enum class Tag : std::uint32_t { owner = 1, user = 2, group = 4, named_group = 8, mask = 16, other = 32 };
@@ -81,12 +81,12 @@ std::uint32_t little_endian(std::span<const std::byte> bytes) {
     return value;
 }
 
-// Gives `fd` the ACL of the old file, or none where that has none. Where it cannot, nobody has more rights than before
-// when `mode` is what this returns.
+// Gives `fd` the ACL of the old file, or none if that file has none. If this fails, the returned mode still gives
+// nobody more rights than before.
 mode_t keep_acl(int fd, const Attributes& old, mode_t mode, bool owners_kept) {
     const auto acl = old.get(kAcl);
     const bool has_none = !acl && (errno == ENODATA || errno == EOPNOTSUPP);
-    // The folder may have given the new file an ACL, which `mode` would bring to life.
+    // The folder may have given the new file an ACL, which `mode` would activate.
     const bool is_clean = fremovexattr(fd, kAcl) == 0 || errno == ENODATA || errno == EOPNOTSUPP;
     if (has_none) return is_clean ? mode : mode & ~kAllButOwner;
     if (acl && owners_kept && fsetxattr(fd, kAcl, acl->data(), acl->size(), 0) == 0) return mode;
@@ -99,7 +99,7 @@ mode_t mode_without_acl(mode_t mode, std::span<const std::byte> acl) {
     if (acl.size() < kVersionBytes || (acl.size() - kVersionBytes) % kEntryBytes != 0 ||
         little_endian(acl.first(kVersionBytes)) != kVersion)
         return mode & ~kAllButOwner;
-    // Who has an entry of their own falls back to the rights of the group or of all others.
+    // Users and groups with their own entry fall back to the rights of the group or of all others.
     const mode_t most = (mode & S_IRWXG) >> 3;
     std::optional<mode_t> of_group;
     mode_t of_users = S_IRWXO;
@@ -135,7 +135,7 @@ void keep_rights(int fd, int folder, const std::string& name, const struct stat&
         if (const auto value = attributes.get(attribute.c_str()))
             static_cast<void>(fsetxattr(fd, attribute.c_str(), value->data(), value->size(), 0));
     }
-    static_cast<void>(fchmod(fd, mode));  // where that fails, the file stays readable by its writer alone
+    static_cast<void>(fchmod(fd, mode));  // if this fails, only its writer can read the file
 }
 
 }  // namespace tex

@@ -17,10 +17,10 @@
 namespace tex {
 namespace {
 
-// read(2) and pread(2) refuse or shorten greater counts.
+// read(2) and pread(2) refuse or shorten larger counts.
 constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;
 
-// Calls `once(data, count)` (a read) until all `count` bytes are there, the file ends, or it fails.
+// Calls `once(data, count)` (a read) until all `count` bytes are there, the file ends, or a call fails.
 template <class Once>
 Result<std::size_t> read_fully(const std::string& path, std::byte* data, std::size_t count, const Once& once) {
     std::size_t done = 0;
@@ -73,12 +73,12 @@ Result<InputFile> InputFile::open(const std::string& path) {
         struct stat status {};
         if (fstat(file.fd_.get(), &status) != 0) return system_error(path, errno);
         if (S_ISDIR(status.st_mode)) return Error{ErrorCode::io, path, "is a directory"};
-        // /dev/zero has no end, a disk no picture. A terminal or /dev/null behind standard input is the user's own
-        // doing.
+        // /dev/zero has no end, and a disk is not a picture. A user who connects standard input to a terminal or
+        // /dev/null does so on purpose.
         if (path != "-" && (S_ISBLK(status.st_mode) || S_ISCHR(status.st_mode)) && path != "/dev/stdin") {
             return Error{ErrorCode::io, path, "is a device, not a file"};
         }
-        // Files of /proc and /sys are regular and say that they have no bytes: only reading tells.
+        // Files of /proc and /sys are regular, but state a size of 0: their size is known only after reading.
         if (S_ISREG(status.st_mode) && status.st_size > 0) {
             const off_t at = lseek(file.fd_.get(), 0, SEEK_CUR);
             if (at >= 0) {
@@ -165,7 +165,7 @@ Result<std::vector<std::byte>> InputFile::read_rest(std::int64_t limit) {
         const Error too_large{ErrorCode::unsupported, path_,
                               "larger than " + std::to_string(limit) + " bytes, the most that is read"};
         if (size_ && *size_ > limit) return too_large;
-        // One byte more than the file has tells its end without growing.
+        // With room for one more byte, the end of the file is found without enlarging the buffer.
         std::vector<std::byte> bytes(size_ ? static_cast<std::size_t>(*size_) + 1 : std::size_t{1} << 16);
         std::size_t filled = 0;
         for (;;) {

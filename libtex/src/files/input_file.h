@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// input_file.h: files that are read.
+// input_file.h: files that libtex reads.
 //
-// Files are read, never mapped: a file that another process shortens meanwhile ends early, and does not end this
-// process.
+// Files are read, never mapped into memory. If another process shortens the file meanwhile, the file ends early, but
+// this process does not crash.
 
 #pragma once
 
@@ -18,7 +18,7 @@
 
 namespace tex {
 
-// Owns a file descriptor; -1 is none.
+// Owns a file descriptor; -1 means none.
 class Descriptor {
 public:
     Descriptor() = default;
@@ -40,34 +40,35 @@ private:
     int fd_ = -1;
 };
 
-// A file open for reading: a regular file, a FIFO, a socket, standard input ("-"), or bytes in memory. Bytes come in
-// order through read(); where size() is known, read_at() reads anywhere without moving that order.
+// A file open for reading: a regular file, a FIFO, a socket, standard input ("-"), or bytes in memory. read() returns
+// the bytes in order. If size() is known, read_at() reads from any offset without changing the position of read().
 class InputFile {
 public:
     // Errors: io (missing, no permission, a directory, a device), bad_data (empty), out_of_memory.
     static Result<InputFile> open(const std::string& path);
-    // Bytes that are in memory already; `name` stands in the messages. Errors: bad_data (empty), out_of_memory.
+    // Opens bytes that are already in memory; error messages call them `name`. Errors: bad_data (empty), out_of_memory.
     static Result<InputFile> from_memory(const std::string& name, std::vector<std::byte> bytes);
 
     [[nodiscard]] const std::string& path() const { return path_; }  // as the caller gave it
-    // Bytes of a regular file when it was opened; nullopt where only the end of the stream tells.
+    // The size in bytes of a regular file when it was opened; nullopt if only the end of the stream reveals the size.
     [[nodiscard]] std::optional<std::int64_t> size() const { return size_; }
-    // A descriptor of the whole file, for another process that opens or reads it from its beginning; nullopt for
+    // A descriptor of the whole file, for another process that opens it or reads it from its beginning; nullopt for
     // streams and bytes in memory.
     [[nodiscard]] std::optional<int> whole_file() const;
-    // Makes size() known: takes a stream into memory, to its end. Errors: as read_rest().
+    // Makes size() known: reads a stream to its end into memory. Errors: as read_rest().
     Result<void> settle(std::int64_t limit);
-    // The first bytes of the file, kHeadBytes or all there are; reading does not change them.
+    // The first bytes of the file, kHeadBytes or the whole file if it is shorter. They do not depend on how far read()
+    // has come.
     static constexpr std::size_t kHeadBytes = 64;
     [[nodiscard]] std::span<const std::byte> head() const { return head_; }
 
     // Reads the next `count` bytes; fewer only at the end of the file. Errors: io.
     Result<std::size_t> read(std::byte* data, std::size_t count);
-    // read() begins at the first byte again. Precondition: size() is known. Errors: io.
+    // Sets read() back to the first byte. Precondition: size() is known. Errors: io.
     Result<void> rewind();
     // Reads `count` bytes at `offset`; fewer only at the end of the file. Precondition: size() is known. Errors: io.
     Result<std::size_t> read_at(std::int64_t offset, std::byte* data, std::size_t count) const;
-    // Reads all that read() has not yet read. More than `limit` bytes are unsupported. Errors: io, unsupported,
+    // Reads all bytes that read() has not returned yet. Errors: io, unsupported (more than `limit` bytes),
     // out_of_memory.
     Result<std::vector<std::byte>> read_rest(std::int64_t limit);
 
@@ -77,17 +78,17 @@ private:
     std::string path_;
     Descriptor fd_;
     std::optional<std::int64_t> size_;
-    std::int64_t start_ = 0;  // the offset at which the file begins: standard input may be a file that was read in part
-    std::optional<std::vector<std::byte>> memory_;  // instead of fd_
+    std::int64_t start_ = 0;  // where the file begins: standard input may be a file that was partly read
+    std::optional<std::vector<std::byte>> memory_;  // replaces fd_
     std::vector<std::byte> head_;
-    std::size_t position_ = 0;  // in memory_ or head_, as far as read() has come
+    std::size_t position_ = 0;  // the position of read() in memory_ or head_
 };
 
-// The most bytes that a file of options.max_texels texels has: 16 bytes a texel, a mip chain's third on top, and a
-// header.
+// The largest size in bytes of a file with options.max_texels texels: 16 bytes a texel, one third more for a mip chain,
+// and a header.
 std::int64_t largest_file(const ReadOptions& options);
 
-// All bytes of a file or of standard input ("-"). Errors: those of InputFile::open() and
+// Reads all bytes of a file or of standard input ("-"). Errors: those of InputFile::open() and
 // read_rest(largest_file(options)).
 Result<std::vector<std::byte>> read_whole_file(const std::string& path, const ReadOptions& options = {});
 

@@ -12,11 +12,11 @@
 namespace tex {
 namespace {
 
-// A file of at most so many bytes is put together in memory and written at once: a call of the system for each of its
-// levels takes as long as they do.
+// A file of at most this size in bytes is assembled in memory and written at once: one system call for each level takes
+// as long as the level itself.
 constexpr std::size_t kWrittenAtOnce = std::size_t{1} << 18;
 
-// FIFOs and devices, whose bytes AtomicFile holds in memory anyway.
+// Whether `path` is a FIFO or a device, whose bytes AtomicFile holds in memory anyway.
 bool is_written_through(const std::string& path) {
     struct stat status {};
     return stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);

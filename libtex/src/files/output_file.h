@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// output_file.h: an output on its way: a large one grows in its file, a small one in memory.
+// output_file.h: an output that is being written: a large one in its file, a small one in memory.
 
 #pragma once
 
@@ -18,17 +18,17 @@
 
 namespace tex {
 
-// When the file is opened. Many that are written at once (a file for each level) are not to take many descriptors, and
-// FIFOs among them are to be opened one after the other, as their reader does.
+// When the file is opened. If many files are written at once (one for each level), they should not use many
+// descriptors, and FIFOs among them must be opened one after the other, in the order in which their reader opens them.
 enum class Opened { at_once, late };
 
 class OutputFile {
 public:
-    // `bytes` is about the size that the file will have. Errors: as AtomicFile::open(), here or from commit().
+    // `bytes` is the approximate size of the file. Errors: as AtomicFile::open(), here or from commit().
     static Result<std::unique_ptr<OutputFile>> open(const std::string& path, std::size_t bytes, Opened when,
                                                     const AtomicFileOptions& options);
 
-    // As AtomicFile.
+    // As in AtomicFile.
     Result<void> write_at(std::uint64_t offset, std::span<const std::byte> bytes);
     Result<void> commit();
 
@@ -38,8 +38,8 @@ private:
     const std::string path_;
     const AtomicFileOptions options_;
     std::optional<AtomicFile> file_;
-    bool holds_ = false;  // until commit()
-    std::mutex mutex_;    // of held_
+    bool holds_ = false;  // whether bytes are held in memory until commit()
+    std::mutex mutex_;    // guards held_
     std::vector<std::byte> held_;
 };
 

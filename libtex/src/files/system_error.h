@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// system_error.h: what the system said, as an Error.
+// system_error.h: errors of the system, as an Error.
 
 #pragma once
 
@@ -11,10 +11,10 @@
 
 namespace tex {
 
-// The message of errno value `number`, as a clause: "no such file or directory". Thread-safe, the same in every locale.
-// (Here, so that the commands have it too: libtex exports what its public headers declare.)
+// The message for errno value `number`, as a clause: "no such file or directory". Thread-safe, the same in every
+// locale. (Inline, so that the commands can use it too: libtex exports only what its public headers declare.)
 inline std::string system_reason(int number) {
-    switch (number) {  // where the system's own words puzzle
+    switch (number) {  // replaces messages of the system that are hard to understand
         case EISDIR: return "is a directory";
         case ENOSPC: return "no space left on the disk";
         case EROFS: return "the file system is read-only";
@@ -26,14 +26,14 @@ inline std::string system_reason(int number) {
     const char* text = strerrordesc_np(number);
     if (text == nullptr) return "system error " + std::to_string(number);
     std::string reason = text;
-    // "No such file" becomes "no such file", "RFS specific error" stays.
+    // "No such file" becomes "no such file", but "RFS specific error" does not change.
     const auto upper = [&](std::size_t k) { return k < reason.size() && reason[k] >= 'A' && reason[k] <= 'Z'; };
     if (upper(0) && !upper(1)) reason[0] = static_cast<char>(reason[0] - 'A' + 'a');
     return reason;
 }
 
-// An Error for `file`: out_of_memory where the system ran out of memory or descriptors (ENOMEM, EMFILE, ENFILE), else
-// io. `doing` comes first in the reason where it is not empty: "cannot be renamed: permission denied".
+// An Error for `file`: out_of_memory if the system ran out of memory or descriptors (ENOMEM, EMFILE, ENFILE), otherwise
+// io. If `doing` is not empty, the reason begins with it: "cannot be renamed: permission denied".
 Error system_error(const std::string& file, int number, const char* doing = "");
 
 }  // namespace tex

@@ -18,7 +18,7 @@
 namespace tex {
 namespace {
 
-// 0, or the errno of what failed.
+// Returns 0 or an errno.
 int write_fully(int fd, std::span<const std::byte> bytes) {
     constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;
     while (!bytes.empty()) {
@@ -30,7 +30,8 @@ int write_fully(int fd, std::span<const std::byte> bytes) {
     return 0;
 }
 
-// While it lives, a pipe without a reader is an error (EPIPE) for this thread, not a signal that ends the process.
+// While this object exists, a pipe without a reader causes an error (EPIPE) in this thread, not a signal that ends the
+// process.
 class NoPipeSignal {
 public:
     NoPipeSignal() {
@@ -66,7 +67,7 @@ Result<std::optional<ThroughFile>> ThroughFile::open(const std::string& path) {
     if (S_ISDIR(status.st_mode)) return system_error(path, EISDIR);
     if (S_ISREG(status.st_mode)) return std::optional<ThroughFile>();
     Descriptor device(::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY));
-    // A FIFO waits here for its reader: whoever sends a signal meanwhile wants the wait to end.
+    // For a FIFO, this call waits for a reader. A signal that arrives meanwhile is meant to end the wait.
     if (!device && errno == EINTR) return Error{ErrorCode::cancelled, path, "interrupted while waiting for a reader"};
     if (!device) return system_error(path, errno);
     const int fd = device.get();

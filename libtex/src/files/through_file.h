@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// through_file.h: standard output, FIFOs and devices, which are written through.
+// through_file.h: standard output, FIFOs and devices, which are written directly.
 
 #pragma once
 
@@ -23,8 +23,8 @@
 
 namespace tex {
 
-// The descriptor that "-", /dev/stdout, /dev/fd/N and /proc/self/fd/N stand for. They are written through even where a
-// file is behind them: the shell that opened it holds on to that file. (Here, so that the commands have it too.)
+// The descriptor that "-", /dev/stdout, /dev/fd/N or /proc/self/fd/N names. It is written directly even if it refers to
+// a regular file, because the shell that opened the file keeps it open. (Inline, so that the commands can use it too.)
 inline std::optional<int> named_descriptor(std::string_view path) {
     if (path == "-" || path == "/dev/stdout") return STDOUT_FILENO;
     for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
@@ -40,23 +40,23 @@ inline std::optional<int> named_descriptor(std::string_view path) {
 
 class ThroughFile {
 public:
-    // Nothing where `path` is, or will be, a regular file. Errors: io; cancelled, see write_file().
+    // nullopt if `path` is, or will be, a regular file. Errors: io; cancelled, see write_file().
     static Result<std::optional<ThroughFile>> open(const std::string& path);
 
-    // Writes bytes behind those that are written already. Errors: io.
+    // Appends bytes to those already written. Errors: io.
     Result<void> write(std::span<const std::byte> bytes);
 
-    // Keeps bytes in memory until write_held(), as nothing may go out that an error would make worthless. Any thread
-    // may call. Throws std::bad_alloc.
+    // Keeps bytes in memory until write_held(), because nothing may be written that a later error would make useless.
+    // Any thread may call this. Throws std::bad_alloc.
     void hold(std::uint64_t offset, std::span<const std::byte> bytes);
-    // Writes all that is held, in order, with zeros in between. Errors: io.
+    // Writes all bytes that are held, in order, with zeros in the gaps. Errors: io.
     Result<void> write_held();
 
 private:
     ThroughFile(std::string path, Descriptor owned, int fd);
 
     std::string path_;
-    Descriptor owned_;  // where fd_ is ours
+    Descriptor owned_;  // set if this object owns fd_
     int fd_;
     std::unique_ptr<std::mutex> mutex_;
     std::map<std::uint64_t, std::vector<std::byte>> held_;  // by offset

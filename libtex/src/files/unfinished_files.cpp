@@ -11,10 +11,11 @@
 
 namespace tex {
 
-// A list that only grows, to as many places as there were files at once: whoever walks through it needs no lock.
+// An element of a list that only grows, to the greatest number of files that existed at once. A thread that walks
+// through the list needs no lock.
 struct UnfinishedFile::Place {
     std::atomic<bool> taken{true};
-    std::atomic<bool> exists{false};  // the file; `folder` and `name` are set
+    std::atomic<bool> exists{false};  // whether the file exists; `folder` and `name` are then set
     int folder = -1;
     char name[NAME_MAX + 1] = {};
     Place* next = nullptr;
@@ -23,7 +24,7 @@ struct UnfinishedFile::Place {
 struct UnfinishedFiles {
     using Place = UnfinishedFile::Place;
 
-    // Sections under way, and whether no other may begin.
+    // The number of sections that are running, and a bit that forbids new ones.
     static constexpr unsigned kClosed = 1u << 31;
     static inline std::atomic<unsigned> sections{0};
     static inline std::atomic<Place*> first{nullptr};
@@ -51,7 +52,7 @@ void block_signals(sigset_t* before) {
     pthread_sigmask(SIG_BLOCK, &all, before);
 }
 
-// Until another thread ends the process.
+// Waits until another thread ends the process.
 [[noreturn]] void wait_for_the_end() {
     for (;;) pause();
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// conveyor.h: items that go through four stations, each beside the others.
+// conveyor.h: items that pass through four stations, which run in parallel.
 
 #pragma once
 
@@ -12,20 +12,20 @@
 
 namespace tex {
 
-// Takes items, one after the other until first() returns null, through
+// Passes items, one after the other until first() returns null, through
 //
 //     Item* first()          one at a time
 //     second(item)           several at once
 //     third(item)            one at a time, in the order of first()
 //     fourth(item)           several at once
 //
-// A thread that is free does what stands nearest to the beginning of this list, so that first(), where the work comes
-// in, never waits for a thread while another station has one. Where first() costs nothing (`first_waits`) it does what
-// stands nearest to the end: so most items stay with one thread, and in its processor's cache. At most `items` items
-// are on their way. No function may throw. Uses up to `threads` threads.
+// A free thread does the work that is nearest to the beginning of this list. So first(), where the work comes in, gets
+// a free thread before any other station. If first() costs nothing (`first_waits`), a free thread instead does the work
+// that is nearest to the end; most items then stay with one thread, and in its processor's cache. At most `items` items
+// are in the conveyor. No function may throw. Uses up to `threads` threads.
 //
-// Preconditions: items >= 1; 1 <= threads <= what tbb::global_control allows. With one thread everything runs in the
-// caller's.
+// Preconditions: items >= 1; 1 <= threads <= what tbb::global_control allows. With one thread, everything runs in the
+// caller's thread.
 template <class Item, class First, class Second, class Third, class Fourth>
 class Conveyor {
 public:
@@ -47,28 +47,28 @@ public:
     }
 
 private:
-    enum class At { nowhere, second, third, fourth, station };  // where an item waits, or that it is at a station
+    enum class At { nowhere, second, third, fourth, station };  // where an item waits; station: it is at a station
 
     struct Place {
         Item* item = nullptr;
         At at = At::nowhere;
     };
 
-    // Works until nothing is left, or waits where what is left depends on another thread.
+    // Works until nothing is left. Waits while the remaining work depends on another thread.
     void work() {
         std::unique_lock lock(mutex_);
         while (true) {
             if (step(lock)) {
                 changed_.notify_all();
             } else if (busy_ == 0) {
-                return;  // and so will the others find it
+                return;  // the other threads will find the same
             } else {
                 changed_.wait(lock);
             }
         }
     }
 
-    // Does one thing at one station, unlocked meanwhile. False where there is none to do.
+    // Does one piece of work at one station, without holding the lock. False if there is none to do.
     bool step(std::unique_lock<std::mutex>& lock) {
         if (first_waits_) return at_fourth(lock) || at_third(lock) || at_second(lock) || at_first(lock);
         return at_first(lock) || at_second(lock) || at_third(lock) || at_fourth(lock);
@@ -137,12 +137,12 @@ private:
     const Third& third_;
     const Fourth& fourth_;
 
-    std::mutex mutex_;  // of all below
+    std::mutex mutex_;  // guards all members below
     std::condition_variable changed_;
-    std::vector<Place> places_;  // item k is at k modulo their number
-    std::size_t begun_ = 0;      // items that came out of first()
-    std::size_t ordered_ = 0;    // items that went into third()
-    int busy_ = 0;               // threads at a station
+    std::vector<Place> places_;  // item k is at index k modulo the size
+    std::size_t begun_ = 0;      // items that first() has returned
+    std::size_t ordered_ = 0;    // items that have entered third()
+    int busy_ = 0;               // threads that are at a station
     bool first_busy_ = false;
     bool third_busy_ = false;
     bool ended_ = false;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// fork_join.h: a loop on TBB's threads, whose order the thread sanitizer understands.
+// fork_join.h: a loop on TBB's threads that the thread sanitizer understands.
 //
-// TBB's library is not compiled with the sanitizer, which so cannot see that a body begins after its loop does and ends
-// before it, and takes every use of what a body wrote for a race. Here it is told. (What TBB's headers and the lambda
-// below do among themselves is in tests/tsan.supp.)
+// TBB's library is not compiled with the sanitizer. The sanitizer therefore cannot see that the bodies of a loop begin
+// after the loop does and end before it, and reports every use of what a body wrote as a race. The annotations here
+// state that order. (tests/tsan.supp covers what TBB's headers and the lambda below do among themselves.)
 
 #pragma once
 
@@ -37,22 +37,23 @@ inline void happens_before(char) {}
 inline void happens_after(char) {}
 #endif
 
-// Where fork_join() throws std::runtime_error, which is TBB's: the threads that could start a moment ago cannot any
-// more.
+// The Error if fork_join() throws std::runtime_error, which comes from TBB: threads that could be started a moment ago
+// can no longer be started.
 inline Error no_threads_error() { return {ErrorCode::out_of_memory, {}, "the system refuses threads"}; }
 
-// Whether the system gives this process `count` threads more, all at once: TBB throws where it is refused one, and has
-// then lost count. Tries it, as often as `count` grows.
+// Whether the system lets this process start `count` more threads, all at once. If TBB is refused a thread, it throws,
+// and its count of threads is wrong from then on. So this function tries to start the threads first, each time that
+// `count` exceeds the greatest number that has succeeded.
 inline bool threads_can_start(int count) {
     static std::mutex mutex;
-    static int most = 0;  // that could
+    static int most = 0;  // the greatest number that has succeeded
     const std::lock_guard lock(mutex);
     if (count <= most) return true;
-    constexpr std::size_t kStack = std::size_t{4} << 20;  // TBB's
+    constexpr std::size_t kStack = std::size_t{4} << 20;  // the stack size that TBB uses
     pthread_attr_t attributes;
     pthread_attr_init(&attributes);
     pthread_attr_setstacksize(&attributes, kStack);
-    std::mutex together;  // held until all have started
+    std::mutex together;  // locked until all threads have started
     together.lock();
     const auto wait = [](void* held) -> void* {
         static_cast<std::mutex*>(held)->lock();
@@ -69,9 +70,9 @@ inline bool threads_can_start(int count) {
     return started == threads.size();
 }
 
-// Calls body(k) for every k in [0, count), on up to `threads` threads, begun about in order; returns when all of them
-// have returned. One after the other, on this thread, where the system refuses threads. Precondition: 2 <= threads <=
-// what tbb::global_control allows (TBB would warn on stderr).
+// Calls body(k) for every k in [0, count), on up to `threads` threads, started approximately in order, and returns when
+// all calls have returned. If the system refuses threads, the calls run one after the other on this thread.
+// Precondition: 2 <= threads <= what tbb::global_control allows (TBB would print a warning to stderr).
 template <class Body>
 void fork_join(int threads, int count, const Body& body) {
     const auto allowed =

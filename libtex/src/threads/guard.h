@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// guard.h: no exception leaves libtex. Every public function whose body may allocate runs it in here.
+// guard.h: keeps exceptions inside libtex. Every public function whose body may allocate memory runs it through
+// guarded().
 
 #pragma once
 
@@ -13,7 +14,7 @@ namespace tex {
 
 inline Error out_of_memory_error() { return {ErrorCode::out_of_memory, {}, "out of memory"}; }
 
-// Returns what `body` returns (a Result), or out_of_memory where the standard library could not allocate.
+// Returns what `body` returns (a Result), or out_of_memory if the standard library could not allocate.
 template <class Body>
 auto guarded(Body&& body) -> decltype(body()) {
     try {

@@ -17,7 +17,7 @@
 namespace tex {
 namespace {
 
-// Counts finished pieces and passes them on, one caller at a time; remembers that somebody asked to stop.
+// Counts finished pieces and reports progress, one thread at a time; remembers a request to stop.
 class Ticker {
 public:
     Ticker(const Execution& execution, int pieces, ProgressSpan span)
@@ -31,7 +31,7 @@ public:
     void tick() {
         const int done = done_.fetch_add(1, std::memory_order_relaxed) + 1;
         if (!execution_.progress) return;
-        // A thread that finds another one reporting does not wait: the next tick reports for both.
+        // If another thread is reporting, this one does not wait: the next tick reports the progress of both.
         const std::unique_lock lock(reporting_, std::try_to_lock);
         if (!lock.owns_lock() || done <= reported_) return;
         reported_ = done;
@@ -83,7 +83,7 @@ Result<void> parallel_for(const Execution& execution, int count, int grain,
         }
         ticker.tick();
     };
-    // TBB writes a warning to stderr where an arena wants more threads than are allowed (by default, one for each
+    // TBB prints a warning to stderr if an arena requests more threads than are allowed (by default, one for each
     // processor).
     const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
     const int threads = std::min({thread_count(execution), pieces, static_cast<int>(allowed)});

@@ -10,7 +10,7 @@
 
 namespace tex {
 
-// The part of a verb's progress that one loop covers: a verb that runs several loops gives each its share.
+// The part of a verb's progress that one loop covers. A verb that runs several loops gives each loop its share.
 struct ProgressSpan {
     double from = 0.0;
     double to = 1.0;
@@ -24,10 +24,11 @@ struct ProgressSpan {
 Result<void> parallel_for(const Execution& execution, int count, int grain,
                           const std::function<void(int begin, int end)>& body, ProgressSpan span = {});
 
-// The part of an execution from a fraction to another: what runs with it tells 0 to 1. `execution` must outlive it.
+// The part of an execution between two fractions of its progress. A verb that runs with it reports 0 to 1. `execution`
+// must outlive it.
 Execution part_of(const Execution& execution, double from, double to);
 
-// The number of threads that `execution` means: at least 1.
+// The number of threads that `execution` requests: at least 1.
 int thread_count(const Execution& execution);
 
 }  // namespace tex

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// pool.h: things that are needed again and again, and cost something to make.
+// pool.h: objects that are needed repeatedly and are expensive to make.
 
 #pragma once
 
@@ -10,12 +10,12 @@
 
 namespace tex {
 
-// Hands out things; one that nobody holds any more waits for the next taker, in the state in which it was left. Any
-// thread may take and let go. What was handed out may outlive the pool; copies of a pool share what waits in it.
+// Lends objects. An object that nobody holds any more waits for the next taker, in the state in which it was left. Any
+// thread may take and return objects. An object may outlive the pool. Copies of a pool share the waiting objects.
 template <class T>
 class Pool {
 public:
-    // Something that waits, or else what make() returns (a std::unique_ptr<T>).
+    // Returns a waiting object, or, if there is none, what make() returns (a std::unique_ptr<T>).
     template <class Make>
     std::shared_ptr<T> take(const Make& make) {
         std::unique_ptr<T> thing;
@@ -29,7 +29,7 @@ public:
         if (!thing) {
             thing = make();
             const std::lock_guard lock(shelf_->mutex);
-            shelf_->things.reserve(++shelf_->made);  // so that giving back needs no memory
+            shelf_->things.reserve(++shelf_->made);  // so that returning an object allocates no memory
         }
         T* raw = thing.release();
         return std::shared_ptr<T>(raw, [shelf = shelf_](T* back) {

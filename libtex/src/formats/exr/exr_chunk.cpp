@@ -66,8 +66,7 @@ Unzipper::Unzipper() : inflater_(libdeflate_alloc_decompressor(), libdeflate_fre
 }
 
 std::span<const std::byte> Unzipper::texels(std::span<const std::byte> chunk, std::size_t wanted, std::size_t most) {
-    if (chunk.size() >= wanted)
-        return chunk.first(wanted);  // stored uncompressed, because compression would not make it smaller
+    if (chunk.size() >= wanted) return chunk.first(wanted);  // stored uncompressed, if compression does not help
     inflated_.resize(most);
     std::size_t size = 0;
     const libdeflate_result result =

@@ -234,8 +234,7 @@ Result<Extent> check_header(const std::string& path, const Imf::Header& header, 
     const double decoded = static_cast<double>(extent->texels()) * static_cast<double>(texel_bytes);
     const Result<void> claim = check_claim(path, *extent, decoded, file_size, best_ratio(header.compression()));
     if (!claim) return claim.error();
-    if (const auto tiles =
-            tiles_of(header)) {  // OpenEXR allocates memory for a whole tile, even if the picture is small
+    if (const auto tiles = tiles_of(header)) {  // OpenEXR allocates whole tiles, even for small pictures
         const std::uint64_t tile = std::uint64_t{tiles->xSize} * tiles->ySize;
         constexpr std::int64_t kSmall = std::int64_t{1} << 20;
         if (tile > static_cast<std::uint64_t>(std::max(kSmall, 4 * extent->texels()))) {
