@@ -6,10 +6,10 @@
 // linked to a temporary name, then renamed. If there are no nameless files (some network and FUSE file systems), the
 // temporary file has its name from the beginning.
 //
-// Temporary names are .NAME.tex-tmp0, 1, 2 ... beside the target. As long as its writer lives, it holds a lock on the
-// file (flock). A process that finds a name taken and can get the lock knows that the writer was killed, and removes
-// the file. A crash therefore leaves at most one file behind, until the next write to the same target. A process that
-// ends by itself leaves none: see unfinished_files.h.
+// Temporary names are .NAME.tex-tmp0, 1, 2 ... beside the target. As long as a writer lives, it holds a lock on its
+// temporary file (flock). A process that finds a name taken and can get the lock knows that the writer was killed, and
+// removes the file. A crash therefore leaves at most one file behind, until the next write to the same target. A
+// process that ends by itself leaves none: see unfinished_files.h.
 
 #pragma once
 

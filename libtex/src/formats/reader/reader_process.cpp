@@ -110,8 +110,8 @@ int spawn(const std::string& program, std::vector<std::string> arguments, int re
 
 enum class News { strip, end, late };
 
-// The time is up. But the caller may have waited too late, after long work on the rows that were there. So an end that
-// came before now counts, but anything else that the process still sends does not prolong the wait.
+// The time is up. But the caller may have begun to wait too late, after long work on rows that had already arrived. If
+// the process has ended by now, that counts as its end. Anything else that it still sends does not prolong the wait.
 News last_news(int progress) {
     int there = 0;
     if (ioctl(progress, FIONREAD, &there) != 0) return News::late;
