@@ -30,17 +30,17 @@ int levels_of(Extent extent, Container container, const BakeFileOptions& options
     return holds_levels(container, options.level_names) ? levels_to_build(options.mip, extent) : 1;
 }
 
-// A picture, and what becomes of its rows before there are normals.
+// A picture, and what happens to its rows before they become normals.
 struct Heights {
     std::unique_ptr<RowSource> rows;
     HeightSource source;
     std::optional<LinearRows> linear;  // in another colour space
     HeightOptions options;
-    HeightCounts counts;        // met so far
+    HeightCounts counts;        // found so far
     std::optional<Image> last;  // the last rows, if they are needed first
 };
 
-// Errors: an option that does not fit the picture.
+// Errors: those of an option that does not fit the picture.
 Result<void> prepare(const BakeFileOptions& options, Heights& heights) {
     const RowSource& rows = *heights.rows;
     if (!options.color.space.empty()) {
@@ -56,7 +56,7 @@ Result<void> prepare(const BakeFileOptions& options, Heights& heights) {
     return {};
 }
 
-// The stage that reaches over all rows.
+// Fills invalid heights. This stage needs all rows at once.
 Result<void> fill(InputFile& file, const Execution& execution, Heights& heights) {
     Result<std::unique_ptr<RowSource>> filled =
         fill_heights(*heights.rows, file.path(), heights.source, heights.options,
@@ -70,7 +70,7 @@ Result<void> fill(InputFile& file, const Execution& execution, Heights& heights)
     return {};
 }
 
-// What is written from the top cannot wait for the last rows to come.
+// Output that is written from the top cannot wait until the last rows arrive.
 Result<void> find_last_rows(InputFile& file, const BakeFileOptions& options, const Gradient& gradient,
                             const Execution& execution, Heights& heights) {
     const int count = std::min(HeightStage::reach(heights.options, gradient), heights.rows->extent().height);
@@ -104,7 +104,7 @@ Result<Heights> open_heights(InputFile& file, Container container, const BakeFil
 Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, Container container,
                                    const BakeFileOptions& options, const Execution& execution,
                                    const StreamSizes& sizes) {
-    // Filling comes before the rest of the work.
+    // Progress: filling comes before the rest of the work.
     const double filled = options.heights.fill_invalid ? 0.5 : 0.0;
     const Gradient gradient = gradient_of(options.bake);
     Result<Heights> heights = open_heights(file, container, options, gradient, part_of(execution, 0.0, filled));

@@ -12,7 +12,7 @@
 
 namespace tex {
 
-// As bake_file(), of an open file. May throw std::bad_alloc.
+// Does what bake_file() does, for a file that is open already. May throw std::bad_alloc.
 Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, Container container,
                                    const BakeFileOptions& options, const Execution& execution,
                                    const StreamSizes& sizes = {});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// blend_stage.h: rows of several maps, in step, to rows of the blended map.
+// blend_stage.h: turns rows of several maps, which arrive in step, into rows of the blended map.
 
 #pragma once
 
@@ -14,19 +14,19 @@
 
 namespace tex {
 
-// Which rows of a map the rows of a result of the same extent need: row j those from j - behind to j + ahead, or one of
-// the first `head`.
+// The rows of a map that a result of the same extent needs: row j of the result needs rows j - behind to j + ahead of
+// the map, or some of its first `head` rows.
 struct RowsInStep {
     int behind = 0;
     int ahead = 0;
     int head = 0;
 };
 
-// Nothing if the map, of this extent, cannot come in step with the result: it has another extent, is turned, repeats,
-// is moved up or down, or shrinks.
+// Returns nothing if a map of this extent cannot keep in step with the result. That is the case if the map has another
+// extent, is rotated, repeats, is moved up or down, or shrinks.
 std::optional<RowsInStep> rows_in_step(Extent source, Extent result, const UvMap& map, Wrap wrap_x, Wrap wrap_y);
 
-// Rows of one map, unpacked, as long as the result needs them.
+// The unpacked rows of one map, kept as long as the result needs them.
 class ArrivingMap {
 public:
     ArrivingMap(const TextureRows& texture, Extent extent, const Sources& sources, const UnpackRule& rule,
@@ -36,10 +36,10 @@ public:
 
     void put(const Image& rows, int count) { unpack_.put(rows, count); }
 
-    // Whether all is there that row j of the result needs.
+    // Whether all rows have arrived that row j of the result needs.
     [[nodiscard]] bool is_ready(int j) const;
     [[nodiscard]] VectorRow row(int j) const;
-    // Rows up to j of the result have been made.
+    // To be called when rows up to j of the result have been made.
     void release(int j) { shelf_.release_before(j + 1 - step_.behind); }
 
 private:
@@ -49,14 +49,14 @@ private:
     const RowsInStep step_;
     RowShelf shelf_;
     RowMaker rows_;
-    std::shared_ptr<Plane<float>> row_;  // the one that is unpacked
+    std::shared_ptr<Plane<float>> row_;  // the row that is being unpacked
     UnpackStage unpack_;
 };
 
-// The same normals as blend().
+// Makes the same normals as blend().
 class BlendStage final : public NormalStage {
 public:
-    // `maps` take rows of those that arrive; all must outlive this.
+    // `maps` read the rows of the maps in `arriving`. All of them must outlive this object.
     BlendStage(const PlacedMaps& maps, std::vector<ArrivingMap*> arriving, NormalSink sink);
 
     void put(const Image& rows, int count) override;
@@ -66,7 +66,7 @@ private:
     const NormalSink sink_;
     BlendRows blend_;
     int arrived_ = 0;  // rows
-    int next_ = 0;     // the row that is made next
+    int next_ = 0;     // the next row to make
 };
 
 }  // namespace tex

@@ -20,8 +20,8 @@
 namespace tex {
 namespace {
 
-// One of the maps: its file, its place, and if its rows come in step with those of the result, which of them are
-// needed.
+// One of the maps: its file, its place, and the rows that are needed at a time if its rows keep in step with those of
+// the result.
 struct Input {
     Input(const std::string& path, const SourceOptions& options) : file(path, options) {}
 
@@ -29,7 +29,7 @@ struct Input {
     UvMap map;
     Wrap wrap_x = Wrap::repeat;
     Wrap wrap_y = Wrap::repeat;
-    std::optional<RowsInStep> step;  // none: it is held
+    std::optional<RowsInStep> step;  // empty: the whole map is held in memory
 };
 
 class Blending {
@@ -39,11 +39,11 @@ public:
         : output_(output), container_(container), options_(options), sizes_(sizes),
           base_(inputs_.emplace_back(input, options.source)) {}
 
-    // Opens all files, and reads those that are held.
+    // Opens all files and reads the maps that are held in memory.
     Result<void> open(const Execution& execution);
-    // One reading of the others. False if a layout was not what it seemed.
+    // Reads the other maps once. Returns false if the layout of one was not what it seemed.
     Result<bool> run(const Execution& execution);
-    // For another reading.
+    // Prepares for another reading.
     Result<void> open_again();
 
     [[nodiscard]] const BlendFileReport& report() const { return report_; }
@@ -59,19 +59,19 @@ private:
     const Container container_;
     const BlendFileOptions& options_;
     const StreamSizes& sizes_;
-    std::deque<Input> inputs_;  // the base, and the details
+    std::deque<Input> inputs_;  // the base, then the details
     Input& base_;
     std::vector<Layer> layers_;
     std::unique_ptr<StripWriter> writer_;
     BlendFileReport report_;
 };
 
-// Whether the rows of a detail can come in step, as far as that is known without its extent.
+// Whether the rows of a detail can keep in step, as far as that can be decided without its extent.
 bool lies_flat(const Layer& layer) {
     return layer.tiling_x == 1.0f && layer.tiling_y == 1.0f && layer.offset_y == 0.0f && layer.rotation == 0.0f;
 }
 
-// In step, or held.
+// Decides whether a map is read in step or held in memory.
 Result<void> Blending::settle(Input& input, const Execution& execution) {
     if (const RowSource* rows = input.file.rows()) {
         input.step = rows_in_step(rows->extent(), report_.extent, input.map, input.wrap_x, input.wrap_y);
@@ -121,7 +121,7 @@ Result<void> Blending::open_again() {
     return {};
 }
 
-// What is to be read, and written.
+// Finds out what to read and what to write.
 Result<void> Blending::prepare() {
     report_.details.clear();
     for (Input& input : inputs_) {
@@ -166,7 +166,7 @@ Result<void> Blending::stream(const Execution& execution) {
         in_step.push_back(&arriving.back());
         members.push_back({inputs_[k].file.rows(), &inputs_[k].file.path()});
     }
-    // Each map finds its planes behind those of the maps before it.
+    // The planes of each map follow those of the maps before it.
     std::size_t planes = 0;
     for (Input& input : inputs_) {
         if (!input.step) continue;
@@ -185,7 +185,8 @@ Result<bool> Blending::run(const Execution& execution) {
     if (const Result<void> ready = prepare(); !ready) return ready.error();
     Result<std::unique_ptr<StripWriter>> opened = open_writer();
     if (!opened) return opened.error();
-    // Not earlier: who reads from a FIFO takes its last writer's end for that of the file.
+    // The old writer is closed only now, after the new one is open: a reader of a FIFO takes the end of the last writer
+    // for the end of the file.
     writer_ = std::move(*opened);
     if (const Result<void> streamed = stream(execution); !streamed) return streamed.error();
     bool right = true;
@@ -201,7 +202,7 @@ Result<bool> Blending::run(const Execution& execution) {
 Result<BlendFileReport> blend_stream(const std::string& input, const std::string& output, Container container,
                                      const BlendFileOptions& options, const Execution& execution,
                                      const StreamSizes& sizes) {
-    double told = 0.0;  // no reading falls behind one before
+    double told = 0.0;  // a new reading does not move progress backwards
     Execution onward{execution.threads, {}};
     if (execution.progress) {
         onward.progress = [&](double fraction) { return execution.progress(told = std::max(told, fraction)); };

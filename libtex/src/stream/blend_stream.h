@@ -11,7 +11,7 @@
 
 namespace tex {
 
-// May throw std::bad_alloc.
+// Does what blend_file() does. May throw std::bad_alloc.
 Result<BlendFileReport> blend_stream(const std::string& input, const std::string& output, Container container,
                                      const BlendFileOptions& options, const Execution& execution,
                                      const StreamSizes& sizes = {});

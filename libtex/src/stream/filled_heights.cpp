@@ -38,7 +38,7 @@ private:
 Result<std::unique_ptr<RowSource>> fill_heights(RowSource& rows, const std::string& input, const HeightSource& source,
                                                 const HeightOptions& options, const LinearRows* linear,
                                                 const Execution& execution, HeightCounts& counts) {
-    constexpr double kRead = 0.6;  // of the progress
+    constexpr double kRead = 0.6;  // the part of the progress that reading takes
     const Extent extent = rows.extent();
     Plane<float> heights(extent);
     const auto take = [&](Image& image, int first, int count) -> Result<void> {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// filled_heights.h: heights whose invalid texels take the value of the nearest valid one, which may be anywhere: this
-// stage reaches over all rows, so it reads the picture to its end and is a source of its own.
+// filled_heights.h: heights whose invalid texels take the value of the nearest valid one, which may be anywhere. This
+// stage needs all rows, so it reads the picture to its end and is itself a source of rows.
 
 #pragma once
 
@@ -16,9 +16,9 @@
 
 namespace tex {
 
-// The heights of the picture `rows`, one channel, taken as `source` and `options` say and filled. `linear` may be null;
-// `input` stands in messages; what was met is added to `counts`. No row has been decoded yet. Errors: those of reading
-// and of LinearRows; bad_data (no texel is valid); cancelled. May throw std::bad_alloc.
+// Reads the one-channel heights of the picture `rows` as `source` and `options` say, and fills them. `linear` may be
+// null; messages name the picture `input`. Adds what it finds to `counts`. Precondition: no row has been decoded yet.
+// Errors: those of reading and of LinearRows; bad_data (no texel is valid); cancelled. May throw std::bad_alloc.
 Result<std::unique_ptr<RowSource>> fill_heights(RowSource& rows, const std::string& input, const HeightSource& source,
                                                 const HeightOptions& options, const LinearRows* linear,
                                                 const Execution& execution, HeightCounts& counts);

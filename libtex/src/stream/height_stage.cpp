@@ -22,7 +22,8 @@ Keep rows_to_keep(int height, int start, int radius, Wrap wrap) {
     return keep;
 }
 
-// Where the first rows wait for the last ones. (Where all rows are kept, each waits for those that it needs.)
+// The first row to make, if the first rows wait for the last ones. (If all rows are kept, each row waits for the rows
+// that it needs.)
 int first_row(int height, int start, int radius, Wrap wrap) {
     return wrap != Wrap::repeat || rows_to_keep(height, start, radius, wrap).all ? 0 : start + radius;
 }
@@ -42,7 +43,7 @@ bool HeightWindow::has(int first, int end) const {
     return true;
 }
 
-// Blurs along a row as soon as it is there, and down the columns when the window is complete.
+// Blurs along each row as it arrives, and down the columns when the window is complete.
 struct HeightStage::Blur {
     Blur(Extent its_extent, const HeightOptions& options, std::optional<int> first)
         : extent(its_extent), wrap_y(options.wrap_y),
@@ -53,7 +54,7 @@ struct HeightStage::Blur {
           beyond(Extent{extent.width, wrap_y == Wrap::clamp ? 2 * radius + 1 : 1}),
           beyond_from(window.start() - radius), pointers(static_cast<std::size_t>(2 * radius + 1)) {}
 
-    // The row j, which may lie beyond the border.
+    // Row j, which may lie beyond the border.
     const float* row_at(int j) {
         float* out = beyond.row(wrap_around(j, beyond.extent().height));
         const bool plain = height_index(wrap_y, j, extent.height).plain();
@@ -68,9 +69,9 @@ struct HeightStage::Blur {
     const int radius;
     HeightWindow window;
     RowMaker across;
-    const float* row = nullptr;  // the one that is blurred
-    HeightRows extended;         // the same, with what lies beyond its ends
-    Plane<float> beyond;         // rows beyond the border, those below beyond_from
+    const float* row = nullptr;  // the row that is being blurred
+    HeightRows extended;         // the same row, extended beyond its ends
+    Plane<float> beyond;         // the rows beyond the border, at indices below beyond_from
     int beyond_from;
     std::vector<const float*> pointers;
 };
@@ -87,7 +88,7 @@ HeightStage::HeightStage(Extent extent, const HeightSource& source, const Height
     : extent_(extent), source_(source), options_(options), gradient_(gradient), sink_(std::move(sink)),
       last_(std::move(last)), known_(last_ ? std::min(reach(options, gradient), extent.height) : 0),
       heights_(extent.width, 1) {
-    // The gradient wants its last rows first as well: so that many are blurred before row 0.
+    // The gradient needs its last rows first as well, so as many rows are blurred before row 0.
     const std::optional<int> before =
         known_ > 0 ? std::optional(-std::min(gradient.radius, extent.height)) : std::nullopt;
     const std::optional<int> top = known_ > 0 ? std::optional(0) : std::nullopt;
@@ -107,7 +108,7 @@ void HeightStage::put(const Image& rows, int count) {
     for (int k = 0; k < count; ++k) put_row(rows, k);
 }
 
-// They are counted when they come again.
+// These rows are counted later, when they arrive in their turn.
 void HeightStage::begin_with(const Image& last) {
     std::vector<std::shared_ptr<Plane<float>>> rows;
     for (int k = 0; k < known_ && !only_counts_; ++k) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// height_stage.h: rows of a picture to rows of normals: heights, blurred heights, normals.
+// height_stage.h: turns rows of a picture into rows of normals: heights, blurred heights, normals.
 
 #pragma once
 
@@ -17,20 +17,20 @@
 
 namespace tex {
 
-// Rows through a filter that is 2 radius + 1 rows high. They come in the order of row_shelf.h; where they repeat,
-// results come in that order too, from a later start. But where the last rows come first, so that nothing has to wait,
-// results may begin at `first`, 0 or a row before it.
+// Passes rows through a filter that is 2 radius + 1 rows high. Rows arrive in the order that row_shelf.h describes. If
+// they repeat, results come in that order too, but start at a later row. If the last rows come first, nothing has to
+// wait: results may then begin at `first`, which is 0 or a row before it.
 class HeightWindow {
 public:
     HeightWindow(Extent extent, int start, int radius, Wrap wrap, std::optional<int> first = {});
 
-    [[nodiscard]] int start() const { return start_; }  // the first row that is made
-    // The row that is made next, beyond the last one or before the first one where they repeat.
+    [[nodiscard]] int start() const { return start_; }  // the first row to make
+    // The next row to make. If rows repeat, it may lie past the last row or before the first one.
     [[nodiscard]] int next() const { return next_; }
     [[nodiscard]] bool done() const { return next_ == start_ + extent_.height; }
     void advance() { ++next_; }
 
-    // Whether rows [first, end) are there, with all that rows beyond the border are made of.
+    // Whether rows [first, end) have arrived, with all rows from which those beyond the border are made.
     [[nodiscard]] bool has(int first, int end) const;
 
     RowShelf shelf;
@@ -42,22 +42,22 @@ private:
     int next_;
 };
 
-// The same bytes as height_field() without fill_invalid, and bake().
+// Makes the same bytes as height_field() without fill_invalid, followed by bake().
 class HeightStage final : public NormalStage {
 public:
-    // How many rows above and below its own a normal depends on.
+    // The number of rows above and below its own row on which a normal depends.
     static int reach(const HeightOptions& options, const Gradient& gradient);
 
-    // `last` are the last rows of a picture that repeats, reach() of them or all that there are: normals then come from
-    // the top.
+    // `last` holds the last rows of a picture that repeats: reach() rows, or all rows of a smaller picture. With it,
+    // normals are made from the top.
     HeightStage(Extent extent, const HeightSource& source, const HeightOptions& options, const Gradient& gradient,
                 const HeightFieldHead& head, NormalSink sink, std::optional<Image> last = {});
     ~HeightStage() override;
 
-    // The row at which normals begin (see row_shelf.h).
+    // The row at which the normals begin (see row_shelf.h).
     [[nodiscard]] int start() const;
 
-    // Once a height was invalid, the others are only counted.
+    // From the first invalid height on, heights are only counted.
     void put(const Image& rows, int count) override;
 
     [[nodiscard]] const HeightCounts& counts() const { return counts_; }
@@ -80,10 +80,10 @@ private:
     const NormalSink sink_;
     HeightCounts counts_;
     int first_invalid_[2] = {};  // column, row
-    int row_ = 0;                // of the picture, the next one
+    int row_ = 0;                // the next row of the picture
     std::optional<Image> last_;  // until the first row comes
-    int known_;                  // how many rows these were
-    bool only_counts_ = false;   // a height was invalid
+    int known_;                  // the number of rows in last_ that are used
+    bool only_counts_ = false;   // a height was invalid, so no more normals are made
     RowMaker heights_;
     std::unique_ptr<Blur> blur_;
     std::unique_ptr<HeightWindow> window_;  // of the gradient

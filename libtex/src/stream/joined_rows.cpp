@@ -12,7 +12,7 @@
 namespace tex {
 namespace {
 
-// Bytes of `count` rows and of those that a decoder may write beside them.
+// The bytes of `count` rows and of the extra rows that a decoder may write with them.
 std::size_t room(const RowSource& rows, int count) {
     return rows.row_bytes() * static_cast<std::size_t>(whole_blocks(count));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// joined_rows.h: several pictures of one extent that are read in step, as one picture with the planes of all.
+// joined_rows.h: several pictures of one extent, read in step as one picture that has the planes of all of them.
 
 #pragma once
 
@@ -14,10 +14,10 @@ class JoinedRows final : public RowSource {
 public:
     struct Member {
         RowSource* rows;
-        const std::string* path;  // stands in messages
+        const std::string* path;  // for messages
     };
 
-    // All members have this extent and must outlive this. Without members there are rows without planes.
+    // All members have this extent and must outlive this object. Without members, the rows have no planes.
     JoinedRows(Extent extent, std::vector<Member> members);
 
     [[nodiscard]] int rows_together() const override { return together_; }

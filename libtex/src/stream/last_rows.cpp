@@ -13,7 +13,7 @@
 namespace tex {
 namespace {
 
-// Opens the picture once more. Errors: those of opening; io where it is another one by now.
+// Opens the picture again. Errors: those of opening; io if the picture has changed.
 Result<void> reopen(InputFile& file, std::unique_ptr<RowSource>& rows, const ReadOptions& options) {
     const Extent extent = rows->extent();
     const std::vector<std::string> names = rows->names();

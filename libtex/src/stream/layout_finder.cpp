@@ -24,7 +24,7 @@ LayoutFinder::LayoutFinder(const TextureRows& texture, const SourceOptions& opti
 void LayoutFinder::add_row(const float* const (&channels)[4]) {
     if (evidence_) evidence_->add_row(row_, channels);
     ++row_;
-    if (!weighs_ || range_.negative) return;  // a negative value settles it
+    if (!weighs_ || range_.negative) return;  // one negative value decides
     const float* const z = sources_.z < 0 ? nullptr : channels[sources_.z];
     range_.add(weigh_row(channels[sources_.x], channels[sources_.y], z, width_));
 }

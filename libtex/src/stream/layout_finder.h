@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// layout_finder.h: how the rows of a texture are to be read, where its texels decide that: assumed first, judged when
-// all of them have been seen.
+// layout_finder.h: decides how to read the rows of a texture if that depends on its texels. A layout is assumed first,
+// and judged when all texels have been seen.
 
 #pragma once
 
@@ -19,7 +19,7 @@ struct Layout {
     bool is_unsigned = true;  // values are (n + 1) / 2
 };
 
-// What is known of a layout.
+// What is known about a layout.
 struct KnownLayout {
     std::optional<Swizzle> swizzle;
     std::optional<bool> is_unsigned;
@@ -27,18 +27,18 @@ struct KnownLayout {
 
 class LayoutFinder {
 public:
-    // `known` was learnt from the texels before.
+    // `known` is what earlier texels have shown.
     LayoutFinder(const TextureRows& texture, const SourceOptions& options, const KnownLayout& known);
 
-    // That which is assumed.
+    // The assumed layout.
     [[nodiscard]] const Layout& layout() const { return layout_; }
     [[nodiscard]] bool depends_on_texels() const { return evidence_ || weighs_; }
 
-    // The next row of the base level: the values of the channels of the format, null behind the last one.
+    // Adds the next row of the base level: the values of each channel of the format, then null.
     void add_row(const float* const (&channels)[4]);
 
-    // After the last row: what the texels say, where it is not what was assumed. Of two wrong assumptions the swizzle's
-    // is told first, as the other one rests on it.
+    // To be called after the last row. Returns what the texels say, if that differs from what was assumed. If both
+    // assumptions are wrong, it returns the swizzle first, because the other assumption depends on it.
     [[nodiscard]] std::optional<KnownLayout> correction() const;
 
 private:

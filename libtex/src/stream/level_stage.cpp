@@ -23,7 +23,7 @@ void LevelStage::put(int j, const NormalRow& row, std::shared_ptr<const void> ow
     steps_.put(j, {{slopes->row(0), slopes->row(1), nullptr}, slopes});
 }
 
-// The averages stay until the next level has been made of them; what is stored is a finished copy.
+// Keeps the averages until the next level has been made from them, and stores a finished copy.
 ShelfRow LevelStage::make_row(LevelStep& step, bool last) {
     const int j = step.row();
     const int width = step.to.width;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// level_stage.h: rows of the base level to rows of all mip levels, each of which keeps only the rows that its filter
-// needs.
+// level_stage.h: turns rows of the base level into rows of all mip levels. Each level keeps only the rows that its
+// filter needs.
 
 #pragma once
 
@@ -14,18 +14,18 @@
 
 namespace tex {
 
-// The same texels as build_mip_chain().
+// Makes the same texels as build_mip_chain().
 class LevelStage {
 public:
-    // Rows of the base level will come in the order that row_shelf.h describes. `levels` is at least 1 and at most
+    // Rows of the base level arrive in the order that row_shelf.h describes. `levels` is at least 1 and at most
     // level_count(base).
     LevelStage(Extent base, int levels, int start, const MipOptions& options, Strips& strips);
 
     LevelStage(const LevelStage&) = delete;
     LevelStage& operator=(const LevelStage&) = delete;
 
-    // Row j of the base level is finished; it stays as it is while `owner` lives. Makes all rows of other levels that
-    // can be made with it.
+    // Adds row j of the base level, which is finished and does not change while `owner` lives. Makes every row of the
+    // other levels that this row completes.
     void put(int j, const NormalRow& row, std::shared_ptr<const void> owner);
 
 private:

@@ -15,14 +15,14 @@ bool needs_rows_beyond_the_end(const AxisFilter& y, int from) {
     return 2 * (std::max(1, from / 2) - 1) + y.first + y.taps > from;
 }
 
-// The first row of the smaller level that needs no row before position `start` of the larger one, whose rows come from
-// there on.
+// The first row of the smaller level that needs no row before position `start` of the larger one. The rows of the
+// larger level begin there.
 int first_row(const AxisFilter& y, Wrap wrap, int from, int start) {
     if (wrap != Wrap::repeat && start == 0) return 0;
     return std::min(std::max(1, from / 2), (std::max(0, start - y.first) + 1) / 2);
 }
 
-// What the rows at the end, and those that were put off, need.
+// What must be kept for the rows at the end and for the rows that were postponed.
 Keep rows_to_keep(const AxisFilter& y, int from, int start, int first) {
     Keep keep;
     const int beyond =

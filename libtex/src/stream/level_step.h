@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// level_step.h: one level and the next: which rows of the larger one are needed, and for how long.
+// level_step.h: the step from one level to the next: which rows of the larger level are needed, and for how long.
 
 #pragma once
 
@@ -16,51 +16,52 @@
 
 namespace tex {
 
-// Rows of the larger level go to the shelf, in the order that row_shelf.h describes; while is_ready(), row() of the
-// smaller one can be made of window(), and advance() follows.
+// Put rows of the larger level on the shelf in the order that row_shelf.h describes. While is_ready(), make row() of
+// the smaller level from window(), then call advance().
 struct LevelStep {
-    // From level `level`, whose first row to come is `start`. Rows have up to `planes` planes.
+    // The step down from level `level`, whose rows begin with row `start`. Rows have up to `planes` planes.
     LevelStep(Extent from, int level, int planes, int start, const MipOptions& options);
 
     [[nodiscard]] bool is_ready() const;
     [[nodiscard]] int row() const { return next % to.height; }
-    // The y.taps rows, of one plane, that it is made of. They stand until the next call.
+    // The y.taps rows of one plane from which row() is made. They stay valid until the next call.
     const float* const* window(int plane);
     void advance();
 
-    // The first row of the smaller level that is made.
+    // The first row of the smaller level to make.
     [[nodiscard]] int start() const { return first % to.height; }
 
     const LevelFilter filter;
     const Extent to;
     const int to_level;
     MipRows maker;
-    const int first;  // the position of the first row that is made
-    int next;         // of the next one
+    const int first;  // the position of the first row to make
+    int next;         // the position of the next row to make
     RowShelf shelf;   // rows of `from`
     RowMaker rows;    // for rows of `to`
 
 private:
-    // Where the window of the next row begins, as a position in the larger level.
+    // The position in the larger level at which the window of the next row begins.
     [[nodiscard]] int begin() const;
-    // The row of the larger level that is the k-th in the window of the next row.
+    // The row of the larger level that is k-th in the window of the next row.
     [[nodiscard]] int source(int k) const { return filter.source(row(), k); }
 
     std::vector<const float*> window_;
 };
 
-// All steps down from a base level.
+// All steps from a base level to the smaller levels.
 class LevelSteps {
 public:
-    // Makes row step.row() of the smaller level. Returns its averages, for the next step, unless `step` is the last.
+    // Makes row step.row() of the smaller level. Returns its averages, which the next step needs, unless this step is
+    // the last.
     using MakeRow = std::function<ShelfRow(LevelStep& step, bool last)>;
 
-    // To `levels` levels, the base level included. Otherwise as LevelStep.
+    // Makes `levels` levels, including the base level. The other parameters are those of LevelStep.
     LevelSteps(Extent base, int levels, int planes, int start, const MipOptions& options, MakeRow make);
 
     [[nodiscard]] bool empty() const { return steps_.empty(); }
 
-    // Row j of the base level. Makes all rows of other levels that can be made with it.
+    // Adds row j of the base level. Makes every row of the other levels that this row completes.
     void put(int j, ShelfRow row) {
         if (!empty()) put(0, j, std::move(row));
     }
@@ -68,7 +69,7 @@ public:
 private:
     void put(std::size_t step, int j, ShelfRow row);
 
-    std::vector<std::unique_ptr<LevelStep>> steps_;  // [k] makes level k + 1 of level k
+    std::vector<std::unique_ptr<LevelStep>> steps_;  // steps_[k] makes level k + 1 from level k
     const MakeRow make_;
 };
 

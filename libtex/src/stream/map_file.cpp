@@ -18,7 +18,7 @@ Result<void> MapFile::open_texture() {
     return {};
 }
 
-// A stream is taken into memory: the map may turn out to be read as a whole, or twice.
+// A stream is read into memory, because the map may have to be read as a whole, or twice.
 Result<void> MapFile::open() {
     Result<InputFile> file = InputFile::open(path_);
     if (!file) return file.error();

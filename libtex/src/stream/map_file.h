@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// map_file.h: a file of normals that comes row by row or is held as a whole map.
+// map_file.h: a file of normals that is read row by row or held in memory as a whole map.
 
 #pragma once
 
@@ -17,20 +17,20 @@ namespace tex {
 
 class MapFile {
 public:
-    // Both must outlive this.
+    // Both must outlive this object.
     MapFile(const std::string& path, const SourceOptions& options) : path_(path), options_(options) {}
     MapFile(const MapFile&) = delete;
     MapFile& operator=(const MapFile&) = delete;
 
-    // Opens the file, after which rows() is there. Errors: those of read_normals() that a header tells.
+    // Opens the file, so that rows() can be read. Errors: those of read_normals() that the header shows.
     Result<void> open();
-    // Reads all of the map into chain(), instead of rows. Errors: as read_normals().
+    // Reads the whole map into chain() instead of row by row. Errors: as read_normals().
     Result<void> hold(bool base_only, const Execution& execution);
 
-    // Before each reading of the rows: how they are to be unpacked, from what is known of the layout. Errors: as
-    // read_normals().
+    // Call this before each reading of the rows: it decides how to unpack them from what is known about the layout.
+    // Errors: as read_normals().
     Result<void> prepare();
-    // After it: false if the layout was another one, which is known now.
+    // Call this after each reading: returns false if the layout was a different one, which is now known.
     bool was_right();
     // Opens the file again, for another reading. Errors: io, and those of open().
     Result<void> open_again();
@@ -42,7 +42,7 @@ public:
     [[nodiscard]] const SourceInfo& info() const { return info_; }  // after hold() or prepare()
     [[nodiscard]] const Sources& sources() const { return sources_; }
     [[nodiscard]] const UnpackRule& rule() const { return rule_; }
-    // Null if the texels have no say in the layout.
+    // Null if the layout does not depend on the texels.
     [[nodiscard]] LayoutFinder* finder() { return finder_ && finder_->depends_on_texels() ? &*finder_ : nullptr; }
 
 private:

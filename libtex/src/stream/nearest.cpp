@@ -15,18 +15,19 @@ namespace {
 
 constexpr std::int32_t kNone = -1;
 
-// The distance of texels i and k on an axis of n texels.
+// The distance between texels i and k on an axis of n texels.
 int axis_distance(int i, int k, int n, bool repeats) {
     const int straight = std::abs(i - k);
     return repeats ? std::min(straight, n - straight) : straight;
 }
 
-// First pass: the row of the nearest valid texel in the same column, for columns [begin, end); the upper
-// one of two.
+// First pass: for columns [begin, end), finds the row of the nearest valid texel in the same column; the upper one if
+// two are equally near.
 void find_in_columns(PlaneView<const float> heights, bool repeats, int begin, int end, Plane<std::int32_t>& nearest) {
     const int rows = heights.extent.height;
     std::vector<std::int32_t> last(static_cast<std::size_t>(end - begin));
-    // Downwards: the valid texel above. A second round lets those at the bottom count for the top.
+    // Downwards: the valid texel above. On an axis that repeats, a second round lets texels at the bottom count for the
+    // top.
     std::fill(last.begin(), last.end(), kNone);
     for (int j = repeats ? -rows : 0; j < rows; ++j) {
         const int row = wrap_around(j, rows);
@@ -36,7 +37,7 @@ void find_in_columns(PlaneView<const float> heights, bool repeats, int begin, in
             nearest.at(i, row) = seen;
         }
     }
-    // Upwards: the valid texel below, if it is nearer, or as near and of a smaller row.
+    // Upwards: the valid texel below, if it is nearer, or equally near and in a smaller row.
     std::fill(last.begin(), last.end(), kNone);
     for (int j = repeats ? 2 * rows - 1 : rows - 1; j >= 0; --j) {
         const int row = wrap_around(j, rows);
@@ -54,7 +55,7 @@ void find_in_columns(PlaneView<const float> heights, bool repeats, int begin, in
 
 // A valid texel as seen from one row.
 struct Site {
-    std::int64_t position;  // column; of its repetitions column + k * columns
+    std::int64_t position;  // the column; column + k * columns for its repetitions
     std::int64_t square;    // of the distance from the row, in texels^2
     std::int32_t row;
     std::int32_t column;
@@ -64,9 +65,8 @@ struct Site {
     }
 };
 
-// The first position from which on `right` is nearer than `left`, right.position > left.position: the
-// difference of their squared distances falls steadily. Where both are as near, the smaller row, then
-// column wins.
+// The first position from which `right` is nearer than `left`; right.position > left.position. The difference of their
+// squared distances falls steadily. If both are equally near, the smaller row wins, then the smaller column.
 std::int64_t takes_over(const Site& left, const Site& right) {
     const std::int64_t slope = 2 * (right.position - left.position);
     const std::int64_t rise =
@@ -76,8 +76,8 @@ std::int64_t takes_over(const Site& left, const Site& right) {
     return tie && right.before(left) ? quotient : quotient + 1;
 }
 
-// Second pass: the sites that are the nearest somewhere in a row, from left to right, each with the
-// position where it begins to be.
+// Second pass: the sites that are the nearest ones somewhere in a row, from left to right, each with the position at
+// which it becomes the nearest.
 class RowOfSites {
 public:
     void clear() {
@@ -119,7 +119,7 @@ void fill_row(PlaneView<float> heights, const Plane<std::int32_t>& nearest, int 
               RowOfSites& sites) {
     const auto [columns, rows] = heights.extent;
     sites.clear();
-    // On an axis that repeats, half a turn to each side is as far as the nearest can be.
+    // On an axis that repeats, the nearest texel is at most half the axis away on either side.
     const int margin = repeats_x ? columns / 2 + 1 : 0;
     for (int position = -margin; position < columns + margin; ++position) {
         const int column = wrap_around(position, columns);
@@ -150,7 +150,7 @@ Result<void> fill_from_nearest(PlaneView<float> heights, Wrap wrap_x, Wrap wrap_
     const auto columns = [&](int begin, int end) { find_in_columns(heights, repeats_y, begin, end, nearest); };
     if (auto done = parallel_for(execution, extent.width, kColumns, columns, {span.from, half}); !done) return done;
 
-    // A hole is written by the thread that has its row, and read by none: sites are valid texels.
+    // A hole is written by the thread that processes its row. No thread reads holes, because sites are valid texels.
     const auto rows = [&](int begin, int end) {
         RowOfSites sites;
         for (int j = begin; j < end; ++j) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// nearest.h: holes in a height field take the value of the nearest texel that has one.
+// nearest.h: gives each hole in a height field the value of the nearest texel that has one.
 
 #pragma once
 
@@ -11,11 +11,12 @@
 
 namespace tex {
 
-// Replaces every NaN of `heights` by the value of the nearest other texel: Euclidean distance, around the
-// border where an axis repeats; of equally near ones that of the smallest row, then column. Exact, in time
-// proportional to the texels however large the holes are: Meijster, Roerdink, Hesselink, A General
-// Algorithm for Computing Distance Transforms in Linear Time, 2000 (see also Felzenszwalb, Huttenlocher,
-// 2012). A mirror image is never nearer than its texel, so that mirror and clamp need no care.
+// Replaces every NaN in `heights` by the value of the nearest other texel. The distance is Euclidean, and goes around
+// the border on an axis that repeats. If several texels are equally near, the one with the smallest row wins, then the
+// one with the smallest column. The result is exact, and the time is proportional to the number of texels, however
+// large the holes are: Meijster, Roerdink, Hesselink, A General Algorithm for Computing Distance Transforms in Linear
+// Time, 2000 (see also Felzenszwalb, Huttenlocher, 2012). A mirror image is never nearer than its texel, so mirror and
+// clamp need no special treatment.
 //
 // Precondition: at least one texel is not NaN. Errors: out_of_memory, cancelled.
 Result<void> fill_from_nearest(PlaneView<float> heights, Wrap wrap_x, Wrap wrap_y, const Execution& execution,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// normal_source.h: the normals in an open file.
+// normal_source.h: reads the normals of an open file.
 
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace tex {
 
-// As read_normals(path). May throw std::bad_alloc.
+// Does what read_normals(path) does. May throw std::bad_alloc.
 Result<Source> read_normals(InputFile& file, const SourceOptions& options, bool base_only, const Execution& execution);
 
 }  // namespace tex

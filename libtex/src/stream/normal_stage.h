@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// normal_stage.h: what makes rows of normals of the rows of a picture: of heights (height_stage.h), or of stored
+// normal_stage.h: makes rows of normals from the rows of a picture, which are heights (height_stage.h) or stored
 // normals (unpack_stage.h).
 
 #pragma once
@@ -13,7 +13,7 @@
 
 namespace tex {
 
-// Where the normals of row j go, and what happens when they are there. Rows come in the order that row_shelf.h
+// Where to write the normals of row j, and what to call when they are written. Rows come in the order that row_shelf.h
 // describes.
 struct NormalSink {
     std::function<NormalRow(int j)> place;
@@ -27,10 +27,10 @@ public:
     NormalStage& operator=(const NormalStage&) = delete;
     virtual ~NormalStage() = default;
 
-    // The next `count` rows of the picture, which are rows 0 to count - 1 of `rows`. May throw std::bad_alloc.
+    // Takes the next `count` rows of the picture, which are rows 0 to count - 1 of `rows`. May throw std::bad_alloc.
     virtual void put(const Image& rows, int count) = 0;
 
-    // After the last row. Errors: bad_data.
+    // To be called after the last row. Errors: bad_data.
     [[nodiscard]] virtual Result<void> check() const { return {}; }
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// own_roughness.h: the roughness of the material itself, at each row of a base level.
+// own_roughness.h: the roughness of the material itself, for each row of a base level.
 
 #pragma once
 
@@ -14,24 +14,24 @@ namespace tex {
 
 class OwnRoughness {
 public:
-    // The same roughness everywhere.
+    // Uses the same roughness everywhere.
     explicit OwnRoughness(float value, int width);
 
-    // A map of roughness, which must outlive this. If its extent is another than that of the base level, its alpha^2 is
-    // halved while it is twice as large, then sampled. Errors: out_of_memory, cancelled.
+    // Uses a roughness map, which must outlive this object. If its extent differs from that of the base level, its
+    // alpha^2 is halved in extent while it is twice as large, then sampled. Errors: out_of_memory, cancelled.
     static Result<OwnRoughness> of(const Plane<float>& map, Extent base, const MipOptions& options,
                                    const Execution& execution, ProgressSpan span = {});
 
-    // Row j: the roughness, and alpha^2. Both rows have room for whole vectors.
+    // Row j: the roughness and alpha^2. Both rows have room for whole vectors.
     void row(int j, float* roughness, float* alpha2) const;
 
 private:
     OwnRoughness() = default;
 
     int width_ = 0;
-    Plane<float> everywhere_;            // one row of it,
+    Plane<float> everywhere_;            // one row of a constant roughness,
     const Plane<float>* map_ = nullptr;  // or a map of the right extent,
-    Plane<float> alpha2_;                // or what became of another one
+    Plane<float> alpha2_;                // or the resampled alpha^2 of another map
 };
 
 }  // namespace tex

@@ -22,7 +22,7 @@
 namespace tex {
 namespace {
 
-// How pack_file() packs what `source` says.
+// The options with which pack_file() packs a map that `source` describes.
 PackOptions pack_options(const PackFileOptions& options, Container container, const SourceInfo& source) {
     if (options.pack) return options.pack(source);
     PackOptions pack;
@@ -31,13 +31,13 @@ PackOptions pack_options(const PackFileOptions& options, Container container, co
     return pack;
 }
 
-// What one attempt leaves to the next.
+// What one attempt leaves for the next.
 struct Kept {
-    std::unique_ptr<StripWriter> writer;  // until that one has its own
-    std::optional<Plane<float>> own;      // RoughnessFile::map, which is read once
+    std::unique_ptr<StripWriter> writer;  // until the next attempt has opened its own
+    std::optional<Plane<float>> own;      // RoughnessFile::map, which is read only once
 };
 
-// One reading of the file, under an assumption about its layout.
+// One reading of the file, with an assumption about its layout.
 class Attempt {
 public:
     Attempt(TextureRows& texture, const std::string& input, const std::string& output, Container container,
@@ -46,7 +46,7 @@ public:
         : texture_(texture), input_(input), output_(output), container_(container), options_(options),
           execution_(execution), sizes_(sizes), kept_(kept), finder_(texture, options.source, known) {}
 
-    // Nothing in the result, but correction(), where the texels say that the assumption was wrong.
+    // Returns an empty optional, and sets correction(), if the texels show that the assumption was wrong.
     Result<std::optional<PackFileReport>> run();
     [[nodiscard]] const KnownLayout& correction() const { return *correction_; }
 
@@ -75,11 +75,11 @@ private:
     UnpackRule rule_;
     std::optional<OwnRoughness> own_;
     std::size_t first_ = 0;  // the level that becomes the base level
-    std::size_t end_ = 1;    // of the levels that are read
+    std::size_t end_ = 1;    // the end of the levels that are read
     PackFileReport report_;
 };
 
-// What is to be read, and written. Errors are those of options that do not fit the file.
+// Finds out what to read and what to write. Errors: those of options that do not fit the file.
 Result<void> Attempt::prepare() {
     const Texture& head = texture_.head;
     if (Result<void> fit = check_channels(head); !fit) return fit;
@@ -107,7 +107,7 @@ Result<void> Attempt::prepare() {
     return {};
 }
 
-// Where the base level decides how another one is to be read.
+// To be called if the base level decides how another level is read.
 Result<void> Attempt::look_at_base_level() {
     const Result<void> seen = rows(0).visit(input_, [this](const Image& image, int, int count) {
         for (int k = 0; k < count; ++k) {
@@ -123,7 +123,7 @@ Result<void> Attempt::look_at_base_level() {
     return {};
 }
 
-// Of the base level, if a map of roughness is written.
+// The roughness at the base level, if a roughness map is written.
 Result<std::optional<OwnRoughness>> Attempt::own_roughness() const {
     if (!options_.roughness) return std::optional<OwnRoughness>();
     const RoughnessFile& file = *options_.roughness;
@@ -152,7 +152,7 @@ Result<std::unique_ptr<StripWriter>> Attempt::open_writer() const {
     return StripWriter::pair(std::move(*normals), std::move(*roughness));
 }
 
-// Level k, and what is built of it.
+// Packs level k and the levels that are built from it.
 Result<void> Attempt::stream_level(std::size_t k, StripWriter& writer, const Execution& execution) {
     const Extent extent = rows(k).extent();
     const int levels = options_.mip ? report_.levels : 1;
@@ -190,7 +190,8 @@ Result<std::optional<PackFileReport>> Attempt::run() {
     own_ = std::move(*own);
     Result<std::unique_ptr<StripWriter>> opened = open_writer();
     if (!opened) return opened.error();
-    // Not earlier: who reads from a FIFO takes its last writer's end for that of the file.
+    // The old writer is closed only now, after the new one is open: a reader of a FIFO takes the end of the last writer
+    // for the end of the file.
     kept_.writer = std::move(*opened);
     StripWriter& writer = *kept_.writer;
     double texels = 0.0;
@@ -214,7 +215,7 @@ Result<std::optional<PackFileReport>> Attempt::run() {
 Result<PackFileReport> pack_stream(InputFile& file, const std::string& output, Container container,
                                    const PackFileOptions& options, const Execution& execution,
                                    const StreamSizes& sizes) {
-    double told = 0.0;  // no attempt falls behind one before
+    double told = 0.0;  // a new attempt does not move progress backwards
     Execution onward{execution.threads, {}};
     if (execution.progress) {
         onward.progress = [&](double fraction) { return execution.progress(told = std::max(told, fraction)); };

@@ -12,7 +12,8 @@
 
 namespace tex {
 
-// As pack_file(), of an open file, which is opened once more if the first attempt fails. May throw std::bad_alloc.
+// Does what pack_file() does, for a file that is open already. The file is opened again if the first attempt fails. May
+// throw std::bad_alloc.
 Result<PackFileReport> pack_stream(InputFile& file, const std::string& output, Container container,
                                    const PackFileOptions& options, const Execution& execution,
                                    const StreamSizes& sizes = {});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// placed_map.h: a whole map, with the levels that its place on a result needs.
+// placed_map.h: a whole map, with the levels that its place on a result requires.
 
 #pragma once
 
@@ -10,8 +10,8 @@
 
 namespace tex {
 
-// Makes the levels that are needed if the chain, which must outlive the result, has none but its base level. May throw
-// std::bad_alloc. Errors: out_of_memory.
+// Makes the levels that are needed if the chain has only its base level. The chain must outlive the returned map. May
+// throw std::bad_alloc. Errors: out_of_memory.
 Result<PlacedMap> place_chain(MipChain& chain, const UvMap& map, Wrap wrap_x, Wrap wrap_y, const Execution& execution);
 
 }  // namespace tex

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// roughness_stage.h: rows of the base level's normals to rows of roughness of all levels.
+// roughness_stage.h: turns rows of the base level's normals into rows of roughness of all levels.
 
 #pragma once
 
@@ -15,11 +15,11 @@
 
 namespace tex {
 
-// The same values as build_roughness_chain().
+// Makes the same values as build_roughness_chain().
 class RoughnessStage {
 public:
-    // `own` is the material's roughness at the base level, which must outlive this. Otherwise as LevelStage, from the
-    // top.
+    // `own` is the material's roughness at the base level; it must outlive this object. Rows come from the top. The
+    // other parameters are those of LevelStage.
     RoughnessStage(Extent base, int levels, const MipOptions& options, RoughnessModel model, const OwnRoughness& own,
                    Strips& strips);
     RoughnessStage(const RoughnessStage&) = delete;

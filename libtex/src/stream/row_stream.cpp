@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Four stations: rows are read; they become floats; these become normals and mip levels; strips of these are packed and
-// written. The first and the third work on one batch of rows at a time, in order, as each row builds on those before;
-// the others on several. What can be decoded in any order is decoded by the second.
+// A pipeline of four stages: rows are read; they become floats; the floats become normals and mip levels; strips of
+// these are packed and written. The first and the third stage work on one batch of rows at a time, in order, because
+// each row depends on the rows before it. The others work on several batches at once. If rows can be decoded in any
+// order, the second stage decodes them.
 
 #include "stream/row_stream.h"
 
@@ -26,18 +27,18 @@
 namespace tex {
 namespace {
 
-// Some rows on their way: as they were decoded, then the strips that they finished.
+// A batch of rows on its way: first the decoded rows, then the strips that they complete.
 struct Batch {
     int first = 0;
     int count = 0;
     std::vector<std::byte> rows;
-    Image image;                 // the same as floats
-    std::optional<Error> error;  // they could not be decoded
+    Image image;                 // the same rows as floats
+    std::optional<Error> error;  // set if the rows could not be decoded
     std::vector<std::shared_ptr<Strip>> strips;
-    std::shared_ptr<Batch> self;  // while it is on its way
+    std::shared_ptr<Batch> self;  // set while the batch is on its way
 };
 
-// The first error, whoever meets it.
+// Keeps the first error of any thread.
 class Failure {
 public:
     [[nodiscard]] bool happened() const { return happened_.load(std::memory_order_relaxed); }
@@ -46,14 +47,14 @@ public:
         if (!error_) error_ = error;
         happened_ = true;
     }
-    // Runs body(), a Result<void>; nothing once something has failed.
+    // Runs body(), which returns a Result<void>, unless something has failed before.
     template <class Body>
     void watch(const Body& body) {
         if (happened()) return;
         const Result<void> done = guarded(body);
         if (!done) set(done.error());
     }
-    [[nodiscard]] const std::optional<Error>& error() const { return error_; }  // after all threads have ended
+    [[nodiscard]] const std::optional<Error>& error() const { return error_; }  // once all threads have ended
 
 private:
     std::atomic<bool> happened_{false};
@@ -71,7 +72,7 @@ struct RowStream::Work {
           strip_texels(alone ? std::min(sizes.strip_texels, sizes.strip_texels_alone) : sizes.strip_texels),
           strips(rows.extent(), level_total, strip_texels, first), batch_rows(rows_of_batch(rows, strips)) {}
 
-    // Those of a strip, and whole groups of what the file holds together.
+    // The rows of one strip, rounded up to whole groups of rows that the file stores together.
     static int rows_of_batch(const RowSource& rows, const Strips& strips) {
         const int together = rows.rows_together();
         return std::min(rows.extent().height, (strips.strip_rows(0) + together - 1) / together * together);
@@ -91,10 +92,10 @@ struct RowStream::Work {
     const bool alone;  // one thread is enough
     const int strip_texels;
     Strips strips;
-    std::optional<Strips> beside;  // of roughness
+    std::optional<Strips> beside;  // strips of roughness
     LevelStage* levels = nullptr;
     RoughnessStage* roughness = nullptr;
-    Strips::Place place;  // of the row that the stage makes
+    Strips::Place place;  // the place of the row that the stage is making
     std::function<Result<void>(Image&, int)> change;
     std::function<void(const Strip&)> seen;
     Pool<Batch> batches;
@@ -103,14 +104,14 @@ struct RowStream::Work {
     Failure failure;
 };
 
-// The next rows; null after the last ones, or where something failed.
+// Returns the next rows, or null after the last ones or after a failure.
 Batch* RowStream::Work::read() {
     const int height = rows.extent().height;
     Batch* batch = nullptr;
     failure.watch([&]() -> Result<void> {
         if (next == height) return {};
         std::shared_ptr<Batch> taken = batches.take([this] {
-            const int held = whole_blocks(batch_rows);  // decoders of blocks write all of their rows
+            const int held = whole_blocks(batch_rows);  // block decoders write all rows of a block
             auto made = std::make_unique<Batch>();
             made->image = make_image({rows.extent().width, held}, rows.names());
             made->rows.resize(rows.row_bytes() * static_cast<std::size_t>(held));
@@ -150,7 +151,7 @@ void RowStream::Work::store(Batch& batch) {
 
 void RowStream::Work::make(Batch& batch, NormalStage& stage) {
     failure.watch([&]() -> Result<void> {
-        if (batch.error) return *batch.error;  // the first of them, whatever the threads do
+        if (batch.error) return *batch.error;  // batches come in order, so this is the first error
         stage.put(batch.image, batch.count);
         batch.strips = strips.take_whole();
         if (beside) {
@@ -165,7 +166,7 @@ void RowStream::Work::make(Batch& batch, NormalStage& stage) {
     });
 }
 
-// Those that are to come in order, or the others.
+// Writes the strips that must come in order, or the other ones.
 void RowStream::Work::write_strips(Batch& batch, bool in_order) {
     for (std::shared_ptr<Strip>& strip : batch.strips) {
         if (!strip || writer.is_in_order(*strip) != in_order) continue;
@@ -231,7 +232,7 @@ Result<void> RowStream::run(NormalStage& stage, LevelStage& levels, RoughnessSta
     }
     if (work.failure.error()) return *work.failure.error();
     if (Result<void> sound = stage.check(); !sound) return sound;
-    // Better no file than one with holes.
+    // Rather fail than write a file with holes.
     if (work.strips.missing_rows() != 0 || (work.beside && work.beside->missing_rows() != 0))
         return Error{ErrorCode::unsupported, work.input, "rows are missing: this is a bug"};
     return {};

@@ -10,7 +10,7 @@ void SlopeCollector::add(const NormalMap& map, int begin, int end) {
     SlopeBounds bounds = kNone;
     for (int j = begin; j < end; ++j)
         widen_slope_bounds(map.x.row(j), map.y.row(j), map.z.row(j), map.extent().width, bounds);
-    // Least and greatest do not depend on the order of the threads.
+    // The least and the greatest values do not depend on the order of the threads.
     const std::lock_guard lock(mutex_);
     all_ = {std::min(all_.min_x, bounds.min_x), std::max(all_.max_x, bounds.max_x), std::min(all_.min_y, bounds.min_y),
             std::max(all_.max_y, bounds.max_y)};

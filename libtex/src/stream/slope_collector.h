@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// slope_collector.h: the least and the greatest slopes of rows of normals, which come in any order, from any thread.
+// slope_collector.h: finds the least and the greatest slopes of rows of normals, which may come in any order and from
+// any thread.
 
 #pragma once
 
@@ -14,10 +15,10 @@ namespace tex {
 
 class SlopeCollector {
 public:
-    // Rows [begin, end) of `map`.
+    // Adds rows [begin, end) of `map`.
     void add(const NormalMap& map, int begin, int end);
 
-    // After all rows; zeros if there was none.
+    // To be called after all rows. Returns zeros if there was no row.
     [[nodiscard]] SlopeRange range() const;
 
 private:

@@ -20,10 +20,10 @@
 namespace tex {
 namespace {
 
-// Every level has its place from the start: DDS, KTX2.
+// Writes containers in which the place of every level is known from the start: DDS, KTX2.
 class TextureWriter final : public StripWriter {
 public:
-    // `first` is the level that the file begins with.
+    // `first` is the level with which the file begins.
     TextureWriter(std::unique_ptr<OutputFile> file, FileLayout layout, StripPacking packing, int first)
         : file_(std::move(file)), layout_(std::move(layout)), packing_(std::move(packing)), first_(first) {}
 
@@ -56,13 +56,13 @@ Result<void> TextureWriter::write(Strip& strip) {
                              target);
             stored = {target, stored_size};
         }
-        // Strips begin with whole rows of blocks.
+        // Each strip begins at the first row of a row of blocks.
         const std::size_t before = stored_level_bytes(format, {extent.width, strip.first}, layout_.rearrange);
         return file_->write_at(layout_.levels[static_cast<std::size_t>(strip.level - first_)].offset + before, stored);
     });
 }
 
-// Pictures, whose rows are compressed one after the other. Strips that come before their turn wait, packed.
+// Writes pictures, whose rows are compressed one after the other. Strips that come too early are packed and wait.
 class PictureWriter final : public StripWriter {
 public:
     PictureWriter(std::string path, std::unique_ptr<OutputFile> file, StripPacking packing, int first)
@@ -89,8 +89,8 @@ private:
         std::vector<std::byte> bytes;
     };
     struct Level {
-        int next = 0;                   // the row that comes next
-        std::map<int, Packed> waiting;  // by their first rows
+        int next = 0;                   // the row that must come next
+        std::map<int, Packed> waiting;  // keyed by first row
     };
     Result<void> put(int level, const std::byte* rows, int count) {
         levels_[level].next += count;
@@ -103,7 +103,7 @@ private:
     const StripPacking packing_;
     std::size_t size_ = 0;
     std::unique_ptr<RowTarget> target_;  // writes into the file
-    const int first_;                    // the level that the file begins with
+    const int first_;                    // the level with which the file begins
     std::map<int, Level> levels_;
 };
 
@@ -131,7 +131,7 @@ Result<void> PictureWriter::commit() {
     return ended ? file_->commit() : Result<void>(ended.error().of(path_));
 }
 
-// Pictures that the reader process encodes, as a whole.
+// Writes pictures that the reader process encodes as a whole.
 class EncodedWriter final : public StripWriter {
 public:
     EncodedWriter(std::string path, std::unique_ptr<OutputFile> file, StripPacking packing, ReaderPicture picture)
@@ -163,7 +163,7 @@ private:
     std::size_t size_ = 0;
 };
 
-// A file for each level.
+// Writes each level into its own file.
 class LevelWriter final : public StripWriter {
 public:
     explicit LevelWriter(std::vector<std::unique_ptr<StripWriter>> levels) : levels_(std::move(levels)) {}
@@ -172,7 +172,8 @@ public:
         return levels_[static_cast<std::size_t>(strip.level)]->is_in_order(strip);
     }
     Result<void> write(Strip& strip) override { return levels_[static_cast<std::size_t>(strip.level)]->write(strip); }
-    // One after the other, each closed before the next: those after one that fails do not appear.
+    // Commits the files one after the other and closes each before the next. If one fails, the files after it do not
+    // appear.
     Result<void> commit() override {
         for (std::unique_ptr<StripWriter>& level : levels_) {
             if (Result<void> done = level->commit(); !done) return done;
@@ -188,7 +189,7 @@ private:
     std::size_t bytes_ = 0;
 };
 
-// Normals, and roughness beside them.
+// Writes normals, and roughness into a second file.
 class PairWriter final : public StripWriter {
 public:
     PairWriter(std::unique_ptr<StripWriter> normals, std::unique_ptr<StripWriter> roughness)
@@ -217,7 +218,7 @@ private:
 
 using Opening = Result<std::unique_ptr<StripWriter>>;
 
-// One file, whose base level is level `first` of all.
+// Opens one file, whose base level is level `first` of all levels.
 Opening open_file(const std::string& path, Container container, const StripPacking& packing, int first, Opened when,
                   const WriteOptions& options) {
     const TextureHead& head = packing.head;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// strip_writer.h: strips of normals to their places in a file.
+// strip_writer.h: writes strips of normals to their places in a file.
 
 #pragma once
 
@@ -18,13 +18,13 @@
 
 namespace tex {
 
-// Where levels go: all into `output`, or where there is of_level, each into a file of its own.
+// Where levels go: all into `output`, or each into its own file if of_level is set.
 struct OutputNames {
     const std::string& output;
     const LevelNames& of_level;
 };
 
-// How strips become texels.
+// How strips are packed into texels.
 struct StripPacking {
     TextureHead head;
     std::function<void(const Strip& strip, std::byte* out)> pack;
@@ -39,24 +39,26 @@ public:
     StripWriter& operator=(const StripWriter&) = delete;
     virtual ~StripWriter() = default;
 
-    // Opens the output and writes what stands before the texels. Errors: io, out_of_memory;
-    // unsupported (the container cannot hold the encoding, or so many levels).
+    // Opens the output and writes what comes before the texels. Errors: io, out_of_memory; unsupported (the container
+    // cannot hold the encoding, or this number of levels).
     static Result<std::unique_ptr<StripWriter>> open(const OutputNames& names, Container container,
                                                      StripPacking packing, const WriteOptions& options,
                                                      Opened when = Opened::at_once);
 
-    // Gives strips to one or the other, by their content; files of roughness appear after those of normals.
+    // Passes strips to one of two writers, depending on their content. Files of roughness appear after those of
+    // normals.
     static std::unique_ptr<StripWriter> pair(std::unique_ptr<StripWriter> normals,
                                              std::unique_ptr<StripWriter> roughness);
 
-    // Strips of its kind and level are to come one at a time, best from the top; else in any order, from several
-    // threads at once.
+    // If true, strips with this content and level must come one at a time, preferably from the top. If false, they may
+    // come in any order, from several threads at once.
     [[nodiscard]] virtual bool is_in_order(const Strip& strip) const = 0;
 
-    // Packs a whole strip and puts it into its place. Errors: io, out_of_memory.
+    // Packs a whole strip and writes it to its place. Errors: io, out_of_memory.
     virtual Result<void> write(Strip& strip) = 0;
 
-    // After the last strip: the file appears, or one after the other. Errors: io, out_of_memory.
+    // To be called after the last strip. The file appears, or the files appear one after the other. Errors: io,
+    // out_of_memory.
     virtual Result<void> commit() = 0;
 
     [[nodiscard]] virtual std::size_t file_bytes() const = 0;
@@ -66,7 +68,7 @@ public:
 // Whether strips may be written in any order: DDS, KTX2.
 [[nodiscard]] bool takes_any_order(Container container);
 
-// Whether all levels are written, or the base level alone.
+// Whether all levels are written, rather than the base level alone.
 [[nodiscard]] bool holds_levels(Container container, const LevelNames& names);
 
 }  // namespace tex

@@ -16,7 +16,7 @@ Strips::Strips(Extent base, int levels, int strip_texels, int first, Content con
         Level& level = levels_[static_cast<std::size_t>(k)];
         level.extent = level_extent(base, k);
         missing_ += level.extent.height;
-        // As many rows as there are while one strip of the base level is made, but no fewer than a row of blocks has.
+        // The number of rows that are made during one strip of the base level, but at least one row of blocks.
         level.rows = std::max(kBlockEdge, ((strip_texels / base.width) >> k) / kBlockEdge * kBlockEdge);
     }
 }

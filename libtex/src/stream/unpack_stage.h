@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// unpack_stage.h: rows of stored values to rows of normals.
+// unpack_stage.h: turns rows of stored values into rows of normals.
 
 #pragma once
 
@@ -15,10 +15,10 @@
 
 namespace tex {
 
-// The same normals as unpack() of one level, and scale().
+// Makes the same normals as unpack() of one level, followed by scale().
 class UnpackStage final : public NormalStage {
 public:
-    // `finder` is shown the rows, where it is not null. Precondition: the rule and sources are those of its layout.
+    // Shows the rows to `finder`, unless it is null. Precondition: the rule and the sources are those of its layout.
     UnpackStage(const TextureRows& texture, Extent extent, const Sources& sources, const UnpackRule& rule,
                 const std::optional<Scaling>& scale, LayoutFinder* finder, NormalSink sink);
 
@@ -35,7 +35,7 @@ private:
     LayoutFinder* const finder_;
     const NormalSink sink_;
     Plane<float> rounded_;  // the channels of a row
-    int row_ = 0;           // the next one
+    int row_ = 0;           // the next row
 };
 
 }  // namespace tex
