@@ -16,8 +16,8 @@
 namespace tex {
 namespace {
 
-// Rows in a strip: enough texels to be worth a thread's while, and several times the rows that strips
-// compute twice.
+// The number of rows in a strip: enough texels to be worth a thread, and several times the number of rows that
+// neighbouring strips both compute.
 int strip_rows(int width, int overlap) {
     constexpr int kTexels = 1 << 17;
     return std::max({1, kTexels / width, 4 * overlap});

@@ -29,11 +29,11 @@ namespace {
 constexpr int kLeastSide = 32;  // texels, for statistics
 constexpr double kLeastCorrelation = 0.2;
 constexpr double kLeastConfidence = 0.99;
-constexpr double kLeastUsable = 0.5;  // of the texels hold a normal
+constexpr double kLeastUsable = 0.5;  // the share of texels that must hold a normal
 
 Error bad_option(std::string reason) { return {ErrorCode::bad_option, {}, std::move(reason)}; }
 
-// A whole number from 1 to kMaxExtent that is all of `text`.
+// Parses `text`, which must be a whole number from 1 to kMaxExtent and nothing else.
 std::optional<int> parse_count(std::string_view text) {
     int value = 0;
     const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -82,7 +82,7 @@ bool same_everywhere(const TexelCounts& counts, int channels) {
     return true;
 }
 
-// Floats are read as unpack() reads them.
+// Floats are read in the same way as by unpack().
 bool is_signed(const Texture& texture, const Image& image, const Swizzle& swizzle) {
     if (const std::optional<bool> known = is_unsigned(image.sample, range_of(texture.normal_encoding, {})))
         return !*known;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Row by row; rows/color.cpp converts.
+// Works row by row; rows/color.cpp converts.
 
 #include <tex/color.h>
 

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kRowsPerPiece = 16;
 
-// Sums of so many texels side by side do not wait for each other; the order is the same on every processor.
+// This many sums run side by side, so that they do not wait for each other. The order is the same on every processor.
 constexpr int kLanes = 8;
 
 struct RowSum {
@@ -66,18 +66,18 @@ void for_each_bits(const Plane<float>& values, const Body& body) {
     }
 }
 
-// The bin in which rank `rank` lies, and the rank within it.
+// Finds the bin that contains rank `rank`, and reduces `rank` to the rank within that bin.
 std::uint32_t find_bin(const std::vector<std::int64_t>& bins, std::int64_t& rank) {
     std::uint32_t bin = 0;
     while (rank > bins[bin]) rank -= bins[bin++];
     return bin;
 }
 
-// The values of 1-based ranks, exact and without sorting. The bits of floats that are not negative are in the order of
-// their values: a histogram of the upper halves finds each rank's bin, histograms of the lower halves in those bins
-// find the value.
+// Finds the values of 1-based ranks, exactly and without sorting. The bits of non-negative floats have the same order
+// as their values. A histogram of the upper halves of the bits finds the bin of each rank; histograms of the lower
+// halves in those bins find the value.
 Ranked values_at(const Plane<float>& values, Ranks ranks) {
-    // Two tables in turn: neighbours often fall into one bin, and each would wait for the last.
+    // Two tables are used in turn: neighbours often fall into one bin, and each increment would wait for the last one.
     std::vector<std::int64_t> upper(std::size_t{1} << 15), other(upper.size());
     for_each_bits(values, [&](std::uint32_t bits, int i) { ++(i % 2 == 0 ? upper : other)[bits >> 16]; });
     for (std::size_t k = 0; k < upper.size(); ++k) upper[k] += other[k];

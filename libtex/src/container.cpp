@@ -15,7 +15,7 @@
 namespace tex {
 namespace {
 
-// The letters behind the last dot of the path's last part, in lower case; without one the text is empty.
+// The letters after the last dot of the last part of the path, in lower case; empty if there is no dot.
 std::string extension_of(std::string_view path) {
     const std::size_t slash = path.rfind('/');
     const std::string_view file = slash == std::string_view::npos ? path : path.substr(slash + 1);
@@ -28,7 +28,7 @@ std::string extension_of(std::string_view path) {
     return extension;
 }
 
-// Whether `list`, ".tif, .tiff", has the extension "tiff".
+// Whether `list`, for example ".tif, .tiff", contains `extension`, for example "tiff".
 bool lists(std::string_view list, const std::string& extension) {
     const std::size_t at = list.find("." + extension);
     if (extension.empty() || at == std::string_view::npos) return false;

@@ -17,7 +17,7 @@ namespace {
 constexpr int kRowsPerPiece = 16;
 static_assert(kHeatMapLegendRows == render::kLegendRows);
 
-// A picture's codes as planes, from row `top` on.
+// Copies the codes of a picture to planes, from row `top` on.
 void copy(const Level& picture, Image& image, int top) {
     const std::byte* code = picture.bytes.data();
     for (int j = 0; j < picture.extent.height; ++j) {

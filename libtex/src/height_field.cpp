@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The order of the steps; rows/height_source.cpp says which plane is the height, kernels/height_field.cpp computes.
+// Puts the steps in order; rows/height_source.cpp chooses the plane with the heights, kernels/height_field.cpp
+// computes.
 
 #include <tex/height_field.h>
 
@@ -20,10 +21,10 @@
 namespace tex {
 namespace {
 
-// Rows of an extent that are worth a thread's while.
+// The number of rows of an extent that are worth a thread.
 int strip_rows(Extent extent) { return std::max(1, (1 << 16) / extent.width); }
 
-// The first texel that is NaN. Precondition: there is one.
+// Finds the first texel that is NaN. Precondition: there is one.
 std::pair<int, int> first_invalid(const Plane<float>& heights) {
     for (int j = 0;; ++j) {
         const float* row = heights.row(j);
@@ -33,7 +34,7 @@ std::pair<int, int> first_invalid(const Plane<float>& heights) {
     }
 }
 
-// Flat texels stay flat under the greatest strength; infinity times their difference, 0, would be NaN.
+// Flat texels stay flat even under the greatest strength: infinity times their difference, 0, would be NaN.
 float finite(double strength) {
     constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
     return static_cast<float>(std::clamp(strength, -kMost, kMost));
@@ -80,7 +81,7 @@ Result<HeightField> height_field(const Image& image, const HeightOptions& option
         if (!source) return source.error();
         const Extent extent = image.extent();
         HeightField field{Plane<float>(extent), 1.0f, 1.0f, options.wrap_x, options.wrap_y};
-        // Progress: what comes first is quick beside filling and blurring.
+        // Progress: the steps before are fast compared with filling and blurring.
         const double taken = options.fill_invalid || options.blur_sigma > 0.0f ? 0.2 : 1.0;
         const double filled = options.blur_sigma > 0.0f ? 0.5 : 1.0;
 

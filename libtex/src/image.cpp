@@ -16,9 +16,9 @@
 
 namespace tex {
 
-// Not aligned_alloc(): where aligned blocks come and go, the heap of glibc before 2.38 grows without end (its bug
-// 14581). The address of the block that the rows lie in is stored before them. The address sanitizer watches the end of
-// the rows, so its blocks end there.
+// Not aligned_alloc(): if aligned blocks are allocated and freed often, the heap of glibc before 2.38 grows without end
+// (its bug 14581). The address of the block that contains the rows is stored before them. The address sanitizer watches
+// the end of the rows, so its blocks end there.
 void* allocate_rows(std::size_t bytes) {
 #ifdef TEX_ADDRESS_SANITIZER
     void* const block = std::aligned_alloc(kRowAlignment, bytes + kRowAlignment);

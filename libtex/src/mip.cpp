@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edges, memory and threads; kernels/mip.cpp computes.
+// Handles edges, memory and threads; kernels/mip.cpp computes.
 //
-// A level holds the averages, not normalised, until the next level has been made from it; then it is
-// finished in place: normalised and faded. So a chain needs no memory beside itself, but for a few rows for
-// each thread. In the slope domain x and y of an unfinished level hold the averages of x/z and y/z, z
-// nothing.
+// A level holds averages, not normalised, until the next level has been made from it. Then it is finished in place:
+// normalised and faded. So a chain needs no memory besides its own, except a few rows for each thread. In the slope
+// domain, x and y of an unfinished level hold the averages of x/z and y/z, and z is unused.
 
 #include <tex/mip.h>
 
@@ -33,19 +32,19 @@ void finish_rows(NormalMap& level, MipDomain domain, float fade, int begin, int 
 struct Step {
     NormalMap& from;
     NormalMap& to;
-    int level;  // of `from`
+    int level;  // the level of `from`
     const MipOptions& options;
     LevelFilter filter;
 
     [[nodiscard]] int planes() const { return options.domain == MipDomain::vector ? 3 : 2; }
-    // The base level is the caller's: it is not averages but vectors, and stays as it is.
+    // The base level belongs to the caller: it holds vectors, not averages, and does not change.
     [[nodiscard]] bool from_base() const { return level == 0; }
 };
 
 Plane<float>& plane_of(NormalMap& map, int plane) { return plane == 0 ? map.x : plane == 1 ? map.y : map.z; }
 
-// The rows of averages that a row of `to` is made of. In the slope domain those of the base level are computed here,
-// from its vectors, and held while they are needed.
+// The rows of averages from which a row of `to` is made. In the slope domain, those of the base level are computed here
+// from its vectors and kept while they are needed.
 class SourceRows {
 public:
     explicit SourceRows(const Step& step)
@@ -58,7 +57,7 @@ public:
         held_.assign(static_cast<std::size_t>(taps_), -1);
     }
 
-    // Makes the rows for row j of `to` ready.
+    // Prepares the rows for row j of `to`.
     void prepare(int j) {
         for (int k = 0; converts_ && k < taps_; ++k) {
             const int slot = slot_of(j, k);
@@ -72,7 +71,7 @@ public:
         }
     }
 
-    // These rows, of one plane. They stand until the next call.
+    // These rows, for one plane. They stay valid until the next call.
     const float* const* window(int plane, int j) {
         for (int k = 0; k < taps_; ++k) {
             window_[static_cast<std::size_t>(k)] = converts_
@@ -89,12 +88,12 @@ private:
     const int taps_;
     const bool converts_;
     Plane<float> p_, q_;
-    std::vector<int> held_;  // the row of the level that each slot holds
+    std::vector<int> held_;  // the row of the level in each slot
     std::vector<const float*> window_;
 };
 
-// Rows [begin, end) of step.to. Where the filter halves, a row of `from` belongs to one row of `to` only, and is
-// finished as soon as that one is made.
+// Makes rows [begin, end) of step.to. If the filter halves, a row of `from` contributes to only one row of `to`, and is
+// finished as soon as that row is made.
 void make_strip(const Step& step, int begin, int end) {
     SourceRows source(step);
     MipRows rows(step.filter);
@@ -108,7 +107,7 @@ void make_strip(const Step& step, int begin, int end) {
     }
 }
 
-// Rows of an extent that are worth a thread's while.
+// The number of rows of an extent that are worth a thread.
 int strip_rows(Extent extent) {
     constexpr int kTexels = 1 << 15;
     return std::max(1, kTexels / extent.width);
@@ -128,8 +127,8 @@ Step make_step(MipChain& chain, int level, const MipOptions& options) {
     return {from, to, level, options, LevelFilter(from.extent(), options)};
 }
 
-// The step from `level`, and if it halves those after it that halve too, at most four: a strip of sixteen rows fits
-// into the cache.
+// The step from `level`. If it halves, the steps after it that also halve are included, at most four steps in all: a
+// strip of sixteen rows fits into the cache.
 std::vector<Step> next_steps(MipChain& chain, int level, const MipOptions& options) {
     const int end = std::min(level + 4, static_cast<int>(chain.levels.size()) - 1);
     std::vector<Step> steps;
@@ -142,8 +141,8 @@ std::vector<Step> next_steps(MipChain& chain, int level, const MipOptions& optio
     return steps;
 }
 
-// Steps one after the other, strip by strip of the last level: what a step makes is still in the cache when the next
-// one reads it. Ends the levels that they came from.
+// Performs the steps one after the other, strip by strip of the last level: the output of a step is still in the cache
+// when the next step reads it. Finishes the levels from which the steps started.
 Result<void> make_levels(const std::vector<Step>& steps, const Execution& execution, ProgressSpan span) {
     const int last = static_cast<int>(steps.size()) - 1;
     const Extent extent = steps.back().to.extent();
@@ -172,7 +171,8 @@ Result<MipChain> build_mip_chain(NormalMap base, const MipOptions& options, cons
 
         double done = 0.0;
         for (int k = 0; k + 1 < count;) {
-            // Three quarters of what is left, as each level has a quarter of the texels of the one before.
+            // Three quarters of the remaining progress, because each level has a quarter of the texels of the one
+            // before.
             const double next = done + (1.0 - done) * 0.75;
             const std::vector<Step> steps = next_steps(chain, k, options);
             if (const auto made = make_levels(steps, execution, {done, next}); !made) return made.error();

@@ -84,7 +84,7 @@ Extent size_of(const PreviewOptions& options, Extent map) {
     return {rounded(w), rounded(h)};
 }
 
-// Everything that the pictures of one call share.
+// The data that all pictures of one call share.
 struct Job {
     const PreviewScene& scene;
     const PreviewOptions& options;
@@ -188,8 +188,8 @@ void draw_level(Canvas& canvas, int x, int y, const NormalMap& level) {
     }
 }
 
-// The first level that fits into the picture's size on the left, the others in a column beside it, a line of text
-// below.
+// Shows the first level that fits into the height and width of the picture on the left, the other levels in a column
+// beside it, and a line of text below.
 Result<Texture> show_mips(const Job& job) {
     constexpr int kGap = 4;
     constexpr int kLine = 18;

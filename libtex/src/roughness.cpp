@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory and threads; kernels/roughness.cpp computes, and the filters are those of mip.cpp. Beside its result the chain
-// keeps the averages of two levels.
+// Handles memory and threads; kernels/roughness.cpp computes, and the filters are those of mip.cpp. Besides its result,
+// the chain keeps the averages of two levels.
 
 #include <tex/roughness.h>
 
@@ -34,7 +34,7 @@ AverageViews views_of(const Averages& averages) {
 
 int strip_rows(Extent extent) { return std::max(1, kPieceTexels / extent.width); }
 
-// Rows [begin, end) of a plane of the next level.
+// Filters rows [begin, end) of a plane of the next level.
 void filter_strip(const LevelFilter& filter, PlaneView<const float> from, Plane<float>& to, int begin, int end) {
     MipRows rows(filter);
     std::vector<const float*> window(static_cast<std::size_t>(filter.y.taps));
@@ -44,7 +44,7 @@ void filter_strip(const LevelFilter& filter, PlaneView<const float> from, Plane<
     }
 }
 
-// The material's own roughness and alpha^2 at the base level.
+// Computes the material's own roughness and alpha^2 at the base level.
 Result<void> fill_base(const Plane<float>& own, const MipOptions& options, const Execution& execution,
                        ProgressSpan span, Plane<float>& roughness, Plane<float>& alpha2) {
     const Extent extent = roughness.extent();
@@ -69,7 +69,7 @@ Result<RoughnessChain> build_chain(const NormalMap& base, const Plane<float>& ro
     if (!filled) return filled.error();
 
     AverageViews from = {base.x.view(), base.y.view(), base.z.view(), alpha2.view()};
-    Averages held;  // what `from` shows, below the base level
+    Averages held;  // the data that `from` shows, below the base level
     for (int level = 1; level < count; ++level) {
         const Extent smaller = level_extent(extent, level);
         Averages to;

@@ -28,7 +28,7 @@ Result<void> scale_rows(NormalMap& map, float scale, ScaleMode mode, const Execu
         span);
 }
 
-[[maybe_unused]] bool is_scale(float scale) { return std::abs(scale) <= kMaxScale; }  // NaN is none
+[[maybe_unused]] bool is_scale(float scale) { return std::abs(scale) <= kMaxScale; }  // false for NaN
 
 }  // namespace
 

@@ -20,7 +20,7 @@ using render::Canvas;
 
 constexpr std::size_t kPaletteSize = 256;  // of a PNG
 constexpr int kGap = 8;
-constexpr int kCaption = 14;  // height of a caption's line, times the letters' scale
+constexpr int kCaption = 14;  // height of a line of the caption, times the scale of the letters
 
 int columns_for(std::size_t count) {
     int columns = 1;

@@ -24,11 +24,11 @@ constexpr int kStripRows = kBlockEdge;  // of a block format: one row of blocks
 
 int strips_of(Extent extent) { return blocks_across(extent.height, kStripRows); }
 
-// Decodes the rows of strip `strip` to `rows`, whose rows lie `stride` apart and must have room for kStripRows rows of
-// the width rounded up to whole blocks.
+// Decodes the rows of strip `strip` into `rows`. The rows are `stride` apart and must have room for kStripRows rows of
+// the width, rounded up to whole blocks.
 void decode_strip(Format format, const Level& level, int strip, const ChannelRows& rows, std::ptrdiff_t stride) {
     const int width = level.extent.width;
-    const std::size_t pitch = level_bytes(format, {width, 1});  // of a row of blocks, where there are blocks
+    const std::size_t pitch = level_bytes(format, {width, 1});  // of a row of blocks, for block formats
     if (const FormatInfo info = format_info(format); info.has_blocks()) {
         decode_blocks(format, level.bytes.data() + static_cast<std::size_t>(strip) * pitch,
                       blocks_across(width, info.block.width), rows, stride);
@@ -46,12 +46,12 @@ void decode_strip(Format format, const Level& level, int strip, const ChannelRow
     }
 }
 
-// The rows of one strip, for x, y and z; those of z are null where there is none. Padded to whole vectors.
+// The rows of one strip, for x, y and z, padded to whole vectors. The rows of z are null if there is no z.
 struct StripRows {
     const float* component[3][kStripRows] = {};
 };
 
-// Gives the rows of a texture's level, decoded to scratch memory.
+// Provides the rows of a texture's level, decoded to scratch memory.
 struct LevelReader {
     Format format;
     const Level& level;
@@ -73,7 +73,7 @@ struct LevelReader {
     }
 };
 
-// Gives the rows of three planes as they are.
+// Provides the rows of three planes unchanged.
 struct ImageReader {
     const Plane<float>* planes[3];  // z may be null
 
@@ -93,7 +93,7 @@ struct ImageReader {
 
 Plane<float> make_scratch(Extent extent) { return Plane<float>({whole_blocks(extent.width), 3 * kStripRows}); }
 
-// Strips that one thread takes at once: enough texels to be worth it.
+// The number of strips that one thread takes at once: enough texels to be worth it.
 int grain_of(Extent extent) { return std::max(1, (1 << 16) / (kStripRows * extent.width)); }
 
 // Whether floats are (n + 1) / 2: see unpack().
@@ -101,7 +101,7 @@ template <class Reader>
 Result<bool> weigh_range(const Reader& reader, const Execution& execution) {
     const Extent extent = reader.extent();
     std::vector<RangeEvidence> rows(static_cast<std::size_t>(extent.height));
-    std::atomic<bool> negative = false;  // a negative value settles it
+    std::atomic<bool> negative = false;  // one negative value decides
     Execution silent;
     silent.threads = execution.threads;
     const auto weighed = parallel_for(silent, strips_of(extent), grain_of(extent), [&](int begin, int end) {
@@ -151,7 +151,7 @@ Result<void> unpack_rows(const Reader& reader, const UnpackRule& rule, NormalMap
         span);
 }
 
-// The planes that stand for R, G, B and A; null for those that are not there.
+// The planes for R, G, B and A; null for those that do not exist.
 std::array<const Plane<float>*, 4> planes_of(const Image& image) {
     std::array<const Plane<float>*, 4> planes = {};
     const auto plane = [&](const char* name) {

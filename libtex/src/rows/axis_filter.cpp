@@ -31,7 +31,7 @@ double kaiser(double x) {
     return math::sinc(x) * bessel_i0(kAlpha * std::sqrt(std::max(0.0, 1.0 - t * t))) / kPeak;
 }
 
-// The family of cubics of Mitchell and Netravali, Reconstruction Filters in Computer Graphics, 1988.
+// The cubic filters of Mitchell and Netravali, Reconstruction Filters in Computer Graphics, 1988.
 double cubic(double x, double b, double c) {
     const double a = std::abs(x);
     if (a < 1.0) return ((12 - 9 * b - 6 * c) * a * a * a - (18 - 12 * b - 6 * c) * a * a + (6 - 2 * b)) / 6;
@@ -63,7 +63,7 @@ double value_at(MipFilter filter, double x) {
     return 0.0;
 }
 
-// What the texels from `first` on weigh in one texel of the smaller level.
+// The weights that the texels from `first` on have in one texel of the smaller level.
 struct Footprint {
     int first = 0;
     std::vector<double> weights;
@@ -71,8 +71,7 @@ struct Footprint {
     [[nodiscard]] int end() const { return first + static_cast<int>(weights.size()); }
 };
 
-// Texel i of m covers [i n, (i + 1) n) where texel s of n covers [s m, (s + 1) m): integers, so that areas
-// are exact.
+// In integers, so that areas are exact: texel i of m covers [i n, (i + 1) n), and texel s of n covers [s m, (s + 1) m).
 Footprint box_footprint(int i, int n, int m) {
     const std::int64_t begin = std::int64_t{i} * n;
     const std::int64_t end = begin + n;
@@ -85,7 +84,7 @@ Footprint box_footprint(int i, int n, int m) {
 
 Footprint sampled_footprint(MipFilter filter, int i, int n, int m) {
     const double scale = static_cast<double>(n) / m;
-    const double centre = (i + 0.5) * scale - 0.5;  // where the centres of the larger level's texels are integers
+    const double centre = (i + 0.5) * scale - 0.5;  // texel centres of the larger level are integers
     const double reach = radius_of(filter) * scale;
     const int first = static_cast<int>(std::floor(centre - reach)) + 1;
     const int end = static_cast<int>(std::ceil(centre + reach));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// axis_filter.h: the weights with which one axis of a level becomes that of the next smaller one.
+// axis_filter.h: the weights that turn one axis of a level into that of the next smaller level.
 
 #pragma once
 
@@ -11,33 +11,34 @@
 
 namespace tex {
 
-// Texel i of the smaller level is the sum over k of weight(k, i) texel[2 i + first + k], 0 <= k < taps, of
-// the larger one, which may lie beyond the border. (From an odd size texels are a little more than 2 apart,
-// by less than 1 over the whole axis: the window is wide enough for that.) Weights are computed in double
-// (base/math.h), normalised to sum 1 and rounded to float once.
+// Texel i of the smaller level is the sum over k of weight(k, i) texel[2 i + first + k], 0 <= k < taps, of the larger
+// level, in which the texel may lie beyond the border. (If the larger size is odd, texels are a little more than 2
+// apart, by less than 1 over the whole axis. The window is wide enough for that.) Weights are computed in double
+// (base/math.h), normalised to a sum of 1 and rounded to float once.
 struct AxisFilter {
     int first = 0;
     int taps = 1;
-    bool even = false;           // from an even size: all texels have the same weights
-    std::ptrdiff_t stride = 0;   // of the weights: the number of texels padded for whole vectors
+    bool even = false;           // the larger size is even: all texels have the same weights
+    std::ptrdiff_t stride = 0;   // of the weights: the number of texels, padded to whole vectors
     std::vector<float> weights;  // [k * stride + i]
 
     [[nodiscard]] float weight(int k, int i) const { return weights[static_cast<std::size_t>(k * stride + i)]; }
 };
 
-// From n texels to max(1, n / 2).
+// The filter from n texels to max(1, n / 2).
 AxisFilter make_axis_filter(MipFilter filter, int n);
 
-// Filters rows across, one after the other, with what lies beyond their ends.
+// Filters rows along their length, one after the other, including the texels beyond their ends.
 class RowFilter {
 public:
-    // `filter` is from make_axis_filter(..., width) and must outlive this.
+    // `filter` comes from make_axis_filter(..., width) and must outlive this object.
     RowFilter(const AxisFilter& filter, Wrap wrap, int width);
 
-    // Where the row goes before run(): `width` texels, and room for whole vectors.
+    // Write the row here before run(): `width` texels, with room for whole vectors.
     [[nodiscard]] float* row() { return row_.row(0) + lead_; }
 
-    // Filters the row into `out`, max(1, width / 2) texels with room for whole vectors. The row's texels stay.
+    // Filters the row into `out`, which has max(1, width / 2) texels and room for whole vectors. The row's texels do
+    // not change.
     void run(float* out);
 
 private:
@@ -45,12 +46,12 @@ private:
     const Wrap wrap_;
     const int width_;
     const int count_;           // texels of the result
-    const int before_, after_;  // texels that are needed beyond the ends
+    const int before_, after_;  // texels needed beyond each end
     const int lead_;
-    const int pairs_;  // texels in each half of the row: the even ones, the odd ones
+    const int pairs_;  // texels in each half of the row: even ones, then odd ones
     Plane<float> row_;
     Plane<float> halves_;
-    std::vector<float> weights_;  // those of every texel, from an even size
+    std::vector<float> weights_;  // the weights of every texel, if the size is even
 };
 
 }  // namespace tex

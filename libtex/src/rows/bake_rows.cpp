@@ -14,10 +14,9 @@ Gradient gaussian_gradient(double sigma) {
     Gradient gradient{0, {}, gaussian_weights(sigma)};
     gradient.radius = static_cast<int>(gradient.smoothing.size()) - 1;
     std::vector<double> derivative;
-    double moment = 0.0;  // what the derivative makes of a plane of slope 1
+    double moment = 0.0;  // the response of the derivative to a plane of slope 1
     for (int k = 1; k <= gradient.radius; ++k) {
-        // g relative to g(1): the factor cancels, and g(1) itself is too small for a double where sigma is
-        // small.
+        // g relative to g(1): the factor cancels, and g(1) itself is too small for a double if sigma is small.
         derivative.push_back(k * math::exp(-0.5 * (k * k - 1) / (sigma * sigma)));
         moment += 2.0 * k * derivative.back();
     }
@@ -28,7 +27,7 @@ Gradient gaussian_gradient(double sigma) {
 // An axis of one texel has slope 0.
 float bumpiness(float value, int texels) { return texels > 1 ? value : 0.0f; }
 
-// What a difference is multiplied by: the smoothed kernels hold it in their weights.
+// The factor of a difference. The smoothed kernels include it in their weights.
 float step(const Gradient& gradient) { return !gradient.is_difference() || gradient.forward ? 1.0f : 0.5f; }
 
 }  // namespace

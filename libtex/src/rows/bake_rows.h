@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// bake_rows.h: rows of heights to rows of normals, from top to bottom, through a window as high as the gradient kernel.
+// bake_rows.h: turns rows of heights into rows of normals, from top to bottom, through a window as high as the gradient
+// kernel.
 
 #pragma once
 
@@ -13,9 +14,9 @@
 namespace tex {
 
 // A gradient as one-sided weights: derivative[k - 1] is d at +k (at -k its negative), smoothing[k] is s at +k and -k.
-// Forward and central, a difference of two texels and nothing in between, have none.
+// The forward and central kernels are plain differences of two texels, so they have no weights.
 struct Gradient {
-    int radius = 1;  // the rows that a normal needs above and below its own
+    int radius = 1;  // the number of rows that a normal needs above and below its own row
     std::vector<float> derivative;
     std::vector<float> smoothing;
     bool forward = false;
@@ -25,7 +26,7 @@ struct Gradient {
 
 Gradient gradient_of(const BakeOptions& options);
 
-// A height field without its heights.
+// The parameters of a height field, without its heights.
 struct HeightFieldHead {
     float bumpiness_x = 1.0f;
     float bumpiness_y = 1.0f;
@@ -35,14 +36,14 @@ struct HeightFieldHead {
 
 class BakeRows {
 public:
-    // `first` is the first row that will be baked. `heights` and `gradient` must outlive this.
+    // `first` is the first row to bake. `heights` and `gradient` must outlive this object.
     BakeRows(Extent extent, RowOf heights, const Gradient& gradient, const HeightFieldHead& head, int first);
 
-    // Bakes row j into `out`, which has room for whole vectors. Rows follow one another, also past the last one where
-    // the heights repeat: row `height` is row 0 again.
+    // Bakes row j into `out`, which has room for whole vectors. Rows must follow one another. If the heights repeat,
+    // they may continue past the last row: row `height` is row 0 again.
     void bake(int j, NormalRow out);
 
-    // The next row of heights that bake() will ask for, which may lie beyond the border (see height_index()).
+    // The next row of heights that bake() will request. It may lie beyond the border (see height_index()).
     [[nodiscard]] int next_height() const { return next_; }
 
 private:
@@ -54,8 +55,8 @@ private:
     const float scale_y_;
     HeightRows rows_;
     int next_;
-    // All kernels but differences. Two ways through the window of rows: the derivative along the row is smoothed down
-    // the column, the derivative down the column is smoothed along the row.
+    // Used by all kernels except differences. The window of rows is processed in two ways: the derivative along the row
+    // is smoothed down the column, and the derivative down the column is smoothed along the row.
     Plane<float> du_;
     Plane<float> dv_;
     std::vector<const float*> window_rows_;

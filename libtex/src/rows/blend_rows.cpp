@@ -45,7 +45,7 @@ public:
         }
     }
 
-    // Unit vectors.
+    // Makes unit vectors.
     void row(int j, NormalRow out) {
         near_.place(j);
         if (far_) far_->place(j);
@@ -58,7 +58,7 @@ private:
         return {extent, result, map_.map, map_.wrap_x, map_.wrap_y};
     }
 
-    // Samples, in `out` unless nothing is between texels.
+    // Returns samples between two rows. They are in `out` unless they equal a row of the map.
     VectorRow between_rows(NormalRow out) {
         const Sampler::Rows rows = near_.rows();
         const VectorRow upper = map_.rows(rows.upper);
@@ -109,7 +109,7 @@ public:
     }
 
 private:
-    // strength mask; null where that is 1 everywhere.
+    // Returns strength * mask, or null if that is 1 everywhere.
     const float* weights(int j) {
         if (!mask_ && layer_.strength == 1.0f) return nullptr;
         float* weight = rows_.row(3);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// blend_rows.h: rows of the maps that lie on one another to rows of the blended map: see blend().
+// blend_rows.h: turns rows of maps that lie on one another into rows of the blended map: see blend().
 
 #pragma once
 
@@ -28,11 +28,11 @@ struct Rotation {
 // The level at which a map of this extent is sampled, in steps of 1/256.
 [[nodiscard]] double level_wanted(const UvMap& map, Extent source);
 
-// Row j of a map that is there one row at a time.
+// Returns row j of a map that is available one row at a time.
 using NormalRowOf = std::function<VectorRow(int j)>;
 
-// A map and how it lies on the result: a chain of which `level` is sampled, and where `mix` is above 0 the next one; or
-// `rows` of a map of the extent `extent`, with no chain.
+// A map and its place on the result. Either a chain, of which `level` is sampled, and the next level too if `mix` is
+// above 0; or `rows` of a map of the extent `extent`, without a chain.
 struct PlacedMap {
     const MipChain* chain = nullptr;
     NormalRowOf rows;
@@ -45,7 +45,7 @@ struct PlacedMap {
 };
 
 struct PlacedLayer {
-    const Layer& layer;  // without regard to its detail
+    const Layer& layer;  // its detail is not used
     PlacedMap detail;
 };
 
@@ -53,18 +53,18 @@ struct PlacedMaps {
     PlacedMap base;
     std::vector<PlacedLayer> layers;
     const BlendOptions& options;
-    Extent extent;  // of the result
+    Extent extent;  // extent of the result
 };
 
 // Makes rows of the result, on one thread.
 class BlendRows {
 public:
-    // `maps` must outlive this.
+    // `maps` must outlive this object.
     explicit BlendRows(const PlacedMaps& maps);
     ~BlendRows();
     BlendRows(BlendRows&&) noexcept;
 
-    // Row j. `out` has room for whole vectors.
+    // Makes row j. `out` has room for whole vectors.
     void make(int j, NormalRow out);
 
 private:
@@ -72,7 +72,7 @@ private:
     class LayerRows;
 
     const PlacedMaps& maps_;
-    std::vector<MapSampler> base_;  // one
+    std::vector<MapSampler> base_;  // exactly one
     std::vector<LayerRows> layers_;
 };
 

@@ -38,7 +38,7 @@ void blur_down(PlaneView<const float> across, const std::vector<float>& weights,
     const int radius = static_cast<int>(weights.size()) - 1;
     const auto [width, height] = across.extent;
     const RowOf row_of = [across](int j) { return across.row(j); };
-    // All rows of the windows, those beyond the border included: computed, where they are not plain copies.
+    // All rows of the windows, including those beyond the border, which are computed unless they are plain copies.
     const int first = begin - radius, count = end - begin + 2 * radius;
     const int above = std::max(0, -first), below = std::max(0, first + count - height);
     Plane<float> beyond;
@@ -49,7 +49,7 @@ void blur_down(PlaneView<const float> across, const std::vector<float>& weights,
         rows.push_back(height_row(row_of, across.extent, wrap_y, j, outside ? beyond.row(computed++) : nullptr));
     }
     std::vector<const float*> window(static_cast<std::size_t>(2 * radius + 1));
-    // Tiles, so that the rows of a window stay in the cache from one row to the next.
+    // Work in tiles, so that the rows of a window stay in the cache from one row to the next.
     constexpr int kTile = 256;
     for (int i = 0; i < width; i += kTile) {
         for (int j = begin; j < end; ++j) {

@@ -16,7 +16,7 @@ int mirrored(int i, int n) {
     return r < n ? r : 2 * n - 1 - r;
 }
 
-// The height `distance` >= 1 texels beyond the border texel 0 of texels 0 to last.
+// The height that lies `distance` >= 1 texels beyond the border at texel 0; the texels are 0 to last.
 HeightIndex beyond_first(int distance, int last) {
     const int turns = (distance - 1) / (2 * last);  // pairs of half turns before the last one or two
     const int rest = distance - 2 * last * turns;   // 1 to 2 last
@@ -46,7 +46,7 @@ HeightIndex height_index(Wrap wrap, int i, int n) {
     if (i >= 0 && i <= last) return {i, 0, 0, 0, false};
     if (wrap != Wrap::clamp || last == 0) return {border_index(wrap, i, n), 0, 0, 0, false};
     if (i < 0) return beyond_first(-i, last);
-    // Beyond the other end all is the same seen from there.
+    // The other end behaves the same way, as seen from that end.
     const HeightIndex seen = beyond_first(i - last, last);
     return {last - seen.index, last, last - seen.other, seen.drift, seen.reflected};
 }

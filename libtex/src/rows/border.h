@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// border.h: what lies beyond the border of an axis (see Wrap in height_field.h), and rows of heights with it.
+// border.h: the values beyond the border of an axis (see Wrap in height_field.h), and rows of heights that include
+// them.
 
 #pragma once
 
@@ -10,20 +11,20 @@
 
 namespace tex {
 
-// Row j of something, 0 <= j < height.
+// Returns row j of some data, 0 <= j < height.
 using RowOf = std::function<const float*(int j)>;
 
-// The texel that a filter of vectors or colours reads at index i, any integer, of an axis of n texels:
-// clamp repeats the border texel.
+// The texel that a filter of vectors or colours reads at index i, which may be any integer, on an axis of n texels.
+// Clamp repeats the border texel.
 int border_index(Wrap wrap, int i, int n);
 
-// The height at index i, any integer, of an axis of n texels:
+// The height at index i, which may be any integer, on an axis of n texels:
 //
 //     (reflected ? 2 h[edge] - h[index] : h[index]) + drift (h[edge] - h[other])
 //
-// Repeat and mirror need h[index] alone. Clamp turns the heights about a border texel by half a turn, again
-// and again: every two turns add the rise from one border to the other twice. On an axis of one texel all
-// heights are that texel's.
+// Repeat and mirror need only h[index]. Clamp rotates the heights by half a turn about a border texel, again and again:
+// every two half turns add twice the rise from one border to the other. On an axis of one texel, all heights are that
+// of the texel.
 struct HeightIndex {
     int index = 0;
     int edge = 0;
@@ -35,16 +36,16 @@ struct HeightIndex {
 };
 HeightIndex height_index(Wrap wrap, int i, int n);
 
-// Row j, any integer, of a height field whose rows are `heights`: one of them, or computed into `beyond`, which has
-// room for whole vectors.
+// Returns row j, which may be any integer, of a height field whose rows are `heights`. The result is one of these rows,
+// or is computed into `beyond`, which has room for whole vectors.
 const float* height_row(const RowOf& heights, Extent extent, Wrap wrap, int j, float* beyond);
 
-// Rows of a height field with `apron` more heights to the left and the right, for filters of that radius;
-// rows beyond the top and the bottom exist as well. The last `kept` rows are held: a filter moves down the
+// Rows of a height field with `apron` more heights to the left and to the right, for filters of that radius. Rows
+// beyond the top and the bottom exist too. The last `kept` rows are kept in memory, for a filter that moves down the
 // field row by row.
-//
-// Heights are cut to +-kMaxHeight (kernels/bake.h) on the way. Rows are aligned for whole vectors; a row
-// may be read and written from -lead() to a whole vector past width + apron.
+// field row by row.
+// Heights are limited to +-kMaxHeight (kernels/bake.h). Rows are aligned for whole vectors. A row may be read and
+// written from -lead() to one whole vector past width + apron.
 class HeightRows {
 public:
     HeightRows(Extent extent, RowOf heights, Wrap wrap_x, Wrap wrap_y, int apron, int kept);
@@ -52,7 +53,7 @@ public:
 
     // Computes row j, which replaces the row `kept` rows above it. Rows must be fetched from top to bottom.
     const float* fetch(int j);
-    // Row j, one of the last `kept` that were fetched. The texels are at [-apron, width + apron).
+    // Row j, which must be one of the last `kept` rows that were fetched. Its texels are at [-apron, width + apron).
     [[nodiscard]] const float* row(int j) const;
 
     [[nodiscard]] int lead() const { return lead_; }

@@ -19,7 +19,7 @@ namespace {
 
 namespace OCIO = OCIO_NAMESPACE;
 
-// The planes that hold colour: R, G and B, or the one that is not alpha. Empty if there is neither.
+// The planes that hold colour: R, G and B, or the one that is not alpha. Empty if there are none.
 std::vector<std::size_t> colour_planes(const std::vector<std::string>& names) {
     std::vector<std::size_t> planes;
     for (const char* name : {"R", "G", "B"}) {
@@ -37,14 +37,14 @@ std::vector<std::size_t> colour_planes(const std::vector<std::string>& names) {
 
 // -- without a configuration -----------------------------------------------------------------------------------
 
-// IEC 61966-2-1:1999, continued beyond [0, 1] by its own formula and below 0 by symmetry.
+// IEC 61966-2-1:1999. Beyond [0, 1] the curve continues by its own formula, and below 0 by symmetry.
 float srgb_to_linear(float encoded) {
     const double c = std::abs(static_cast<double>(encoded));
     const double linear = c <= 0.04045 ? c / 12.92 : math::pow((c + 0.055) / 1.055, 2.4);
     return static_cast<float>(encoded < 0.0f ? -linear : linear);
 }
 
-// Pictures of few bits hold few values: a table of all codes is quicker than the power of each texel.
+// Pictures with few bits have few values, so a table of all codes is faster than computing the power for each texel.
 std::vector<float> srgb_table(int bits) {
     const int top = (1 << bits) - 1;
     std::vector<float> table;
@@ -89,7 +89,7 @@ Result<ConvertRow> built_in(SampleKind sample, int bits, const std::string& spac
 
 // -- with a configuration --------------------------------------------------------------------------------------
 
-// One line of what OpenColorIO threw.
+// The reason that OpenColorIO threw, as one line.
 std::string reason_of(const std::exception& thrown) {
     std::string reason = thrown.what();
     if (const std::size_t line = reason.find('\n'); line != std::string::npos) reason.erase(line);
@@ -125,7 +125,7 @@ Result<OCIO::ConstConfigRcPtr> load(const std::string& path) {
 }
 
 Result<ConvertRow> by_config(const ColorOptions& options) {
-    OCIO::SetLoggingLevel(OCIO::LOGGING_LEVEL_NONE);  // libtex is silent
+    OCIO::SetLoggingLevel(OCIO::LOGGING_LEVEL_NONE);  // libtex prints nothing
     const Result<OCIO::ConstConfigRcPtr> loaded = load(options.config);
     if (!loaded) return loaded.error();
     const OCIO::ConstConfigRcPtr& config = loaded.value();
@@ -168,7 +168,7 @@ Result<LinearRows> LinearRows::make(const std::vector<std::string>& names, Sampl
 Result<void> LinearRows::convert(Image& image, int count) const {
     const int width = image.extent().width;
     ColorRows rows{{}, static_cast<int>(planes_.size())};
-    Plane<float> copies;  // of a grey row
+    Plane<float> copies;  // copies of a grey row
     if (rows.given == 1) copies = Plane<float>(Extent{width, 2});
     try {
         for (int j = 0; j < count; ++j) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// color.h: rows of a picture from a colour space to linear values.
+// color.h: converts rows of a picture from a colour space to linear values.
 
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace tex {
 
-// A row of R, of G and of B. Of a grey picture one is given; the others are copies, whose values nobody reads.
+// A row each of R, G and B. For a grey picture, one is the actual row; the others are copies whose values are not read.
 struct ColorRows {
     float* row[3] = {};
     int given = 3;
@@ -23,7 +23,8 @@ using ConvertRow = std::function<void(const ColorRows& rows, int width)>;
 
 class LinearRows {
 public:
-    // For pictures with these channels and samples. May throw std::bad_alloc. Errors: those of to_linear().
+    // Makes the conversion for pictures with these channels and samples. May throw std::bad_alloc. Errors: those of
+    // to_linear().
     static Result<LinearRows> make(const std::vector<std::string>& names, SampleKind sample, int bits,
                                    const ColorOptions& options);
 
@@ -33,7 +34,7 @@ public:
 
 private:
     ColorOptions options_;
-    std::vector<std::size_t> planes_;  // that hold colour: three, or one
+    std::vector<std::size_t> planes_;  // the planes that hold colour: three or one
     ConvertRow convert_;
 };
 

@@ -11,7 +11,7 @@
 namespace tex {
 namespace {
 
-constexpr std::string_view kTheFirst = ", the first at column ";  // of heights that are invalid
+constexpr std::string_view kTheFirst = ", the first at column ";  // the first invalid height
 
 // The greatest HeightOptions::blur_sigma.
 constexpr float kMaxBlurSigma = 256.0f;
@@ -30,7 +30,7 @@ bool same_word(std::string_view a, std::string_view b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](char p, char q) { return lower(p) == lower(q); });
 }
 
-// The plane with the heights of a picture without colour; kNoPlane where it is not clear which.
+// The plane that holds the heights of a picture without colour; kNoPlane if that is ambiguous.
 int grey_plane(const Names& names) {
     std::vector<int> planes;
     for (int k = 0; k < static_cast<int>(names.size()); ++k) {
@@ -60,8 +60,8 @@ Error no_such_channel(const Names& names, HeightChannel channel) {
     return {ErrorCode::bad_option, {}, reason + "; its channels are " + list_of_channels(names)};
 }
 
-// Row j of the heights before anything else is done to them. Returns the number of texels where `automatic`
-// took luma.
+// Writes row j of the heights before any further processing. Returns the number of texels for which `automatic` took
+// luma.
 std::int64_t take_row(const Image& image, const HeightSource& source, int j, float* out) {
     const auto row = [&](int plane) { return image.planes[static_cast<std::size_t>(plane)].row(j); };
     const int count = image.extent().width;

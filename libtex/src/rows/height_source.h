@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// height_source.h: which channels of a picture are its heights, and rows of them.
+// height_source.h: finds the channels of a picture that hold its heights, and reads rows of them.
 
 #pragma once
 
@@ -11,30 +11,30 @@
 
 namespace tex {
 
-// Where heights come from: one plane as it is, or a mixture of R, G and B.
+// The source of heights: one unchanged plane, or a mixture of R, G and B.
 struct HeightSource {
     HeightChannel mixture = HeightChannel::automatic;
-    int plane = -1;  // else planes red, green and blue
+    int plane = -1;  // if unset, the planes red, green and blue are mixed
     int red = 0, green = 0, blue = 0;
 };
 
-// Among channels of these names. Errors: bad_option.
+// Finds the source among channels with these names. Errors: bad_option.
 Result<HeightSource> find_height_source(const std::vector<std::string>& names, HeightChannel channel);
 
-// Nullopt where the blur's sigma is in range, else the error (bad_option).
+// Returns nullopt if the sigma of the blur is in range, or else the error (bad_option).
 std::optional<Error> check_blur(const HeightOptions& options);
 
-// What was met in rows of heights.
+// What was found in rows of heights.
 struct HeightCounts {
-    std::int64_t luma = 0;     // texels where `automatic` took luma
-    std::int64_t invalid = 0;  // NaN, infinite or no-data texels: they are NaN now
+    std::int64_t luma = 0;     // texels for which `automatic` took luma
+    std::int64_t invalid = 0;  // NaN, infinite or no-data texels, which are now NaN
 };
 
-// Row j of a picture as heights: taken, cleaned and inverted as the options say. Neither filled nor blurred.
+// Reads row j of a picture as heights, cleaned and inverted as the options say, but neither filled nor blurred.
 HeightCounts take_heights(const Image& image, const HeightSource& source, const HeightOptions& options, int j,
                           float* out);
 
-// What was found wrong, as a sentence: `invalid` of all texels, the first of them at (column, row).
+// Says in a sentence what is wrong: `invalid` texels of the picture are invalid, the first one at (column, row).
 Error invalid_heights(std::int64_t invalid, int column, int row, Extent extent, const HeightOptions& options);
 
 }  // namespace tex

@@ -15,8 +15,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// ln 2 and pi/2 in parts. The first parts end in enough zero bits for their products with the integers that
-// occur here to be exact.
+// ln 2 and pi/2 in parts. The first parts end in enough zero bits for their products with the integers that occur here
+// to be exact.
 constexpr double kLn2High = 0x1.62e42fee00000p-1, kLn2Low = 0x1.a39ef35793c76p-33;
 constexpr double kHalfPiHigh = 0x1.921fb54400000p+0, kHalfPiMiddle = 0x1.0b4611a600000p-34,
                  kHalfPiLow = 0x1.3198a2e037073p-69;
@@ -71,7 +71,7 @@ double sin_near_zero(double r) {
 double cos_near_zero(double r) {
     constexpr auto kSeries = inverse_factorials<8>(4, 2, -1);
     const double square = r * r;
-    // 1 - square/2 rounds; what it lost is added to the small terms.
+    // 1 - square/2 is rounded; the rounding error is added to the small terms.
     const double half = 0.5 * square;
     const double head = 1.0 - half;
     return head + (((1.0 - head) - half) + square * square * polynomial(kSeries, square));
@@ -102,7 +102,7 @@ double exp(double x) {
     const double r = (x - n * kLn2High) - n * kLn2Low;
     constexpr auto kSeries = inverse_factorials<13>(2, 1, 1);
     const double mantissa = 1.0 + (r + r * r * polynomial(kSeries, r));
-    // In two steps, because 2^n alone may leave the range of a double where the result does not.
+    // In two steps, because 2^n alone may be out of the range of a double even if the result is not.
     const int exponent = static_cast<int>(n);
     const int half = exponent / 2;
     return mantissa * power_of_two(half) * power_of_two(exponent - half);
@@ -153,7 +153,7 @@ double cos(double x) {
 
 double atan(double x) {
     if (x != x || x == 0.0) return x;
-    // atan(k / 8) as a double and what that lacks, k = 0 to 8
+    // atan(k / 8) as a double, and the remainder of that double, k = 0 to 8
     constexpr double kHigh[9] = {0.0,
                                  0x1.fd5ba9aac2f6ep-4,
                                  0x1.f5b75f92c80ddp-3,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// mip_rows.h: rows of one level to rows of the next, and averages to what is stored.
+// mip_rows.h: turns rows of one level into rows of the next, and averages into stored values.
 
 #pragma once
 
@@ -13,20 +13,21 @@
 
 namespace tex {
 
-// How many levels build_mip_chain() makes of a base level, itself included.
+// The number of levels that build_mip_chain() makes from a base level, including the base level.
 int levels_to_build(const MipOptions& options, Extent base);
 
-// How far level `level` has faded to flat: 0 to 1.
+// How far level `level` has faded to flat, from 0 to 1.
 float fade_at(const std::optional<Fade>& fade, int level);
 
-// Averages (in the slope domain those of x/z and y/z, and nothing in z) become what is stored, in place.
+// Turns averages into stored values, in place. In the slope domain the averages are those of x/z and y/z, and z is
+// unused.
 void finish_row(NormalRow row, int width, MipDomain domain, float fade);
 
 // The filter from one level to the next smaller one.
 struct LevelFilter {
     LevelFilter(Extent from_extent, const MipOptions& options);
 
-    // The row of the larger level that is the k-th of those that row j of the smaller one is made of, 0 <= k < y.taps.
+    // The k-th row of the larger level from which row j of the smaller level is made, 0 <= k < y.taps.
     [[nodiscard]] int source(int j, int k) const;
 
     Extent from;
@@ -35,21 +36,21 @@ struct LevelFilter {
     Wrap wrap_y;
     AxisFilter x;
     AxisFilter y;
-    bool halves;  // two rows and two columns become one, nothing else
+    bool halves;  // two rows and two columns become one, with no other case
 };
 
-// Makes rows of one plane by any filter: down the columns first, whole rows at a time, then across.
+// Makes rows of one plane with any filter: down the columns first, in whole rows, then along the row.
 class MipRows {
 public:
-    // `filter` must outlive this.
+    // `filter` must outlive this object.
     explicit MipRows(const LevelFilter& filter);
 
-    // Row j of the smaller level from those rows of the larger one that LevelFilter::source() names.
+    // Makes row j of the smaller level from the rows of the larger one that LevelFilter::source() names.
     void make(const float* const* rows, int j, float* out);
 
 private:
     const LevelFilter& filter_;
-    std::optional<RowFilter> across_;  // unless the filter halves
+    std::optional<RowFilter> across_;  // unused if the filter halves
     std::vector<float> weights_;
 };
 

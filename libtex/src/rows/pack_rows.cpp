@@ -15,7 +15,7 @@
 namespace tex {
 namespace {
 
-// The rows of a normal map as a format's channels.
+// The rows of a normal map as the channels of a format.
 class Rows {
 public:
     Rows(const NormalMap& map, int height, const Swizzle& swizzle, YAxis y_axis)
@@ -47,7 +47,8 @@ private:
 
 std::size_t size(int n) { return static_cast<std::size_t>(n); }
 
-// Rows [begin, end) as unorm codes. The kernel writes past a row's end, hence the row between.
+// Packs rows [begin, end) as unorm codes. The kernel writes past the end of a row, so it writes into a separate row
+// first.
 template <class Code, class Kernel>
 void pack_codes(const Rows& rows, int channels, int begin, int end, std::byte* out, Kernel kernel) {
     const int width = rows.extent().width;
@@ -61,7 +62,7 @@ void pack_codes(const Rows& rows, int channels, int begin, int end, std::byte* o
     }
 }
 
-// Rows [begin, end) as floats, or as halves rounded to nearest even by Imath.
+// Packs rows [begin, end) as floats, or as halves that Imath rounds to nearest even.
 template <class Value>
 void pack_values(const Rows& rows, int channels, int begin, int end, std::byte* out) {
     const int width = rows.extent().width;
@@ -73,7 +74,7 @@ void pack_values(const Rows& rows, int channels, int begin, int end, std::byte* 
         for (int k = 0; k < channels; ++k) {
             const float* source = from[k].values;
             Value* value = values.data() + k;
-            // 0 - n, not -n: a flat map holds no negative zeros.
+            // 0 - n, not -n, so that a flat map holds no negative zeros.
             for (int i = 0; i < width; ++i, value += channels) {
                 *value = Value(from[k].negate ? 0.0f - source[i] : source[i]);
             }

@@ -15,7 +15,7 @@
 namespace tex {
 namespace {
 
-// Rows of a row of blocks as 2 roughness - 1: encoders take components of vectors.
+// The rows of a row of blocks as 2 roughness - 1, because encoders take components of vectors.
 class Components {
 public:
     explicit Components(const Plane<float>& level) : level_(level), rows_(Extent{level.extent().width, kBlockEdge}) {}
@@ -32,7 +32,7 @@ private:
     Plane<float> rows_;
 };
 
-// BC4 is the first block of BC5.
+// A BC4 block is the first half of a BC5 block.
 void pack_blocks(const Plane<float>& level, int height, Effort effort, int begin, int end, std::byte* out) {
     constexpr std::size_t kBc4 = 8, kBc5 = 16;
     const int width = level.extent().width;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// roughness_rows.h: rows of roughness to the bytes of a texture.
+// roughness_rows.h: packs rows of roughness into the bytes of a texture.
 
 #pragma once
 
@@ -11,7 +11,8 @@
 
 namespace tex {
 
-// As pack_rows() (pack_rows.h) of one channel. Precondition: one of the formats of pack_roughness().
+// Does what pack_rows() (pack_rows.h) does, for one channel. Precondition: the format is one of those of
+// pack_roughness().
 void pack_roughness_rows(const Plane<float>& level, int height, Format format, Effort effort, int begin, int end,
                          std::byte* out);
 

@@ -11,7 +11,7 @@
 namespace tex {
 namespace {
 
-// Exactly a at 0 and b at 1.
+// Interpolates; the result is exactly a at 0 and b at 1.
 float mix(float a, float b, float t) { return a * (1.0f - t) + b * t; }
 
 }  // namespace
@@ -23,8 +23,8 @@ UvMap stretch(Extent result) {
     return map;
 }
 
-// From the middle of the result, x to the right and y upwards in its texels, the turn by -rotation gives
-// x' = c x + s y, y' = c y - s x; then u = (x' / width + 1/2) tiling + offset, and v upwards likewise.
+// From the middle of the result, with x to the right and y upwards in texels of the result, the rotation by -rotation
+// gives x' = c x + s y, y' = c y - s x. Then u = (x' / width + 1/2) tiling + offset, and v upwards likewise.
 UvMap uv_map_of(const Placement& placement, Extent result, double cosine, double sine) {
     const double width = result.width;
     const double height = result.height;

@@ -12,17 +12,17 @@
 
 namespace tex {
 
-// The place in the source, in source widths and heights from its upper left corner, of the point (x, y) of the result,
-// in texels from its upper left corner: (u, v) = (u0 + ux x + uy y, v0 + vx x + vy y).
+// Maps a point (x, y) of the result, in texels from its upper left corner, to a place in the source, in source widths
+// and heights from its upper left corner: (u, v) = (u0 + ux x + uy y, v0 + vx x + vy y).
 struct UvMap {
     double u0 = 0.0, ux = 0.0, uy = 0.0;
     double v0 = 0.0, vx = 0.0, vy = 0.0;
 };
 
-// The source lies over the whole result.
+// The map of a source that covers the whole result exactly once.
 [[nodiscard]] UvMap stretch(Extent result);
 
-// How a source lies on the result, but for its rotation: see Layer in blend.h.
+// The place of a source on the result, without its rotation: see Layer in blend.h.
 struct Placement {
     float tiling_x = 1.0f, tiling_y = 1.0f;
     float offset_x = 0.0f, offset_y = 0.0f;
@@ -31,7 +31,7 @@ struct Placement {
 // `cosine` and `sine` are those of the rotation.
 [[nodiscard]] UvMap uv_map_of(const Placement& placement, Extent result, double cosine, double sine);
 
-// How many texels of a source lie in one texel of the result, in the direction in which they are more.
+// The number of texels of a source in one texel of the result, in the direction in which that number is larger.
 [[nodiscard]] double texels_per_texel(const UvMap& map, Extent source);
 
 // Taps that own their rows.
@@ -54,29 +54,29 @@ public:
 
     // Goes to row j of the result.
     void place(int j);
-    // The samples of that row from a plane of the source's extent. `out` has room for whole vectors.
+    // Samples that row from a plane of the source's extent. `out` has room for whole vectors.
     void sample(const Plane<float>& plane, float* out);
-    // The same where they are a row of the plane as it is; null elsewhere.
+    // The samples of that row if they are an unchanged row of the plane; otherwise null.
     [[nodiscard]] const float* row_of(const Plane<float>& plane) const {
         return is_whole() ? plane.row(row_) : nullptr;
     }
 
-    // The samples are a row of the source as it is.
+    // Whether the samples are an unchanged row of the source.
     [[nodiscard]] bool is_whole() const { return kind_ == Kind::same; }
-    // The samples lie between two rows of the source.
+    // Whether all samples of a row lie between the same two rows of the source.
     [[nodiscard]] bool is_along_rows() const { return kind_ != Kind::any; }
     struct Rows {
         int upper;
         int lower;
     };
-    // These rows, and the samples between them, after place(). Precondition: is_along_rows().
+    // These two rows, and the samples between them, after place(). Precondition: is_along_rows().
     [[nodiscard]] Rows rows();
     void sample(const float* upper, const float* lower, float* out);
 
 private:
     enum class Kind {
-        same,  // the source as it is
-        axes,  // its rows lie along those of the result: all have the same columns
+        same,  // the unchanged source
+        axes,  // its rows are parallel to those of the result, so all rows use the same columns
         any,
     };
 
@@ -86,10 +86,10 @@ private:
     Wrap wrap_x_;
     Wrap wrap_y_;
     Kind kind_;
-    int row_ = 0;  // of the source, where it is the same
+    int row_ = 0;  // the row of the source, for Kind::same
     Taps columns_;
-    Taps rows_;                 // one tap where rows lie along rows, else one for each sample
-    Plane<std::int32_t> runs_;  // of the columns, where rows lie along rows
+    Taps rows_;                 // one tap if rows are parallel, else one for each sample
+    Plane<std::int32_t> runs_;  // of the columns, if rows are parallel
 };
 
 }  // namespace tex

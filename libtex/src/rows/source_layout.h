@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// source_layout.h: which of the ways to find out the layout of a file's normals counts: see SourceOptions.
+// source_layout.h: chooses between the ways to find the layout of a file's normals: see SourceOptions.
 
 #pragma once
 
@@ -9,19 +9,19 @@
 
 namespace tex {
 
-// The swizzle that needs no look at the texels; nothing where guess_swizzle() decides.
+// The swizzle, if the texels are not needed to find it; nothing if guess_swizzle() must decide.
 std::optional<Swizzle> known_swizzle(const Texture& head, const SourceOptions& options);
 
-// The swizzle to take where guess_swizzle() has found `guess`.
+// The swizzle to use if guess_swizzle() has found `guess`.
 Swizzle guessed_swizzle(const Swizzle& guess, const SourceOptions& options);
 
-// What is known of a file whose normals have this swizzle. `head` needs no levels.
+// What is known about a file whose normals have this swizzle. `head` needs no levels.
 SourceInfo source_info(const Texture& head, const Swizzle& swizzle, const SourceOptions& options);
 
-// How the file's values are unpacked.
+// The options with which the file's values are unpacked.
 UnpackOptions unpack_options(const SourceInfo& info, const SourceOptions& options);
 
-// Errors: unsupported.
+// Checks that the channels can hold normals. Errors: unsupported.
 Result<void> check_channels(const Texture& head);
 
 }  // namespace tex

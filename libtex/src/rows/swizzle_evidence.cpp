@@ -10,7 +10,7 @@
 namespace tex {
 namespace {
 
-constexpr float kConstant = 8.0f / 255.0f;  // a BC1 block's fit of a constant may stray by this much
+constexpr float kConstant = 8.0f / 255.0f;  // a BC1 block may miss a constant by this much
 constexpr int kMostTexels = 1 << 20;
 
 int step_of(Extent extent) {
@@ -61,7 +61,7 @@ void SwizzleEvidence::add_row(int j, const float* const (&channels)[4]) {
 }
 
 Swizzle SwizzleEvidence::layout() const {
-    // Unsigned where no texel is negative.
+    // If no texel is negative, values are taken as unsigned.
     const bool is_signed =
         std::any_of(std::begin(channels_), std::end(channels_), [](const Range& range) { return range.least < 0.0f; });
     const auto count = static_cast<double>(count_);
@@ -69,10 +69,10 @@ Swizzle SwizzleEvidence::layout() const {
     const double rxgb_error = (is_signed ? signed_ : unsigned_).rxgb / count;
     const auto& [r, g, b, a] = channels_;
     constexpr double kNotUnit = 0.25;  // far beyond quantisation and filtering
-    // Floats without a negative value may be signed all the same: a flat map is 0, 0, 1.
+    // Floats without a negative value may still be signed: a flat map is 0, 0, 1.
     const bool is_unit = rgb_error <= kNotUnit || (is_float_ && signed_.rgb / count <= kNotUnit);
     if (r.is_constant() && b.is_constant() && (!a.is_constant() || !is_unit)) return named("dxt5nm");
-    constexpr double kGrey = 4.0 / 255.0;  // 5 and 6 bits of the same grey differ by so much
+    constexpr double kGrey = 4.0 / 255.0;  // the same grey in 5 and in 6 bits differs by this much
     if (!a.is_constant() && off_grey_ / count <= kGrey) return named("dxt5nm");
     if (r.is_constant() && !a.is_constant() && rxgb_error < rgb_error) return named("rxgb");
     return named("rgb");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// swizzle_evidence.h: what the texels of four channels say about their layout: the rule of guess_swizzle(), row by row.
+// swizzle_evidence.h: what the texels of four channels show about their layout: the rule of guess_swizzle(), row by
+// row.
 
 #pragma once
 
@@ -15,10 +16,10 @@ class SwizzleEvidence {
 public:
     SwizzleEvidence(Extent extent, SampleKind sample);
 
-    // Takes row j of the level, its channels R, G, B and A. Rows come in their order, each once; some are passed over.
+    // Adds row j of the level: its channels R, G, B and A. Each row comes once and in order. Some rows are skipped.
     void add_row(int j, const float* const (&channels)[4]);
 
-    // The layout, by what has been added so far: at least row 0.
+    // The layout, according to what has been added so far, which must include row 0.
     [[nodiscard]] Swizzle layout() const;
 
 private:
@@ -37,7 +38,7 @@ private:
 
     const Extent extent_;
     const bool is_float_;
-    const int step_;  // between the texels that are looked at
+    const int step_;  // distance between the texels that are examined
     Range channels_[4];
     Errors signed_;
     Errors unsigned_;

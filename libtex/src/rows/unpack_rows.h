@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// unpack_rows.h: how unpack() reads channels: which of them, and whether stored floats are signed.
+// unpack_rows.h: how unpack() reads channels: which channels it reads, and whether stored floats are signed.
 
 #pragma once
 
@@ -14,33 +14,34 @@
 
 namespace tex {
 
-// Which of four channels hold x, y and z; -1 for none.
+// The channels, of four, that hold x, y and z; -1 if none does.
 struct Sources {
     int x = -1;
     int y = -1;
     int z = -1;
 };
 
-// Of a file with one channel.
+// The message for a file with one channel.
 inline constexpr const char* kOneChannel = "has one channel, which holds no normals (bake-normals reads heights)";
 
-// `available` channels can be read: bit c for channel c. Errors: bad_option, as unpack().
+// Finds the sources among the `available` channels: bit c is set if channel c can be read. Errors: bad_option, as
+// unpack().
 Result<Sources> sources_of(const Swizzle& swizzle, unsigned available);
 
-// What the options say of ValueRange, or else the file.
+// The ValueRange that the options give, or else the one that the file gives.
 ValueRange range_of(const std::string& normal_encoding, const UnpackOptions& options);
 
-// Whether values are (n + 1) / 2, where that does not depend on them; else nothing.
+// Whether values are (n + 1) / 2, if that does not depend on the values; else nothing.
 std::optional<bool> is_unsigned(SampleKind sample, ValueRange range);
 
-// All of the rule but `is_unsigned`.
+// The whole rule except `is_unsigned`.
 UnpackRule rule_of(const UnpackOptions& options, SampleKind sample, int bits, YAxis y_axis);
 
-// What values say about ValueRange. Rows are weighed in any order and added in theirs.
+// What values show about ValueRange. Rows may be weighed in any order, but must be added in their order.
 struct RangeEvidence {
     bool negative = false;
-    double off_signed = 0.0;    // how far the vectors are from unit length, read as signed
-    double off_unsigned = 0.0;  // and as unsigned
+    double off_signed = 0.0;    // deviation of the vectors from unit length, read as signed
+    double off_unsigned = 0.0;  // the same, read as unsigned
 
     void add(const RangeEvidence& row) {
         negative = negative || row.negative;
