@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// centre.h: what most texels hold: 1/2 in a map of a flat surface, unless it went through the sRGB curve.
+// centre.h: the typical value of x and y: 1/2 in a map of a flat surface, unless it went through the sRGB curve.
 
 #pragma once
 
@@ -7,11 +7,11 @@
 
 namespace tex {
 
-// Medians of the stored x and y over the sampled texels in which one of them is not black: what fills the space outside
-// of UV islands does not count. Half, where all are black. Precondition: x and y are stored.
+// Medians of the stored x and y over the sampled texels in which at least one of them is not black, so that the fill
+// outside UV islands does not count. Half, if all texels are black. Precondition: x and y are stored.
 struct Centre {
     double x = 0.5, y = 0.5;
-    // The larger distance of both from `value`.
+    // The larger of the distances of x and y from `value`.
     [[nodiscard]] double distance(double value) const;
 };
 Centre measure_centre(const Stored& stored);

@@ -10,27 +10,27 @@
 namespace tex {
 namespace {
 
-// A neighbourhood of 3x3 regions says something where its correlation is at least this, and this share of its evidence
-// agrees.
+// A neighbourhood of 3x3 regions counts as clear if its correlation is at least kLeastCorrelation and at least the
+// share kLeastAgreement of its evidence agrees.
 constexpr double kLeastCorrelation = 0.2;
 constexpr double kLeastAgreement = 0.8;
 constexpr std::size_t kLeastNeighbours = 4;
-constexpr double kLeastEnergy = 0.25;  // of the median neighbourhood's
-constexpr double kMixedShare = 0.08;   // of the neighbourhoods that say something
+constexpr double kLeastEnergy = 0.25;  // of the energy of the median neighbourhood
+constexpr double kMixedShare = 0.08;   // of the clear neighbourhoods
 constexpr std::size_t kMixedRegions = 3;
-// Neighbourhoods that correlate by less speak softly, as those of UV islands do: more of them must disagree.
+// Neighbourhoods with a smaller correlation are weak evidence, as those of UV islands are: more of them must disagree.
 constexpr double kClearCorrelation = 0.5;
 constexpr double kMixedShareSoftly = 0.25;
-constexpr double kLeastUsable = 0.5;  // of the texels hold a normal: a few between others that do not are no evidence
+constexpr double kLeastUsable = 0.5;  // share of texels with a normal; a few between texels without one prove nothing
 
 struct Neighbourhood {
     const CurlRegion* centre = nullptr;
     std::size_t regions = 0;
     CurlSums sums;
-    double agreeing = 0.0, evidence = 0.0;  // of the regions: sums of cross and of |cross|
+    double agreeing = 0.0, evidence = 0.0;  // sums of cross and of |cross| over the regions
 };
 
-// Those of the scale at which regions speak most clearly, each for itself.
+// The neighbourhoods at the scale at which regions are clearest, each taken separately.
 std::vector<Neighbourhood> neighbourhoods_of(const Curl& curl) {
     int scale = 0;
     double most = -1.0;
@@ -63,10 +63,10 @@ std::vector<Neighbourhood> neighbourhoods_of(const Curl& curl) {
     return all;
 }
 
-// Regions whose neighbourhood says clearly which way green points.
+// Regions whose neighbourhood clearly shows the direction of green.
 struct Votes {
     std::vector<Region> up, down;
-    std::vector<double> correlations;  // of both, without their signs
+    std::vector<double> correlations;  // of both, without signs
 
     [[nodiscard]] double median() {
         const auto middle = correlations.begin() + static_cast<std::ptrdiff_t>(correlations.size() / 2);
@@ -89,7 +89,7 @@ Votes votes_of(const Subject& subject) {
     for (const Neighbourhood& n : all) {
         const double correlation = n.sums.correlation();
         if (n.regions < kLeastNeighbours || energy(n) <= least || std::abs(correlation) < kLeastCorrelation) continue;
-        // 0.8 of the evidence on one side: |sum| / sum of magnitudes is 2 * 0.8 - 1.
+        // If 0.8 of the evidence is on one side, |sum| / sum of magnitudes is 2 * 0.8 - 1.
         if (std::abs(n.agreeing) < (2.0 * kLeastAgreement - 1.0) * n.evidence) continue;
         const Rect& rect = n.centre->rect;
         votes.correlations.push_back(std::abs(correlation));

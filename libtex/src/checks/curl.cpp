@@ -10,10 +10,10 @@
 namespace tex {
 namespace {
 
-constexpr float kJump = 0.5f;  // a change of slope over two texels that is a jump
+constexpr float kJump = 0.5f;  // a change of slope over two texels that counts as a jump
 constexpr int kWideMap = 512;
 
-// Texels along a region's edge: 16 regions or more in maps of 128 texels and above.
+// Length of a region's edge in texels: maps of 128 texels and above have 16 regions or more.
 int region_size(Extent extent) { return std::min(extent.width, extent.height) >= kWideMap ? 64 : 32; }
 
 // Sums over the inner texels of [x0, x1) x [y0, y1).
@@ -27,8 +27,8 @@ CurlSums sum_region(const Slopes& s, int x0, int y0, int x1, int y1) {
             const float py = pu[i] - pd[i], qx = q[i + 1] - q[i - 1];
             const float px = p[i + 1] - p[i - 1], qy = qu[i] - qd[i];
             const float all = py + qx + px + qy;
-            if (!(all == all)) continue;  // a neighbour holds no normal
-            // Jumps (the borders of UV islands, scratches) count as much as moderate changes, not by their square.
+            if (!(all == all)) continue;  // a neighbour has no normal
+            // Jumps (the borders of UV islands, scratches) count as much as moderate changes, not as their square.
             const float w = 1.0f / (kJump * kJump + py * py + qx * qx);
             const float v = 1.0f / (kJump * kJump + px * px + qy * qy);
             sums.cross += static_cast<double>(w * py) * qx;
@@ -55,11 +55,12 @@ double ratio(double cross, double a, double b) {
     return square > 0.0 ? cross / std::sqrt(square) : 0.0;
 }
 
-// sum of evidence over the root of the sum of its squares: the z-score of "both signs are equally likely".
+// The sum of the evidence divided by the root of the sum of its squares: the z-score of "both signs are equally
+// likely".
 double z_score(const std::vector<CurlRegion>& regions, int scale, bool exchanged) {
     double sum = 0.0, squares = 0.0;
     for (const CurlRegion& region : regions) {
-        // A region's vote is bounded by its own energy, so that a few deep scratches do not outvote the rest.
+        // A region's vote is limited by its own energy, so that a few deep scratches do not outvote the rest.
         const CurlSums& sums = region.scale[scale];
         const double correlation = exchanged ? sums.exchanged_correlation() : sums.correlation();
         const double energy = exchanged ? sums.px_square * sums.qy_square : sums.p_square * sums.q_square;

@@ -18,9 +18,9 @@
 namespace tex {
 namespace {
 
-// Lines that follow from what the damage is, and need no fitting; the fitted ones are in thresholds.h.
+// Thresholds that follow from the nature of the damage and need no fitting. The fitted ones are in thresholds.h.
 constexpr double kBlockRatio = 2.0;
-constexpr double kBlockExcess = 2.0 / 255.0;  // half a code of green, which has 6 bits in DXT5nm: rounding alone
+constexpr double kBlockExcess = 2.0 / 255.0;  // half a code of DXT5nm's green (6 bits): the effect of rounding alone
 constexpr double kJpegElsewhere = 0.5;        // of the strength at the blocks of a JPEG
 constexpr int kLatticeTeeth = 6;
 constexpr double kAboveAlphaShare = 0.002;
@@ -31,10 +31,9 @@ constexpr double kExchangedZ = 0.2;
 constexpr double kExchangedLead = 0.1;
 constexpr double kExchangedLeast = 0.2;
 constexpr double kExchangedConfidence = 0.99;
-constexpr double kExchangedEnergy = 0.25;  // of products of two energies: half the change across that is along
+constexpr double kExchangedEnergy = 0.25;  // of products of two energies: the change across is half the change along
 
-// The mean of |length - 1| over every 7th sampled texel, after `restore` was applied to the stored values of x, y and
-// z.
+// The mean of |length - 1| over every 7th sampled texel, after `restore` is applied to the stored values of x, y and z.
 template <class Restore>
 double length_error(const Stored& stored, Restore&& restore) {
     constexpr int kStep = 7;
@@ -85,7 +84,7 @@ void check_alpha(const Subject& subject, Findings& findings) {
         stored.has_z() && !stored.is_signed && stored.image->planes.size() == 4 && stored.channel(Component::x) != 3;
     if (!straight_possible || counts.high[3] - counts.low[3] < 0.1f) return;
     if (counts.share(Property::above_alpha) > kAboveAlphaShare || counts.alpha_correlation < kAlphaCorrelation) return;
-    // A mask with black outside is no proof: half-transparent texels are.
+    // A mask with black outside it proves nothing, but half-transparent texels do.
     const Plane<float>& alpha = stored.image->planes[3];
     double half = 0.0;
     for (int j = 0; j < alpha.extent().height; ++j) {
@@ -121,8 +120,8 @@ void check_exchanged(const Subject& subject, Findings& findings) {
     const bool behind = counts.share(Property::z_behind) > 0.05;
     if (behind || exchanged < as_stored + kExchangedLead || exchanged < kExchangedLeast) return;
     if (subject.curl.exchanged_confidence < kExchangedConfidence) return;
-    // The slopes of most surfaces change more along their own axis than across it: so they must as exchanged. A bowl,
-    // whose slopes do not change across at all, is the picture of a saddle with exchanged channels.
+    // The slopes of most surfaces change more along their own axis than across it, so they must do so after the
+    // exchange. A bowl, whose slopes do not change across at all, looks exactly like a saddle with exchanged channels.
     const CurlSums& sums = subject.curl.scale[subject.curl.best_scale];
     if (sums.p_square * sums.q_square < kExchangedEnergy * sums.px_square * sums.qy_square) return;
     Finding& finding = findings.add("N308", "x and y agree better when exchanged (correlation " +
@@ -132,7 +131,7 @@ void check_exchanged(const Subject& subject, Findings& findings) {
     finding.confidence = subject.curl.exchanged_confidence;
 }
 
-// Whether the trace is one of aligned blocks. Maps of few distinct values have it wherever one looks.
+// Whether the trace comes from aligned blocks. Maps of few distinct values have it at every offset.
 bool stands_out(const JpegTrace& trace, const Stored& stored) {
     constexpr int kOffsets[] = {1, 3, 4};
     return std::none_of(std::begin(kOffsets), std::end(kOffsets), [&](int offset) {
@@ -154,7 +153,7 @@ void check_blocks(const Subject& subject, Findings& findings) {
         }
         return;
     }
-    // The first one that speaks: blocks of 8x8 are blocks of 4x4 too.
+    // The first trace found counts, because blocks of 8x8 are also blocks of 4x4.
     const JpegTrace jpeg = measure_jpeg(subject.stored);
     if (jpeg.weight() > thresholds::kJpegTrace && stands_out(jpeg, subject.stored)) {
         add("N304",

@@ -11,13 +11,12 @@ constexpr std::string_view kTrailing = "after the last level";
 
 bool is_power_of_two(int n) { return (n & (n - 1)) == 0; }
 
-// "bc3-unorm, 1y1x": what a texture is.
+// Describes a texture, for example "bc3-unorm, 1y1x".
 std::string format_text(const Texture& texture, const Swizzle& swizzle) {
     return std::string(name_of(kFormatNames, texture.format)) + ", " + to_string(swizzle);
 }
 
-// Whether two swizzles hold the same components; what else is in a channel does not matter where the encoding leaves it
-// open.
+// Whether two swizzles hold the same components. Channels that the encoding leaves open may hold anything.
 bool same_layout(const Swizzle& wanted, const Swizzle& stored, int channels) {
     for (std::size_t c = 0; c < static_cast<std::size_t>(channels); ++c) {
         const auto holds = [](Component k) { return k == Component::x || k == Component::y || k == Component::z; };
@@ -26,7 +25,8 @@ bool same_layout(const Swizzle& wanted, const Swizzle& stored, int channels) {
     return true;
 }
 
-// A picture that is not compressed may have an alpha more or less than the encoding: pictures store no swizzle.
+// A picture that is not compressed may have one alpha channel more or less than the encoding, because pictures store no
+// swizzle.
 bool holds_encoding(const Texture& texture, const Swizzle& swizzle, Encoding encoding) {
     const EncodingInfo info = encoding_info(encoding);
     const auto widened = [](Format format) {

@@ -21,7 +21,7 @@ bool Findings::wants(std::string_view id) const {
     const Rule& row = rule(id);
     if (lists(options_.disable, row)) return false;
     if (row.on || lists(options_.enable, row)) return true;
-    // The rules that are off are those of requirements that are not made by default.
+    // Rules are off if they check requirements that are not made by default.
     return (id == "N105" && options_.require.power_of_two) || (id == "N307" && options_.require.tiles);
 }
 

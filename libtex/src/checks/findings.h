@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// findings.h: what the rules look at, and where they put what they find.
+// findings.h: the data that the rules examine, and the place for their findings.
 
 #pragma once
 
@@ -16,8 +16,7 @@
 
 namespace tex {
 
-// A texture, its base level decoded, and what was measured of it. Without x or y in the swizzle only the file is
-// checked.
+// A texture, its decoded base level, and measurements of it. If the swizzle has no x or no y, only the file is checked.
 struct Subject {
     const Texture& texture;
     const CheckOptions& options;
@@ -25,22 +24,22 @@ struct Subject {
     Image base = {};
     Stored stored = {};
     bool has_vectors = false;
-    bool constant = false;    // no channel varies
+    bool constant = false;    // all channels are constant
     bool sampled_ok = false;  // large and varied enough for statistics
     TexelCounts counts = {};
     Curl curl = {};
-    YEvidence y = {};  // as far as the curl tells
+    YEvidence y = {};  // what the curl shows
 };
 
 class Findings {
 public:
     explicit Findings(const CheckOptions& options) : options_(options) {}
 
-    // Whether the rule is to be checked.
+    // Whether the rule must be checked.
     [[nodiscard]] bool wants(std::string_view id) const;
-    // Adds a finding of rule `id`, unless it is not wanted (then to a place that nobody reads).
+    // Adds a finding of rule `id`. If that rule is not wanted, the result is a dummy that is not read.
     Finding& add(std::string_view id, std::string message);
-    // The findings in order, without those that others explain; `explained` counts what was left out.
+    // Returns the findings in order, without those that other findings explain; `explained` counts the omitted ones.
     std::vector<Finding> take(int& explained);
 
 private:

@@ -12,7 +12,7 @@
 namespace tex {
 namespace {
 
-// Blocks of half the size show as much half-way between the borders as at them, and more than at the quarters.
+// Blocks of half the size are as visible half-way between the borders as at the borders, and more than at the quarters.
 constexpr double kHalfStandsOut = 1.2;
 constexpr double kHalfAsMuch = 0.8;
 
@@ -23,7 +23,7 @@ double median(std::vector<double>& values) {
     return *middle;
 }
 
-// Mean steps of one window along one axis: steps[k] is that between line k and line k + 1.
+// The mean steps of one window along one axis: steps[k] is the step between line k and line k + 1.
 std::vector<double> mean_steps(const Plane<float>& plane, Rect window, bool columns) {
     const int lines = columns ? window.width : window.height;
     std::vector<double> steps(static_cast<std::size_t>(std::max(0, lines - 1)), 0.0);
@@ -32,7 +32,7 @@ std::vector<double> mean_steps(const Plane<float>& plane, Rect window, bool colu
         const float* other = columns ? row + 1 : plane.row(window.y + j + 1) + window.x;
         for (int i = 0; i < window.width - (columns ? 1 : 0); ++i) {
             const double step = std::abs(static_cast<double>(row[i]) - other[i]);
-            // NaN compares false: such texels are another rule's matter.
+            // NaN compares false: another rule checks such texels.
             if (step < 1e6) steps[static_cast<std::size_t>(columns ? i : j)] += step;
         }
     }
@@ -45,7 +45,7 @@ double axis_ratio(const Plane<float>& plane, const std::vector<Rect>& windows, i
         const std::vector<double> steps = mean_steps(plane, window, columns);
         double sum = 0.0;
         for (const double step : steps) sum += step;
-        // What counts as no step at all beside the map's usual ones.
+        // Steps below this count as none, compared with the map's usual steps.
         const double floor = steps.empty() ? 0.0 : 0.02 * sum / static_cast<double>(steps.size());
         if (!(floor > 0.0)) continue;
         for (std::size_t k = 1; k + 1 < steps.size(); ++k) {
@@ -65,14 +65,14 @@ double axis_ratio(const Plane<float>& plane, const std::vector<Rect>& windows, i
 using Color = std::array<float, 3>;
 
 constexpr float kCode = 1.0f / 255.0f;
-constexpr float kContrast = 8.0f * kCode;  // between the ends of a palette: below, rounding hides where the others lie
+constexpr float kContrast = 8.0f * kCode;  // between the ends of a palette: below it, rounding hides the others
 constexpr float kOffPalette = 1.5f * kCode;
 constexpr std::size_t kMostColors = 4;  // of a block of BC1 to BC3
-constexpr double kLeastBlocks = 64.0;   // for a share to mean something
+constexpr double kLeastBlocks = 64.0;   // fewer blocks give no reliable share
 
 enum class Palette { unclear, fits, differs };
 
-// The different colours of a block; one more than kMostColors stands for all further ones.
+// The distinct colours of a block. One colour more than kMostColors stands for all further ones.
 std::vector<Color> colors_of(const Image& image, std::size_t channels, int x, int y) {
     std::vector<Color> seen;
     for (int j = 0; j < kBlockEdge; ++j) {
@@ -87,7 +87,7 @@ std::vector<Color> colors_of(const Image& image, std::size_t channels, int x, in
     return seen;
 }
 
-// Whether `color` lies a third, half or two thirds of the way from one end to the other.
+// Whether `color` lies one third, half or two thirds of the way from one end to the other.
 bool is_between(const Color& color, const Color& first, const Color& last) {
     for (const float t : {1.0f / 3.0f, 0.5f, 2.0f / 3.0f}) {
         bool near = true;
@@ -104,8 +104,8 @@ float contrast(const Color& a, const Color& b) {
     return most;
 }
 
-// Whether the texels of a block are those of a palette: two colours and one or two evenly spaced between them. One or
-// two colours alone fit any.
+// Whether the texels of a block form a palette: two colours and one or two evenly spaced between them. One or two
+// colours alone fit any palette.
 Palette palette_of(const Image& image, std::size_t channels, int x, int y) {
     std::vector<Color> colors = colors_of(image, channels, x, y);
     if (colors.size() > kMostColors) return Palette::differs;
@@ -123,7 +123,8 @@ Palette palette_of(const Image& image, std::size_t channels, int x, int y) {
     return Palette::fits;
 }
 
-// Of the blocks whose corners lie at `offset` plus multiples of `pitch`; 0 where fewer than `least` count.
+// The share among the blocks whose corners lie at `offset` plus multiples of `pitch`; 0 if fewer than `least` blocks
+// count.
 double share_at(const Stored& stored, int offset, int pitch, double least) {
     const std::size_t channels = std::min<std::size_t>(stored.image->planes.size(), 3);
     double fits = 0.0, all = 0.0;
@@ -177,7 +178,7 @@ double grid_ratio(const Stored& stored, int block) {
 }
 
 double palette_share(const Stored& stored) {
-    // Blocks that lie across those of a codec; and, within a JPEG's blocks of 8x8, those across the middle.
+    // Blocks that straddle those of a codec, and, within a JPEG's blocks of 8x8, blocks across the middle.
     const double across = std::max(share_at(stored, 2, kBlockEdge, 1.0), share_at(stored, 2, 2 * kBlockEdge, 1.0));
     return share_at(stored, 0, kBlockEdge, kLeastBlocks) - across;
 }

@@ -17,24 +17,24 @@ namespace {
 constexpr int kHighest = 4;
 constexpr int kSide = kHighest + 1;
 constexpr std::size_t kCoefficients = std::size_t{kSide} * kSide;
-// The steps of those of luma at quality 50 (T.81, table K.1), [v][u].
+// The steps of these coefficients for luma at quality 50 (T.81, table K.1), [v][u].
 constexpr int kSteps[kSide][kSide] = {
     {16, 11, 10, 16, 24}, {12, 12, 14, 19, 26}, {14, 13, 16, 24, 40}, {14, 17, 22, 29, 51}, {18, 22, 37, 56, 68}};
 
-constexpr int kFinest = 4;  // finer steps drown in the rounding of R, G and B
+constexpr int kFinest = 4;  // finer steps are lost in the rounding of R, G and B
 constexpr int kCoarsest = 60;
-constexpr int kBins = 16;    // of a histogram, in 1
-constexpr int kRange = 512;  // magnitudes above are rare
+constexpr int kBins = 16;    // of a histogram, per unit
+constexpr int kRange = 512;  // larger magnitudes are rare
 constexpr std::size_t kAllBins = std::size_t{kRange} * kBins;
-constexpr int kBlocks = 8192;         // are enough
+constexpr int kBlocks = 8192;         // this many are enough
 constexpr double kLeastCount = 12.0;  // coefficients that are not rounded to 0
 constexpr std::size_t kLeastCoefficients = 3;
-constexpr double kAsStrong = 0.1;  // every multiple of 2q is one of q: the largest step among the strong ones
+constexpr double kAsStrong = 0.1;  // every multiple of 2q is also one of q: take the largest strong step
 constexpr double kStrong = 0.6;
 
 using Histogram = std::vector<double>;
 
-// The place of coefficient (u, v) in [v][u].
+// The index of coefficient (u, v) in [v][u].
 std::size_t place_of(int u, int v) { return static_cast<std::size_t>(v) * kSide + static_cast<std::size_t>(u); }
 
 // Row u of the cosine transform of 8 samples (T.81, A.3.3).
@@ -67,14 +67,14 @@ void add_block(const Image& image, const CosineBasis& basis, int x, int y,
             float value = 0.0f;
             for (int j = 0; j < 8; ++j) value += half[j][u] * basis.row[v][j];
             const float magnitude = std::abs(value) * static_cast<float>(kBins) + 0.5f;
-            if (!(magnitude < static_cast<float>(kAllBins))) continue;  // NaN too
+            if (!(magnitude < static_cast<float>(kAllBins))) continue;  // also if NaN
             histograms[place_of(u, v)][static_cast<std::size_t>(magnitude)] += 1.0;
         }
     }
 }
 
-// One period of cos(2 pi c / step) for each step, in bins: made once, as small files would take most of their time for
-// it.
+// One period of cos(2 pi c / step) for each step, in bins. It is computed only once, because small files would spend
+// most of their time on it.
 const std::vector<double>& wave_of(int step) {
     static const auto waves = [] {
         std::array<std::vector<double>, kCoarsest + 1> all;
@@ -88,8 +88,8 @@ const std::vector<double>& wave_of(int step) {
     return waves[static_cast<std::size_t>(step)];
 }
 
-// The mean of cos(2 pi c / step) over the coefficients c of at least half a step: 1 where all are multiples. -1 for too
-// few.
+// The mean of cos(2 pi c / step) over the coefficients c of at least half a step: 1 if all are multiples, -1 if there
+// are too few coefficients.
 double strength_at(const Histogram& histogram, int step) {
     const std::vector<double>& wave = wave_of(step);
     double sum = 0.0, count = 0.0;
@@ -145,7 +145,7 @@ JpegTrace measure_jpeg(const Stored& stored, int offset) {
             }
         }
     }
-    // Most coefficients are small: the rest of the bins is empty.
+    // Most coefficients are small, so the last bins are empty.
     for (Histogram& histogram : histograms) {
         while (!histogram.empty() && histogram.back() == 0.0) histogram.pop_back();
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// jpeg.h: what the quantisation of a JPEG left in texels that were decoded from it.
+// jpeg.h: traces of JPEG quantisation in texels that were decoded from a JPEG.
 
 #pragma once
 
@@ -7,22 +7,22 @@
 
 namespace tex {
 
-// A JPEG stores the cosine transform of 8x8 blocks of luma as multiples of a step for each coefficient; decoded and
-// rounded to 8 bits they still lie close to the multiples. (Fan, de Queiroz: Identification of Bitmap Compression
-// History, 2003.)
+// A JPEG stores the cosine transform of 8x8 blocks of luma as multiples of a step for each coefficient. After decoding
+// and rounding to 8 bits, coefficients still lie close to these multiples. (Fan, de Queiroz: Identification of Bitmap
+// Compression History, 2003.)
 struct JpegTrace {
     double strength = 0.0;  // 0 to 1: how closely; the median over the low coefficients. Below 0.3 where no JPEG was
     double scale =
         0.0;  // of the steps, against the table of ITU-T T.81 annex K: 1 is quality 50 of libjpeg, 0.5 quality 75
-    // What is judged: a faint trace and a fine quantisation both count for little.
+    // The value to judge: a faint trace and a fine quantisation both reduce it.
     [[nodiscard]] double weight() const { return strength * scale; }
-    // As libjpeg numbers it, 1 to 100. Precondition: scale > 0.
+    // The quality as libjpeg numbers it, 1 to 100. Precondition: scale > 0.
     [[nodiscard]] double quality() const { return scale <= 1.0 ? 100.0 - 50.0 * scale : 50.0 / scale; }
 };
 
-// Looks at blocks of 8x8 texels whose corners lie at multiples of 8, plus `offset` (0 to 7). A JPEG leaves its trace at
-// offset 0 alone; a map of few distinct values has a similar one at any offset. No trace in maps of fewer than three
-// channels, of signed values, or too small.
+// Examines blocks of 8x8 texels whose corners lie at multiples of 8, plus `offset` (0 to 7). A JPEG leaves its trace
+// only at offset 0; a map of few distinct values has a similar trace at any offset. Finds no trace in maps that have
+// fewer than three channels, have signed values, or are too small.
 JpegTrace measure_jpeg(const Stored& stored, int offset = 0);
 
 }  // namespace tex

@@ -17,8 +17,8 @@ constexpr double kRange = 0.5;
 constexpr double kLeastRate = 16.0;  // teeth per unit of slope
 constexpr double kMostRate = 51.0;
 constexpr double kRateStep = 0.25;
-constexpr float kSteep = 2.0f;  // the other slope: z has few codes of 8 bits there, and quotients by them are a comb
-constexpr double kLeastShare = 0.1;  // of the texels looked at: a few gentle slopes in a steep map say nothing
+constexpr float kSteep = 2.0f;  // the other slope: there z has few codes of 8 bits, and quotients by them form a comb
+constexpr double kLeastShare = 0.1;  // of the examined texels: a few gentle slopes in a steep map prove nothing
 
 void add_slopes(const Plane<float>& slopes, const Plane<float>& across, std::vector<double>& bins) {
     for (int j = 0; j < slopes.extent().height; ++j) {
@@ -37,7 +37,8 @@ double count(const std::vector<double>& bins) {
     return sum;
 }
 
-// Less its own average over one period of the slowest comb, and without slopes near 0: a flat map is no comb.
+// Subtracts the average over one period of the slowest comb, and removes slopes near 0, because a flat map is not a
+// comb.
 std::vector<double> detail_of(const std::vector<double>& bins) {
     constexpr int kRadius = static_cast<int>(kBins / kLeastRate / 2.0);
     std::vector<double> weighted(bins.size()), detail(bins.size());
@@ -60,7 +61,7 @@ std::vector<double> detail_of(const std::vector<double>& bins) {
     return detail;
 }
 
-// Teeth at multiples of `step` other than 0 that hold at least 1 % of what all of them hold.
+// The number of teeth at multiples of `step` other than 0 that hold at least 1 % of the total of all these teeth.
 int count_teeth(const std::vector<double>& bins, double step) {
     std::vector<double> teeth(static_cast<std::size_t>(2.0 * kRange / step) + 3);
     double sum = 0.0;
@@ -92,7 +93,7 @@ Lattice measure_lattice(const Stored& stored) {
     constexpr int kRates = static_cast<int>((kMostRate - kLeastRate) / kRateStep) + 1;
     for (int r = 0; r < kRates; ++r) {
         const double rate = kLeastRate + r * kRateStep;
-        // Combs stand with a tooth at 0: the cosine alone.
+        // A comb has a tooth at 0, so only the cosine is used.
         double p = 0.0, q = 0.0;
         for (int k = 0; k < kBins; ++k) {
             const double wave = math::cos(2.0 * math::kPi * rate * ((k + 0.5) / kBins - kRange));

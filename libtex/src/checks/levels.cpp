@@ -29,7 +29,7 @@ Vector normalised(const Vector& v) {
 
 Vector at(const NormalMap& map, int i, int j) { return {map.x.at(i, j), map.y.at(i, j), map.z.at(i, j)}; }
 
-// A larger level, or some rows of it from row `first` on.
+// A larger level, or the rows of it that begin at row `first`.
 struct LargerRows {
     const Plane<float>& rows;
     Extent extent;  // of the whole level
@@ -43,14 +43,14 @@ int last_covered(int k, int from, int to) {
     return std::min(from, static_cast<int>(((std::int64_t{k} + 1) * from + to - 1) / to));
 }
 
-// How much of texel n of `from` lies under texel k of `to`: a whole number, `from` in all for each k.
+// The part of texel n of `from` that lies under texel k of `to`: a whole number; the sum for each k is `from`.
 float covered(int n, int k, int from, int to) {
     const std::int64_t begin = std::max(std::int64_t{n} * to, std::int64_t{k} * from);
     const std::int64_t end = std::min((std::int64_t{n} + 1) * to, (std::int64_t{k} + 1) * from);
     return static_cast<float>(std::max<std::int64_t>(0, end - begin));
 }
 
-// Row j of the averages.
+// Computes row j of the averages.
 void average_row(const LargerRows& larger, Extent to, int j, float* out) {
     const Extent from = larger.extent;
     if (from.width == 2 * to.width && from.height == 2 * to.height) {
@@ -73,11 +73,11 @@ void average_row(const LargerRows& larger, Extent to, int j, float* out) {
     }
 }
 
-// Sums over the texels of a level, from which its measures follow.
+// Sums over the texels of a level, from which its measures are computed.
 struct Sums {
     double count = 0.0;
     double length = 0.0, average_length = 0.0;
-    double r[2] = {}, s[2] = {}, rr = 0.0, ss = 0.0, rs = 0.0;  // both components together in the squares
+    double r[2] = {}, s[2] = {}, rr = 0.0, ss = 0.0, rs = 0.0;  // the squares are sums over both components
     double normalised_square = 0.0, average_square = 0.0;
     // Normal equations of s - g r = d_x r_x + d_y r_y.
     double xx = 0.0, xy = 0.0, yy = 0.0, xr = 0.0, yr = 0.0, xs = 0.0, ys = 0.0;
@@ -178,7 +178,7 @@ LevelMeasure measure_of(const Sums& sums) {
     const double determinant = sums.xx * sums.yy - sums.xy * sums.xy;
     const double gain = std::max(0.1, std::abs(measure.gain));
     if (determinant > 1e-3 * sums.xx * sums.yy && determinant > 0.0) {
-        // s(x) = r(x - shift): where s lies to the right, s - r is minus the gradient.
+        // s(x) = r(x - shift): if s lies to the right, s - r is minus the gradient.
         measure.shift_x = -(sums.yy * bx - sums.xy * by) / determinant / gain;
         measure.shift_y = -(sums.xx * by - sums.xy * bx) / determinant / gain;
     }
@@ -198,12 +198,12 @@ void vectors_of_row(const Stored& stored, int j, float* x, float* y, float* z) {
         float nx = sx[i] * scale + offset, ny = sy[i] * scale + offset;
         if (sz == nullptr) {
             const float beyond =
-                std::max(1.0f, std::sqrt(nx * nx + ny * ny));  // as unpack() shortens what lies outside the circle
+                std::max(1.0f, std::sqrt(nx * nx + ny * ny));  // shortened as in unpack() if outside the circle
             nx = nx / beyond;
             ny = ny / beyond;
         }
         const float nz = sz != nullptr ? sz[i] * scale + offset : reconstruct_z(nx, ny);
-        const bool usable = nx * nx + ny * ny + nz * nz <= 16.0f;  // not NaN
+        const bool usable = nx * nx + ny * ny + nz * nz <= 16.0f;  // false for NaN
         x[i] = usable ? nx : 0.0f;
         y[i] = usable ? ny : 0.0f;
         z[i] = usable ? nz : 0.0f;
@@ -225,7 +225,7 @@ Result<NormalMap> base_averages(const Stored& stored, const Execution& execution
     const Extent from = stored.extent(), to = level_extent(from, 1);
     NormalMap map(to);
     const auto body = [&](int begin, int end) {
-        // The rows of the base level under rows begin to end of the smaller one.
+        // The rows of the base level that lie under rows `begin` to `end` of the smaller one.
         const int first = first_covered(begin, from.height, to.height),
                   last = last_covered(end - 1, from.height, to.height);
         NormalMap rows(Extent{from.width, last - first});

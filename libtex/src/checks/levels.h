@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// levels.h: whether the smaller levels follow from the base level.
+// levels.h: measures whether the smaller levels follow from the base level.
 
 #pragma once
 
@@ -11,33 +11,33 @@
 
 namespace tex {
 
-// Row j of a level as vectors, as stored or with z reconstructed; a texel without a usable normal is (0, 0, 0).
+// Row j of a level as vectors, as stored or with z reconstructed. A texel without a usable normal is (0, 0, 0).
 void vectors_of_row(const Stored& stored, int j, float* x, float* y, float* z);
 
-// Averages of a level over the texels that each texel of the next one covers (odd sizes by the covered share), not
-// normalised: of vectors, and of the base level as it is stored. Errors: cancelled, out_of_memory.
+// Averages of a level over the texels that each texel of the next level covers (for odd sizes weighted by the covered
+// share), not normalised: of vectors, and of the base level as it is stored. Errors: cancelled, out_of_memory.
 NormalMap averages_of(const NormalMap& larger);
 Result<NormalMap> base_averages(const Stored& stored, const Execution& execution);
 
-// A level against the averages of the base level over the same texels. r is the average, normalised; a the average as
-// it is; s what is stored; only x and y of the three are compared, so that encodings with and without z are judged
-// alike.
+// Compares a level with the averages of the base level over the same texels. r is the normalised average, a is the
+// average before normalising, and s is the stored value. Only x and y of the three are compared, so that encodings with
+// and without z are judged in the same way.
 struct LevelMeasure {
     int level = 0;
     Extent extent;
-    double signal = 0.0;            // root mean square of r about its mean: what there is to compare, in components
-    double stored_signal = 0.0;     // the same of s: about 0 where a level faded to flat
-    double correlation = 0.0;       // of s with r, each about its mean
-    double gain = 1.0;              // the g that minimises |s - g r|: below 1 where detail fades
+    double signal = 0.0;            // root mean square of r about its mean: the detail to compare, in components
+    double stored_signal = 0.0;     // the same for s: about 0 if a level faded to flat
+    double correlation = 0.0;       // correlation of s with r, each about its mean
+    double gain = 1.0;              // the g that minimises |s - g r|: below 1 if detail fades
     double shift_x = 0.0;           // how far s lies to the right of r, in texels of this level (Lucas, Kanade 1981)
     double shift_y = 0.0;           // and how far below
-    double length = 1.0;            // mean length of the stored vectors; 1 where z is not stored
+    double length = 1.0;            // mean length of the stored vectors; 1 if z is not stored
     double average_length = 1.0;    // mean length of a
     double error_normalised = 0.0;  // root mean square of s - r
     double error_average = 0.0;     // root mean square of s - a
 };
 
-// Errors: cancelled, out_of_memory.
+// Compares level `level`. Errors: cancelled, out_of_memory.
 Result<void> measure_level(const Stored& stored, const NormalMap& averages, int level, const Execution& execution,
                            LevelMeasure& measure);
 

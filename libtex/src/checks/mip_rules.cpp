@@ -15,12 +15,12 @@
 namespace tex {
 namespace {
 
-constexpr int kLeastSide = 16;         // of a level that is judged: smaller ones have too few texels
+constexpr int kLeastSide = 16;         // of a level to judge: smaller levels have too few texels
 constexpr double kLeastSignal = 0.02;  // of components, 2.5 codes of 8 bits
-constexpr double kLeastDue = 0.01;     // where z is not stored: what renormalising must change to be seen
+constexpr double kLeastDue = 0.01;     // if z is not stored: the least change by renormalising that can be seen
 constexpr double kFaded = 0.7;
 constexpr double kFadeRelated = 0.95;
-constexpr double kFadeShort = 0.01;  // fading is no averaging: the vectors stay of unit length
+constexpr double kFadeShort = 0.01;  // fading does not average: the vectors stay unit vectors
 constexpr double kFlatGain = 0.15;
 
 Region whole(const LevelMeasure& m) { return {m.level, 0, 0, m.extent.width, m.extent.height}; }
@@ -29,11 +29,11 @@ std::string name_level(const LevelMeasure& m) {
     return "level " + std::to_string(m.level) + " (" + extent_text(m.extent) + ")";
 }
 
-// Mean length falls, as that of averages does; or, where z is not stored, x and y are those of the averages and not of
-// unit vectors.
+// Whether a level was not renormalised: the mean length falls as that of averages does; or, if z is not stored, x and y
+// are those of the averages and not of unit vectors.
 bool is_not_normalised(const LevelMeasure& m, double base_length, bool has_z) {
     const double due = base_length - m.average_length;
-    // A base level of vectors longer than 1 does not make renormalised ones short.
+    // If vectors of the base level are longer than 1, renormalised ones do not count as short.
     const double short_by = std::min(base_length, 1.0) - m.length;
     if (has_z) return short_by > thresholds::kLevelShort && short_by > 0.5 * due;
     return due > kLeastDue && m.error_normalised > kLeastDue && m.error_average < 0.5 * m.error_normalised;
@@ -70,7 +70,7 @@ void check_relations(const std::vector<LevelMeasure>& levels, Findings& findings
             finding.confidence = 0.95;
             finding.regions = {whole(m)};
         } else if (m.correlation < thresholds::kLevelRelated &&
-                   m.stored_signal > kLeastSignal) {  // else flat: it faded
+                   m.stored_signal > kLeastSignal) {  // else the level faded to flat
             Finding& finding = findings.add("N502", name_level(m) + " correlates by " + decimal(m.correlation, 2) +
                                                         " with the filtered base level");
             finding.figure = m.correlation;
@@ -81,7 +81,7 @@ void check_relations(const std::vector<LevelMeasure>& levels, Findings& findings
     }
 }
 
-// Levels that are the base level's with less and less detail, but whose last one still has some.
+// Finds levels that are the base level with less and less detail, if the last level still has some.
 void check_fade(const std::vector<LevelMeasure>& levels, Findings& findings) {
     const auto fades = [](const LevelMeasure& m) {
         return m.correlation > kFadeRelated && m.gain < kFaded && m.length > 1.0 - kFadeShort;

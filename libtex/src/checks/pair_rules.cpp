@@ -8,11 +8,11 @@
 namespace tex {
 namespace {
 
-constexpr int kReach = 3;           // texels that a shift is looked for
+constexpr int kReach = 3;           // the greatest shift to look for, in texels
 constexpr double kFollows = 0.6;    // correlation
-constexpr double kBetterBy = 0.05;  // a shift must be better than none by this
+constexpr double kBetterBy = 0.05;  // a shift must be better than no shift by this much
 
-// Sums over texels of slopes (p, q) against differences (u, v) of the heights.
+// Sums over texels that compare slopes (p, q) with differences (u, v) of the heights.
 struct Fit {
     double pp = 0.0, qq = 0.0, uu = 0.0, vv = 0.0, pu = 0.0, qv = 0.0;
 
@@ -21,7 +21,7 @@ struct Fit {
     [[nodiscard]] double correlation() const { return (std::abs(x()) + std::abs(y())) / 2.0; }
 };
 
-// The fit where the normals lie (dx, dy) to the right of and below the heights.
+// Adds a window in which the normals lie dx texels to the right of the heights and dy texels below them.
 void add_window(const Slopes& slopes, Rect window, const Plane<float>& height, int dx, int dy, Fit& fit) {
     const Extent extent = height.extent();
     for (int j = 0; j < window.height; ++j) {
@@ -34,7 +34,7 @@ void add_window(const Slopes& slopes, Rect window, const Plane<float>& height, i
             const double u = 0.5 * (static_cast<double>(height.at(x + 1, y)) - height.at(x - 1, y));
             const double v = 0.5 * (static_cast<double>(height.at(x, y - 1)) - height.at(x, y + 1));
             const double all = p + q + u + v;
-            if (!(std::abs(all) < 1e9)) continue;  // NaN too
+            if (!(std::abs(all) < 1e9)) continue;  // also if NaN
             fit.pp += p * p;
             fit.qq += q * q;
             fit.uu += u * u;

@@ -7,8 +7,8 @@
 
 namespace tex {
 
-// How the normals follow from subject.options.height, and what is wrong with that; nullopt without heights or without
-// slopes to compare.
+// Checks whether the normals follow from subject.options.height. Returns nullopt if there are no heights, or no slopes
+// to compare.
 std::optional<PairEvidence> check_pair_rules(const Subject& subject, Findings& findings);
 
 }  // namespace tex

@@ -10,7 +10,7 @@ namespace tex {
 // The rule `id`, which is in the table.
 const Rule& rule(std::string_view id);
 
-// Whether `ids`, separated by blanks, has `id`.
+// Whether the list `ids`, separated by blanks, contains `id`.
 bool has_id(std::string_view ids, std::string_view id);
 
 }  // namespace tex

@@ -13,8 +13,8 @@ namespace {
 constexpr int kLeastLines = 8;
 constexpr double kLeastStep = 1.0 / 255.0;  // half a code
 
-// The mean step between the last line and the first, divided by nearly the largest of the mean steps inside: the map's
-// own lines (joints between bricks) are no seams.
+// The mean step between the last line and the first, divided by nearly the largest of the mean steps inside, because
+// the map's own lines (joints between bricks) are not seams.
 double ratio_of(const Stored& stored, bool columns) {
     const Extent extent = stored.extent();
     const int lines = columns ? extent.width : extent.height;
@@ -29,7 +29,7 @@ double ratio_of(const Stored& stored, bool columns) {
                 const int ni = columns ? (i + 1) % extent.width : i, nj = columns ? j : (j + 1) % extent.height;
                 const double step =
                     std::abs(static_cast<double>(stored.component(channel, ni, nj)) - stored.component(channel, i, j));
-                if (step <= 2.0) steps[static_cast<std::size_t>(columns ? i : j)] += step / length;  // not NaN
+                if (step <= 2.0) steps[static_cast<std::size_t>(columns ? i : j)] += step / length;  // false for NaN
             }
         }
         const double border = steps.back();

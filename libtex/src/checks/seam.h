@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// seam.h: whether a map meets itself at its borders.
+// seam.h: measures whether opposite borders of a map fit together.
 
 #pragma once
 

@@ -20,14 +20,14 @@ constexpr float kLeastZ = 0.05f;
 constexpr int kHoleBorder = 4;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-// The begin of window k of kWindowsAcross along an axis of n texels.
+// The first texel of window k of kWindowsAcross along an axis of n texels.
 int window_begin(int n, int k) {
     const std::int64_t room = n - std::min(n, kWindowSize);
     return static_cast<int>(room * k / (kWindowsAcross - 1)) / kPhase * kPhase;
 }
 
-// Texels beside one without a normal become unusable too, up to kHoleBorder away: there filters and block codecs have
-// mixed the normals with whatever fills the hole.
+// Texels near one without a normal become unusable too, up to a distance of kHoleBorder: filters and block codecs have
+// mixed these normals with the fill of the hole.
 void widen_holes(Slopes& slopes) {
     const Extent extent = slopes.extent();
     const auto pass = [&](int length, int lines, auto at) {
@@ -86,7 +86,7 @@ Slopes slopes_of(const Stored& stored, Rect window) {
             const float flat = x * x + y * y;
             const float z = cz >= 0 ? stored.component(cz, window.x + i, window.y + j) : reconstruct_z(x, y);
             const float square = flat + z * z;
-            // Written so that NaN fails.
+            // Written so that NaN makes it false.
             const bool usable = square >= 0.25f && square <= 4.0f && z >= kLeastZ && (cz >= 0 || flat <= 1.04f);
             unusable |= !usable;
             slopes.p.at(i, j) = usable ? -x / z : kNan;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// stored.h: a decoded level as the rules see it: what is stored, before any repair.
+// stored.h: a decoded level as the rules see it: the stored values, before any repair.
 
 #pragma once
 
@@ -12,42 +12,43 @@
 
 namespace tex {
 
-// Channels of a level and what they hold. Green is as stored: y points up where the file's does.
+// The channels of a level and their meaning. Green is as stored: y points up if it does in the file.
 struct Stored {
-    const Image* image = nullptr;  // R, G, B, A as decode() gives them
+    const Image* image = nullptr;  // R, G, B, A from decode()
     Swizzle swizzle{};
-    bool is_signed = false;  // values are components themselves; otherwise (n + 1) / 2
+    bool is_signed = false;  // values are components; otherwise (n + 1) / 2
     bool in_blocks = false;  // decoded from texel blocks
 
     [[nodiscard]] Extent extent() const { return image->extent(); }
     // The channel that holds `component`, or -1.
     [[nodiscard]] int channel(Component component) const;
     [[nodiscard]] bool has_z() const { return channel(Component::z) >= 0; }
-    // A component of the normal; precondition: 0 <= channel.
+    // A component of the normal. Precondition: channel >= 0.
     [[nodiscard]] float component(int channel, int i, int j) const {
         const float c = image->planes[static_cast<std::size_t>(channel)].at(i, j);
         return is_signed ? c : 2.0f * c - 1.0f;
     }
 };
 
-// A rectangle of texels; x to the right, y down from the top row.
+// A rectangle of texels: x to the right, y down from the top row.
 struct Rect {
     int x = 0, y = 0, width = 0, height = 0;
 };
 
-// Where the statistical rules look: the whole map up to 2^20 texels, else 16 squares of 256 texels, spread evenly, with
-// corners at multiples of 16 so that grids of blocks stay in phase. Rules that count texels do not sample.
+// The texels that the statistical rules examine: the whole map up to 2^20 texels, otherwise 16 squares of 256 texels.
+// The squares are evenly spread, with corners at multiples of 16, so that they stay in phase with grids of blocks.
+// Rules that count texels do not sample.
 std::vector<Rect> sample_windows(Extent extent);
 
-// Slopes p = -x/z and q = -y/z of a window, NaN where a texel holds no usable normal: not finite, shorter than 0.5, z
-// below 0.05, or x^2 + y^2 above 1.04 where z is not stored.
+// Slopes p = -x/z and q = -y/z of a window. They are NaN if a texel has no usable normal: it is not finite, is shorter
+// than 0.5, has z below 0.05, or has x^2 + y^2 above 1.04 and no stored z.
 struct Slopes {
     Plane<float> p, q;
     [[nodiscard]] Extent extent() const { return p.extent(); }
 };
 Slopes slopes_of(const Stored& stored, Rect window);
 
-// Half the size, each texel the mean of the four that it covers (NaN where one of them is).
+// Halves the size. Each texel is the mean of the four that it covers, or NaN if one of them is NaN.
 Slopes halved(const Slopes& slopes);
 
 }  // namespace tex

@@ -20,7 +20,7 @@ constexpr float kBehind = -0.1f;
 constexpr float kBeyond = 1.0f + kTwoCodes;
 constexpr float kBeyondOfBlocks = 1.3f;
 
-// One row's share of the counts.
+// The contribution of one row to the counts.
 struct RowCounts {
     std::array<std::int64_t, kPropertyCount> count{};
     std::array<int, kPropertyCount> first{};
@@ -41,20 +41,20 @@ struct RowCounts {
     }
 };
 
-// Where the channels of a row stand, and what they mean.
+// The positions of the channels of a row, and their meaning.
 struct RowView {
     std::array<const float*, 4> channel{};
     const float *x = nullptr, *y = nullptr, *z = nullptr;
     int channels = 0;
     float scale = 2.0f, offset = -1.0f;  // from a stored value to a component
     float beyond = kBeyond * kBeyond;
-    bool colors = false;  // R, G, B and A are all there, and A is not a component
+    bool colors = false;  // R, G, B and A all exist, and A is not a component
     bool one_in_red = false;
     bool alpha_free = false;
-    float low_flat = 2.0f, high_flat = 2.0f;  // codes 127 and 128, where the format has them
+    float low_flat = 2.0f, high_flat = 2.0f;  // codes 127 and 128, if the format has them
 };
 
-// The components and their length. Kept apart from the rest so that it stays in registers.
+// Counts by the components and their length. A separate function, so that its values stay in registers.
 template <bool kHasZ>
 void count_vectors(const RowView& view, int width, RowCounts& row) {
     constexpr float kLong = (1.0f + kTwoCodes) * (1.0f + kTwoCodes), kShort = (1.0f - kTwoCodes) * (1.0f - kTwoCodes);
@@ -64,7 +64,7 @@ void count_vectors(const RowView& view, int width, RowCounts& row) {
         const float flat = x * x + y * y;
         const float z = kHasZ ? view.z[i] * view.scale + view.offset : reconstruct_z(x, y);
         const float square = flat + z * z;
-        if (!(square < std::numeric_limits<float>::max())) {  // NaN too
+        if (!(square < std::numeric_limits<float>::max())) {  // also if NaN
             row.mark(Property::not_finite, true, i);
             continue;
         }

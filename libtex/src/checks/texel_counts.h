@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// texel_counts.h: every texel of the base level, counted.
+// texel_counts.h: counts over every texel of the base level.
 
 #pragma once
 
@@ -15,10 +15,10 @@ namespace tex {
 
 // Two codes of 8 bits, as a component.
 inline constexpr float kTwoCodes = 4.0f / 255.0f;
-// A vector shorter than this points nowhere.
+// A vector shorter than this has no direction.
 inline constexpr float kNullLength = 0.1f;
 
-// How many texels have a property, and the first of them in rows from the top.
+// The number of texels with a property, and the first of them, in rows from the top.
 struct Tally {
     std::int64_t count = 0;
     int column = -1, row = -1;
@@ -32,16 +32,16 @@ struct Tally {
 };
 
 enum class Property {
-    not_finite,     // a component is NaN or infinite; such a texel counts nowhere else
+    not_finite,     // a component is NaN or infinite; no other property counts the texel
     null_vector,    // shorter than kNullLength (z stored)
-    off_length,     // the length is off 1 by more than kTwoCodes (z stored)
+    off_length,     // the length differs from 1 by more than kTwoCodes (z stored)
     z_below,        // z below -kTwoCodes (z stored)
     z_behind,       // z below -0.1 (z stored)
     beyond_unit,    // x^2 + y^2 above (1 + kTwoCodes)^2; in texel blocks, whose texels share a palette, above 1.3^2
     red_not_one,    // R below 1, for the layout (R, y, _, x)
-    alpha_not_one,  // A below 1, where A is not x
-    above_alpha,    // R, G or B above A by more than a code and a half
-    grey,           // R, G and B are equal within a code and a half
+    alpha_not_one,  // A below 1, if A is not x
+    above_alpha,    // R, G or B is above A by more than one and a half codes
+    grey,           // R, G and B are equal within one and a half codes
     flat_low,       // x and y are code 127 of 255
     flat_high,      // x and y are code 128
 };
@@ -50,12 +50,12 @@ inline constexpr int kPropertyCount = 12;
 struct TexelCounts {
     std::int64_t texels = 0;
     std::array<Tally, kPropertyCount> tally{};
-    // Over finite texels; z and length are of the stored z, or reconstructed.
+    // Means over finite texels. z and length use the stored z, or else the reconstructed one.
     std::int64_t finite = 0;
     double mean_x = 0.0, mean_y = 0.0, mean_z = 0.0, mean_length = 0.0;
     float min_length = 0.0f, max_length = 0.0f;
-    std::array<float, 4> low{}, high{};  // of channels, as decoded
-    double alpha_correlation = 0.0;      // of A with the largest of R, G and B
+    std::array<float, 4> low{}, high{};  // of the decoded channels
+    double alpha_correlation = 0.0;      // correlation of A with the largest of R, G and B
 
     [[nodiscard]] const Tally& operator[](Property p) const { return tally[static_cast<std::size_t>(p)]; }
     [[nodiscard]] double share(Property p) const {

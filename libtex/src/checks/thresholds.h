@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// thresholds.h: where the statistical rules draw the line between intact and damaged.
+// thresholds.h: the thresholds with which the statistical rules separate intact maps from damaged ones.
 //
-// The lines are drawn on half of the real maps that the tests know (tests/reference/real_maps.h: pictures sorted by the
-// FNV-1a hash of their names, the first half) and reported on the other half, which had no say. A fitted line is the
-// geometric mean, to two digits, of the largest value of an intact map of that half and the least of a damaged one, or
-// the arithmetic mean where values have a sign or are shares. The unit test CheckThresholds does that again, fails
-// where a number here is not what comes out, and prints both halves; CheckData and tests/bench/check_bench.cpp print
-// what is detected and missed.
+// The thresholds are fitted to half of the real maps that the tests know (tests/reference/real_maps.h: pictures sorted
+// by the FNV-1a hash of their names, the first half). Results are reported for the other half, which did not influence
+// them. A fitted threshold is the geometric mean, to two digits, of the largest value of an intact map of that half and
+// the least value of a damaged one. If values have a sign or are shares, it is the arithmetic mean. The unit test
+// CheckThresholds repeats this, fails if a number here differs from the result, and prints both halves. CheckData and
+// tests/bench/check_bench.cpp print what is detected and missed.
 
 #pragma once
 
@@ -26,8 +26,8 @@ inline constexpr double kLevelShort =
     0.01;  // mean length of its shortest level below the base level's: 0.0048 and 0.023
 
 // -- set from the intact maps of that half alone -------------------------------------------------------------
-// A second chance for what changed after its JPEG, where the trace is gone and some maps show no steps: a tenth above
-// the largest, 1.5.
+// A second test, for maps that changed after their JPEG: the trace is gone, and some maps show no steps. A tenth above
+// the largest value, 1.5.
 inline constexpr double kJpegRatio = 1.7;  // grid_ratio(8)
 
 }  // namespace tex::thresholds

@@ -107,7 +107,7 @@ void check_channels(const Subject& subject, Findings& findings) {
     }
     if (counts.share(Property::z_behind) > kBehindShare) {
         add_counted(subject, findings, "N213", Property::z_behind, " point away from the surface");
-        // Maps of an object's space hold unit vectors, if rounded or compressed ones.
+        // Object-space maps hold unit vectors, although rounded or compressed ones.
         if (counts.share(Property::off_length) > kColorShare)
             add_counted(subject, findings, "N214", Property::off_length, " are off unit length by more than two codes");
     }
