@@ -14,8 +14,9 @@ View::View(const Camera& camera, Extent pixels, const std::function<double(Vec3 
     const Vec3 right{cy, 0.0, -sy};
     const Vec3 up = cross(toward_, right);
 
-    // The picture plane goes through the origin; with T = tan(field of view / 2) the eye is half_height / T before it.
-    // A point p lies below the upper edge where p.up + T p.toward <= half_height, and so for the other edges.
+    // The picture plane goes through the origin. With T = tan(field of view / 2), the eye is half_height / T in front
+    // of it. A point p lies below the upper edge if p.up + T p.toward <= half_height; the other edges work in the same
+    // way.
     const double half_angle = radians(static_cast<double>(camera.field_of_view)) / 2.0;
     const double slope = math::sin(half_angle) / math::cos(half_angle);
     const double proportion = static_cast<double>(pixels.width) / pixels.height;
@@ -35,7 +36,7 @@ View::View(const Camera& camera, Extent pixels, const std::function<double(Vec3 
 
 Ray View::ray(double x, double y) const {
     const Vec3 point = corner_ + right_ * x - up_ * y;
-    // A parallel ray starts in front of every shape: all of them lie within 1000 of the origin.
+    // A parallel ray starts in front of every shape, because all shapes lie within 1000 of the origin.
     if (parallel_) return {point + toward_ * 1000.0, toward_ * -1.0};
     return {eye_, point - eye_};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// camera.h: the view ray of a place in the picture.
+// camera.h: the view ray of a point of the picture.
 
 #pragma once
 
@@ -11,32 +11,32 @@
 
 namespace tex::render {
 
-// The points origin + t direction, t > 0; the direction is not normalised.
+// The points origin + t direction, t > 0. The direction is not normalised.
 struct Ray {
     Vec3 origin;
     Vec3 direction;
 };
 
-// A Camera (preview.h) whose picture, `pixels` large, just holds a shape. `support` gives the greatest dot(direction,
-// point) of its points.
+// A Camera (preview.h) whose picture, `pixels` large, just contains a shape. `support` returns the greatest
+// dot(direction, point) of the points of the shape.
 class View {
 public:
     View(const Camera& camera, Extent pixels, const std::function<double(Vec3 direction)>& support);
 
-    // The ray through (x, y) in pixels from the picture's top left corner; pixel (i, j) has its centre at (i + 0.5, j +
-    // 0.5).
+    // The ray through (x, y), in pixels from the picture's top left corner. Pixel (i, j) has its centre at (i + 0.5, j
+    // + 0.5).
     [[nodiscard]] Ray ray(double x, double y) const;
 
     // The unnormalised direction from `point` to the viewer.
     [[nodiscard]] Vec3 towards_viewer(Vec3 point) const { return parallel_ ? toward_ : eye_ - point; }
 
-    // The whole picture turns by an angle about the vertical axis: the same as turning the shape the other way.
+    // Rotates the whole picture about the vertical axis, which is the same as rotating the shape the other way.
     void turn(double sine, double cosine);
 
 private:
     Vec3 eye_;
     Vec3 toward_;      // unit, from the origin to the viewer
-    Vec3 right_, up_;  // of a pixel's width and height, in the picture plane
+    Vec3 right_, up_;  // as long as a pixel is wide and high, in the picture plane
     Vec3 corner_;      // the picture's top left corner in the picture plane
     bool parallel_ = false;
 };

@@ -16,7 +16,7 @@ namespace tex::render {
 inline constexpr Code kGround{38, 40, 44};
 inline constexpr Code kInk{226, 228, 232};
 
-// Places are in pixels from the top left corner; what lies outside is cut off.
+// Positions are in pixels from the top left corner. Anything outside the picture is clipped.
 class Canvas {
 public:
     explicit Canvas(Extent extent, Code ground = kGround);
@@ -26,7 +26,7 @@ public:
     void set(int x, int y, Code color);
     void fill(int x, int y, Extent size, Code color);
     void draw(int x, int y, const Level& picture);
-    // Only the columns [from, to) of the picture.
+    // Draws only the columns [from, to) of the picture.
     void draw_columns(int x, int y, const Level& picture, int from, int to);
     // Letters are kGlyphHeight times `scale` pixels high.
     void text(int x, int y, int scale, std::string_view words, Code color = kInk);
@@ -37,16 +37,16 @@ private:
     Level level_;
 };
 
-// Pixels that a line of text is wide.
+// The width of a line of text in pixels.
 [[nodiscard]] constexpr int text_width(std::string_view words, int scale) {
     return words.empty() ? 0 : (static_cast<int>(words.size()) * kGlyphAdvance - 1) * scale;
 }
 
-// The words, or as many of their letters as fit into `width` pixels, with ".." in the middle where some are cut: files
-// that belong together often have names that differ at their ends.
+// Returns the words, shortened to fit into `width` pixels if necessary. The letters that are cut out are replaced by
+// ".." in the middle, because files that belong together often have names that differ at their ends.
 [[nodiscard]] std::string fitted(std::string_view words, int scale, int width);
 
-// The size of letters that suits a picture: 1, or 2 where it is 1024 pixels or wider.
+// The size of letters for a picture: 1, or 2 if it is 1024 pixels wide or wider.
 [[nodiscard]] constexpr int text_scale(int picture_width) { return picture_width >= 1024 ? 2 : 1; }
 
 }  // namespace tex::render

@@ -62,7 +62,7 @@ double srgb_to_linear(double value) {
 }
 
 std::uint8_t srgb_code(double linear) {
-    // Code k begins where the sRGB value is (k - 0.5) / 255: a search needs no curve for each pixel and rounds exactly.
+    // Code k begins at the sRGB value (k - 0.5) / 255. A search needs no curve for each pixel and rounds exactly.
     static const std::array<double, 255> kBegins = [] {
         std::array<double, 255> begins{};
         for (std::size_t k = 0; k < begins.size(); ++k)

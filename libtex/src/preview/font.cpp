@@ -5,7 +5,7 @@
 namespace tex::render {
 namespace {
 
-// Rows from the top, five bits each, the leftmost texel in bit 4; the last two rows hang below the baseline.
+// Rows from the top, five bits each, with the leftmost pixel in bit 4. The last two rows lie below the baseline.
 constexpr std::uint8_t kGlyphs[96][kGlyphHeight] = {
     {0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00},  // space
     {0x04, 0x04, 0x04, 0x04, 0x04, 0x00, 0x04, 0x00, 0x00},  // !

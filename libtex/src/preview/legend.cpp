@@ -18,7 +18,8 @@ constexpr int kBarTop = 6;
 constexpr int kBarHeight = 10;
 constexpr int kTextTop = 21;
 
-// Nobody tells so many colours apart, and with those of the letters they fit into the palette of a PNG.
+// Nobody can distinguish this many colours. Together with the colours of the letters, they fit into the palette of a
+// PNG.
 constexpr double kColorSteps = 240.0;
 
 }  // namespace

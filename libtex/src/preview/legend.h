@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// legend.h: what the colours of a picture mean.
+// legend.h: explains the colours of a picture.
 
 #pragma once
 
@@ -19,15 +19,15 @@ struct ColorScale {
     double least = 0.0, greatest = 1.0;
     Palette palette = Palette::viridis;
 
-    // Display colour of a value; other than grey in 240 steps from `least` to `greatest`.
+    // Display colour of a value. All palettes except grey have 240 steps from `least` to `greatest`.
     [[nodiscard]] Vec3 color(double value) const;
 };
 
-// Three significant digits, the shortest form, the same in every locale.
+// Three significant digits in the shortest form, the same in every locale.
 [[nodiscard]] std::string number(double value);
 
-// A bar of the colours, the values at its ends, the title between them: a picture of `width` pixels and kLegendRows
-// times `unit` rows.
+// A bar of the colours with the values at its ends and the title between them: a picture of `width` pixels by
+// kLegendRows times `unit` rows.
 inline constexpr int kLegendRows = 36;
 [[nodiscard]] Level legend(int width, int unit, const ColorScale& scale);
 

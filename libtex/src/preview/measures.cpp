@@ -73,8 +73,8 @@ CurlView curl_view(const NormalMap& map) {
     return view;
 }
 
-// The two derivatives that are equal in a height field, by central differences, one-sided at the border; y grows
-// upwards. NaN beside texels that hold no normal.
+// The two derivatives that are equal in a height field, by central differences, one-sided at the border; y points
+// upwards. NaN next to texels that have no normal.
 struct Mixed {
     double dq_dx, dp_dy;
 };
@@ -103,7 +103,8 @@ Result<Measure> measure_curl_of(const NormalMap& map, float maximum, const Execu
         return curl == curl ? curl : 0.0;
     });
     if (!values) return values.error();
-    // The scale is that of the most that the map could do wrong, not of what it does: a sound map is white.
+    // The scale follows the largest curl that these derivatives could have, not the actual curl, so that a sound map is
+    // white.
     const auto most = fill(map.extent(), part(execution, 0.5, 1.0), [&](int i, int j) {
         const Mixed mixed = mixed_at(view.slopes, i, j);
         return std::abs(mixed.dq_dx) + std::abs(mixed.dp_dy);
@@ -138,7 +139,7 @@ double round_maximum(const Plane<float>& values, double least) {
     for (int j = 0; j < values.extent().height; ++j) {
         for (int i = 0; i < values.extent().width; ++i) {
             const float size = std::abs(values.at(i, j));
-            if (size <= 3e38f) sizes.push_back(size);  // neither infinite nor NaN
+            if (size <= 3e38f) sizes.push_back(size);  // false for infinity and NaN
         }
     }
     if (sizes.empty()) return nice(least);

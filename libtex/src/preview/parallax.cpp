@@ -9,7 +9,7 @@ namespace tex::render {
 Vec2 parallax_offset(const Parallax& parallax, const Sampler& height, Vec2 uv, const Footprint& footprint, Vec3 view,
                      int anisotropy) {
     const double amount = parallax.amount, limit = parallax.limit;
-    // At a grazing angle the quotient overflows to infinity, which the clamp takes; only 0 / 0 must not arise.
+    // At a grazing angle the quotient overflows to infinity, which the clamp handles. Only 0 / 0 must be avoided.
     const double z = std::max(view.z, 1e-12);
     const auto offset_at = [&](double t) {
         const double rise = amount * (t - 0.5);
@@ -18,7 +18,7 @@ Vec2 parallax_offset(const Parallax& parallax, const Sampler& height, Vec2 uv, c
     const auto height_at = [&](Vec2 place) { return sample(height, place, footprint, anisotropy)[0]; };
     if (parallax.steps <= 0) return offset_at(height_at(uv));
 
-    double above = 1.0 - height_at(uv + offset_at(1.0));  // the ray's height over the map at the last step
+    double above = 1.0 - height_at(uv + offset_at(1.0));  // height of the ray above the map at the last step
     double last = 1.0;
     for (int k = 1; above > 0.0 && k <= parallax.steps; ++k) {
         const double t = 1.0 - static_cast<double>(k) / parallax.steps;

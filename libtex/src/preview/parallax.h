@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// parallax.h: where the view ray meets the height map.
+// parallax.h: finds where the view ray meets the height map.
 
 #pragma once
 

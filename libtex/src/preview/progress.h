@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// progress.h: several steps that count as one.
+// progress.h: combines the progress of several steps.
 
 #pragma once
 
@@ -7,7 +7,8 @@
 
 namespace tex::render {
 
-// How a step runs whose progress counts as that of the whole from `from` to `to`. `whole` must outlive the result.
+// The execution of a step whose progress takes the part of the whole from `from` to `to`. `whole` must outlive the
+// result.
 inline Execution part(const Execution& whole, double from, double to) {
     Execution step;
     step.threads = whole.threads;

@@ -12,7 +12,7 @@ namespace tex::render {
 namespace {
 
 constexpr int kRowsPerPiece = 8;
-constexpr int kRaysPerSide = 4;  // of a pixel on an outline
+constexpr int kRaysPerSide = 4;  // rays per side of a pixel on an outline
 
 Camera camera_of(const PreviewOptions& options) {
     if (options.camera) return *options.camera;
@@ -74,7 +74,7 @@ Stage stage(const PreviewOptions& options, Extent map, Extent size) {
     const double angle = radians(static_cast<double>(options.spin));
     const double sine = math::sin(angle), cosine = math::cos(angle);
     if (options.shape == Shape::plane) {
-        result.light = turn_about_z(result.light, -sine, cosine);  // clockwise, as a clock's hand goes
+        result.light = turn_about_z(result.light, -sine, cosine);  // clockwise, like the hand of a clock
     } else {
         result.light = turn_about_y(result.light, -sine, cosine);
         result.view.turn(-sine, cosine);

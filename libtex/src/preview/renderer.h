@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// renderer.h: every pixel of a picture of a shape.
+// renderer.h: computes every pixel of a picture of a shape.
 
 #pragma once
 
@@ -12,25 +12,25 @@
 
 namespace tex::render {
 
-// Shape, camera and light in the space of the shape: `spin` turns the viewer and the light the other way.
+// Shape, camera and light in the space of the shape: `spin` rotates the viewer and the light the other way.
 struct Stage {
     Body body;
     View view;
     Extent size;
     Vec3 light;                                 // direction or position
-    double spin_sine = 0.0, spin_cosine = 1.0;  // of a shape that turns; 0 and 1 for a plane
+    double spin_sine = 0.0, spin_cosine = 1.0;  // of a shape that spins; 0 and 1 for a plane
 
-    // A direction in the shape's space, in the world.
+    // Transforms a direction from the space of the shape to the world.
     [[nodiscard]] Vec3 to_world(Vec3 v) const { return turn_about_y(v, spin_sine, spin_cosine); }
 };
 
 [[nodiscard]] Stage stage(const PreviewOptions& options, Extent map, Extent size);
 
-// What a pixel shows where the shape is hit: linear light, or display values.
+// The values of a pixel that shows the shape: linear light or display values.
 enum class Space { linear, display };
 using Surface = std::function<Vec3(const Hit& hit, const Footprint& footprint)>;
 
-// Errors: out_of_memory, cancelled.
+// Renders the picture. Errors: out_of_memory, cancelled.
 [[nodiscard]] Result<Texture> render(const Stage& stage, Space space, const Surface& surface,
                                      const Execution& execution);
 

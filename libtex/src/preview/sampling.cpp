@@ -12,7 +12,7 @@
 namespace tex::render {
 namespace {
 
-// The texel that stands at index i of an axis of n texels.
+// The texel at index i of an axis of n texels.
 int wrapped(std::int64_t i, int n, Wrap wrap) {
     switch (wrap) {
         case Wrap::repeat: return static_cast<int>((i % n + n) % n);
@@ -33,7 +33,7 @@ struct Tap {
 };
 
 Tap tap(double position, int n, Wrap wrap) {
-    // Coordinates that no texture is tiled to (or NaN) must not overflow the conversion.
+    // Extreme coordinates (or NaN), which no texture is tiled to, must not overflow the conversion.
     const double bounded = position > -1e9 && position < 1e9 ? position : 0.0;
     const double floor = std::floor(bounded);
     const std::int64_t i = static_cast<std::int64_t>(floor);
@@ -128,7 +128,7 @@ Result<Pyramid> Pyramid::build(const std::vector<PlaneView<const float>>& base, 
             const auto body = [&](int begin, int end) {
                 for (int j = begin; j < end; ++j) halve_row(larger, j, smaller);
             };
-            // The planes of a level are counted as one: the first tells of the whole.
+            // For progress, the planes of a level count as one: only the first plane reports it.
             const ProgressSpan counted = views.empty() ? span : ProgressSpan{span.to, span.to};
             const auto halved = parallel_for(execution, smaller.extent().height, 16, body, counted);
             if (!halved) return halved.error();
@@ -149,9 +149,9 @@ Sample sample(const Sampler& sampler, Vec2 uv, const Footprint& footprint, int a
     const double px = length(Vec2{footprint.dx.x * w, footprint.dx.y * h});
     const double py = length(Vec2{footprint.dy.x * w, footprint.dy.y * h});
     const double longer = std::max(px, py), shorter = std::min(px, py);
-    if (!(longer > 1.0)) return trilinear(sampler, 0.0, uv);  // magnified: also where the footprint is unknown
+    if (!(longer > 1.0)) return trilinear(sampler, 0.0, uv);  // magnified, or the footprint is unknown
 
-    // A hair below the ratio: a footprint that is square but for rounding takes one sample.
+    // Slightly below the ratio, so that a footprint that is square except for rounding takes one sample.
     const double ratio = shorter > 0.0 ? longer / shorter - 1e-6 : 1e9;
     const double count = std::min(std::ceil(std::max(ratio, 1.0)), static_cast<double>(anisotropy));
     const double level = math::log(longer / count) / math::log(2.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// sampling.h: textures as a GPU samples them: trilinear and anisotropic.
+// sampling.h: samples textures as a GPU does: trilinear and anisotropic.
 
 #pragma once
 
@@ -31,10 +31,10 @@ struct Sampler {
 
 [[nodiscard]] Sampler sampler_of(const MipChain& chain, Wrap wrap_x, Wrap wrap_y);
 
-// Planes with smaller levels of their own, made by a box filter that weighs what a texel covers.
+// Planes with their smaller levels, made by a box filter that weights each texel by the part of it that is covered.
 class Pyramid {
 public:
-    // Precondition: 1 to kMaxChannels planes of one extent, which outlive the pyramid. Errors: cancelled,
+    // Precondition: 1 to kMaxChannels planes of one extent, which must outlive the pyramid. Errors: cancelled,
     // out_of_memory.
     static Result<Pyramid> build(const std::vector<PlaneView<const float>>& base, const Execution& execution);
 
@@ -45,15 +45,15 @@ private:
     std::vector<Plane<float>> owned_;
 };
 
-// The footprint of a pixel: how (u, v) changes to the next pixel on the right and below.
+// The footprint of a pixel: the change of (u, v) to the next pixel on the right and to the next one below.
 struct Footprint {
     Vec2 dx, dy;
 };
 
-// Trilinear samples, up to `anisotropy` of them along the footprint's longer axis; averaged.
+// Takes trilinear samples, up to `anisotropy` of them along the footprint's longer axis, and averages them.
 //
 //     Px = |dx (w, h)|, Py = |dy (w, h)|          N = min(ceil(Pmax / Pmin), anisotropy)
-//     level = log2(Pmax / N), clamped to the levels there are
+//     level = log2(Pmax / N), clamped to the existing levels
 //
 // (EXT_texture_filter_anisotropic.) Texel centres lie at (i + 0.5) / w; v is 1 at the upper edge of the top row.
 [[nodiscard]] Sample sample(const Sampler& sampler, Vec2 uv, const Footprint& footprint, int anisotropy);

@@ -12,7 +12,7 @@ Vec3 vec(const Rgb& color) {
     return {static_cast<double>(color.r), static_cast<double>(color.g), static_cast<double>(color.b)};
 }
 
-// z of a unit vector with these x and y, which are shortened where they are longer than 1.
+// Adds z to make a unit vector with these x and y, which are shortened if they are longer than 1.
 Vec3 with_z(double x, double y) {
     const double square = x * x + y * y;
     if (square <= 1.0) return {x, y, std::sqrt(1.0 - square)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// shading.h: the light that a point of the surface sends to the viewer.
+// shading.h: computes the light that a point of the surface sends to the viewer.
 
 #pragma once
 
@@ -25,8 +25,8 @@ struct Illumination {
 // The lighting formula of preview() for a unit `normal` at `point`; `view` is unit.
 [[nodiscard]] Vec3 shade(const Illumination& with, Vec3 point, Vec3 normal, Vec3 view, Vec3 albedo);
 
-// A sampled normal as a shader unpacks it: z reconstructed where the texture has none, else normalised; then scaled. z
-// < 0 becomes 0.
+// Unpacks a sampled normal as a shader does: reconstructs z if the texture has none, otherwise normalises; then scales.
+// z < 0 becomes 0.
 [[nodiscard]] Vec3 unpack_normal(Vec3 sampled, bool without_z, double scale, ScaleMode mode);
 
 // Whiteout: normalize(n1.xy + n2.xy, n1.z n2.z) (Oat 2007).

@@ -8,7 +8,7 @@
 namespace tex::render {
 namespace {
 
-constexpr double kHalfEdge = 0.7;  // of the cube
+constexpr double kHalfEdge = 0.7;  // half the edge of the cube
 constexpr double kMissed = -1.0;
 
 // Outward normal and direction of u of the cube's faces 1 to 6: +x, -x, +y, -y, +z, -z. v is cross(normal, u).
@@ -22,9 +22,9 @@ constexpr CubeFace kCubeFaces[6] = {
 
 double meet_plane(const Ray& ray, double half_width) {
     const double t = -ray.origin.z / ray.direction.z;
-    if (!(t > 0.0) || !(ray.direction.z < 0.0)) return kMissed;  // from behind the plane is not seen
+    if (!(t > 0.0) || !(ray.direction.z < 0.0)) return kMissed;  // the back of the plane is not visible
     const Vec3 p = ray.origin + ray.direction * t;
-    // A hair of tolerance: the picture's own edge pixels belong to the plane.
+    // A small tolerance: the picture's own edge pixels belong to the plane.
     return std::abs(p.x) <= half_width + 1e-9 && std::abs(p.y) <= 1.0 + 1e-9 ? t : kMissed;
 }
 
@@ -37,7 +37,7 @@ double meet_sphere(const Ray& ray) {
     return (-b - std::sqrt(root)) / a;
 }
 
-// Slabs (Kay, Kajiya 1986); remembers through which face the ray enters.
+// The slab method (Kay, Kajiya 1986). Remembers the face through which the ray enters.
 double meet_cube(const Ray& ray, int& face) {
     const double origin[3] = {ray.origin.x, ray.origin.y, ray.origin.z};
     const double direction[3] = {ray.direction.x, ray.direction.y, ray.direction.z};
@@ -109,8 +109,8 @@ std::optional<Hit> Body::meet(const Ray& ray) const {
     hit.face = face;
     double w = 1.0;
     if (mirror_) {
-        // u grows to the other side, so the tangent turns round; cross(N, T) then points against growing v, which w
-        // mends.
+        // u grows in the other direction, so the tangent is reversed. cross(N, T) then points against growing v; w
+        // corrects that.
         hit.uv.x = -hit.uv.x;
         hit.tangent = hit.tangent * -1.0;
         w = -1.0;
@@ -135,7 +135,7 @@ Hit Body::on_sphere(Vec3 point) const {
     hit.point = point;
     hit.normal = normalize(point);
     const double around = std::sqrt(hit.normal.x * hit.normal.x + hit.normal.z * hit.normal.z);
-    // East; at the poles, where every direction is south or north, any will do.
+    // East. At the poles, where every direction is south or north, any direction will do.
     hit.tangent = around > 1e-9 ? Vec3{hit.normal.z / around, 0.0, -hit.normal.x / around} : Vec3{1.0, 0.0, 0.0};
     hit.u_per_length = u_turns_ / (2.0 * math::kPi * std::max(around, 1e-4));
     hit.v_per_length = 1.0 / math::kPi;

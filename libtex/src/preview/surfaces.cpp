@@ -19,7 +19,7 @@ std::optional<std::vector<PlaneView<const float>>> colors_of(const Image& image)
     return std::nullopt;
 }
 
-// Unity's unity_ColorSpaceDouble for linear light, 2^2.2: a detail albedo of sRGB grey 0.5 changes nothing.
+// Unity's unity_ColorSpaceDouble for linear light, 2^2.2, with which a detail albedo of sRGB grey 0.5 changes nothing.
 constexpr double kColorSpaceDouble = 4.59479380;
 
 Vec3 vec(const Sample& s) { return {s[0], s[1], s[2]}; }
@@ -82,7 +82,7 @@ Vec3 LitSurface::normal(const Hit& hit, const Footprint& footprint) const {
     return normalize(hit.tangent * n.x + hit.binormal * n.y + hit.normal * n.z);
 }
 
-// The hit with the texture coordinates that parallax gives it.
+// The hit with the texture coordinates after parallax.
 Hit LitSurface::displaced(const Hit& hit, const Footprint& footprint) const {
     Hit seen = hit;
     if (textures_.height.empty() || options_.parallax.amount == 0.0f) return seen;

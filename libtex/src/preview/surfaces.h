@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// surfaces.h: what each kind of picture shows at a point of the shape.
+// surfaces.h: computes what each type of picture shows at a point of the shape.
 
 #pragma once
 
@@ -14,20 +14,20 @@
 
 namespace tex::render {
 
-// The textures of a scene, ready to be sampled.
+// The textures of a scene, prepared for sampling.
 class Textures {
 public:
-    // Errors: bad_option (the albedo has no usable planes), cancelled, out_of_memory.
+    // Prepares the textures. Errors: bad_option (the albedo has no usable planes), cancelled, out_of_memory.
     static Result<Textures> prepare(const PreviewScene& scene, const PreviewOptions& options,
                                     const Execution& execution);
 
-    Sampler map, detail, albedo, detail_albedo, height;  // empty where there is none
+    Sampler map, detail, albedo, detail_albedo, height;  // empty if there is none
 
 private:
     std::optional<Pyramid> albedo_, detail_albedo_, height_;
 };
 
-// The whole material, lit.
+// The whole material with lighting.
 class LitSurface {
 public:
     LitSurface(const Textures& textures, const PreviewScene& scene, const PreviewOptions& options, const Stage& stage);

@@ -30,7 +30,7 @@ inline Vec3 cross(Vec3 a, Vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a
 inline double length(Vec2 a) { return std::sqrt(a.x * a.x + a.y * a.y); }
 inline double length(Vec3 a) { return std::sqrt(dot(a, a)); }
 
-// A vector shorter than 1e-6, or with NaN in it, becomes (0, 0, 1).
+// A vector that is shorter than 1e-6 or contains NaN becomes (0, 0, 1).
 inline Vec3 normalize(Vec3 a) {
     const double n = length(a);
     return n >= 1e-6 ? a * (1.0 / n) : Vec3{0.0, 0.0, 1.0};
