@@ -16,8 +16,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::CappedTag<float, 16>;
 using Vector = hn::Vec<Floats>;
 
-// asin(h), 0 <= h <= 1. Up to 1/2 a minimax polynomial (Moshier, Cephes 2.8, asinf: relative error 2.5e-7); beyond it
-// asin(h) = pi/2 - 2 asin(sqrt((1 - h) / 2)).
+// asin(h), 0 <= h <= 1. Up to 1/2 by a minimax polynomial (Moshier, Cephes 2.8, asinf: relative error 2.5e-7). Above
+// 1/2, asin(h) = pi/2 - 2 asin(sqrt((1 - h) / 2)).
 Vector arc_sine(Vector h) {
     const Floats d;
     const auto half = hn::Set(d, 0.5f);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// angle.h: rows of normals to the angles between them.
+// angle.h: computes the angles between rows of normals.
 
 #pragma once
 
@@ -8,7 +8,7 @@
 namespace tex {
 
 // degrees[i] = 2 asin(min(1, |a[i] - b[i]| / 2)), in degrees, for `count` texels. Rows are those of a Plane: whole
-// vectors past the last texel are read and written.
+// vectors are read and written past the last texel.
 void angle_row(const VectorRow& a, const VectorRow& b, int count, float* degrees);
 
 }  // namespace tex

@@ -21,7 +21,7 @@ namespace {
 
 enum class Coding { bc4_unorm, bc4_snorm, green };
 
-// One channel of a block: its endpoints in the order in which they are stored; those of snorm from 0 to 254.
+// One channel of a block: its endpoints in the order in which they are stored. Endpoints of snorm are 0 to 254.
 struct Ends {
     Coding coding;
     int e[2];
@@ -48,7 +48,7 @@ Palette palette_of(const Ends& ends) {
     Palette palette{green ? 4 : 8, {component(0), component(steps)}};
     for (int k = 1; k < steps; ++k) palette.values[k + 1] = component(k);
     if (steps == 5) palette.values[6] = -1.0f, palette.values[7] = 1.0f;
-    // Equal greens use index 0 only.
+    // If the greens are equal, only index 0 is used.
     if (green && e0 == e1) palette.count = 1;
     return palette;
 }
@@ -88,7 +88,7 @@ void store_channel(const Ends& ends, const int* indices, std::byte* block) {
     }
 }
 
-// Whether the channel may have these endpoints, the palette being of the same kind as before.
+// Whether the channel may have these endpoints; the type of palette must not change.
 bool allowed(const Ends& before, const Ends& after) {
     const int most = most_code(after.coding);
     if (std::min(after.e[0], after.e[1]) < 0 || std::max(after.e[0], after.e[1]) > most) return false;
@@ -108,12 +108,13 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::CappedTag<float, 16>;
 using F = hn::Vec<Floats>;
 
-// The normals of a block's texels; weights of texels outside the level are 0.
+// The normals of a block's texels. Texels outside the level have weight 0.
 struct Normals {
     HWY_ALIGN float x[16], y[16], z[16], weight[16];
 };
 
-// The sum over the texels, and for each the best pair of indices (of x + 8 times that of y), where asked for.
+// Returns the sum over the texels and, on request, the best pair of indices for each texel (that of x + 8 times that of
+// y).
 float measure(const Normals& n, const Ends& x_ends, const Ends& y_ends, int* pairs) {
     const Floats d;
     const Palette px = palette_of(x_ends);
@@ -151,8 +152,8 @@ float measure(const Normals& n, const Ends& x_ends, const Ends& y_ends, int* pai
     return sum;
 }
 
-// Takes the step that gains most, of all that change the endpoints of one channel by up to 3 codes. False where none
-// gains.
+// Takes the step with the greatest gain among all that change the endpoints of one channel by up to 3 codes. Returns
+// false if no step gains.
 bool take_step(const Normals& n, Ends (&ends)[2], float& sum) {
     constexpr int kMoves[8][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}};
     const Ends before[2] = {ends[0], ends[1]};

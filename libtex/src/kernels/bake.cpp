@@ -40,7 +40,7 @@ void ContinueHeights(const float* inner, const float* edge, const float* other, 
     }
 }
 
-// Stores normalize(-slope_x, -slope_y, 1). The subtraction from zero makes x and y of a flat normal +0,
+// Stores normalize(-slope_x, -slope_y, 1). Because values are subtracted from zero, x and y of a flat normal are +0,
 // never -0.
 HWY_INLINE void store_normals(V slope_x, V slope_y, int i, NormalRow out) {
     const V zero = hn::Zero(kD);
@@ -114,7 +114,7 @@ void WidenSlopeBounds(const float* x, const float* y, const float* z, int count,
     V min_y = hn::Set(kD, bounds.min_y), max_y = hn::Set(kD, bounds.max_y);
     for (int i = 0; i < count; i += kLanes) {
         const V depth = hn::Max(hn::LoadU(kD, z + i), least_z);
-        // 0 - x / z: a flat texel has slope +0, never -0, whose order with +0 depends on the processor.
+        // 0 - x / z: a flat texel has slope +0, never -0, because the order of +0 and -0 depends on the processor.
         const V p = hn::Sub(zero, hn::Div(hn::LoadU(kD, x + i), depth));
         const V q = hn::Sub(zero, hn::Div(hn::LoadU(kD, y + i), depth));
         const auto inside = hn::FirstN(kD, static_cast<std::size_t>(count - i));

@@ -23,15 +23,16 @@ using Floats = hn::CappedTag<float, 16>;
 using F = hn::Vec<Floats>;
 
 // G on a grid of 1/phases code: row r holds G(base + i + r / phases) from i = -16 on, and zeros outside the block's
-// range. In units of 1/phases code.
+// range. The unit is 1/phases code.
 constexpr int kMaxPhases = 14;
 constexpr int kPad = 16;
 constexpr std::ptrdiff_t kRow = kPad + 272 + kPad;
 
 struct Gains {
     HWY_ALIGN float rows[kMaxPhases * kRow];
-    // For 6 values: the gain of the threshold between the lowest code and the lower endpoint e, at e, and between the
-    // greater endpoint e and the greatest code, times the distances of these; in codes squared.
+    // For 6 values, in codes squared. `below` is for the threshold between the lowest code and the lower endpoint e;
+    // `above` is for the threshold between the greater endpoint e and the greatest code. Entry e holds the gain times
+    // the distance of the two.
     HWY_ALIGN float below[kRow], above[kRow];
 
     Gains() { std::fill(std::begin(rows), std::end(rows), 0.0f); }
@@ -73,15 +74,15 @@ struct ExactError {
 
 using Bc4Candidates = Candidates<ExactError>;
 
-// Scores pairs of one kind (8 or 6 values).
+// Scores pairs of one type (8 or 6 values).
 class Scorer {
 public:
     Scorer(const Block& block, const Gains& gains, bool eight_values, int top, bool open_below, bool open_above)
         : block_(block), gains_(gains), eight_values_(eight_values), steps_(eight_values ? 7 : 5), top_(top),
           open_below_(open_below), open_above_(open_above) {}
 
-    // All lower endpoints from `first` to `last` (absolute codes) with the greater one `distance` above. Returns the
-    // least error.
+    // Scores all lower endpoints from `first` to `last` (absolute codes), with the greater endpoint `distance` above.
+    // Returns the least error.
     float score(int first, int last, int distance, Bc4Candidates& candidates) const {
         const Floats d;
         const int lanes = static_cast<int>(hn::Lanes(d));
@@ -90,7 +91,7 @@ public:
         const F spacing = hn::Set(d, static_cast<float>(distance) / static_cast<float>(steps_));
         const F per_spacing =
             hn::Set(d, distance == 0 ? 0.0f : static_cast<float>(steps_) / static_cast<float>(distance));
-        // Gains are in units of 1/phases code; twice the spacing times these, in codes squared.
+        // Gains are in units of 1/phases code. Multiplied by twice the spacing, they are in codes squared.
         const F weight = hn::Set(d, 2.0f * static_cast<float>(distance) / static_cast<float>(steps_) * inverse);
         HWY_ALIGN float errors[16];
         F least = hn::Set(d, 1e30f);
@@ -131,8 +132,8 @@ public:
         return hn::GetLane(hn::MinOfLanes(d, least));
     }
 
-    // The pairs of that distance that may be as good as the limit. Returns how many distances beyond this one cannot
-    // hold a better one.
+    // Scores the pairs of that distance that may be as good as the limit. Returns the number of distances after this
+    // one that cannot hold a better pair.
     int score_near(int distance, Bc4Candidates& candidates) const {
         const float s = std::sqrt(std::max(candidates.limit(), 0.0f));
         const float highest = open_below_ ? 255.0f : std::floor(block_.least + s);
@@ -141,8 +142,8 @@ public:
         const int last = std::min(top_ - distance, block_.base + static_cast<int>(std::min(highest, 255.0f)));
         if (first > last) return 0;
         const float least = score(first, last, distance, candidates);
-        // An endpoint that moves by one code moves the root of the error by at most the root of the number of
-        // texels, 4.
+        // If an endpoint moves by one code, the root of the error changes by at most the root of the number of texels,
+        // 4.
         return static_cast<int>(0.2499f *
                                 (std::sqrt(std::max(least - block_.slack, 0.0f)) - std::sqrt(candidates.limit())));
     }
@@ -181,7 +182,7 @@ private:
     const bool open_above_;
 };
 
-// Gains of the outer thresholds, at every code of the endpoint.
+// Computes the gains of the outer thresholds at every code of the endpoint.
 void tabulate_outer(const Block& block, int top, Gains& gains) {
     const auto gain = [&](float t) {
         float sum = 0.0f;
@@ -204,11 +205,11 @@ void tabulate_outer(const Block& block, int top, Gains& gains) {
 Bc4Endpoints search(const BlockTexels& texels, const ClusterBounds& bounds, Bc4Codes codes, Gains& gains) {
     const Block block = measure(texels);
     const int top = codes.top;
-    if (block.length == 0) return {block.base, block.base};  // one value, and there is a code for it
+    if (block.length == 0) return {block.base, block.base};  // one value, for which a code exists
     Bc4Candidates candidates(block.slack, {texels, codes});
     tabulate(block, 14, gains);
     const Scorer eight(block, gains, true, top, false, false);
-    // Something to start from: endpoints at the extremes, and near them.
+    // Start with endpoints at and near the extremes.
     const int distance = std::min(block.length, top);
     eight.score(std::max(0, std::min(block.base - 4, top - distance)), std::min(block.base + 4, top - distance),
                 distance, candidates);

@@ -21,8 +21,8 @@ using PlaceVec = hn::Vec<PlaceTag>;
 using IndexTag = hn::Rebind<std::int32_t, PlaceTag>;
 using IndexVec = hn::Vec<IndexTag>;
 
-// A coordinate in widths, moved by whole periods to where its texel index is a small number. Clamped axes are the same
-// beyond one width outside.
+// Moves a coordinate, in widths, by whole periods until its texel index is a small number. On clamped axes, everything
+// beyond one width outside is the same.
 HWY_INLINE PlaceVec Reduce(PlaceTag d, Wrap wrap, PlaceVec u) {
     switch (wrap) {
         case Wrap::repeat: return hn::Sub(u, hn::Floor(u));
@@ -32,8 +32,8 @@ HWY_INLINE PlaceVec Reduce(PlaceTag d, Wrap wrap, PlaceVec u) {
     return hn::Min(hn::Max(u, hn::Set(d, -1.0)), hn::Set(d, 2.0));
 }
 
-// The texel at an index at most one texel outside of a period (repeat: n texels, mirror: 2 n), any index where borders
-// are clamped.
+// The texel at an index. The index is at most one texel outside a period (repeat: n texels, mirror: 2 n). If borders
+// are clamped, it may have any value.
 HWY_INLINE IndexVec Wrapped(IndexTag d, Wrap wrap, IndexVec index, int n) {
     const IndexVec zero = hn::Zero(d);
     const IndexVec last = hn::Set(d, n - 1);
@@ -79,12 +79,12 @@ void FindRuns(const TapRow& taps, int count, int readable, std::int32_t* start) 
     }
 }
 
-// Exactly a at 0 and b at 1.
+// Interpolates; the result is exactly a at 0 and b at 1.
 HWY_INLINE FloatVec Mix(FloatVec a, FloatVec b, FloatVec t, FloatVec rest) {
     return hn::Add(hn::Mul(a, rest), hn::Mul(b, t));
 }
 
-// Texels at columns of one vector.
+// Texels at the columns of one vector.
 struct Gathered {
     ColumnVec columns;
 

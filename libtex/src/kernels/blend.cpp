@@ -66,7 +66,7 @@ struct Overlay {
     }
 };
 
-// Exactly a at 0 and b at 1.
+// Interpolates; the result is exactly a at 0 and b at 1.
 HWY_INLINE V Mix(D d, V a, V b, V t) { return hn::Add(hn::Mul(a, hn::Sub(hn::Set(d, 1.0f), t)), hn::Mul(b, t)); }
 
 template <class Mode>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// block.h: what the searches for endpoints know of a block.
+// block.h: the data about a block that the searches for endpoints use.
 
 #pragma once
 
@@ -12,15 +12,15 @@ namespace tex {
 
 // In codes relative to `base`.
 struct Block {
-    float v[16];  // texels outside the level are replaced by the mean, which changes no sum
+    float v[16];  // texels outside the level are replaced by the mean, so that sums do not change
     int base;     // the greatest whole code that is not above any texel
     int length;   // from base to the least whole code that is not below any texel
     float count;  // texels in the level
     float mean;
     float deviations;  // the sum of the squared deviations from the mean
     float least, greatest;
-    float slack;  // bounds the rounding of errors, in codes squared: less where all texels are whole codes, as tables
-                  // then have none
+    float slack;  // bounds the rounding of errors, in codes squared: smaller if all texels are whole codes, because
+                  // tables then have no rounding
 };
 
 inline Block measure(const BlockTexels& texels) {

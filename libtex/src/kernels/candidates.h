@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// candidates.h: the pairs of endpoints that a search has met and that may be the best one.
+// candidates.h: the pairs of endpoints that a search has found and that may be the best one.
 
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace tex {
 
-// A pair: the greater endpoint lies `distance` above the lower one; `kind` 0 is preferred to 1 among equals.
+// A pair: the greater endpoint lies `distance` above the lower one. Among equals, `kind` 0 is preferred to 1.
 struct Candidate {
     float error;
     int lower;
@@ -17,13 +17,13 @@ struct Candidate {
     int kind;
 };
 
-// Keeps the candidates whose error, computed in float, is within `slack` (the bound of its rounding) of the least one,
-// and in the end picks the best by `exact`, a function from Candidate to std::int64_t. Of equals: the smallest
-// distance, then the smallest kind, then the greatest lower endpoint; but the first pair without any error ends the
-// search.
+// Keeps the candidates whose error, computed in float, is within `slack` (the bound of its rounding) of the least one.
+// In the end it picks the best of them by `exact`, a function from Candidate to std::int64_t. Among equals, it prefers
+// the smallest distance, then the smallest kind, then the greatest lower endpoint; but the first pair without error
+// ends the search.
 //
-// The outcome does not depend on how many pairs are looked at together: whatever the limit was on the way, all that are
-// within the final one are in the list.
+// The result does not depend on how many pairs are scored at once: all pairs within the final limit are in the list,
+// whatever the limit was before.
 template <class Exact>
 class Candidates {
 public:
@@ -32,7 +32,7 @@ public:
     // The error above which a pair cannot be the best.
     [[nodiscard]] float limit() const { return least_ + slack_; }
 
-    // A pair without error has been found.
+    // Whether a pair without error has been found.
     [[nodiscard]] bool perfect() const { return perfect_; }
 
     void add(const Candidate& candidate) {
@@ -47,7 +47,7 @@ public:
         }
     }
 
-    // The best of those added so far, of which there must be one.
+    // Returns the best candidate added so far. Precondition: there is one.
     Candidate settle() {
         const int count = static_cast<int>(
             std::remove_if(list_, list_ + count_, [&](const Candidate& c) { return c.error > limit(); }) - list_);

@@ -34,14 +34,15 @@ void sort16(F* v) {
     }
 }
 
-// The bounds of as many blocks as there are lanes: `texels` holds 16 rows of one value for each block.
+// Computes the bounds of as many blocks as there are lanes. `texels` holds 16 rows of one value for each block.
 void bound_lanes(const float* texels, float* bounds) {
     const Floats d;
     const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
     F v[16];
     for (int k = 0; k < 16; ++k) v[k] = hn::Load(d, texels + k * lanes);
     sort16(v);
-    // Sums from the first texel on, of values less the middle of the range: small numbers, small rounding.
+    // Sums from the first texel on, of the values minus the middle of the range: small numbers have a small rounding
+    // error.
     const F range = hn::Sub(v[15], v[0]);
     const F middle = hn::Mul(hn::Add(v[15], v[0]), hn::Set(d, 0.5f));
     F sum[17], squares[17];
@@ -68,7 +69,8 @@ void bound_lanes(const float* texels, float* bounds) {
     };
     report(0, least[15]);
     for (int k = 1; k < kMaxClusters; ++k) {
-        // In place: from the last texel down, as the error up to j needs those of earlier texels with fewer clusters.
+        // In place, from the last texel down, because the error up to j needs the errors of earlier texels with fewer
+        // clusters.
         const int lowest = k + 1 < kMaxClusters ? k : 15;
         for (int j = 15; j >= lowest; --j) {
             F error = hn::Add(least[k - 1], hn::Load(d, costs + (k * 16 + j) * lanes));

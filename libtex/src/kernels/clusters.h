@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// clusters.h: how well any k values can stand for the texels of a block.
+// clusters.h: how well k arbitrary values can represent the texels of a block.
 
 #pragma once
 
@@ -9,20 +9,20 @@ namespace tex {
 
 inline constexpr int kMaxClusters = 8;
 
-// bound[k] is at most the least squared error, in codes squared, with which any k + 1 values approximate the 16 texels;
-// it falls with k. A palette of which k + 1 entries lie within reach of the block cannot do better.
+// bound[k] does not exceed the least squared error, in codes squared, with which any k + 1 values approximate the 16
+// texels. It falls with k. A palette with k + 1 entries within reach of the block cannot do better.
 struct ClusterBounds {
     float bound[kMaxClusters];
 };
 
-// Optimal one-dimensional clustering: sort the texels, then dynamic programming over the last cluster's first texel
-// (Fisher 1958; Wang and Song, Ckmeans.1d.dp, 2011), for several blocks at once. Clusters of sorted values are
+// Optimal one-dimensional clustering, for several blocks at once: sort the texels, then use dynamic programming over
+// the first texel of the last cluster (Fisher 1958; Wang and Song, Ckmeans.1d.dp, 2011). Clusters of sorted values are
 // intervals, so their least error is
 //
-//     f[1][j] = c(0, j)      f[k][j] = min over i of f[k-1][i-1] + c(i, j)      c(i, j) = sum of v^2 - (sum of v)^2 /
-//     (j - i + 1)
+//     f[1][j] = c(0, j)      f[k][j] = min over i of f[k-1][i-1] + c(i, j)
+//     c(i, j) = sum of v^2 - (sum of v)^2 / (j - i + 1)
 //
-// Rounding is allowed for: what is returned is less than the true value by up to 1e-5 of the block's range squared.
+// To allow for rounding, the result is less than the true value by up to 1e-5 of the square of the block's range.
 // Blocks with texels outside the level get bounds of 0.
 void cluster_bounds(const BlockTexels* blocks, int count, ClusterBounds* bounds);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Blocks. A palette is a row of fractions with whole numerators and denominators, computed in one vector; where vectors
-// hold eight floats, texels are looked up in it eight at a time. Elsewhere the blocks' own decoders do the
-// same with the same bytes.
+// Blocks: a palette is a row of fractions with whole numerators and denominators, computed in one vector. If vectors
+// hold eight floats, texels are looked up in it eight at a time. Otherwise the decoders of the blocks are used, which
+// give the same bytes.
 
 #include "kernels/decode.h"
 
@@ -38,7 +38,7 @@ struct Fractions {
     alignas(32) float over[8];
 };
 
-// Sevenths, and fifths with the lowest and the greatest value, of codes of which `one` is 1.
+// Sevenths, and fifths with the lowest and the greatest value, of codes; code `one` represents 1.
 constexpr Fractions Sevenths(float one) {
     return {{1, 0, 6, 5, 4, 3, 2, 1},
             {0, 1, 1, 2, 3, 4, 5, 6},
@@ -51,7 +51,7 @@ constexpr Fractions Fifths(float one, float lowest) {
             {0, 0, 0, 0, 0, 0, lowest * one, one},
             {one, one, 5 * one, 5 * one, 5 * one, 5 * one, one, one}};
 }
-// Thirds, and halves with black, of 8-bit codes; twice, as there are eight lanes.
+// Thirds, and halves with black, of 8-bit codes. All are there twice, because there are eight lanes.
 constexpr Fractions kThirds = {
     {1, 0, 2, 1, 1, 0, 2, 1}, {0, 1, 1, 2, 0, 1, 1, 2}, {}, {255, 255, 765, 765, 255, 255, 765, 765}};
 constexpr Fractions kHalves = {
@@ -67,7 +67,7 @@ HWY_INLINE V8 Palette(const Fractions& fractions, int e0, int e1) {
     return hn::Div(sum, hn::Load(d, fractions.over));
 }
 
-// Two rows of four texels; the index of texel k stands in bits from shifts[k].
+// Two rows of four texels. The index of texel k begins at bit shifts[k].
 HWY_INLINE void LookUpTwoRows(V8 palette, std::uint32_t bits, const std::uint32_t* shifts, std::uint32_t mask,
                               float* out, std::ptrdiff_t stride) {
     const D8 d;
@@ -103,7 +103,7 @@ HWY_INLINE void DecodeBc4(const std::byte* block, float* out, std::ptrdiff_t str
     LookUpTwoRows(palette, static_cast<std::uint32_t>(all >> 40), kShifts, 7, out + 2 * stride, stride);
 }
 
-// The colours of a BC1 block; a null pointer for those that nobody wants.
+// The colours of a BC1 block. A null pointer marks a channel that is not needed.
 HWY_INLINE void DecodeBc1(const std::byte* block, Bc1Mode mode, const ChannelRows& rows, std::ptrdiff_t at,
                           std::ptrdiff_t stride) {
     alignas(32) static constexpr std::uint32_t kShifts[8] = {0, 2, 4, 6, 8, 10, 12, 14};

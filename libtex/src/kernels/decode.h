@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// decode.h: rows of texels, and rows of blocks, to floats.
+// decode.h: decodes rows of texels and rows of blocks to floats.
 
 #pragma once
 
@@ -9,16 +9,16 @@
 
 namespace tex {
 
-// Where the channels R, G, B and A go; a null pointer for a channel that nobody wants or the format does not hold.
+// Where the channels R, G, B and A go. A pointer is null if the channel is not needed or not in the format.
 struct ChannelRows {
     float* channel[4] = {};
 };
 
-// Decodes `count` texels of a format without blocks. Values: see decode() in unpack.h.
+// Decodes `count` texels of a format without blocks. For the values, see decode() in unpack.h.
 void decode_texels(Format format, const std::byte* texels, int count, const ChannelRows& rows);
 
-// Decodes `count` blocks that stand side by side: four rows of 4 * count texels, row k of a channel at channel + k *
-// stride. Values: see blocks/bc1.h and blocks/bc4.h, to the last bit.
+// Decodes `count` blocks that lie side by side: four rows of 4 * count texels, with row k of a channel at channel + k *
+// stride. The values are those of blocks/bc1.h and blocks/bc4.h, to the last bit.
 void decode_blocks(Format format, const std::byte* blocks, int count, const ChannelRows& rows, std::ptrdiff_t stride);
 
 }  // namespace tex

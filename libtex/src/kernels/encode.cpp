@@ -19,7 +19,7 @@
 namespace tex {
 namespace {
 
-// Blocks that are encoded together.
+// The number of blocks that are encoded together.
 constexpr int kRun = 64;
 
 // One channel of a row of blocks.
@@ -30,10 +30,11 @@ struct Channel {
     bool negate;
 
     [[nodiscard]] int blocks() const { return blocks_across(width); }
-    // Blocks that lie whole in the level: the others are always searched, as fits weigh all texels alike.
+    // The number of blocks that lie entirely in the level. All others are searched, because fits weight all texels
+    // equally.
     [[nodiscard]] int whole_blocks() const { return height == kBlockEdge ? width / kBlockEdge : 0; }
 
-    // Whether a whole block may have the lowest or the greatest code: a quick test.
+    // A quick test whether a whole block may have the lowest or the greatest code.
     [[nodiscard]] bool reaches_extremes(int block) const {
         float most = 0.0f;
         for (int k = 0; k < kBlockTexels; ++k)
@@ -57,8 +58,8 @@ struct Channel {
 Channel channel_x(const BlockRow& row) { return {row.x, row.width, row.height, false}; }
 Channel channel_y(const BlockRow& row) { return {row.y, row.width, row.height, row.negate_y}; }
 
-// Whether a block that was decoded before may have had 6 values, and the lowest or the greatest code: it has one of
-// these, and up to eight values.
+// Whether a block that was decoded before may have had 6 values and the lowest or the greatest code: it has one of
+// these codes, and up to eight values.
 bool may_have_six_values(const BlockTexels& texels, int top) {
     const auto [least, greatest] = std::minmax_element(texels.values, texels.values + kBlockTexels);
     if (*least == *greatest || (*least != 0 && *greatest != top * kCodeUnit)) return false;
@@ -72,7 +73,8 @@ bool may_have_six_values(const BlockTexels& texels, int top) {
     return true;
 }
 
-// The optimum of the blocks from `first` on and, where `six_values` is set, of those before that may have had 6 values.
+// Searches for the optimum of the blocks from `first` on and, if `six_values` is set, of earlier blocks that may have
+// had 6 values.
 template <class Endpoints, class Search, class Write>
 void search_blocks(const Channel& channel, int first, bool six_values, int top, Search search, Write write,
                    std::byte* blocks) {

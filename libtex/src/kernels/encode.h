@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// encode.h: four rows of normals to a row of texel blocks.
+// encode.h: encodes four rows of normals as a row of texel blocks.
 
 #pragma once
 
@@ -12,8 +12,8 @@
 
 namespace tex {
 
-// The texel rows of a row of blocks, from the top, padded as those of a Plane. Where the level ends within the blocks,
-// `height` says how many rows there are (1 to kBlockEdge); the other pointers repeat the last one.
+// The texel rows of a row of blocks, from the top, padded like the rows of a Plane. If the level ends within the
+// blocks, `height` is the number of its rows here (1 to kBlockEdge); the other pointers repeat the last row.
 struct BlockRow {
     const float* x[kBlockEdge];
     const float* y[kBlockEdge];
@@ -22,7 +22,7 @@ struct BlockRow {
     bool negate_y = false;
 };
 
-// The row of blocks from texel row j on, of two planes that have this extent.
+// The row of blocks that begins at texel row j, of two planes with this extent.
 template <class Plane>
 BlockRow block_row(const Plane& x, const Plane& y, Extent extent, int j, bool negate_y) {
     BlockRow row;
@@ -37,14 +37,15 @@ BlockRow block_row(const Plane& x, const Plane& y, Extent extent, int j, bool ne
 }
 
 // Encode blocks_across(width) blocks of 16 bytes each, one after the other. Components are clamped to [-1, 1]. See
-// pack() for what the blocks promise. Effort::fast and normal fit (fit.h), best searches (bc4_search.h,
-// green_search.h); blocks that lie partly outside the level are searched at every effort; at normal so are channels in
-// BC4 that have the lowest or the greatest code and up to eight values, as blocks do that were decoded before.
+// pack() for what the blocks guarantee. Effort::fast and normal use fits (fit.h); best uses searches (bc4_search.h,
+// green_search.h). Blocks that lie partly outside the level are searched at every effort. At normal, a BC4 channel is
+// also searched if it has the lowest or the greatest code and up to eight values, as in blocks that were decoded
+// before.
 void encode_dxt5nm(const BlockRow& row, Effort effort, std::byte* blocks);
 void encode_bc5_unorm(const BlockRow& row, Effort effort, std::byte* blocks);
 void encode_bc5_snorm(const BlockRow& row, Effort effort, std::byte* blocks);
 
-// All that the options say of blocks: encoding (one in blocks), effort and metric.
+// Uses all options that concern blocks: encoding (one in blocks), effort and metric.
 void encode_blocks(const BlockRow& row, const PackOptions& options, std::byte* blocks);
 
 }  // namespace tex

@@ -24,7 +24,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tex {
 namespace HWY_NAMESPACE {
 
-// Blocks of one value (to half a code): the endpoints that come nearest to it.
+// For blocks of one value (to half a code): sets the endpoints that come nearest to it.
 HWY_INLINE void set_single_greens(const Group& group, Choice& choice) {
     const Floats d;
     const hn::Rebind<std::int32_t, Floats> di;
@@ -48,7 +48,7 @@ HWY_INLINE void set_single_greens(const Group& group, Choice& choice) {
     }
 }
 
-// Indices as blocks store them, by k from the lower endpoint; bit 3 of k tells blocks of 6 values.
+// Indices as blocks store them, by k counted from the lower endpoint. Bit 3 of k marks blocks of 6 values.
 HWY_ALIGN constexpr std::uint8_t kBc4Indices[16] = {1, 7, 6, 5, 4, 3, 2, 0, 0, 2, 3, 4, 5, 1, 1, 1};
 HWY_ALIGN constexpr std::uint8_t kGreenIndices[16] = {1, 3, 2, 0};
 
@@ -56,14 +56,15 @@ HWY_INLINE W stored_index(W k, const std::uint8_t* table) {
 #if HWY_TARGET == HWY_SCALAR
     return word(table[hn::GetLane(k) & 15]);
 #else
-    // The upper byte is out of the table, which gives 0.
+    // The upper byte lies outside the table, which gives 0.
     const hn::Repartition<std::uint8_t, Words> d8;
     return hn::BitCast(Words(),
                        hn::TableLookupBytesOr0(hn::LoadDup128(d8, table), hn::BitCast(d8, hn::Or(k, word(0x8000)))));
 #endif
 }
 
-// Words of 16 bits that hold the indices of all texels, `bits` each; k(texel) counts from the lower endpoint.
+// Packs the indices of all texels into words of 16 bits, `bits` for each index; k(texel) counts from the lower
+// endpoint.
 template <int kBits, class Index>
 HWY_INLINE void pack_indices(const std::uint8_t* table, Index k, W* words) {
     for (int texel = 0; texel < 16; ++texel) {
@@ -75,7 +76,7 @@ HWY_INLINE void pack_indices(const std::uint8_t* table, Index k, W* words) {
     }
 }
 
-// How the texels of a block find their indices: those of blocks of 6 values have bit 3 set.
+// How the texels of a block find their indices. In blocks of 6 values, bit 3 of the index is set.
 struct Indexing {
     W factor, offset, cut, mark;
 };
@@ -93,7 +94,7 @@ HWY_INLINE BlockWords bc4_words(const Group& group, Bc4Codes codes, const Ends& 
     return block;
 }
 
-// The better ones of endpoints for 8 and for 6 values, which are stored the other way round.
+// Chooses the better of the endpoints for 8 and for 6 values, which are stored in the opposite order.
 HWY_INLINE BlockWords choose_bc4(const Group& group, Bc4Codes codes, const Choice& eight, const Choice& six) {
     const float top = static_cast<float>(codes.top);
     const Ramp ramp = Fitter<EightValues>(group, {top}).ramp_of(eight);
@@ -113,7 +114,7 @@ HWY_INLINE BlockWords choose_bc4(const Group& group, Bc4Codes codes, const Choic
          hn::IfThenElse(better, word(cut(5)), word(cut(7))), hn::IfThenElseZero(better, word(8))});
 }
 
-// Zero where all texels are whole codes.
+// Zero if all texels are whole codes.
 HWY_INLINE W fractions_of(const W* texels) {
     W any = texels[0];
     for (int k = 1; k < 16; ++k) any = hn::Or(any, texels[k]);
@@ -133,7 +134,7 @@ HWY_INLINE BlockWords fast_bc4(const W* texels, Bc4Codes codes) {
     return bc4_words(group, codes, choice, {ramp.factor, ramp.offset, word(cut(7)), hn::Zero(d)});
 }
 
-// Sets `extremes` where blocks have texels of the lowest or the greatest code, and others.
+// Sets `extremes` if a block has texels of the lowest or the greatest code, and other texels too.
 HWY_INLINE BlockWords normal_bc4(const W* texels, Bc4Codes codes, bool& extremes) {
     const float top = static_cast<float>(codes.top);
     Group group;
@@ -149,7 +150,7 @@ HWY_INLINE BlockWords normal_bc4(const W* texels, Bc4Codes codes, bool& extremes
     const Fitter<SixValues> six_fitter(group, {top});
     Choice six;
     six_fitter.start<Precision::full>(0.0f, 1.0f, 2, six);
-    // A spacing of one code has no error where all texels are whole codes.
+    // A spacing of one code has no error if all texels are whole codes.
     const Parts fractions = to_floats(fractions_of(texels));
     F open[kParts];
     for (int p = 0; p < kParts; ++p) {
@@ -174,7 +175,7 @@ HWY_INLINE BlockWords green_words(const Group& group, const Choice& choice) {
     const W red_blue = word(0xF81F);
     block.w[0] = hn::Or(hn::ShiftLeft<5>(to_words(choice.high)), red_blue);
     block.w[1] = hn::Or(hn::ShiftLeft<5>(to_words(choice.low)), red_blue);
-    // Equal endpoints use index 0 only.
+    // If the endpoints are equal, only index 0 is used.
     const auto apart = hn::Ne(block.w[0], block.w[1]);
     block.w[2] = hn::IfThenElseZero(apart, block.w[2]);
     block.w[3] = hn::IfThenElseZero(apart, block.w[3]);
@@ -204,7 +205,7 @@ HWY_INLINE BlockWords normal_green(const W* texels) {
     Choice best;
     fitter.score<Precision::full>(found, nullptr, best);
     fitter.start<Precision::full>(0.0f, 0.0f, 3, best);
-    F wide[kParts];  // two spacings have 8/3 codes or more
+    F wide[kParts];  // two spacings are 8/3 codes or more
     for (int p = 0; p < kParts; ++p) {
         wide[p] = hn::IfThenElseZero(hn::Gt(group.greatest[p], hn::Mul(group.per_unit[p], constant(2.5f))),
                                      constant(65535.0f));
@@ -213,7 +214,7 @@ HWY_INLINE BlockWords normal_green(const W* texels) {
     return green_words(group, best);
 }
 
-// Calls encode(rows of x, rows of y, blocks) for groups of lanes() blocks; the last ones in copies.
+// Calls encode(rows of x, rows of y, blocks) for groups of lanes() blocks. The last blocks are copied first.
 template <class Encode>
 HWY_INLINE void for_each_group(const FitRows& x, const FitRows& y, int count, std::byte* blocks, Encode encode) {
     std::ptrdiff_t first = 0;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// fit_greens-inl.h: greens scored by the thresholds between their values, without indices.
+// fit_greens-inl.h: scores greens by the thresholds between their values, without indices.
 //
 // With 4 values of spacing s from a on, the squared error is that of a alone, less 2 s times the sum of max(0, v - t)
-// over the texels v and the three thresholds t between values. max(0, v - t) = max(v, t) - t, so that maxima and means
-// of 16 bits do.
+// over the texels v and the three thresholds t between values. Because max(0, v - t) = max(v, t) - t, maxima and means
+// of 16 bits are enough.
 //
 // Compiled once for each Highway target, as part of fit.cpp.
 
@@ -27,7 +27,7 @@ class GreenFitter : public Fitter<Greens> {
 public:
     explicit GreenFitter(const Group& group) : Fitter<Greens>(group, {}) {}
 
-    // One step from endpoints as those of start(): what these lead to is scored.
+    // Takes one step from the endpoints of start() and scores the result.
     HWY_INLINE void start_and_step(float g, float j, Choice& choice) const {
         Ends ends;
         start_at(g, j, ends);
@@ -45,8 +45,8 @@ public:
         score_thresholds(lower, b, ends.high, choice);
     }
 
-    // Scores all pairs of stored codes whose members are within `reach` (at most 2) of those of the choice. Out of
-    // line: unrolled it would not fit into the caches of instructions.
+    // Scores all pairs of stored codes whose members are within `reach` (at most 2) of those of the choice. Not
+    // inlined: unrolled, it would not fit into the instruction caches.
     HWY_NOINLINE void neighbours(int reach, Choice& choice) const {
         Lower lower[5];
         F high[5][kParts], b[5][kParts];
@@ -64,8 +64,8 @@ public:
     }
 
 private:
-    // A lower endpoint: as stored; its value in sixths of local units; and the error of texels that all take it, less
-    // that of the middle of the range.
+    // A lower endpoint: as stored; its value in sixths of local units; and the error if all texels take it, less the
+    // error if all take the middle of the range.
     struct Lower {
         F stored[kParts], sixths[kParts], error[kParts];
     };
@@ -78,7 +78,7 @@ private:
         lower.error[p] = hn::Mul(middle, hn::Sub(hn::Mul(constant(16.0f), middle), hn::Add(v, v)));
     }
 
-    // `b`: the greater endpoint in sixths of local units; below the lower one it counts as equal.
+    // `b` is the greater endpoint in sixths of local units. If it is below the lower one, it counts as equal.
     HWY_INLINE void score_thresholds(const Lower& lower, const F (&b)[kParts], const F (&stored_b)[kParts],
                                      Choice& choice) const {
         F low[kParts], middle[kParts], high[kParts], sum[kParts], span[kParts];
@@ -103,7 +103,7 @@ private:
         }
     }
 
-    // The mean of max(v, t) over the texels, rounded up four times: at most two units above.
+    // The mean of max(v, t) over the texels, rounded up four times, so that it is at most two units too large.
     template <int kFirst, int kCount>
     HWY_INLINE W mean_greater(W t) const {
         if constexpr (kCount == 1) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// fit_group-inl.h: up to 32 blocks of one channel in lanes of 16 bits: from rows of texels, and to the bytes of blocks.
+// fit_group-inl.h: up to 32 blocks of one channel in lanes of 16 bits: loaded from rows of texels, and stored as
+// blocks.
 //
 // Compiled once for each Highway target, as part of fit.cpp.
 
@@ -22,23 +23,24 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Words = hn::CappedTag<std::uint16_t, 32>;  // a block in each lane
+using Words = hn::CappedTag<std::uint16_t, 32>;  // one block in each lane
 using Floats = hn::CappedTag<float, 16>;
 using W = hn::Vec<Words>;
 using F = hn::Vec<Floats>;
 
 constexpr int kLanes = 32;       // at most
-constexpr float kFine = 128.0f;  // units of texels as loaded, for each code
-constexpr int kHighUnit = 128;   // local units of Group::high
+constexpr float kFine = 128.0f;  // units per code in texels as loaded
+constexpr int kHighUnit = 128;   // local units per unit of Group::high
 
-// Constants, and always inlined, as loops over them must be unrolled.
+// Constant, and always inlined, because loops over these must be unrolled.
 HWY_INLINE constexpr int lanes() { return static_cast<int>(hn::MaxLanes(Words())); }
 HWY_INLINE constexpr int float_lanes() { return static_cast<int>(hn::MaxLanes(Floats())); }
 
 HWY_INLINE F constant(float value) { return hn::Set(Floats(), value); }
 HWY_INLINE W word(int value) { return hn::Set(Words(), static_cast<std::uint16_t>(value)); }
 
-// A vector of words in floats takes kParts vectors: the words of even lanes, then those of odd lanes. So no lane moves.
+// As floats, a vector of words takes kParts vectors: first the words of even lanes, then those of odd lanes. So no word
+// changes its lane.
 #if HWY_TARGET == HWY_SCALAR
 constexpr int kParts = 1;
 struct Parts {
@@ -50,7 +52,8 @@ HWY_INLINE Parts to_floats(W words) {
 HWY_INLINE Parts sum_of(W a, W b, W c) {
     return {{hn::Add(hn::Add(to_floats(a).part[0], to_floats(b).part[0]), to_floats(c).part[0])}};
 }
-// Numbers of 0 to 65535, rounded to whole ones: added to 2^23, the lowest bits of the sum hold them.
+// Converts numbers of 0 to 65535, rounded to whole numbers: they are added to 2^23, and the lowest bits of the sum hold
+// them.
 HWY_INLINE W to_words(const F (&value)[kParts]) {
     return hn::TruncateTo(Words(),
                           hn::BitCast(hn::Rebind<std::uint32_t, Floats>(), hn::Add(value[0], constant(8388608.0f))));
@@ -80,7 +83,8 @@ HWY_INLINE Parts sum_of(W a, W b, W c) {
     const auto odd = hn::Add(hn::Add(hn::ShiftRight<16>(x), hn::ShiftRight<16>(y)), hn::ShiftRight<16>(z));
     return {{hn::ConvertTo(d, hn::BitCast(di, even)), hn::ConvertTo(d, hn::BitCast(di, odd))}};
 }
-// Numbers of 0 to 65535, rounded to whole ones: added to 2^23, the lowest bits of the sum hold them.
+// Converts numbers of 0 to 65535, rounded to whole numbers: they are added to 2^23, and the lowest bits of the sum hold
+// them.
 HWY_INLINE W to_words(const F (&value)[kParts]) {
     const hn::Rebind<std::uint32_t, Floats> du;
     const auto even = hn::And(hn::BitCast(du, hn::Add(value[0], constant(8388608.0f))), hn::Set(du, 0xFFFFu));
@@ -89,20 +93,20 @@ HWY_INLINE W to_words(const F (&value)[kParts]) {
 }
 #endif
 
-// Blocks in lanes. Values, and endpoints called a and b, are local: units of `unit` codes from the least texel, `base`
-// codes, on, such that the greatest texel lies between 32768 and 65535.
+// Blocks in lanes. Values, and endpoints called a and b, are local: they count units of `unit` codes from the least
+// texel, which is at `base` codes. The unit is such that the greatest texel lies between 32768 and 65535.
 struct Group {
     W values[16];
     W high[16];  // values = kHighUnit high + low, high up to 512
-    W low[16];   // -64 to 63; of groups made with full precision
+    W low[16];   // -64 to 63; only in groups made with full precision
     F base[kParts], unit[kParts], per_unit[kParts];
     F greatest[kParts];
-    F sum[kParts], high_sum[kParts];  // of values, and of kHighUnit high
+    F sum[kParts], high_sum[kParts];  // sums of the values, and of kHighUnit * high
 };
 
-// Texels of four rows, 16 vectors of 1/128 code, clamped to 0 to `top` codes. Transposing within 16 bytes is cheaper
-// than across the vector: with B blocks in a vector of floats, lane 8 p + 4 h + m holds block (2 m + h) B + p, which
-// suits BlockWriter.
+// Texels of four rows: 16 vectors in units of 1/128 code, clamped to 0 to `top` codes. Transposing within 16 bytes is
+// cheaper than across the vector: with B blocks in a vector of floats, lane 8 p + 4 h + m holds block (2 m + h) B + p,
+// which suits BlockWriter.
 #if HWY_TARGET == HWY_SCALAR
 HWY_INLINE void load_texels(const float* const rows[4], int top, bool negate, W* v) {
     const float half = 0.5f * kFine * static_cast<float>(top);
@@ -120,7 +124,7 @@ HWY_INLINE void load_texels(const float* const rows[4], int top, bool negate, W*
     const hn::Rebind<std::int16_t, Words> ds;
     const hn::Repartition<std::uint32_t, Words> d32;
     const hn::Repartition<std::uint64_t, Words> d64;
-    // Added to 2^23 a number is rounded to a whole one, which the lowest bits of the sum then hold.
+    // A number added to 2^23 is rounded to a whole number, which the lowest bits of the sum then hold.
     constexpr float kWhole = 8388608.0f;
     const float half = 0.5f * kFine * static_cast<float>(top);
     const F scale = constant(negate ? -half : half);
@@ -152,7 +156,7 @@ HWY_INLINE void load_texels(const float* const rows[4], int top, bool negate, W*
 }
 #endif
 
-// Sums of coarse precision take the high parts of values for these.
+// Sums of coarse precision use only the high parts of values.
 enum class Precision { coarse, full };
 
 template <Precision kPrecision>
@@ -166,7 +170,7 @@ HWY_INLINE void make_group(const W* v, Group& group) {
         least = hn::Min(least, v[k]);
         greatest = hn::Max(greatest, v[k]);
     }
-    // Values are multiplied by the power of two that takes the greatest to 32768 to 65535.
+    // Values are multiplied by the power of two that moves the greatest one into the range 32768 to 65535.
     const Parts ranges = to_floats(hn::Sub(greatest, least));
     const Parts bases = to_floats(least);
     F factors[kParts];
@@ -199,12 +203,12 @@ HWY_INLINE void make_group(const W* v, Group& group) {
     }
 }
 
-// The 8 bytes of one channel's blocks, as words.
+// The 8 bytes of one channel of each block, as words.
 struct BlockWords {
     W w[4];
 };
 
-// Blocks of two channels, 16 bytes each, one after the other.
+// Stores blocks of two channels, 16 bytes each, one after the other.
 #if HWY_TARGET == HWY_SCALAR
 HWY_INLINE void store_blocks(const BlockWords& first, const BlockWords& second, std::byte* blocks) {
     for (std::ptrdiff_t k = 0; k < 4; ++k) {

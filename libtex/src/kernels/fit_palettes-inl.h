@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// fit_palettes-inl.h: blocks whose values lie on a palette, as those do that were decoded before.
+// fit_palettes-inl.h: finds blocks whose values lie on a palette, as in blocks that were decoded before.
 //
-// Where the least and the greatest value are the p-th and the q-th of a palette, they say what its endpoints are. For
-// each p and q, these are offered where they are codes that can be stored and all values lie on the palette.
+// If the least and the greatest value are the p-th and the q-th entry of a palette, they determine its endpoints. For
+// each p and q, these endpoints are offered if they can be stored as codes and all values lie on the palette.
 //
 // Compiled once for each Highway target, as part of fit.cpp.
 
@@ -22,8 +22,8 @@ HWY_BEFORE_NAMESPACE();
 namespace tex {
 namespace HWY_NAMESPACE {
 
-// Set where the first `texels` of a block lie on a grid that divides its range into kSpan spacings, within what the
-// rounding of values to 1/128 of a code explains.
+// Set if the first `texels` of a block lie on a grid that divides its range into kSpan spacings, within the rounding of
+// values to 1/128 of a code.
 template <int kSpan>
 HWY_INLINE W on_grid(const Group& group, int texels) {
     const Words d;
@@ -47,7 +47,8 @@ HWY_INLINE W on_grid(const Group& group, int texels) {
     return hn::VecFromMask(d, hn::Eq(hn::Max(most, limit), limit));
 }
 
-// Whether any of the blocks lies on a grid, of those that `among` has set. Half the texels tell most that do not.
+// Whether any of the blocks that are set in `among` lies on a grid. Half of the texels are enough to reject most
+// others.
 template <int kSpan>
 HWY_INLINE bool any_on_grid(const Group& group, W among) {
     const auto any = [&](int texels) {
@@ -60,7 +61,7 @@ HWY_INLINE bool any_on_grid(const Group& group, W among) {
 // Offers the palettes on which the values span kSpan spacings.
 template <class Kind, int kSpan>
 HWY_INLINE void offer_palettes(const Group& group, W among, Kind kind, Choice& choice) {
-    constexpr float kMostOff = 1.0f / 16.0f;  // of endpoints, in codes: rounding of values explains 1/20
+    constexpr float kMostOff = 1.0f / 16.0f;  // of endpoints, in codes; the rounding of values accounts for 1/20
     const Floats d;
     const Fitter<Kind> fitter(group, kind);
     const W on_palette = hn::And(on_grid<kSpan>(group, 16), among);
@@ -90,8 +91,8 @@ HWY_INLINE void offer_palettes(const Group& group, W among, Kind kind, Choice& c
     if (!hn::AllTrue(d, none)) fitter.template score<Precision::full>(ends, nullptr, choice);
 }
 
-// Out of line: few groups of blocks need these. Values that span one, two or three spacings are on the grids of four
-// and of six, too.
+// Not inlined: few groups of blocks need these. Values that span one, two or three spacings also lie on the grids of
+// four or six.
 template <int kSpan>
 HWY_NOINLINE void offer_bc4_palettes(const Group& group, W among, float top, Choice& eight, Choice& six) {
     offer_palettes<EightValues, kSpan>(group, among, {top}, eight);

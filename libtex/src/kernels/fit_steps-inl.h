@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// fit_steps-inl.h: from endpoints to indices, from indices to their error and to better endpoints.
+// fit_steps-inl.h: steps from endpoints to indices, and from indices to their error and to better endpoints.
 //
 // Compiled once for each Highway target, as part of fit.cpp.
 
@@ -24,26 +24,26 @@ namespace HWY_NAMESPACE {
 HWY_INLINE F clamped(F value, float most) { return hn::Min(hn::Max(value, hn::Zero(Floats())), constant(most)); }
 HWY_INLINE F rounded(F value) { return hn::Floor(hn::Add(value, constant(0.5f))); }
 
-// BC4 with 8 values, endpoints of 8 bits that differ.
+// BC4 with 8 values: different endpoints of 8 bits.
 struct EightValues {
     static constexpr int kSteps = 7;
     float top;
 
-    // Rounds endpoints in codes to what the block can hold.
+    // Rounds endpoints, in codes, to values that the block can hold.
     HWY_INLINE void round(F& low, F& high) const {
         const F a = clamped(rounded(low), top);
         const F b = clamped(rounded(high), top);
-        // Equal ones would mean 6 values: take the codes on both sides.
+        // Equal endpoints would mean 6 values, so take the codes on both sides.
         const F floor = clamped(hn::Floor(low), top - 1.0f);
         const auto apart = hn::Gt(b, a);
         low = hn::IfThenElse(apart, a, floor);
         high = hn::IfThenElse(apart, b, hn::Add(floor, constant(1.0f)));
     }
-    // The codes of 8 bits that the decoder makes of them.
+    // The 8-bit codes that the decoder makes from these codes.
     HWY_INLINE F widen(F code) const { return code; }
 };
 
-// BC4 with 6 values, of which the lowest and the greatest code are not used here.
+// BC4 with 6 values. The lowest and the greatest code are not used here.
 struct SixValues {
     static constexpr int kSteps = 5;
     float top;
@@ -72,8 +72,8 @@ struct Greens {
     }
 };
 
-// Turns a value into an index, counted from the lower endpoint: q = value * factor / 65536 + offset has 2^kIndexBits
-// for each spacing, and the additions saturate at both ends of the palette: k = (q - cut) / 2^kIndexBits.
+// Turns a value into an index, counted from the lower endpoint. q = value * factor / 65536 + offset has 2^kIndexBits
+// for each spacing. The additions saturate at both ends of the palette: k = (q - cut) / 2^kIndexBits.
 struct Ramp {
     W factor, offset;
 };
@@ -100,11 +100,11 @@ HWY_INLINE Ramp make_ramp(const F (&a)[kParts], const F (&b)[kParts]) {
     return {to_words(factor), to_words(offset)};
 }
 
-// What follows from the indices k of the texels' values v.
+// Sums over the indices k and the values v of the texels.
 struct Sums {
     W k, kk, k_high, k_low;
 };
-constexpr int kLowBias = 8192;  // of k_low, which may be negative
+constexpr int kLowBias = 8192;  // added to k_low, which may be negative
 
 template <class Kind, Precision kPrecision>
 HWY_INLINE Sums sum_up(const Group& group, const Ramp& ramp) {
@@ -120,7 +120,7 @@ HWY_INLINE Sums sum_up(const Group& group, const Ramp& ramp) {
     return sums;
 }
 
-// Endpoints in codes on their way, for each block.
+// Intermediate endpoints, in codes, for each block.
 struct Ends {
     F low[kParts], high[kParts];
 };
@@ -147,8 +147,8 @@ class Fitter {
 public:
     Fitter(const Group& group, Kind kind) : group_(group), kind_(kind) {}
 
-    // Takes `steps` steps from endpoints at which n - j + g spacings span the range, the lower one g / 2 spacings above
-    // the least texel.
+    // Takes `steps` steps. At the first endpoints, n - j + g spacings span the range, and the lower endpoint lies g / 2
+    // spacings outside the least texel.
     template <Precision kPrecision>
     HWY_INLINE void start(float g, float j, int steps, Choice& choice) const {
         Ends ends;
@@ -156,8 +156,8 @@ public:
         for (int k = 0; k < steps; ++k) step<kPrecision>(ends, k + 1 < steps, choice);
     }
 
-    // Rounds the endpoints, takes the nearest indices, and keeps the endpoints where they are the best so far; with
-    // `refined` then replaces them by those that suit the indices best.
+    // Rounds the endpoints, takes the nearest indices, and keeps the endpoints if they are the best so far. With
+    // `refined`, it then replaces them by the endpoints that suit the indices best.
     template <Precision kPrecision>
     HWY_INLINE void step(Ends& ends, bool refined, Choice& choice) const {
         Ends stored = ends;
@@ -165,11 +165,11 @@ public:
         score<kPrecision>(stored, refined ? &ends : nullptr, choice);
     }
 
-    // Where a block's range is at most n codes, a spacing of one code: it loses nothing where all texels are whole
+    // If a block's range is at most n codes, tries a spacing of one code, which loses nothing if all texels are whole
     // codes.
     HWY_INLINE void whole_codes(Choice& choice) const {
         const Floats d;
-        Ends ends = choice;  // the other blocks learn nothing new
+        Ends ends = choice;  // for the other blocks this is nothing new
         auto all_wide = hn::Eq(constant(0.0f), constant(0.0f));
         for (int p = 0; p < kParts; ++p) {
             const F range = hn::Mul(group_.greatest[p], group_.unit[p]);
@@ -182,7 +182,7 @@ public:
         if (!hn::AllTrue(d, all_wide)) score<Precision::full>(ends, nullptr, choice);
     }
 
-    // Scores stored endpoints; with `refined` replaces these by those that suit the indices best.
+    // Scores stored endpoints. If `refined` is not null, it receives the endpoints that suit the indices best.
     template <Precision kPrecision>
     HWY_INLINE void score(const Ends& stored, Ends* refined, Choice& choice) const {
         const Sums sums = sum_up<Kind, kPrecision>(group_, ramp_of(stored));
@@ -194,9 +194,9 @@ public:
         }
     }
 
-    // From endpoints at the extremes, moved inwards by a part of the range, to those that suit their indices best,
-    // rounded. Returns the indices' ramp. Where `whole` is set, if given (all texels are whole codes), and the range is
-    // at most n codes: a spacing of one code, which loses nothing.
+    // Starts from endpoints at the extremes, moved inwards by a part of the range, and finds the endpoints that suit
+    // their indices best, rounded. Returns the ramp of the indices. If `whole` is given and set (all texels are whole
+    // codes) and the range is at most n codes, it starts with a spacing of one code, which loses nothing.
     HWY_INLINE Ramp solve(float part, const hn::Mask<Floats>* whole, Choice& choice) const {
         const Floats d;
         Ends ends, at;
@@ -224,7 +224,7 @@ public:
             kind_.round(ends.low[p], ends.high[p]);
             choice.low[p] = ends.low[p];
             choice.high[p] = ends.high[p];
-            // Rounding took these far from where they were, in terms of the range: other values are nearest.
+            // Relative to the range, rounding moved these endpoints far, so other values are now nearest.
             const auto is_narrow = hn::Lt(group_.greatest[p], group_.per_unit[p]);
             narrow[p] = hn::IfThenElseZero(is_narrow, constant(65535.0f));
             any_narrow = hn::Or(any_narrow, is_narrow);
@@ -246,7 +246,7 @@ public:
         return make_ramp<Kind>(a, b);
     }
 
-    // A local value in codes, and a stored code as a local value.
+    // Converts a local value to codes, and a stored code to a local value.
     HWY_INLINE F code(F value, int p) const { return hn::Add(group_.base[p], hn::Mul(value, group_.unit[p])); }
     HWY_INLINE F local(F stored, int p) const {
         return hn::Mul(hn::Sub(kind_.widen(stored), group_.base[p]), group_.per_unit[p]);
@@ -283,8 +283,8 @@ protected:
         return m;
     }
 
-    // The sum of (v - a - k spacing)^2, less that of (v - c)^2, c being the middle of the range of values. Indices are
-    // counted from n / 2 and values from c: that keeps the numbers, and so their rounding, small.
+    // The sum of (v - a - k spacing)^2, less that of (v - c)^2, where c is the middle of the range of values. Indices
+    // are counted from n / 2 and values from c, which keeps the numbers, and so their rounding, small.
     HWY_INLINE F error_of(const Moments& m, int p, F a, F b) const {
         constexpr float kHalf = 0.5f * kSteps;
         constexpr float kMiddle = 32768.0f;
@@ -300,7 +300,7 @@ protected:
         return hn::Add(from_middle, hn::Mul(spacing, hn::Add(hn::Mul(spacing, kk), hn::Add(cross, cross))));
     }
 
-    // Replaces endpoints by those that suit the indices best, by linear least squares.
+    // Replaces endpoints by the ones that suit the indices best, by linear least squares.
     HWY_INLINE void refine(const Moments& m, int p, Ends& ends) const {
         const Floats d;
         const F k = m.k.part[p];

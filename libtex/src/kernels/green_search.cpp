@@ -65,7 +65,7 @@ void tabulate(const Block& block, Gains& gains) {
 
 I widen(I code) { return hn::Or(hn::ShiftLeft<2>(code), hn::ShiftRight<4>(code)); }
 
-// Scores the pairs with lower endpoints `first` to `last` and the greater one `distance` above.
+// Scores the pairs with lower endpoints `first` to `last` and the greater endpoint `distance` above.
 void score(const Block& block, const Gains& gains, int first, int last, int distance, GreenCandidates& candidates) {
     const Floats d;
     const Ints di;
@@ -89,7 +89,7 @@ void score(const Block& block, const Gains& gains, int first, int last, int dist
         const F index = hn::Floor(hn::Add(hn::Div(from_low, hn::Max(spacing, hn::Set(d, 0.5f))), hn::Set(d, 0.5f)));
         const F clamped = hn::Min(hn::Max(index, hn::Zero(d)), hn::Set(d, 3.0f));
         const F away = hn::Sub(from_low, hn::Mul(clamped, spacing));
-        // 2 spacings times gains in sixths.
+        // 2 * spacing * gains in sixths.
         const F gained = hn::Mul(hn::Mul(span, hn::Set(d, 1.0f / 9.0f)), total);
         const F error = hn::Sub(
             hn::Add(hn::Set(d, block.deviations), hn::Mul(hn::Set(d, block.count), hn::Mul(away, away))), gained);
@@ -102,7 +102,7 @@ void score(const Block& block, const Gains& gains, int first, int last, int dist
     }
 }
 
-// The least 6-bit code whose green is at least `value` and the greatest whose green is at most `value`.
+// The least 6-bit code whose green is at least `value`, and the greatest whose green is at most `value`.
 int code_above(float value) {
     const int code = std::clamp(static_cast<int>(std::ceil((value - 3.0f) * 0.25f)), 0, 63);
     const int low = std::max(0, code - 1);
@@ -126,7 +126,7 @@ void score_near(const Block& block, const Gains& gains, int distance, GreenCandi
 GreenEndpoints search(const BlockTexels& texels, const ClusterBounds& bounds, Gains& gains) {
     const Block block = measure(texels);
     GreenCandidates candidates(block.slack, {texels});
-    // One value for all texels.
+    // Try one value for all texels.
     const float base = static_cast<float>(block.base);
     const int third = static_cast<int>((base + block.mean) * 3.0f);
     for (const SingleGreen& entry : {single_green_below(third), single_green_above(std::min(third + 1, 765))}) {
@@ -135,7 +135,7 @@ GreenEndpoints search(const BlockTexels& texels, const ClusterBounds& bounds, Ga
     }
     const float range = block.greatest - block.least;
     if (block.length > 0) tabulate(block, gains);
-    // Something to start from: endpoints at the extremes, and near them.
+    // Start with endpoints at and near the extremes.
     const int low = std::clamp(static_cast<int>((base + block.least) * 0.25f), 0, 63);
     const int high = std::clamp(static_cast<int>((base + block.greatest) * 0.25f), low, 63);
     const int start = high - low;

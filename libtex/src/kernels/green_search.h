@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// green_search.h: the endpoints of DXT5nm's green with the least squared error of all that there are.
+// green_search.h: finds the endpoints of DXT5nm's green with the least squared error of all.
 //
-// The search is that of bc4_search.h, with 4 entries and endpoints of 6 bits. These, widened to 8 bits, are 4 or 5
-// codes apart, so that thresholds, on a grid of 1/6 code, are looked up one by one.
+// The search is that of bc4_search.h, with 4 entries and endpoints of 6 bits. Widened to 8 bits, neighbouring endpoints
+// are 4 or 5 codes apart. Thresholds, which lie on a grid of 1/6 code, are therefore looked up one by one.
 
 #pragma once
 

@@ -29,7 +29,7 @@ HWY_INLINE Colors load(ColorRow in, int i) {
     return {hn::LoadU(kD, in.r + i), hn::LoadU(kD, in.g + i), hn::LoadU(kD, in.b + i)};
 }
 
-// What of a vector at texel i lies before `count`.
+// The lanes of a vector at texel i that lie before `count`.
 HWY_INLINE M inside(int i, int count) { return hn::FirstN(kD, static_cast<std::size_t>(count - i)); }
 
 HWY_INLINE std::int64_t number_of(M mask) { return static_cast<std::int64_t>(hn::CountTrue(kD, mask)); }

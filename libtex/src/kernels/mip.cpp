@@ -92,7 +92,7 @@ HWY_INLINE V length(Vectors v) {
     return hn::Sqrt(hn::Add(hn::Add(hn::Mul(v.x, v.x), hn::Mul(v.y, v.y)), hn::Mul(v.z, v.z)));
 }
 
-// Unit vectors; (0, 0, 1) where one is shorter than 1e-6.
+// Unit vectors; (0, 0, 1) for vectors shorter than 1e-6.
 HWY_INLINE Vectors normalised(Vectors v) {
     const V one = hn::Set(kD, 1.0f);
     const V size = length(v);
@@ -102,7 +102,7 @@ HWY_INLINE Vectors normalised(Vectors v) {
             hn::IfThenElse(null, one, hn::Mul(v.z, scale))};
 }
 
-// normalize(lerp(v, (0, 0, 1), fade)) of unit vectors with z >= 0, which is never a null vector.
+// normalize(lerp(v, (0, 0, 1), fade)) of unit vectors with z >= 0. The interpolated vector is never null.
 HWY_INLINE Vectors faded(Vectors v, V fade) {
     const V rest = hn::Sub(hn::Set(kD, 1.0f), fade);
     return normalised({hn::Mul(v.x, rest), hn::Mul(v.y, rest), hn::Add(hn::Mul(v.z, rest), fade)});

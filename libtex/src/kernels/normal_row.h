@@ -5,7 +5,7 @@
 
 namespace tex {
 
-// Rows may be read and written up to a whole vector (64 bytes) past their last texel. One that is only read:
+// Rows may be read and written up to a whole vector (64 bytes) past their last texel. VectorRow is only read:
 struct VectorRow {
     const float* x;
     const float* y;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// pack.h: rows of normals to rows of whole-number codes.
+// pack.h: packs rows of normals into rows of whole-number codes.
 
 #pragma once
 
@@ -14,15 +14,16 @@ struct PackChannel {
     bool negate = false;
 };
 
-// Bytes (elements, for 16 bits) that a kernel may write past the last texel of an interleaved row, each channel.
+// The number of bytes (elements, for 16 bits) per channel that a kernel may write past the last texel of an interleaved
+// row.
 inline constexpr int kPackSlack = 16;
 
 // Interleaves 2, 3 or 4 channels as unorm codes of 8 or 16 bits:
 //
-//     code = floor((n + 1) * 0.5 * (2^bits - 1) + 0.5), clamped to the codes that there are
+//     code = floor((n + 1) * 0.5 * (2^bits - 1) + 0.5), clamped to the valid codes
 //
-// computed in float, from left to right. Reads whole vectors: rows are padded as those of a Plane. `out` has room for
-// channels * (width + kPackSlack) codes.
+// computed in float, from left to right. Reads whole vectors: rows are padded like the rows of a Plane. `out` has room
+// for channels * (width + kPackSlack) codes.
 void pack_unorm8(const PackChannel* channels, int count, int width, std::uint8_t* out);
 void pack_unorm16(const PackChannel* channels, int count, int width, std::uint16_t* out);
 

@@ -17,7 +17,7 @@ using V = hn::Vec<D>;
 constexpr D kD;
 constexpr int kLanes = static_cast<int>(hn::MaxLanes(kD));
 
-// By comparisons, as Min and Max treat NaN differently from target to target.
+// Uses comparisons, because Min and Max treat NaN differently from target to target.
 HWY_INLINE V cut(V v) {
     const V one = hn::Set(kD, 1.0f);
     const V positive = hn::IfThenElseZero(hn::Gt(v, hn::Zero(kD)), v);
@@ -38,7 +38,7 @@ void RoughnessOfAlpha2(const float* alpha2, int count, float* roughness) {
         hn::StoreU(hn::Sqrt(hn::Sqrt(cut(hn::LoadU(kD, alpha2 + i)))), kD, roughness + i);
 }
 
-// What the averages of a texel say: the length m, 1 - m^2, and alpha^2.
+// Quantities that follow from the averages of a texel: the length m, 1 - m^2, and alpha^2.
 struct Averages {
     V m, loss, alpha2;
 };
@@ -48,9 +48,9 @@ HWY_INLINE Averages load_averages(const float* x, const float* y, const float* z
     const V vx = hn::LoadU(kD, x), vy = hn::LoadU(kD, y), vz = hn::LoadU(kD, z);
     const V m2 = cut(hn::Add(hn::Add(hn::Mul(vx, vx), hn::Mul(vy, vy)), hn::Mul(vz, vz)));
     const V difference = hn::Sub(one, m2);
-    // Below is the rounding of floats: fourth roots would make 3 codes of 255 of it.
+    // Smaller differences are the rounding of floats; fourth roots would turn it into 3 codes of 255.
     const V loss = hn::IfThenElseZero(hn::Ge(difference, hn::Set(kD, 0x1p-20f)), difference);
-    // The least m keeps quotients finite, and changes no result by more than it.
+    // The least m keeps quotients finite, and changes no result by more than that least value.
     return {hn::Max(hn::Sqrt(m2), hn::Set(kD, 0x1p-20f)), loss, cut(hn::LoadU(kD, alpha2))};
 }
 

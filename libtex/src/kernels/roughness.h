@@ -9,13 +9,13 @@
 
 namespace tex {
 
-// `clean` becomes the roughness cut to [0, 1], NaN 0; alpha2 its fourth power.
+// `clean` becomes the roughness limited to [0, 1], with NaN as 0; alpha2 becomes its fourth power.
 void clean_roughness(const float* roughness, int count, float* clean, float* alpha2);
 
-// The fourth roots of alpha^2, cut to [0, 1].
+// The fourth roots of alpha^2, limited to [0, 1].
 void roughness_of_alpha2(const float* alpha2, int count, float* roughness);
 
-// The roughness of a row of a smaller level: of averaged vectors and of averaged alpha^2.
+// The roughness of a row of a smaller level, from averaged vectors and averaged alpha^2.
 void roughness_of_averages(RoughnessModel model, const float* x, const float* y, const float* z, const float* alpha2,
                            int count, float* roughness);
 

@@ -19,7 +19,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<float, 16>;
 using V = hn::Vec<D>;
 
-// Codes over the greatest one.
+// Codes divided by the greatest code.
 template <class Codes>
 HWY_INLINE V Fraction(D d, Codes codes, float one) {
     return hn::Div(hn::ConvertTo(d, hn::PromoteTo(hn::RebindToSigned<D>(), codes)), hn::Set(d, one));
@@ -30,9 +30,9 @@ HWY_INLINE V SignedFraction(D d, Codes codes, float one) {
     return hn::Max(Fraction(d, codes, one), hn::Set(d, -1.0f));
 }
 
-// Exponents are moved from half's bias to float's, by 112. Those of 0 and of what is below 2^-14 have no leading one:
-// it is given to them, then taken away. Infinity and NaN go to float's greatest exponent. (Not hardware's conversion,
-// which makes NaN quiet: elsewhere they are not.)
+// Moves exponents from half's bias to float's by adding 112. Zero and values below 2^-14 have no leading one: it is
+// added, then subtracted. Infinity and NaN get float's greatest exponent. (The hardware conversion is not used because
+// it makes NaN quiet, which is not done elsewhere.)
 template <class Halves>
 HWY_INLINE V FromHalf(D d, Halves halves) {
     const hn::RebindToUnsigned<D> du;
@@ -48,7 +48,7 @@ HWY_INLINE V FromHalf(D d, Halves halves) {
     return hn::BitCast(d, hn::Or(value, hn::ShiftLeft<16>(hn::And(bits, hn::Set(du, 0x8000u)))));
 }
 
-// Samples are picked into a row of their own, which whole vectors may read past the last.
+// Samples are collected in a separate row, so that whole vectors may be read past the last one.
 template <class T, class Convert>
 void Decode(const std::byte* first, std::size_t step, int count, float* out, const Convert& convert) {
     const D d;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// samples.h: samples as files store them, to floats.
+// samples.h: converts samples as files store them to floats.
 
 #pragma once
 
@@ -9,8 +9,8 @@
 
 namespace tex {
 
-// Decodes `count` samples of one channel, each of `bits` bits (8 or 16; 16 or 32 where floating), `step` bytes apart,
-// little-endian. Values: see decode() in unpack.h; halves keep what a NaN carries.
+// Decodes `count` samples of one channel, each of `bits` bits (8 or 16; 16 or 32 if floating), `step` bytes apart,
+// little-endian. For the values, see decode() in unpack.h; halves keep the payload of a NaN.
 void decode_samples(SampleKind sample, int bits, const std::byte* first, std::size_t step, int count, float* out);
 
 }  // namespace tex

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// kernels/scale.h: rows of normals, scaled.
+// kernels/scale.h: scales rows of normals.
 
 #pragma once
 
@@ -9,8 +9,8 @@
 
 namespace tex {
 
-// Scales `count` normals, which may be those of `out`: see scale() in scale.h. Vectors need not have unit length in
-// ScaleMode::slope; a scale of 1 normalises them. Rows are padded to whole vectors.
+// Scales `count` normals, which may be those of `out`: see scale() in scale.h. In ScaleMode::slope, vectors need not
+// have unit length; a scale of 1 normalises them. Rows are padded to whole vectors.
 void scale_row(const VectorRow& in, float scale, ScaleMode mode, int count, const NormalRow& out);
 
 }  // namespace tex

@@ -26,7 +26,7 @@ struct Table {
                 }
             }
         }
-        // 0 and 765 are there, so both runs start with an entry.
+        // 0 and 765 always exist, so both loops start with an entry.
         for (int t = 0; t < kThirds; ++t) below[t] = exact[t].third >= 0 ? exact[t] : below[t - 1];
         for (int t = kThirds - 1; t >= 0; --t) above[t] = exact[t].third >= 0 ? exact[t] : above[t + 1];
     }

@@ -7,21 +7,21 @@
 
 namespace tex {
 
-// A value in thirds of a code, and the nearest endpoints (6 bits) of which it is one third, two thirds or an end; the
-// greatest of several.
+// A value in thirds of a code, and the nearest endpoints (6 bits) of which it is one third, two thirds or an end; if
+// several are equally near, the greatest ones.
 struct SingleGreen {
     int third;
     int lower;
     int distance;
 };
 
-// Those at or below and at or above a value of 0 to 765 thirds.
+// The nearest such value that is not above, or not below, a value of 0 to 765 thirds.
 const SingleGreen& single_green_below(int third);
 const SingleGreen& single_green_above(int third);
 
-// The same for endpoints at most kMaxSingleDistance apart, whose values are two thirds of a code from any other at most
-// (the error of hardware grows with that distance): tables of 0 to kMostThirds thirds, each entry third << 16 | lower
-// << 8 | distance.
+// The same for endpoints at most kMaxSingleDistance apart. Their values are at most two thirds of a code from any other
+// value, and the error of hardware grows with the distance of the endpoints. These are tables of 0 to kMostThirds
+// thirds; each entry is third << 16 | lower << 8 | distance.
 inline constexpr int kMaxSingleDistance = 11;
 inline constexpr int kMostThirds = 3 * 255;
 const std::int32_t* single_greens_below();

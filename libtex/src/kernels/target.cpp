@@ -18,11 +18,11 @@ std::int64_t KernelTarget() { return HWY_TARGET; }
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-// A stopgap, by symbol interposition. When Highway's library (1.0.3) is loaded, a constructor of it measures the
-// resolution of the processor's clock, which only Highway's benchmarks use, and takes 3 to 4 ms to do so: a third of
-// what a small texture takes from start to finish. The constructor finds this function instead in every process that
-// links libtex before Highway. It can go with a Highway that does not measure when it is loaded, or if libtex
-// dispatches kernels itself, without Highway's library.
+// A stopgap, by symbol interposition. When Highway's library (1.0.3) is loaded, one of its constructors measures the
+// resolution of the processor's clock, which only Highway's benchmarks use. That takes 3 to 4 ms, a third of the total
+// time for a small texture. In every process that links libtex before Highway, the constructor finds this function
+// instead. This function can be removed if Highway no longer measures when it is loaded, or if libtex dispatches
+// kernels itself, without Highway's library.
 namespace hwy::platform {
 __attribute__((visibility("default"))) double TimerResolution();
 double TimerResolution() { return 1e-8; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// kernels/target.h: which instruction set the kernels use.
+// kernels/target.h: the instruction set that the kernels use.
 
 #pragma once
 
@@ -8,11 +8,11 @@
 
 namespace tex {
 
-// The Highway target (HWY_AVX2, ...) that kernels are dispatched to now. For tests and reports: results do
-// not depend on it.
+// The Highway target (HWY_AVX2, ...) to which kernels are dispatched now. For tests and reports: results do not depend
+// on it.
 std::int64_t kernel_target();
 
-// Its name: "AVX2".
+// The name of the target, for example "AVX2".
 const char* kernel_target_name();
 
 std::string highway_version();

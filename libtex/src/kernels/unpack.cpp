@@ -21,12 +21,12 @@ using D = FloatTag;
 using V = FloatVec;
 using M = FloatMask;
 
-// n of a stored value.
+// The component n of a stored value.
 V Component(D d, V value, const UnpackRule& rule) {
     if (!rule.is_unsigned) return value;
     const V n = hn::Sub(hn::Add(value, value), hn::Set(d, 1.0f));
     if (!rule.snap_flat) return n;
-    // 1/255 and a little more, as 127/255 and 128/255 are rounded.
+    // 1/255 and a little more, because 127/255 and 128/255 are rounded.
     const M flat = hn::Le(hn::Abs(n), hn::Set(d, 0.003922f));
     return hn::IfThenZeroElse(flat, n);
 }
@@ -34,7 +34,8 @@ V Component(D d, V value, const UnpackRule& rule) {
 // False for NaN and infinity.
 M IsFinite(D d, V value) { return hn::Lt(value, hn::Set(d, std::numeric_limits<float>::infinity())); }
 
-// Of unit length, but for the rounding of a normalised vector's components (below 2^-21) and of this sum.
+// Whether a vector has unit length, apart from the rounding of a normalised vector's components (below 2^-21) and of
+// this sum.
 M IsUnit(D d, V squared_length) {
     return hn::Le(hn::Abs(hn::Sub(squared_length, hn::Set(d, 1.0f))), hn::Set(d, 0x1p-20f));
 }
@@ -45,7 +46,7 @@ Vec3 Reconstruct(D d, V x, V y, const UnpackRule& rule) {
     const V z = hn::Sqrt(hn::Sub(one, hn::Min(squared, one)));
     const M finite = IsFinite(d, squared);
     if (rule.keep_length) return FlatUnless(d, finite, {x, y, z});
-    // Dividing by 1 leaves a short vector as it is.
+    // Division by 1 does not change a short vector.
     V length = hn::Max(one, hn::Sqrt(squared));
     if (rule.keep_unit) length = hn::IfThenElse(IsUnit(d, squared), one, length);
     return FlatUnless(d, finite, {hn::Div(x, length), hn::Div(y, length), z});

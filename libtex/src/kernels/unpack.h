@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// unpack.h: rows of decoded values to rows of normals.
+// unpack.h: turns rows of decoded values into rows of normals.
 
 #pragma once
 
@@ -10,12 +10,12 @@ struct UnpackRule {
     bool snap_flat = false;   // unsigned values from 127/255 to 128/255 are 0
     bool flip_y = false;
     bool keep_length = false;
-    bool keep_unit = false;  // leave vectors that are of unit length, but for rounding, as they are stored
+    bool keep_unit = false;  // do not change vectors that are stored with unit length, apart from rounding
 };
 
-// Normals of `count` texels from the values of their components; z may be null: it is reconstructed then. See unpack()
-// in unpack.h for what is computed. Rows are read and written in whole vectors: they are padded as rows of a Plane are.
-// The outputs may be the inputs.
+// Normals of `count` texels from the values of their components. If z is null, it is reconstructed. The computation is
+// that of unpack() in unpack.h. Rows are read and written in whole vectors, so they are padded like the rows of a
+// Plane. The outputs may be the inputs.
 void unpack_row(const float* x, const float* y, const float* z, const UnpackRule& rule, int count, float* out_x,
                 float* out_y, float* out_z);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// vectors-inl.h: normals in vector registers, for kernels. To be included after hwy/highway.h, once for each target.
+// vectors-inl.h: normals in vector registers, for kernels. Include it after hwy/highway.h, once for each target.
 
 #if defined(TEX_KERNELS_VECTORS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TEX_KERNELS_VECTORS_INL_H
@@ -36,7 +36,7 @@ HWY_INLINE void StoreVec3(FloatTag d, Vec3 n, float* x, float* y, float* z) {
     hn::StoreU(n.z, d, z);
 }
 
-// n where `sound`, else (0, 0, 1).
+// n if `sound` is set, otherwise (0, 0, 1).
 HWY_INLINE Vec3 FlatUnless(FloatTag d, FloatMask sound, Vec3 n) {
     namespace hn = hwy::HWY_NAMESPACE;
     return {hn::IfThenElseZero(sound, n.x), hn::IfThenElseZero(sound, n.y),
@@ -49,7 +49,7 @@ HWY_INLINE FloatVec SquaredLength(Vec3 n) {
     return hn::Add(hn::Add(hn::Mul(n.x, n.x), hn::Mul(n.y, n.y)), hn::Mul(n.z, n.z));
 }
 
-// n / |n|; (0, 0, 1) where n is shorter than 1e-6.
+// n / |n|; (0, 0, 1) if n is shorter than 1e-6.
 HWY_INLINE Vec3 Normalise(FloatTag d, Vec3 n) {
     namespace hn = hwy::HWY_NAMESPACE;
     const FloatVec length = hn::Sqrt(SquaredLength(n));
@@ -57,7 +57,7 @@ HWY_INLINE Vec3 Normalise(FloatTag d, Vec3 n) {
     return FlatUnless(d, sound, {hn::Div(n.x, length), hn::Div(n.y, length), hn::Div(n.z, length)});
 }
 
-// The same after z below 0 has become 0.
+// The same, after negative z has become 0.
 HWY_INLINE Vec3 NormaliseUpper(FloatTag d, Vec3 n) {
     namespace hn = hwy::HWY_NAMESPACE;
     return Normalise(d, {n.x, n.y, hn::Max(n.z, hn::Zero(d))});
