@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory and threads: strips of rows run in parallel. rows/bake_rows.cpp bakes a strip from top to bottom.
+// Handles memory and threads: strips of rows run in parallel. rows/bake_rows.cpp bakes a strip from top to bottom.
 
 #include <tex/bake.h>
 

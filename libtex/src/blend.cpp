@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory and threads: strips of rows run in parallel. rows/blend_rows.cpp samples and blends.
+// Handles memory and threads: strips of rows run in parallel. rows/blend_rows.cpp samples and blends.
 
 #include <tex/blend.h>
 

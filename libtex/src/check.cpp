@@ -26,7 +26,7 @@
 namespace tex {
 namespace {
 
-constexpr int kLeastSide = 32;  // texels, for statistics
+constexpr int kLeastSide = 32;  // in texels; smaller maps get no statistics
 constexpr double kLeastCorrelation = 0.2;
 constexpr double kLeastConfidence = 0.99;
 constexpr double kLeastUsable = 0.5;  // the share of texels that must hold a normal

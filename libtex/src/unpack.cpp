@@ -151,7 +151,7 @@ Result<void> unpack_rows(const Reader& reader, const UnpackRule& rule, NormalMap
         span);
 }
 
-// The planes for R, G, B and A; null for those that do not exist.
+// The planes for R, G, B and A; null for planes that do not exist.
 std::array<const Plane<float>*, 4> planes_of(const Image& image) {
     std::array<const Plane<float>*, 4> planes = {};
     const auto plane = [&](const char* name) {

@@ -45,7 +45,7 @@ struct Curl {
     double exchanged = 0.0;
     // How likely the sign is right, from 0.5 to 1. Each region is one witness, weighted by its evidence.
     double confidence = 0.5;
-    double exchanged_confidence = 0.5;  // the same for the sign of exchanged
+    double exchanged_confidence = 0.5;  // the same for the sign of `exchanged`
     double usable = 0.0;                // share of the sampled texels that hold a normal
 };
 

@@ -11,9 +11,9 @@ namespace tex {
 // and rounding to 8 bits, coefficients still lie close to these multiples. (Fan, de Queiroz: Identification of Bitmap
 // Compression History, 2003.)
 struct JpegTrace {
-    double strength = 0.0;  // 0 to 1: how closely; the median over the low coefficients. Below 0.3 where no JPEG was
+    double strength = 0.0;  // 0 to 1: how closely; the median over the low coefficients. Below 0.3 without a JPEG
     double scale =
-        0.0;  // of the steps, against the table of ITU-T T.81 annex K: 1 is quality 50 of libjpeg, 0.5 quality 75
+        0.0;  // of the steps, relative to the table of ITU-T T.81 annex K: 1 is quality 50 of libjpeg, 0.5 quality 75
     // The value to judge: a faint trace and a fine quantisation both reduce it.
     [[nodiscard]] double weight() const { return strength * scale; }
     // The quality as libjpeg numbers it, 1 to 100. Precondition: scale > 0.

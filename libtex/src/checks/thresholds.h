@@ -18,12 +18,12 @@ inline constexpr double kLatticeStrength = 0.68;  // Lattice::strength: 0.63 and
 inline constexpr double kSeamRatio = 1.8;         // Seam::worst(): 1.4 and 2.3
 inline constexpr double kPaletteShare = 0.49;     // palette_share(): 0.000061 and 0.98
 inline constexpr double kDarkCentre =
-    0.063;  // Centre::distance() from where decoding as sRGB puts flat: 0.27 and 0.015
+    0.063;  // Centre::distance() from the value of a flat map after decoding as sRGB: 0.27 and 0.015
 inline constexpr double kLightCentre = 0.048;  // the same for encoding: 0.23 and 0.010
 inline constexpr double kLevelRelated = 0.44;  // LevelMeasure::correlation of a map's worst level: 0.83 and 0.06
 inline constexpr double kLevelShift = 0.41;    // of its most shifted level, in texels: 0.23 and 0.71
 inline constexpr double kLevelShort =
-    0.01;  // mean length of its shortest level below the base level's: 0.0048 and 0.023
+    0.01;  // how far the mean length of its shortest level is below that of the base level: 0.0048 and 0.023
 
 // -- set from the intact maps of that half alone -------------------------------------------------------------
 // A second test, for maps that changed after their JPEG: the trace is gone, and some maps show no steps. A tenth above

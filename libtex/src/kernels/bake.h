@@ -25,7 +25,7 @@ void limit_heights(const float* in, int count, float* out);
 //
 //     out[i] = (reflected ? 2 edge[i] - inner[i] : inner[i]) + drift (edge[i] - other[i])
 //
-// where all inputs were limited to +-kMaxHeight before.
+// where all inputs are limited to +-kMaxHeight first.
 void continue_heights(const float* inner, const float* edge, const float* other, bool reflected, float drift, int count,
                       float* out);
 
@@ -36,8 +36,8 @@ void normals_by_difference(const float* left, const float* right, const float* d
 // out[i] = sum over k = 1 to radius of derivative[k - 1] (row[i + k] - row[i - k]).
 void derive_row(const float* row, const float* derivative, int radius, int count, float* out);
 
-// The same upwards, through the 2 radius + 1 rows `rows`, of which rows[0] is the top one: out[i] = sum of derivative[k
-// - 1] (rows[radius - k][i] - rows[radius + k][i]).
+// The same upwards, through the 2 radius + 1 rows `rows`, of which rows[0] is the top one:
+// out[i] = sum of derivative[k - 1] (rows[radius - k][i] - rows[radius + k][i]).
 void derive_column(const float* const* rows, const float* derivative, int radius, int count, float* out);
 
 // Normals of slopes that are smoothed at right angles to their derivative:

@@ -22,9 +22,8 @@
 //     k values cannot do better than the best k clusters (see clusters.h). That bound grows with D: the search goes up
 //     from D = R and ends when the bound exceeds `least`.
 //   * If R < spacing / 2 and a threshold falls into the range, every texel is at least spacing / 2 - R from the
-//   palette.
-//     If none does, one entry serves all texels, and a palette with D <= 1 has an entry as near: all sevenths and
-//     fifths are available.
+//     palette. If none does, one entry serves all texels, and a palette with D <= 1 has an entry as near: all
+//     sevenths and fifths are available.
 //   * If an endpoint moves by one code, each entry moves by at most one, so the root of E changes by at most
 //     sqrt(16) = 4. If no pair of one D comes nearer to s than 4 k, the next k distances hold nothing better and are
 //     skipped.

@@ -16,9 +16,8 @@
 //   normal   alpha: 8 values: (0, 1), (1/2, 0), (1/2, 2), 2 steps; (0, 0), 3 steps; for ranges of at most 7 codes:
 //                   a spacing of one code
 //                   6 values: (0, 1), 2 steps
-//            green: g = -0.4, 0.4; j = 0, 1, 2; 1 step, of which the end is scored; then all pairs within 2 codes of
-//            the
-//                   best, then within 1 code of the best of these; (0, 0), 3 steps
+//            green: g = -0.4, 0.4; j = 0, 1, 2; 1 step, of which the end is scored; then all pairs within 2 codes
+//                   of the best, then within 1 code of the best of these; (0, 0), 3 steps
 //            both:  if the values lie on a palette, as in blocks that were decoded before: its endpoints
 //                   (fit_palettes-inl.h)
 //

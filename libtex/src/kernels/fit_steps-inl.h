@@ -148,7 +148,7 @@ public:
     Fitter(const Group& group, Kind kind) : group_(group), kind_(kind) {}
 
     // Takes `steps` steps. At the first endpoints, n - j + g spacings span the range, and the lower endpoint lies g / 2
-    // spacings outside the least texel.
+    // spacings above the least texel.
     template <Precision kPrecision>
     HWY_INLINE void start(float g, float j, int steps, Choice& choice) const {
         Ends ends;

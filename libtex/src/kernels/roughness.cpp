@@ -48,7 +48,7 @@ HWY_INLINE Averages load_averages(const float* x, const float* y, const float* z
     const V vx = hn::LoadU(kD, x), vy = hn::LoadU(kD, y), vz = hn::LoadU(kD, z);
     const V m2 = cut(hn::Add(hn::Add(hn::Mul(vx, vx), hn::Mul(vy, vy)), hn::Mul(vz, vz)));
     const V difference = hn::Sub(one, m2);
-    // Smaller differences are the rounding of floats; fourth roots would turn it into 3 codes of 255.
+    // Smaller differences are the rounding of floats; fourth roots would turn them into 3 codes of 255.
     const V loss = hn::IfThenElseZero(hn::Ge(difference, hn::Set(kD, 0x1p-20f)), difference);
     // The least m keeps quotients finite, and changes no result by more than that least value.
     return {hn::Max(hn::Sqrt(m2), hn::Set(kD, 0x1p-20f)), loss, cut(hn::LoadU(kD, alpha2))};

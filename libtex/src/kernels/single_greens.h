@@ -19,9 +19,9 @@ struct SingleGreen {
 const SingleGreen& single_green_below(int third);
 const SingleGreen& single_green_above(int third);
 
-// The same for endpoints at most kMaxSingleDistance apart. Their values are at most two thirds of a code from any other
-// value, and the error of hardware grows with the distance of the endpoints. These are tables of 0 to kMostThirds
-// thirds; each entry is third << 16 | lower << 8 | distance.
+// The same for endpoints at most kMaxSingleDistance apart, because the error of hardware grows with that distance. Any
+// value is at most two thirds of a code from one of these. The tables cover 0 to kMostThirds thirds; each entry is
+// third << 16 | lower << 8 | distance.
 inline constexpr int kMaxSingleDistance = 11;
 inline constexpr int kMostThirds = 3 * 255;
 const std::int32_t* single_greens_below();

@@ -14,7 +14,7 @@ namespace tex {
 // Texel i of the smaller level is the sum over k of weight(k, i) texel[2 i + first + k], 0 <= k < taps, of the larger
 // level, in which the texel may lie beyond the border. (If the larger size is odd, texels are a little more than 2
 // apart, by less than 1 over the whole axis. The window is wide enough for that.) Weights are computed in double
-// (base/math.h), normalised to a sum of 1 and rounded to float once.
+// (rows/math.h), normalised to a sum of 1 and rounded to float once.
 struct AxisFilter {
     int first = 0;
     int taps = 1;

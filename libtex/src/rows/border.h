@@ -43,7 +43,7 @@ const float* height_row(const RowOf& heights, Extent extent, Wrap wrap, int j, f
 // Rows of a height field with `apron` more heights to the left and to the right, for filters of that radius. Rows
 // beyond the top and the bottom exist too. The last `kept` rows are kept in memory, for a filter that moves down the
 // field row by row.
-// field row by row.
+//
 // Heights are limited to +-kMaxHeight (kernels/bake.h). Rows are aligned for whole vectors. A row may be read and
 // written from -lead() to one whole vector past width + apron.
 class HeightRows {

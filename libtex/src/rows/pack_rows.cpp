@@ -29,7 +29,7 @@ public:
                 case Component::z: out[k] = {map_.z.row(j), false}; break;
                 default:
                     out[k] = {};
-                    break;  // every encoding's constants are 1, but for channels that it does not store
+                    break;  // every encoding's constants are 1, except in channels that it does not store
             }
         }
     }

@@ -34,7 +34,7 @@ int levels_of(Extent extent, Container container, const BakeFileOptions& options
 struct Heights {
     std::unique_ptr<RowSource> rows;
     HeightSource source;
-    std::optional<LinearRows> linear;  // in another colour space
+    std::optional<LinearRows> linear;  // if the picture is in another colour space
     HeightOptions options;
     HeightCounts counts;        // found so far
     std::optional<Image> last;  // the last rows, if they are needed first

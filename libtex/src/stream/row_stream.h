@@ -23,8 +23,8 @@ namespace tex {
 // How a picture is divided. The bytes of the output do not depend on it.
 struct StreamSizes {
     int strip_texels = 1 << 15;            // enough to pay for passing a strip on, few enough to stay in a cache
-    std::int64_t worth_threads = 1 << 17;  // pictures of fewer texels are done before a second thread would have begun,
-    int strip_texels_alone = 1 << 14;      // and in strips that stay in the cache of one processor
+    std::int64_t worth_threads = 1 << 17;  // smaller pictures are done before a second thread could start: they use
+    int strip_texels_alone = 1 << 14;      // strips of this size, which stay in the cache of one processor
 };
 
 class RowStream {
