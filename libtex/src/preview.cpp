@@ -188,8 +188,8 @@ void draw_level(Canvas& canvas, int x, int y, const NormalMap& level) {
     }
 }
 
-// Shows the first level that fits into the height and width of the picture on the left, the other levels in a column
-// beside it, and a line of text below.
+// Shows the first level that fits into the picture's size on the left, the other levels in a column beside it, and a
+// line of text below.
 Result<Texture> show_mips(const Job& job) {
     constexpr int kGap = 4;
     constexpr int kLine = 18;

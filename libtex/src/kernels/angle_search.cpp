@@ -113,8 +113,8 @@ struct Normals {
     HWY_ALIGN float x[16], y[16], z[16], weight[16];
 };
 
-// Returns the sum over the texels and, on request, the best pair of indices for each texel (index of x + 8 *
-// index of y).
+// Returns the sum over the texels. If `pairs` is not null, stores the best pair of indices for each texel there, as
+// index of x + 8 * index of y.
 float measure(const Normals& n, const Ends& x_ends, const Ends& y_ends, int* pairs) {
     const Floats d;
     const Palette px = palette_of(x_ends);

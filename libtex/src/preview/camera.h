@@ -23,8 +23,8 @@ class View {
 public:
     View(const Camera& camera, Extent pixels, const std::function<double(Vec3 direction)>& support);
 
-    // The ray through (x, y), in pixels from the picture's top left corner. Pixel (i, j) has its centre at (i + 0.5, j
-    // + 0.5).
+    // The ray through (x, y), in pixels from the picture's top left corner. The centre of pixel (i, j) is at
+    // (i + 0.5, j + 0.5).
     [[nodiscard]] Ray ray(double x, double y) const;
 
     // The unnormalised direction from `point` to the viewer.

@@ -12,8 +12,8 @@
 
 namespace tex::render {
 
-// A point of a shape. A move by a along the tangent and b along the binormal changes (u, v) by (a u_per_length, b
-// v_per_length).
+// A point of a shape. A move by a along the tangent and by b along the binormal changes (u, v) by
+// (a u_per_length, b v_per_length).
 struct Hit {
     Vec3 point;
     Vec3 tangent, binormal, normal;  // unit; tangent towards growing u, binormal towards growing v

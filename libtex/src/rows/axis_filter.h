@@ -51,7 +51,7 @@ private:
     const int pairs_;  // texels in each half of the row: even ones, then odd ones
     Plane<float> row_;
     Plane<float> halves_;
-    std::vector<float> weights_;  // the weights of every texel, if the size is even
+    std::vector<float> weights_;  // the weights that all texels share, if the size is even
 };
 
 }  // namespace tex

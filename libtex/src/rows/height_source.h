@@ -14,7 +14,7 @@ namespace tex {
 // The source of heights: one unchanged plane, or a mixture of R, G and B.
 struct HeightSource {
     HeightChannel mixture = HeightChannel::automatic;
-    int plane = -1;  // if unset, the planes red, green and blue are mixed
+    int plane = -1;  // -1: use the planes red, green and blue
     int red = 0, green = 0, blue = 0;
 };
 
