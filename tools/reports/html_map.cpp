@@ -39,7 +39,7 @@ constexpr View kViews[] = {
     {Show::mips, "mip chain", "all levels beside each other, largest first"},
     {Show::tilt, "tilt", "the angle to the surface in degrees, dark 0 to light 90"},
     {Show::curl, "curl",
-     "curl in blue and orange: pale where the map can be a height field's; its legend tells y up from y down"},
+     "curl in blue and orange: pale where the map can be a height field's; its legend shows whether y is up or down"},
     {Show::length, "length", "length of the stored vectors less 1: pale where it is right", true},
     {Show::z_error, "z error", "stored z less the z that x and y imply: pale where it is right", true},
 };
