@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// blend-normals: detail normals on top of base normals.
+// blend-normals: adds detail normals to base normals.
 
 #include <tex/tex.h>
 
@@ -19,7 +19,7 @@ public:
 private:
     void add_blend();
     [[nodiscard]] bool joins() const { return layers_.details().empty(); }
-    // The details of a task: those of --detail, or the inputs after the base.
+    // The details of a task: the files of --detail, or the inputs after the base.
     [[nodiscard]] const std::vector<std::string>& details_of(const cli::Task& task) const {
         return joins() ? task.joined : layers_.details();
     }

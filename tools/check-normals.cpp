@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// check-normals: what is wrong with textures of normals.
+// check-normals: finds what is wrong with textures of normals.
 
 #include <algorithm>
 #include <mutex>

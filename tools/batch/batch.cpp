@@ -26,8 +26,8 @@
 namespace tex::cli {
 namespace {
 
-// Files processed at once, whatever the number of processors: more threads speed up each file, and memory stays that of
-// a few textures.
+// The most files that are processed at once, however many processors there are. More threads then speed up each file,
+// and memory use stays that of a few textures.
 constexpr std::size_t kMostFilesAtOnce = 8;
 
 using Process = std::function<Result<void>(Job& job)>;
@@ -39,10 +39,10 @@ public:
         : tasks_(tasks), console_(console), write_(write), running_(running), process_(std::move(process)),
           reporter_(console, tasks.size(), running.json), shows_progress_(running.shows_progress(console.host())) {}
 
-    // Every worker takes the next file that nobody has: files are begun in the order of the inputs.
+    // Every worker takes the next file that no worker has taken yet, so files are started in the order of the inputs.
     void run() {
         const int threads = running_.threads > 0 ? running_.threads : tbb::info::default_concurrency();
-        // TBB allows fewer threads while another run in this process has a smaller --threads.
+        // TBB allows fewer threads if another run in this process has a smaller --threads.
         const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
         const std::size_t most = std::min({tasks_.size(), kMostFilesAtOnce, allowed});
         const int workers = std::min(threads, static_cast<int>(most));
@@ -55,7 +55,7 @@ public:
         } else {
             try {
                 fork_join(workers, workers, work);
-            } catch (const std::runtime_error&) {  // of TBB: outcome_of() lets nothing through
+            } catch (const std::runtime_error&) {  // thrown by TBB: outcome_of() lets no exception through
                 throw std::system_error(EAGAIN, std::generic_category(), "the system refuses threads");
             }
         }
@@ -67,7 +67,7 @@ public:
 private:
     [[nodiscard]] bool stopped() const { return !console_.host().interruption().empty() || reporter_.is_abandoned(); }
 
-    // Counts the progress of one file from `counted` to `fraction`.
+    // Adds the progress of one file, from `counted` to `fraction`, to the total.
     void advance(const Task& task, double& counted, double fraction) {
         const double done = done_ += fraction - counted;
         counted = fraction;
@@ -77,7 +77,7 @@ private:
     }
 
     Outcome outcome_of(const Task& task) {
-        double counted = 0.0;  // of this file, in done_
+        double counted = 0.0;  // the part of this file that done_ includes
         Job job(task, console_, running_.read, write_, running_.threads, [&](double fraction) {
             if (shows_progress_) advance(task, counted, fraction);
             return !stopped();
@@ -101,15 +101,15 @@ private:
         outcome.outputs = job.outputs();
         outcome.prerequisites = task.prerequisites();
         outcome.has_levels = has_level(task.output);
-        // The library cannot tell a full disk from a reader that went away. A reader that has read enough is not an
-        // error to report.
+        // The library cannot tell a full disk from a reader that closed the pipe. It is not an error if a reader closes
+        // the pipe because it has read enough.
         outcome.is_silent = outcome.error && task.output == "-" && console_.host().out_is_abandoned();
         done_ += 1.0 - counted;
         ++finished_;
         return outcome;
     }
 
-    // Found before the work is done; the library makes sure once more when it writes.
+    // Checked before the work is done. The library checks again when it writes.
     [[nodiscard]] bool would_clobber(const Task& task) const {
         struct stat status {};
         return write_.no_clobber && stat(with_level(task.output, 0).c_str(), &status) == 0 && S_ISREG(status.st_mode);
@@ -174,7 +174,7 @@ ExitCode Batch::run_tasks(const std::vector<Task>& tasks, Console& console) {
     }
     ExitCode code = std::max(finish(console), reporter.exit_code());
     if (!files.depfile.empty()) {
-        write.no_clobber = false;  // every run writes its depfile again
+        write.no_clobber = false;  // every run rewrites its depfile
         const auto text = depfile_text(reporter.dependencies());
         const auto written = text ? write_text_file(files.depfile, *text, write) : Result<void>(text.error());
         code = std::max(code, code_of(written, console));

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// batch.h: commands that take many inputs: one job for each on several threads, reports in the order of the inputs.
+// batch.h: commands that take many inputs. They run one job for each input on several threads and report in the order
+// of the inputs.
 //
-// A run plans (which input becomes which output), checks the plan, processes each task and finishes. A failure does not
-// stop the other files; the exit code is the highest.
+// A run plans (it decides which input becomes which output), checks the plan, processes each task and finishes. A
+// failure does not stop the other files. The exit code is the highest of all files.
 
 #pragma once
 
@@ -17,7 +18,7 @@
 
 namespace tex::cli {
 
-// A command that only reads its inputs (FileOptions::add_inputs): tasks have no output.
+// A command that only reads its inputs (FileOptions::add_inputs). Its tasks have no output.
 class Batch : public Program {
 public:
     using Program::Program;
@@ -30,20 +31,20 @@ public:
 protected:
     [[nodiscard]] virtual Result<std::vector<Task>> plan() const;
 
-    // Looks at the plan before anything is written; throws UsageError, and returns other errors.
+    // Checks the plan before anything is written. Throws UsageError; returns other errors.
     [[nodiscard]] virtual Result<void> check(const std::vector<Task>&) { return {}; }
 
-    // Does one task. Called from several threads at once.
+    // Processes one task. Called from several threads at once.
     [[nodiscard]] virtual Result<void> process(Job& job) = 0;
 
-    // Called once at the end, for what concerns the run as a whole.
+    // Called once at the end, for results that concern the whole run.
     [[nodiscard]] virtual ExitCode finish(Console&) { return ExitCode::done; }
 
 private:
     [[nodiscard]] ExitCode run_tasks(const std::vector<Task>& tasks, Console& console);
 };
 
-// A command that makes an output of each input (FileOptions::add).
+// A command that makes one output from each input (FileOptions::add).
 class Converter : public Batch {
 public:
     using Batch::Batch;

@@ -26,8 +26,8 @@ namespace fs = std::filesystem;
 
 using Identity = std::pair<dev_t, ino_t>;
 
-// Which file an existing path is, and the one behind "-", which is this descriptor; nothing for pipes, devices and
-// paths that do not exist.
+// Identifies the file behind an existing path; for "-", the file behind the descriptor `standard`. Returns nothing for
+// pipes, devices and paths that do not exist.
 std::optional<Identity> identity(const std::string& path, int standard) {
     struct stat status {};
     const int failed = path == "-" ? fstat(standard, &status) : stat(path.c_str(), &status);
@@ -42,12 +42,12 @@ bool is_special(const std::string& path) {
     return path == "-" || (stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode));
 }
 
-// One spelling for all the names of a path that need not exist. Through symbolic links, dangling ones too: what they
-// name is written.
+// Returns the same spelling for all names of one path, even if the path does not exist. Follows symbolic links,
+// including dangling ones, because a write goes to the link's target.
 std::string canonical(const std::string& path) {
     std::error_code error;
     fs::path at = path;
-    constexpr int kMostLinks = 40;  // as the kernel; more are an error when the file is opened
+    constexpr int kMostLinks = 40;  // the kernel's limit; opening a file behind more links is an error
     for (int k = 0; k < kMostLinks; ++k) {
         const fs::path target = fs::read_symlink(at, error);
         if (error) break;
@@ -57,8 +57,8 @@ std::string canonical(const std::string& path) {
     return (folder / at.filename()).string();
 }
 
-// The files that a task writes: many if each level has its own. As many as the largest extent
-// could have.
+// The files that a task writes. If each level has its own file, this is one name for each level that the largest
+// possible extent could have.
 std::vector<std::string> files_of(const Task& task) {
     std::vector<std::string> files;
     for (const std::string& output : task.outputs()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// collisions.h: files that must not be the same.
+// collisions.h: finds files that must be different but are the same.
 
 #pragma once
 
@@ -10,9 +10,9 @@ namespace tex::cli {
 
 struct Task;
 
-// Throws UsageError if two tasks would write one file, or if an output or the depfile is an input or the `list`
-// of inputs (empty: there is none): by name, through symbolic and hard links, or as the file behind standard input or
-// output. Pipes, FIFOs and devices do not count.
+// Throws UsageError if two tasks would write the same file, or if an output or the depfile is an input or the `list` of
+// inputs (empty if there is none). Files are compared by name, through symbolic and hard links, and as the file behind
+// standard input or output. Pipes, FIFOs and devices do not count.
 void check_collisions(const std::vector<Task>& tasks, const std::string& depfile, const std::string& list);
 
 // A file that an option names.
@@ -21,12 +21,12 @@ struct NamedFile {
     std::string path;
 };
 
-// Throws UsageError if `document`, which is going to be written, is not the name of a file, is an input, or is one
-// of `others`, files that the run reads or writes as well (those without a name do not count).
+// Throws UsageError if `document`, which the run writes, is not the name of a file, is an input, or is one of `others`.
+// `others` are the other files that the run reads or writes; entries without a name do not count.
 void check_document(const NamedFile& document, const std::vector<std::string>& inputs,
                     const std::vector<NamedFile>& others);
 
-// Throws UsageError if an input is standard input: `option` reads inputs a second time.
+// Throws UsageError if an input is standard input, because `option` reads the inputs a second time.
 void check_read_twice(const std::string& option, const std::vector<std::string>& inputs);
 
 }  // namespace tex::cli

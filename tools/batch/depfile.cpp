@@ -13,11 +13,11 @@
 namespace tex::cli {
 namespace {
 
-// Make takes backslashes as they are, except before a character that they escape: there they must be doubled. A
-// colon ends the targets of a rule, and a target with a % would be a pattern.
+// Make takes backslashes literally, except before a character that they escape; there they must be doubled. A colon
+// ends the targets of a rule, and a % would turn a target into a pattern.
 std::string escaped(const std::string& path, bool is_target) {
     std::string text;
-    std::size_t backslashes = 0;  // that end `text`
+    std::size_t backslashes = 0;  // at the end of `text`
     for (const char c : path) {
         if (c == '$') {
             text += "$$";

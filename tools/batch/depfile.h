@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// depfile.h: what each output was made from, in the syntax that Make and Ninja read.
+// depfile.h: the files that each output was made from, in the syntax that Make and Ninja read.
 
 #pragma once
 
@@ -17,12 +17,12 @@ struct Dependency {
     std::vector<std::string> inputs;
 };
 
-// Throws UsageError if a task reads or writes a file whose name holds a line feed, which has no escape.
+// Throws UsageError if a task reads or writes a file whose name contains a line feed, which cannot be escaped.
 void check_depfile_names(const std::vector<Task>& tasks);
 
-// One rule for each dependency: "out.dds: bricks.png\n". Blanks, #, $, :, % and backslashes are escaped as
-// GNU Make wants it. (There is no escape for = and ;, with which Make cannot cope, but Ninja can.) Standard input and
-// output are left out. Errors: unsupported (a line feed in a name).
+// One rule for each dependency: "out.dds: bricks.png\n". Blanks, #, $, :, % and backslashes are escaped as GNU Make
+// requires. (= and ; cannot be escaped: Make cannot handle them, but Ninja can.) Standard input and output are left
+// out. Errors: unsupported (a line feed in a name).
 [[nodiscard]] Result<std::string> depfile_text(const std::vector<Dependency>& dependencies);
 
 }  // namespace tex::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// job.h: one file on its way through a command.
+// job.h: the state of one file while a command processes it.
 
 #pragma once
 
@@ -21,7 +21,7 @@ namespace tex::cli {
 
 class Job {
 public:
-    // `advance` takes the fraction of the job that is done and returns false if the job is to stop.
+    // `advance` takes the fraction of the job that is done. It returns false if the job must stop.
     Job(const Task& its_task, Console& its_console, const ReadOptions& read, const WriteOptions& write, int threads,
         std::function<bool(double fraction)> advance)
         : task(its_task), console(its_console), read_options(read), write_options(write), threads_(threads),
@@ -31,16 +31,16 @@ public:
     Console& console;
     const ReadOptions& read_options;
     const WriteOptions& write_options;
-    Json report;  // what --json prints about this file, beside input and output
+    Json report;  // what --json prints about this file, besides input and output
 
-    // How the next verb runs: its progress counts as that of the job from where the last one ended up to
-    // `fraction`.
+    // The Execution for the next verb. The verb's progress counts as the job's progress from the end of the previous
+    // step to `fraction`.
     [[nodiscard]] Execution until(double fraction) {
         const double from = reached_;
         reached_ = fraction;
         return {threads_, [this, from, fraction](double done) { return advance_(from + (fraction - from) * done); }};
     }
-    // The same for steps that take no Execution. False if the job is to stop.
+    // The same for steps that take no Execution. Returns false if the job must stop.
     [[nodiscard]] bool reached(double fraction) {
         reached_ = fraction;
         return advance_(fraction);
@@ -50,7 +50,7 @@ public:
 
     void warn(std::string sentence) { warnings_.push_back(std::move(sentence)); }  // printed after "FILE: "
     void say(std::string_view text) { text_ += text; }            // on standard output, unless --json is given
-    void raise(ExitCode code) { code_ = std::max(code_, code); }  // the run ends with this code or a higher one
+    void raise(ExitCode code) { code_ = std::max(code_, code); }  // the run exits with this code or a higher one
     void wrote(std::string path) { outputs_.push_back(std::move(path)); }
 
     [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }

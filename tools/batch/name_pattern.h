@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// name_pattern.h: names of outputs made from names of inputs: --name '{stem}_mip{level}{ext}'.
+// name_pattern.h: builds the names of outputs from the names of inputs: --name '{stem}_mip{level}{ext}'.
 
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace tex::cli {
 
-// What the fields stand for. {ext} has its dot; {dir} is "." for a name without a folder.
+// The values of the fields. {ext} includes the dot; {dir} is "." for a name without a folder.
 struct NameFields {
     std::string dir;
     std::string stem;
@@ -17,17 +17,18 @@ struct NameFields {
     std::string format;
 };
 
-// The dir, stem and ext of a path; "-" has the stem "stdin".
+// The dir, stem and ext of a path. The stem of "-" is "stdin".
 [[nodiscard]] NameFields name_fields(const std::string& path);
 
-// Stands for the level in a name that is made before the number of levels is known. No file name can hold it.
+// Marks the place of the level in a name that is built before the number of levels is known. No file name can contain
+// it.
 inline constexpr char kLevelMark = '\0';
 [[nodiscard]] std::string with_level(const std::string& name, int level);
 [[nodiscard]] bool has_level(const std::string& name);
 
 class NamePattern {
 public:
-    // Throws UsageError for unknown fields and braces that do not match; "{{" and "}}" stand for braces.
+    // Throws UsageError for unknown fields and unbalanced braces. "{{" and "}}" are literal braces.
     explicit NamePattern(std::string_view text);
 
     // {level} becomes kLevelMark.

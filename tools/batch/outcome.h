@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// outcome.h: what became of each file, printed in the order of the inputs whatever the order in which they end.
+// outcome.h: the result of each file. Results are printed in the order of the inputs, whatever the order in which files
+// end.
 
 #pragma once
 
@@ -19,17 +20,17 @@
 
 namespace tex::cli {
 
-// What became of one file.
-struct Outcome {  // NOLINT(bugprone-exception-escape): reads into the noexcept constructor of a null Json, which throws
-                  // for other values
+// The result of one file.
+struct Outcome {  // NOLINT(bugprone-exception-escape): the tool follows the noexcept constructor of a null Json, which
+                  // throws only for other values
     std::string input;
     std::optional<Error> error;
-    bool is_bug = false;      // the error is ours
-    bool is_silent = false;   // the error is not worth a message
-    bool has_levels = false;  // one output for each level
+    bool is_bug = false;      // the error is a bug in the program
+    bool is_silent = false;   // no message is printed for the error
+    bool has_levels = false;  // each level has its own output
     Json report;
     std::string text;                // for standard output, unless --json is given
-    ExitCode code = ExitCode::done;  // what the command found, beside `error`
+    ExitCode code = ExitCode::done;  // what the command found, apart from `error`
     std::vector<std::string> warnings;
     std::vector<std::string> outputs;
     std::vector<std::string> prerequisites;
@@ -39,14 +40,14 @@ class Reporter {
 public:
     Reporter(Console& console, std::size_t count, bool json) : console_(console), waiting_(count), json_(json) {}
 
-    // The outcome of the file at `place`. Prints it, and those that waited for it: errors and warnings on standard
-    // error, with --json a line on standard output. Any thread may call.
+    // Takes the outcome of the file at `place`. Prints it and all later outcomes that were waiting for it: errors and
+    // warnings on standard error and, with --json, one line on standard output. Any thread may call this.
     void finish(std::size_t place, Outcome outcome);
 
-    // Standard output cannot be written any more: the run may stop.
+    // True if standard output can no longer be written; the run may then stop.
     [[nodiscard]] bool is_abandoned() const { return is_abandoned_; }
 
-    // After all calls of finish().
+    // Valid after all calls of finish().
     [[nodiscard]] ExitCode exit_code() const { return exit_code_; }
     [[nodiscard]] std::size_t done() const { return done_; }
     [[nodiscard]] const std::vector<Dependency>& dependencies() const { return dependencies_; }

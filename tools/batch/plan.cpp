@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 bool is_block_encoding(Encoding encoding) { return format_info(encoding_info(encoding).format).has_blocks(); }
 
-// The pattern of names with --out-dir, if the user gives none.
+// The name pattern for --out-dir if the user gives none.
 std::string default_pattern(const OutputOptions& output, const OutputRules& rules) {
     std::optional<Container> container = output.container;
     if (!container && output.format) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// plan.h: which input becomes which output.
+// plan.h: decides which input becomes which output.
 
 #pragma once
 
@@ -16,21 +16,21 @@
 
 namespace tex::cli {
 
-// What a command says about its outputs.
+// What a command specifies about its outputs.
 struct OutputRules {
     std::optional<Container> batch = {};  // with --out-dir: "{stem}" and its extension; none: the input's extension
-    Container standard_output = Container::dds;  // of "-o -"
-    bool joins = false;                          // -o takes many inputs and makes one output of them
+    Container standard_output = Container::dds;  // for "-o -"
+    bool joins = false;                          // -o takes many inputs and makes one output from them
     std::vector<std::string> shared = {};        // Task::shared
     std::function<void(Task& task)> amend = {};  // adds the files that options name for this task; may be empty
 };
 
-// Pairs every input with its output. Throws UsageError if two inputs have one output, if an output is an input (also
-// through links), or if a name says nothing about its file type. Nothing is created.
+// Pairs every input with its output. Throws UsageError if two inputs have the same output, if an output is an input
+// (links are followed), or if a name does not show its file type. Creates nothing.
 [[nodiscard]] std::vector<Task> plan_outputs(std::vector<std::string> inputs, const FileOptions& files,
                                              const OutputOptions& output, const OutputRules& rules);
 
-// Creates --out-dir (not its parents), and below it the folders that {dir} asks for.
+// Creates --out-dir (but not its parents) and, below it, the folders that {dir} requires.
 [[nodiscard]] Result<void> create_folders(const FileOptions& files, const std::vector<Task>& tasks);
 
 }  // namespace tex::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// repack.h: commands that read one normal map and write it, and what bake-normals shares with them.
+// repack.h: commands that read one normal map and write it, and the code that they share with bake-normals.
 
 #pragma once
 
@@ -22,29 +22,29 @@ protected:
     [[nodiscard]] ExitCode finish(Console& console) override;
 };
 
-// A command whose work is pack_file() of libtex, with options of its own.
+// A command that calls pack_file() of libtex and has its own options.
 class Repacker : public NormalsConverter {
 public:
     using NormalsConverter::NormalsConverter;
 
 protected:
-    // Adds usage, inputs, files and how normal maps are read; `inputs` is the help of the inputs.
+    // Adds the usage, the inputs, the files and the way normal maps are read. `inputs` is the help text of the inputs.
     void add_files(const char* inputs);
 
-    // What happens on the way: level, scale, mip. All else is for `normals` and `output` to say.
+    // The processing between reading and writing: level, scale, mip. `normals` and `output` determine everything else.
     [[nodiscard]] virtual PackFileOptions options(Job& job) const = 0;
     // The encoding, if the user names none.
     [[nodiscard]] virtual Encoding encoding(const SourceInfo& input, const Task& task) const;
-    // Adds to the job's report when all went well.
+    // Adds to the job's report after success.
     virtual void report(Job&, const PackFileReport&) const {}
 
     [[nodiscard]] Result<void> process(Job& job) override;
 };
 
-// The names of files that each hold a level, if `name` has {level}, else empty.
+// If `name` contains {level}, the names of the files that hold one level each; else empty.
 [[nodiscard]] LevelNames level_names(const std::string& name);
 
-// Notes that the job has written `name`, of so many levels.
+// Records that the job has written `name` with this number of levels.
 void wrote_levels(Job& job, const std::string& name, int levels);
 
 }  // namespace tex::cli

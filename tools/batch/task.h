@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// task.h: one output of a command, and the files that it is made of.
+// task.h: one output of a command, and the files that it is made from.
 
 #pragma once
 
@@ -10,23 +10,23 @@
 
 namespace tex::cli {
 
-// Names of outputs hold kLevelMark (name_pattern.h) if each level has its own file.
+// The names of outputs contain kLevelMark (name_pattern.h) if each level has its own file.
 struct Task {
     std::string input;
-    std::string output;  // empty for commands that write nothing for each input
+    std::string output;  // empty if the command writes no output for each input
     Container container = Container::dds;
     std::vector<std::string> joined = {};        // the inputs after the first one that go into the same output
-    std::vector<std::string> shared = {};        // files that options name, which every output is made of
-    std::vector<std::string> own = {};           // files that options name for this output alone
-    std::vector<std::string> more_outputs = {};  // outputs beside the first one
+    std::vector<std::string> shared = {};        // files that options name and every output depends on
+    std::vector<std::string> own = {};           // files that options name and only this output depends on
+    std::vector<std::string> more_outputs = {};  // outputs besides the first one
 
-    // The inputs without the files of options.
+    // The inputs, without the files that options name.
     [[nodiscard]] std::vector<std::string> inputs() const {
         std::vector<std::string> all = {input};
         all.insert(all.end(), joined.begin(), joined.end());
         return all;
     }
-    // Every file that is read, but for the first input.
+    // Every file that is read, except the first input.
     [[nodiscard]] std::vector<std::string> prerequisites() const {
         std::vector<std::string> all = joined;
         all.insert(all.end(), shared.begin(), shared.end());

@@ -25,12 +25,12 @@ auto* find_row(Rows& rows, std::string_view name) {
 
 bool is_option(std::string_view argument) { return argument.size() > 1 && argument.front() == '-'; }
 
-// The value of `row` that its argument holds itself, if it does.
+// The value of `row` that the argument itself contains, if it contains one.
 std::optional<std::string> value_of(const Row& row, std::string_view argument) {
     const bool is_long = argument.starts_with("--");
     const std::size_t place = is_long ? argument.find('=') : 2;
     const bool is_flag = row.value.empty();
-    if (is_flag && !is_long) return "";  // the only one is -h, and what follows does not matter beside it
+    if (is_flag && !is_long) return "";  // the only such flag is -h; the characters after it do not matter
     if (place >= argument.size()) return is_flag ? std::optional<std::string>("") : std::nullopt;
     if (is_flag) throw UsageError(fmt::format("{} takes no value", row.name()));
     const std::string_view value = argument.substr(is_long ? place + 1 : place);
@@ -54,7 +54,8 @@ void check_word(const std::string& name, const std::vector<std::string>& names) 
 }
 
 Command::Command(std::string_view name, std::string_view summary) : name_(name), summary_(summary) {
-    // These come first, because values are taken in the order of the rows: --help works beside a mistake.
+    // These rows come first because values are taken in the order of the rows. So --help works even if another option
+    // is wrong.
     group(kHelpGroup);
     flag(help_, "-h,--help", "print this help and exit");
     flag(version_, "--version", "print the version and exit; with --json also how the program was built");
@@ -127,8 +128,8 @@ std::string Command::unknown_option(const std::string& name) const {
     return fmt::format("unknown option {}{}", printable(name), did_you_mean(name, names));
 }
 
-// Gives each row its values, and keeps the inputs. Returns the first mistake that --help makes up for: an unknown
-// option or an empty name.
+// Gives each row its values, and keeps the inputs. Returns the first mistake that --help overrides: an unknown option
+// or an empty name.
 std::string Command::sort(Arguments arguments) {
     std::string mistake;
     bool only_inputs = false;

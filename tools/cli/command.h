@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// command.h: the table of a command's options, and the parser that reads a command line by it.
+// command.h: the table of a command's options, and the parser that reads a command line with it.
 //
-// One row says everything about an option: its names, its value, what it means, its default and the words that it
-// takes. The parser, --help, the shell completions, --list-options and with it the test of the man pages all read these
-// rows. Defaults are what the target holds when its row is added: the library's own.
+// One row holds everything about an option: its names, its value, its meaning, its default and the words that it
+// accepts. The parser, --help, the shell completions, --list-options and (through --list-options) the test of the man
+// pages all read these rows. The default is the value that the target holds when its row is added, which is the
+// library's own default.
 //
-// An option takes the argument after it, whatever it is, or what follows in the same one: "--name VALUE",
+// The value of an option is the next argument, whatever it is, or the rest of the same argument: "--name VALUE",
 // "--name=VALUE", "-o FILE", "-oFILE". Everything after "--" is an input.
 
 #pragma once
@@ -29,7 +30,7 @@ namespace tex::cli {
 // A command line without the name of the program.
 using Arguments = std::span<const char* const>;
 
-// A word that an option takes, and what it means.
+// A word that an option accepts, and its meaning.
 struct Word {
     std::string name;
     std::string meaning;
@@ -48,21 +49,21 @@ enum class Completes { nothing, words, files, directories };
 struct Row {
     std::string group;               // heading in the help
     std::vector<std::string> names;  // "-o", "--output"
-    std::string value;               // what stands for the value: "FILE"; empty for a flag
+    std::string value;               // placeholder of the value: "FILE"; empty for a flag
     std::string help;                // a clause without a final full stop; `words` and `preset` are added to it
     std::string preset;              // the default as a user would type it, or empty
-    std::vector<Word> words;         // the words that the option takes
+    std::vector<Word> words;         // the words that the option accepts
     Completes completes = Completes::nothing;
-    bool hidden = false;      // not in the help
+    bool hidden = false;      // left out of the help
     bool repeatable = false;  // may be given more than once
 
     std::vector<std::string> given;                     // the values on the command line, in order; empty for a flag
-    std::function<void(const std::string& text)> take;  // called with each of them; throws UsageError
+    std::function<void(const std::string& text)> take;  // called with each value; throws UsageError
 
     [[nodiscard]] const std::string& name() const { return names.back(); }  // the long one
 };
 
-// The group of --help and its like, which the help lists last.
+// The group of --help and similar options, which the help lists last.
 inline constexpr const char* kHelpGroup = "Help";
 
 struct Example {
@@ -79,13 +80,13 @@ public:
     Command& operator=(const Command&) = delete;
 
     void usage(std::string line) { usages_.push_back(std::move(line)); }
-    // What the positional arguments are: "HEIGHT...", "height maps; - is standard input".
+    // Describes the positional arguments: "HEIGHT...", "height maps; - is standard input".
     void input(std::string value, std::string help) { input_ = {std::move(value), std::move(help)}; }
     void example(std::string line, std::string meaning) { examples_.push_back({std::move(line), std::move(meaning)}); }
     void finds_things() { finds_ = true; }  // the command can end with ExitCode::findings
     void group(std::string title) { group_ = std::move(title); }
 
-    // The row of an option with a value; `take` gets the text and throws UsageError. References to rows stay valid.
+    // Adds an option with a value. `take` gets the text and throws UsageError. References to rows stay valid.
     Row& option(const std::string& names, std::string value, std::string help,
                 std::function<void(const std::string& text)> take);
     Row& flag(bool& target, const std::string& names, std::string help);
@@ -107,16 +108,16 @@ public:
                           [&target, &table](const std::string& name) { target = *find_by_name(table, name); });
     }
 
-    // `body` is called after all options have been read: it throws UsageError if they contradict each other, and
+    // `body` is called after all options have been read. It throws UsageError if they contradict each other, and
     // changes nothing.
     void check(std::function<void()> body) { checks_.push_back(std::move(body)); }
 
-    // Reads the command line, once. Returns an exit code if that was all: --help, --version and the like, which print.
-    // Throws UsageError.
+    // Reads the command line. Call it once. Returns an exit code if nothing is left to do, because --help, --version or
+    // a similar option has printed its text. Throws UsageError.
     [[nodiscard]] std::optional<ExitCode> parse(Arguments arguments, Console& console);
 
     [[nodiscard]] bool given(std::string_view name) const;
-    // Those of `names` that were given.
+    // The options in `names` that were given.
     [[nodiscard]] std::vector<std::string> given_of(const std::vector<std::string>& names) const;
     [[nodiscard]] const std::vector<std::string>& inputs() const { return inputs_; }
 
@@ -151,8 +152,8 @@ private:
     std::string completion_;
 };
 
-// The choice of a word by name, for options whose value is made of several: throws UsageError with the names and a
-// suggestion.
+// For options whose value consists of several words: throws UsageError if `name` is not in `names`. The message lists
+// the names and suggests one.
 void check_word(const std::string& name, const std::vector<std::string>& names);
 template <class E, std::size_t N>
 [[nodiscard]] E parse_word(const std::string& name, const Named<E> (&table)[N]) {

@@ -18,7 +18,7 @@ std::string replace_all(std::string text, std::string_view from, std::string_vie
     return text;
 }
 
-// bash: a function that looks at the option before the cursor. "--name=word" arrives as three words.
+// bash: a function that looks at the option before the cursor. bash passes "--name=word" as three words.
 std::string bash_script(const Command& command) {
     const std::string function = fmt::format("_{}", replace_all(command.name(), "-", "_"));
     std::string cases, files, directories, others;
@@ -69,7 +69,7 @@ std::string bash_script(const Command& command) {
         command.name(), function, cases, join(options, " "));
 }
 
-// zsh: one _arguments specification for each option, in single quotes, where [ ] and : have a meaning.
+// zsh: one _arguments specification for each option, in single quotes. Inside it, [ ] and : are special.
 std::string zsh_escaped(std::string text) {
     for (const std::string_view special : {"\\", "[", "]", ":"})
         text = replace_all(text, special, fmt::format("\\{}", special));
@@ -82,7 +82,7 @@ std::string zsh_action(const Row& row) {
     if (row.completes == Completes::nothing) return " ";
     std::string action;
     for (const Word& word : row.words) {
-        // Inside the double quotes of a description only these four keep their meaning.
+        // Only these four characters are special inside the double quotes of a description.
         std::string meaning = word.meaning;
         for (const std::string_view special : {"\\", "\"", "$", "`"}) {
             meaning = replace_all(meaning, special, fmt::format("\\{}", special));
@@ -126,7 +126,7 @@ std::string fish_script(const Command& command) {
         if (!row.value.empty())
             out += row.completes == Completes::files || row.completes == Completes::directories ? " -r -F" : " -x";
         if (!row.words.empty()) {
-            std::string list;  // one candidate a line, its meaning after a tab
+            std::string list;  // one candidate on each line, with its meaning after a tab
             for (const Word& word : row.words)
                 list += fmt::format("{}{}\t{}", list.empty() ? "" : "\n", word.name, word.meaning);
             out += " -a " + fish_quoted(list);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// console.h: what one run of a program prints: results on standard output; errors, warnings and the progress bar, which
-// they must not tear, on standard error.
+// console.h: what one run of a program prints. Results go to standard output. Errors, warnings and the progress bar go
+// to standard error; messages must not break the bar.
 //
-// All functions may be called from any thread.
+// Any thread may call any of these functions.
 
 #pragma once
 
@@ -21,17 +21,17 @@ public:
     // Messages begin with `program`. Both must outlive this.
     Console(std::string_view program, Host& host) : program_(program), host_(host) {}
 
-    // No warnings and no progress from now on. Errors are always printed.
+    // Suppresses warnings and progress from now on. Errors are always printed.
     void be_quiet() { quiet_ = true; }
 
-    // "bake-normals: error: MESSAGE". Control characters in the message are escaped: a line stays a line.
+    // Prints "bake-normals: error: MESSAGE". Control characters in the message are escaped, so it stays on one line.
     void error(std::string_view message) { message_of("error", "31", message); }
     void warning(std::string_view message);
 
-    // Prints a result. ExitCode::io if that fails, with a message, unless the reader has gone away.
+    // Prints a result. If that fails, returns ExitCode::io and prints a message, unless the reader has closed the pipe.
     [[nodiscard]] ExitCode print(std::string_view text);
 
-    // Draws the bar, at most ten times a second: fraction 0 to 1, and a few words beside it.
+    // Draws the progress bar, at most ten times a second. `fraction` is 0 to 1; `words` are a few words beside the bar.
     void draw_progress(double fraction, std::string_view words);
     void clear_progress();
 

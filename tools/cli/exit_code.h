@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// exit_code.h: what a command's exit status means. The help and the man pages show this table.
+// exit_code.h: the meaning of a command's exit status. The help and the man pages show this table.
 
 #pragma once
 
@@ -22,8 +22,8 @@ inline constexpr Named<ExitCode> kExitCodeNames[] = {
 inline constexpr const char* kBugReport =
     "this is a bug: please report it with the command line and, if you can, the file";
 
-// The exit code of a failure that happened while files were processed. (bad_option then concerns the file: it lacks the
-// channel that was asked for, say.) A command that a signal cancels ends by that signal, see process.h.
+// The exit code of a failure that happens while files are processed. (bad_option then concerns the file; for example,
+// the file lacks the requested channel.) A command that a signal cancels ends by that signal; see process.h.
 constexpr ExitCode exit_code(ErrorCode code) {
     switch (code) {
         case ErrorCode::io:

@@ -12,7 +12,7 @@ namespace tex::cli {
 namespace {
 
 constexpr std::size_t kWidth = 80;
-constexpr std::size_t kColumn = 26;  // where explanations begin
+constexpr std::size_t kColumn = 26;  // the column where explanations begin
 
 std::vector<std::string> groups_in_order(const Command& command) {
     std::vector<std::string> groups;
@@ -50,7 +50,7 @@ std::string explanation(const Row& row) {
 void add_entry(std::string& out, const std::string& left, const std::string& right) {
     std::string line = left;
     for (const std::string& piece : wrapped(right, kWidth - kColumn)) {
-        if (line.size() + 2 > kColumn) {  // too long: the explanation starts on its own line
+        if (line.size() + 2 > kColumn) {  // too long: the explanation starts on a new line
             out += line + "\n";
             line.clear();
         }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// help.h: what a command says about itself, from its table.
+// help.h: the description of a command, made from its table.
 
 #pragma once
 
@@ -12,8 +12,8 @@ namespace tex::cli {
 // --help: usage, options by group with their defaults, examples, exit status; 80 columns.
 [[nodiscard]] std::string help_text(const Command& command);
 
-// --list-options: a line for each option that the help shows: names, value, default and words, separated by
-// tabs. The test that keeps the man pages in step reads it.
+// --list-options: a line for each option that the help shows, with names, value, default and words separated by tabs.
+// The test that compares the man pages with the options reads it.
 [[nodiscard]] std::string option_list(const Command& command);
 
 }  // namespace tex::cli

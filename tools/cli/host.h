@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// host.h: what a program runs in: where its words go, and who may stop it. main() runs a program in the process itself,
-// with standard streams and signals; everybody else in a MemoryHost or in a host of their own.
+// host.h: the environment in which a program runs: where its output goes, and who may stop it. main() runs a program
+// with the standard streams and signals of the process. Other callers use a MemoryHost or their own host.
 //
-// "-" as the name of a file is a standard stream of the process in every host.
+// The file name "-" means a standard stream of the process in every host.
 
 #pragma once
 
@@ -12,26 +12,26 @@
 
 namespace tex::cli {
 
-// All functions may be called from any thread.
+// Any thread may call any of these functions.
 class Host {
 public:
     virtual ~Host() = default;
 
-    // Writes all of `text` to standard output, unbuffered. False if that failed (errno says why).
+    // Writes all of `text` to standard output, unbuffered. Returns false on failure (errno holds the reason).
     [[nodiscard]] virtual bool write_out(std::string_view text) = 0;
-    // Writes `text` to standard error as one piece. Failure is ignored: there is nowhere to report it.
+    // Writes `text` to standard error in one piece. Failure is ignored, because there is nowhere to report it.
     virtual void write_err(std::string_view text) = 0;
 
     [[nodiscard]] virtual bool out_is_terminal() const { return false; }
-    [[nodiscard]] virtual bool out_is_abandoned() const { return false; }  // nobody reads it any more
-    [[nodiscard]] virtual bool err_is_terminal() const { return false; }   // and one that can move its cursor
+    [[nodiscard]] virtual bool out_is_abandoned() const { return false; }  // nobody reads standard output any more
+    [[nodiscard]] virtual bool err_is_terminal() const { return false; }   // a terminal that can move its cursor
     [[nodiscard]] virtual bool err_has_color() const { return false; }
 
     // Called before the first file is written.
     virtual void begin() {}
-    // What asks the run to stop ("SIGINT"), or empty.
+    // The reason why the run must stop ("SIGINT"), or empty.
     [[nodiscard]] virtual std::string_view interruption() const { return {}; }
-    // Called when the run has stopped because of interruption(). If it returns, the run ends with ExitCode::io.
+    // Called after interruption() has stopped the run. If it returns, the run ends with ExitCode::io.
     virtual void end_interrupted() {}
 };
 
@@ -41,7 +41,7 @@ public:
     [[nodiscard]] bool write_out(std::string_view text) override { return append(out_, text); }
     void write_err(std::string_view text) override { append(err_, text); }
 
-    // After the run.
+    // Valid after the run.
     [[nodiscard]] const std::string& out() const { return out_; }
     [[nodiscard]] const std::string& err() const { return err_; }
 

@@ -37,12 +37,12 @@ bool write_all(int fd, std::string_view text) {
     return true;
 }
 
-// Before the libraries' constructors, which end with abort() if they get no memory, and before the standard library
-// has set memory for exceptions aside (without which throwing one ends with abort(), too): a command that cannot have
-// even this much says so.
+// Checks that the process can get any memory at all, and prints an error if it cannot. It must run before the
+// constructors of the libraries, which call abort() if they get no memory. It must also run before the standard library
+// reserves memory for exceptions; without that memory, throwing an exception calls abort(), too.
 void check_memory(int, char** argv, char**) {
     constexpr std::size_t kStart = std::size_t{4} << 20;
-    // Not through the C library: libraries that put calls of their own before it are not ready.
+    // A direct system call: libraries that intercept functions of the C library are not ready yet.
     const long memory = syscall(SYS_mmap, 0L, kStart, long{PROT_NONE}, long{MAP_PRIVATE | MAP_ANONYMOUS}, -1L, 0L);
     if (memory != -1) {
         syscall(SYS_munmap, memory, kStart);
@@ -55,12 +55,12 @@ void check_memory(int, char** argv, char**) {
 }
 [[gnu::section(".preinit_array"), gnu::used]] void (*const g_check_memory)(int, char**, char**) = check_memory;
 
-// Opens /dev/null in the wrong direction for each of the three streams that is closed, so that no file that we open
-// becomes standard output by accident; reading or writing such a stream then fails.
+// Opens /dev/null in the wrong direction for each of the three streams that is closed. Otherwise a file that we open
+// could become standard output by accident. Reading or writing such a stream then fails.
 void fill_closed_streams() {
     for (int fd = 0; fd <= 2; ++fd) {
         if (fcntl(fd, F_GETFD) == -1 && errno == EBADF) {
-            // The lowest free descriptor is this one.
+            // open() returns the lowest free descriptor, which is `fd`.
             [[maybe_unused]] const int same = open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY);
         }
     }
@@ -72,11 +72,11 @@ constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
 constexpr unsigned kPatience = 1;  // seconds
 
 // Ends the process by `signal`, as if it had never been caught. Leaves no temporary file behind, whatever other threads
-// do.
+// are doing.
 [[noreturn]] void end_by_signal(int signal) {
-    // Only functions that a signal handler may call: both handlers come here. Threads may be anywhere, so nothing
-    // unwinds. (A wait that can be cancelled would serve decoders that hang, but neither a file system that is slow nor
-    // a second signal.)
+    // Calls only functions that a signal handler may call, because both handlers come here. Other threads may be
+    // anywhere, so the stack is not unwound. (A cancellable wait would help with decoders that hang, but not with a
+    // slow file system or a second signal.)
     remove_unfinished_files();
     struct sigaction action {};
     action.sa_handler = SIG_DFL;
@@ -104,7 +104,7 @@ void catch_signals() {
         if (before.sa_handler == SIG_IGN) continue;  // nohup, or a shell that put us in the background
         struct sigaction action {};
         action.sa_handler = on_signal;
-        sigaction(signal, &action, nullptr);  // no SA_RESTART: a blocked read returns
+        sigaction(signal, &action, nullptr);  // no SA_RESTART, so that a blocked read returns
     }
     struct sigaction action {};
     action.sa_handler = on_alarm;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // process.h: the process as a host: its standard streams and signals.
 //
-// The first SIGINT, SIGTERM or SIGHUP asks the running verbs to stop, so that nothing is left half-written; the command
-// then ends by that signal, and a shell sees 128+n. A command that does not stop within a second (blocked in a read
-// from a terminal, or waiting for a decoder that hangs), or that gets a second signal, is ended at once: an unfinished
-// output has no name, or the handler itself removes its temporary name.
+// The first SIGINT, SIGTERM or SIGHUP asks the running verbs to stop, so that nothing is left half-written. The command
+// then ends by that signal, and a shell sees 128+n. The command ends at once if it does not stop within a second
+// (because it is blocked in a read from a terminal, or waits for a decoder that hangs), or if it gets a second signal.
+// An unfinished output then has no name, or the handler itself removes its temporary name.
 
 #pragma once
 
@@ -14,8 +14,8 @@ namespace tex::cli {
 
 class ProcessHost : public Host {
 public:
-    // Makes the streams safe to use, and ignores SIGPIPE and SIGXFSZ: a reader that went away and a limit on the size
-    // of files are errors of write().
+    // Makes the streams safe to use, and ignores SIGPIPE and SIGXFSZ. A closed pipe and a limit on the size of files
+    // are then errors of write().
     ProcessHost();
 
     [[nodiscard]] bool write_out(std::string_view text) override;

@@ -14,7 +14,7 @@
 namespace tex::cli {
 namespace {
 
-// Filled before main() begins, and only read from then on.
+// Filled before main() begins; only read after that.
 std::vector<ProgramRow>& table() {
     static std::vector<ProgramRow> rows;
     return rows;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // programs.h: a command as an object, and the table of all commands.
 //
-// main() and tests call run(), and so does any other code, as often as it likes and from several threads at once: each
-// run has its own object, which keeps nothing for the next run. Only what belongs to the process is
-// shared: its working directory, its environment, TBB's threads (--threads N bounds other runs that work at the same
-// time, too), and the standard streams behind "-".
+// main(), tests and any other code call run(), as often as they like and from several threads at once. Each run has its
+// own object, which keeps nothing for the next run. Runs share only what belongs to the process: its working directory,
+// its environment, TBB's threads (--threads N also limits other runs that work at the same time), and the standard
+// streams behind "-".
 //
 // tools/<verb>-normals.cpp ends with the line that adds its command to the table:
 //
@@ -41,17 +41,17 @@ public:
 
     Command command;
 
-    // Does what the options say, which have been read and checked. May throw UsageError before anything is written.
+    // Does the work. The options have been read and checked. May throw UsageError before anything is written.
     [[nodiscard]] virtual ExitCode work(Console& console) = 0;
 };
 
-// The commands that are linked into this program, by name.
+// The commands that are linked into this program, sorted by name.
 [[nodiscard]] const std::vector<ProgramRow>& programs();
 
 // The row of a command, or null.
 [[nodiscard]] const ProgramRow* find_program(std::string_view name);
 
-// Runs a command: parses, checks, works. Every exception becomes a message and an exit code.
+// Runs a command: parses, checks, works. Turns every exception into a message and an exit code.
 [[nodiscard]] ExitCode run(const ProgramRow& program, Arguments arguments, Host& host);
 
 void register_program(const ProgramRow& row);
