@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// compare-normals: how far two normal maps lie apart.
+// compare-normals: measures the difference between two normal maps.
 
 #include <algorithm>
 
@@ -74,8 +74,8 @@ Result<cli::ExitCode> CompareNormals::compare_files(cli::Console& console) {
     const auto [first, end] = pair_.levels(*a, *b, names, console);
     cli::ExitCode code = cli::ExitCode::done, printed = code;
     std::vector<cli::ComparedLevel> levels;
-    Plane<float> degrees;                                    // of the first level
-    const double until = documents_.has_page() ? 0.8 : 1.0;  // of the progress: smaller levels take hardly any time
+    Plane<float> degrees;                                    // for the first level
+    const double until = documents_.has_page() ? 0.8 : 1.0;  // of the progress; smaller levels take hardly any time
     for (std::size_t k = first; k < end; ++k) {
         if (auto fits = cli::PairOptions::check_level(k, *a, *b, names); !fits) return fits.error();
         const Execution shown = running_.step(console, k == first ? 0.6 : until, until, fmt::format("level {}", k));

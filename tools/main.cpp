@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// main() of every command: the one that is linked into it, run in the process.
+// main() of every command. Runs the command that is linked into the program.
 
 #include <cstddef>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// mip-normals: normal maps to renormalised mip chains.
+// mip-normals: adds renormalised mip chains to normal maps.
 
 #include <fmt/format.h>
 #include <tex/tex.h>
@@ -53,7 +53,7 @@ cli::OutputRules MipNormals::rules() const {
     return rules;
 }
 
-// Nobody wants a file with one level from this command.
+// An output with a single level is useless here.
 Result<void> MipNormals::check(const std::vector<cli::Task>& tasks) {
     mips_.check(tasks);
     roughness_.check(tasks, mips_.levels.value_or(0));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// preview-normals: light on normal maps, and false colours.
+// preview-normals: draws normal maps under a light, and in false colours.
 
 #include <tex/tex.h>
 

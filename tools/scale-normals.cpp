@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// scale-normals: normal maps made steeper or flatter.
+// scale-normals: makes normal maps steeper or flatter.
 
 #include <tex/tex.h>
 

@@ -30,8 +30,9 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     return last[b.size()];
 }
 
-// Characters that show nothing themselves but change what is around them: they turn the direction of a line, so that a
-// name reads backwards, break it, or make two names look the same. (Joiners, U+200C and U+200D, belong to words.)
+// Characters that are invisible themselves but change the text around them: they reverse the direction of a line, so
+// that a name reads backwards, they break the line, or they make two names look the same. (Joiners, U+200C and U+200D,
+// are not included, because they are part of words.)
 bool is_format_control(char32_t code) {
     constexpr std::pair<char32_t, char32_t> kRanges[] = {{0x61c, 0x61c},   {0x200b, 0x200b},  {0x200e, 0x200f},
                                                          {0x2028, 0x202e}, {0x2060, 0x206f},  {0xfeff, 0xfeff},
@@ -40,8 +41,8 @@ bool is_format_control(char32_t code) {
                        [code](const auto& range) { return code >= range.first && code <= range.second; });
 }
 
-// The bytes of the character that `text` begins with, in UTF-8 and in its shortest form; 0 if there is none, or a
-// control character.
+// The length in bytes of the UTF-8 character, in its shortest form, at the start of `text`; 0 if there is none or it is
+// a control character.
 std::size_t character_length(std::string_view text) {
     const auto byte = [&](std::size_t k) { return k < text.size() ? static_cast<unsigned char>(text[k]) : 0u; };
     const unsigned first = byte(0);
@@ -54,7 +55,7 @@ std::size_t character_length(std::string_view text) {
         code = code << 6 | (byte(k) & 0x3f);
     }
     constexpr char32_t kLeast[] = {0, 0, 0xa0, 0x800,
-                                   0x10000};  // those of two bytes begin after the control characters
+                                   0x10000};  // those of two bytes start after the control characters
     const bool is_character = (code < 0xd800 || code >= 0xe000) && code != 0xfffe && code != 0xffff;
     return code >= kLeast[length] && code <= 0x10ffff && is_character && !is_format_control(code) ? length : 0;
 }

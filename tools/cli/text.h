@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// text.h: words for people: nearest names, lists, line breaks, and text that is safe to print.
+// text.h: text for users: nearest names, lists, line breaks, and text that is safe to print.
 
 #pragma once
 
@@ -10,9 +10,9 @@
 
 namespace tex::cli {
 
-// The candidate that `word` was probably meant to be: the one at the smallest edit distance (insertion,
-// deletion, substitution, transposition of neighbours), if that is at most a third of the longer word's
-// length; else one that begins with `word`; else empty.
+// The candidate that `word` was probably meant to be. This is the candidate at the smallest edit distance (insertion,
+// deletion, substitution, transposition of neighbours), if that distance is at most a third of the longer word's
+// length; else a candidate that begins with `word`; else empty.
 [[nodiscard]] std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 
 // "; did you mean X?" for the nearest candidate, or nothing.
@@ -21,12 +21,12 @@ namespace tex::cli {
 // "a, b, c".
 [[nodiscard]] std::string join(const std::vector<std::string>& words, std::string_view between = ", ");
 
-// `text` with control characters (also U+0080 to U+009F), invisible format characters (U+202E, which turns the
-// direction of what follows, and its kin) and bytes that are not UTF-8 written as \xNN, so that a file name can neither
-// break a line, drive the terminal nor look like another one.
+// Returns `text` with control characters (including U+0080 to U+009F), invisible format characters (such as U+202E,
+// which reverses the direction of the text after it) and bytes that are not UTF-8 written as \xNN. So a file name
+// cannot break a line, control the terminal or look like another name.
 [[nodiscard]] std::string printable(std::string_view text);
 
-// `text` broken at blanks into lines of at most `width` characters; longer words stand alone.
+// `text` broken at blanks into lines of at most `width` characters. A longer word gets its own line.
 [[nodiscard]] std::vector<std::string> wrapped(std::string_view text, std::size_t width);
 
 }  // namespace tex::cli

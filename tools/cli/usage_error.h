@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// usage_error.h: the command line is wrong.
+// usage_error.h: the error for a wrong command line.
 
 #pragma once
 

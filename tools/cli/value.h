@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// value.h: numbers from the command line, strictly: the whole text must be the number, in C's notation
-// whatever the locale, finite and in range. Anything else throws a UsageError that quotes the text.
+// value.h: strict parsing of numbers from the command line. The whole text must be a number in C's notation (whatever
+// the locale), finite and in range. Anything else throws a UsageError that quotes the text.
 
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace tex::cli {
 
-// The numbers that an option takes: from least to greatest; least itself only if `least_too`.
+// The range of numbers that an option accepts: from least to greatest. least itself is accepted only if `least_too`.
 struct Range {
     double least = -std::numeric_limits<double>::infinity();
     double greatest = std::numeric_limits<double>::infinity();
@@ -27,7 +27,7 @@ inline constexpr Range kPositive{0.0, std::numeric_limits<double>::infinity(), f
 
 // A count of bytes or texels, at least 1, with an optional suffix K, M, G or T (powers of 1024, either case).
 [[nodiscard]] std::int64_t parse_count(std::string_view text);
-[[nodiscard]] std::string count_text(std::int64_t count);  // "4G": the shortest such form
+[[nodiscard]] std::string count_text(std::int64_t count);  // "4G": the shortest form
 
 // `text` cut at the first `separator`; the second part is empty if there is none.
 [[nodiscard]] std::pair<std::string, std::string> cut(std::string_view text, char separator);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// version.h: what --version says.
+// version.h: the text that --version prints.
 
 #pragma once
 
@@ -12,8 +12,8 @@ namespace tex::cli {
 // "bake-normals 0.1.0".
 [[nodiscard]] std::string version_text(const Command& command);
 
-// One JSON object: versions of the command, of the libtex that runs and of what they are made of, compiler,
-// build type.
+// One JSON object: the versions of the command, of the libtex that it runs with and of the libraries that they are
+// built from, the compiler, the build type.
 [[nodiscard]] std::string version_json(const Command& command);
 
 }  // namespace tex::cli

@@ -13,8 +13,8 @@
 #include "cli/usage_error.h"
 #include "options/toml_bounds.h"
 
-// toml++ 3.3 asserts what a file can break (a table whose name begins with a colon), and in releases assumes it: here
-// that is an error of the file.
+// toml++ 3.3 asserts a condition that a file can violate (a table whose name begins with a colon); in release builds it
+// assumes the condition. Here a violation is an error in the file.
 namespace tex::cli {
 struct BrokenToml {};
 [[noreturn]] static void refuse_toml() { throw BrokenToml(); }
@@ -103,9 +103,9 @@ Result<CheckConfig> read_check_config(const std::string& path) {
 
 CheckConfig parse_check_config(const std::string& path, const std::string& text) {
     check_toml_bounds(path, text);
-    // toml++ 3.3 has no defined behaviour for letters beyond ASCII outside strings and comments. No key or value of
-    // ours has one: they become question marks, which are refused like any other mistake. A mark of the encoding may
-    // stand first.
+    // The behaviour of toml++ 3.3 is undefined for non-ASCII letters outside strings and comments. None of our keys and
+    // values has such a letter. So they are replaced by question marks, which are refused like any other mistake. A
+    // byte order mark may come first.
     std::string ascii = text.substr(text.starts_with("\xef\xbb\xbf") ? 3 : 0);
     std::replace_if(
         ascii.begin(), ascii.end(), [](char c) { return static_cast<unsigned char>(c) > 0x7e; }, '?');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// check_config.h: what a project requires of its textures, in a TOML file.
+// check_config.h: a project's requirements for its textures, in a TOML file.
 //
 //     require = ["format=dxt5nm", "mips=full", "y=up"]
 //     enable  = ["not-power-of-two"]
@@ -9,7 +9,7 @@
 //     [severity]
 //     not-unit-length = "error"
 //
-// Options of the command line are added to it and win over it.
+// Options of the command line add to the file and override it.
 
 #pragma once
 
@@ -25,10 +25,11 @@ struct CheckConfig {
     std::optional<Severity> fail_on;
 };
 
-// Throws UsageError if the file names something that does not exist (with the line if it is known). Errors: io.
+// Throws UsageError if the file names something that does not exist; the message has the line if it is known. Errors:
+// io.
 [[nodiscard]] Result<CheckConfig> read_check_config(const std::string& path);
 
-// The same from memory; `path` is for messages.
+// The same from memory. `path` appears in messages.
 [[nodiscard]] CheckConfig parse_check_config(const std::string& path, const std::string& text);
 
 }  // namespace tex::cli

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The names in a list: one on each line or, if the list holds a NUL, up to each NUL.
+// The names in a list: one on each line or, if the list contains a NUL, one before each NUL.
 std::vector<std::string> names_in(const std::string& text) {
     const char separator = text.find('\0') == std::string::npos ? '\n' : '\0';
     std::vector<std::string> names;

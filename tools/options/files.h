@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// files.h: the option group of inputs and outputs. batch/plan.h pairs them.
+// files.h: the option group of inputs and outputs. batch/plan.h pairs inputs with outputs.
 
 #pragma once
 
@@ -18,7 +18,7 @@ namespace tex::cli {
 [[nodiscard]] bool is_folder(const std::string& path);
 
 struct FileOptions {
-    std::string output;  // "-" for standard output by any of its names
+    std::string output;  // "-" for standard output, whichever of its names was given
     std::string out_dir;
     std::string name;
     std::string files_from;
@@ -27,16 +27,16 @@ struct FileOptions {
     bool no_clobber = false;
     bool no_sync = false;
 
-    // `joins`: -o can take many inputs and make one output of them, which the help says.
+    // `joins`: -o can take many inputs and make one output from them; the help says so.
     void add(Command& command, bool joins = false);
-    // --files-from alone, for commands that only read. No inputs are needed if `needless` returns true.
+    // Adds --files-from alone, for commands that only read. Inputs may be missing if `needless` returns true.
     void add_inputs(Command& command, std::function<bool()> needless = {});
 
     // The inputs of the command line and of --files-from. Errors: the list cannot be read. Throws UsageError if there
     // is no input at all, unless allow_empty is set: a list that a script made wrongly must not pass for success.
     [[nodiscard]] Result<std::vector<std::string>> list_inputs(const Command& command) const;
 
-    // The output that `pattern` names: below --out-dir if it is given.
+    // The output name that `pattern` gives, below --out-dir if that option is given.
     [[nodiscard]] std::string place(const std::string& pattern, const NameFields& fields) const;
 
 private:

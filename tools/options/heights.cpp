@@ -93,7 +93,7 @@ ChannelFile parse_channel_file(const std::string& text) {
     ChannelFile source{text};
     if (const std::size_t colon = text.rfind(':'); colon != std::string::npos) {
         const auto channel = find_by_name(kHeightChannelNames, std::string_view(text).substr(colon + 1));
-        if (!channel) return source;  // a colon of the file's name
+        if (!channel) return source;  // the colon is part of the file's name
         source.channel = *channel;
         source.file.resize(colon);
     }

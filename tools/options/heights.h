@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// heights.h: the option groups of commands that read height maps, and the step that reads them.
+// heights.h: the option groups of commands that read height maps, and the code that reads them.
 
 #pragma once
 
@@ -17,19 +17,19 @@
 
 namespace tex::cli {
 
-// --color-space, --ocio-config and the variable OCIO.
+// --color-space, --ocio-config and the environment variable OCIO.
 struct ColorGroup {
-    ColorOptions color;  // without the variable
+    ColorOptions color;  // without the environment variable
 
     void add(Command& command);
     [[nodiscard]] bool is_given() const { return !color.space.empty(); }
     [[nodiscard]] ColorOptions options() const;
 
-    // Tries the conversion, so that a name that the configuration does not know is found before any file is read:
-    // throws UsageError; errors of Result: the configuration cannot be read.
+    // Tries the conversion, so that a name that the configuration lacks is found before any file is read. Throws
+    // UsageError for such a name; returns an error if the configuration cannot be read.
     [[nodiscard]] Result<void> check() const;
 
-    // The configuration, if it is a file: outputs depend on it.
+    // The configuration, if it is a file, because outputs depend on it.
     [[nodiscard]] std::vector<std::string> files() const;
 };
 
@@ -60,20 +60,20 @@ struct ChannelFile {
 [[nodiscard]] ChannelFile parse_channel_file(const std::string& text);
 [[nodiscard]] Result<Plane<float>> read_channel(Job& job, const ChannelFile& source, const Execution& execution);
 
-// How the heights of jobs are read: all of the groups above, and the warnings about it.
+// Reads the heights of jobs with all of the groups above, and prints the warnings about it.
 class HeightReader {
 public:
     StrengthOptions strength;
     ColorGroup color;
     HeightGroup heights;
 
-    // `error`, of reading or baking heights, with the option that avoids it, if there is one.
+    // Adds to `error`, which comes from reading or baking heights, the option that avoids it, if there is one.
     [[nodiscard]] static Error with_remedy(const Error& error);
 
-    // Counts what was found when a job's heights were read. Any thread may call.
+    // Counts the results of reading a job's heights. Any thread may call this.
     void note(const HeightReport& report);
 
-    // One warning for all files whose height had to be guessed from colours.
+    // Prints one warning for all files whose heights were guessed from colours.
     void warn_of_luma(Console& console) const;
 
 private:

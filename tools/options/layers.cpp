@@ -16,7 +16,7 @@ namespace {
 constexpr Range kTilingRange{0.0, kMaxTiling, false};
 constexpr Range kOffsetRange{-kMaxTiling, kMaxTiling};
 
-// "X" or "X,Y"; without a comma Y is X if `square`, else an error.
+// Parses "X" or "X,Y". Without a comma, Y equals X if `square`; else it is an error.
 std::pair<float, float> parse_pair(const std::string& text, Range range, bool square) {
     const auto [first, second] = cut(text, ',');
     const float x = parse_float(first, range);

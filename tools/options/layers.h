@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// layers.h: the option group of detail layers: files, and for each the way it lies on the base.
+// layers.h: the option group of detail layers: their files, and how each one is placed on the base.
 
 #pragma once
 
@@ -17,7 +17,8 @@
 
 namespace tex::cli {
 
-// Values of an option that may be given for each layer: the i-th for the i-th layer, or a single one for all.
+// The values of an option that may be given for each layer: the i-th value is for the i-th layer; a single value is for
+// all.
 template <class T>
 class PerLayer {
 public:
@@ -33,14 +34,14 @@ class LayerOptions {
 public:
     void add(Command& command);
 
-    // Throws UsageError if an option is given neither once nor once for each of `count` layers.
+    // Throws UsageError if an option is given neither exactly once nor once for each of `count` layers.
     void check(std::size_t count) const;
 
     [[nodiscard]] const std::vector<std::string>& details() const { return details_; }
     // The files of --detail and --mask.
     [[nodiscard]] std::vector<std::string> files() const;
 
-    // The layers: `names` are their files. The job must outlive them.
+    // The layers, from the files `names`. The job must outlive them.
     [[nodiscard]] std::vector<LayerFile> layers(Job& job, const std::vector<std::string>& names,
                                                 const NormalsReader& normals) const;
 

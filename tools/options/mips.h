@@ -29,22 +29,22 @@ struct WrapOptions {
 
 // --mips, --mip-filter, --mip-domain, --fade.
 struct MipChainOptions {
-    std::optional<int> levels;  // 0 is all; none: what the container suggests
-    bool keep = false;          // the levels of the source as they are
+    std::optional<int> levels;  // 0: all; none: the container's default
+    bool keep = false;          // copies the levels of the source
     MipOptions mip;             // without levels and wrap, see options()
 
     // `with_keep`: --mips takes "keep"; `levels_default`: its default in the help.
     void add(Command& command, bool with_keep, std::string levels_default);
 
-    // Throws UsageError if an output cannot hold the levels that the user asks for.
+    // Throws UsageError if an output cannot hold the levels that the user requests.
     void check(const std::vector<Task>& tasks) const;
 
-    // For commands that keep levels by default: throws UsageError if an option says how to build levels that are not
-    // built.
+    // For commands that keep levels by default. Throws UsageError if an option says how to build levels although no
+    // levels are built.
     void check_builds(const Command& command) const;
 
-    // The levels of a task's output: those that the user asks for, else all in dds, in ktx2 and if every level has its
-    // own file, and one in pictures.
+    // The number of levels of a task's output: the number that the user requests; else all levels in dds, in ktx2 and
+    // if every level has its own file, and one level in pictures.
     [[nodiscard]] int levels_for(const Task& task) const;
 
     // How `count` levels are built.

@@ -13,7 +13,7 @@
 namespace tex::cli {
 namespace {
 
-// "rgb" for what is in the table, else the letters: "1y1x".
+// The swizzle's name in the table ("rgb"), or its letters: "1y1x".
 std::string swizzle_name(const Swizzle& swizzle) {
     const std::string_view name = name_of(kSwizzleNames, swizzle);
     return name.empty() ? to_string(swizzle) : std::string(name);
@@ -99,7 +99,7 @@ void NormalsReader::note(Job& job, const std::string& path, const SourceInfo& in
     if (!info.guessed) return;
     const std::lock_guard lock(mutex_);
     Guesses& guesses = guesses_[swizzle_name(info.swizzle)];
-    // Files that are read at once come in any order: the first in the alphabet is named.
+    // Files that are read in parallel arrive in any order. The alphabetically first one is named.
     if (guesses.count++ == 0 || path < guesses.first) guesses.first = path;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// normals.h: the option group of commands that read normal maps, and the step that reads them.
+// normals.h: the option group of commands that read normal maps, and the code that reads them.
 
 #pragma once
 
@@ -16,8 +16,8 @@
 
 namespace tex::cli {
 
-// The encoding of an output that keeps its input's, unless the user names one: the input's if both are textures or both
-// are pictures and the output can hold it, else the container's own.
+// The encoding of an output that keeps its input's encoding, if the user names none. It is the input's encoding if both
+// are textures or both are pictures and the output can hold it, else the container's default.
 [[nodiscard]] Encoding encoding_of(const SourceInfo& input, const Task& task);
 
 // Puts the format and swizzle of the job's input into its report.
@@ -30,43 +30,43 @@ inline constexpr Named<Bc5Order> kBc5OrderNames[] = {
     {Bc5Order::yx, "yx", "y first, as ATI2 files"},
 };
 
-// How one file is read, if not as the options say for all.
+// How one file is read, if this differs from the options.
 struct Reading {
     bool base_only = false;       // without the smaller levels
-    bool is_detail = false;       // what the file says about y counts before --y-in, which is the base's
-    std::optional<YAxis> y = {};  // counts before all of that
+    bool is_detail = false;       // the file's own y overrides --y-in, which is the base's
+    std::optional<YAxis> y = {};  // overrides all of that
     std::optional<bool> keep_length = {};
 };
 
 class NormalsReader {
 public:
-    std::optional<Swizzle> swizzle;  // none: as the file says, else as its texels look
+    std::optional<Swizzle> swizzle;  // none: as the file says, else guessed from its texels
     bool rg_or_ag = false;           // x in R or A, whichever is not constant
     std::optional<Bc5Order> bc5_order;
     UnpackOptions unpack;
 
-    // `with_keep_length`: --keep-length is an option; other commands choose themselves.
+    // `with_keep_length`: --keep-length is an option. Otherwise the command itself chooses.
     void add(Command& command, bool with_keep_length = true);
 
-    // The same for the library.
+    // The same, as options of the library.
     [[nodiscard]] SourceOptions options(const Job& job, const Reading& reading = {}) const;
 
-    // Warns about what was overlooked in `path`, and counts what was guessed. Any thread may call.
+    // Prints the remarks about `path` as warnings, and counts guesses. Any thread may call this.
     void note(Job& job, const std::string& path, const SourceInfo& info);
 
-    // Reads and unpacks `path`; calls note(). Any thread may call.
+    // Reads and unpacks `path`, and calls note(). Any thread may call this.
     [[nodiscard]] Result<Source> read(Job& job, const std::string& path, const Execution& execution,
                                       const Reading& reading = {});
 
-    // The same for the job's input; calls report_input().
+    // The same for the job's input. Calls report_input(), too.
     [[nodiscard]] Result<Source> read(Job& job, double until, bool base_only);
 
-    // A warning for each layout that was guessed from texels, with the first of its files.
+    // Prints a warning for each layout that was guessed from texels, with the first of its files.
     void warn_of_guesses(Console& console) const;
 
 private:
     struct Guesses {
-        std::string first;  // file
+        std::string first;  // the first file
         int count = 0;
     };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// output.h: the option group that says what is written.
+// output.h: the option group that determines what is written.
 
 #pragma once
 
@@ -16,35 +16,36 @@ namespace tex::cli {
 class Job;
 
 struct OutputOptions {
-    std::optional<Encoding> format;      // none: the container's own, or whatever the command takes instead
-    std::optional<Container> container;  // none: by the output's extension
+    std::optional<Encoding> format;      // none: the container's default, or another default of the command
+    std::optional<Container> container;  // none: from the output's extension
     std::optional<YAxis> y;              // none: the input's
     Effort effort = PackOptions{}.effort;
     Metric metric = PackOptions{}.metric;
     DdsHeader dds_header = WriteOptions{}.dds_header;
     bool dds_mark = WriteOptions{}.dds_mark;
 
-    // `format_default` and `y_default` stand in the help.
+    // `format_default` and `y_default` appear in the help.
     void add(Command& command, std::string format_default, std::string y_default);
 
-    // The container of `output` ("-" is `standard_output`'s). Throws UsageError if its name does not say.
+    // The container of `output`; for "-" it is `standard_output`. Throws UsageError if the name does not show the
+    // container.
     [[nodiscard]] Container container_for(const std::string& output, Container standard_output) const;
 
     // A metric of angles implies the best effort.
     [[nodiscard]] PackOptions pack_options(Encoding encoding, YAxis y_axis) const {
         return {encoding, y_axis, metric == Metric::angle ? Effort::best : effort, metric};
     }
-    // Those of the job, with the user's choices.
+    // The job's write options, with the user's choices.
     [[nodiscard]] WriteOptions write_options(const Job& job) const;
 
     // Throws UsageError if the container cannot hold `encoding`.
     static void check_holds(const std::string& output, Container container, Encoding encoding);
 };
 
-// The library's encoding for each container: "dxt5nm in dds, ktx2; rgb8 in png, tga, ...".
+// The library's default encoding for each container: "dxt5nm in dds, ktx2; rgb8 in png, tga, ...".
 [[nodiscard]] std::string default_encodings();
 
-// ".dds" for Container::dds: the first of its extensions.
+// The first extension of a container: ".dds" for Container::dds.
 [[nodiscard]] std::string extension_of(Container container);
 
 // Puts extent, levels, format, y and bytes into the job's report.

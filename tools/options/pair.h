@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// pair.h: the option groups of two maps that are compared, A and B: how they are read, how far they may lie apart.
+// pair.h: the option groups for two maps, A and B, that are compared: how they are read, and how far they may differ.
 
 #pragma once
 
@@ -24,22 +24,23 @@ class PairOptions {
 public:
     void add(Command& command);
 
-    // The texture of A (0) or B (1), with the swizzle that its texels show if it does not say its own, and with what
-    // the options say about y. Warns about a guess, once for each file.
+    // Reads the texture of A (0) or B (1). If the file does not give its swizzle, the swizzle is guessed from the
+    // texels, with one warning for each file. The options for y override the file.
     [[nodiscard]] Result<Texture> read(const std::string& path, int which, const ReadOptions& read, Console& console,
                                        const Execution& execution);
     [[nodiscard]] Result<MipChain> read_levels(const std::string& path, int which, const ReadOptions& read,
                                                Console& console, const Execution& execution);
 
-    // The first level that is compared, and the one behind the last. Warns if the maps differ in how many they have.
+    // The first level that is compared, and the level after the last one. Warns if the maps differ in their number of
+    // levels.
     [[nodiscard]] std::pair<std::size_t, std::size_t> levels(const MipChain& a, const MipChain& b,
                                                              const std::vector<std::string>& names,
                                                              Console& console) const;
-    // The error, if a map lacks `level` or the two differ in extent; `names` are their files.
+    // Returns an error if a map lacks `level` or if the two differ in extent there. `names` are their files.
     [[nodiscard]] static Result<void> check_level(std::size_t level, const MipChain& a, const MipChain& b,
                                                   const std::vector<std::string>& names);
 
-    // ExitCode::findings, with an error for each figure that is over its limit, or ExitCode::done.
+    // Returns ExitCode::findings, and prints an error for each figure above its limit; or returns ExitCode::done.
     [[nodiscard]] ExitCode judge(Console& console, int level, const AngularError& error) const;
 
 private:

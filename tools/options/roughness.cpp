@@ -16,7 +16,7 @@
 namespace tex::cli {
 namespace {
 
-// Throws UsageError if the name does not say.
+// Throws UsageError if the name does not show the container.
 Container container_for(const std::string& path) {
     if (const auto container = container_of(path)) return *container;
     throw UsageError(fmt::format("--roughness-out: {}: unsupported output format", printable(path)));

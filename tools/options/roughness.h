@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// roughness.h: the option group of a roughness map that is written beside a mip chain.
+// roughness.h: the option group of a roughness map that is written together with a mip chain.
 
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace tex::cli {
 
-// The formats that roughness goes into, by the names that --roughness-format takes.
+// The formats that a roughness map may have, with the names that --roughness-format accepts.
 inline constexpr Named<Format> kRoughnessFormatNames[] = {
     {Format::bc4_unorm, "bc4", "BC4"},
     {Format::r8_unorm, "r8", "8 bits"},
@@ -34,15 +34,16 @@ public:
 
     [[nodiscard]] bool is_given() const { return !output_.empty(); }
 
-    // Adds the files that are read and written besides.
+    // Adds the files that the options read and write to the task.
     void amend(Task& task) const;
 
-    // Throws UsageError if an output cannot hold the levels that the user asks for (0 for all).
+    // Throws UsageError if an output cannot hold the levels that the user requests (0: all).
     void check(const std::vector<Task>& tasks, int levels) const;
 
-    // What the library makes of them; it reads the file of --roughness-in when it needs it. The job must outlive it.
+    // The options in the form that the library takes. It reads the file of --roughness-in when it needs it. The job
+    // must outlive it.
     [[nodiscard]] RoughnessFile file(Job& job, Effort effort) const;
-    // Puts the map, if one was written after the normals, into the job's report.
+    // Adds the map, if one was written after the normals, to the job's report.
     void report(Job& job, const PackFileReport& packed) const;
 
 private:

@@ -71,7 +71,7 @@ void RuleOptions::add(Command& command) {
                    [this](const std::string& text) { explain_ = &parse_rule(text); });
 }
 
-// The file's words come first, so that the command line's win.
+// The words of the file come first, so that those of the command line override them.
 Result<void> RuleOptions::merge_config(const Command& command) {
     checks_ = given_;
     fail_on_ = least_failing_;
@@ -82,7 +82,7 @@ Result<void> RuleOptions::merge_config(const Command& command) {
     for (const std::string& text : required_) require(checks_.require, text);
     append(checks_.enable, given_.enable);
     append(checks_.severity, given_.severity);
-    // A rule may be called by its id in one place and by its name in the other.
+    // A rule may appear with its id in one place and with its name in the other.
     for (const std::string& name : given_.enable) {
         std::erase_if(checks_.disable, [&](const std::string& other) { return find_rule(other) == find_rule(name); });
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// rules.h: the option group of which rules are checked, and how severe their findings are.
+// rules.h: the option group that selects which rules are checked, and how severe their findings are.
 
 #pragma once
 
@@ -25,11 +25,11 @@ public:
     [[nodiscard]] bool list() const { return list_; }
     [[nodiscard]] const Rule* explain() const { return explain_; }  // or null
 
-    // Reads the files that the options name. Throws UsageError if they do not fit the tasks; errors of Result: a file
+    // Reads the files that the options name. Throws UsageError if they do not fit the tasks; returns an error if a file
     // cannot be read.
     [[nodiscard]] Result<void> read(const Command& command, const std::vector<Task>& tasks, const ReadOptions& read);
 
-    // After read(): the options and the configuration together.
+    // The options and the configuration together. Valid after read().
     [[nodiscard]] const CheckOptions& checks() const { return checks_; }
     [[nodiscard]] bool fails(const Finding& finding) const { return finding.severity >= fail_on_; }
     [[nodiscard]] Severity fail_on() const { return fail_on_; }
@@ -37,7 +37,7 @@ public:
 private:
     [[nodiscard]] Result<void> merge_config(const Command& command);
 
-    CheckOptions given_;                        // those of the command line, without `require`
+    CheckOptions given_;                        // from the command line, without `require`
     std::vector<std::string> required_;         // --require
     std::string config_, height_file_;          // paths, or empty
     Severity least_failing_ = Severity::error;  // --fail-on

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// run.h: the option group of how a command runs: threads, messages, limits.
+// run.h: the option group that controls how a command runs: threads, messages, limits.
 
 #pragma once
 
@@ -28,7 +28,7 @@ struct RunOptions {
     void add(Command& command);
     [[nodiscard]] bool shows_progress(const Host& host) const;
 
-    // How the part of a run from `from` to `to` of its progress runs; `words` stand beside the bar.
+    // The Execution for the part of a run whose progress goes from `from` to `to`. `words` appear beside the bar.
     [[nodiscard]] Execution step(Console& console, double from, double to, const std::string& words) const;
 };
 

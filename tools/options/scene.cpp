@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kLargestPicture = 16384;
 
-// Numbers with commas between them.
+// Parses numbers separated by commas.
 std::vector<float> parse_floats(const std::string& text, std::size_t least, std::size_t most, Range range = {}) {
     std::vector<float> values;
     for (const std::string& part : split(text, ',')) values.push_back(parse_float(part, range));
@@ -60,7 +60,7 @@ void add_file(Command& command, std::string& target, const std::string& name, co
     command.text(target, name, "FILE", help).completes = Completes::files;
 }
 
-// Options that mean nothing without another one.
+// Throws UsageError if one of `names` is given without the option `needed`, which it requires.
 void check_needs(Command& command, std::string needed, std::vector<std::string> names) {
     command.check([&command, needed = std::move(needed), names = std::move(names)] {
         if (command.given(needed)) return;

@@ -15,18 +15,18 @@
 
 namespace tex::cli {
 
-// A normal map as it is sampled: its own levels or, if the file has one only, levels made from it.
+// A normal map for sampling: its own levels or, if the file has only one, levels made from it.
 struct SampledMap {
     MipChain chain;
     bool without_z = false;
 };
 
-// Reading::keep_length is for pictures that show what is wrong with a map.
+// Use Reading::keep_length for pictures that show what is wrong with a map.
 [[nodiscard]] Result<SampledMap> read_sampled_map(Job& job, const std::string& path, NormalsReader& normals,
                                                   const Reading& reading, const PreviewOptions& preview,
                                                   const Execution& execution);
 
-// The files of a scene beside its map.
+// The files of a scene besides its map.
 struct SceneFiles {
     std::optional<SampledMap> detail;
     std::optional<Image> albedo, detail_albedo;
@@ -43,7 +43,7 @@ struct SceneOptions {
     void add(Command& command);
 
     [[nodiscard]] std::vector<std::string> files() const;
-    // The detail is read as `normals` says, but for its y.
+    // The detail is read as `normals` specifies, except for its y.
     [[nodiscard]] Result<SceneFiles> read(Job& job, NormalsReader& normals, const Execution& execution) const;
 
 private:
@@ -55,7 +55,7 @@ private:
     void add_sampling(Command& command);
 };
 
-// "N" or "WxH" in pixels, as PreviewOptions::size means it.
+// Parses "N" or "WxH" in pixels, with the meaning of PreviewOptions::size.
 [[nodiscard]] Extent parse_picture_size(const std::string& text);
 
 }  // namespace tex::cli

@@ -16,9 +16,9 @@
 namespace tex::cli {
 namespace {
 
-constexpr int kPanelSize = 320;  // of a sheet, unless the user chooses
+constexpr int kPanelSize = 320;  // of a sheet, unless the user sets a size
 
-// How step `k` of `count` equal ones runs.
+// The Execution of step `k` of `count` equal steps.
 Execution step(const Execution& whole, std::size_t k, std::size_t count) {
     Execution one;
     one.threads = whole.threads;

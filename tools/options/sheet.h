@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// sheet.h: the option group of what a picture shows: one view of one map, a sheet of many, or two maps side by side;
-// and the step that draws it.
+// sheet.h: the option group for the content of a picture (one view of one map, a sheet of many views, or two maps side
+// by side), and the code that draws it.
 
 #pragma once
 
@@ -18,7 +18,7 @@ namespace tex::cli {
 // --show, --size, --columns, --split, --difference, --turntable, --legend-max, --no-legend, --no-captions.
 class SheetOptions {
 public:
-    // `scene` gets the size and the legend's end; it must outlive this.
+    // `scene` gets the size and the legend's maximum. It must outlive this.
     void add(Command& command, SceneOptions& scene);
 
     // Throws UsageError if the task's maps or output do not fit the options.
@@ -27,8 +27,8 @@ public:
     [[nodiscard]] bool is_animated() const { return turntable_ > 0; }
     [[nodiscard]] bool is_difference() const { return difference_; }
 
-    // The frames of the picture, one unless it is animated: `maps` are those of the files `names`, `with` what the
-    // scene needs beside them. Errors: those of the verbs.
+    // Draws the frames of the picture: one, unless it is animated. `maps` are the maps of the files `names`; `with`
+    // holds the other files of the scene. Errors: those of the verbs.
     [[nodiscard]] Result<std::vector<Texture>> draw(const std::vector<std::string>& names,
                                                     const std::vector<SampledMap>& maps, const SceneFiles& with,
                                                     const Execution& execution) const;

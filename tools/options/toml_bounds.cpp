@@ -13,12 +13,13 @@
 namespace tex::cli {
 namespace {
 
-// Goes over the text once. Where it is not TOML, the parser stops: what this makes of the rest does not matter.
+// Scans the text once. The parser stops at the first place that is not TOML, so the result for the text after it does
+// not matter.
 class Scanner {
 public:
     explicit Scanner(std::string_view text) : text_(text) {}
 
-    // The line of the first statement that nests too deep, from 1; 0 if there is none.
+    // The line (from 1) of the first statement that nests too deeply; 0 if there is none.
     int line_of_excess() {
         while (at_ < text_.size()) {
             const char c = text_[at_];
@@ -71,7 +72,7 @@ private:
                     ++at_;
                     return;
                 }
-                // Its last one or two characters may be quotes.
+                // The last one or two characters of the string may be quotes.
                 const std::size_t quotes = quotes_at(at_, quote);
                 at_ += std::min(quotes, kLong + 2);
                 if (quotes >= kLong) return;
@@ -87,8 +88,8 @@ private:
     std::string_view text_;
     std::size_t at_ = 0;
     int line_ = 1;
-    int levels_ = 0;          // around what stands at at_
-    std::vector<int> outer_;  // around each bracket that is open
+    int levels_ = 0;          // around the text at at_
+    std::vector<int> outer_;  // around each open bracket
 };
 
 }  // namespace

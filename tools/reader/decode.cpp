@@ -29,7 +29,7 @@ constexpr NativeType kTypes[] = {
     {TypeDesc::HALF, TypeDesc::HALF, ReaderType::f16},     {TypeDesc::FLOAT, TypeDesc::FLOAT, ReaderType::f32},
 };
 
-// Values as they are stored; types that no plane distinguishes (64 bits, or another type for each channel) as float.
+// The type as stored. Types that a plane cannot hold (64 bits, or a different type for each channel) are read as float.
 NativeType native_type(const OIIO::ImageSpec& spec) {
     if (spec.channelformats.empty()) {
         for (const NativeType& type : kTypes) {
@@ -39,7 +39,7 @@ NativeType native_type(const OIIO::ImageSpec& spec) {
     return {TypeDesc::FLOAT, TypeDesc::FLOAT, ReaderType::f32};
 }
 
-// Why a picture is refused, or an empty view.
+// The reason why a picture is refused, or an empty view.
 std::string_view unsupported_reason(const std::string& format, const OIIO::ImageSpec& spec) {
     const std::string jpeg = spec.get_string_attribute("jpeg:ColorSpace");
     const bool has_black =
@@ -49,7 +49,7 @@ std::string_view unsupported_reason(const std::string& format, const OIIO::Image
     }
     if (spec.deep) return "deep data have no single value for a texel";
     if (spec.depth > 1) return "volumes are not read";
-    // This decoder has no unassociated alpha: it multiplies colour by alpha in any case.
+    // This decoder cannot give unassociated alpha: it always multiplies colour by alpha.
     if (format == "webp" && spec.alpha_channel >= 0) return "WebP pictures with alpha are not read";
     return {};
 }
@@ -68,7 +68,7 @@ void describe(const OIIO::ImageSpec& spec, const NativeType& type, ReaderHeader&
     }
 }
 
-// Rows that are read at a time: those of a tile, or about 1 MiB.
+// The number of rows to read at a time: the rows of a tile, or about 1 MiB.
 int strip_rows(const OIIO::ImageSpec& spec, std::uint64_t bytes_of_row) {
     if (spec.tile_width > 0) return spec.tile_height;
     constexpr std::uint64_t kStrip = std::uint64_t{1} << 20;
@@ -123,7 +123,7 @@ bool decode(const Task& task, ReaderHeader& header) {
     std::vector<std::byte> strip(bytes_of_row * static_cast<std::uint64_t>(std::min(rows, spec.height)));
     for (int begin = 0; begin < spec.height; begin += rows) {
         const int end = std::min(begin + rows, spec.height);
-        // Some decoders report success and leave their error behind.
+        // Some decoders report success but leave an error message behind.
         if (!read_strip(*input, spec, type.read_as, begin, end, strip.data()) || input->has_error()) {
             return refuse(header, ErrorCode::bad_data, "damaged: " + input->geterror());
         }

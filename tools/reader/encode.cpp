@@ -39,9 +39,9 @@ TypeDesc type_of(ReaderType type) {
 
 OIIO::ImageSpec spec_of(const ReaderHeader& picture) {
     OIIO::ImageSpec spec(picture.width, picture.height, picture.channels, type_of(picture.type));
-    spec.attribute("oiio:UnassociatedAlpha", 1);  // alpha is data: RGB must not be divided by it
-    spec.attribute("DateTime", "");               // else the TIFF writer takes the clock
-    spec.attribute("jpeg:subsampling", "4:4:4");  // x and y of a normal live in the colours
+    spec.attribute("oiio:UnassociatedAlpha", 1);  // alpha is data; RGB must not be divided by it
+    spec.attribute("DateTime", "");               // otherwise the TIFF writer uses the clock
+    spec.attribute("jpeg:subsampling", "4:4:4");  // x and y of a normal are stored in the chroma
     return spec;
 }
 

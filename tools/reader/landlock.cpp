@@ -21,7 +21,7 @@
 namespace tex::reader {
 namespace {
 
-// As newer kernels know it; the headers of Debian 12 end after the first member.
+// The structure of newer kernels. The headers of Debian 12 have only its first member.
 struct Ruleset {
     std::uint64_t files = 0;
     std::uint64_t network = 0;  // from version 4 on
@@ -36,7 +36,7 @@ constexpr std::uint64_t kTcp = 3;                                       // versi
 constexpr std::uint64_t kAbstractSockets = 1;                           // version 6
 constexpr std::uint64_t kSignals = 2;                                   // version 6: to processes outside
 
-// A ruleset without a rule: nothing of what this kernel can restrict is allowed. A descriptor, or -1.
+// Creates a ruleset without a rule: it forbids everything that this kernel can restrict. Returns a descriptor, or -1.
 int empty_ruleset(int version) {
     Ruleset ruleset;
     ruleset.files = kFilesOfVersion1;
@@ -53,7 +53,7 @@ bool restrict_this_thread(int rules) {
     return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 && syscall(SYS_landlock_restrict_self, rules, 0) == 0;
 }
 
-// What the handler of the signal is given, and gives back.
+// The input and the result of the signal handler.
 struct Order {
     int rules = -1;
     bool obeyed = false;
@@ -67,9 +67,9 @@ void obey(int /*signal*/) {
     errno = error;
 }
 
-// The signal with which glibc makes every thread take part in setuid(): no thread can block it, and some libraries
-// block all others in theirs. sigaction() does not touch it either, so the handler goes in by way of another signal,
-// whose action, as the kernel holds it, is copied.
+// The signal that glibc uses to make every thread take part in setuid(). No thread can block it, while some libraries
+// block all other signals in their threads. sigaction() refuses this signal, too. So the handler is first installed for
+// another signal, and the kernel's form of that action is copied.
 constexpr int kOrder = 33;
 constexpr int kStandIn = SIGUSR1;
 
@@ -96,7 +96,7 @@ public:
 
 private:
     struct KernelAction {
-        unsigned long words[8];  // more than any Linux has
+        unsigned long words[8];  // larger than on any Linux
     };
     static bool kernel_action(int signal, const KernelAction* action, KernelAction* before) {
         constexpr std::size_t kMaskBytes = 8;
@@ -107,7 +107,8 @@ private:
     KernelAction before_{};
 };
 
-// Has a thread restrict itself. True where it has, or is gone; false where it did not within ten seconds.
+// Makes a thread restrict itself. Returns true if it has done so or has ended; false if it has not done so within ten
+// seconds.
 bool restrict_thread(pid_t thread) {
     order.obeyed = false;
     if (syscall(SYS_tgkill, getpid(), thread, kOrder) != 0) return errno == ESRCH;
@@ -122,7 +123,7 @@ bool restrict_thread(pid_t thread) {
     return false;
 }
 
-// The numbers of this process's threads.
+// The ids of this process's threads.
 std::vector<pid_t> all_threads() {
     std::vector<pid_t> threads;
     DIR* const folder = opendir("/proc/self/task");
@@ -134,8 +135,9 @@ std::vector<pid_t> all_threads() {
     return threads;
 }
 
-// Landlock restricts the thread that asks for it and those that it starts later, but libraries start threads while they
-// are loaded; whoever is in this process can make any of them open a file. False where one cannot be restricted.
+// Landlock restricts the calling thread and the threads that it starts later. But libraries start threads while they
+// are loaded, and an attacker in this process can make any of them open a file. Returns false if a thread cannot be
+// restricted.
 bool restrict_other_threads(int rules) {
     order.rules = rules;
     const OrderHandler handler;
@@ -143,7 +145,7 @@ bool restrict_other_threads(int rules) {
     std::vector<pid_t> restricted = {static_cast<pid_t>(syscall(SYS_gettid))};
     bool sound = true;
     bool found = false;
-    do {  // until no thread has come that another one started before it was restricted
+    do {  // repeat, because an unrestricted thread may have started another one
         const std::vector<pid_t> threads = all_threads();
         sound = sound && !threads.empty();
         found = false;
@@ -157,7 +159,7 @@ bool restrict_other_threads(int rules) {
     return sound;
 }
 
-// ThreadSanitizer has a thread that takes no signal.
+// ThreadSanitizer has a thread that accepts no signals.
 #if defined(__SANITIZE_THREAD__)
 #define TEX_READER_ONE_THREAD 1
 #elif defined(__has_feature)
@@ -183,8 +185,8 @@ bool restrict_files() {
     if (version < 1) return false;
     const int rules = empty_ruleset(version);
     if (rules < 0) return false;
-    // Decoders open their input by its name in /proc. Files in memory cannot be named in a rule, and need none;
-    // `tex-reader --version` has no input.
+    // Decoders open their input by its name in /proc. A rule cannot name a file in memory, and such a file needs no
+    // rule. `tex-reader --version` has no input.
     landlock_path_beneath_attr input{};
     input.allowed_access = LANDLOCK_ACCESS_FS_READ_FILE;
     input.parent_fd = kInputDescriptor;

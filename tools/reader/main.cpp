@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// tex-reader: decodes and encodes pictures with OpenImageIO for libtex, which starts it. Not meant to be run by hand,
-// except
+// tex-reader: decodes and encodes pictures with OpenImageIO for libtex, which starts it. Do not run it by hand, except
 //
-//     tex-reader --version      OpenImageIO's version, and whether the kernel takes the restriction of files and the
-//     filter of system calls
+//     tex-reader --version      prints OpenImageIO's version, and whether the kernel supports the restriction of files
+//                               and the filter of system calls
 
 #include <sys/mman.h>
 #include <unistd.h>
@@ -53,7 +52,7 @@ void put_header(const ReaderHeader& header) {
 
 void put_progress() {
     const char strip = 0;
-    if (write(kProgressDescriptor, &strip, 1) != 1) _exit(1);  // the parent has gone
+    if (write(kProgressDescriptor, &strip, 1) != 1) _exit(1);  // the parent has ended
 }
 
 bool refuse(ReaderHeader& header, ErrorCode code, const std::string& reason) {
@@ -81,8 +80,7 @@ int version() {
     return std::fflush(stdout) == 0 ? 0 : 1;
 }
 
-// Everything that a decoder could take from outside this file: threads, plug-ins, and (having no environment) nothing
-// else.
+// Turns off what a decoder could use besides its input file: threads and plug-ins. (The process has no environment.)
 void calm_openimageio() {
     OIIO::attribute("threads", 1);
     OIIO::attribute("plugin_searchpath", "");
@@ -95,14 +93,14 @@ std::string in_units(std::int64_t bytes) {
     return bytes < kMany ? std::to_string(bytes >> 10) + " KiB" : std::to_string(bytes >> 20) + " MiB";
 }
 
-// The limit of --reader-memory, or a lower one that this process came with.
+// Refuses because of the limit of --reader-memory, or because of a lower limit that this process inherited.
 void refuse_memory(ReaderHeader& header, const Task& task) {
     const std::int64_t most = memory_limit();
     refuse(header, most < task.memory ? ErrorCode::out_of_memory : ErrorCode::unsupported,
            "needs more memory than the " + in_units(std::min(most, task.memory)) + " that a decoder may have");
 }
 
-// A thread is also refused if there is no room for its stack, and the system's words for both are the same.
+// The system also refuses a thread if there is no room for its stack, and reports the same error in both cases.
 bool has_room_for_a_thread() {
     constexpr std::size_t kStack = std::size_t{9} << 20;
     void* const stack = mmap(nullptr, kStack, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -114,13 +112,13 @@ bool has_room_for_a_thread() {
 int run(const std::string_view verb, const Task& task) {
     ReaderHeader header;
     try {
-        static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));  // a result that is too large is an error of pwrite()
+        static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));  // a result that is too large is then an error of pwrite()
         limit_process(task);
         calm_openimageio();
         header.landlock = static_cast<std::uint32_t>(landlock_version());
         if (restrict_files()) header.sandboxed |= kFilesRestricted;
         if (filter_calls()) header.sandboxed |= kCallsFiltered;
-        put_header(header);  // from here on, what goes wrong is a matter of the file
+        put_header(header);  // from here on, an error concerns the file
         if (verb == "describe") {
             std::strncpy(header.reason, OIIO_VERSION_STRING, sizeof header.reason - 1);
         } else if (!(verb == "decode" ? decode(task, header) : encode(task, header))) {
@@ -130,7 +128,7 @@ int run(const std::string_view verb, const Task& task) {
         put_header(header);
     } catch (const std::bad_alloc&) {
         refuse_memory(header, task);
-    } catch (const std::system_error& thrown) {  // of threads that are refused
+    } catch (const std::system_error& thrown) {  // the system refused threads
         if (!has_room_for_a_thread()) return refuse_memory(header, task), 0;
         refuse(header, ErrorCode::out_of_memory, std::string("the decoder gets no threads: ") + thrown.what());
     } catch (const std::exception& thrown) {
@@ -145,8 +143,8 @@ int run(const std::string_view verb, const Task& task) {
 int main(int argc, char** argv) {
     using namespace tex::reader;
     const std::string_view verb = argc > 1 ? argv[1] : "";
-    // It always leaves without destructors: OpenImageIO's libraries take a tenth of a second to go, and the sandbox has
-    // no room for that.
+    // The process always ends without running destructors: those of OpenImageIO's libraries take a tenth of a second,
+    // and the sandbox makes no allowance for them.
     if (argc == 2 && verb == "--version") _exit(version());
     Task task;
     if (argc != 7 || (verb != "decode" && verb != "encode" && verb != "describe") || !parse(argv[3], task.max_texels) ||

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // reader.h: the parts of tex-reader, the one program that links OpenImageIO.
 //
-// reader_protocol.h describes requests and answers. It reads one file, or encodes one picture, and ends.
+// reader_protocol.h describes requests and answers. tex-reader decodes one file, or encodes one picture, and ends.
 
 #pragma once
 
@@ -15,42 +15,42 @@
 namespace tex::reader {
 
 struct Task {
-    std::string format;           // as OpenImageIO names it
-    std::int64_t max_texels = 0;  // more are refused
+    std::string format;           // OpenImageIO's name of the format
+    std::int64_t max_texels = 0;  // a picture with more texels is refused
     std::int64_t memory = 0;      // bytes of address space and of the result, together
     int seconds = 1;              // of processor time
-    int parent = 0;               // ends with it
+    int parent = 0;               // process id; tex-reader ends when its parent ends
 };
 
-// Limits of memory, time and descriptors; no core file; ends when the parent does.
+// Limits memory, time and descriptors, disables the core file, and makes the process end when its parent ends.
 void limit_process(const Task& task);
 
-// Bytes that this process may have: Task::memory, or less where it came with lower limits.
+// The number of bytes that this process may use: Task::memory, or less if the process inherited lower limits.
 std::int64_t memory_limit();
 
-// Waits until libtex has answered the header with room for the result (reader_memory.h). The room may be too small:
-// then put_bytes() fails. The time limit of the process is the one of this, too.
+// Waits until libtex has answered the header by providing room for the result (reader_memory.h). The room may be too
+// small; then put_bytes() fails. The time limit of the process also applies to the wait.
 void wait_for_room();
 
-// Takes away all files but the input, which may be read, from every thread; if the kernel can, TCP and signals to other
-// processes, too (Landlock). False if the kernel does not know it, or refuses.
+// Denies every thread access to all files but the input, which may be read. If the kernel supports it, this also denies
+// TCP and signals to other processes (Landlock). Returns false if the kernel lacks Landlock or refuses.
 bool restrict_files();
 
 // The kernel's version of Landlock; 0 if it has none.
 int landlock_version();
 
-// Takes away the system calls that a decoder needs no more: the network, opening files for writing, other programs,
-// other processes (seccomp). False if the kernel refuses the filter. If either is refused, the other and the
-// limits stay.
+// Denies the system calls that a decoder no longer needs: the network, opening files for writing, other programs, other
+// processes (seccomp). Returns false if the kernel refuses the filter. If either restriction is refused, the other one
+// and the limits still apply.
 bool filter_calls();
 
-// Both answer in kResultDescriptor and return false after they have refused.
+// Both send their answer to kResultDescriptor. After a refusal they return false.
 bool decode(const Task& task, ReaderHeader& header);
 bool encode(const Task& task, ReaderHeader& header);
 
 // Writes the header; if that fails, the process ends with kNoRoom.
 void put_header(const ReaderHeader& header);
-// Throws std::bad_alloc if the result has no room for them.
+// Throws std::bad_alloc if the result has no room for the bytes.
 void put_bytes(std::uint64_t offset, const void* data, std::uint64_t count);
 // Tells the parent that rows have arrived.
 void put_progress();

@@ -17,8 +17,8 @@
 
 #include "reader.h"
 
-// Sanitizers map terabytes of shadow, and look at memory through pipes: under them the address space stays unlimited
-// and pipes are allowed.
+// Sanitizers map terabytes of shadow memory, and check memory through pipes. With them the address space stays
+// unlimited and pipes are allowed.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define TEX_READER_SHADOW 1
 #elif defined(__has_feature)
@@ -30,7 +30,7 @@
 namespace tex::reader {
 namespace {
 
-// Lowers a limit; the process may raise it again up to `most`. What it may be at most then.
+// Lowers a limit. The process may raise it again up to `most`. Returns the maximum that then applies.
 rlim_t limit(__rlimit_resource what, std::int64_t value, std::int64_t most) {
     rlimit now{};
     if (getrlimit(what, &now) != 0) return RLIM_INFINITY;
@@ -41,11 +41,11 @@ rlim_t limit(__rlimit_resource what, std::int64_t value, std::int64_t most) {
 }
 rlim_t limit(__rlimit_resource what, std::int64_t value) { return limit(what, value, value); }
 
-rlim_t highest = RLIM_INFINITY;  // of memory_limit()
+rlim_t highest = RLIM_INFINITY;  // the result of memory_limit()
 
-// What decoders, the C library, the loader and threads call. Everything else fails with EPERM.
+// The calls that decoders, the C library, the loader and threads make. Every other call fails with EPERM.
 constexpr int kAllowed[] = {
-    // reading and writing what is open, and the result
+    // reads and writes of open files, and the result
     SCMP_SYS(read),
     SCMP_SYS(pread64),
     SCMP_SYS(readv),
@@ -76,7 +76,7 @@ constexpr int kAllowed[] = {
     SCMP_SYS(mremap),
     SCMP_SYS(madvise),
     SCMP_SYS(brk),
-    // threads and signals of this process
+    // threads of this process, and signals to it
     SCMP_SYS(futex),
     SCMP_SYS(set_robust_list),
     SCMP_SYS(rseq),
@@ -92,7 +92,7 @@ constexpr int kAllowed[] = {
     SCMP_SYS(exit),
     SCMP_SYS(exit_group),
     SCMP_SYS(restart_syscall),
-    // clocks and facts
+    // clocks and system information
     SCMP_SYS(clock_gettime),
     SCMP_SYS(clock_getres),
     SCMP_SYS(clock_nanosleep),
@@ -120,14 +120,14 @@ bool allow(scmp_filter_ctx filter, int call, std::initializer_list<scmp_arg_cmp>
                                   conditions.begin()) == 0;
 }
 
-// Calls that can reach beyond this process, or ask for more than is needed, depending on what they are given:
+// Calls that, depending on their arguments, can reach beyond this process or ask for more than is needed:
 // * files are opened for reading only;
-// * of a descriptor its flags are read, no more: the other commands of fcntl() make the kernel send signals to any
-//   process of this user (F_SETOWN, F_SETSIG, O_ASYNC), hold up those who open a file (F_SETLEASE, F_SETLK), or take
-//   memory that no limit counts (F_SETPIPE_SZ);
+// * the flags of a descriptor may be read, but no other command of fcntl() is allowed: others make the kernel send
+//   signals to any process of this user (F_SETOWN, F_SETSIG, O_ASYNC), delay anyone who opens a file (F_SETLEASE,
+//   F_SETLK), or take memory that no limit counts (F_SETPIPE_SZ);
 // * limits are read, and processors chosen, for this process only (0);
 // * signals go to this process only;
-// * a new process is a thread; glibc falls back to clone from clone3, whose flags a filter cannot see.
+// * a new process must be a thread; glibc falls back from clone3, whose flags a filter cannot see, to clone.
 bool allow_conditional(scmp_filter_ctx filter) {
     constexpr scmp_datum_t kWriting = O_WRONLY | O_RDWR | O_CREAT | O_TRUNC | O_APPEND;
     const auto self = static_cast<scmp_datum_t>(getpid());
@@ -152,7 +152,7 @@ bool allow_conditional(scmp_filter_ctx filter) {
 
 void limit_process(const Task& task) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != task.parent) _exit(1);  // it was gone before
+    if (getppid() != task.parent) _exit(1);  // it ended before this call
     constexpr int kDescriptors = 64;
 #ifndef TEX_READER_SHADOW
     highest = limit(RLIMIT_AS, task.memory);

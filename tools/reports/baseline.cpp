@@ -13,7 +13,7 @@ namespace tex::cli {
 
 Baseline::Key Baseline::key_of(const CheckReport& report, const Finding& finding) {
     const int level = finding.regions.empty() ? 0 : finding.regions.front().level;
-    // Names may be any bytes, JSON's strings not.
+    // File names may contain any bytes; JSON's strings may not.
     return {printable(std::filesystem::path(report.file).lexically_normal().generic_string()),
             std::string(finding.rule->id), level};
 }

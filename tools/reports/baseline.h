@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // baseline.h: findings that a project has accepted.
 //
-// A JSON file, made to be kept beside the textures: {"version": 1, "findings": [{"file": "a.dds", "id": "N201",
-// "level": 0}, ...]}, sorted, one finding a line. A finding is known by its file, rule and level; its figures may
+// A JSON file to be kept beside the textures: {"version": 1, "findings": [{"file": "a.dds", "id": "N201", "level": 0},
+// ...]}, sorted, with one finding on each line. A finding is identified by its file, rule and level; its figures may
 // change.
 
 #pragma once
@@ -20,12 +20,12 @@ class Baseline {
 public:
     // Errors: io, bad_data.
     [[nodiscard]] static Result<Baseline> read(const std::string& path);
-    // The same from memory; `path` is for messages. Errors: bad_data.
+    // The same from memory. `path` appears in messages. Errors: bad_data.
     [[nodiscard]] static Result<Baseline> parse(const std::string& path, const std::string& text);
 
-    // Makes the findings of the report known ones.
+    // Adds the findings of the report to the known ones.
     void add(const CheckReport& report);
-    // Takes known findings out of the report; returns how many.
+    // Removes known findings from the report. Returns their number.
     int accept(CheckReport& report) const;
     [[nodiscard]] std::string text() const;
 

@@ -26,7 +26,7 @@ void CheckDocuments::add(Command& command) {
     add_file(baseline_written_, "--baseline-write", "write such a file with all findings, and do not fail for them");
 }
 
-// No two documents are one file; only the baseline that is written may be the one that is read.
+// No two documents may be the same file, except that the written baseline may be the one that is read.
 void CheckDocuments::check(const std::vector<std::string>& inputs, std::vector<NamedFile> others) {
     for (const NamedFile& document : std::initializer_list<NamedFile>{{"--baseline-write", baseline_written_},
                                                                       {"--baseline", baseline_path_},
@@ -51,7 +51,7 @@ Result<void> CheckDocuments::read() {
 int CheckDocuments::accept(CheckReport& report) {
     if (writes_baseline()) {
         const std::lock_guard lock(mutex_);
-        new_baseline_.add(report);  // with what --baseline accepts
+        new_baseline_.add(report);  // includes findings that --baseline accepts
     }
     return baseline_ ? baseline_->accept(report) : 0;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// check_documents.h: the option group of the files that check-normals writes, and what goes into them.
+// check_documents.h: the option group of the files that check-normals writes, and their content.
 
 #pragma once
 
@@ -33,13 +33,13 @@ public:
     // Reads the baseline. Errors: io, bad_data.
     [[nodiscard]] Result<void> read();
 
-    // Takes the findings that the baseline knows out of the report; returns how many. Any thread may call.
+    // Removes the findings that the baseline knows from the report. Returns their number. Any thread may call this.
     [[nodiscard]] int accept(CheckReport& report);
 
-    // Adds a file to the documents. Any thread may call. Errors: those of reading it once more, for its pictures.
+    // Adds a file to the documents. Any thread may call this. Errors: those of reading the file again for its pictures.
     [[nodiscard]] Result<void> add(Job& job, const CheckReport& report, const Requirements& require);
 
-    // Writes all of them; `summary` is the first sentence of the page.
+    // Writes all of them. `summary` is the first sentence of the page.
     [[nodiscard]] ExitCode write(Console& console, const Requirements& require, Severity fail_on,
                                  const std::string& summary) const;
 
@@ -53,7 +53,7 @@ private:
     HtmlReport page_{"check-normals", check_columns()};
     HtmlSizes sizes_;  // of the page's pictures
     std::map<std::string, CheckReport>
-        reports_;  // by file: the documents do not depend on the order in which files end
+        reports_;  // by file, so that the documents do not depend on the order in which files end
 };
 
 }  // namespace tex::cli

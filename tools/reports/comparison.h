@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// comparison.h: the figures of compare-normals, for people and as JSON, and the option groups of the files that it
-// writes.
+// comparison.h: the figures of compare-normals as text and as JSON, and the option groups of the files that it writes.
 
 #pragma once
 
@@ -15,8 +14,8 @@
 
 namespace tex::cli {
 
-// Prints the figures of a level: a line of a table (below its heading for the first one) or of JSON. `inputs` are the
-// two files.
+// Prints the figures of a level: as a line of a table (the first line has a heading above it) or as JSON. `inputs` are
+// the two files.
 [[nodiscard]] ExitCode print_level(Console& console, const std::vector<std::string>& inputs, const ComparedLevel& level,
                                    bool as_json, bool is_first);
 // Prints a failure as JSON.
@@ -32,10 +31,10 @@ public:
     // Throws UsageError if a document cannot be written, is an input, or is another document.
     void check(const std::vector<std::string>& inputs) const;
 
-    // Writes the picture of the angles, if the user asks for it.
+    // Writes the picture of the angles, if the user requests it.
     [[nodiscard]] Result<void> write_heat_map(const Comparison& comparison) const;
 
-    // Writes the page: `degrees` are the angles of the first of `levels`.
+    // Writes the page. `degrees` are the angles of the first level in `levels`.
     [[nodiscard]] Result<void> write_page(const std::vector<ComparedLevel>& levels, HtmlMap a, HtmlMap b,
                                           const Plane<float>& degrees) const;
 

@@ -20,7 +20,7 @@ void replace_word(std::string& text, std::string_view word, std::string_view by)
     }
 }
 
-// A file name as a shell takes it.
+// A file name, quoted for a shell.
 std::string quoted(const std::string& name) {
     constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+@%,:=";
     if (!name.empty() && name.find_first_not_of(kPlain) == std::string::npos) return name;

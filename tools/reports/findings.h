@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// findings.h: check reports for people and as JSON.
+// findings.h: check reports as text and as JSON.
 
 #pragma once
 
@@ -11,20 +11,20 @@
 
 namespace tex::cli {
 
-// The fix of a finding as a command for this file, or empty.
+// The command that fixes the finding in this file, or empty.
 [[nodiscard]] std::string fix_of(const Finding& finding, const CheckReport& report, const Requirements& require);
 
-// One line for each finding, and its fix below: "maps/a.dds: error N401 wrong-y: Green points ...: green points down
+// One line for each finding, with its fix below: "maps/a.dds: error N401 wrong-y: Green points ...: green points down
 // instead of up".
 [[nodiscard]] std::string findings_text(const CheckReport& report, const Requirements& require);
 
-// What was fitted to the height map, whether or not that is a finding; empty without one.
+// The result of the comparison with the height map, even if it is not a finding; empty if there is no height map.
 [[nodiscard]] std::string pair_text(const CheckReport& report);
 
 // The report, as --json prints it.
 [[nodiscard]] Json findings_json(const CheckReport& report, const Requirements& require);
 
-// All rules in a table, and one of them at length.
+// All rules in a table, and one rule in detail.
 [[nodiscard]] std::string rules_text();
 [[nodiscard]] std::string rule_text(const Rule& rule);
 
@@ -33,7 +33,7 @@ struct CheckTotals {
     int files = 0, unreadable = 0, known = 0;
     int by_severity[3] = {};
 
-    // `its_known`: findings that a baseline took out of the report.
+    // `its_known`: the number of findings that a baseline removed from the report.
     void add(const CheckReport& report, int its_known);
     [[nodiscard]] std::string text() const;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// html.h: text and bytes as HTML takes them.
+// html.h: escapes text and bytes for HTML.
 
 #pragma once
 
@@ -12,11 +12,11 @@
 
 namespace tex::cli {
 
-// Text for an element or a quoted attribute: & < > " ' are references, control characters are written as \xNN, and what
-// is not UTF-8 becomes U+FFFD. Nothing in it can begin a tag or end an attribute.
+// Text for an element or a quoted attribute. & < > " ' become character references, control characters are written as
+// \xNN, and bytes that are not UTF-8 become U+FFFD. Nothing in the result can begin a tag or end an attribute.
 [[nodiscard]] std::string html_text(std::string_view text);
 
-// JSON for a script element: no "<" in it could end the element.
+// JSON for a script element, without any "<" that could end the element.
 [[nodiscard]] std::string script_json(const Json& json);
 
 // RFC 4648, with padding.

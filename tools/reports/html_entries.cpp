@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What check-normals and compare-normals put into a page.
+// The content that check-normals and compare-normals add to a page.
 
 #include <algorithm>
 #include <utility>
@@ -17,7 +17,7 @@
 namespace tex::cli {
 namespace {
 
-constexpr std::size_t kMostRegions = 4;  // listed for a finding
+constexpr std::size_t kMostRegions = 4;  // the most that are listed for a finding
 
 std::string fact(const char* name, const std::string& value) {
     return fmt::format("<dt>{}</dt><dd>{}</dd>\n", name, html_text(value));
@@ -45,7 +45,7 @@ std::string places_text(const Finding& finding) {
     std::string text;
     for (std::size_t k = 0; k < std::min(finding.regions.size(), kMostRegions); ++k) {
         const Region& region = finding.regions[k];
-        if (finding.has_texel && region.width == 1 && region.height == 1) continue;  // the message names it
+        if (finding.has_texel && region.width == 1 && region.height == 1) continue;  // the message names the texel
         text += fmt::format("{}level {}: {} x {} texels at {}, {}", text.empty() ? "" : "; ", region.level,
                             region.width, region.height, region.x, region.y);
     }

@@ -15,14 +15,14 @@
 namespace tex::cli {
 namespace {
 
-// Smaller packed levels than this are small enough for every page.
+// Packed levels with sides below this are small enough for every page.
 constexpr int kSmallLevel = 64;
 
 int longest(Extent extent) { return std::max(extent.width, extent.height); }
 
 std::size_t base64_size(std::size_t bytes) { return (bytes + 2) / 3 * 4; }
 
-// In blocks of a kind that normals come in.
+// True for the block formats that normal maps use.
 bool is_packed(Format format) {
     const FormatInfo info = format_info(format);
     return info.has_blocks() && info.channels > 1;
@@ -78,7 +78,7 @@ Result<void> draw_pictures(HtmlMap& map, const HtmlSizes& sizes, const Execution
     return {};
 }
 
-// Levels from the first that is small enough, as PNGs of 8 bits.
+// The levels from the first one that is small enough, as 8-bit PNGs.
 Result<HtmlLevels> decoded_levels(const MipChain& chain, const Execution& execution) {
     HtmlLevels result;
     for (const NormalMap& level : chain.levels) {
@@ -102,7 +102,7 @@ Result<HtmlLevels> decoded_levels(const MipChain& chain, const Execution& execut
     return result;
 }
 
-// Which channel holds a component, or -1.
+// The channel that holds a component, or -1.
 int channel_of(const Swizzle& swizzle, Component component) {
     const auto found = std::find(swizzle.begin(), swizzle.end(), component);
     return found == swizzle.end() ? -1 : static_cast<int>(found - swizzle.begin());
@@ -182,7 +182,7 @@ Result<HtmlMap> draw_html_map(const std::string& file, const Texture& texture, c
 
     UnpackOptions options;
     options.swizzle = swizzle;
-    options.keep_length = true;  // what is wrong is to be seen
+    options.keep_length = true;  // so that errors stay visible
     auto chain = unpack(texture, options, execution);
     if (!chain) return chain.error();
     map.chain = std::move(*chain);

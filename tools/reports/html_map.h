@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// html_map.h: a normal map as a page shows it: still pictures, and its levels for the reader's GPU.
+// html_map.h: a normal map for a page: still pictures, and its levels for the reader's GPU.
 
 #pragma once
 
@@ -23,30 +23,30 @@ struct HtmlPicture {
     std::vector<std::byte> png;
 };
 
-// Longest sides of still pictures, in pixels; 0: no such pictures.
+// The longest sides of still pictures, in pixels; 0: no such pictures.
 struct HtmlSizes {
     int thumbnail = 72;
     int lit = 256;
     int view = 192;  // of the mip chain and the false colours
 };
 
-// Sizes that keep a page of `files` files light.
+// The sizes that keep a page with `files` files small.
 [[nodiscard]] HtmlSizes html_sizes(std::size_t files);
 
-// The longest side of a level that goes into a page.
+// The longest side of a level that a page may contain.
 inline constexpr int kLargestHtmlLevel = 1024;
 
-// Levels for a GPU, the largest first: all of them packed as in the file, or all of them PNGs of x, y (up) and z with 8
-// bits each.
+// Levels for a GPU, the largest first. Either all of them are packed as in the file, or all of them are PNGs of x, y
+// (up) and z with 8 bits each.
 struct HtmlLevels {
     struct One {
         Extent extent;
         std::vector<std::byte> bytes;
     };
     std::vector<One> levels;
-    int first = 0;  // which level of the file the largest one is
+    int first = 0;  // the file's level that is the largest one here
 
-    // Drops levels longer than `side`.
+    // Removes levels that are longer than `side`.
     void limit(int side);
     [[nodiscard]] std::size_t bytes() const;
 };
@@ -55,33 +55,33 @@ struct HtmlMap {
     std::string file;
     Format format = Format::rgba8_unorm;
     Swizzle swizzle{};
-    YAxis y = YAxis::up;  // as the file says, else up
+    YAxis y = YAxis::up;  // as the file states, else up
     Extent extent;
     int stored_levels = 0;
     MipChain chain;  // for further pictures; may be cleared
 
     HtmlPicture thumbnail, lit;
     std::vector<HtmlPicture> views;
-    HtmlLevels packed;   // of block formats
-    HtmlLevels decoded;  // of all others, and where the packed levels end before they are small
+    HtmlLevels packed;   // for block formats
+    HtmlLevels decoded;  // for other formats, and if the packed levels end before they are small
 
     [[nodiscard]] bool without_z() const;
 
-    // The levels that a page shows whose levels are at most `side` long; may be empty.
+    // The levels that a page shows, after limit(). May be empty.
     [[nodiscard]] const HtmlLevels& shown() const;
     void limit(int side);
-    // Characters that the map takes in a page: pictures, and the levels shown.
+    // The number of characters that the map takes in a page: pictures, and the levels shown.
     [[nodiscard]] std::size_t picture_size() const;
     [[nodiscard]] std::size_t level_size() const;
 
-    // What the page's script has to know.
+    // The data that the page's script needs.
     [[nodiscard]] Json json() const;
 };
 
-// A picture as a page holds it. Errors: out_of_memory.
+// Converts a picture for a page. Errors: out_of_memory.
 [[nodiscard]] Result<HtmlPicture> html_picture(const Texture& picture, std::string caption, std::string alt);
 
-// Draws a texture whose channels hold what `swizzle` says. Errors: those of the verbs.
+// Draws a texture whose channels have the meaning that `swizzle` gives. Errors: those of the verbs.
 [[nodiscard]] Result<HtmlMap> draw_html_map(const std::string& file, const Texture& texture, const Swizzle& swizzle,
                                             const HtmlSizes& sizes, const Execution& execution);
 

@@ -14,10 +14,10 @@
 namespace tex::cli {
 namespace {
 
-// The longest sides that levels are limited to, one after the other, until a page is small enough.
+// The longest sides of levels. They are tried one after the other until the page is small enough.
 constexpr std::array kSides = {1024, 512, 256, 128, 64, 32, 0};
 
-constexpr int kWidePicture = 200;  // pixels; wider ones take two columns
+constexpr int kWidePicture = 200;  // pixels; wider pictures take two columns
 
 std::string image_tag(const HtmlPicture& picture, const std::string& of, const char* attributes) {
     return fmt::format("<img {} width=\"{}\" height=\"{}\" alt=\"{}\" src=\"data:image/png;base64,{}\">", attributes,
@@ -38,7 +38,7 @@ std::string figures(const std::vector<HtmlPicture>& pictures, const std::string&
     return html + "</div>\n";
 }
 
-// The still picture that the script makes a canvas of. `number` is that of the first map in the page.
+// The still picture that the script replaces with a canvas. `number` is the number of the first map in the page.
 std::string stage(const HtmlEntry& entry, std::size_t number) {
     if (entry.maps.empty()) return {};
     const HtmlMap& map = entry.maps.front();
@@ -54,7 +54,7 @@ std::string stage(const HtmlEntry& entry, std::size_t number) {
     return html + "</div>\n";
 }
 
-// Characters that pictures and levels take.
+// The number of characters that pictures and levels take.
 std::size_t size_of(const HtmlEntry& entry) {
     std::size_t sum = 0;
     for (const HtmlPicture& picture : entry.extras) sum += picture.png.size() * 4 / 3;
@@ -62,7 +62,7 @@ std::size_t size_of(const HtmlEntry& entry) {
     return sum;
 }
 
-// Puts `text` where the page has the mark `name`.
+// Replaces the mark `name` in the page with `text`.
 void fill(std::string& page, std::string_view name, std::string_view text) {
     const std::string mark = fmt::format("<!--{}-->", name);
     const auto at = page.find(mark);
@@ -86,7 +86,8 @@ void HtmlReport::add(const std::string& key, HtmlEntry entry) {
     if (size_ > kHtmlBudget) keep_to_budget();
 }
 
-// More entries only make a page larger, so the limit at the end is that of the whole set, whichever entry came last.
+// More entries can only make a page larger, so the final limit is that of the whole set, in whatever order entries
+// came.
 void HtmlReport::keep_to_budget() {
     for (const int side : kSides) {
         if (side >= side_ || size_ <= kHtmlBudget) continue;
@@ -115,7 +116,7 @@ std::string HtmlReport::table() const {
         ++number;
         html += fmt::format("<tr data-words=\"{}\"><td class=\"picture\">", html_text(entry.words));
         if (!entry.maps.empty() && !entry.maps.front().thumbnail.png.empty()) {
-            // Decoration: the name beside it says the same.
+            // This picture is decoration: the name beside it gives the same information.
             HtmlPicture picture = entry.maps.front().thumbnail;
             html += fmt::format(
                 "<img loading=\"lazy\" decoding=\"async\" width=\"{}\" height=\"{}\" alt=\"\" "
@@ -136,7 +137,7 @@ std::string HtmlReport::sections() const {
         html += fmt::format(
             "<section class=\"file\" id=\"file-{}\" data-words=\"{}\">\n<h2>{}</h2>\n<div class=\"columns\">\n",
             ++number, html_text(entry.words), html_text(entry.title));
-        // The pictures of a single map stand beside it, those of two below.
+        // The pictures of a single map are beside it; those of two maps are below them.
         html += stage(entry, map_number) + "<div class=\"facts\">\n" + entry.body + figures(entry.extras, entry.title) +
                 (entry.maps.size() == 1 ? figures(entry.maps.front().views, entry.title) : "") + "</div>\n</div>\n";
         for (const HtmlMap& map : entry.maps) {
@@ -159,7 +160,7 @@ std::string HtmlReport::rules_text() const {
     return html + "</dl>\n</section>\n";
 }
 
-// The levels of map n are the bytes of #map-n, one after the other.
+// #map-n contains the bytes of the levels of map n, one level after the other.
 std::string HtmlReport::data() const {
     Json maps = Json::array();
     std::string bytes;
@@ -178,7 +179,7 @@ std::string HtmlReport::data() const {
 std::string HtmlReport::page(const std::string& summary) const {
     const std::lock_guard lock(mutex_);
     std::string html(kReportHtml);
-    // From the end, so that no mark is looked for in what was put in.
+    // Fills the page from its end, so that no mark is searched for in inserted text.
     fill(html, "script", fmt::format("<script>\n{}</script>\n", kReportScript));
     fill(html, "data", data());
     fill(html, "version", html_text(version()));

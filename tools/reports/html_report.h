@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// html_report.h: what a command found, as one HTML file that needs no other file: --report.
+// html_report.h: the findings of a command as one HTML file that needs no other file: --report.
 //
-// The page holds a table of its entries, and for each entry its figures, still pictures and the levels of its maps, on
-// which a reader with JavaScript and WebGL moves a light. Its parts are tools/reports/report_page.html, .css and .js,
-// which the build puts into the program.
+// The page has a table of its entries and, for each entry, its figures, still pictures and the levels of its maps. A
+// reader with JavaScript and WebGL can move a light over these levels. The parts of the page are
+// tools/reports/report_page.html, .css and .js. The build puts them into the program.
 //
-// The bytes depend on the entries alone: no time, no host, no order in which files ended.
+// The bytes depend on the entries alone, not on the time, the host, or the order in which files end.
 
 #pragma once
 
@@ -22,33 +22,33 @@
 
 namespace tex::cli {
 
-// The most that pictures and levels take in a page, in characters. Where there are more, levels are left out, the
-// largest first.
+// The most characters that pictures and levels may take in a page. If there are more, levels are left out, the largest
+// first.
 inline constexpr std::size_t kHtmlBudget = 18'000'000;
 
 // One row of the table and one section.
 struct HtmlEntry {
     std::string title;
-    std::string row;                  // the cells after the title's, as HTML
-    std::string words;                // what the page's filter looks at: "error", "warning", "note", "clean"
+    std::string row;                  // the cells after the title, as HTML
+    std::string words;                // words for the page's filter: "error", "warning", "note", "clean"
     std::string body;                 // facts and figures, as HTML
-    std::vector<HtmlMap> maps;        // one, two that are compared, or none if the file could not be read
-    std::vector<HtmlPicture> extras;  // pictures of both maps together
+    std::vector<HtmlMap> maps;        // one; two if they are compared; none if the file could not be read
+    std::vector<HtmlPicture> extras;  // pictures that show both maps
 };
 
 class HtmlReport {
 public:
-    // `command` is the command's name; `columns` are the headings after the file's.
+    // `command` is the command's name. `columns` are the headings after the file's heading.
     HtmlReport(std::string command, std::vector<std::string> columns);
 
-    // Adds an entry; entries stand in the order of their keys. Any thread may call. A second entry of one key replaces
-    // the first.
+    // Adds an entry. Entries are sorted by their keys. Any thread may call this. A second entry with the same key
+    // replaces the first.
     void add(const std::string& key, HtmlEntry entry);
 
-    // A rule that some entry names: it is explained once, at the end.
+    // Adds a rule that an entry names. Each such rule is explained once, at the end of the page.
     void explain(const Rule& rule);
 
-    // The page; `summary` is its first sentence.
+    // The page. `summary` is its first sentence.
     [[nodiscard]] std::string page(const std::string& summary) const;
 
 private:
@@ -63,7 +63,7 @@ private:
     mutable std::mutex mutex_;
     std::map<std::string, HtmlEntry> entries_;
     std::map<std::string, const Rule*> rules_;
-    int side_ = kLargestHtmlLevel;  // the longest level that fits in
+    int side_ = kLargestHtmlLevel;  // the longest side of a level that still fits
     std::size_t size_ = 0;          // of all pictures and levels, in characters
 };
 
@@ -76,10 +76,10 @@ struct ComparedLevel {
     int number = 0;
     Extent extent;
     AngularError error;
-    bool within = true;  // the limits
+    bool within = true;  // the angles are within the limits
 };
 
-// The columns and the entry of compare-normals. `degrees` are the angles of the first level compared, `scale` is the
+// The columns and the entry of compare-normals. `degrees` are the angles of the first level compared. `scale` is the
 // angle at the end of their legend (none: the largest angle).
 [[nodiscard]] std::vector<std::string> compare_columns();
 [[nodiscard]] Result<HtmlEntry> compare_entry(const std::vector<ComparedLevel>& levels, HtmlMap a, HtmlMap b,

@@ -13,8 +13,8 @@
 namespace tex::cli {
 namespace {
 
-// Text for an attribute or an element: lines that may hold any bytes. XML 1.0 has no way to write most control
-// characters.
+// Text for an attribute or an element, made from lines that may contain any bytes. XML 1.0 cannot represent most
+// control characters.
 std::string escaped(std::string_view text) {
     std::string xml;
     while (true) {

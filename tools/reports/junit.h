@@ -10,8 +10,8 @@
 
 namespace tex::cli {
 
-// One test case for each file: a failure with the findings at or above `fail_on`, an error if it could not be read;
-// lesser findings are its output.
+// One test case for each file: a failure with the findings at or above `fail_on`; an error if the file could not be
+// read. Lesser findings become its output.
 [[nodiscard]] std::string junit_text(const std::vector<CheckReport>& reports, const Requirements& require,
                                      Severity fail_on);
 

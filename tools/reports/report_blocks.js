@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texel blocks, for browsers whose GPU does not take them and for extents that WebGL does not take: BC1, BC2, BC3 and BC5 to RGBA with 8 bits.
+// Decodes texel blocks (BC1, BC2, BC3 and BC5) to RGBA with 8 bits, for GPUs that do not support them and for extents
+// that WebGL does not accept.
 
-// Values of a BC4 block at `at`, as 16 numbers from 0 to 255; a signed block is moved there from -127 to 127.
+// The values of a BC4 block at `at`, as 16 numbers from 0 to 255. The range of a signed block, -127 to 127, is shifted
+// to these numbers.
 function bc4Values(bytes, at, signed) {
   const end = (k) => (signed ? (Math.max((bytes[at + k] << 24) >> 24, -127) + 127) * (255 / 254) : bytes[at + k]);
   const a = end(0), b = end(1);
@@ -16,7 +18,7 @@ function bc4Values(bytes, at, signed) {
   return values;
 }
 
-// Colours of a BC1 block at `at`, as 16 triples; BC2 and BC3 have four colours always.
+// The colours of a BC1 block at `at`, as 16 triples. BC2 and BC3 always have four colours.
 function bc1Colors(bytes, at, always4) {
   const c0 = bytes[at] | bytes[at + 1] << 8, c1 = bytes[at + 2] | bytes[at + 3] << 8;
   const wide = (c) => {
@@ -31,7 +33,7 @@ function bc1Colors(bytes, at, always4) {
   return colors;
 }
 
-// One level in `format` ("bc3-unorm") as RGBA.
+// Decodes one level in `format` ("bc3-unorm") to RGBA.
 function decodeBlocks(format, width, height, bytes) {
   const rgba = new Uint8ClampedArray(4 * width * height).fill(255);
   const size = format === "bc1-unorm" ? 8 : 16;

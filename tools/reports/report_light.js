@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light on a normal map, on the reader's GPU: the plane that preview-normals draws, with the same formulas (tex/preview.h). One WebGL context draws
-// for every canvas of the page.
+// Lights a normal map on the reader's GPU: the plane that preview-normals draws, with the same formulas
+// (tex/preview.h). One WebGL context draws for every canvas of the page.
 
 const kVertexShader = `#version 300 es
 void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0); }`;
@@ -72,7 +72,7 @@ void main() {
   color = vec4(gl_FragCoord.x < edge ? shown(a, texelA, point) : shown(b, texelB, point), 1.0);
 }`;
 
-// The bytes of #map-n, each level apart.
+// The bytes of #map-n, split into levels.
 function levelsOf(maps, number) {
   const text = atob(document.getElementById("map-" + number).textContent);
   let at = 0;
@@ -84,9 +84,9 @@ function levelsOf(maps, number) {
   });
 }
 
-// Draws maps by number. Throws where there is no WebGL 2.
+// Draws maps by number. Throws if there is no WebGL 2.
 class Lighting {
-  static kMostTextures = 24;  // kept on the GPU; more than stages that are live, with their B
+  static kMostTextures = 24;  // on the GPU; more than the live stages and their B maps need
 
   constructor(maps) {
     this.maps = maps;
@@ -119,7 +119,7 @@ class Lighting {
     return this.places[name];
   }
 
-  // WebGL's name for a format, where this GPU takes it and WebGL takes every level's extent.
+  // WebGL's name for a format, if this GPU supports it and WebGL accepts the extent of every level.
   packedFormat(map) {
     if (!map.packed || map.levels.some(([w, h], k) => [w, h].some((n) => n % 4 !== 0 && (k === 0 || n > 2)))) return 0;
     const {s3tc, rgtc} = this;
@@ -130,12 +130,12 @@ class Lighting {
     }[map.format] || 0;
   }
 
-  // What the GPU holds of map `number`: a promise, kept for the next time.
+  // A promise of the textures of map `number` on the GPU. It is kept for the next call.
   texture(number) {
     const kept = this.textures.get(number);
     this.textures.delete(number);
     const made = kept || this.load(number);
-    this.textures.set(number, made);  // the last one used is the last in the map
+    this.textures.set(number, made);  // the most recently used entry is the last in the map
     for (const [old, texture] of this.textures) {
       if (this.textures.size <= Lighting.kMostTextures) break;
       this.textures.delete(old);
@@ -175,12 +175,13 @@ class Lighting {
     ["x", "y", "z"].forEach((c, k) => gl.uniform4fv(this.uniform(name + "." + c), [0, 1, 2, 3].map((n) => (n === channels[k] ? 1 : 0))));
     gl.uniform1f(this.uniform(name + ".scale"), texture.signed ? 1 : 2);
     gl.uniform1f(this.uniform(name + ".offset"), texture.signed ? 0 : -1);
-    // Decoded levels have y up where the file says so.
+    // Decoded levels have y up if the file says so.
     gl.uniform1f(this.uniform(name + ".sign"), (map.packed ? y === "up" : y === map.y) ? 1 : -1);
     gl.uniform1i(this.uniform(name + ".hasZ"), channels[2] >= 0);
   }
 
-  // Draws `scene` and copies it to `canvas`: {a, b, yA, yB, split (0 to 1), tiles, bump, light: [x, y, z], point, show}. Tells what the GPU was given.
+  // Draws `scene` and copies it to `canvas`: {a, b, yA, yB, split (0 to 1), tiles, bump, light: [x, y, z], point,
+  // show}. Returns what the GPU was given.
   async draw(canvas, scene) {
     const textureA = await this.texture(scene.a);
     const textureB = scene.b === null ? textureA : await this.texture(scene.b);

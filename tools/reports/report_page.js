@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page: still pictures become canvases with a light, the table can be filtered and sorted. Text from files is only ever set as text.
+// The page's script: replaces still pictures with canvases that have a light, and filters and sorts the table. Text
+// from files is never inserted as HTML.
 
 "use strict";
 
@@ -12,8 +13,8 @@ const kGradients = {
   viridis: "linear-gradient(90deg, #440154, #482878, #3e4989, #31688e, #26828e, #1f9e89, #35b779, #6ece58, #b5de2b, #fde725)",
   diverging: "linear-gradient(90deg, rgb(15 51 107), rgb(92 156 212), rgb(247 247 245), rgb(240 163 87), rgb(122 48 5))",
 };
-const kSmallestCanvas = 512, kLargestCanvas = 1024;  // pixels of its longer side
-const kLiveStages = 12;  // canvases that are kept
+const kSmallestCanvas = 512, kLargestCanvas = 1024;  // pixels, for the longer side
+const kLiveStages = 12;  // the number of canvases that are kept
 
 // An element with attributes, listeners ("onclick") and children.
 function element(tag, attributes = {}, ...children) {
@@ -32,7 +33,7 @@ const rounded = (value) => Math.round(value * 100) / 100;
 const between = (value, least, greatest) => Math.min(Math.max(value, least), greatest);
 const quoted = (name) => (/^[\w.\/+@%,:=-]+$/.test(name) ? name : "'" + name.replaceAll("'", "'\\''") + "'");
 
-// One map, or two, under a light.
+// One map or two maps under a light.
 class Stage {
   constructor(root, maps, lighting) {
     Object.assign(this, {root, maps, lighting});
@@ -45,7 +46,7 @@ class Stage {
   }
 
   reset() {
-    this.at = [-0.4, 0.5];  // the pointer: -1 to 1, up
+    this.at = [-0.4, 0.5];  // the pointer: -1 to 1, with up positive
     Object.assign(this, {height: 1.2, point: false, bump: 1, tiles: 1, split: 0.5, show: "lit", b: this.other});
     this.yA = this.maps[this.map].y;
     this.yB = this.other === null ? "up" : this.maps[this.other].y;
@@ -57,7 +58,7 @@ class Stage {
       : [rounded(2 * this.at[0]), rounded(2 * this.at[1]), this.height];
   }
 
-  // The canvas's size: the map's, its tiles included, enlarged by a whole number or limited.
+  // The canvas's size: that of the map with its tiles, enlarged by a whole number or limited.
   get size() {
     const [w, h] = this.maps[this.map].levels[0].slice(0, 2).map((n) => n * this.tiles), longer = Math.max(w, h);
     const scale = longer > kLargestCanvas ? kLargestCanvas / longer : Math.ceil(kSmallestCanvas / longer);
@@ -118,7 +119,7 @@ class Stage {
     this.showControls();
   }
 
-  // Those of B, where there is a B.
+  // Shows the controls of B if there is a B.
   showControls() {
     for (const node of [this.divider, this.tagA, this.tagB, this.splitLabel, this.greenLabelB]) node.hidden = this.b === null;
   }
@@ -206,7 +207,7 @@ class Stage {
     this.gpu.textContent = `On the GPU: ${map.format}, ${how}.${stored} Drawn: ${this.canvas.width} x ${this.canvas.height}.`;
   }
 
-  // preview-normals for the same picture.
+  // The preview-normals command that draws the same picture.
   commandLine() {
     const words = ["preview-normals", quoted(this.maps[this.map].file)];
     if (this.b !== null) words.push(quoted(this.maps[this.b].file), "--split");
@@ -220,7 +221,7 @@ class Stage {
     return words.concat("--size", this.size.join("x")).join(" ");
   }
 
-  // Back to the still picture: canvases take memory.
+  // Goes back to the still picture, because canvases take memory.
   rest() {
     this.view.hidden = true;
     this.still.hidden = false;
@@ -229,7 +230,7 @@ class Stage {
   }
 }
 
-// Stages come to life as they come into view.
+// Stages start when they come into view.
 function makeStages() {
   const roots = [...document.querySelectorAll(".stage[data-map]")];
   if (roots.length === 0) return;
@@ -262,7 +263,7 @@ function makeStages() {
   roots.forEach((root) => watch.observe(root));
 }
 
-// Filters and sorting, where there is more than one file.
+// Filters and sorts the table if there is more than one file.
 function makeTable() {
   const table = document.getElementById("files"), rows = [...table.tBodies[0].rows];
   if (rows.length < 2) return;

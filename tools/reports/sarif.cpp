@@ -53,7 +53,7 @@ Json rule_json(const Rule& rule) {
 Json location_json(const std::string& file) {
     Json location;
     location["artifactLocation"] = {{"uri", uri_of(file)}};
-    location["region"] = {{"startLine", 1}};  // textures have no lines, and viewers want one
+    location["region"] = {{"startLine", 1}};  // textures have no lines, but viewers require one
     Json json;
     json["physicalLocation"] = std::move(location);
     return json;

@@ -10,7 +10,7 @@
 
 namespace tex::cli {
 
-// One run of check-normals. The rules' metadata are those of rules(). Files that could not be opened are notifications
+// One run of check-normals. The rules' metadata come from rules(). Files that could not be opened become notifications
 // of the invocation. No time, host or absolute path is added.
 [[nodiscard]] std::string sarif_text(const std::vector<CheckReport>& reports, const Requirements& require);
 
