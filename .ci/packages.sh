@@ -13,7 +13,7 @@ test_packages=(
     libgtest-dev libgmock-dev libsquish-dev libosmesa6-dev libgl-dev
     imagemagick openimageio-tools python3-jsonschema libxml2-utils mandoc shellcheck dpkg-dev file git strace zsh fish
 )
-# The browser takes 300 MB: elsewhere its tests say that they skipped.
+# The browser takes 300 MB. Without it, its tests report that they were skipped.
 # shellcheck disable=SC2034
 gate_packages=(clang-14 clang-format-14 clang-tidy-14 ccache libbenchmark-dev chromium)
 
@@ -21,7 +21,7 @@ as_root() {
     if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi
 }
 
-# Installs those of the named packages that are missing; asks for nothing and downloads nothing where all are there.
+# Installs the missing ones of the named packages. Asks for nothing and downloads nothing if none is missing.
 need_packages() {
     local missing=() package status
     if ! command -v apt-get >/dev/null; then
@@ -40,7 +40,7 @@ need_packages() {
         return 1
     fi
     echo "installing packages: ${missing[*]}"
-    # A mirror may hiccup: once more before giving up.
+    # A mirror may fail for a moment, so try again once.
     install_packages "${missing[@]}" || { sleep 10 && install_packages "${missing[@]}"; }
 }
 

@@ -1,15 +1,16 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# batch.sh HEIGHTS OUT [NINJA_OPTION...]: a folder of height maps to a folder of textures, rebuilding only what changed.
+# batch.sh HEIGHTS OUT [NINJA_OPTION...]: builds a folder of textures from a folder of height maps, and rebuilds only
+# what changed.
 #
-#     HEIGHTS/NAME.png     a height map (or .exr, .tif) becomes OUT/NAME.dds
+#     HEIGHTS/NAME.png     a height map (or .exr, .tif), which becomes OUT/NAME.dds
 #     HEIGHTS/NAME.bake    its options for bake-normals, on one line:   --bumpiness 12 --wrap clamp
 #     HEIGHTS/NAME.blend   its options for blend-normals, if it gets detail:
 #                          --detail ../grain.png --tiling 8 --mask rust.png:a
 #
-# Paths in options are relative to HEIGHTS. Ninja builds a texture again if its map, its options, the commands or a file
-# that an option names changed; --depfile lists those files for Ninja. Textures without a map are removed. The commands
-# come from PATH.
+# Paths in options are relative to HEIGHTS. Ninja rebuilds a texture if its map, its options, the commands or a file
+# that an option names have changed; --depfile lists those files for Ninja. Textures without a map are removed. The
+# commands come from PATH.
 set -euo pipefail
 [ $# -ge 2 ] || { echo "usage: batch.sh HEIGHTS OUT [NINJA_OPTION...]" >&2; exit 2; }
 mkdir -p "$2"
@@ -19,7 +20,7 @@ shift 2
 bake=$(command -v bake-normals)
 blend=$(command -v blend-normals)
 
-# Prints a path in the syntax of Ninja.
+# Prints a path in Ninja's syntax.
 escape() {
     local path=${1//\$/\$\$}
     path=${path// /\$ }
@@ -31,7 +32,7 @@ options_in() { if [ -e "$1" ]; then sed 's/\$/$$/g' "$1"; fi; }
 cd "$heights"
 shopt -s nullglob
 {
-    # One thread for each map: Ninja processes as many maps in parallel as there are processors.
+    # One thread for each map, because Ninja processes as many maps in parallel as there are processors.
     cat <<END
 builddir = $(escape "$out")
 rule bake

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// make_broken: writes samples/broken, one file for each rule of check-normals. Only that rule reports the file.
+// make_broken: writes samples/broken, which has one file for each rule of check-normals. Only that rule reports the
+// file.
 //
 //     make_broken samples/waves.png FOLDER
 //
-// All files are made from the sample height map. FOLDER/options.txt lists the options with which they are checked.
+// All files are made from the sample height map. FOLDER/options.txt lists the options for checking each file.
 
 #include <algorithm>
 #include <cmath>
@@ -85,7 +86,7 @@ void set_slopes(NormalMap& map, int i, int j, double p, double q) {
     map.z.at(i, j) = static_cast<float>(1.0 / length);
 }
 
-// The map with its slopes changed by `change`.
+// The map, with `change` applied to its slopes.
 template <class Change>
 NormalMap changed(const NormalMap& map, Change&& change) {
     NormalMap result(map.extent());

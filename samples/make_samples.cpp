@@ -8,8 +8,8 @@
 //     bricks.png      512x512, 16 bits   a brick wall with worn edges and mortar; tiles (uses 11 bits: a smaller file)
 //     ramp.png         64x64,   8 bits   four codes a column: a constant slope
 //
-// Only + - * / and sqrt in double, so that every machine writes the same bytes; a test compares them with the committed
-// files.
+// Uses only + - * / and sqrt in double, so that every machine writes the same bytes. A test compares them with the
+// committed files.
 
 #include <png.h>
 
@@ -34,7 +34,7 @@ struct Grey {
     std::uint16_t& at(int i, int j) {
         return codes[static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i)];
     }
-    // Height 1 is the greatest code; codes are multiples of `step`.
+    // Height 1 is the largest code. Codes are multiples of `step`.
     void set(int i, int j, double height01, int step = 1) {
         const int most = (bits == 8 ? 255 : 65535) / step;
         at(i, j) = static_cast<std::uint16_t>(static_cast<int>(std::clamp(height01, 0.0, 1.0) * most + 0.5) * step);
@@ -84,7 +84,8 @@ Grey hemisphere() {
 
 Grey waves() {
     constexpr int kSize = 128;
-    // sin(2 pi k / 128) by turning a vector; the turn's cosine and sine come from halving the right angle five times.
+    // sin(2 pi k / 128) by rotating a vector. The rotation's cosine and sine come from halving the right angle five
+    // times.
     double c = 0.0;
     for (int halving = 0; halving < 5; ++halving) c = std::sqrt((1.0 + c) / 2.0);
     const double s = std::sqrt(1.0 - c * c);
@@ -157,7 +158,7 @@ double brick_height(int i, int j) {
     const double x = shifted % kLength + 0.5 - kLength / 2.0;
     const double y = j % kCourse + 0.5 - kCourse / 2.0;
 
-    // How far inside the worn outline of its brick the texel lies: distance to a rounded rectangle.
+    // How far the texel is inside the worn outline of its brick: the distance to a rounded rectangle.
     const double wear = 1.6 * noise(i, j, 16, 1) + 0.9 * noise(i, j, 8, 2);
     const double dx = std::abs(x) - (kLength / 2.0 - kJoint - kCorner);
     const double dy = std::abs(y) - (kCourse / 2.0 - kJoint - kCorner);

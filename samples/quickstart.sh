@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# quickstart.sh: from a fresh clone on Debian 12 to a baked normal map. Installs the packages that the build needs (with
-# sudo if you are not root), builds a release and bakes samples/bricks.png. A second run repeats only what changed.
+# quickstart.sh: takes you from a fresh clone on Debian 12 to a baked normal map. Installs the packages that the build
+# needs (with sudo if you are not root), builds a release and bakes samples/bricks.png. A second run repeats only the
+# steps whose input has changed.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=.ci/packages.sh
@@ -9,7 +10,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 need_packages "${build_packages[@]}"
 
-# Tests are left as the build folder has them; a new one is made without, which is faster.
+# An existing build folder keeps its setting for tests. A new one is made without tests, which is faster.
 tests=OFF
 if grep -qs '^BUILD_TESTING:BOOL=ON' build/release/CMakeCache.txt; then tests=ON; fi
 cmake --preset release -DBUILD_TESTING="$tests"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# broken.sh MAKE_BROKEN: the committed files of samples/broken are what the program makes today, byte for byte.
+# broken.sh MAKE_BROKEN: the program reproduces the committed files of samples/broken byte for byte.
 set -euo pipefail
 samples=$(cd "$(dirname "${BASH_SOURCE[0]}")/../samples" && pwd)
 scratch=$(mktemp -d)

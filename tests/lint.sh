@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# lint.sh: the rules of the house that a compiler does not check. Prints every breach and exits 1 if there is one.
+# lint.sh: checks the house rules that a compiler does not check. Prints every violation, and exits 1 if there is one.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -16,7 +16,7 @@ ban() {
     [ -z "$hits" ] || complain "$why"$'\n'"$hits"
 }
 
-# Today's offenders, which the rules named first allow until they are mended. This list only shrinks.
+# Today's offenders: the rule named first on each line allows them until they are fixed. This list only shrinks.
 offenders='
 verb      libtex/src/rows/pack_rows.h libtex/src/rows/mip_rows.h libtex/src/rows/source_layout.h
 verb      libtex/src/rows/unpack_rows.h libtex/src/rows/roughness_rows.h libtex/src/rows/axis_filter.h
@@ -27,7 +27,8 @@ declare -A allowed=()  # RULE NAME
 while read -r rule names; do
     for name in $names; do allowed["$rule $name"]=yes; done
 done <<<"$offenders"
-# ban_but RULE PATTERN WHY FILE...: as ban, for the files that the list does not allow. It names those that have mended.
+# ban_but RULE PATTERN WHY FILE...: like ban, for the files that the list does not allow. Prints the listed files that
+# no longer break the rule.
 ban_but() {
     local rule=$1 pattern=$2 why=$3 file checked=()
     shift 3
@@ -41,7 +42,8 @@ ban_but() {
     ban "$pattern" "$why" "${checked[@]}"
 }
 
-# Files of the tree; in a clone those that git knows or would add, so that build folders do not count.
+# The files of the tree. In a clone, these are the files that git tracks or would add, so that build folders do not
+# count.
 if git rev-parse --is-inside-work-tree >/dev/null 2>&1; then
     mapfile -t files < <(git ls-files --cached --others --exclude-standard |
         while read -r f; do [ ! -e "$f" ] || echo "$f"; done)
@@ -50,7 +52,7 @@ else
 fi
 mapfile -t cplusplus < <(printf '%s\n' "${files[@]}" | grep -E '\.(cpp|h)$')
 
-# clang-format takes its time, so it runs beside the other checks.
+# clang-format is slow, so it runs in parallel with the other checks.
 form=$(mktemp)
 trap 'rm -f "$form"' EXIT
 if command -v clang-format-14 >/dev/null; then
@@ -74,8 +76,8 @@ done
 header_only=' execution mip_chain names normal_map result texture '
 for header in libtex/include/tex/*.h; do
     name=$(stem "$header")
-    # Both compilers export what a header declares between these two: clang does not see an attribute of a namespace
-    # that a source reopens.
+    # Both compilers export the declarations of a header between these two pragmas. An attribute would not do: clang
+    # ignores the attribute of a namespace that a source reopens.
     [ "$(grep -c '^#pragma GCC visibility p\(ush(default)\|op\)$' "$header")" = 2 ] ||
         complain "$header does not export what it declares"
     grep -q "<tex/$name.h>" libtex/include/tex/tex.h || [ "$name" = tex ] || complain "tex.h does not include $name.h"
@@ -91,7 +93,7 @@ for source in $(select_files '^libtex/src/[a-z]+/([a-z0-9]+/)?[a-z0-9_]+\.cpp$')
     [ -e "${source%.cpp}.h" ] || [ -e "${source%_*}.h" ] || complain "$source has no header"
 done
 # A kernel, a block codec or a container is tested under its own name, by a test that includes its header, or through a
-# stem that it serves, at most three steps away.
+# stem that includes it in at most three steps.
 tested() {
     local source=$1 depth=$2 header=${1#libtex/src/} user users
     header=${header%.*}.h
@@ -137,8 +139,9 @@ ban $'\t' 'tabs' "${written[@]}"
 mapfile -t code < <(select_files '\.(cpp|h|sh|cmake|cmake\.in)$|CMakeLists\.txt$|^\.ci/run$')
 LC_ALL=C.UTF-8 ban '^.{121}' 'more than 120 columns' "${code[@]}"
 
-# Types of the same name in the same namespace, in two files: the linker takes one of them for both. A class inside a
-# function or another class, or in an unnamed namespace, is its own. clang-format writes what closes a namespace.
+# Finds types of the same name in the same namespace in two files, because the linker uses one of them for both. A class
+# inside a function or another class, or in an unnamed namespace, does not count. clang-format writes the comment that
+# closes a namespace.
 mapfile -t typed < <(select_files '^(libtex|tools)/.*\.(cpp|h)$')
 twice=$(awk '
     FNR == 1 { depth = 0 }
@@ -189,7 +192,7 @@ ban 'MulAdd|NegMulAdd|MulSub|ApproximateReciprocal|std::fma\b|std::thread' \
 
 # -- documents and scripts ------------------------------------------------------------------------------------
 if [ -e README.md ]; then
-    # shellcheck disable=SC2016  # the backquotes are Markdown's
+    # the backquotes belong to Markdown
     example=$(sed -n '/^```cpp$/,/^```$/p' README.md | sed '1d;$d')
     [ "$example" = "$(sed 1,2d samples/bake_and_pack.cpp)" ] ||
         complain "README.md's C++ example is not samples/bake_and_pack.cpp"
@@ -208,7 +211,7 @@ done
 for section in $(select_files '^man/shared/'); do
     grep -rqx "@include $(basename "$section" .mdoc)@" man || complain "no page includes $section"
 done
-# The pages refer to each other and are not installed; every other remark counts.
+# The pages refer to each other and are not installed, so that remark is ignored. Every other remark counts.
 remarks=$(mandoc -T lint -W style "$manual"/* 2>&1 | grep -v 'referenced manual not found\|outdated mandoc.db' || true)
 [ -z "$remarks" ] || complain "mandoc complains about a man page"$'\n'"$remarks"
 shellcheck -x "${scripts[@]}" || complain "shellcheck complains about a script"

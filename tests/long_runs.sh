@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# long_runs.sh: thousands of textures in one process, and many processes in one folder.
+# long_runs.sh: bakes thousands of textures in one process, and runs many processes in one folder.
 #
 #     tests/long_runs.sh [TEXTURES [PROCESSES [BUILD]]]    default: 10000 64 build/release
 #
-# One bake-normals bakes TEXTURES height maps of all samples; meanwhile the script samples its memory and descriptors.
-# Then PROCESSES of them write into one folder at once, four for each output. Prints the slope of the memory, in kB per
-# 1000 textures, over the second half of the run. Fails if the slope is more than 3000 (a process remembers the names of
-# its files, for --depfile), if descriptors grow, if an output differs from what one process alone makes, or if any
-# other file is left.
+# One bake-normals bakes TEXTURES height maps, the samples in turn. Meanwhile the script samples its memory and
+# descriptors. Then PROCESSES processes write into one folder at once, four for each output. Prints the slope of the
+# memory, in kB per 1000 textures, over the second half of the run. Fails if the slope is more than 3000 (a process
+# keeps the names of its files, for --depfile), if the number of descriptors grows, if an output differs from the output
+# of a single process, or if any other file is left.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 textures=${1:-10000} processes=${2:-64}
@@ -24,7 +24,7 @@ inputs=("$samples"/{hemisphere,ramp,strip,waves}.png)
 mkdir in out
 for ((k = 0; k < textures; ++k)); do ln -s "${inputs[k % ${#inputs[@]}]}" "in/$k.png"; done
 (cd in && printf 'in/%s\n' *) >list
-: >report  # which is looked at before the process may have begun
+: >report  # it is read, perhaps before the process has begun
 "$build/bake-normals" --files-from list --out-dir out --threads 2 --no-sync --json --quiet >report &
 process=$!
 while [ -r "/proc/$process/status" ]; do
@@ -45,7 +45,7 @@ wait "$process" || fail "bake-normals ends with status $?"
     fi
     cat "one$((k % 4)).dds"
 done | sha256sum)" ] || fail "an output is not what its input makes alone"
-# Least squares over the second half: memory in kB against thousands of textures.
+# Least squares over the second half: memory in kB as a function of thousands of textures.
 awk -v textures="$textures" '
     { if ($2 > peak) peak = $2; if (NR == 1 || $3 < fewest) fewest = $3; if ($3 > most) most = $3 }
     $1 >= textures / 2 && $1 < textures { n++; x += $1 / 1000; y += $2; xx += $1 * $1 / 1e6; xy += $1 / 1000 * $2 }
@@ -61,7 +61,7 @@ awk -v textures="$textures" '
 mkdir together
 running=()
 for ((k = 0; k < processes; ++k)); do
-    # Half of them without nameless files, where the test library is there.
+    # Half of them cannot use nameless files, if the test library exists.
     preload=
     if [ $((k % 2)) -eq 1 ] && [ -e "$build/faults.so" ]; then preload=$build/faults.so; fi
     pair=("${inputs[k / 4 % 4]}" "${inputs[(k / 4 + 1) % 4]}")

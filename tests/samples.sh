@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# samples.sh MAKE_SAMPLES [BAKE_NORMALS PREVIEW_NORMALS]: the committed pictures are what the programs make today, byte
-# for byte.
+# samples.sh MAKE_SAMPLES [BAKE_NORMALS PREVIEW_NORMALS]: the programs reproduce the committed pictures byte for byte.
 set -euo pipefail
 samples=$(cd "$(dirname "${BASH_SOURCE[0]}")/../samples" && pwd)
 scratch=$(mktemp -d)
@@ -10,14 +9,14 @@ trap 'rm -rf "$scratch"' EXIT
 "$1" "$scratch"
 for made in hemisphere waves bricks ramp; do cmp "$scratch/$made.png" "$samples/$made.png"; done
 if [ $# -gt 1 ]; then
-    # The README's picture, as quickstart.sh makes it.
+    # The README's picture, made in the same way as in quickstart.sh.
     "$2" "$samples/bricks.png" -o "$scratch/bricks_normals.png" --bumpiness 12
     "$2" "$samples/waves.png" -o "$scratch/waves_normals.png" --bumpiness 6
     "$3" "$scratch/bricks_normals.png" -o "$scratch/strip.png" --height "$samples/bricks.png" \
         --detail "$scratch/waves_normals.png" --detail-tiling 6 \
         --show height,normals,plain,lit --size 220 --light -1,1,0.9 --tint 0.6,0.28,0.18 --specular 0.12 --no-legend
     cmp "$scratch/strip.png" "$samples/strip.png"
-    # Its picture of +Y and -Y; captions are names of files.
+    # The README's picture of +Y and -Y. Its captions are the names of the files.
     "$2" "$samples/hemisphere.png" -o "$scratch/+Y.png" --bumpiness 112 --y up
     "$2" "$samples/hemisphere.png" -o "$scratch/-Y.png" --bumpiness 112 --y down
     "$3" "$scratch/+Y.png" "$scratch/-Y.png" -o "$scratch/y_axis.png" --show normals,lit --columns 4 --size 200 \

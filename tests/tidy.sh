@@ -1,38 +1,39 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# tidy.sh: clang-tidy's checks for mistakes, safety and speed (.clang-tidy names them) on libtex and the commands; a
+# tidy.sh: runs clang-tidy's checks for mistakes, safety and speed (listed in .clang-tidy) on libtex and the commands. A
 # finding is an error.
 #
-#     tests/tidy.sh [FILE...]    all sources of libtex and tools, or those named
+#     tests/tidy.sh [FILE...]    all sources of libtex and tools, or the named ones
 #
-# Needs clang-tidy-14. The commands to compile are those of the preset `fuzz`, which is clang's and sees each kernel
-# once. The last line counts.
+# Needs clang-tidy-14. The compile commands come from the preset `fuzz`, which uses clang and compiles each kernel only
+# once. The last line prints the counts.
 #
-# clang-tidy spends nine tenths of its time in the headers of others. So sources are looked at many at a time, as one
-# that includes them; those whose names clash with names of others, and programs, come by themselves.
+# clang-tidy spends nine tenths of its time in the headers of other projects. So many sources are checked together, as
+# one source that includes them. Programs, and sources whose names clash with those of others, are checked separately.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 together=64
 out=$PWD/build/tidy
 database=build/fuzz/compile_commands.json
 
-# What the preset compiles a source with, for a shell to read.
+# The preset's compile flags for a source, quoted for a shell.
 flags() { sed -n "s|.*\"command\": \"[^ ]* \(.*\) -o [^ ]* -c $PWD/$1\",\?\$|\1|p" "$database" | sed 's|\\\(.\)|\1|g'; }
 
-# clashing FILE FLAG...: the lines of includes, but for the first, in which there are errors.
+# clashing FILE FLAG...: the lines of those includes (except the first) that have errors.
 clashing() {
     clang++-14 "${@:2}" -w -ferror-limit=0 -fsyntax-only "$1" 2>&1 |
         sed -n "s|^In file included from $1:\([0-9]*\):.*|\1|p" | sort -un | sed '/^1$/d'
 }
 
-# look_at FLAGS SOURCE...: what is found goes to files in $out.
+# look_at FLAGS SOURCE...: checks the sources together; findings go to files in $out.
 look_at() {
     local flags=$1 arguments all number clashing apart=()
     eval "arguments=($flags)"
     shift
     all=$(mktemp "$out/XXXXXX.cpp")
     printf "#include \"$PWD/%s\"  // NOLINT(bugprone-suspicious-include)\n" "$@" >"$all"
-    # Each line of $all that errors come from is a source that clashes with one before it. Without it others may.
+    # Each line of $all with errors is a source that clashes with an earlier one. After its removal, others may still
+    # clash.
     while mapfile -t clashing < <(clashing "$all" "${arguments[@]}") && [ "${#clashing[@]}" -gt 0 ]; do
         for number in "${clashing[@]}"; do apart+=("${!number}"); done
         sed -i "$(printf '%ds|.*||;' "${clashing[@]}")" "$all"
@@ -44,7 +45,7 @@ look_at() {
     [ "${#apart[@]}" -eq 0 ] || look_at "$flags" "${apart[@]}"
 }
 
-# As many beside one another as there are processors.
+# Runs as many checks in parallel as there are processors.
 start() {
     while [ "$(jobs -rp | wc -l)" -ge "$(nproc)" ]; do wait -n || true; done
     look_at "$@" &
@@ -55,7 +56,7 @@ if [ "${#sources[@]}" -eq 0 ]; then mapfile -t sources < <(find libtex/src tools
 rm -rf "$out"
 mkdir -p "$out"
 cmake --preset fuzz >"$out/configure.log" || { cat "$out/configure.log"; exit 1; }
-declare -A batches=()  # by what they are compiled with
+declare -A batches=()  # the sources, by their compile flags
 for source in "${sources[@]}"; do
     key=$(flags "$source")
     [ -n "$key" ] || { echo "tidy: the preset fuzz does not compile $source" >&2; exit 2; }
