@@ -39,7 +39,7 @@ void BakeCopy(benchmark::State& state) {
 }
 BENCHMARK(BakeCopy)->ArgName("size")->Arg(512)->Arg(4096);
 
-// The kernel of central differences alone, from rows of the field to rows of a map that exists.
+// The kernel of central differences alone: it reads rows of the field and writes rows of an existing map.
 void BakeRows(benchmark::State& state) {
     const int size = static_cast<int>(state.range(0));
     const tex::HeightField field = noise_field(size);

@@ -59,7 +59,7 @@ void BlendRows(benchmark::State& state) {
 }
 BENCHMARK(BlendRows)->ArgName("mode")->DenseRange(0, 5);
 
-// Only what blend() does is timed: it takes its maps.
+// Measures only the work of blend(), which consumes its maps.
 void blend_again(benchmark::State& state, int size, const tex::BlendOptions& options, float tiling, float degrees) {
     const NormalMap base = tex::fields::noise_normals({size, size});
     const NormalMap detail = tex::wavy_map({size, size});
@@ -84,7 +84,7 @@ void Blend(benchmark::State& state) {
 }
 BENCHMARK(Blend)->ArgNames({"mode", "size"})->ArgsProduct({{0, 1, 2, 3, 4, 5}, {512, 2048}});
 
-// Whiteout of a detail that is repeated or turned: its levels are made, and two of them are sampled where neither fits.
+// Whiteout of a detail that is repeated or rotated: its levels are built, and two of them are sampled if neither fits.
 void BlendPlaced(benchmark::State& state) {
     const float tiling = static_cast<float>(state.range(0)) / 10.0f;
     const auto degrees = static_cast<float>(state.range(1));

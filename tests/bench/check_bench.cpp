@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// check_bench: what a check costs beside decoding the same texture to floats, and what the rules find and miss.
+// check_bench: the cost of a check compared with decoding the same texture to floats, and what the rules find and miss.
 //
 //     check_bench [SIDE]        a DXT5nm of SIDE x SIDE texels (4096) with all mip levels
 //
-// Both in turn, with all threads: medians of seven rounds, of wall-clock time and of the ratio within a round. The
-// table of planted damages is printed where
-// ../shared/data is.
+// Runs both in turn, with all threads, and prints medians of seven rounds: of the wall-clock time and of the ratio
+// within a round. Prints the table of planted damages if ../shared/data exists.
 
 #include <algorithm>
 #include <chrono>

@@ -22,7 +22,7 @@ struct Pair {
     explicit Pair(int size)
         : a(tex::fields::noise_normals({size, size})), b(tex::fields::noise_normals({size, size})),
           degrees(Extent{size, size}) {
-        // The second one is the first, a row further: other normals, of the same kind.
+        // The second map is the first one, shifted by a row: different normals with the same statistics.
         for (Plane<float>* plane : {&b.x, &b.y, &b.z}) {
             for (int j = 0; j + 1 < size; ++j) copy_row(*plane, j + 1, *plane, j);
         }
@@ -61,7 +61,7 @@ void CompareRows(benchmark::State& state) {
 }
 BENCHMARK(CompareRows)->ArgName("size")->Arg(512)->Arg(4096);
 
-// With the means, the largest and the exact percentiles.
+// With the means, the largest angle and the exact percentiles.
 void Compare(benchmark::State& state) {
     const int size = static_cast<int>(state.range(0));
     const Pair pair(size);

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// decode_rules.h: how processors return DXT5nm, at 8 bits, and the least squared error that any block can have with
-// such a rule: an exhaustive search.
+// decode_rules.h: the rules by which processors return DXT5nm with 8 bits, and the least squared error that any block
+// can have with such a rule (by an exhaustive search).
 //
-// Where two codes are mixed, with k of n parts of the second one:
+// If two codes are mixed, with k of n parts of the second one:
 //
 //     AMD                 (64 - w) a + w b + 32 >> 6, w = 64 k / n rounded: 21 and 43 of green
 //     Intel               (256 - w) a + w b + 128 >> 8, w = 256 k / n rounded
 //     NVIDIA              green: 256 a + d / 4 + 128 + 80 d, divided by 256, d = b - a, both towards zero, a being the
-//     nearer code;
+//                         nearer code;
 //                         alpha: the nearest code
 //     Mesa and libsquish  (n - k) a + k b divided by n, rounded down
 //
-// What is known: the greens of AMD and NVIDIA are those that rgbcx encodes for (Geldreich, bc7enc_rdo, rgbcx.h:
-// bc1_approx_mode, interp_5_6_amd and interp_6_nv; measured by Castano, "GPU DXT Decompression", 2009); AMD's and
-// Intel's mixes, of green and alpha alike, are those of Giesen ("GPU BCn decoding", 2021), who found expressions that
-// match all three vendors to the last bit. What is assumed: NVIDIA's alpha. rgbcx has one BC4 for all processors,
-// sevenths and fifths rounded down, and no formula was found elsewhere; here it is the nearest code. Processors return
+// Known: AMD's and NVIDIA's greens are those that rgbcx encodes for (Geldreich, bc7enc_rdo, rgbcx.h: bc1_approx_mode,
+// interp_5_6_amd and interp_6_nv; measured by Castano, "GPU DXT Decompression", 2009). AMD's and Intel's mixes, the
+// same for green and alpha, are those of Giesen ("GPU BCn decoding", 2021), who found expressions that match all three
+// vendors to the last bit. Assumed: NVIDIA's alpha. rgbcx has one BC4 for all processors, with sevenths and fifths
+// rounded down, and no formula was found elsewhere. Here it is the nearest code. Processors return BC4 and BC5 with
+// more than 8 bits, so these rules apply to BC3.
 // BC4 and BC5 with more bits than 8: these rules are for BC3.
 
 #pragma once
@@ -46,7 +47,7 @@ inline int mix(Rule rule, int a, int b, int k, int n) {
 
 struct Palette {
     int count = 0;
-    int values[8];  // in the order of indices
+    int values[8];  // in the order of the indices
 };
 
 inline Palette alpha_palette(Rule rule, int e0, int e1) {
@@ -63,8 +64,8 @@ inline Palette green_palette(Rule rule, int c0, int c1) {  // 6 bits each
     return {4, {a, b, mix(rule, a, b, 1, 3), mix(rule, a, b, 2, 3)}};
 }
 
-// The squared errors of a block's 16 texels, in codes: as it is written, and with the nearest values (or any number
-// from `limit` on).
+// The squared errors of a block's 16 texels, in codes: with the indices as written, and with the nearest values (or any
+// number that is at least `limit`, once it is reached).
 inline double written_error(const Palette& palette, std::uint64_t indices, int bits, const float texels[16]) {
     double sum = 0;
     for (int k = 0; k < 16; ++k) {

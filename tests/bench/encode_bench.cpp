@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// encode_bench: speed and quality of the DXT5nm encoders, ours and others', map by map.
+// encode_bench: speed and quality of the DXT5nm encoders, our own and others, for each map.
 //
 //     encode_bench [MAP ... | DIRECTORY ... | ENCODER.so ...]
 //
@@ -7,15 +7,14 @@
 //
 //     extern "C" void encode(const uint8_t* rgba, int width, int height, size_t pitch, uint8_t* blocks)
 //
-// and gets R = 255, G = y, B = 0, A = x in 8 bits. libsquish is always beside ours. One thread, processor time, the
-// median of several runs; our encoders read strips of float rows that stay in the second-level cache. Errors are those
-// of our decode, divided by those of `best`, which is the optimum of the squared error in both channels. Maps are cut
-// to whole blocks. "pooled" is the sum over the maps divided by the sum over the optima.
+// and gets R = 255, G = y, B = 0, A = x in 8 bits. libsquish is always compared with our encoders. Times are processor
+// time on one thread, the median of several runs. Our encoders read strips of float rows that stay in the second-level
+// cache. Errors are those of our decoder, divided by those of `best`, which is the optimum of the squared error in both
+// channels. Maps are cut to whole blocks. "pooled" is the sum over the maps divided by the sum over the optima.
 
-//
-// Then, under the rules by which processors return 8 bits (decode_rules.h), the errors on a sample of blocks divided by
-// the least that any blocks of DXT5nm have under the same rule; how two threads scale, beside a loop that only counts;
-// and the pooled figures as RESULTS.md shows them.
+// Then it prints the errors under the rules by which processors return 8 bits (decode_rules.h), on a sample of blocks,
+// divided by the least error that any blocks of DXT5nm have under the same rule. It also prints how two threads scale,
+// compared with a loop that only counts, and the pooled figures in the form of RESULTS.md.
 
 #include <algorithm>
 #include <chrono>
@@ -54,7 +53,7 @@ struct Map {
     std::string name;
     tex::NormalMap normals;
     int width, height;                // whole blocks
-    std::vector<std::uint8_t> rgba8;  // for the others
+    std::vector<std::uint8_t> rgba8;  // for the other encoders
     [[nodiscard]] int blocks() const { return width / 4 * (height / 4); }
 };
 
@@ -63,7 +62,7 @@ struct Quality {
     double mean = 0, most_999 = 0, largest = 0;  // angles in degrees
 };
 
-// Sums of squared errors under each rule.
+// The sums of squared errors under each rule.
 struct RuleErrors {
     double green[4] = {}, alpha[4] = {};
 };
@@ -109,12 +108,12 @@ Quality measure(const Map& map, const std::vector<std::byte>& blocks) {
     return q;
 }
 
-// A sample of about kSampled blocks of the map: calls visit(block, y, x) with the texels in codes.
+// Takes a sample of about kSampled blocks of the map: calls visit(block, y, x) with the texels in codes.
 constexpr int kSampled = 24;
 template <class Visit>
 void for_sampled_blocks(const Map& map, Visit visit) {
     const int across = map.width / 4;
-    const int step = std::max(1, map.blocks() / kSampled) | 1;  // odd: not one column of blocks only
+    const int step = std::max(1, map.blocks() / kSampled) | 1;  // odd, so that blocks come from several columns
     for (int block = step / 2; block < map.blocks(); block += step) {
         float x[16], y[16];
         for (int k = 0; k < 16; ++k) {
@@ -149,7 +148,7 @@ double median(std::vector<double> values) {
     return values[values.size() / 2];
 }
 
-// Ours: rows of blocks, each several times in a row, so that its texels are in the cache.
+// Our encoders: rows of blocks, each several times in a row, so that its texels are in the cache.
 double encode_ours(const Map& map, tex::Effort effort, std::vector<std::byte>& blocks,
                    tex::Metric metric = tex::Metric::component) {
     const int repeats = effort == tex::Effort::best ? 1 : effort == tex::Effort::normal ? 2 : 8;
@@ -199,7 +198,7 @@ void add_map(const fs::path& path, std::vector<Map>& maps) {
         map.name = path.stem().string();
     else
         map.name = path.parent_path().filename().string() + "/" + path.stem().string();
-    // x and y as stored: unpack() normalises, so they are taken from the picture.
+    // x and y as stored. They come from the picture because unpack() normalises.
     for (int j = 0; j < map.height; ++j) {
         for (int i = 0; i < map.width; ++i) {
             map.normals.x.at(i, j) = 2.0f * image->planes[0].at(i, j) - 1.0f;
@@ -279,7 +278,7 @@ std::vector<Encoder> our_encoders() {
     return encoders;
 }
 
-// Seconds on the clock for `work` on each of `threads` threads at once: the least of several runs.
+// Wall-clock seconds for `work` on each of `threads` threads at once: the minimum of several runs.
 template <class Work>
 double wall_seconds(int threads, Work work) {
     double least = HUGE_VAL;
@@ -293,7 +292,7 @@ double wall_seconds(int threads, Work work) {
     return least;
 }
 
-// How much more two threads do than one, and how much more of what only counts.
+// How much more two threads do than one, for encoding and for a loop that only counts.
 void print_threads(const Map& map) {
     const auto count = [] {
         for (std::uint64_t k = 0; k < 200'000'000; ++k) asm volatile("" : "+r"(k));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// height_maps.h: fractal height maps as files, and the least that reading them costs.
+// height_maps.h: fractal height maps as files, and the minimum cost of reading them.
 
 #pragma once
 
@@ -21,11 +21,11 @@
 
 namespace bench {
 
-// Texels after which the heights repeat: farther than the 32 KB that deflate looks back, as in a photograph, also in
-// rows of the smallest maps.
+// The period of the heights, in texels. It is longer than the 32 KB that deflate looks back, as in a photograph, even
+// in rows of the smallest maps.
 inline constexpr int kPeriod = 4096;
 
-// Of each octave to the one before: 8-bit files of 4096x4096 have 3 MB, 16-bit ones 23 MB.
+// The ratio of each octave to the previous one. 8-bit files of 4096x4096 take 3 MB, 16-bit ones 23 MB.
 inline constexpr double kRoughness = 0.65;
 
 // Nine octaves of smooth noise, in [0, 1]; tiles at multiples of kPeriod.
@@ -95,7 +95,7 @@ inline void write_png(const std::string& path, int width, int height_of, int bit
     std::fclose(file);
 }
 
-// Half.
+// In half precision.
 inline void write_exr(const std::string& path, int width, int height_of,
                       Imf::Compression compression = Imf::ZIP_COMPRESSION) {
     Imf::Header header(width, height_of);
@@ -112,7 +112,7 @@ inline void write_exr(const std::string& path, int width, int height_of,
     }
 }
 
-// What reading alone costs: libpng decodes and the rows are thrown away.
+// The cost of reading alone: libpng decodes, and the rows are discarded.
 inline int decode_png(const char* path) {
     std::FILE* file = std::fopen(path, "rb");
     if (file == nullptr) return 1;
@@ -130,7 +130,7 @@ inline int decode_png(const char* path) {
     return 0;
 }
 
-// OpenEXR reads the whole picture as it is stored, with its own threads.
+// OpenEXR reads the whole picture in its stored type, with its own threads.
 inline int decode_exr(const char* path, int threads) {
     Imf::setGlobalThreadCount(threads);
     Imf::InputFile file(path, threads);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texels of the base level per second to a complete chain, on one thread. MipCopy moves as many bytes: the
-// base level is read, 12 bytes for each texel, and a third as many are written.
+// Texels of the base level per second for building a complete chain, on one thread. MipCopy moves as many bytes: it
+// reads the base level, 12 bytes for each texel, and writes a third as many.
 
 #include <string>
 #include <utility>
@@ -38,7 +38,7 @@ void MipCopy(benchmark::State& state) {
 }
 BENCHMARK(MipCopy)->ArgName("size")->Arg(512)->Arg(4095)->Arg(4096);
 
-// The kernel of the box filter alone: one level.
+// The kernel of the box filter alone, for one level.
 void MipRows(benchmark::State& state) {
     const int size = static_cast<int>(state.range(0));
     const NormalMap base = tex::fields::noise_normals({size, size});

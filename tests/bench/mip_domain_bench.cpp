@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// mip_domain_bench: what the levels of either mip domain miss. Prints, for each level of a pattern of waves, the angles
-// in degrees between the normals that build_mip_chain() makes and those of the slopes averaged over what a texel
-// covers, supersampled.
+// mip_domain_bench: the errors of the levels in either mip domain. For each level of a pattern of waves, it prints the
+// angles in degrees between the normals that build_mip_chain() makes and the reference, which is the supersampled
+// average of the slopes over the area of a texel.
 
 #include <algorithm>
 #include <array>
@@ -24,13 +24,13 @@ using tex::reference::Grid;
 using tex::reference::Vector;
 
 constexpr int kWaveSize = 256;
-constexpr int kSamples = 8;  // of the truth along a side of a texel of the base level
+constexpr int kSamples = 8;  // of the reference, along a side of a texel of the base level
 
 // The slope of three crossing waves 11 to 37 texels long, less than 60 degrees steep. x runs to the right and y up,
 // both from 0 to 1.
 Vector wave_slope(double x, double y) {
     struct Wave {
-        int across, along;  // crests over the map: it tiles
+        int across, along;  // crests over the map; whole numbers, so it tiles
         double steepness;
     };
     constexpr Wave kWaves[] = {{7, 0, 0.6}, {5, 12, 0.6}, {-19, 14, 0.5}};
@@ -44,7 +44,7 @@ Vector wave_slope(double x, double y) {
     return slope;
 }
 
-// The normals of the heights that a level's texels cover: slopes averaged over the texel.
+// The reference normals of a level's texels, from slopes averaged over each texel.
 std::vector<Grid<Vector>> wave_truth() {
     Grid<Vector> slopes(Extent{kWaveSize, kWaveSize});
     for (int j = 0; j < kWaveSize * kSamples; ++j) {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// pipeline_bench: whole processes, from file to file, beside the least that reading the file costs.
+// pipeline_bench: measures whole processes, from file to file, against the minimum cost of reading the file.
 //
 //     ninja -C build/release pipeline_bench bake-normals && build/release/pipeline_bench [--runs N] [--large] [FOLDER]
 //
-// Prints tables in Markdown. Each row is the median of N (at least 7) pairs of runs that alternate, the command and its
-// baseline; ratios are those of the pairs. The commands are those beside this program. Height maps go to FOLDER
-// (default /tmp/pipeline_bench) and stay there. --large adds the memory of 16384x16384 and 65536x4096 texels.
+// Prints tables in Markdown. Each row is the median of N (at least 7) pairs of runs. The runs of a pair are the command
+// and its baseline, in turn; ratios are those of the pairs. The commands are those in the folder of this program.
+// Height maps are written to FOLDER (default /tmp/pipeline_bench) and kept there. --large adds the memory of
+// 16384x16384 and 65536x4096 texels.
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -30,11 +31,11 @@ std::string beside(const std::string& name) { return std::filesystem::path(own_p
 struct Bench {
     int runs = 7;
     bool large = false;
-    bool only_makes = false;  // the files that rows need, and nothing else
+    bool only_makes = false;  // only makes the files that rows need
     std::string folder = "/tmp/pipeline_bench";
 
     [[nodiscard]] std::string file(const std::string& name) const { return folder + "/" + name; }
-    // Makes a file unless it is there.
+    // Makes a file unless it exists.
     std::string need(const std::string& name, const std::function<void(const std::string&)>& make) const {
         const std::string path = file(name);
         if (!std::filesystem::exists(path)) {
@@ -44,13 +45,13 @@ struct Bench {
         return path;
     }
 
-    // One row: command against baseline; `scale` is what one baseline counts.
+    // One row: a command and its baseline. the times of the baseline are multiplied by `scale`.
     void row(const std::string& work, const Command& command, const Command& baseline, double target,
              double scale = 1.0) const {
         if (only_makes) return;
         std::vector<Measured> ours, theirs;
         std::vector<double> ratios;
-        bench::run(command);  // caches, and outputs to replace
+        bench::run(command);  // fills caches, and makes the outputs that later runs replace
         for (int k = 0; k < runs; ++k) {
             theirs.push_back(bench::run(baseline));
             ours.push_back(bench::run(command));
@@ -87,7 +88,7 @@ Command bake(const std::string& input, const std::string& output, const Command&
     return command;
 }
 
-// Keeps `threads` cores busy with arithmetic and nothing else: what two threads can gain here at best.
+// Keeps `threads` cores busy with arithmetic only. This shows the most that two threads can gain on this machine.
 int spin(int threads) {
     const auto work = [threads] {
         volatile std::uint64_t sink = 0;
@@ -149,7 +150,8 @@ void print_many(const Bench& b) {
         }
         Command drop = {own_path(), "--decode-png"};
         drop.insert(drop.end(), files.begin(), files.end());
-        // Making a thousand files takes a disk's file system as long as all else takes; the baseline makes none.
+        // On a disk's file system, creating a thousand files takes as long as everything else; the baseline creates
+        // none.
         const std::string memory = "/dev/shm/pipeline_bench";
         for (const std::string& out : {memory, b.file("many_out")}) {
             std::filesystem::create_directories(out);
@@ -173,8 +175,8 @@ void print_many(const Bench& b) {
     }
 }
 
-// Nothing to inflate: encoding is what takes time. Outputs do not exist before: to free the pages of one that is
-// replaced takes one thread, and as long as to encode a tenth of it.
+// The input needs no inflating, so encoding takes most of the time. The outputs do not exist beforehand: freeing the
+// pages of a replaced output runs on one thread and takes as long as encoding a tenth of it.
 void print_scaling_of(const Bench& b, int size) {
     const std::string raw = b.need(std::to_string(size) + "_raw.exr",
                                    [&](const std::string& p) { bench::write_exr(p, size, size, Imf::NO_COMPRESSION); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// process.h: runs programs and measures them, for benches of whole processes.
+// process.h: runs programs and measures them, for benchmarks of whole processes.
 
 #pragma once
 
@@ -25,7 +25,7 @@ struct Measured {
     double memory = 0.0;  // MB, the peak of the largest process
 };
 
-// Runs a program to its end. A program that fails ends the bench.
+// Runs a program to its end. If the program fails, the benchmark ends.
 inline Measured run(const std::vector<std::string>& command) {
     std::vector<char*> argv;
     for (const std::string& word : command) argv.push_back(const_cast<char*>(word.c_str()));
@@ -59,7 +59,7 @@ inline double median(std::vector<double> values) {
     return *middle;
 }
 
-// The median of each figure apart.
+// The median of each figure separately.
 inline Measured median_of(const std::vector<Measured>& runs) {
     const auto of = [&](double Measured::*figure) {
         std::vector<double> values;
@@ -69,8 +69,8 @@ inline Measured median_of(const std::vector<Measured>& runs) {
     return {of(&Measured::wall), of(&Measured::user), of(&Measured::system), of(&Measured::memory)};
 }
 
-// Runs body() in a process of its own: what it holds would otherwise count as the memory of all that are started later.
-// False where it failed.
+// Runs body() in its own process. Otherwise its memory would also count as memory of all programs started later.
+// Returns false if it failed.
 template <class Body>
 bool run_apart(const Body& body) {
     const pid_t child = fork();

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// repack_bench: whole processes that read normal maps, from file to file: mip-, pack- and unpack-normals.
+// repack_bench: measures whole processes that read normal maps, from file to file: mip-, pack- and unpack-normals.
 //
 //     ninja -C build/release repack_bench bake-normals mip-normals pack-normals unpack-normals &&
 //     build/release/repack_bench [--runs N] [FOLDER]
 //
-// Prints a table in Markdown: medians of N (at least 7) pairs of runs that alternate, the command and its baseline;
-// ratios are those of the pairs. The baseline of PNG is libpng, which decodes the input and throws the rows away;
-// reading DDS costs nothing beside that. Files go to FOLDER (default /tmp/pipeline_bench, where pipeline_bench has the
-// same height map) and stay there.
+// Prints a table in Markdown: medians of N (at least 7) pairs of runs. The runs of a pair are the command and its
+// baseline, in turn; ratios are those of the pairs. The baseline of PNG is libpng, which decodes the input and discards
+// the rows; compared with that, reading DDS costs nothing. Files are written to FOLDER (default /tmp/pipeline_bench,
+// where pipeline_bench has the same height map) and kept there.
 
 #include <cstring>
 #include <filesystem>
@@ -28,7 +28,7 @@ std::string own_path() { return std::filesystem::read_symlink("/proc/self/exe").
 std::string beside(const std::string& name) { return std::filesystem::path(own_path()).parent_path() / name; }
 std::string file(const std::string& name) { return folder + "/" + name; }
 
-// The height map as normals, made once.
+// Converts the height map to normals once.
 std::string need(const std::string& name, const Command& options) {
     const std::string heights = file("4096_8.png");
     if (!std::filesystem::exists(heights)) bench::run_apart([&] { bench::write_png(heights, 4096, 4096, 8); });
@@ -46,7 +46,7 @@ void row(const std::string& work, const std::string& program, const std::string&
     const bool has_baseline = input.ends_with(".png");
     std::vector<Measured> ours, theirs;
     std::vector<double> ratios;
-    bench::run(command);  // caches, and outputs to replace
+    bench::run(command);  // fills caches, and makes the outputs that later runs replace
     for (int k = 0; k < runs; ++k) {
         if (has_baseline) theirs.push_back(bench::run({own_path(), "--decode-png", input}));
         ours.push_back(bench::run(command));

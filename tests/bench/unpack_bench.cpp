@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Texels per second from a texture of one level to normals, on one thread. UnpackCopy moves as many bytes as the result
-// has, 12 for each texel, between planes that were touched before.
+// has, 12 for each texel, between planes whose pages have already been touched.
 
 #include <string>
 #include <utility>

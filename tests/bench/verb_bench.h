@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// verb_bench.h: what the benchmarks of verbs share. Each registers its benchmarks with Google Benchmark; verb_main.cpp
-// runs them and prints one table: a row for each benchmark, a column for each size, texels per second, and the part of
-// what copying reaches at that size. So each names its argument "size" and has a benchmark whose name ends with "Copy",
-// which moves as many bytes between planes that were touched before.
+// verb_bench.h: the code that the benchmarks of verbs share. Each program registers its benchmarks with Google
+// Benchmark. verb_main.cpp runs them and prints one table. The table has a row for each benchmark and a column for each
+// size, and shows texels per second and the ratio to copying at that size. So each program names its argument "size"
+// and has a benchmark whose name ends with "Copy", which moves as many bytes between planes whose pages have already
+// been touched.
 
 #pragma once
 

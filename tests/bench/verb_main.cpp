@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs the benchmarks of a verb and prints them as a table in Markdown (verb_bench.h). Seven repetitions of each, in
-// random order, so that a busy machine slows all of them alike; the figures are the medians. Options of Google
-// Benchmark are taken: --benchmark_filter=Bake/ runs some.
+// Runs the benchmarks of a verb and prints them as a table in Markdown (verb_bench.h). Each benchmark has seven
+// repetitions in random order, so that a busy machine slows all of them alike. The figures are the medians. Options of
+// Google Benchmark are accepted: --benchmark_filter=Bake/ runs some of them.
 //
-// Memory that was freed is kept for the next iteration. Otherwise a benchmark of whole images measures page faults: the
-// system takes longer to clear a fresh page than a kernel to fill it.
+// Freed memory is kept for the next iteration. Otherwise a benchmark of whole images would measure page faults: the
+// system takes longer to clear a fresh page than a kernel takes to fill it.
 
 #include <algorithm>
 #include <cstdint>
@@ -28,11 +28,11 @@ public:
     void Finalize() override;
 
 private:
-    static constexpr int kNoSize = 0;     // on rows that stay in the cache
+    static constexpr int kNoSize = 0;     // for rows that stay in the cache
     using Sizes = std::map<int, double>;  // texels per second
     struct Row {
         std::string name;
-        std::int64_t order = 0;  // in which it is registered
+        std::int64_t order = 0;  // its place in the order of registration
         Sizes speeds;
     };
 
@@ -99,7 +99,7 @@ void Table::Finalize() {
 int main(int argc, char** argv) {
     mallopt(M_MMAP_MAX, 0);
     mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
-    // What the command line says comes later, and wins.
+    // The options on the command line come later and override these.
     std::vector<std::string> words = {argv[0], "--benchmark_repetitions=7",
                                       "--benchmark_enable_random_interleaving=true", "--benchmark_min_time=0.1"};
     words.insert(words.end(), argv + 1, argv + argc);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that every command must survive: missing, damaged, lying, and outputs that cannot be written. The documented
-// exit code, one sentence, nothing half-written.
+// Files that every command must survive: missing, damaged or lying files, and outputs that cannot be written. The
+// command must exit with the documented code, print one sentence, and leave nothing half-written.
 
 #include <algorithm>
 #include <map>
@@ -22,7 +22,7 @@ std::string big_endian(std::uint32_t value) {
     return bytes;
 }
 
-// Those that write an output for each input.
+// The commands that write an output for each input.
 std::vector<std::string> writers() {
     std::vector<std::string> names = commands();
     std::erase_if(names, [](const std::string& name) { return name == "check-normals" || name == "compare-normals"; });
@@ -42,7 +42,7 @@ protected:
         }
     }
 
-    // What the command needs beside inputs and outputs.
+    // The arguments that the command needs besides inputs and outputs.
     [[nodiscard]] std::vector<std::string> needed() const {
         if (GetParam() == "scale-normals") return {"--scale", "2"};
         if (GetParam() == "blend-normals") return {"--detail", "in/whole.png"};
@@ -61,7 +61,7 @@ protected:
         scratch_.write("in/" + name, bytes);
         names_.push_back("in/" + name);
     }
-    // A file of `kind` with `bytes` at `offset`.
+    // A file of type `kind` with `bytes` at `offset`.
     std::string patched(const std::string& kind, std::size_t offset, const std::string& bytes) {
         return std::string(whole_[kind]).replace(offset, bytes.size(), bytes);
     }
@@ -72,7 +72,7 @@ protected:
         add("huge.dds", patched("dds", 12, many_little + many_little));  // 100000x100000
         add("zero.ktx2", patched("ktx2", 20, zero));
         add("huge.ktx2", patched("ktx2", 20, many_little + many_little));
-        // The checksum of the header is left wrong: a reader that looks at sizes first must refuse as well.
+        // The checksum of the header stays wrong: a reader that checks sizes first must refuse the file, too.
         add("zero.png", patched("png", 16, zero));
         add("huge.png", patched("png", 16, many + many));
         add("empty.dds", "");
@@ -111,7 +111,7 @@ TEST_P(EveryBadInput, IsRefusedWithASentenceAndAnExitCode) {
     EXPECT_TRUE(std::filesystem::is_empty(scratch_.path("out")));
 }
 
-// Cut at every power of two: an error, or the levels that are whole.
+// Cuts the file at every power of two. The command must report an error, or read the complete levels.
 TEST_P(EveryBadInput, TruncatedFilesAreRefusedOrReadAsFarAsTheyGo) {
     for (const auto& [kind, bytes] : whole_) {
         for (std::size_t size = 1; size < bytes.size(); size *= 2)
@@ -129,7 +129,7 @@ TEST_P(EveryBadInput, TruncatedFilesAreRefusedOrReadAsFarAsTheyGo) {
         if (line.contains("error")) {
             EXPECT_TRUE(line["error"]["code"] == "bad-data" || line["error"]["code"] == "unsupported") << text;
         } else {
-            EXPECT_TRUE(line["input"].get<std::string>().ends_with(".dds")) << text;  // a base level and no more
+            EXPECT_TRUE(line["input"].get<std::string>().ends_with(".dds")) << text;  // only a base level
             written.insert(line["output"].get<std::string>().substr(4));
         }
     }
@@ -150,7 +150,7 @@ TEST_P(EveryBadInput, OutputsThatCannotBeWrittenAreAnError) {
         EXPECT_TRUE(ran.err.starts_with(GetParam() + ": error: " + target + ": ")) << ran.err;
         EXPECT_EQ(lines_of(ran.err).size(), 1u) << ran.err;
     }
-    // A limit on the size of files is the nearest to a full disk that needs no mount.
+    // A limit on the size of files is the closest to a full disk that is possible without a mount.
     std::string line = "ulimit -f 1; " + GetParam() + " large.png -o old.png --no-sync --quiet";
     for (const std::string& argument : needed()) line += " " + argument;
     const Ran full = shell(scratch_, line);

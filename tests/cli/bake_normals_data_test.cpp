@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Height maps that nobody here made.
+// Height maps by other authors.
 
 #include <algorithm>
 
@@ -12,7 +12,7 @@ namespace {
 
 const std::filesystem::path kHeights = TEX_SOURCE_DIR "/../shared/data/height";
 
-// Sanitizers make a program ten times slower; what they look for does not depend on the kind of output.
+// Sanitizers make a program ten times slower. The errors that they find do not depend on the output format.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 const std::vector<std::string> kOutputs = {"x.dds"};
 #else

@@ -98,7 +98,7 @@ TEST_F(BakeNormals, StrengthsAreOneOfThree) {
     refuses({"--height-range", "2"}, "--height-range needs --size");
     refuses({"--height-range", "2", "--size", "0"}, "--size: 0 is not greater than 0");
     refuses({"--height-range", "2", "--size", "2x"}, "--size: '' is not a number");
-    // 512 texels that are 64 wide: 8 texels for each unit.
+    // 512 texels that cover 64 units: 8 texels for each unit.
     const std::string direct = bytes_of({"bricks.png", "--bumpiness", "8"});
     EXPECT_TRUE(bytes_of({"bricks.png", "--height-range", "1", "--size", "64"}) == direct);
     EXPECT_TRUE(bytes_of({"bricks.png", "--height-range", "1", "--size", "64x64"}) == direct);
@@ -159,7 +159,7 @@ TEST_F(BakeNormals, OptionsChangeTheResult) {
     EXPECT_TRUE(bytes_of({"bricks.png", "--wrap", "repeat,repeat"}) == plain);
 }
 
-// Nothing is to fill here: what holds all heights gives the bytes of what holds a few rows.
+// There is nothing to fill here, so holding all heights must give the same bytes as holding a few rows.
 TEST_F(BakeNormals, HoldingAllRowsChangesNoByte) {
     const auto baked = [&](const std::string& input, const std::string& output, std::vector<std::string> arguments) {
         arguments.insert(arguments.begin(), {input, "-o", output, "--effort", "fast"});
@@ -179,7 +179,7 @@ TEST_F(BakeNormals, HoldingAllRowsChangesNoByte) {
         expect_same("waves.png", name, {"--bumpiness", "9"});
         expect_same(name, "again.dds", {"--channel", "g"});
     }
-    // Pictures are written from the top; where heights repeat, the last rows are decoded first.
+    // Pictures are written from the top. If heights repeat, the last rows are decoded first.
     for (const std::string name : {"ramp.exr", "ramp.tif"}) EXPECT_EQ(bake({"ramp.png", "-o", name}).code, 0);
     for (const std::string input : {"ramp.png", "ramp.exr", "ramp.tif"}) {
         for (const std::string output : {"y.png", "y.exr"}) {
@@ -228,7 +228,7 @@ TEST_F(BakeNormals, ThreadsDoNotChangeTheBytes) {
 
 TEST_F(BakeNormals, OneThreadMeansNoOther) {
     if (!is_installed("strace")) GTEST_SKIP() << "no strace";
-    // A sanitizer that looks for leaks does so from a thread of its own, and not under strace.
+    // The leak sanitizer uses its own thread for its check, and does not work under strace.
     const Ran ran = shell(scratch_,
                           "ASAN_OPTIONS=detect_leaks=0 strace -f -qq -e trace=clone,clone3,fork,vfork "
                           "bake-normals bricks.png -o x.dds --threads 1");
@@ -256,7 +256,7 @@ TEST_F(BakeNormals, ColourSpacesAreCheckedBeforeAnyWork) {
     Setting configured;
     configured.environment = {"OCIO=" + scratch_.path("missing.ocio")};
     EXPECT_EQ(bake({"ramp.png", "-o", "x.dds", "--color-space", "sRGB"}, configured).code, 3);
-    EXPECT_EQ(bake({"ramp.png", "-o", "x.dds"}, configured).code, 0);  // $OCIO means nothing to raw data
+    EXPECT_EQ(bake({"ramp.png", "-o", "x.dds"}, configured).code, 0);  // $OCIO does not affect raw data
 }
 
 TEST_F(BakeNormals, TheColourConfigurationIsADependency) {
@@ -279,7 +279,7 @@ TEST_F(BakeNormals, TheColourConfigurationIsADependency) {
 
 TEST_F(BakeNormals, GuessedHeightsAreToldOnceWithCounts) {
     ASSERT_EQ(bake({"bricks.png", "-o", "colour.png", "--bumpiness", "12"}).code,
-              0);  // a picture whose channels differ
+              0);  // a picture with different channels
     std::filesystem::copy_file(scratch_.path("colour.png"), scratch_.path("more.png"));
     const Ran ran = bake({"colour.png", "bricks.png", "more.png", "--out-dir", "out"});
     EXPECT_EQ(ran.code, 0);
@@ -288,13 +288,14 @@ TEST_F(BakeNormals, GuessedHeightsAreToldOnceWithCounts) {
     EXPECT_NE(ran.err.find("of 2 files"), std::string::npos) << ran.err;
     EXPECT_EQ(bake({"colour.png", "-o", "x.dds", "--quiet"}).err, "");
     EXPECT_EQ(bake({"colour.png", "-o", "x.dds", "--channel", "luma"}).err, "");
-    const Ran missing = bake({"bricks.png", "-o", "z.dds", "--channel", "a"});  // a matter of the file
+    const Ran missing = bake({"bricks.png", "-o", "z.dds", "--channel", "a"});  // an error of the file
     EXPECT_EQ(missing.code, 4);
     EXPECT_EQ(lines_of(missing.err).size(), 1u) << missing.err;
     EXPECT_FALSE(scratch_.has("z.dds"));
 }
 
-// Textures of alpha alone, as engines keep masks and heights: their one channel is the height, and no normal map.
+// Textures with alpha alone, in which engines keep masks and heights: their one channel is the height, not a normal
+// map.
 TEST_F(BakeNormals, AlphaAloneIsAHeight) {
     ASSERT_EQ(bake({"ramp.png", "-o", "rgba.dds", "--format", "rgba8", "--mips", "none"}).code, 0);
     const auto heights = read_image(scratch_.path("ramp.png"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// samples/broken: every rule has a file that makes this rule fire, and no other.
+// samples/broken: every rule has a file that triggers this rule and no other.
 
 #include <algorithm>
 #include <filesystem>
@@ -30,7 +30,7 @@ protected:
             if (name != "options.txt") names_.push_back(name);
         }
     }
-    // The report on a file, with the options that its rule needs.
+    // Checks a file with the options that its rule needs.
     Ran check(const std::string& id, const std::string& name) {
         return shell(scratch_, "cd broken && check-normals --json " + options_[id] + " " + name);
     }
@@ -61,8 +61,8 @@ std::string with(std::string text, const std::string& word, const std::string& b
     return text;
 }
 
-// The command that a finding suggests runs as it is printed (words that stand for other files and numbers filled in),
-// and its output no longer has the finding.
+// Runs the command that a finding suggests, as printed (with its placeholders for other files and numbers filled in).
+// Its output must no longer have the finding.
 TEST_F(CheckNormalsBroken, EveryFixRepairsItsFinding) {
     ASSERT_EQ(run(scratch_, "bake-normals", {"waves.png", "-o", "source.exr", "--bumpiness", "8", "--no-sync"}).code,
               0);

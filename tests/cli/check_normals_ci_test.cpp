@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files of samples/ci, run as far as that goes without their servers: the commands that they hold, on files that
-// are right and wrong.
+// Runs the commands in the files of samples/ci, as far as possible without their servers, on right and wrong files.
 
 #include <fstream>
 #include <iterator>

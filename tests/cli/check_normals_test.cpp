@@ -76,7 +76,7 @@ TEST_F(CheckNormals, ConfigurationIsReadAndTheCommandLineWins) {
         EXPECT_NE(ran.err.find("bad.toml: line "), std::string::npos) << ran.err;
     }
     EXPECT_EQ(check({"good.dds", "--config", "gone.toml"}).code, 3);
-    // By id in one place and by name in the other: the command line's word holds.
+    // By id in one place and by name in the other: the command line overrides the file.
     scratch_.write("off.toml", "require = [\"y=up\"]\ndisable = [\"wrong-y\"]\n");
     EXPECT_EQ(check({"down.dds", "--config", "off.toml"}).code, 0);
     EXPECT_EQ(check({"down.dds", "--config", "off.toml", "--enable", "N401"}).code, 1);
@@ -137,8 +137,8 @@ TEST_F(CheckNormals, JUnitCountsAndEscapes) {
     EXPECT_NE(xml.find("name=\"a&lt;&amp;&quot;b.dds\""), std::string::npos);
 }
 
-// SARIF by a closed schema after the OASIS standard, JUnit's XML by one of what its readers take. The files are broken
-// in every way that a rule knows, missing, and named so that names must be escaped.
+// Checks SARIF with a closed schema based on the OASIS standard, and JUnit's XML with a schema of the elements that its
+// readers accept. The files are broken in every way that a rule knows, or missing, or have names that must be escaped.
 TEST_F(CheckNormals, DocumentsFollowTheirSchemas) {
     ASSERT_EQ(
         shell(scratch_, "cp " TEX_SOURCE_DIR "/samples/broken/N* . && cp N401-wrong-y.png $'a \\xff<&\">%.png'").code,
@@ -215,7 +215,7 @@ TEST_F(CheckNormals, DocumentsNeverReplaceWhatIsRead) {
     EXPECT_EQ(check({"good.dds", "--sarif", "/dev/null", "--junit", "/dev/null"}).code, 0);
 }
 
-// What was accepted stays accepted where the file is renewed in its place.
+// Accepted findings stay accepted if the baseline is rewritten in place.
 TEST_F(CheckNormals, ABaselineIsRenewedWithAllFindings) {
     ASSERT_EQ(check({"down.dds", "--require", "y=up", "--baseline-write", "known.json"}).code, 0);
     const std::string before = scratch_.read("known.json");

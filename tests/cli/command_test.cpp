@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every command has: help, version, completions, and a man page that tells of the same options.
+// What every command has: help, version, completions, and a man page that lists the same options.
 
 #include <algorithm>
 #include <fstream>
@@ -38,7 +38,7 @@ TEST_P(EveryCommand, HelpGoesToStandardOutputIn80Columns) {
     }
     EXPECT_TRUE(examples);
     EXPECT_NE(help.out.find("Exit status:"), std::string::npos);
-    // Asking for help beside a mistake is a reason to help.
+    // --help works even if another option is wrong.
     EXPECT_EQ(run(scratch_, GetParam(), {"--threads", "x", "--help"}).out, help.out);
     EXPECT_EQ(run(scratch_, GetParam(), {"--nonsense", "--help"}).out, help.out);
 }
@@ -117,7 +117,7 @@ TEST_P(EveryCommand, ManPageHasTheOptionsOfTheTableInItsOrder) {
         const std::size_t tab = line.find('\t');
         in_table.emplace_back(line.substr(0, tab), line[tab + 1] != '\t');
     }
-    std::stable_partition(in_table.begin(), in_table.end(), [](const auto& row) {  // as the help has them
+    std::stable_partition(in_table.begin(), in_table.end(), [](const auto& row) {  // in the order of the help
         return row.first != "-h,--help" && row.first != "--version";
     });
     EXPECT_EQ(in_page, in_table);

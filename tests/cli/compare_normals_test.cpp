@@ -49,7 +49,7 @@ TEST_F(CompareNormals, ShowsProgressWhereItIsAskedFor) {
     EXPECT_EQ(with({"--progress", "always", "--quiet"}).err, "");
 }
 
-// As all other commands: a file of four channels is what its texels show.
+// As in all other commands, the layout of a file with four channels is guessed from its texels.
 TEST_F(CompareNormals, LayoutsThatFilesDoNotNameAreToldFromTheTexels) {
     make("ag.dds", {"--format", "ag8"});
     make("ag.png", {"--format", "ag8"});
@@ -105,7 +105,7 @@ TEST_F(CompareNormals, HeatMapHasTheMapAndALegend) {
 
 TEST_F(CompareNormals, PicturesAndPagesNeverReplaceWhatIsCompared) {
     const std::string before = scratch_.read("up.exr");
-    scratch_.write("copy.png", before);  // the content decides how it is read
+    scratch_.write("copy.png", before);  // the content, not the extension, decides how it is read
     std::filesystem::create_symlink("copy.png", scratch_.path("link.png"));
     const auto refuses = [&](const std::vector<std::string>& more, const std::string& reason) {
         std::vector<std::string> arguments = {"up.exr", "copy.png"};

@@ -16,7 +16,7 @@ TEST(Depfile, WhatHasNoNameIsLeftOut) {
     EXPECT_EQ(*depfile_text({{{"a.dds"}, {"-"}}, {{"-"}, {"a.png"}}}), "a.dds:\n");
 }
 
-// They were left out in silence, and what was made from them was never made again.
+// Once, such names were silently left out, and outputs made from those files were never rebuilt.
 TEST(Depfile, NamesThatItCannotHoldAreRefused) {
     const auto text = depfile_text({{{"a.dds"}, {"a.png", "two\nlines.ocio"}}});
     ASSERT_FALSE(text);
@@ -36,8 +36,8 @@ TEST(Depfile, NamesThatItCannotHoldAreRefused) {
     EXPECT_EQ(run(scratch, "bake-normals", {"two\nlines.png", "-o", "plain.dds"}).code, 0);
 }
 
-// Names that Make would take for something else, all of them at once: Make must build the output after the
-// input was touched, and leave it alone otherwise.
+// All names that Make would misread, at once. Make must rebuild the output after the input was touched, and otherwise
+// leave it alone.
 TEST(Depfile, MakeReadsEveryName) {
     for (const std::string name : {"plain", "with blank", "dollar$", "hash#", "colon:", "back\\slash", "back\\ blank",
                                    "per%cent~", "trailing\\", "Gel\xc3\xa4nde", "quote's", "amper&sand"}) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whatever fails while a command runs, at whatever moment: each output is the old file or the new one, whole, and
-// nothing else stays behind. The commands run under tests/preload/faults.cpp. To have another way of writing tested,
-// add its command line to kCases.
+// Whatever fails while a command runs, and whenever it fails: each output is the complete old file or the complete new
+// one, and no other file is left. The commands run under tests/preload/faults.cpp. To test another way of writing, add
+// its command line to kCases.
 
 #include <algorithm>
 #include <array>
@@ -24,14 +24,14 @@ struct Case {
     const char* name;
     const char* command;
     std::vector<std::string> arguments;
-    const char* input;          // that is made first: besides a.png and b.png
-    bool needs_reader = false;  // whose start takes long
+    const char* input;          // an input that is made first, besides a.png and b.png
+    bool needs_reader = false;  // the reader takes long to start
 };
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
 const Case kCases[] = {
     {"Texture", "bake-normals", {"a.png", "-o", "out.dds", "--threads", "2"}, ""},
-    {"Baked", "bake-normals", {"a.png", "-o", "out.png", "--threads", "2"}, ""},  // which is decoded twice
+    {"Baked", "bake-normals", {"a.png", "-o", "out.png", "--threads", "2"}, ""},  // decodes its input twice
     {"Levels",
      "bake-normals",
      {"a.png", "--out-dir", ".", "--name", "out{level}.png", "--threads", "2", "--mips", "2"},
@@ -48,8 +48,8 @@ const Case kCases[] = {
 
 const std::string kOld = "the old file";
 
-// A copy of a command, with libtex where it is shared, in a folder of its own, whose reader process is the shell script
-// `reader`: libtex looks for its reader beside itself. Returns the path of the copy.
+// Installs a copy of a command (with libtex, if it is shared) in its own folder, where the reader process is the shell
+// script `reader`. libtex looks for its reader in its own folder. Returns the path of the copy.
 std::string install(const Scratch& folder, const std::string& command, const std::string& reader) {
     for (const char* name : {"bin", "lib", "libexec", "libexec/libtex"})
         std::filesystem::create_directory(folder.path(name));
@@ -62,8 +62,8 @@ std::string install(const Scratch& folder, const std::string& command, const std
     return program;
 }
 
-// For such a script: writes what the real reader says to `answer`. The reader waits until its result has room, which
-// libtex grants to its own child only; so the script grants it.
+// For such a script: writes the answer of the real reader to `answer`. The reader waits until its result has room,
+// which libtex provides to its own child only, so the script provides it.
 std::string ask_the_reader(const std::string& answer) {
     return fmt::format(
         "{} $1 $2 $3 $4 $5 $$ 3<>{} 5>/dev/null & r=$!\n"
@@ -85,7 +85,7 @@ protected:
                             {from, "-o", to, "--format", to.ends_with(".exr") ? "half" : "rgb8", "--no-sync"});
         if (ran.code != 0) throw std::runtime_error(ran.err);
     }
-    // What an undisturbed run makes.
+    // The outputs of an undisturbed run.
     std::map<std::string, std::string> make_outputs() {
         const Ran ran = run_with({});
         EXPECT_EQ(ran.code, 0) << ran.err;
@@ -96,8 +96,8 @@ protected:
         return made;
     }
 
-    // From now on the reader process is a script that gives the real one's answer, which it asks for once: the calls of
-    // the command are the same, and each run takes a tenth of the time.
+    // From now on the reader process is a script that gives the real reader's answer, which is computed once. The
+    // command makes the same calls, and each run takes a tenth of the time.
     void use_a_quick_reader() {
         if (!GetParam().needs_reader) return;
         program_ =
@@ -108,7 +108,7 @@ protected:
         EXPECT_TRUE(counts_.has("answer"));
     }
 
-    // Variables as "AT=3".
+    // The variables have the form "AT=3".
     Ran run_with(const std::vector<std::string>& variables, int kill_after_us = -1, int signal = SIGKILL) {
         counts_.write("calls", std::string(sizeof(int), '\0'));
         Setting setting;
@@ -137,7 +137,7 @@ protected:
         return std::find(GetParam().arguments.begin(), GetParam().arguments.end(), name) != GetParam().arguments.end();
     }
 
-    // How many files there are that should not be.
+    // The number of files that should not exist.
     int count_strangers() {
         int strangers = 0;
         for (const std::string& name : scratch_.list())
@@ -145,7 +145,7 @@ protected:
         return strangers;
     }
 
-    // Every output is the old file or the new one.
+    // Every output must be the old file or the new one.
     void expect_whole(bool exist, bool done) {
         for (const auto& [name, text] : outputs_) {
             const std::string now = scratch_.has(name) ? scratch_.read(name) : "";
@@ -181,7 +181,7 @@ TEST_P(Faults, AFailureAtAnyCallLosesNothing) {
     EXPECT_GT(failed, 3);
 }
 
-// Death at the n-th call: what it leaves behind is gone after the next run.
+// Kills the process at the n-th call. The next run must remove everything that is left behind.
 TEST_P(Faults, DeathAtAnyCallLosesNothing) {
     use_a_quick_reader();
     for (const bool exist : {true, false}) {
@@ -202,8 +202,8 @@ TEST_P(Faults, DeathAtAnyCallLosesNothing) {
     EXPECT_EQ(count_strangers(), 0);
 }
 
-// An input that somebody shortens while it is read is damaged, or was read before: never a signal, never half an
-// output.
+// An input that is truncated during the read either counts as damaged or was read before. The command must never end by
+// a signal or write half an output.
 TEST_P(Faults, AnInputThatShrinksWhileItIsReadIsAnError) {
     const bool is_read_by_reader = std::string_view(GetParam().input) == "a.tif";
     if (!is_read_by_reader) use_a_quick_reader();
@@ -224,7 +224,7 @@ TEST_P(Faults, AnInputThatShrinksWhileItIsReadIsAnError) {
     }
 }
 
-// One that somebody replaces, as we replace files, was the old one or the new one.
+// If an input is replaced by renaming, as libtex does, the command reads either the old file or the new one.
 TEST_P(Faults, AnInputThatIsReplacedIsTheOldOneOrTheNewOne) {
     const std::string input = GetParam().arguments[0];
     scratch_.add_sample("hemisphere.png", "dome.png");
@@ -262,7 +262,7 @@ TEST_P(Faults, DeathAtAnyMomentLosesNothing) {
     const auto whole =
         std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - start).count();
     std::minstd_rand random(11);
-    const int rounds = GetParam().needs_reader ? 10 : 40;  // 200 and more together
+    const int rounds = GetParam().needs_reader ? 10 : 40;  // at least 200 in total
     for (int round = 0; round < rounds; ++round) {
         SCOPED_TRACE(round);
         put_old_files(true);
@@ -295,8 +295,8 @@ TEST_P(Faults, ASignalAtAnyMomentLeavesNothing) {
     }
 }
 
-// Nobody unwinds while a decoder is waited for, so the signal's handler tidies up: once its patience has ended, or at a
-// second signal.
+// While the command waits for a decoder, nothing unwinds its stack. So the signal's handler removes files: after its
+// timeout, or at a second signal.
 TEST(FaultsOfReaders, ASignalWhileAReaderHangsLeavesNothing) {
     for (const bool twice : {false, true}) {
         SCOPED_TRACE(twice);
@@ -305,8 +305,8 @@ TEST(FaultsOfReaders, ASignalWhileAReaderHangsLeavesNothing) {
         ASSERT_EQ(run(scratch, "bake-normals", {"a.png", "-o", "a.tif", "--format", "rgb8", "--no-sync"}).code, 0);
         scratch.write("out.dds", kOld);
         const std::vector<std::string> before = scratch.list();
-        // One row of all that the header promises; `state` and `rows_done` are at 4 and 40 (reader_protocol.h). When
-        // the output has been begun, the signal; then nothing.
+        // The script reports one row of all that the header promises; `state` and `rows_done` are at 4 and 40
+        // (reader_protocol.h). It sends the signal once the output has been begun, and then does nothing.
         const std::string patch = "\\0\\0\\0' | /bin/dd of=/proc/self/fd/3 bs=1 conv=notrunc seek=";
         const std::string wait = "/bin/sleep 0.02; k=$((k + 1)); done; ";
         const std::string program =
@@ -335,15 +335,15 @@ TEST_P(Faults, WithoutThreadsTheBytesAreTheSame) {
     expect_whole(true, true);
 }
 
-// Threads that could start when the command tried, and are refused when TBB wants them (which throws): a limit of
-// processes that others used up meanwhile.
+// Threads that could start when the command tried, but are refused when TBB needs them (which throws), because other
+// processes have reached a limit of processes in the meantime.
 TEST(FaultsOfThreads, ThoseThatAreRefusedLaterAreOneSentence) {
     const Scratch scratch;
     for (const char* name : {"strip.png", "waves.png"}) scratch.add_sample(name, name);
     ASSERT_EQ(shell(scratch, "bake-normals strip.png -o strip.dds --no-sync --effort fast").code, 0);
     const std::vector<std::string> lines[] = {
-        {"bake-normals", "strip.png", "-o", "out.dds", "--effort", "fast"},                    // a stream
-        {"pack-normals", "strip.dds", "-o", "out.ktx2", "--effort", "fast"},                   // another
+        {"bake-normals", "strip.png", "-o", "out.dds", "--effort", "fast"},                    // one stream
+        {"pack-normals", "strip.dds", "-o", "out.ktx2", "--effort", "fast"},                   // another stream
         {"bake-normals", "strip.png", "-o", "out.dds", "--effort", "fast", "--fill-invalid"},  // the whole height map
         {"bake-normals", "strip.png", "waves.png", "--name", "out.{stem}.dds", "--effort",
          "fast"},  // two files at once

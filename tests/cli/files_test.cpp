@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many inputs, and where their outputs go.
+// Many inputs, and the places of their outputs.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -65,7 +65,7 @@ TEST_F(Files, OneFailureDoesNotStopTheOthersAndTheHighestCodeCounts) {
     ASSERT_EQ(errors.size(), 2u) << ran.err;
     EXPECT_TRUE(errors[0].starts_with("bake-normals: error: missing.png: ")) << errors[0];
     EXPECT_TRUE(errors[1].starts_with("bake-normals: error: damaged.png: ")) << errors[1];
-    // --quiet is for warnings: errors are still told.
+    // --quiet suppresses warnings; errors are still printed.
     EXPECT_EQ(lines_of(bake({"missing.png", "-o", "x.dds", "--quiet"}).err).size(), 1u);
 }
 
@@ -78,7 +78,7 @@ TEST_F(Files, NamesAreMadeFromPatterns) {
     EXPECT_EQ(bake({"maps/deep/d.png", "--name", "{dir}/{stem}_n{ext}"}).code, 0);
     EXPECT_TRUE(scratch_.has("maps/deep/d_n.png"));
     EXPECT_EQ(bake({"a.png", "--out-dir", "out", "--format", "rgb8"}).code, 0);
-    EXPECT_TRUE(scratch_.has("out/a.png"));  // the input's extension, where nothing block-compressed is written
+    EXPECT_TRUE(scratch_.has("out/a.png"));  // the input's extension, because the output is not block-compressed
     EXPECT_EQ(bake({"a.png", "--out-dir", "out", "--container", "ktx2"}).code, 0);
     EXPECT_TRUE(scratch_.has("out/a.ktx2"));
 }

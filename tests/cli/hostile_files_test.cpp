@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that were made, or found, to break readers of pictures: every command tells what is wrong with them in one
-// sentence, or reads them.
+// Files that were made, or found, to break readers of pictures. Every command must read them, or say in one sentence
+// what is wrong with them.
 
 #include <algorithm>
 #include <chrono>
@@ -28,12 +28,12 @@ namespace fs = std::filesystem;
 
 const fs::path kFolder = fs::path(TEX_SOURCE_DIR) / ".." / "shared" / "data" / "bad";
 
-// What a command did, and what it and the processes that it started took.
+// The result of a command, and the resources that it and its child processes used.
 struct Took {
-    bool ended = false;  // by itself, within the time that it has
-    int status = 0;      // as of wait4()
-    double seconds = 0;  // of processors
-    long kib = 0;        // most memory of one process
+    bool ended = false;  // on its own, within the time limit
+    int status = 0;      // from wait4()
+    double seconds = 0;  // of processor time
+    long kib = 0;        // peak memory of one process
 };
 
 Took measure(const Scratch& scratch, std::vector<std::string> words, const std::string& errors) {
@@ -52,7 +52,8 @@ Took measure(const Scratch& scratch, std::vector<std::string> words, const std::
     Took took;
     if (failed != 0) return took;
 
-    // A hang is one on a busy machine, too; what work costs is told by the processors' time.
+    // So long that only a real hang reaches it, even on a busy machine. The cost of the work is measured in
+    // processor time.
     constexpr int kHang = 100'000;  // ms
     const auto handle = static_cast<int>(syscall(SYS_pidfd_open, child, 0));
     pollfd ending{handle, POLLIN, 0};
@@ -84,7 +85,7 @@ class HostileFiles : public testing::TestWithParam<std::string> {};
 TEST_P(HostileFiles, AreReadOrRefusedInTimeAndMemory) {
     if (!fs::exists(kFolder)) GTEST_SKIP() << "no shared data";
 #if defined(__SANITIZE_ADDRESS__)
-    constexpr long kMost = 6 << 20;  // KiB: freed memory is kept aside
+    constexpr long kMost = 6 << 20;  // KiB: the allocator keeps freed memory
 #else
     constexpr long kMost = 1 << 20;
 #endif
@@ -104,9 +105,9 @@ TEST_P(HostileFiles, AreReadOrRefusedInTimeAndMemory) {
         const int code = WEXITSTATUS(took.status);
         EXPECT_TRUE(code == 0 || code == 1 || code == 4) << code << "\n" << errors;
         EXPECT_LE(took.seconds, 10.0);
-        EXPECT_LE(2 * took.kib, kMost);  // of the larger one of two processes
+        EXPECT_LE(2 * took.kib, kMost);  // of the larger of two processes
         const bool wrote = scratch.has("out.dds") || scratch.has("out.png");
-        const bool tells = GetParam() != "check-normals";  // which reports damage as a finding, on standard output
+        const bool tells = GetParam() != "check-normals";  // it reports damage as a finding, on standard output
         if (code == 4 && tells) {
             EXPECT_EQ(std::count(errors.begin(), errors.end(), '\n'), 1) << errors;
         }
@@ -116,7 +117,7 @@ TEST_P(HostileFiles, AreReadOrRefusedInTimeAndMemory) {
     EXPECT_GE(files, 70);
 }
 
-// Under the address sanitizer, which takes its time, one command for each way of reading.
+// With the address sanitizer, which is slow, one command for each way of reading.
 std::vector<std::string> tested_commands() {
 #if defined(__SANITIZE_ADDRESS__)
     return {"bake-normals", "check-normals"};

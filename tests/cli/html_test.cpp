@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pieces of a page: text that stays text, bytes, and a size that has an end.
+// The parts of a page: text that stays text, bytes, and a limited size.
 
 #include "reports/html.h"
 
@@ -39,7 +39,7 @@ TEST(Base64, IsThatOfRfc4648) {
     EXPECT_EQ(base64(bytes_of("\xfb\xff\xfe")), "+//+");
 }
 
-// A map whose levels are as long as those of an uncompressed texture.
+// A map whose levels have the size of those in an uncompressed texture.
 HtmlEntry entry(const std::string& name, int side) {
     HtmlEntry made;
     made.title = name;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Commands as objects: what run() does in this process, from several threads at once and again and again, is what the
-// programs do.
+// Commands as objects: run() in this process, repeatedly and from several threads at once, does the same as the
+// programs.
 
 #include <csignal>
 #include <string>
@@ -66,7 +66,7 @@ protected:
         return arguments;
     }
 
-    // What a run printed and wrote, with the name of its folder taken out.
+    // What a run printed and wrote, with the name of its folder removed.
     [[nodiscard]] std::string result_of(const Line& line, const std::string& folder, int code, const std::string& out,
                                         const std::string& err) const {
         std::string text = fmt::format("{}\n{}\n{}", code, out, err);
@@ -107,7 +107,7 @@ TEST_F(InProcess, ThreadsRunCommandsAsTheirProgramsDo) {
     std::vector<std::thread> threads;
     for (std::size_t t = 0; t < kThreads; ++t) {
         threads.emplace_back([&, t] {
-            for (std::size_t k = 0; k < kRounds * kCount; ++k)  // each thread begins with another line
+            for (std::size_t k = 0; k < kRounds * kCount; ++k)  // each thread begins with a different line
                 results[t].push_back(run_here(kLines[(k + t) % kCount], fmt::format("thread{}-{}", t, k)));
         });
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Commands that may have little memory, no threads, small files or no rights, and targets of every kind: an exit code
-// and one sentence, and nothing is lost.
+// Commands with little memory, no threads, small files or no rights, and every kind of target. Each must give an exit
+// code and one sentence, and lose nothing.
 
 #include <filesystem>
 #include <set>
@@ -32,12 +32,12 @@ protected:
         before_ = scratch_.list();
     }
 
-    // Runs a line of shell and then, in its place, the command.
+    // Runs a line of shell code, which then executes the command in its own process.
     Ran run_after(const std::string& line, const std::string& command) const {
         return shell(scratch_, fmt::format("ulimit -c 0; {}; exec {}", line, command));
     }
 
-    // The code and one sentence; no file but those that were there.
+    // Expects the exit code and one sentence, and no new files.
     void expect_refused(const Ran& ran, const std::string& command) const {
         EXPECT_EQ(ran.code, 3) << ran.err;
         const auto lines = lines_of(ran.err);
@@ -50,8 +50,8 @@ protected:
     std::vector<std::string> before_;
 };
 
-// As somebody without rights over the files of others, where this runs as root; such a one may still enter the folders
-// of the programs.
+// If this runs as root, drops the rights over other users' files. The program may still enter the folders of the
+// programs.
 std::string as_nobody(const std::string& capability = "dac_read_search") {
     if (geteuid() != 0) return {};
     return fmt::format(
@@ -80,7 +80,8 @@ const Memory kMemories[] = {
 
 class LittleMemory : public Limits, public testing::WithParamInterface<Memory> {};
 
-// From what the loader needs to what the work needs. The loader's own failure has status 127.
+// From the memory that the loader needs to the memory that the work needs. A failure of the loader itself has status
+// 127.
 TEST_P(LittleMemory, IsOneSentence) {
     const Memory& memory = GetParam();
     const std::string output = std::string(memory.command).substr(std::string_view(memory.command).find("out."), 7);
@@ -110,7 +111,7 @@ TEST_P(LittleMemory, IsOneSentence) {
 INSTANTIATE_TEST_SUITE_P(Commands, LittleMemory, testing::ValuesIn(kMemories),
                          [](const auto& test) { return std::string(test.param.name); });
 
-// -- what files may claim, and what their decoders may take ---------------------------------------------------------
+// -- what files may claim, and what their decoders may use ----------------------------------------------------------
 
 TEST_F(Limits, MoreTexelsThanAllowedAreRefusedInEveryFormat) {
     for (const std::string kind : {"ktx2", "tga", "jpg", "bmp"}) {
@@ -140,12 +141,12 @@ TEST_F(Limits, MoreTexelsThanAllowedAreRefusedInEveryFormat) {
         }
         if (kind != "png") continue;
         EXPECT_EQ(shell(scratch_, "bake-normals a.png -o out.dds --no-sync --max-texels 16K").code,
-                  0);  // exactly as many
+                  0);  // exactly the limit
         fs::remove(scratch_.path("out.dds"));
     }
 }
 
-#if !defined(__SANITIZE_ADDRESS__)  // which maps terabytes: the reader's memory is not limited under it
+#if !defined(__SANITIZE_ADDRESS__)  // it maps terabytes, so the reader's memory is not limited
 TEST_F(Limits, AReaderHasTheMemoryThatItIsGiven) {
     const Ran ran = shell(scratch_, "bake-normals a.tif -o out.dds --reader-memory 200M");
     EXPECT_EQ(ran.code, 4);
@@ -178,7 +179,7 @@ TEST_F(Limits, SmallFilesAreOneSentence) {
     }
 }
 
-// From what the loader needs to what the work needs: each run says what is short.
+// From the number that the loader needs to the number that the work needs. Each run must name the missing resource.
 TEST_F(Limits, FewDescriptorsAreOneSentence) {
     for (const std::string command : {"bake-normals a.tif -o out.dds", "unpack-normals a.dds -o out.tif"}) {
         int refused = 0;
@@ -248,7 +249,7 @@ TEST_F(Limits, TargetsOfEveryKindGetTheSameBytes) {
         ASSERT_EQ(shell(scratch_, fmt::format("{} -o file.{}", command, kind)).code, 0);
         const std::string whole = scratch_.read("file." + kind);
         const std::string container = kind == "tif" ? "tiff" : kind;
-        // What stands for O is the target; got.KIND is where its bytes are to be found.
+        // O stands for the target. The bytes of the target are then in got.KIND.
         for (const std::string script :
              {"mkfifo O; cat O > got & C -o O; code=$?; wait; rm O; exit $code", "C -o /dev/stdout --container K > got",
               "C -o - --container K | cat > got", "C -o /dev/fd/3 --container K 3> got",

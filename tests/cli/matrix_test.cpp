@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same bytes everywhere: every command, on every instruction set that this processor has, with 1, 2, 3 and 8
-// threads, makes the same files from the samples. Where tests/golden/commands.txt is there, the files are those whose
-// hashes it lists, so that compilers and machines are compared, too. That the bytes are right is proved elsewhere.
+// The same bytes everywhere: every command makes the same files from the samples on every instruction set that this
+// processor has, with 1, 2, 3 and 8 threads. If tests/golden/commands.txt exists, the files must have the hashes that
+// it lists, so that compilers and machines are compared, too. Other tests prove that the bytes are right.
 //
-// The largest sample and the height maps in ../shared/data (where they are there) take longer: with each instruction
-// set once, with another number of threads each time. They are baked in the memory of a few rows and, with
-// --fill-invalid, in that of all heights: the same bytes.
+// The largest sample and the height maps in ../shared/data (if they exist) take longer, so they run once with each
+// instruction set, with a different number of threads each time. They are baked with a few rows in memory and, with
+// --fill-invalid, with all heights in memory; the bytes must be the same.
 //
 //     TEX_GOLDEN_WRITE=1 build/release/cli_tests --gtest_filter='*Matrix*'
 //
-// writes the list (with the instruction set of the first test, on one thread); where bytes change on purpose, `git
-// diff` tells whose did.
+// writes the list (with the instruction set of the first test, on one thread). If bytes change on purpose, `git diff`
+// shows which commands are affected.
 
 #include <algorithm>
 #include <cstdint>
@@ -33,7 +33,7 @@ namespace fs = std::filesystem;
 
 const fs::path kList = fs::path(TEX_SOURCE_DIR) / "tests" / "golden" / "commands.txt";
 
-// A command line; outputs go into a folder of its name, and what it prints counts as an output where it has none.
+// A command line. Its outputs go into a folder with its name. If it has no output, its printed text counts as one.
 struct Line {
     const char* name;
     const char* command;
@@ -71,7 +71,8 @@ const Line kLines[] = {
     {"compare", "compare-normals", {"maps/waves.png", "bake/waves.dds", "--json"}},
 };
 
-// Those of real height maps are REAL, without REAL and what follows it where there are none.
+// REAL stands for all real height maps except the files named after it. If there are no real maps, REAL and the names
+// after it are left out.
 const Line kLargeLines[] = {
     {"large",
      "bake-normals",
@@ -108,10 +109,10 @@ std::string hash_of(const std::string& bytes) {  // FNV-1a
     return fmt::format("{:016x}", hash);
 }
 
-// Name of an output -> hash of its bytes, for all command lines.
+// Maps the name of an output to the hash of its bytes, for all command lines.
 using Hashes = std::map<std::string, std::string>;
 
-// All real height maps but those in `without`, in the order of their names.
+// All real height maps except those in `without`, sorted by name.
 std::vector<std::string> real_heights(const std::vector<std::string>& without) {
     std::vector<std::string> files;
     if (!fs::exists(kReal)) return files;
@@ -170,7 +171,7 @@ Hashes run_lines(const std::string& target, int threads, std::span<const Line> l
 
 bool is_large(const std::string& name) { return name.starts_with("large"); }
 
-// Those of the list whose outputs are large, or are not.
+// The entries of the list whose outputs are large, or those whose outputs are not.
 Hashes golden(bool large) {
     std::ifstream file(kList);
     Hashes hashes;
@@ -219,7 +220,7 @@ TEST_P(Matrix, EveryCommandMakesTheGoldenBytes) {
     }
 }
 
-#if !defined(__SANITIZE_ADDRESS__)  // under which they take minutes
+#if !defined(__SANITIZE_ADDRESS__)  // with it they take minutes
 TEST_P(Matrix, LargeAndRealHeightMapsMakeTheGoldenBytes) {
     if (std::getenv("TEX_GOLDEN_WRITE") != nullptr) return;
     const auto all = targets();

@@ -26,15 +26,15 @@ protected:
     Scratch scratch_;
 };
 
-// A setting of a whole run: the words that the bake, the mip chain and the packing take.
+// The settings of a whole run: the options for the bake, the mip chain and the packing.
 struct Steps {
-    std::vector<std::string> bake, mip, both, pack;  // `both`: of the first two
+    std::vector<std::string> bake, mip, both, pack;  // `both`: for the first two
     std::string kind = ".dds";
 };
 
 const Steps kSteps[] = {
     {{}, {}, {}, {}},
-    {{"--y", "down"}, {}, {}, {"--dds-mark"}},  // y goes along with the files
+    {{"--y", "down"}, {}, {}, {"--dds-mark"}},  // the files keep their y
     {{"--kernel", "sobel"}, {"--mip-filter", "triangle"}, {"--wrap", "clamp"}, {"--format", "bc5"}},
     {{"--kernel", "gaussian:1.5", "--invert"},
      {"--mip-filter", "mitchell", "--mip-domain", "slope"},
@@ -57,7 +57,7 @@ const Steps kSteps[] = {
 };
 
 TEST_F(MipNormals, ThreeCommandsGiveTheBytesOfOne) {
-    // Heights of an odd size, on 16 bits.
+    // Heights with an odd size and 16 bits.
     Texture odd;
     odd.format = Format::r16_unorm;
     odd.levels.push_back({{45, 31}, std::vector<std::byte>(2 * 45 * 31)});
@@ -125,7 +125,7 @@ TEST_F(MipNormals, YIsThatOfTheInputUnlessAskedFor) {
     EXPECT_EQ(y_of({"down.exr", "-o", "x.dds", "--y-in", "up"}), "up");
 }
 
-// A map of roughness that is as rough everywhere as a number says gives the bytes of the number, into every file type.
+// A roughness map with one value everywhere gives the same bytes as that value given as a number, in every file type.
 TEST_F(MipNormals, RoughnessComesFromAMapAsFromANumber) {
     scratch_.add_sample("waves.png", "h.png");
     does("bake-normals", {"h.png", "-o", "n.png", "--bumpiness", "8"});

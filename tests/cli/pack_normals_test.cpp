@@ -48,7 +48,7 @@ protected:
 };
 
 TEST_F(PackNormals, EveryEncodingComesBackWithinItsQuantisation) {
-    // Degrees: the largest of 128x128 texels whose tilt goes up to about 50 degrees.
+    // Degrees: the largest error over 128x128 texels with a tilt of up to about 50 degrees.
     const std::pair<const char*, double> bounds[] = {
         {"dxt5nm", 12.0}, {"bc5", 4.0}, {"bc5-snorm", 4.0}, {"rgb8", 0.6}, {"rgba8", 0.6},   {"rgb16", 0.01},
         {"ag8", 1.0},     {"rg8", 1.0}, {"rg16", 0.01},     {"half", 0.1}, {"float", 0.0001}};
@@ -72,7 +72,7 @@ TEST_F(PackNormals, LevelsAreKeptUnlessOthersAreAskedFor) {
     EXPECT_EQ(levels({"n.dds", "-o", "x.ktx2", "--mips", "3"}), 3);
     EXPECT_EQ(levels({"x.png", "-o", "y.dds"}), 1);
     EXPECT_EQ(levels({"x.png", "-o", "y.dds", "--mips", "all"}), 8);
-    // Kept levels are those of the file, not new ones.
+    // Kept levels are the file's own levels, not new ones.
     does("mip-normals", {"n.dds", "-o", "faded.dds", "--format", "float", "--fade", "0,1"});
     does("pack-normals", {"faded.dds", "-o", "faded.ktx2", "--format", "float", "--keep-length"});
     does("pack-normals", {"faded.ktx2", "-o", "again.dds", "--format", "float", "--keep-length"});

@@ -34,7 +34,7 @@ protected:
         EXPECT_TRUE(image) << name;
         return image ? image->extent() : Extent{};
     }
-    // Refused with a sentence that holds `part`, and nothing is written.
+    // Expects a refusal with a sentence that contains `part`, and no output.
     void refuses(const std::vector<std::string>& arguments, const std::string& part, int code = 2) {
         const auto before = scratch_.list();
         std::vector<std::string> quiet = arguments;
@@ -100,7 +100,8 @@ TEST_F(PreviewNormals, GreenThatIsUpsideDownChangesThePictureUntilItIsTold) {
     };
     const std::string right = bytes("up.png", {});
     EXPECT_NE(bytes("down.png", {}), right);
-    // Told, it is the same but for the codes 127 and 128, which are no mirror images of each other.
+    // With the right --y-in, the picture is the same except for codes 127 and 128, which are not mirror images of each
+    // other.
     bytes("down.png", {"--y-in", "down"});
     const auto told = read_image(scratch_.path("x.png"));
     bytes("up.png", {});
@@ -141,7 +142,7 @@ TEST_F(PreviewNormals, ReadsMapsAsTheOtherCommandsDo) {
     EXPECT_NE(bytes({"n.exr", "--range", "unsigned"}), bytes({"n.exr"}));
     bake_as("rgb.png", "rgb8");
     EXPECT_NE(bytes({"rgb.png", "--snap-flat", "--show", "tilt"}), bytes({"rgb.png", "--show", "tilt"}));
-    // A detail is read alike.
+    // A detail is read in the same way.
     const std::string detailed =
         bytes({"rgb.png", "--detail", "ag.png"}, "ag.png: layout not stated; guessed dxt5nm from the texels");
     EXPECT_NE(bytes({"rgb.png", "--swizzle", "rgb", "--detail", "ag.png"}), detailed);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// program.h: runs the real commands in scratch folders and keeps what they said.
+// program.h: runs the real commands in scratch folders and keeps what they print.
 
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace tex::cli {
 
-// A folder that goes away with its object.
+// A folder that is removed together with its object.
 class Scratch {
 public:
     Scratch();
@@ -24,7 +24,7 @@ public:
     void write(const std::string& name, const std::string& text) const;
     [[nodiscard]] std::string read(const std::string& name) const;
     [[nodiscard]] bool has(const std::string& name) const { return std::filesystem::exists(path(name)); }
-    // Names of all files and folders below, sorted.
+    // The names of all files and folders in it, sorted.
     [[nodiscard]] std::vector<std::string> list() const;
 
 private:
@@ -35,14 +35,14 @@ struct Ran {
     int code = -1;  // as a shell sees it: 128 + n after signal n
     std::string out;
     std::string err;
-    std::int64_t peak_bytes = 0;  // resident, of the larger one of the program and what it started and waited for
+    std::int64_t peak_bytes = 0;  // resident; the largest of the program and its waited-for children
     double cpu_seconds = 0.0;     // of all of them, user and system
 };
 
 struct Setting {
     std::string input;                     // standard input
-    std::vector<std::string> environment;  // "NAME=value", beside the test's own
-    std::string stdout_path;               // standard output goes there instead of into Ran::out
+    std::vector<std::string> environment;  // "NAME=value", besides the test's own
+    std::string stdout_path;               // file for standard output, instead of Ran::out
     int interrupt_after_ms = 0;            // send `signal` after so long, and so many microseconds
     int interrupt_after_us = 0;
     int signal = 0;
@@ -57,7 +57,7 @@ Ran shell(const Scratch& scratch, const std::string& script);
 
 [[nodiscard]] bool is_installed(const std::string& program);
 
-// The commands that were built.
+// The commands in this build.
 [[nodiscard]] std::vector<std::string> commands();
 
 [[nodiscard]] std::vector<std::string> lines_of(const std::string& text);

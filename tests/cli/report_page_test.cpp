@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// --report of check-normals and compare-normals, as files. tests/browser opens them.
+// The files of --report of check-normals and compare-normals. tests/browser opens them.
 
 #include <filesystem>
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Roughness maps beside mip chains: mip-normals --roughness-out.
+// Roughness maps written with mip chains: mip-normals --roughness-out.
 
 #include <cmath>
 
@@ -74,13 +74,13 @@ TEST_F(RoughnessOut, HasTheLevelsOfTheNormalsAndGetsRougher) {
         EXPECT_EQ(roughness.levels[k].extent, normals.levels[k].extent);
     EXPECT_NEAR(mean("r.dds", 0), 0.25, 0.5 / 255);
     for (int level = 1; level < 4; ++level) EXPECT_GT(mean("r.dds", level), mean("r.dds", level - 1)) << level;
-    // The normals are those of a run without roughness.
+    // The normals must equal those of a run without roughness.
     does("mip-normals", {"n.png", "-o", "alone.dds"});
     EXPECT_TRUE(scratch_.read("alone.dds") == scratch_.read("n.dds"));
 }
 
 TEST_F(RoughnessOut, ModelsDifferAsTheyPromise) {
-    // alpha^2 of the last level, on a mirror; exactly, from floats.
+    // alpha^2 of the last level of a mirror, exactly, from floats.
     const auto last = [&](const std::string& model) {
         does("mip-normals", {"n.png", "-o", "n.dds", "--effort", "fast", "--roughness-model", model, "--roughness-out",
                              "r.exr", "--roughness-format", "float"});
@@ -143,7 +143,7 @@ TEST_F(RoughnessOut, GoesWithEachInputOfMany) {
     const std::string depfile = scratch_.read("d");
     EXPECT_NE(depfile.find("./rough/n.png"), std::string::npos) << depfile;
     EXPECT_NE(depfile.find("out/n_r8_0.png"), std::string::npos) << depfile;
-    // The base level is what was read.
+    // The base level is the map that was read.
     EXPECT_TRUE(same_red("h.png", "out/n_r8_0.png"));
 }
 

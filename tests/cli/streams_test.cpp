@@ -50,7 +50,7 @@ TEST_F(Streams, StandardOutputIsTheSameByAllItsNames) {
     }
 }
 
-// As by name (Files.AnOutputThatIsAnInputIsRefused): what the shell opened is the file all the same.
+// As with names (Files.AnOutputThatIsAnInputIsRefused): a file that the shell opened is still the same file.
 TEST_F(Streams, TheFileBehindAStreamIsNoInputAndOutputAtOnce) {
     const std::string before = scratch_.read("a.png");
     for (const std::string script :
@@ -91,7 +91,7 @@ TEST_F(Streams, AFullDiskLeavesTheOldFile) {
     const Ran data = run(scratch_, "bake-normals", {"a.png", "-o", "-"}, full);
     EXPECT_EQ(data.code, 3);
     EXPECT_EQ(lines_of(data.err).size(), 1u) << data.err;
-    // A limit on the size of files is the nearest to a full disk that needs no mount.
+    // A limit on the size of files is the closest to a full disk that is possible without a mount.
     scratch_.write("a.dds", "old");
     const Ran limited = shell(scratch_, "ulimit -f 1; bake-normals a.png -o a.dds --format float");
     EXPECT_EQ(limited.code, 3);
@@ -136,7 +136,7 @@ TEST_F(Streams, SignalsEndTheRunAndLeaveNothing) {
             << ran.err;
         for (const auto& entry : std::filesystem::directory_iterator(scratch_.path("out"))) {
             EXPECT_EQ(entry.path().extension(), ".dds") << entry.path();
-            EXPECT_GT(entry.file_size(), 300000u) << entry.path();  // whole: 512x512 with its levels
+            EXPECT_GT(entry.file_size(), 300000u) << entry.path();  // complete: 512x512 with its levels
         }
     }
 }
@@ -151,8 +151,8 @@ TEST_F(Streams, PicturesGoThroughPipesAsIntoFiles) {
     }
 }
 
-// A file whose layout turns out to be another one than most such files have is read twice, and so is its output begun.
-// Who reads from a FIFO sees one file.
+// If a file's layout turns out to be an unusual one, the input is read twice and the output is begun twice. The reader
+// of a FIFO must see one file.
 TEST_F(Streams, AFifoSeesOneFileWhereTheInputIsReadTwice) {
     ASSERT_EQ(shell(scratch_,
                     "bake-normals a.png -o n.png --format ag8 --bumpiness 4 && pack-normals n.png -o x.dds --quiet && "
@@ -167,13 +167,13 @@ TEST_F(Streams, AFifoSeesOneFileWhereTheInputIsReadTwice) {
     }
 }
 
-// One large file, in the middle of its stream: the first progress has been told, and the rest takes seconds.
+// One large file in the middle of its stream: the first progress has been reported, and the rest takes seconds.
 TEST_F(Streams, SignalsDuringALargeStreamLeaveNothing) {
     const std::string noise = "head -c $((3 * 2048 * 2048)) /dev/urandom";
     ASSERT_EQ(shell(scratch_, "{ printf 'P6 2048 2048 255\n'; " + noise + "; } > in.ppm").code, 0);
     for (const std::string command : {"bake-normals", "mip-normals"}) {
         for (const auto& [name, number] : {std::pair{"INT", SIGINT}, std::pair{"TERM", SIGTERM}}) {
-            // Job control, as a shell without it lets its background ignore SIGINT.
+            // Turns on job control, because a shell without it makes background processes ignore SIGINT.
             const Ran ran =
                 shell(scratch_, "set -m; " + command +
                                     " in.ppm -o out.dds --effort best --metric angle --progress always 2>err & "

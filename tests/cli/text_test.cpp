@@ -9,7 +9,7 @@ namespace tex::cli {
 TEST(Text, NearestFindsWhatWasMeant) {
     const std::vector<std::string> kernels = {"forward", "central", "sobel", "scharr", "prewitt", "sobel5", "gaussian"};
     EXPECT_EQ(nearest("sobbel", kernels), "sobel");
-    EXPECT_EQ(nearest("cnetral", kernels), "central");  // a transposition counts once
+    EXPECT_EQ(nearest("cnetral", kernels), "central");  // a transposition counts as one edit
     EXPECT_EQ(nearest("gauss", kernels), "gaussian");
     EXPECT_EQ(nearest("fwd", kernels), "");
     EXPECT_EQ(nearest("", kernels), "");
@@ -24,14 +24,14 @@ TEST(Text, PrintableTextCannotDriveATerminal) {
     EXPECT_EQ(printable("\xe2\x82\xac \xf0\x9f\xa7\xb1"), "\xe2\x82\xac \xf0\x9f\xa7\xb1");
     EXPECT_EQ(printable("\xc2\x9b"
                         "31m"),
-              "\\xc2\\x9b31m");  // CSI in one character
+              "\\xc2\\x9b31m");  // CSI as one character
     EXPECT_EQ(printable("\x9b"
                         "31m"),
-              "\\x9b31m");  // and in one byte
+              "\\x9b31m");  // and as one byte
     EXPECT_EQ(printable("a\xff\xe2\x82"), "a\\xff\\xe2\\x82");
     EXPECT_EQ(printable("\xc0\xaf\xed\xa0\x80\xf4\x90\x80\x80"),
-              "\\xc0\\xaf\\xed\\xa0\\x80\\xf4\\x90\\x80\\x80");                       // no UTF-8
-    EXPECT_EQ(printable("\xef\xbf\xbe\xef\xbf\xbd"), "\\xef\\xbf\\xbe\xef\xbf\xbd");  // no character, and one
+              "\\xc0\\xaf\\xed\\xa0\\x80\\xf4\\x90\\x80\\x80");                       // not UTF-8
+    EXPECT_EQ(printable("\xef\xbf\xbe\xef\xbf\xbd"), "\\xef\\xbf\\xbe\xef\xbf\xbd");  // a noncharacter, and a character
 }
 
 TEST(Text, PrintableTextReadsInItsOwnOrder) {
@@ -43,7 +43,7 @@ TEST(Text, PrintableTextReadsInItsOwnOrder) {
         EXPECT_EQ(text.size(), 4 * std::string_view(hidden).size()) << text;
         EXPECT_TRUE(text.starts_with("\\x")) << text;
     }
-    // Joiners are part of words, and neighbours of what is escaped are characters like any other.
+    // Joiners are part of words. The code points next to the escaped ones are ordinary characters.
     for (const char* const shown : {"\u200c", "\u200d", "\u2010", "\u2027", "\u202f", "\u2070", "\ufeee", "\U0001f9f1"})
         EXPECT_EQ(printable(shown), shown);
 }

@@ -19,7 +19,7 @@ std::string repeated(std::string_view text, int count) {
     return all;
 }
 
-// What is said of a text, or nothing.
+// The error message for a text, or nothing.
 std::string refusal(const std::string& text) {
     try {
         check_toml_bounds("f.toml", text);
@@ -31,7 +31,7 @@ std::string refusal(const std::string& text) {
 
 const std::string kTooDeep = "f.toml: line 1: keys and lists nest deeper than 64 levels";
 
-// Each way to nest, `count` levels deep.
+// Each way to nest, with `count` levels.
 const std::function<std::string(int count)> kNests[] = {
     [](int count) { return "a" + repeated(".a", count) + " = 1\n"; },
     [](int count) { return "[a" + repeated(" . a", count - 1) + "]\n"; },
@@ -66,7 +66,7 @@ TEST(TomlBounds, LongTextsAreRefused) {
               "f.toml: 1048577 bytes; a file of settings has at most 1048576");
 }
 
-// These ended check-normals by SIGSEGV.
+// Such files once ended check-normals by SIGSEGV.
 TEST(TomlBounds, SettingsOfAMillionKeysAreAUsageError) {
     const Scratch scratch;
     scratch.add_sample("waves.png", "a.png");

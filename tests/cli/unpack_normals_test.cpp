@@ -57,7 +57,7 @@ TEST_F(UnpackNormals, EveryRealTextureUnpacksOrIsRefused) {
     }
 }
 
-// Layouts as ../shared/data/SOURCES.md states them.
+// The layouts are those that ../shared/data/SOURCES.md states.
 TEST_F(UnpackNormals, LayoutsOfRealTexturesAreRecognised) {
     if (textures().empty()) GTEST_SKIP() << "no ../shared/data";
     const std::pair<const char*, const char*> layouts[] = {{"torque_TP_Ryder_DXT5nm_256_mips9_nvtt.dds", "dxt5nm"},
@@ -73,7 +73,8 @@ TEST_F(UnpackNormals, LayoutsOfRealTexturesAreRecognised) {
     }
 }
 
-// x and y against another project's decoder. These are pictures, not unit vectors: their length must be kept.
+// Compares x and y with another project's decoder. The files are pictures, not unit vectors, so their length must be
+// kept.
 TEST_F(UnpackNormals, AgreesWithAnotherDecoderWithinOneCode) {
     if (textures().empty()) GTEST_SKIP() << "no ../shared/data";
     for (const std::string name : {"pillow_bc5_unorm", "run_BC5_nvtt_dx10", "run_BC5_snorm_dx10"}) {

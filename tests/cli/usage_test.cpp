@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Misuse that every command must refuse: exit 2, one clear sentence, nothing written.
+// Misuse that every command must refuse: it exits with 2, prints one clear sentence and writes nothing.
 
 #include <algorithm>
 #include <filesystem>
@@ -21,7 +21,7 @@ protected:
         before_ = scratch_.list();
     }
 
-    // The command refuses these arguments with a sentence that holds `part`.
+    // Expects the command to refuse these arguments with a sentence that contains `part`.
     void refuses(const std::vector<std::string>& arguments, const std::string& part) {
         std::vector<std::string> all = arguments;
         if (GetParam() == "scale-normals") all.insert(all.begin(), {"--scale", "2"});
@@ -48,7 +48,7 @@ protected:
     std::vector<std::string> before_;
 };
 
-// A test's name may hold no "-".
+// A test's name may not contain "-".
 std::string test_name(const testing::TestParamInfo<std::string>& instance) {
     std::string name = instance.param;
     std::replace(name.begin(), name.end(), '-', '_');
@@ -162,7 +162,7 @@ TEST_P(EveryUsage, OutputsMustDiffer) {
     refuses({"a.png", "b.png", "--out-dir", "out", "--name", "all.dds"},
             "a.png and b.png have the same output out/all.dds");
     refuses({"a.png", "folder/../a.png", "--out-dir", "out", "--name", "{stem}.dds"}, "the same output");
-    // What links name need not be there yet.
+    // The target of a link need not exist yet.
     std::filesystem::create_directory_symlink("folder", scratch_.path("link"));
     for (const char* name : {"l1.dds", "l2.dds"})
         std::filesystem::create_symlink("folder/new.dds", scratch_.path(name));
