@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// bake.h: heights to normals, see tex/bake.h.
+// bake.h: converts heights to normals, see tex/bake.h.
 
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace tex::reference {
 
-// The height at any texel, inside or beyond the border, by the rules of Wrap applied again and again.
+// The height at any texel, inside or outside the border. Outside, the rules of Wrap are applied repeatedly.
 double height_at(const Grid<double>& heights, Wrap wrap_x, Wrap wrap_y, int i, int j);
 
 Grid<Vector> bake(const HeightField& field, const BakeOptions& options);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// dds_file.h: DDS files written without libtex: every field of both headers can hold anything.
+// dds_file.h: DDS files written without libtex, so that every field of both headers can have any value.
 //
 // Source: "Programming Guide for DDS", "DDS_HEADER", "DDS_PIXELFORMAT" and "DDS_HEADER_DXT10" (Microsoft).
 
@@ -13,7 +13,7 @@
 
 namespace tex::reference {
 
-// The fields of 32 bits in their order, each named by its offset in the file.
+// The 32-bit fields in their order, each named by its offset in the file.
 namespace dds {
 inline constexpr std::size_t kMagic = 0, kSize = 4, kFlags = 8, kHeight = 12, kWidth = 16, kPitch = 20, kDepth = 24,
                              kMipCount = 28, kReserved = 32, kFormatSize = 76, kFormatFlags = 80, kFourCc = 84,
@@ -44,7 +44,7 @@ inline std::string write_dds(const DdsFile& file) {
     return bytes + file.data;
 }
 
-// The fields that every file has. Flags: caps, height, width, pixel format; with more levels their count.
+// The fields that every file has. Flags: caps, height, width, pixel format; with several levels also their count.
 inline DdsFile dds_header(std::uint32_t width, std::uint32_t height, std::uint32_t levels) {
     DdsFile file;
     file[dds::kMagic] = four_cc("DDS ");
@@ -58,7 +58,7 @@ inline DdsFile dds_header(std::uint32_t width, std::uint32_t height, std::uint32
     return file;
 }
 
-// With a code of four letters, or of Direct3D 9.
+// With a four-letter code, or a code of Direct3D 9.
 inline DdsFile dds_coded(std::uint32_t width, std::uint32_t height, std::uint32_t levels, std::uint32_t code) {
     DdsFile file = dds_header(width, height, levels);
     file[dds::kFormatFlags] = 4;
@@ -66,7 +66,7 @@ inline DdsFile dds_coded(std::uint32_t width, std::uint32_t height, std::uint32_
     return file;
 }
 
-// With the header of Direct3D 10: one texture of two dimensions.
+// With the header of Direct3D 10: one two-dimensional texture.
 inline DdsFile dds_dxgi(std::uint32_t width, std::uint32_t height, std::uint32_t levels, std::uint32_t format) {
     DdsFile file = dds_coded(width, height, levels, four_cc("DX10"));
     file.has_header10 = true;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// exr_file.h: EXR files as lists of attributes and chunks, written without OpenEXR: every field can hold anything.
+// exr_file.h: EXR files as lists of attributes and chunks, written without OpenEXR, so that every field can have any
+// value.
 //
 // Source: "OpenEXR File Layout" of the OpenEXR project. Chunks are written uncompressed.
 
@@ -15,7 +16,7 @@
 
 namespace tex::reference {
 
-// Little-endian fields of `count` bytes.
+// Appends a little-endian field of `count` bytes.
 inline void put_little(std::string& bytes, std::uint64_t value, int count) {
     for (int k = 0; k < count; ++k) bytes += static_cast<char>(value >> (8 * k) & 0xff);
 }
@@ -33,15 +34,15 @@ inline std::string little(std::initializer_list<std::uint64_t> values, int count
 
 struct ExrAttribute {
     std::string name, type, value;
-    std::optional<std::uint32_t> size = {};  // what the file says, if not the size of the value
+    std::optional<std::uint32_t> size = {};  // the size in the file, if it is not the size of the value
 };
 
 struct ExrFile {
     static constexpr std::uint32_t kTiled = 0x200, kLongNames = 0x400, kDeep = 0x800, kMultipart = 0x1000;
 
     std::uint32_t magic = 20000630, version = 2;
-    std::vector<std::vector<ExrAttribute>> parts;  // headers
-    std::vector<std::uint64_t> table;              // where chunks begin, from the beginning of `chunks`
+    std::vector<std::vector<ExrAttribute>> parts;  // the headers
+    std::vector<std::uint64_t> table;              // the offsets of chunks from the beginning of `chunks`
     std::string chunks;
 
     [[nodiscard]] ExrAttribute* find(std::string_view name, std::size_t part = 0) {
@@ -69,8 +70,8 @@ inline std::string write_exr(const ExrFile& file) {
     return bytes + file.chunks;
 }
 
-// The file that write_exr() makes these bytes of; nothing where the headers do not end in them. What precedes the first
-// chunk that the table knows is the table.
+// The file for which write_exr() gives these bytes, or nothing if the headers do not end within them. The bytes between
+// the headers and the first chunk in the table are the table.
 inline std::optional<ExrFile> parse_exr(std::string_view bytes) {
     if (bytes.size() < 8) return std::nullopt;
     ExrFile file;
@@ -117,7 +118,7 @@ struct ExrChannel {
     std::string name;
     std::uint32_t type = 1;  // 0 uint, 1 half, 2 float
     std::uint32_t x_sampling = 1, y_sampling = 1;
-    std::uint32_t linear = 0;  // one byte and three that are reserved
+    std::uint32_t linear = 0;  // one byte, and three reserved ones
 };
 
 inline std::string exr_channels(const std::vector<ExrChannel>& channels) {
@@ -154,8 +155,8 @@ inline std::vector<ExrAttribute> exr_header(int width, int height, const std::ve
             {"screenWindowWidth", "float", one}};
 }
 
-// One part of scan lines, a row in each chunk. `rows` holds width * height values of each channel, row by row and
-// channel by channel in each, as they are stored.
+// One part of scan lines, with one row in each chunk. `rows` holds width * height values of each channel in their
+// stored form, row by row, and channel by channel within a row.
 inline ExrFile exr_scan_lines(int width, int height, const std::vector<ExrChannel>& channels, const std::string& rows) {
     ExrFile file;
     file.parts = {exr_header(width, height, channels)};
@@ -168,7 +169,7 @@ inline ExrFile exr_scan_lines(int width, int height, const std::vector<ExrChanne
     return file;
 }
 
-// One part of one tile, which is as large as the picture.
+// One part with one tile, which is as large as the picture.
 inline ExrFile exr_tile(int width, int height, const std::vector<ExrChannel>& channels, const std::string& rows) {
     ExrFile file;
     file.version |= ExrFile::kTiled;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// grid.h: what the reference computes with. tests/reference holds every formula of libtex once more, in
-// double and plain loops, one file for each concept, to be read beside the public header that promises it.
-// It shares no code with libtex/src; only the public types come from there.
+// grid.h: the basic types of the reference. tests/reference implements every formula of libtex again, in double and
+// with plain loops, in one file for each concept. Read each file beside the public header that specifies it. It shares
+// no code with libtex/src; only the public types come from there.
 
 #pragma once
 
@@ -19,7 +19,7 @@ struct Vector {
     double z = 0.0;
 };
 
-// Values of texels, row by row from the top.
+// The values of texels, row by row from the top.
 template <class T>
 struct Grid {
     Extent extent;
@@ -40,13 +40,13 @@ private:
 Grid<double> grid_of(const Plane<float>& plane);
 Grid<Vector> grid_of(const NormalMap& map);
 
-// v / |v|; (0, 0, 1) where |v| < 1e-6.
+// v / |v|; (0, 0, 1) if |v| < 1e-6.
 Vector normalised(Vector v);
 
-// The angle between two vectors of any length but 0, in degrees.
+// The angle between two non-zero vectors, in degrees.
 double angle_between(Vector a, Vector b);
 
-// The largest angle between texels of a map and of the reference, in degrees. They must be of one extent.
+// The largest angle between texels of a map and of the reference, in degrees. Both must have the same extent.
 double largest_angle(const NormalMap& map, const Grid<Vector>& truth);
 
 }  // namespace tex::reference

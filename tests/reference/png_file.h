@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// png_file.h: PNG files written without libpng and zlib: every chunk and field can hold anything.
+// png_file.h: PNG files written without libpng and zlib, so that every chunk and field can have any value.
 //
 // Source: the PNG specification (W3C, third edition), RFC 1950 and RFC 1951. Texels are stored, not compressed.
 
@@ -22,7 +22,7 @@ inline std::string big_endian(std::uint32_t value) {
     return bytes;
 }
 
-// The sum of a chunk's type and data.
+// The checksum (CRC) of a chunk's type and data.
 inline std::uint32_t png_sum(std::string_view bytes) {
     std::uint32_t sum = 0xffffffff;
     for (const char c : bytes) {
@@ -60,7 +60,7 @@ inline std::string stored(std::string_view bytes) {
 
 struct PngChunk {
     std::string type, data;
-    std::uint32_t sum_error = 0;  // what its sum is wrong by
+    std::uint32_t sum_error = 0;  // the error of its checksum
 };
 
 inline std::string write_png(const std::vector<PngChunk>& chunks) {
@@ -85,13 +85,14 @@ inline PngChunk png_header(const PngHeader& header) {
     return {"IHDR", data};
 }
 
-// Samples of a texel: grey, -, RGB, palette, grey and alpha, -, RGB and alpha.
+// The number of samples of a texel, by colour type: grey, -, RGB, palette, grey and alpha, -, RGB and alpha.
 inline unsigned png_samples(unsigned color_type) {
     constexpr unsigned kSamples[] = {1, 1, 3, 1, 2, 1, 4, 1};
     return kSamples[color_type % 8];
 }
 
-// One filtered row, the byte that names the filter first. `before` is the row above, all 0 for the first one of a pass.
+// One filtered row, after the byte that names the filter. `before` is the row above; it is all 0 for the first row of a
+// pass.
 inline std::string png_filtered(const std::string& row, const std::string& before, std::size_t texel, unsigned filter) {
     std::string bytes(1, static_cast<char>(filter));
     const auto byte = [](const std::string& of, std::size_t at) {
@@ -111,8 +112,8 @@ inline std::string png_filtered(const std::string& row, const std::string& befor
     return bytes;
 }
 
-// The texels of a picture as IDAT holds them before compression: sample(x, y, c) in the bits of the header, the filters
-// 0 to 4 in turn from `filter` on.
+// The texels of a picture in the form that IDAT has before compression: sample(x, y, c) with the header's bit depth.
+// The rows use filters 0 to 4 in turn, starting with `filter`.
 inline std::string png_texels(const PngHeader& header, unsigned filter,
                               const std::function<unsigned(unsigned x, unsigned y, unsigned c)>& sample) {
     struct Pass {

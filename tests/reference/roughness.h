@@ -11,7 +11,7 @@
 
 namespace tex::reference {
 
-// alpha'^2 where averaged vectors have the length m. Toksvig by powers of lobes, as he wrote it.
+// alpha'^2 if averaged vectors have the length m. Toksvig's model uses powers of lobes, as he wrote it.
 double rougher_alpha2(RoughnessModel model, double m, double alpha2);
 
 std::vector<Grid<double>> build_roughness_chain(const Grid<Vector>& base, const Grid<double>& roughness,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// scale.h: normals made steeper or flatter, see tex/scale.h.
+// scale.h: makes normals steeper or flatter, see tex/scale.h.
 
 #pragma once
 

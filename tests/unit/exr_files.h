@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// exr_files.h: EXR files as OpenEXR writes them, for tests.
+// exr_files.h: EXR files written by OpenEXR, for tests.
 
 #pragma once
 
@@ -41,7 +41,7 @@ inline float exr_value(int i, int j, int c) {
     return static_cast<float>(i * 3 - j * 5 + c * 7) / 16.0f;
 }  // exact as half
 
-// A file as OpenEXR writes it: channels of one type, a data window that begins at (-3, 5).
+// A file written by OpenEXR: channels of one type, and a data window that begins at (-3, 5).
 inline std::vector<std::byte> exr_file(Extent extent, const std::vector<std::string>& names, Imf::PixelType type,
                                        Imf::Compression compression, bool tiled = false,
                                        Imf::LineOrder order = Imf::DECREASING_Y) {

@@ -53,7 +53,7 @@ inline NormalMap noise_normals(Extent extent, unsigned seed = 0) {
     return map;
 }
 
-// The texels of two planes (not their padding) have the same bytes.
+// True if the texels of two planes (not their padding) have the same bytes.
 inline bool same_bytes(const Plane<float>& a, const Plane<float>& b) {
     if (a.extent() != b.extent()) return false;
     for (int j = 0; j < a.extent().height; ++j) {
@@ -67,8 +67,7 @@ inline bool same_bytes(const NormalMap& a, const NormalMap& b) {
     return same_bytes(a.x, b.x) && same_bytes(a.y, b.y) && same_bytes(a.z, b.z);
 }
 
-// A number that changes with any bit of the texels (FNV-1a), for results that must be the same with every
-// compiler.
+// A number that changes with any bit of the texels (FNV-1a), for results that must be the same with every compiler.
 inline std::uint64_t hash_of(const Plane<float>& plane, std::uint64_t hash = 0xcbf29ce484222325u) {
     for (int j = 0; j < plane.extent().height; ++j) {
         for (int i = 0; i < plane.extent().width; ++i) {

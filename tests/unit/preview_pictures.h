@@ -56,7 +56,7 @@ inline Execution on_threads(int count) {
     return execution;
 }
 
-// A picture of one color, and the color of one of its texels.
+// A picture with a single colour, and the colour of one of its texels.
 inline Texture plain_picture(Extent extent, render::Code color) { return render::Canvas(extent, color).take(); }
 
 inline render::Code code_at(const Texture& picture, int i, int j) {

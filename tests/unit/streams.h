@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// streams.h: what the tests of files that go through as streams share: a folder of their own, and damage.
+// streams.h: code shared by the tests of files that are processed as streams: a separate folder, and damage.
 
 #pragma once
 
@@ -45,8 +45,8 @@ protected:
         return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_), {}));
     }
 
-    // Of a sound file, "cut" and "hurt" are damaged copies: stream(input, threads) must tell the error of read(input),
-    // and leave no "out".
+    // "cut" and "hurt" are damaged copies of a sound file. For them stream(input, threads) must return the same error
+    // as read(input), and must not leave "out".
     template <class Read, class Stream>
     void expect_same_damage(const std::string& sound, const Read& read, const Stream& stream) const {
         Bytes bytes = bytes_of(sound);

@@ -12,7 +12,7 @@
 
 namespace tex {
 
-// Calls test() once for each Highway target, having proved that kernels are dispatched to it.
+// Calls test() once for each Highway target, after checking that kernels are dispatched to that target.
 template <class Test>
 void on_every_target(Test&& test) {
     for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {

@@ -28,7 +28,7 @@ inline std::vector<std::byte> bytes_of(const std::filesystem::path& path) {
     return bytes;
 }
 
-// The files of a folder of the shared data with this extension (".dds"), in order of their names.
+// The files in a folder of the shared data with this extension (".dds"), sorted by name.
 inline std::vector<std::filesystem::path> files_in(const char* folder, const char* extension) {
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(shared_data() / folder)) {
@@ -59,7 +59,7 @@ inline Texture patterned_texture(Format format, Extent extent, int levels) {
     return texture;
 }
 
-// One that pack() could have made: format and swizzle of the encoding, y up.
+// A texture that pack() could have made: with the format and swizzle of the encoding, and y up.
 inline Texture encoded_texture(Encoding encoding, Extent extent, int levels) {
     Texture texture = patterned_texture(encoding_info(encoding).format, extent, levels);
     texture.swizzle = encoding_info(encoding).swizzle;
@@ -68,7 +68,7 @@ inline Texture encoded_texture(Encoding encoding, Extent extent, int levels) {
     return texture;
 }
 
-// Ends a test where the shared data are not there.
+// Skips a test if the shared data do not exist.
 #define TEX_NEEDS_SHARED_DATA() \
     if (!std::filesystem::exists(tex::shared_data())) GTEST_SKIP() << "../shared/data is not there"
 
