@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Blocks improved for the angle, against their palettes as the decoders give them.
+// Blocks optimised for the angle, checked against the palettes that the decoders give.
 
 #include "kernels/angle_search.h"
 
@@ -66,11 +66,11 @@ double sum_of(const Row& row, int block, const std::byte* bytes, Encoding encodi
     return sum;
 }
 
-// The least sum with the block's endpoints: each texel takes the best of all pairs of values.
+// The least sum with the block's endpoints: each texel uses the best of all pairs of values.
 double least_sum(const Row& row, int block, std::vector<std::byte> bytes, Encoding encoding) {
     std::vector<Normal> pairs;
     for (int pair = 0; pair < 64; ++pair) {
-        // All texels take the same indices: 3 bits each, or 2 of green.
+        // All texels get the same indices: 3 bits each, or 2 bits for green.
         for (int k = 0; k < 6; ++k) {
             bytes[2 + static_cast<std::size_t>(k)] = static_cast<std::byte>(pair % 8 * 0x249249 >> (8 * (k % 3)));
             if (encoding != Encoding::dxt5nm)
@@ -119,7 +119,7 @@ TEST(AngleSearch, LeavesNoStepOfOneAlphaEndpointThatGains) {
                 const int code = std::to_integer<int>(bytes[end]) + step;
                 if (code < 0 || code > 255) continue;
                 moved[end] = static_cast<std::byte>(code);
-                if ((moved[0] > moved[1]) != (bytes[0] > bytes[1])) continue;  // another kind of palette
+                if ((moved[0] > moved[1]) != (bytes[0] > bytes[1])) continue;  // the palette changes its type
                 EXPECT_GE(least_sum(row, block, moved, Encoding::dxt5nm), sum - 1e-5);
             }
         }

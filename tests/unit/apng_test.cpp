@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Animated PNG: the first frame as libpng reads it, and the others by their chunks.
+// Animated PNG: libpng reads the first frame; the tests check the other frames by their chunks.
 
 #include "formats/png/apng.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every system call of a write fails once, and is once the last thing that its process does. The calls that
-// write_file() makes are defined here, in the program, and so come before those of the C library.
+// Every system call of a write fails once, and once it is the last action of its process. This program defines the
+// calls that write_file() makes. Its definitions take precedence over those of the C library.
 
 #include <gtest/gtest.h>
 
@@ -22,20 +22,20 @@
 
 namespace {
 
-// What happens to the calls of this thread.
+// The faults in the calls of this thread.
 struct Faults {
     bool active = false;
-    bool no_nameless = false;  // a file system without O_TMPFILE
-    bool dribble = false;      // writes are interrupted and short
-    bool kill = false;         // instead of failing
+    bool no_nameless = false;  // simulates a file system without O_TMPFILE
+    bool dribble = false;      // makes writes interrupted and short
+    bool kill = false;         // ends the process instead of failing
     int fail_at = 0;           // the call that fails, counted from 1; 0: none
     int error = EIO;
     int calls = 0;
-    std::string order = {};  // w: bytes are written; s: they are brought to the disk; n: the file gets a name
+    std::string order = {};  // w: bytes are written; s: they are flushed to the disk; n: the file gets a name
 };
 thread_local Faults faults;
 
-// Whether this call fails. `mark` stands for it in Faults::order.
+// True if this call fails. `mark` represents it in Faults::order.
 bool fails(const char* mark = "") {
     if (faults.active) faults.order += mark;
     if (!faults.active || ++faults.calls != faults.fail_at) return false;
@@ -67,7 +67,7 @@ int openat(int folder, const char* path, int flags, ...) {
     va_start(list, flags);
     const mode_t mode = (flags & O_CREAT) != 0 || (flags & __O_TMPFILE) == __O_TMPFILE ? va_arg(list, mode_t) : 0;
     va_end(list);
-    if (faults.active && faults.no_nameless && (flags & __O_TMPFILE) == __O_TMPFILE) {  // which has O_DIRECTORY in it
+    if (faults.active && faults.no_nameless && (flags & __O_TMPFILE) == __O_TMPFILE) {  // it includes O_DIRECTORY
         errno = EOPNOTSUPP;
         return -1;
     }
@@ -76,7 +76,7 @@ int openat(int folder, const char* path, int flags, ...) {
 
 int fdatasync(int fd) { return fails("s") ? -1 : static_cast<int>(syscall(SYS_fdatasync, fd)); }
 
-// Under another name here: <fcntl.h> has a struct flock.
+// Has a different name here because <fcntl.h> has a struct flock.
 int flock_call(int fd, int operation) noexcept __asm__("flock");
 int flock_call(int fd, int operation) noexcept {
     return fails() ? -1 : static_cast<int>(syscall(SYS_flock, fd, operation));
@@ -131,7 +131,7 @@ protected:
         std::filesystem::remove(path_);
         if (exists()) std::ofstream(path_) << kOld;
     }
-    // The old file, or none where there was none.
+    // True if the old file is there, or if there is no file and there was none.
     [[nodiscard]] bool is_old() const { return exists() ? content(path_) == kOld : !std::filesystem::exists(path_); }
     [[nodiscard]] std::size_t strangers() const {
         std::size_t count = 0;
@@ -171,7 +171,7 @@ TEST_P(AtomicFileFaults, AFailureAtAnyCallLeavesTheOldFileAndNothingElse) {
                 EXPECT_EQ(written.error().code, ErrorCode::io);
                 EXPECT_EQ(written.error().file, path_);
             }
-            if (faults.calls < n) break;  // the write has no n-th call
+            if (faults.calls < n) break;  // the write has fewer than n calls
         }
     }
 }
@@ -192,7 +192,7 @@ TEST_P(AtomicFileFaults, DeathAtAnyCallLeavesTheOldFileOrTheNewOne) {
         waitpid(child, &status, 0);
         EXPECT_TRUE(is_old() || content(path_) == kNew);
         EXPECT_LE(strangers(), 1u);
-        if (exists()) {  // the next write sweeps
+        if (exists()) {  // the next write removes leftovers
             EXPECT_TRUE(write_with({}));
             EXPECT_EQ(strangers(), 0u);
         } else if (is_old()) {
@@ -205,8 +205,8 @@ TEST_P(AtomicFileFaults, DeathAtAnyCallLeavesTheOldFileOrTheNewOne) {
     }
 }
 
-// What the next power cut finds under the name is on the disk. (A temporary name may come earlier; the last step is the
-// file's own.)
+// After a power cut, the bytes under the name must be on the disk. (A temporary name may come earlier; the last step
+// gives the file its own name.)
 TEST_P(AtomicFileFaults, BytesAreOnTheDiskBeforeTheyHaveTheName) {
     for (const bool sync : {true, false}) {
         prepare();

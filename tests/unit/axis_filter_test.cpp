@@ -19,7 +19,7 @@ using tex::MipFilter;
 using tex::fields::noise;
 using tex::fields::same_bytes;
 
-// The row that `row` becomes, with weights of its own for each texel or with those of texel 0.
+// The result of filtering `row`, with separate weights for each texel or with those of texel 0 for all.
 tex::Plane<float> filtered(const float* row, int count, const tex::AxisFilter& axis, bool evenly) {
     tex::Plane<float> out(Extent{count, 1}), halves(Extent{count + axis.taps + 16, 2});
     tex::split_row(row + axis.first, count + axis.taps / 2, halves.row(0), halves.row(1));

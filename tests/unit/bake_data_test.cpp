@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kLimit = 0.01;  // degrees
 constexpr int kPiece =
-    192;  // texels a side on which every kernel and wrap is tried; whole maps get the shader's kernel
+    192;  // side, in texels, of the area on which every kernel and wrap is tried; whole maps get the shader's kernel
 
 std::vector<std::string> height_maps() {
     std::vector<std::string> files;
@@ -34,7 +34,7 @@ tex::HeightField read_heights(const std::string& path) {
     options.fill_invalid = true;
     if (path.find("nodata") != std::string::npos) options.no_data = -9999.0f;
     tex::HeightField field = tex::height_field(tex::read_image(path).value(), options).value();
-    // Eight texels of relief, whatever the unit.
+    // A relief of eight texels, whatever the unit.
     float least = field.height.at(0, 0);
     float greatest = least;
     for (int j = 0; j < field.height.extent().height; ++j) {
@@ -48,7 +48,7 @@ tex::HeightField read_heights(const std::string& path) {
     return field;
 }
 
-// The middle of a field, as a field of its own.
+// The middle of a field, as a separate field.
 tex::HeightField middle(const tex::HeightField& field) {
     const tex::Extent all = field.height.extent();
     const tex::Extent extent{std::min(all.width, kPiece), std::min(all.height, kPiece)};

@@ -133,8 +133,7 @@ TEST(Bake, AnAxisOfOneTexelHasSlopeZero) {
     }
 }
 
-// The largest error of the slope of `height` sampled at n texels on [0, 1), in units of the true slope's
-// scale.
+// The largest error of the slope of `height`, sampled at n texels on [0, 1), relative to the scale of the true slope.
 double sine_error(int n) {
     const double turn = 2.0 * 3.14159265358979323846;
     const NormalMap map = baked(field_of({n, 1}, static_cast<float>(n), Wrap::repeat,
@@ -147,21 +146,21 @@ double sine_error(int n) {
 }
 
 TEST(Bake, CentralDifferencesConvergeWithSecondOrder) {
-    // Halving the texels divides the error by four: log2 of the ratio is the order.
+    // Halving the texel size divides the error by four. The log2 of the ratio is the order.
     for (const int n : {16, 32, 64, 128}) {
         EXPECT_NEAR(std::log2(sine_error(n) / sine_error(2 * n)), 2.0, 0.05) << n;
     }
 }
 
 TEST(Bake, ASphereHasTheNormalsOfASphere) {
-    // A cap of a sphere of radius 1000 texels, 257 wide: n = (x, y, z) / radius.
+    // A cap of a sphere with a radius of 1000 texels, 257 texels wide: n = (x, y, z) / radius.
     const double radius = 1000.0;
     const int size = 257;
     const auto height = [&](int i, int j) {
         return std::sqrt(radius * radius - (i - 128) * (i - 128) - (j - 128) * (j - 128));
     };
     for (const BakeOptions& options : all_kernels()) {
-        if (options.kernel == GradientKernel::forward) continue;  // leans by half a texel
+        if (options.kernel == GradientKernel::forward) continue;  // shifted by half a texel
         const NormalMap map = baked(field_of({size, size}, 1.0f, Wrap::clamp, height), options);
         const auto grid = tex::reference::grid_of(map);
         for (int j = 8; j < size - 8; ++j) {
@@ -256,7 +255,7 @@ TEST(Bake, LengthsAreExactToTwoUnitsInTheLastPlace) {
     }
 }
 
-// What make() returns is the same on every target and for each number of threads.
+// The result of make() must be the same on every target and with each number of threads.
 void expect_same_bytes(const std::vector<int>& threads, const std::function<NormalMap(int threads)>& make) {
     std::optional<NormalMap> first;
     tex::on_every_target([&] {
@@ -282,7 +281,7 @@ TEST(Bake, GivesTheSameBytesOnEveryTarget) {
 }
 
 TEST(Bake, GivesTheSameBytesForEveryNumberOfThreads) {
-    // Several strips of rows; more kernels would not cut them otherwise.
+    // Several strips of rows. Other kernels would be divided into the same strips.
     const HeightField field = field_of({1031, 400}, 12.0f, Wrap::clamp, [](int i, int j) { return noise(i, j); });
     for (const GradientKernel kernel : {GradientKernel::central, GradientKernel::sobel5}) {
         expect_same_bytes({1, 2, 3, 8}, [&](int threads) { return baked(field, {kernel, 1.0f}, threads); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decoding of BC1 blocks and BC2 alpha: against blocks computed by hand, and against libsquish.
+// Decoding of BC1 blocks and BC2 alpha, compared with blocks computed by hand and with libsquish.
 
 #include "blocks/bc1.h"
 
@@ -19,7 +19,7 @@ struct Texels {
     float r[16], g[16], b[16], a[16];
 };
 
-// A block of two 5:6:5 colours whose texel k has index k % 4.
+// A block with two 5:6:5 colours, in which texel k has index k % 4.
 Block all_indices(unsigned c0, unsigned c1) {
     Block block{static_cast<std::byte>(c0), static_cast<std::byte>(c0 >> 8), static_cast<std::byte>(c1),
                 static_cast<std::byte>(c1 >> 8)};
@@ -83,7 +83,7 @@ TEST(Bc1, Bc2AlphaIsFourBits) {
 }
 
 void expect_squish(const squish::u8* rgba, const Texels& t, int texel) {
-    // libsquish computes in whole codes and truncates.
+    // libsquish computes in integer codes and truncates.
     const auto code = [](float value) { return static_cast<int>(std::floor(value * 255 + 1e-3f)); };
     EXPECT_EQ(rgba[4 * texel + 0], code(t.r[texel]));
     EXPECT_EQ(rgba[4 * texel + 1], code(t.g[texel]));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pruned searches for endpoints against the exhaustive ones of blocks/: equal errors, to the last bit.
+// Compares the pruned searches for endpoints with the exhaustive searches of blocks/: the errors are equal, to the last
+// bit.
 
 #include "kernels/bc4_search.h"
 #include "kernels/clusters.h"
@@ -15,7 +16,7 @@ namespace {
 
 using tex::BlockTexels;
 
-// Blocks of all kinds: constant, two-valued, ramps, noise, clusters, at the ends of the range, partly outside; values
+// Blocks of all kinds: constant, two-valued, ramps, noise, clusters, at the ends of the range, and partly outside it,
 // with and without fractions of a code.
 std::vector<BlockTexels> special_blocks(int top) {
     std::vector<BlockTexels> blocks;
@@ -121,7 +122,7 @@ TEST(GreenSearch, FindsTheSameEndpointsOnEveryTarget) {
     });
 }
 
-// Bounds are bounds: any k values that a palette offers are no better.
+// The bounds are valid: no set of k values from a palette has a smaller error.
 TEST(ClusterBounds, AreBelowTheErrorOfEveryPalette) {
     const std::vector<BlockTexels> blocks = special_blocks(255);
     const std::vector<tex::ClusterBounds> bounds = bounds_of(blocks);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decoding of BC4 blocks: against blocks computed by hand, and against libsquish.
+// Decoding of BC4 blocks, compared with blocks computed by hand and with libsquish.
 
 #include "blocks/bc4.h"
 
@@ -14,7 +14,7 @@ namespace {
 
 using Block = std::array<std::byte, 8>;
 
-// A block whose texel k has index k % 8.
+// A block in which texel k has index k % 8.
 Block all_indices(int e0, int e1) {
     Block block{static_cast<std::byte>(e0), static_cast<std::byte>(e1)};
     for (const std::size_t half : {0u, 3u}) {  // 0, 1, 2, ... 7 in 3 bits each is 0xFAC688
@@ -69,7 +69,7 @@ TEST(Bc4, LowestSnormCodeIsMinusOneToo) {
     EXPECT_EQ(values[2], 635 / 889.f);
 }
 
-// libsquish computes in whole codes and truncates.
+// libsquish computes in integer codes and truncates.
 TEST(Bc4, AgreesWithLibsquishOnRandomBlocks) {
     std::mt19937 random(1);
     for (int trial = 0; trial < 5000; ++trial) {

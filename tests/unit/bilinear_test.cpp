@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Taps and samples, exactly those of a plain loop in double and float, on every instruction set.
+// Taps and samples must equal those of a plain loop in double and float exactly, on every instruction set.
 
 #include "kernels/bilinear.h"
 
@@ -43,7 +43,8 @@ struct Axis {
     double start, step, rest;
 };
 
-// At texels' centres, between them, backwards, far outside, and where rounding reaches the end of a period.
+// At and between the centres of texels, backwards, far outside, and at places where rounding reaches the end of a
+// period.
 constexpr Axis kAxes[] = {
     {0.0, 1.0 / 64, 0.0}, {0.3, 4.0 / 257, 0.0}, {-7.25, 0.013, 0.7}, {1.0, -0.4, 0.0},
     {0.0, 0.0, -1e-18},   {1e6, 0.11, -3.0},     {0.0, 1e-4, 0.5},
@@ -58,7 +59,7 @@ TEST(Bilinear, TapsAreThoseOfAPlainLoop) {
                         Taps taps(count);
                         const TapRow row = taps.row();
                         tap_row(axis.start, axis.step, axis.rest, wrap, n, taps.padded(), row);
-                        // Those past the end are taken by kernels as well.
+                        // Kernels also read the taps past the end.
                         for (int i = 0; i < taps.padded(); ++i) {
                             const Tap tap = tap_at((axis.start + axis.step * (i + 0.5)) + axis.rest, wrap, n);
                             ASSERT_EQ(row.first[i], tap.first)
@@ -87,8 +88,8 @@ float sample_at(const Plane<float>& plane, const UvMap& map, Wrap wrap_x, Wrap w
                mix(lower[column.first], lower[column.second], column.weight), row.weight);
 }
 
-// Steps below, at, above one texel and above two, so that texels are permuted and gathered; the last rows and columns,
-// where nothing lies beyond; turns.
+// Steps below one texel, at one texel, above one and above two, so that texels are permuted and gathered; the last rows
+// and columns, which have no texels after them; rotations.
 TEST(Bilinear, SamplesAreThoseOfAPlainLoop) {
     on_every_target([] {
         for (const int size : {1, 3, 17, 64, 100}) {

@@ -38,7 +38,7 @@ protected:
         return write(name, encode_file(texture, kind, options_.write).value());
     }
 
-    // A file of any kind.
+    // Writes a random map to a file of a random type.
     [[nodiscard]] std::string draw_map(const std::string& name, Extent extent, std::mt19937& random) const {
         constexpr std::pair<Container, Encoding> kFiles[] = {
             {Container::png, Encoding::rgb8}, {Container::png, Encoding::rgba8},  {Container::png, Encoding::ag8},
@@ -119,7 +119,7 @@ protected:
 
     BlendFileOptions options_;
     PackOptions pack_;
-    bool y_ = false;  // pack_.y_axis counts
+    bool y_ = false;  // pack_.y_axis applies
 };
 
 TEST_F(BlendStream, GivesTheBytesOfTheVerbs) {

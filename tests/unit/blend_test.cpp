@@ -73,7 +73,7 @@ TEST(Blend, DoesNotMindTheOrderWhereItPromisesSo) {
     }
 }
 
-// Adding slopes is adding heights.
+// Adding slopes must equal adding heights.
 TEST(Blend, AddsSlopesInPartialDerivativeMode) {
     const NormalMap n =
         blend_one(uniform_map({1, 1}, 0.6f, 0.0f, 0.8f), layer_of(uniform_map({1, 1}, 0.0f, 0.8f, 0.6f)),
@@ -91,7 +91,7 @@ struct Case {
     Wrap wrap;
 };
 
-// Magnified, tiled, moved, turned, shrunk (between levels), with every wrap and mode.
+// Magnified, tiled, moved, rotated and shrunk (between levels), with every wrap and mode.
 TEST(Blend, AgreesWithTheReference) {
     const Case cases[] = {
         {"same extent", {37, 29}, {37, 29}, 1, 1, 0, 0, 0, Wrap::repeat},
@@ -137,7 +137,8 @@ TEST(Blend, AgreesWithTheReference) {
                     worst = std::max(worst, reference::angle_between(n, expected.at(i, j)));
                 }
             }
-            // Between levels our step of 1/256 moves the mixture by up to 1/512 of their difference.
+            // Between levels, the code mixes in steps of 1/256. This changes the mixture by up to 1/512 of the levels'
+            // difference.
             const bool between_levels =
                 static_cast<float>(c.detail.width) * c.tiling_x > static_cast<float>(c.base.width);
             EXPECT_LE(worst, between_levels ? 0.15 : 0.002) << c.what << ", " << row.name;
@@ -147,7 +148,7 @@ TEST(Blend, AgreesWithTheReference) {
 
 // -- how layers lie ------------------------------------------------------------------------------------------
 
-// A turn by a right angle puts every texel on another one, and turns its vector.
+// A rotation by a right angle moves every texel to the place of another one, and rotates its vector.
 TEST(Blend, TurnsByRightAnglesExactly) {
     const NormalMap detail = wavy_map({16, 16});
     Layer layer = layer_of(copy_of(detail));
@@ -155,7 +156,7 @@ TEST(Blend, TurnsByRightAnglesExactly) {
     const NormalMap result = blend_one(flat_map({16, 16}), std::move(layer));
     for (int j = 0; j < 16; ++j) {
         for (int i = 0; i < 16; ++i) {
-            // Counter-clockwise: what was at the right edge is now at the top.
+            // Counter-clockwise: the right edge moves to the top.
             const int from_i = 15 - j;
             const int from_j = i;
             ASSERT_NEAR(result.x.at(i, j), -detail.y.at(from_i, from_j), 1e-6f);
@@ -164,7 +165,7 @@ TEST(Blend, TurnsByRightAnglesExactly) {
     }
 }
 
-// v runs upwards: a positive offset of a quarter moves the picture down by a quarter.
+// v points upwards: a positive offset of a quarter moves the picture down by a quarter.
 TEST(Blend, MovesTheDetailDownForAPositiveOffset) {
     const NormalMap detail = wavy_map({16, 16});
     Layer layer = layer_of(copy_of(detail));
@@ -191,7 +192,7 @@ TEST(Blend, ShowsALayerAsFarAsItsMaskAndStrength) {
     expect_near(masked(Plane<float>({3, 5}, 0.0f), 1.0f), base, 1e-6f, "black mask");
     expect_near(masked({}, 0.0f), base, 1e-6f, "no strength");
     expect_near(masked(Plane<float>({16, 8}, 0.5f), 1.0f), masked({}, 0.5f), 1e-6f, "half");
-    Plane<float> halves({2, 1}, 0.0f);  // white on the right: a ramp between the texels' centres
+    Plane<float> halves({2, 1}, 0.0f);  // white on the right: a ramp between the centres of the texels
     halves.at(1, 0) = 1.0f;
     const NormalMap ramp = masked(std::move(halves), 1.0f);
     for (int j = 0; j < 8; ++j) {

@@ -54,7 +54,7 @@ TEST(Blur, AgreesWithTheReference) {
                     const auto truth = tex::reference::blur(tex::reference::grid_of(heights), sigma, wrap_x, wrap_y);
                     for (int j = 0; j < extent.height; ++j) {
                         for (int i = 0; i < extent.width; ++i) {
-                            // Beyond clamped borders heights grow with the distance, and so do errors.
+                            // Outside clamped borders, heights grow with the distance, and so do errors.
                             ASSERT_NEAR(static_cast<double>(result.at(i, j)), truth.at(i, j), 2e-6 * (1.0 + sigma))
                                 << sigma << " " << extent.width << "x" << extent.height;
                         }
@@ -81,8 +81,8 @@ TEST(Blur, MakesOneValueOfConstantHeights) {
 }
 
 TEST(Blur, LeavesSlopesExactEnoughToBake) {
-    // Rounding in a blur is noise that a bake makes steeper: with bumpiness 100 it must stay below what can
-    // be seen.
+    // Rounding errors of a blur are noise, and a bake amplifies them. With bumpiness 100 the result must stay
+    // invisible.
     const Plane<float> heights = plane_of({150, 40}, [](int i, int j) { return noise(i, j); });
     tex::HeightField field{blurred(heights, 20.0, Wrap::repeat, Wrap::repeat), 100.0f, 100.0f, Wrap::repeat,
                            Wrap::repeat};

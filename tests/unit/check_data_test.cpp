@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the rules of check.h find and miss on real maps, and on the same maps with damages planted.
+// Counts what the rules of check.h find and miss on real maps, and on the same maps with planted damages.
 
 #include <tex/check.h>
 
@@ -41,9 +41,9 @@ bool found(const CheckReport& report, const std::string& ids) {
 #define SKIP_WITHOUT_DATA() \
     if (!std::filesystem::exists(kData)) GTEST_SKIP() << "no " << kData
 
-// A row is a label where the author's file name says GL or DX, or where the sign of the correlation with the height map
-// beside it does; the other rows were measured by a curl test for SOURCES.md too, so that agreement with them says
-// little. The table keeps them apart.
+// A row is a label if the author's file name says GL or DX, or if the sign of the correlation with its height map shows
+// the direction. SOURCES.md measured the other rows by a curl test, too, so agreement with them proves little. The
+// table separates the two.
 TEST(CheckData, TellsEveryKnownDirectionOfGreen) {
     SKIP_WITHOUT_DATA();
     std::map<std::string, int> confusion[2];
@@ -78,7 +78,7 @@ TEST(CheckData, TellsEveryKnownDirectionOfGreen) {
     }
 }
 
-// What is found on the files as they are. SOURCES.md names none of that, but it is there: see the next test.
+// The findings on the unchanged files. SOURCES.md does not name these damages, but they are real: see the next test.
 TEST(CheckData, FindsNoDamageThatIsNotThere) {
     SKIP_WITHOUT_DATA();
     const std::set<std::string> expected = {
@@ -119,7 +119,7 @@ double mean_length(const Texture& texture, int level) {
     return sum / static_cast<double>(image->extent().texels());
 }
 
-// Mips of means that nobody renormalised: their vectors get shorter from level to level.
+// The levels are averages without renormalisation: their vectors get shorter from level to level.
 TEST(CheckData, TwoFilesWereNotRenormalised) {
     SKIP_WITHOUT_DATA();
     for (const auto& [path, last] : {std::pair<const char*, double>{"dds/d3d_dwarf_armor_RGBA8_512_mips10.dds", 0.94},
@@ -133,14 +133,14 @@ TEST(CheckData, TwoFilesWereNotRenormalised) {
     }
 }
 
-// A DXT1 of normals in R, G and B: from one texel to the next the normals turn by far more where a block ends.
+// A DXT1 with normals in R, G and B: from texel to texel the normals turn by far more at the border of a block.
 TEST(CheckData, RifleStockShowsItsBlocks) {
     SKIP_WITHOUT_DATA();
     const auto texture = read_texture(kData + "dds/d3d_RifleStock_DXT1_747x600_mips10_nvtt.dds");
     ASSERT_TRUE(texture);
     const auto image = decode(*texture, 0);
     ASSERT_TRUE(image);
-    std::vector<double> across, inside;  // mean steps, column by column
+    std::vector<double> across, inside;  // mean steps for each column
     for (int i = 0; i + 1 < image->extent().width; ++i) {
         double sum = 0.0;
         for (int j = 0; j < image->extent().height; ++j) {
@@ -156,7 +156,7 @@ TEST(CheckData, RifleStockShowsItsBlocks) {
     EXPECT_GT(median(across), 1.5 * median(inside));
 }
 
-// Names of encodings: what is DXT5nm and what is not.
+// The names of encodings: which files are DXT5nm and which are not.
 TEST(CheckData, NamesTheVariantsOfTwoChannelFiles) {
     SKIP_WITHOUT_DATA();
     const auto swizzle = [](const char* file) { return to_string(check_file(kData + file, {})->swizzle); };
@@ -173,7 +173,7 @@ TEST(CheckData, NamesTheVariantsOfTwoChannelFiles) {
     }
 }
 
-// Nothing in a hostile file ends the check otherwise than with a report.
+// A check of a hostile file always ends with a report.
 TEST(CheckData, HostileFilesGiveReports) {
     SKIP_WITHOUT_DATA();
     ReadOptions read;
@@ -193,7 +193,7 @@ TEST(CheckData, HostileFilesGiveReports) {
     std::printf("%d hostile files, %d of them unreadable\n", files, unreadable);
 }
 
-// Thresholds were set on the first half of the maps (checks/thresholds.h); the other half had no say in them.
+// The thresholds were set on the first half of the maps (checks/thresholds.h). The other half did not influence them.
 TEST(CheckData, FindsPlantedDamage) {
     SKIP_WITHOUT_DATA();
     const auto detection = reference::detect_planted(kData);

@@ -21,7 +21,7 @@
 namespace tex {
 namespace {
 
-// Bumps of several sizes that tile: a height field's normals, y up.
+// Bumps of several sizes that tile: the normals of a height field, y up.
 NormalMap bumps(Extent extent, float strength = 12.0f) {
     HeightField field{Plane<float>(extent), strength, strength, Wrap::repeat, Wrap::repeat};
     const double tau = 2.0 * 3.14159265358979;
@@ -103,9 +103,8 @@ TEST(Check, SoundMapsHaveNoFindings) {
               Ids{});
 }
 
-// What mip --fade makes: the last levels are flat, which is no other image.
-// Heights that are awkward to judge a bake by: few values, flat parts, slopes that hardly change or that no 8 bits
-// hold.
+// Heights for which it is difficult to judge a bake: few values, flat parts, slopes that hardly change or that 8 bits
+// cannot hold.
 float awkward_height(int shape, int i, int j) {
     constexpr int kSide = 128;
     const double x = i - kSide / 2, y = j - kSide / 2, edge = std::max(std::abs(x), std::abs(y));
@@ -121,7 +120,7 @@ float awkward_height(int shape, int i, int j) {
     return static_cast<float>(std::floor(heights[shape]) / 255.0);
 }
 
-// N305 would be true of these: the heights have few values.
+// N305 would be correct for these, because the heights have few values.
 TEST(Check, OwnBakesOfAwkwardHeightsAreIntact) {
     for (int shape = 0; shape < 5; ++shape) {
         for (const float bumpiness : {0.5f, 2.0f, 8.0f, 10.0f, 1000.0f}) {
@@ -152,6 +151,7 @@ TEST(Check, OneChannelIsNoNormalMap) {
     EXPECT_TRUE(ids(texture).contains("N210"));
 }
 
+// The result of mip --fade: the last levels are flat, which is not a different image.
 TEST(Check, LevelsThatFadedToFlatAreRelated) {
     for (const Encoding encoding : {Encoding::rgb8, Encoding::dxt5nm}) {
         MipOptions mips;
@@ -281,7 +281,7 @@ TEST(Check, TexturesOfOneTexelAreChecked) {
     EXPECT_EQ(ids(reference::texture_of(reference::codes_of(bumps({3, 2})))), Ids{});
 }
 
-// As unpack() does: a map that leans to one side has no negative component, and is signed all the same.
+// As in unpack(): a map that leans to one side has no negative component, but it is signed.
 TEST(Check, FloatsWithoutANegativeValueAreReadByTheirLength) {
     for (const Extent extent : {Extent{1, 1}, Extent{64, 64}}) {
         NormalMap map = bumps(extent);

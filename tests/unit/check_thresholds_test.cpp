@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fitted lines of thresholds.h follow from the half of the real maps that sets them, as that header says.
+// Checks that the fitted lines of thresholds.h follow from the half of the real maps that sets them, as that header
+// says.
 
 #include "checks/thresholds.h"
 
@@ -31,7 +32,7 @@ namespace {
 
 const std::string kData = TEX_SOURCE_DIR "/../shared/data/";
 
-// Values of one statistic, of [the half that sets, the half held out].
+// The values of one statistic: [the half that sets thresholds, the held-out half].
 struct Statistic {
     const char* name = "";
     bool high = true;  // damaged maps have the higher values
@@ -75,7 +76,7 @@ struct Decoded {
     Decoded& operator=(const Decoded&) = delete;
 };
 
-// The worst level's correlation, shift and shortness, as mip_rules.cpp takes them.
+// The correlation, shift and shortness of the worst level, as in mip_rules.cpp.
 struct Chain {
     double correlation = 1.0, shift = 0.0, short_by = 0.0;
 };
@@ -179,7 +180,7 @@ TEST(CheckThresholds, FollowFromTheHalfThatSetsThem) {
         if (!map.intact) continue;
         const auto texture = read_texture(kData + map.path);
         ASSERT_TRUE(texture) << texture.error().message();
-        if (kSanitized && maps == 2) return;  // sanitizers have seen all of the code by then, and they are slow
+        if (kSanitized && maps == 2) return;  // sanitizers are slow, and have seen all of the code by then
         ++maps;
         const int half = reference::sets_thresholds(map) ? 0 : 1;
         add_untouched(map, *texture, half, all);
@@ -203,8 +204,8 @@ TEST(CheckThresholds, FollowFromTheHalfThatSetsThem) {
     }
 }
 
-// SOURCES.md does not name that damage: x and y of this map take few values, in groups about 8 codes apart, as slopes
-// of few grey levels do.
+// SOURCES.md does not name this damage: x and y of this map have few values, in groups about 8 codes apart, like slopes
+// of few grey levels.
 TEST(CheckThresholds, Water1TakesFewSlopes) {
     if (!std::filesystem::exists(kData)) GTEST_SKIP() << "no " << kData;
     const auto texture = read_texture(kData + "normal/water1_256.tga");
@@ -219,7 +220,7 @@ TEST(CheckThresholds, Water1TakesFewSlopes) {
             }
         }
         EXPECT_EQ(std::count_if(texels.begin(), texels.end(), [](int n) { return n > 0; }), 33);
-        // Between the groups around flat, of thousands of texels each, there is nothing.
+        // The gaps between the groups near flat are empty, although each group has thousands of texels.
         for (const int empty : {121, 122, 123, 124, 125, 126, 127, 129, 130, 131, 132, 133, 134})
             EXPECT_EQ(texels[static_cast<std::size_t>(empty)], 0);
         EXPECT_GT(texels[128], 10000);

@@ -43,7 +43,7 @@ TEST(Codecs, AreChosenByTheFirstBytes) {
 }
 
 TEST(Codecs, FilesBeginWithTheMagicOfTheirRow) {
-    EXPECT_EQ(kKtx2Magic.size(), 12u);  // the identifier of the specification, no byte less
+    EXPECT_EQ(kKtx2Magic.size(), 12u);  // the identifier of the specification, all bytes of it
     EXPECT_EQ(kPngMagic, std::string_view("\x89PNG"));
     EXPECT_EQ(codec_for(bytes_of("DDS |")).container, Container::dds);
 }

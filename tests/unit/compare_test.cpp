@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
 
-// Leans by `degrees` to the right.
+// Tilts a normal by `degrees` to the right.
 void set_tilt(NormalMap& map, int i, int j, double degrees) {
     map.x.at(i, j) = static_cast<float>(std::sin(degrees * kDegree));
     map.y.at(i, j) = 0.0f;
@@ -29,7 +29,7 @@ NormalMap flat(Extent extent) {
     return map;
 }
 
-// Unit vectors all over the upper half sphere, the same on every run.
+// Unit vectors over the whole upper hemisphere, the same on every run.
 NormalMap scattered(Extent extent, unsigned seed) {
     NormalMap map(extent);
     unsigned state = seed;
@@ -85,7 +85,7 @@ TEST(Compare, OppositeVectorsAre180DegreesApart) {
     EXPECT_NEAR(comparison->error.max, 180.0, 0.03);
 }
 
-// The same figures from doubles, atan2 and a sort.
+// Computes the same figures with doubles, atan2 and a sort.
 TEST(Compare, AgreesWithTheDefinitionsInDouble) {
     for (const Extent extent :
          {Extent{1, 1}, Extent{2, 3}, Extent{15, 7}, Extent{16, 16}, Extent{17, 9}, Extent{257, 33}}) {

@@ -55,7 +55,7 @@ TEST(Container, HoldsEveryEncodingInDdsAndKtx2) {
     EXPECT_FALSE(can_hold_levels(Container::png));
 }
 
-// Roughness goes into files by its format.
+// The format of a roughness map determines which containers can hold it.
 TEST(Container, HoldsFormats) {
     EXPECT_TRUE(can_hold(Container::ktx2, Format::bc4_unorm) && can_hold_blocks(Container::ktx2));
     EXPECT_FALSE(can_hold(Container::tiff, Format::bc4_unorm) || can_hold_blocks(Container::tiff));
@@ -96,7 +96,7 @@ protected:
     std::string folder_;
 };
 
-// Reads what was written, by the content: the name says nothing.
+// The content, not the name, determines how a file is read.
 TEST_F(ContainerFiles, ReadsWhatItWroteWhateverItsName) {
     struct Case {
         const char* name;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every field of a DDS, legal and illegal, written without libtex: the file is read as it is meant, or refused.
+// Every field of a DDS with legal and illegal values, written without libtex. The file must be read correctly or
+// refused.
 
 #include "reference/dds_file.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// DDS files that nobody here wrote: real ones, reference decodes, and hostile ones.
+// DDS files by other authors: real ones, reference decodes, and hostile ones.
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +23,7 @@ Result<Texture> decode_shared(const std::filesystem::path& path) {
 
 TEST(DdsFiles, ReadsEverySharedFile) {
     TEX_NEEDS_SHARED_DATA();
-    // Name, extent, levels, swizzle ('?' in front where the file does not say), remarks.
+    // Name, extent, levels, swizzle (preceded by '?' if the file does not state it), remarks.
     const std::map<std::string, std::string> expected = {
         {"amd_RedLetters_1k_normal_ATI2_A2XY", "bc5-unorm 512x512 1 xy01 0"},
         {"amd_wood_ATI2_A2XY_512_mips10", "bc5-unorm 512x512 10 xy01 0"},
@@ -74,21 +74,21 @@ TEST(DdsFiles, ReadsOrRefusesEveryBadFile) {
         {"oiio_crash-bpp", "unsupported"},      // says that it is a volume
         {"oiio_dds_bc3_just_header", "bad-data"},
         {"oiio_dds_bc7_just_header", "unsupported"},
-        {"pillow_dxt5-colorblock-alpha-issue-4142", "read 1 1"},  // 240 bytes too many
+        {"pillow_dxt5-colorblock-alpha-issue-4142", "read 1 1"},  // 240 extra bytes
         {"pillow_timeout-041dd17dfde800360a47a172269df127af138c6b", "bad-data"},
         {"pillow_timeout-755a4d204f4208e3597ac3391edebee196462bd0", "bad-data"},
-        {"pillow_unimplemented_dxgi_format", "bad-data"},  // B8G8R8X8, a quarter of its bytes
+        {"pillow_unimplemented_dxgi_format", "bad-data"},  // B8G8R8X8, with a quarter of its bytes
         {"pillow_unimplemented_pixel_format", "unsupported"},
         {"pillow_zero_mask_totals", "bad-data"},
         {"run_odd_24-bit-uncompressed-odd", "read 1 0"},
-        {"run_odd_both-dx10-and-pixel-format", "read 8 0"},  // the DX10 header counts
+        {"run_odd_both-dx10-and-pixel-format", "read 8 0"},  // the DX10 header overrides the pixel format
         {"run_odd_dxt5-simple-odd", "read 1 0"},
         {"run_odd_restricted-header", "read 8 0"},  // A1R5G5B5
         {"run_permissive_dds_header_size_24", "read 1 1"},
         {"run_permissive_dds_pixel_format_size_24", "read 1 1"},
         {"run_permissive_wrong_mipmap_count_1", "read 1 0"},  // 0 levels
         {"run_permissive_wrong_mipmap_count_3", "read 1 2"},  // 2^32 - 1 levels
-        {"run_permissive_wrong_mipmap_count_5", "read 1 1"},  // 3 levels, there is one
+        {"run_permissive_wrong_mipmap_count_5", "read 1 1"},  // 3 levels, but the file has one
     };
     std::size_t files = 0;
     for (const auto& path : files_in("bad", ".dds")) {
@@ -123,8 +123,9 @@ Picture read_picture(const std::filesystem::path& path) {
     return picture;
 }
 
-// The reference decodes show 8-bit codes; signed values n as (n + 1) / 2. RXGB files are shown with red put back from
-// alpha, DXT5nm as x, y and the z of those 8-bit x and y (a code of x is worth many of z where z is near 0).
+// The reference decodes have 8-bit codes, with a signed value n as (n + 1) / 2. RXGB files are shown with red restored
+// from alpha, DXT5nm files as x, y and the z of those 8-bit x and y (if z is near 0, one code of x changes z by many
+// codes).
 TEST(DdsFiles, DecodesWithinOneCodeOfTheReference) {
     TEX_NEEDS_SHARED_DATA();
     int files = 0;

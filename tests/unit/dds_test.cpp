@@ -45,7 +45,7 @@ void set_field(Bytes& bytes, std::size_t offset, std::uint32_t value) {
 constexpr std::size_t kHeightAt = 12, kWidthAt = 16, kPitchAt = 20, kMipsAt = 28, kFormatFlagsAt = 80, kFourCcAt = 84,
                       kBitCountAt = 88, kMasksAt = 92, kCapsAt = 108, kCaps2At = 112, kDxgiAt = 128;
 
-// A DDS whose header is that of `format`, 8x8, one level, to be changed by a test.
+// A DDS with the header of `format`, 8x8 and one level, which tests then change.
 Bytes plain_file(Format format, DdsHeader header = DdsHeader::legacy) {
     return encode(patterned_texture(format, {8, 8}, 1), with_header(header));
 }
@@ -71,7 +71,7 @@ TEST(Dds, ReadsBackEveryFormatWithEitherHeader) {
                 const auto before = decode(texture, k);
                 const auto after = decode(*read, k);
                 ASSERT_TRUE(before && after);
-                // What was widened has A = 1 behind the same colours.
+                // A widened texture has A = 1 in addition to the same colours.
                 ASSERT_GE(after->planes.size(), before->planes.size()) << row.name;
                 for (std::size_t c = 0; c < after->planes.size(); ++c) {
                     for (int j = 0; j < after->extent().height; ++j) {
@@ -155,7 +155,7 @@ TEST(Dds, TakesAti2ForYFirstUnlessItSaysOtherwise) {
     EXPECT_EQ(to_string(decode_bytes(file)->swizzle), "xy01");
 }
 
-// Masks, a texel of 0x8421 or the like, and the values that it must have.
+// Masks, a texel such as 0x8421, and its expected values.
 TEST(Dds, ReadsMasksOfAnyWidth) {
     struct Case {
         std::uint32_t flags, bits, r, g, b, a, texel;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The efforts of the block encoders beside each other, on blocks of real normal maps and of the samples.
+// Compares the efforts of the block encoders, on blocks of real normal maps and of the samples.
 
 #include <tex/pack.h>
 
@@ -21,7 +21,7 @@
 namespace tex {
 namespace {
 
-// One row of blocks, taken from all over a map; components in [-1, 1].
+// One row of blocks from all parts of a map; components in [-1, 1].
 struct Sampled {
     Plane<float> x, y;
     [[nodiscard]] int blocks() const { return x.extent().width / 4; }
@@ -29,10 +29,10 @@ struct Sampled {
 
 template <class X, class Y>
 Sampled sample(Extent extent, X x_at, Y y_at) {
-    constexpr int kMost = 1500;  // by squared errors every block is in order, by the mean angle only maps are
+    constexpr int kMost = 1500;  // squared errors are ordered in every block, the mean angle only over a map
     const int across = extent.width / 4;
     const int blocks = across * (extent.height / 4);
-    const int step = std::max(1, blocks / kMost) | 1;  // odd: not one column of blocks only
+    const int step = std::max(1, blocks / kMost) | 1;  // odd, so that blocks come from several columns
     const int count = (blocks + step - 1) / step;
     Sampled sampled{Plane<float>({4 * count, 4}), Plane<float>({4 * count, 4})};
     for (int i = 0; i < 4 * count; ++i) {
@@ -79,16 +79,16 @@ Errors errors_of(const Sampled& map, Encoding encoding, Effort effort) {
     return errors;
 }
 
-// No promise is made of the 99.9th percentile of the angle: the least squared error of each channel by itself may leave
-// greater angles where normals lean most. On these blocks that of fast lies between 0.76 and 7.6 times, that of normal
-// between 0.81 and 5.1 times that of best.
+// The 99.9th percentile of the angle has no guaranteed order. The least squared error of each channel alone may leave
+// larger angles on normals that lean most. On these blocks the percentile of fast is 0.76 to 7.6 times that of best,
+// and that of normal 0.81 to 5.1 times that of best.
 void expect_ordered(const Sampled& map, const std::string& name) {
     for (const Encoding encoding : {Encoding::dxt5nm, Encoding::bc5, Encoding::bc5_snorm}) {
         SCOPED_TRACE(name + " " + std::string(name_of(kEncodingNames, encoding)));
         const Errors fast = errors_of(map, encoding, Effort::fast);
         const Errors normal = errors_of(map, encoding, Effort::normal);
         const Errors best = errors_of(map, encoding, Effort::best);
-        constexpr double kRounding = 1e-6;  // blocks count in 1/1024 of a code
+        constexpr double kRounding = 1e-6;  // errors in blocks are counted in 1/1024 of a code
         EXPECT_LE(normal.x, fast.x + kRounding);
         EXPECT_LE(best.x, normal.x + kRounding);
         EXPECT_LE(normal.y, fast.y + kRounding);

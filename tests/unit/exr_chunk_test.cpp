@@ -42,8 +42,8 @@ TEST(ExrChunk, ZipHoldsAllTexelsOrNone) {
     EXPECT_TRUE(unzipper.texels({}, 100'000, 100'000).empty());
 }
 
-// Zeros that were stored as differences from 128 are a fall of 128 at each byte: 0, 128, 0, ... in the even places, and
-// on in the odd ones.
+// Zeros, stored as differences from 128, fall by 128 at each byte: 0, 128, 0, ... in the even places, continued in the
+// odd ones.
 TEST(ExrChunk, ZipPredictsAndInterleaves) {
     Unzipper unzipper;
     const Bytes chunk = deflated(7'001);
@@ -72,7 +72,7 @@ TEST(ExrChunk, EmptyOnesAreNeverWhole) {
     EXPECT_FALSE(chunk_is_whole(Imf::NO_COMPRESSION, std::span(stored).first(7), 8));
 }
 
-// What a file of these bytes is read as, where new memory holds `poison` (the C library's M_PERTURB).
+// The result of reading a file with these bytes while new memory is filled with `poison` (the C library's M_PERTURB).
 std::string read_poisoned(const Bytes& bytes, int poison) {
     mallopt(M_PERTURB, poison);
     std::string said;
@@ -90,7 +90,7 @@ std::string read_poisoned(const Bytes& bytes, int poison) {
     return said;
 }
 
-// (The address sanitizer has memory of its own, which M_PERTURB does not reach; there this looks for other things.)
+// (The address sanitizer has its own allocator, which M_PERTURB does not affect. With it this test finds other errors.)
 TEST(ExrChunk, DamagedFilesReadTheSameWhateverMemoryHeldBefore) {
     std::minstd_rand random(7);
     int read = 0;
@@ -99,7 +99,7 @@ TEST(ExrChunk, DamagedFilesReadTheSameWhateverMemoryHeldBefore) {
             const Bytes sound = exr_file({37, 41}, {"G", "R", "B"}, Imf::HALF, static_cast<Imf::Compression>(k), tiled);
             for (int round = 0; round < 120; ++round) {
                 Bytes bytes = sound;
-                // Chunks with another length, or other bytes in them; the header stays.
+                // Chunks with a different length or different bytes; the header stays.
                 constexpr std::size_t kHeader = 300;
                 for (std::size_t n = random() % 3 + 1; n > 0; --n) {
                     bytes[kHeader + random() % (bytes.size() - kHeader)] =

@@ -30,8 +30,8 @@ std::uint64_t load_u64(const Bytes& bytes, std::size_t at) {
     return value;
 }
 
-// Where the head of the first chunk stands: version 2, and behind eleven numbers the rules, of which the first is for a
-// channel called so.
+// The position of the head of the first chunk. It has version 2 and, after eleven numbers, the rules; the first rule is
+// for a channel with this name.
 std::size_t first_chunk(const Bytes& bytes) {
     for (std::size_t at = 0; at + 100 < bytes.size(); ++at) {
         if (load_u64(bytes, at) == 2 && load_u64(bytes, at + 80) <= 1 && bytes[at + 90] == std::byte{'R'}) return at;
@@ -62,7 +62,7 @@ TEST(ExrDwa, SoundColoursAndHeightsAreWhole) {
     }
 }
 
-// OpenEXR reads all of these, and takes what is missing from memory that nobody has written.
+// OpenEXR reads all of these and takes the missing bytes from uninitialised memory.
 TEST(ExrDwa, ShortBuffersAreDamage) {
     for (const std::vector<std::string>& names : {kChannels, kColors}) {
         const Bytes sound = exr_file({64, 32}, names, Imf::HALF, Imf::DWAA_COMPRESSION);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every field of an EXR, legal and illegal, written without OpenEXR: the file is read as it is meant, or refused.
+// Every field of an EXR with legal and illegal values, written without OpenEXR. The file must be read correctly or
+// refused.
 
 #include "reference/exr_file.h"
 
@@ -61,7 +62,8 @@ bool is_plain(const Image& image) {
     return true;
 }
 
-// Read whole and by rows, both with one result, or refused with a reason. Whether it was read.
+// Reads the file as a whole and by rows. Both must have the same result, or be refused with a reason. Returns true if
+// it was read.
 bool expect_read_or_refused(const ExrFile& file) {
     InputFile input = input_of(file);
     const Result<Image> image = read_all(open_exr_rows(input, limited()));
@@ -80,7 +82,7 @@ bool expect_read_or_refused(const ExrFile& file) {
     return static_cast<bool>(image);
 }
 
-// Integers that headers get wrong.
+// Integers for which headers are often wrong.
 constexpr std::uint32_t kIntegers[] = {0,          1,          2,          3,          0x7f,       0xff,
                                        0x7fff,     0xffff,     0x10000,    0x3fffffff, 0x40000000, 0x7ffffffe,
                                        0x7fffffff, 0x80000000, 0x80000001, 0xfffffffe, 0xffffffff, 0x7fc00000};
@@ -106,7 +108,7 @@ TEST(ExrFields, AnyAttributeMayBeMissing) {
             ExrFile file = plain;
             SCOPED_TRACE(file.parts[0][k].name);
             file.parts[0].erase(file.parts[0].begin() + static_cast<std::ptrdiff_t>(k));
-            // Of the others OpenEXR knows what they are where they are not given.
+            // OpenEXR uses defaults if the other attributes are missing.
             const std::string& name = plain.parts[0][k].name;
             const bool is_needed = name == "channels" || name == "dataWindow" || name == "tiles";
             EXPECT_TRUE(!expect_read_or_refused(file) || !is_needed);
@@ -153,14 +155,14 @@ TEST(ExrFields, AnyValueMayBeAnything) {
     }
 }
 
-// Attributes that belong to other kinds of parts, or to none, change nothing in a file of scan lines.
+// Attributes for other types of parts, or for no type, must not change a file of scan lines.
 TEST(ExrFields, AttributesOfOtherPartsChangeNothing) {
     const ExrFile plain = plain_files()[0];
     for (const std::uint32_t side : kIntegers) {
         for (const char mode : {'\0', '\1', '\2', '\x10', '\x7f'}) {
             ExrFile file = plain;
             file.parts[0].push_back({"tiles", "tiledesc", reference::exr_tiles(64, side, mode)});
-            if (mode == '\x7f') {  // no such mode: may be refused
+            if (mode == '\x7f') {  // no such mode, so the file may be refused
                 expect_read_or_refused(file);
                 continue;
             }

@@ -18,7 +18,7 @@
 namespace tex {
 namespace {
 
-// Rows [first, first + count) as decode() and store() give them. Nothing is written beside them.
+// Rows [first, first + count) from decode() and store(), which must write nothing outside these rows.
 Image some_rows(RowSource& rows, int first, int count) {
     constexpr std::byte kGuard{0xa5};
     const std::size_t size = rows.row_bytes() * static_cast<std::size_t>((count + 3) / 4 * 4);
@@ -41,7 +41,7 @@ void expect_same(const Image& part, const Image& whole, int first) {
     }
 }
 
-// Chunks have 1 to 256 lines, tiles 8: rows begin and end anywhere in them.
+// Chunks have 1 to 256 lines, and tiles have 8. Rows begin and end anywhere inside them.
 TEST(ExrRows, AnyRowsAreThoseOfTheWholePicture) {
     std::minstd_rand random(3);
     for (int k = 0; k < Imf::NUM_COMPRESSION_METHODS; ++k) {
@@ -66,7 +66,7 @@ TEST(ExrRows, AnyRowsAreThoseOfTheWholePicture) {
     }
 }
 
-// OpenEXR finds lines that follow one another without the table of chunks, and others by it: a file must not be whole
+// OpenEXR reads consecutive lines without the table of chunks, and other lines with it. The same file must not be whole
 // for one thread and damaged for two.
 TEST(ExrRows, ChunksAreWhereTheTableSaysInWhateverOrderTheyAreRead) {
     for (const Imf::Compression compression : {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION,
@@ -95,8 +95,8 @@ TEST(ExrRows, ChunksAreWhereTheTableSaysInWhateverOrderTheyAreRead) {
     }
 }
 
-// OpenEXR does not look at the attribute `tiles` of a part of scan lines, so it may say anything: writers leave it
-// behind when they convert a tiled file.
+// OpenEXR does not look at the attribute `tiles` in a part of scan lines, so it may have any value. Some writers leave
+// it behind when they convert a tiled file.
 TEST(ExrRows, ScanLinesIgnoreALeftoverTileDescription) {
     const auto plain = exr_file({37, 41}, {"B", "G", "R"}, Imf::HALF, Imf::ZIP_COMPRESSION);
     Result<InputFile> plain_file = InputFile::from_memory("lines.exr", plain);

@@ -168,7 +168,7 @@ TEST(Exr, RefusesClaimsBeforeTakingMemory) {
                               [](std::byte a, char b) { return static_cast<char>(a) == b; });
         ASSERT_NE(at, bytes.end());
         at += 11 + 6 + 4;                                   // the name, the type "box2i", the size
-        const std::int32_t window[4] = {0, 0, 999'999, 3};  // as many chunks as before, but wider
+        const std::int32_t window[4] = {0, 0, 999'999, 3};  // the same number of chunks, but wider
         std::memcpy(&*at, window, sizeof window);
         const Result<Image> image = read(bytes);
         ASSERT_FALSE(image);
@@ -192,7 +192,7 @@ TEST(Exr, RefusesAttributesThatClaimMoreThanTheFileHolds) {
     }
 }
 
-// The bytes behind `name` and its type (both with their final 0) in a header: an attribute's size, then its value.
+// The bytes after `name` and its type (both with their final 0) in a header: an attribute's size, then its value.
 std::byte* attribute(Bytes& bytes, const std::string& name, const std::string& type) {
     const std::string start = name + '\0' + type + '\0';
     const auto at = std::search(bytes.begin(), bytes.end(), start.begin(), start.end(),
@@ -282,7 +282,7 @@ TEST(Exr, TexturesComeBackWithTheirLevels) {
     }
 }
 
-// Each level from the top, but now some rows of one and then of another.
+// Each level comes from the top down, but rows of different levels are interleaved.
 TEST(Exr, RowsOfAllLevelsMayComeInAnyOrder) {
     std::minstd_rand random(4);
     for (const Extent extent : {Extent{131, 200}, Extent{64, 128}, Extent{700, 3}}) {

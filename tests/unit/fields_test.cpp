@@ -24,11 +24,11 @@ TEST(Fields, PickTheSmallestFormatThatHoldsThem) {
 
 TEST(Fields, RefuseMasksThatMakeNoSense) {
     EXPECT_EQ(format_of({4, {0, 0, 0, 0}, false}), std::nullopt);
-    EXPECT_EQ(format_of({4, {0xff00ff, 0, 0, 0}, false}), std::nullopt);    // two runs of bits
-    EXPECT_EQ(format_of({2, {0xff0000, 0, 0, 0}, false}), std::nullopt);    // beyond the texel
+    EXPECT_EQ(format_of({4, {0xff00ff, 0, 0, 0}, false}), std::nullopt);    // two groups of bits
+    EXPECT_EQ(format_of({2, {0xff0000, 0, 0, 0}, false}), std::nullopt);    // outside the texel
     EXPECT_EQ(format_of({4, {0xffffffff, 0, 0, 0}, false}), std::nullopt);  // wider than 16 bits
-    EXPECT_EQ(format_of({2, {0x1f, 0x3e0, 0, 0}, true}), std::nullopt);     // signed, of 5 bits
-    EXPECT_EQ(format_of({4, {0xff, 0xffff00, 0, 0}, true}), std::nullopt);  // signed, of 8 and of 16
+    EXPECT_EQ(format_of({2, {0x1f, 0x3e0, 0, 0}, true}), std::nullopt);     // signed, with 5 bits
+    EXPECT_EQ(format_of({4, {0xff, 0xffff00, 0, 0}, true}), std::nullopt);  // signed, with 8 and 16 bits
 }
 
 // Every code of every width becomes the nearest code of the format.

@@ -25,7 +25,7 @@ TEST(FileLayout, RearrangesTexels) {
     EXPECT_EQ(stored_level_bytes(Format::bc3_unorm, {5, 5}, Rearrange::none), 64u);
 }
 
-// A writer that has only the head of a texture knows where every byte will stand.
+// A writer that knows only the head of a texture can compute the position of every byte.
 TEST(FileLayout, FollowsFromTheHeadAlone) {
     for (const auto& row : kEncodingNames) {
         const Texture texture = encoded_texture(row.value, {13, 7}, 4);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rights beyond owner, group and mode: a file that replaces another one has its ACL and attributes, and nobody has more
-// rights than before.
+// Rights beyond owner, group and mode. A file that replaces another one keeps its ACL and attributes, and nobody has
+// more rights than before.
 
 #include "files/file_rights.h"
 
@@ -29,7 +29,7 @@ struct Entry {
 };
 constexpr std::uint16_t kOwner = 1, kUser = 2, kGroup = 4, kNamedGroup = 8, kMask = 16, kOther = 32;
 
-// As Linux stores it: what setfacl makes.
+// In the form in which Linux stores it; setfacl makes the same.
 std::string acl(const std::vector<Entry>& entries) {
     std::string bytes("\x02\0\0\0", 4);
     const auto put = [&](std::uint32_t value, int count) {
@@ -79,7 +79,7 @@ mode_t without(mode_t mode, const std::string& list) {
 
 }  // namespace
 
-// The mask stands where the group's rights stood: they became the group's rights.
+// In a file's mode, the mask takes the place of the group's rights. An earlier version gave these rights to the group.
 TEST_F(FileRights, AnAclIsKept) {
     ASSERT_TRUE(set(file_, kAcl, kOneUser));
     ASSERT_EQ(mode(), 0660u);
@@ -96,7 +96,7 @@ TEST_F(FileRights, AttributesOfTheUserAreKept) {
     EXPECT_EQ(get(file_, "user.empty"), "");
 }
 
-// A folder's default ACL is for files that are new there.
+// A folder's default ACL applies only to files that are new in it.
 TEST_F(FileRights, TheFoldersAclIsNotForAFileThatHadNone) {
     ASSERT_EQ(chmod(file_.c_str(), 0640), 0);
     ASSERT_TRUE(set(folder_, "system.posix_acl_default", kOneUser));
@@ -108,12 +108,12 @@ TEST_F(FileRights, TheFoldersAclIsNotForAFileThatHadNone) {
 }
 
 TEST(FileRightsWithoutAcl, NobodyHasMoreThanBefore) {
-    // The group itself had nothing.
+    // The group itself had no rights.
     EXPECT_EQ(without(0660, kOneUser), 0600u);
     EXPECT_EQ(without(0664, acl({{kOwner, 6}, {kUser, 6, 1}, {kGroup, 4}, {kMask, 6}, {kOther, 4}})), 0644u);
-    // The mask takes from the group.
+    // The mask removes rights from the group.
     EXPECT_EQ(without(0640, acl({{kOwner, 6}, {kUser, 6, 1}, {kGroup, 6}, {kMask, 4}, {kOther, 0}})), 0640u);
-    // Who was shut out by name is one of the others, or of the group, now.
+    // A user who was denied by name now counts as one of the others, or of the group.
     EXPECT_EQ(without(0664, acl({{kOwner, 6}, {kUser, 0, 1}, {kGroup, 6}, {kMask, 6}, {kOther, 4}})), 0600u);
     EXPECT_EQ(without(0664, acl({{kOwner, 6}, {kGroup, 6}, {kNamedGroup, 0, 1}, {kMask, 6}, {kOther, 4}})), 0660u);
     EXPECT_EQ(without(04755, acl({{kOwner, 7}, {kGroup, 5}, {kOther, 5}})), 04755u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The quick fits, the rows of blocks made of them and of the searches, and the table of single greens.
+// The quick fits, the rows of blocks made with them and with the searches, and the table of single greens.
 
 #include "kernels/fit.h"
 
@@ -70,8 +70,8 @@ TEST(Encode, NoEffortIsWorseThanACheaperOne) {
     }
 }
 
-// A row of decoded blocks: random endpoints at least 8 codes apart, and of their palettes some values only, of which
-// there are three or more.
+// A row of decoded blocks. Their endpoints are random and at least 8 codes apart; each block uses only some values of
+// its palette, but at least three.
 std::vector<float> decoded_rows(tex::Encoding encoding, bool second, unsigned seed) {
     std::mt19937 random(seed);
     std::vector<float> rows(4 * (kWidth + 12));
@@ -159,7 +159,7 @@ struct Rows {
 
 TEST(Fit, WritesTheBlocksAskedForAndNothingElseOnEveryTarget) {
     std::vector<float> values = noisy_rows();
-    // The first blocks are smooth: a few whole codes each, and one value.
+    // The first blocks are smooth: each has a few integer codes, or a single value.
     for (std::size_t k = 0; k < 40; ++k) values[k] = static_cast<float>((k / 4 + 255) % 511) / 255.0f - 1.0f;
     const Rows rows(values);
     for (const Effort effort : {Effort::fast, Effort::normal}) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// tests/golden holds files as text: bytes in hexadecimal, and behind '#' what they are and why they are right. They
-// were written from the specifications of the containers, by a program that shares nothing with libtex.
+// tests/golden has files as text: bytes in hexadecimal and, after '#', their meaning and why they are right. They were
+// written from the specifications of the containers, by a program that shares nothing with libtex.
 //
-// All hold one texture: 6x5 texels and a level of 3x2, the k-th byte of level l being 7 k + 64 l + 1.
+// Each file has one texture: 6x5 texels and a level of 3x2; the k-th byte of level l is 7 k + 64 l + 1.
 
 #include <tex/container.h>
 
@@ -63,8 +63,8 @@ TEST(Golden, EveryEncodingInLegacyDds) {
 TEST(Golden, EveryEncodingInDx10Dds) {
     WriteOptions options;
     options.dds_header = DdsHeader::dx10;
-    // These are the same with either header: DXGI has no rgb8, Direct3D 9 no rg8, rg16; ag8 is rgba8 but for its alpha
-    // mode.
+    // These are the same with either header: DXGI has no rgb8, Direct3D 9 has no rg8 and rg16, and ag8 is rgba8 except
+    // for its alpha mode.
     for (const auto& row : kEncodingNames) {
         const std::string name(row.name);
         if (name == "ag8") continue;

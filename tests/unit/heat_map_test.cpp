@@ -41,11 +41,11 @@ TEST(HeatMap, NarrowMapsHaveRoomForTheLegend) {
     EXPECT_EQ(image->extent(), (Extent{kHeatMapLeastWidth, 1 + kHeatMapLegendRows}));
 }
 
-// Under the map as under preview()'s false colours: a bar of the scale's colours, and its ends in letters.
+// Below the map, as in preview()'s false colours: a bar with the scale's colours, and labels at its ends.
 TEST(HeatMap, LegendNamesItsEnds) {
     const auto image = heat_map(Plane<float>(Extent{160, 4}, 0.0f), 7.5);
     ASSERT_TRUE(image);
-    const int bar = 4 + 10;  // a row of it
+    const int bar = 4 + 10;  // one of its rows
     EXPECT_LT(image->planes[0].at(8, bar), 0.01f);
     EXPECT_GT(image->planes[0].at(151, bar), 0.98f);
     const auto ink = [&](int from, int to) {

@@ -34,7 +34,7 @@ using tex::fields::same_bytes;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// A picture of the planes called `names`; each holds its own constant: 0.125, 0.25, ...
+// A picture with the planes `names`; each plane has its own constant: 0.125, 0.25, ...
 Image image_of(const std::vector<std::string>& names, Extent extent = {3, 2}) {
     Image image;
     for (const std::string& name : names) {
@@ -130,7 +130,7 @@ TEST(HeightField, AutomaticTakesLumaOnlyWhereColoursDifferAndCounts) {
         for (int j = 0; j < 5; ++j) {
             for (int i = 0; i < 37; ++i) {
                 if ((i == 36 && j == 0) || (i == 20 && j == 4)) continue;
-                EXPECT_EQ(field.height.at(i, j), image.planes[0].at(i, j));  // exactly: not through luma's weights
+                EXPECT_EQ(field.height.at(i, j), image.planes[0].at(i, j));  // exactly, so luma's weights are not used
             }
         }
         EXPECT_FLOAT_EQ(field.height.at(36, 0), (0.2126f + 0.0722f) * image.planes[0].at(36, 0));

@@ -42,7 +42,7 @@ std::string output_of(const std::string& command) {
     return text;
 }
 
-// What SOURCES.md says of the files of height/.
+// The properties that SOURCES.md gives for the files of height/.
 struct Sample {
     const char* file;
     Extent extent;
@@ -107,7 +107,7 @@ TEST(ImageIo, ReadsEveryHeightMapAsItsSourceDescribesIt) {
     }
 }
 
-// Values of `file` against 16-bit ones that ImageMagick decodes.
+// Compares the values of `file` with the 16-bit values that ImageMagick decodes.
 void compare_with_magick(const std::string& file, const char* map) {
     SCOPED_TRACE(file);
     const Result<Image> image = read_image(file, quick());

@@ -36,7 +36,7 @@ TEST(Plane, MovesItsRows) {
     EXPECT_EQ(moved.row(0), rows);
 }
 
-#ifndef __SANITIZE_ADDRESS__  // which ends a program that asks for so much
+#ifndef __SANITIZE_ADDRESS__  // it ends a program that requests so much memory
 TEST(Rows, ThrowBadAllocIfMemoryRunsOut) {
     EXPECT_THROW(free_rows(allocate_rows(std::size_t{1} << 52)), std::bad_alloc);
 }

@@ -37,7 +37,7 @@ void expect_descriptor(Format format, std::uint32_t model, std::uint32_t block, 
     }
 }
 
-// The values that Khronos' libktx (dfdutils) gives for these VkFormats, but for the primaries.
+// The values that Khronos' libktx (dfdutils) gives for these VkFormats, except for the primaries.
 TEST(Ktx2Descriptor, DescribesFormatsAsKhronosDoes) {
     expect_descriptor(Format::bc3_unorm, 130, 0x303, 16, {{0x0f3f0000, 0, 0xffffffff}, {0x003f0040, 0, 0xffffffff}});
     expect_descriptor(Format::bc5_unorm, 132, 0x303, 16, {{0x003f0000, 0, 0xffffffff}, {0x013f0040, 0, 0xffffffff}});

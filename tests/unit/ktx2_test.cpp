@@ -36,7 +36,7 @@ void set_field(Bytes& bytes, std::size_t offset, std::uint32_t value) {
 constexpr std::size_t kVkFormatAt = 12, kWidthAt = 20, kHeightAt = 24, kDepthAt = 28, kLayersAt = 32, kFacesAt = 36,
                       kLevelsAt = 40, kSchemeAt = 44, kEntriesAt = 56, kLevel0At = 80;
 
-// Puts `value` (padded to the length of the old one) behind `key`.
+// Replaces the value of `key` with `value`, padded to the length of the old one.
 void set_value(Bytes& file, const std::string& key, const std::string& value) {
     for (std::size_t at = field(file, kEntriesAt); at + key.size() < file.size(); ++at) {
         if (std::memcmp(file.data() + at, key.data(), key.size()) != 0) continue;
@@ -60,7 +60,7 @@ TEST(Ktx2, ReadsBackEveryFormatThatItWrites) {
                 EXPECT_EQ(read->levels[k].bytes, texture.levels[k].bytes) << row.name;
                 continue;
             }
-            // Widened: every fourth channel is 1.
+            // In a widened texture, every fourth channel is 1.
             const auto image = decode(*read, static_cast<int>(k));
             EXPECT_EQ(format_info(texture.format).channels, 3) << row.name;
             for (int i = 0; i < image->extent().width; ++i) EXPECT_EQ(image->planes[3].at(i, 0), 1.0f);
@@ -92,7 +92,7 @@ TEST(Ktx2, AlignsLevelsAndStoresTheSmallestFirst) {
             const std::uint64_t offset = load_u64(file.data() + kLevel0At + 24 * k);
             const std::uint64_t bytes = load_u64(file.data() + kLevel0At + 24 * k + 8);
             EXPECT_EQ(offset % alignment, 0u);
-            EXPECT_LE(last_end - (offset + bytes), alignment - 1);  // only padding in between
+            EXPECT_LE(last_end - (offset + bytes), alignment - 1);  // only padding between levels
             EXPECT_EQ(bytes, load_u64(file.data() + kLevel0At + 24 * k + 16));
             last_end = offset;
         }
@@ -116,7 +116,7 @@ TEST(Ktx2, ReadsRowsThatRunUpwards) {
 TEST(Ktx2, UnderstandsKtxSwizzle) {
     Texture texture = encoded_texture(Encoding::dxt5nm, {4, 4}, 1);
     Bytes file = encode(texture);
-    // The key libtex.normal has 13 letters, KTXswizzle 10: a file with other keys is made from one with ours.
+    // The key libtex.normal has 13 letters, KTXswizzle 10. Files with other keys are made by changing a key of ours.
     const std::string ours = "libtex.normal";
     const std::string theirs = std::string("KTXswizzle\0ag01\0", 16);
     for (std::size_t at = field(file, kEntriesAt); at < file.size() - ours.size(); ++at) {

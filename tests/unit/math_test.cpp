@@ -15,7 +15,7 @@ using tex::math::kPi;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// The largest error of `ours` against `truth`, in units in the last place of the double next to the truth.
+// The largest error of `ours` compared with `truth`, in units in the last place of the double next to the truth.
 double largest_error(const std::function<double(double)>& ours, const std::function<long double(long double)>& truth,
                      double low, double high, int count = 200000) {
     std::mt19937_64 random(1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// build_mip_chain() against the double-precision reference, on every target and with every number of threads.
+// Compares build_mip_chain() with the double-precision reference, on every target and with every number of threads.
 
 #include <optional>
 #include <utility>
@@ -67,7 +67,7 @@ TEST(Mip, AxesMayWrapDifferently) {
 
 // -- the same bytes ----------------------------------------------------------------------------------------
 
-// The chain is the same on every target and for each number of threads.
+// The chain must be the same on every target and with each number of threads.
 void expect_same_bytes(const NormalMap& base, const MipOptions& options, const std::vector<int>& threads) {
     std::optional<MipChain> first;
     tex::on_every_target([&] {

@@ -95,7 +95,7 @@ TEST(Mip, AsManyLevelsAsWantedAndNoMoreThanThereAre) {
         options.levels = wanted;
         EXPECT_EQ(chain_of(base, options).levels.size(), got);
     }
-    // Fewer levels are the first ones of the complete chain.
+    // A chain with fewer levels consists of the first levels of the complete chain.
     options.levels = 3;
     EXPECT_TRUE(same_bytes(chain_of(base, options).levels[2], chain_of(base).levels[2]));
 }
@@ -129,8 +129,8 @@ TEST(Mip, AConstantVectorStays) {
 }
 
 TEST(Mip, HalfFlatAndHalfSteepDiffersByDomain) {
-    // tan 53.13 degrees = 4/3. The mean vector of it and flat leans by half the angle, 26.57 degrees; the
-    // mean slope is 2/3, 33.69 degrees: what the averaged heights have.
+    // tan 53.13 degrees = 4/3. The mean of this vector and a flat one leans by half the angle, 26.57 degrees. The mean
+    // slope is 2/3, 33.69 degrees, which is the slope of the averaged heights.
     NormalMap base = tex::uniform_map({2, 1}, 0.0f, 0.0f, 1.0f);
     base.x.at(0, 0) = 0.8f;
     base.z.at(0, 0) = 0.6f;
@@ -143,7 +143,7 @@ TEST(Mip, HalfFlatAndHalfSteepDiffersByDomain) {
 }
 
 TEST(Mip, EveryLevelIsTheAverageOfTheBaseNotOfNormalisedLevels) {
-    // Two opposite steep vectors cancel to a short one, which must not count as much as the two that agree.
+    // Two opposite steep vectors cancel to a short one. It must have less weight than the two vectors that agree.
     NormalMap base = tex::uniform_map({4, 1}, 0.0f, 0.0f, 1.0f);
     base.x.at(0, 0) = 0.96f;
     base.z.at(0, 0) = 0.28f;
@@ -157,8 +157,8 @@ TEST(Mip, EveryLevelIsTheAverageOfTheBaseNotOfNormalisedLevels) {
 }
 
 TEST(Mip, TheBoxIsTheExactAverageOfOddSizes) {
-    // In the slope domain the averages can be read from what is stored. Their mean by area is that of the
-    // base level, at every level.
+    // In the slope domain the averages can be computed from the stored levels. At every level, their mean by area
+    // equals that of the base level.
     for (const Extent extent : {Extent{5, 7}, Extent{253, 253}, Extent{1, 300}, Extent{300, 1}, Extent{1025, 33}}) {
         const NormalMap base = noise_normals(extent);
         const MipChain chain = chain_of(base, options_of(MipFilter::box, MipDomain::slope, Wrap::repeat));
@@ -207,8 +207,8 @@ TEST(Mip, ASymmetricBumpStaysCentred) {
 }
 
 TEST(Mip, ABumpStaysWhereItIs) {
-    // The centre of mass of a round bump, weighed by the squares of its slopes; half a texel of drift in the step to a
-    // level would move it by half a texel of that level.
+    // The centre of mass of a round bump, weighted by the squares of its slopes. A drift of half a texel in the step to
+    // a level would move it by half a texel of that level.
     for (const Extent extent : {Extent{256, 192}, Extent{253, 187}, Extent{131, 255}}) {
         const double u = 0.37 * extent.width, v = 0.58 * extent.height, sigma = 14.0;
         NormalMap base(extent);
@@ -269,7 +269,7 @@ TEST(Mip, FadingMovesLevelsToFlat) {
     const NormalMap base = tex::uniform_map({32, 32}, 0.8f, 0.0f, 0.6f);
     const MipChain chain = chain_of(base, options);
     EXPECT_NEAR(chain.levels[1].x.at(0, 0), 0.8f, 1e-6f);
-    // Half way in vector space: (0.4, 0, 0.8), normalised.
+    // Halfway in vector space: (0.4, 0, 0.8), normalised.
     EXPECT_NEAR(chain.levels[2].x.at(0, 0), 0.4f / std::sqrt(0.8f), 1e-6f);
     EXPECT_NEAR(chain.levels[2].z.at(0, 0), 0.8f / std::sqrt(0.8f), 1e-6f);
     for (std::size_t k = 3; k < chain.levels.size(); ++k) {

@@ -26,7 +26,7 @@ using tex::fields::plane_of;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr Wrap kWraps[] = {Wrap::repeat, Wrap::clamp, Wrap::mirror};
 
-// The nearest texel with a height, by looking at all of them.
+// Finds the nearest texel with a height by looking at all texels.
 float nearest_by_search(const Plane<float>& heights, Wrap wrap_x, Wrap wrap_y, int i, int j) {
     const auto [width, height] = heights.extent();
     long long best = std::numeric_limits<long long>::max();
@@ -59,7 +59,7 @@ TEST(Nearest, FillsFromTheNearestTexelTiesByRowThenColumn) {
         for (const double holes : {0.1, 0.5, 0.9, 0.98}) {
             for (const Wrap wrap_x : kWraps) {
                 for (const Wrap wrap_y : kWraps) {
-                    // Every texel has a height of its own, so that a wrong source shows.
+                    // Every texel has a unique height, so that a wrong source shows.
                     Plane<float> heights = plane_of(extent, [&](int i, int j) {
                         return noise(i, j, 7) < holes ? static_cast<double>(kNan) : 1.0 + i + 1000.0 * j;
                     });
@@ -87,7 +87,7 @@ TEST(Nearest, LooksAcrossTheBorderOnlyWhereTheAxisRepeats) {
 }
 
 TEST(Nearest, TakesTimeInProportionToTheTexels) {
-    // One valid texel in a million: a search around each hole would look at 10^11 texels.
+    // One valid texel in a million. A search around each hole would look at 10^11 texels.
     Plane<float> heights({1000, 1000}, kNan);
     heights.at(999, 0) = 0.25f;
     const Plane<float> result = filled(heights, Wrap::clamp, Wrap::repeat);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A file for each level, and files of roughness, from streams.
+// Separate files for each level, and files of roughness, written from streams.
 
 #include "files/output_file.h"
 
@@ -56,7 +56,7 @@ protected:
         pack_.pack = [this](const SourceInfo&) { return packing_; };
         bake_.level_names = pack_.level_names = names_;
     }
-    // The levels of `chain`, each in a file of its own, and no others.
+    // Expects that each level of `chain` has its own file and that there are no other files.
     void expect_files(const MipChain& chain, Container container, std::size_t bytes) const {
         Texture texture = pack(chain, packing_).value();
         const std::vector<Level> levels = std::exchange(texture.levels, {});
@@ -132,7 +132,7 @@ TEST_F(OutputFiles, LevelsOfRepackedMapsHaveTheBytesOfTheVerbs) {
     }
 }
 
-// Roughness beside the normals, of values and of maps.
+// Roughness together with the normals, from values and from maps.
 TEST_F(OutputFiles, RoughnessHasTheBytesOfTheVerbs) {
     constexpr Format kFormats[] = {Format::bc4_unorm, Format::r8_unorm, Format::r16_unorm, Format::r16_float,
                                    Format::r32_float};
@@ -173,7 +173,7 @@ TEST_F(OutputFiles, RoughnessHasTheBytesOfTheVerbs) {
         ASSERT_TRUE(bytes_of(path("rough")) == expected);
         EXPECT_EQ(report->roughness_bytes, expected.size());
         const Bytes normals = bytes_of(path("out"));
-        // A map, of the same extent or of another.
+        // A map with the same extent or with a different one.
         const Extent its = round % 2 == 0 ? extent : Extent{kSides[random() % 11], kSides[random() % 11]};
         const auto make_map = [its, seed = random()] {
             std::mt19937 values(seed);
@@ -212,8 +212,8 @@ TEST_F(OutputFiles, DamageLeavesNoneOfTheLevels) {
     }
 }
 
-// Large files are open while they grow, small ones come at the end: either way what cannot be written is the error of
-// the file that it is about.
+// Large files are open while they grow; small ones are written at the end. In both cases, the error must name the file
+// that cannot be written.
 TEST_F(OutputFiles, ALevelThatCannotBeWrittenIsNamedAndOthersAreWhole) {
     const std::string input = write_map({640, 640}, 1, Container::png);
     std::mt19937 random(8);
@@ -226,13 +226,13 @@ TEST_F(OutputFiles, ALevelThatCannotBeWrittenIsNamedAndOthersAreWhole) {
         };
         const auto report = bake_file(input, "", Container::dds, bake_);
         EXPECT_EQ(report.error().message(), path("none/out") + ": the directory does not exist");
-        const std::size_t before = missing == 4 ? 4 : 0;  // 0 and 1 are opened at once
+        const std::size_t before = missing == 4 ? 4 : 0;  // 0 and 1 are opened immediately
         EXPECT_EQ(files(), 1 + before);
         remove_outputs();
     }
 }
 
-// A reader of FIFOs, one after the other, opens the second when the first has ended.
+// A reader that reads FIFOs one after the other opens the second one when the first has ended.
 TEST_F(OutputFiles, FifosAreWrittenOneAfterTheOther) {
     const std::string input = write_map({640, 640}, 1, Container::png);
     std::mt19937 random(9);

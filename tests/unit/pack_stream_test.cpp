@@ -31,7 +31,7 @@ protected:
     }
 
     using StreamTest::write;
-    // A file of `kind` that holds the texture.
+    // Writes the texture to a file of type `kind`.
     [[nodiscard]] std::string write(const Texture& texture, Container kind) const {
         const std::string name(name_of(kContainerNames, kind));
         return write("in." + name, encode_file(texture, kind, options_.write).value());
@@ -43,7 +43,7 @@ protected:
         return write(pack(chain, {encoding, YAxis::down, Effort::fast}).value(), kind);
     }
 
-    // What the verbs make of a file, one after the other.
+    // The result of calling the verbs on a file one after the other.
     [[nodiscard]] Result<Bytes> by_verbs(const std::string& input, Container container) const {
         Result<Source> source = read_normals(input, options_.source);
         if (!source) return source.error();
@@ -57,7 +57,7 @@ protected:
         return encode_file(pack(chain, options_.pack(source->info)).value(), container, options_.write);
     }
 
-    // The stream of a file, cut into small pieces.
+    // Streams a file in small pieces.
     Result<PackFileReport> stream(const std::string& input, Container container, int threads, const StreamSizes& sizes,
                                   std::function<bool(double)> progress = {}) const {
         Result<InputFile> file = InputFile::open(input);
@@ -96,7 +96,7 @@ protected:
 
     PackFileOptions options_;
     PackOptions pack_;
-    bool y_ = false;  // pack_.y_axis counts
+    bool y_ = false;  // pack_.y_axis applies
 };
 
 Encoding encoding_in(Container kind, std::mt19937& random) {
@@ -138,7 +138,7 @@ TEST_F(PackStream, GivesTheBytesOfTheVerbs) {
     }
 }
 
-// Every file of others: channels by masks, rows that run upwards, headers that claim too much.
+// Textures by other writers: channels by masks, rows from bottom to top, headers that claim too much.
 TEST_F(PackStream, TakesTheTexturesOfOthersAsTheVerbsDo) {
     std::vector<std::filesystem::path> inputs;
     for (const auto& entry : std::filesystem::directory_iterator(TEX_SOURCE_DIR "/samples/broken"))
@@ -191,7 +191,7 @@ TEST_F(PackStream, TakesRowsThatRunUpwards) {
     }
 }
 
-// Layouts that only the texels tell: the first assumption may be wrong.
+// Layouts that only the texels show. The first assumption may be wrong.
 TEST_F(PackStream, ReadsOnceMoreWhereTheTexelsSayOtherwise) {
     std::mt19937 random(5);
     constexpr Swizzle kUnknown = {Component::other, Component::other, Component::other, Component::other};
@@ -215,7 +215,7 @@ TEST_F(PackStream, ReadsOnceMoreWhereTheTexelsSayOtherwise) {
                 std::memcpy(texture.levels[0].bytes.data() + 16 * k, n, 16);
             }
         }
-        texture.swizzle = kUnknown;  // EXR says nothing then
+        texture.swizzle = kUnknown;  // the EXR file then says nothing
         draw_options(random, 1);
         options_.source.unpack.range = ValueRange::automatic;
         const std::string input = write(texture, floats ? Container::exr : Container::png);
@@ -284,7 +284,7 @@ TEST_F(PackStream, TakesEveryInputThatComesInOrder) {
     }
 }
 
-// The reader process encodes them as a whole.
+// The reader process encodes such pictures as a whole.
 TEST_F(PackStream, PicturesOfTheReaderHaveTheBytesOfTheVerbs) {
     const std::string plain = write_map({82, 56}, Container::png, Encoding::rgb8);
     for (const Container container : {Container::tiff, Container::tga, Container::bmp, Container::jpeg}) {
@@ -327,7 +327,7 @@ TEST_F(PackStream, DamageIsTheSameErrorAndLeavesNothing) {
                 return stream(input, Container::dds, threads, {2048, 0});
             });
     }
-    // A file that is damaged is damaged first, whatever else is wrong.
+    // If a file is damaged, that error is reported first, whatever else is wrong.
     options_.level = 3;
     EXPECT_EQ(pack_file(path("cut"), path("out"), Container::dds, options_).error().code, ErrorCode::bad_data);
     EXPECT_EQ(files(), 4u);

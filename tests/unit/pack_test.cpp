@@ -101,7 +101,7 @@ TEST(Pack, FloatsAreTheComponentsAndHalvesRoundToNearestEven) {
     ASSERT_EQ(half.size(), 6u);
     EXPECT_EQ(half[0], 0x2E66);  // 0.1 is 0x2E66 + 0.4 in units of the last place
     EXPECT_EQ(half[1], 0xB555);
-    EXPECT_EQ(half[2], 0x3C00);  // 1 + half a unit in the last place: to even
+    EXPECT_EQ(half[2], 0x3C00);  // 1 + half a unit in the last place: rounds to even
 }
 
 TEST(Pack, YDownStoresMinusYAndNothingElse) {
@@ -164,7 +164,8 @@ TEST(Pack, CancelStopsAndSaysSo) {
     EXPECT_EQ(texture.error().code, tex::ErrorCode::cancelled);
 }
 
-// R and B of DXT5nm, every texel, decode to exactly 255; c0 > c1 where they differ; equal ones use index 0 only.
+// R and B of DXT5nm decode to exactly 255 in every texel. c0 > c1 if they differ; if they are equal, only index 0 is
+// used.
 TEST(Pack, Dxt5nmColourBlocksAreSafeForEveryDecoder) {
     for (const Effort effort : kAllEfforts) {
         const auto bytes = pack_bytes(chain_of(bumpy({131, 66}, 11)), {Encoding::dxt5nm, tex::YAxis::up, effort});
@@ -182,7 +183,7 @@ TEST(Pack, Dxt5nmColourBlocksAreSafeForEveryDecoder) {
     }
 }
 
-// The rules by which decoders interpolate in whole numbers: w of `whole` parts of b.
+// The rules by which decoders interpolate with integers: w of `whole` parts of b.
 int amd(int a, int b, int w, int whole) {
     const int part = whole == 3 ? (w == 1 ? 21 : 43) : (w * 64 * 2 + whole) / (2 * whole);
     return ((64 - part) * a + part * b + 32) >> 6;
@@ -239,8 +240,8 @@ TEST(Pack, ConstantBlocksAreWithinHalfACodeAtEveryLevel) {
 }
 
 TEST(Pack, TexelsOutsideTheLevelCarryNoWeight) {
-    // Two columns of a 4x4 block are inside: the block must be as good as one with these texels alone, whatever is
-    // in the padding of the rows.
+    // Two columns of a 4x4 block are inside. The block must be as good as one with these texels alone, whatever the
+    // padding of the rows contains.
     NormalMap map(Extent{6, 3});
     for (int j = 0; j < 3; ++j) {
         for (int i = 0; i < 16; ++i) {

@@ -42,7 +42,7 @@ TEST(Picture, KeepsItsValuesInTheSmallestFormat) {
         EXPECT_EQ(back->planes[0].at(2, 1), c.value) << c.bits;
         EXPECT_EQ(back->planes[2].at(2, 1), 1.0f);
     }
-    // 12 bits are rounded to the nearest code of 16.
+    // 12-bit values are rounded to the nearest 16-bit code.
     const auto twelve = texture_of(picture({"Y"}, {1234.0f / 4095.0f}, SampleKind::unorm, 12));
     EXPECT_EQ(twelve->format, Format::r16_unorm);
     EXPECT_NEAR(decode(*twelve, 0)->planes[0].at(0, 0), 1234.0f / 4095.0f, 0.5f / 65535.0f);

@@ -80,7 +80,7 @@ protected:
         return image;
     }
 
-    // What the verbs make of a picture, one after the other.
+    // The result of calling the verbs on a picture one after the other.
     [[nodiscard]] Bytes by_verbs(const std::string& input, Container container, SlopeRange* slopes = nullptr) const {
         auto field = height_field(linear(input), options_.heights).value();
         const Strength strength = options_.strength ? options_.strength(field.height.extent()) : Strength();
@@ -92,7 +92,7 @@ protected:
         return encode_file(pack(chain, options_.pack).value(), container, options_.write).value();
     }
 
-    // The stream of a picture, cut into small pieces.
+    // Streams a picture in small pieces.
     Result<BakeFileReport> stream(const std::string& input, Container container, int threads, const StreamSizes& sizes,
                                   std::function<bool(double)> progress = {}) const {
         Result<InputFile> file = InputFile::open(input);
@@ -175,8 +175,8 @@ TEST_F(Pipeline, LargePicturesGoThroughManyStripsOnManyThreads) {
     }
 }
 
-// An interlaced PNG, heights to fill and an output that the reader process encodes are held in memory; colour spaces
-// change each row.
+// An interlaced PNG, heights that need filling and an output that the reader process encodes are held in memory. Colour
+// spaces change each row.
 TEST_F(Pipeline, StepsThatReachOverAllRowsGiveTheBytesOfTheVerbs) {
     std::mt19937 random(23);
     constexpr Container kContainers[] = {Container::tiff, Container::tga,  Container::jpeg, Container::bmp,
@@ -242,7 +242,7 @@ TEST_F(Pipeline, NormalsInAnInterlacedPictureAreThoseOfAPlainOne) {
         return bytes_of(path("out"));
     };
     EXPECT_TRUE(packed({3, 8}) == packed({3, 8, true}));
-    // Grey and alpha are R = G = B and A.
+    // Grey becomes R = G = B; alpha becomes A.
     EXPECT_TRUE(packed({2, 16}) == packed({2, 16, true}));
 }
 
@@ -253,7 +253,7 @@ struct ExrKind {
     int tile = 0;  // 0: scanlines
 };
 
-// Bumps, and another channel beside them; the data window begins anywhere.
+// Bumps, and another channel besides them. The data window begins anywhere.
 void make_exr(const std::string& path, Extent extent, const ExrKind& kind) {
     const Imath::Box2i window(Imath::V2i(-3, 5), Imath::V2i(extent.width - 4, extent.height + 4));
     Imf::Header header(window, window);
@@ -349,7 +349,7 @@ TEST_F(Pipeline, DamageIsTheSameErrorAndLeavesNothing) {
         }
     }
     EXPECT_EQ(files(), 5u);
-    // A picture that is damaged is damaged first, whatever else is wrong.
+    // If a picture is damaged, that error is reported first, whatever else is wrong.
     options_.pack.encoding = PackOptions().encoding;
     options_.color.space = "nonsense";
     EXPECT_EQ(bake_file(path("cut"), path("out"), Container::dds, options_).error().code, ErrorCode::bad_data);
@@ -431,7 +431,7 @@ TEST_F(Pipeline, CancellingLeavesNothing) {
         EXPECT_EQ(calls, 10);
         EXPECT_EQ(files(), 1u);
     }
-    // While heights are gathered, filled, and used.
+    // Cancels while heights are read, filled and used.
     options_.heights.fill_invalid = true;
     options_.heights.no_data = read_image(input).value().planes[0].at(3, 5);
     for (const int most : {10, 401, 405}) {
@@ -450,7 +450,7 @@ TEST_F(Pipeline, CancellingLeavesNothing) {
         EXPECT_EQ(files(), 1u);
     }
     options_.heights = {};
-    // While the last rows are looked for, and afterwards.
+    // Cancels while the last rows are searched for, and after that.
     options_.pack.encoding = default_encoding(Container::png);
     for (const int most : {10, 404}) {
         int calls = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The block encoders of pack() against a plain fit of each block, written here once more.
+// Compares the block encoders of pack() with a plain fit of each block, which is implemented here again.
 
 #include <tex/pack.h>
 
@@ -22,8 +22,8 @@ using tex::Effort;
 using tex::Encoding;
 using tex::MipChain;
 
-// The plain fit: endpoints at the extremes, indices to the nearest, then twice least squares for the
-// endpoints and indices again, if it gets better.
+// The plain fit: endpoints at the extremes and indices of the nearest values; then twice a least-squares fit of the
+// endpoints with new indices, if this reduces the error.
 double plain_fit(const std::vector<double>& values, int steps, int codes, const auto& widen) {
     const auto narrow = [&](double value) {
         return std::clamp(static_cast<int>(std::floor(value * (codes - 1) / 255.0 + 0.5)), 0, codes - 1);
@@ -54,8 +54,8 @@ double plain_fit(const std::vector<double>& values, int steps, int codes, const 
     return least;
 }
 
-// The root mean square error of the exact palette of `steps` spacings between the extremes moved inwards by a part of
-// the range, and the range.
+// The root mean square error of the exact palette with `steps` spacings between the extremes, which are moved inwards
+// by a part of the range; and the range.
 struct Unrefined {
     double error, range;
 };
@@ -72,7 +72,8 @@ Unrefined unrefined(const std::vector<double>& values, int steps, double part) {
     return {std::sqrt(sum / 16), range};
 }
 
-// The errors of the two channels of every block, those of the plain fit, and the palettes between the extremes.
+// The errors of the two channels of every block, those of the plain fit, and those of the palettes between the
+// extremes.
 struct Errors {
     double x = 0, y = 0, plain_x = 0, plain_y = 0;
     Unrefined unrefined_x{}, unrefined_y{};
@@ -81,7 +82,7 @@ std::vector<Errors> block_errors(const MipChain& chain, Effort effort) {
     const int across = chain.levels[0].extent().width / 4;
     const int down = chain.levels[0].extent().height / 4;
     const auto bytes = pack_bytes(chain, {Encoding::dxt5nm, tex::YAxis::up, effort});
-    const double unit = effort == Effort::best ? tex::kCodeUnit : 128.0;  // encoders round to this part of a code first
+    const double unit = effort == Effort::best ? tex::kCodeUnit : 128.0;  // encoders first round to this part of a code
     std::vector<Errors> errors;
     for (int block = 0; block < across * down; ++block) {
         std::vector<double> x(16), y(16);
@@ -115,7 +116,7 @@ TEST(Pack, NoBlockIsWorseThanAPlainFitWithLeastSquaresOrInFastThanOneWithout) {
                 chain.levels[0].y.at(i, j) *= steepness;
             }
         }
-        // fast may lose, by no more than fit.h says.
+        // fast may be worse, but by no more than fit.h says.
         for (const Errors& e : block_errors(chain, Effort::fast)) {
             const double alpha_rounding = e.unrefined_x.range < 1 ? 1.0 : 0.5;
             ASSERT_LE(std::sqrt(e.x / 16), e.unrefined_x.error + alpha_rounding + e.unrefined_x.range / 400);

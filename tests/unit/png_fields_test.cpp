@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every kind of PNG, and every field of it legal and illegal, written without libpng: read as it is meant, or refused.
+// Every type of PNG, with legal and illegal values in every field, written without libpng. The file must be read
+// correctly or refused.
 
 #include "reference/png_file.h"
 

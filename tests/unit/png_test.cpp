@@ -22,7 +22,7 @@ Result<Image> read(Bytes bytes, const ReadOptions& options = {}) {
     return read_all(open_png(*file, options));
 }
 
-// One kind of PNG, as libpng writes it.
+// One type of PNG, written by libpng.
 struct Kind {
     int color_type;
     int bits;
@@ -78,7 +78,7 @@ Bytes make_png(const Kind& kind) {
         key.blue = static_cast<png_uint_16>(code(kind, 3, 2, 2));
         png_set_tRNS(png, info, nullptr, 0, &key);
     }
-    png_set_gAMA(png, info, 0.45455);  // must change nothing
+    png_set_gAMA(png, info, 0.45455);  // must have no effect
     png_color_8 significant{};
     significant.red = significant.green = significant.blue = significant.gray = significant.alpha = 1;
     png_set_sBIT(png, info, &significant);
@@ -177,7 +177,7 @@ TEST(Png, EveryFlippedByteOfTheDataIsDamage) {
         Bytes damaged = whole;
         damaged[n] ^= std::byte{0x10};
         const Result<Image> image = read(std::move(damaged));
-        EXPECT_FALSE(image) << n;  // each byte is under a CRC or is part of one
+        EXPECT_FALSE(image) << n;  // each byte belongs to a CRC or is covered by one
     }
 }
 
@@ -185,7 +185,7 @@ void put32(Bytes& bytes, std::uint32_t v) {
     for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<std::byte>(v >> shift));
 }
 
-// A PNG of a sound header and a data chunk of `data` zero bytes.
+// A PNG with a sound header and a data chunk of `data` zero bytes.
 Bytes claiming(std::uint32_t width, std::uint32_t height, std::size_t data) {
     Bytes bytes;
     const auto text = [&](const char* s, std::size_t n) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// False colours, legends and letters.
+// False colours, legends and text in pictures.
 
 #include <cmath>
 #include <vector>
@@ -16,7 +16,7 @@
 namespace tex::render {
 namespace {
 
-// The normals of smooth heights that repeat, green up or upside down.
+// The normals of smooth heights that repeat, with green up or upside down.
 NormalMap waves(Extent extent, bool upside_down) {
     NormalMap map(extent);
     for (int j = 0; j < extent.height; ++j) {

@@ -44,7 +44,7 @@ TEST(PreviewMaterial, DetailIsBlendedByWhiteoutAtItsOwnTiling) {
         EXPECT_NEAR(pixel(picture, i, j)[1], (0.6 / n + 1) / 2 * 255, 0.51);
         EXPECT_NEAR(pixel(picture, i, j)[2], (0.64 / n + 1) / 2 * 255, 0.51);
     }
-    EXPECT_EQ(pixel(picture, 2, 0)[0], 204);  // beside the detail's bump: the base as it is
+    EXPECT_EQ(pixel(picture, 2, 0)[0], 204);  // outside the detail's bump: the unchanged base
     options.show = Show::plain;
     EXPECT_EQ(
         difference(render_or_fail({.map = &base, .detail = &detail}, options), render_or_fail({.map = &base}, options)),

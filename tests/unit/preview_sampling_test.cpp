@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the preview samples: filters, borders, footprints and parallax.
+// Sampling in previews: filters, borders, footprints and parallax.
 
 #include "preview/sampling.h"
 
@@ -13,7 +13,7 @@
 namespace tex::render {
 namespace {
 
-// A plane of the values of f(i, j).
+// A plane with the values of f(i, j).
 template <class F>
 Plane<float> plane_of(Extent extent, F f) {
     Plane<float> plane(extent);
@@ -47,7 +47,7 @@ TEST(PreviewSampling, BordersFollowTheirWrap) {
     EXPECT_EQ(at(single(plane, Wrap::clamp), 7.0, 0.5), 3.0);
     EXPECT_EQ(at(single(plane, Wrap::mirror), 1.125, 0.5), 3.0);
     EXPECT_EQ(at(single(plane, Wrap::mirror), -0.125, 0.5), 0.0);
-    // Places that no number of texels can express stay inside the texture.
+    // Coordinates that no texel number can express must stay inside the texture.
     EXPECT_GE(at(single(plane, Wrap::repeat), 1e300, std::nan("")), 0.0);
 }
 
@@ -65,7 +65,7 @@ TEST(PreviewSampling, PyramidsAverageWhatATexelCovers) {
 }
 
 TEST(PreviewSampling, AnisotropyKeepsStripesAcrossTheShortAxis) {
-    // Vertical stripes, seen at a slant: 8 texels of a column to a pixel, but one of a row.
+    // Vertical stripes, seen at a slant: a pixel covers 8 texels of a column, but one of a row.
     const Plane<float> plane = plane_of({64, 64}, [](int i, int) { return i % 2; });
     const auto pyramid = Pyramid::build({plane.view()}, {});
     ASSERT_TRUE(pyramid);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// preview(): against the wikibook's shaders, against geometry worked out by hand, and for equal bytes.
+// Compares preview() with the wikibook's shaders and with geometry computed by hand, and checks that its bytes never
+// vary.
 
 #include <tex/preview.h>
 
@@ -91,7 +92,7 @@ TEST(Preview, LightFromTheUpperLeftRaisesABump) {
 }
 
 TEST(Preview, MirroredUvsLightCorrectly) {
-    // The same surface twice: as it is, and with its texture mirrored and the UVs running the other way.
+    // The same surface twice: unchanged, and with a mirrored texture and reversed UVs.
     const MipChain map = random_map({32, 16}, 3);
     MipChain mirrored = constant({32, 16}, 0.0f, 0.0f, 1.0f);
     for (int j = 0; j < 16; ++j) {
@@ -126,7 +127,7 @@ TEST(Preview, SphereHasTheNormalsOfASphere) {
     EXPECT_EQ(pixel(picture, 0, 0), (Pixel{38, 40, 44}));
 }
 
-// World normal in the middle of a shape whose map leans to +x or +y everywhere.
+// The world normal in the middle of a shape whose map leans to +x or +y everywhere.
 Pixel middle(Shape shape, float x, float y, bool mirror, std::optional<Camera> camera = {}) {
     const MipChain leaning = constant({8, 8}, x, y, reconstruct_z(x, y));
     PreviewOptions options;
@@ -145,7 +146,7 @@ TEST(Preview, TangentFramesPointWhereUAndVGrow) {
         EXPECT_EQ(middle(shape, 0.28f, 0.0f, true), (Pixel{92, 128, 250})) << "mirrored, x leans left";
         EXPECT_EQ(middle(shape, 0.0f, 0.28f, true), (Pixel{128, 163, 250})) << "mirrored, y still leans up";
     }
-    // From the right, a cube shows its face +x, whose u runs towards -z.
+    // From the right, a cube shows its face +x, whose u points towards -z.
     EXPECT_EQ(middle(Shape::cube, 0.28f, 0.0f, false, Camera{90.0f, 0.0f, 30.0f}), (Pixel{250, 128, 92}));
 }
 
@@ -156,7 +157,7 @@ TEST(Preview, SpinTurnsTheShapeAndNotTheLight) {
     options.shape = Shape::cube;
     options.size = {65, 65};
     options.camera = Camera{};
-    options.spin = 90.0f;  // now face -x looks at the viewer, u still to the right
+    options.spin = 90.0f;  // now face -x faces the viewer; u still points to the right
     EXPECT_EQ(pixel(render_or_fail({.map = &leaning}, options), 32, 32), (Pixel{163, 128, 250}));
 }
 
@@ -194,8 +195,7 @@ TEST(Preview, GivesTheSameBytesForAnyNumberOfThreads) {
 }
 
 TEST(Preview, GivesTheseBytesInEveryBuild) {
-    // FNV-1a of a picture that goes through everything: when a change of the pictures is meant, put the new number
-    // here.
+    // The FNV-1a hash of a picture that uses every feature. If pictures change on purpose, put the new number here.
     const MipChain map = random_map({64, 64}, 5);
     Plane<float> height(Extent{64, 64});
     for (int j = 0; j < 64; ++j) {

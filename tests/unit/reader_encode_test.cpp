@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The other direction of containers/reader.h: pictures that only OpenImageIO writes.
+// The encoding direction of containers/reader.h: pictures that only OpenImageIO writes.
 
 #include "formats/reader/reader.h"
 #include "formats/reader/reader_rows.h"
@@ -53,7 +53,7 @@ Texture texture_of(Format format, Extent extent) {
     return texture;
 }
 
-// What a reader of `bytes` gets, packed again in `format`.
+// The result of reading `bytes`, packed again in `format`.
 Bytes repack(const Image& image, Format format) {
     const FormatInfo info = format_info(format);
     Bytes bytes;
@@ -127,7 +127,7 @@ TEST(ReaderEncode, EqualTexturesGiveEqualBytesWithoutDates) {
     std::vector<Bytes> first;
     for (const Container container : containers)
         first.push_back(encode_with_reader(texture, container, quick()).value());
-    usleep(1'100'000);  // so that a clock would tell another second
+    usleep(1'100'000);  // long enough that a clock would show a different second
     for (std::size_t k = 0; k < first.size(); ++k) {
         EXPECT_EQ(encode_with_reader(texture, containers[k], quick()).value(), first[k]);
         const std::string text(reinterpret_cast<const char*>(first[k].data()), first[k].size());

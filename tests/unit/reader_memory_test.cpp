@@ -34,7 +34,7 @@ struct Limits {
     bool operator==(const Limits&) const = default;
 };
 
-// The limits of a process, whose address space is limited to `space`, after a grant.
+// The limits of a process after a grant, if its address space was limited to `space`.
 Limits after_grant(std::int64_t space, std::uint64_t result, std::int64_t memory) {
     const pid_t child = fork();
     if (child == 0) {
@@ -87,18 +87,19 @@ TEST(ReaderMemory, NonsenseGetsNothing) {
     EXPECT_EQ(claimed_result(header_of(1, 1, 1, ReaderType::u8), "decode", -1), 0u);
 }
 
-#if !defined(__SANITIZE_ADDRESS__)  // under which processes are larger than any limit
+#if !defined(__SANITIZE_ADDRESS__)  // with it, processes are larger than any limit
 TEST(ReaderMemory, WhatTheResultGetsTheAddressSpaceLoses) {
     constexpr std::int64_t kAll = 4096 * kMiB;
     EXPECT_EQ(after_grant(kAll, 100 * kMiB, kAll), (Limits{3996 * kMiB, 100 * kMiB}));
-    // One that came with less keeps less.
+    // A process that starts with less keeps less.
     EXPECT_EQ(after_grant(2000 * kMiB, 100 * kMiB, kAll), (Limits{2000 * kMiB, 100 * kMiB}));
-    // No room for what claims nothing, nor beside an address space that is too large already: one byte, as the answer.
+    // There is no room for a result without claimed bytes, nor beside an address space that is already too large. The
+    // answer is then one byte.
     EXPECT_EQ(after_grant(kAll, 0, kAll), (Limits{kAll, 8193}));
     EXPECT_EQ(after_grant(kAll, kAll - kMiB, kAll), (Limits{kMiB, 8193}));
 }
 
-// It had the memory twice: as address space, and in the result.
+// In an earlier version the reader could use the memory twice: as address space, and in the result.
 TEST(ReaderMemory, OneBoundHoldsForBothTogether) {
     constexpr int kWidth = 17'000, kHeight = 18'500;  // 900 MiB
     std::string bytes("BM", 2);
@@ -111,7 +112,7 @@ TEST(ReaderMemory, OneBoundHoldsForBothTogether) {
     for (const std::uint32_t field : {0u, kData, 0u, 0u, 0u, 0u}) put(field, 4);
     const std::string path = testing::TempDir() + "reader_memory_test.bmp";
     std::ofstream(path, std::ios::binary) << bytes;
-    ASSERT_EQ(truncate(path.c_str(), kHeader + std::int64_t{kData}), 0);  // all the rest is a hole
+    ASSERT_EQ(truncate(path.c_str(), kHeader + std::int64_t{kData}), 0);  // the rest is a hole
     ReadOptions options;
     options.reader_memory = 1024 * kMiB;
     const Result<Image> image = read_image(path, options);

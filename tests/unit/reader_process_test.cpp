@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reader's time, whenever one looks at it; what a reader hands over is in reader_test.cpp.
+// The reader's time limit, whenever it is checked. reader_test.cpp tests the data that a reader hands over.
 
 #include "formats/reader/reader_process.h"
 
@@ -30,7 +30,7 @@ protected:
     }
     void TearDown() override { std::filesystem::remove_all(folder_); }
 
-    // What finish() says of this shell script, whose time is one second, when it is called after `wait`.
+    // The result of finish() for this shell script, which has one second, if it is called after `wait`.
     Result<ReaderHeader> finish_after(const std::string& script, std::chrono::milliseconds wait) {
         ReadOptions options;
         options.reader = folder_ + "/reader";
@@ -51,7 +51,7 @@ protected:
 
 }  // namespace
 
-// The rows that are there may take long to bake: it is the reader's time that is limited.
+// Baking the finished rows may take long. The limit applies to the reader's own time.
 TEST_F(ReaderTime, IsWhatTheReaderTakesNotWhoeverWaitsForIt) {
     const Result<ReaderHeader> header = finish_after("exit 0", std::chrono::milliseconds(1200));
     ASSERT_TRUE(header) << header.error().message();

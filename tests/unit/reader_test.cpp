@@ -35,14 +35,14 @@ void put(Bytes& bytes, std::uint32_t value, int count) {
     for (int k = 0; k < count; ++k) bytes.push_back(static_cast<std::byte>(value >> (8 * k)));
 }
 
-// An uncompressed TIFF of one strip, made tag by tag.
+// An uncompressed TIFF with one strip, built tag by tag.
 struct TiffMaker {
     int width, height;
     int samples = 1;
     int bits = 8;
     int sample_format = 1;  // 1 unsigned, 2 signed, 3 floating
     int photometric = 1;    // 1 black is zero, 2 RGB, 3 palette, 5 CMYK
-    int extra = -1;         // the kind of an extra sample: 1 associated, 2 unassociated alpha
+    int extra = -1;         // type of an extra sample: 1 associated, 2 unassociated alpha
     int orientation = 1;
     Bytes palette = {};  // 3 * 2^bits shorts
     Bytes data = {};
@@ -72,7 +72,7 @@ struct TiffMaker {
                 tag[3] = after + static_cast<std::uint32_t>(tail.size());
                 tail.insert(tail.end(), palette.begin(), palette.end());
             } else if (tag[0] == 273) {
-                continue;  // known once the tail is
+                continue;  // filled in when the tail is known
             }
         }
         Bytes bytes;
@@ -213,7 +213,7 @@ TEST(Reader, RefusesMoreTexelsThanTheLimit) {
 TEST(Reader, TgaRowsComeFromTheTop) {
     for (const bool from_top : {false, true}) {
         Bytes tga;
-        put(tga, 0x030000, 4);  // no id, no palette, grey, then five bytes of no palette
+        put(tga, 0x030000, 4);  // no id, no palette, grey, then five bytes for the missing palette
         put(tga, 0, 4);
         put(tga, 0, 4);
         put(tga, 1, 2);
@@ -250,7 +250,7 @@ protected:
         const Result<Image> image = read(tiff_.make(), options);
         return image ? Error{ErrorCode::cancelled, {}, "it was read"} : image.error();
     }
-    // A script that puts `header` in front of `data` zero bytes and succeeds.
+    // A script that writes `header` and then `data` zero bytes, and succeeds.
     std::string handing_over(const ReaderHeader& header, int data) {
         std::ofstream file(folder_ + "/header", std::ios::binary);
         file.write(reinterpret_cast<const char*>(&header), sizeof header);
@@ -278,7 +278,7 @@ TEST_F(BadReader, ThatCrashesIsOneSentence) {
     const Error error = read_with(handing_over(header, 4) + "; kill -SEGV $$");
     EXPECT_EQ(error.code, ErrorCode::bad_data);
     EXPECT_EQ(error.reason, "the decoder crashed on this file (signal 11)");
-    const Error early = read_with("kill -SEGV $$");  // before it was ready: not a matter of the file
+    const Error early = read_with("kill -SEGV $$");  // before it was ready, so the file is not to blame
     EXPECT_EQ(early.code, ErrorCode::io);
     EXPECT_EQ(early.reason, "the reader program " + folder_ + "/reader cannot be started (signal 11)");
 }

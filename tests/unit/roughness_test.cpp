@@ -64,7 +64,8 @@ double alpha2_of(const RoughnessChain& chain) {
     return std::pow(static_cast<double>(chain.levels.back().at(0, 0)), 4.0);
 }
 
-// Reproducible in every standard library: mt19937 is, its distributions are not.
+// Reproducible with every standard library: the results of mt19937 are standardised, those of the distributions are
+// not.
 class Random {
 public:
     double uniform() { return (static_cast<double>(engine_()) + 0.5) / 4294967296.0; }
@@ -92,7 +93,7 @@ TEST(Roughness, VonMisesFisherSamplesGiveBackTheirConcentration) {
 }
 
 TEST(Roughness, ToksvigTurnsAMirrorOfRandomSlopesIntoTheirBeckmannDistribution) {
-    // Beckmann: slopes are Gaussian, with the variance alpha^2 / 2 on either axis.
+    // Beckmann: slopes are Gaussian, with the variance alpha^2 / 2 on each axis.
     for (const double alpha : {0.03, 0.06, 0.1}) {
         Random random;
         const NormalMap map = normals_of({256, 256}, [&] {
@@ -101,10 +102,10 @@ TEST(Roughness, ToksvigTurnsAMirrorOfRandomSlopesIntoTheirBeckmannDistribution) 
         });
         const RoughnessChain chain = chain_of(map, 0.0f, RoughnessModel::toksvig);
         EXPECT_NEAR(std::sqrt(alpha2_of(chain)) / alpha, 1.0, 0.02) << alpha;
-        // On a rough surface both variances add up.
+        // On a rough surface the two variances add up.
         const double rough = alpha2_of(chain_of(map, 0.3f, RoughnessModel::toksvig));
         EXPECT_NEAR(rough / (std::pow(0.3, 4.0) + alpha * alpha), 1.0, 0.06) << alpha;
-        // What the header says of the other model: a quarter.
+        // The header's statement about the other model: a quarter.
         EXPECT_NEAR(alpha2_of(chain_of(map, 0.0f, RoughnessModel::vmf)) / alpha2_of(chain), 0.25, 0.01) << alpha;
     }
 }
@@ -166,7 +167,7 @@ TEST(Roughness, MapsOfOtherExtentsAreStretched) {
             EXPECT_NEAR(even.levels[k].at(0, 0), same.levels[k].at(0, 0), 1e-6);
         }
     }
-    // Twice as large: alpha^2 averaged. Half as large: between texels.
+    // From a map twice as large, alpha^2 is averaged. From a map half as large, it is interpolated between texels.
     const auto alpha2 = [](double roughness) { return std::pow(roughness, 4.0); };
     const Plane<float> large = noise_roughness({48, 40}), small = noise_roughness({12, 10});
     const Plane<float> from_large = chain_of(base, large, RoughnessModel::vmf).levels[0].clone();

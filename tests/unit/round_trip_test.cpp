@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// pack() and unpack() against each other: how far normals move in each encoding.
+// pack() and unpack() in sequence: how far normals move in each encoding.
 
 #include <algorithm>
 #include <cmath>
@@ -51,10 +51,10 @@ Result<MipChain> through(const MipChain& chain, Encoding encoding, YAxis y_axis 
     return unpack(*texture);
 }
 
-// Component by component before z is rebuilt: a code of k bits is at most half a step, 1 / (2^k - 1), from n; snorm 1 /
-// (2^k - 2); half 2^-12 below 1/2 and 2^-11 ... of the value; float rounds lengths alone. Where z is stored,
-// renormalising moves a vector by no more than its error: the angle is at most asin(sqrt(3) bound). Where it is rebuilt
-// the error grows by 1 / z.
+// Bounds for each component before z is reconstructed. A code of k bits is at most half a step, 1 / (2^k - 1), from n;
+// snorm 1 / (2^k - 2); half 2^-12 below 1/2 and 2^-11 ... of the value; float only rounds lengths. If z is stored,
+// renormalising moves a vector by no more than its error: the angle is at most asin(sqrt(3) bound). If z is
+// reconstructed, the error grows by 1 / z.
 struct Bound {
     Encoding encoding;
     double component;  // of x and y as stored
@@ -83,7 +83,7 @@ TEST(RoundTrip, StaysWithinTheQuantisationOfEachEncoding) {
                         const double z = static_cast<double>(before.z.at(i, j));
                         const double limit = bound.has_z ? std::sqrt(3.0) * bound.component
                                                          : std::sqrt(2.0) * bound.component / (z - 2 * bound.component);
-                        // A millionth of a radian for the roundings of float itself.
+                        // A millionth of a radian for the rounding of float itself.
                         const double degrees = (std::asin(limit) + 1e-6) * 180 / 3.14159265358979;
                         ASSERT_LE(static_cast<double>(angles->degrees.at(i, j)), degrees)
                             << name_of(kEncodingNames, bound.encoding) << " level " << k << " " << i << "," << j;
@@ -94,8 +94,8 @@ TEST(RoundTrip, StaysWithinTheQuantisationOfEachEncoding) {
     }
 }
 
-// Blocks: no encoder can do worse than endpoints at the extremes of a block, rounded to their codes. With n values
-// between them a texel is then at most (max - min) / (2 (n - 1)) + half a step of the endpoints away; the encoder
+// Blocks: an encoder is never worse than endpoints at the extremes of a block, rounded to their codes. With n values
+// between them, a texel is then at most (max - min) / (2 (n - 1)) + half a step of the endpoints away. The encoder
 // minimises squares, so this holds for the root mean square of each block.
 TEST(RoundTrip, StaysWithinTheFitOfTheExtremesInEachBlock) {
     struct BlockBound {
@@ -137,7 +137,7 @@ TEST(RoundTrip, StaysWithinTheFitOfTheExtremesInEachBlock) {
     }
 }
 
-// The encoding that stores what `texture` does, if there is one.
+// The encoding that stores the same values as `texture`, if there is one.
 std::optional<Encoding> encoding_of(const Texture& texture) {
     const bool has_z = std::find(texture.swizzle.begin(), texture.swizzle.end(), Component::z) != texture.swizzle.end();
     for (const auto& row : kEncodingNames) {
@@ -148,9 +148,9 @@ std::optional<Encoding> encoding_of(const Texture& texture) {
     return std::nullopt;
 }
 
-// A texture that is unpacked and packed again stays what it was, at the default effort within 0.05 degrees on average:
-// the blocks' own values are found again. Vectors are kept as they are stored; where z is not stored that matters only
-// beyond the unit circle.
+// A texture that is unpacked and packed again stays the same; at the default effort, within 0.05 degrees on average,
+// because the encoder finds the blocks' own values again. Vectors keep their stored length. If z is not stored, this
+// matters only outside the unit circle.
 TEST(RoundTrip, RepacksEveryRealTextureWithoutFurtherLoss) {
     TEX_NEEDS_SHARED_DATA();
     int repacked = 0;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same bytes with every compiler and on every machine: hashes of results whose inputs come from
-// integers. That the numbers are right is proved elsewhere (against tests/reference); these say that
-// nobody's compiler, C library or processor changes a bit. Where a formula is changed on purpose, its hash
-// changes too.
+// The same bytes with every compiler and on every machine: hashes of results whose inputs come from integers. Other
+// tests compare the numbers with tests/reference. These tests show that no compiler, C library or processor changes a
+// bit. If a formula changes on purpose, its hash changes too.
 
 #include <tex/bake.h>
 #include <tex/height_field.h>

@@ -17,7 +17,7 @@
 namespace tex {
 namespace {
 
-// All codes of a type, `gap` samples apart, decoded; bytes between them are noise.
+// Decodes all codes of a type, `gap` samples apart; the bytes between them are noise.
 template <class T>
 std::vector<float> decoded(SampleKind sample, const std::vector<T>& codes, std::size_t gap) {
     std::vector<T> stored(codes.size() * gap, T(0x5a));
@@ -55,7 +55,7 @@ TEST(Samples, FractionsAreThoseOfDivision) {
                              [](std::int16_t code) { return std::max(static_cast<float>(code) / 32767.0f, -1.0f); });
 }
 
-// Imath's table, also for numbers below 2^-14, infinity and every NaN.
+// Compares with Imath's table, including numbers below 2^-14, infinity and every NaN.
 TEST(Samples, HalvesAreThoseOfImath) {
     expect_all<std::uint16_t>(SampleKind::floating, [](std::uint16_t code) {
         Imath::half value;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What tex-reader gives up before it looks at a file, tried from inside: in a process of its own, which then tells what
-// it could still do.
+// Tries, from inside, the rights that tex-reader gives up before it looks at a file. The attempts run in a separate
+// process, which then reports what it can still do.
 
 #include <asm/ioctls.h>
 #include <fcntl.h>
@@ -33,7 +33,7 @@
 namespace tex::reader {
 namespace {
 
-// What is tried, and whether that was possible.
+// An attempted action, and whether it succeeds.
 struct Attempt {
     const char* name;
     std::function<bool()> succeeds;
@@ -47,11 +47,11 @@ bool queue_signal(pid_t process) {
     return syscall(SYS_rt_sigqueueinfo, process, 0, &info) == 0;
 }
 
-// The names of the attempts that succeed after `prepare`, in a process of its own.
+// The names of the attempts that succeed after `prepare`, in a separate process.
 std::string possible(const std::function<bool()>& prepare, const std::vector<Attempt>& attempts) {
     int ends[2];
     if (pipe(ends) != 0) return "no pipe";
-    constexpr int kOutOfTheWay = 64;  // of kInputDescriptor
+    constexpr int kOutOfTheWay = 64;  // above kInputDescriptor
     for (int& end : ends) {
         const int low = std::exchange(end, fcntl(end, F_DUPFD, kOutOfTheWay));
         close(low);
@@ -86,7 +86,7 @@ protected:
         folder_ = pattern;
         std::ofstream(file_ = folder_ + "/file") << "text";
         ASSERT_EQ(pipe(pipe_), 0);
-        std::ofstream(folder_ + "/nameless") << "text";  // one that nobody has open for writing, or no lease is given
+        std::ofstream(folder_ + "/nameless") << "text";  // a lease needs a file that nobody has open for writing
         opened_ = open((folder_ + "/nameless").c_str(), O_RDONLY);
         std::filesystem::remove(folder_ + "/nameless");
         opened_folder_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY);
@@ -97,8 +97,8 @@ protected:
         std::filesystem::remove_all(folder_);
     }
 
-    // All of them must be possible without the sandbox, or the test proves nothing. (Not all are for everybody
-    // everywhere: `certain` ones are.)
+    // All of them must be possible without the sandbox, or the test proves nothing. (Some are not possible for every
+    // user or on every system; the `certain` ones are.)
     [[nodiscard]] std::vector<Attempt> attempts(bool certain) const {
         const pid_t parent = getpid();
         const auto path = [this](const char* name) { return folder_ + "/" + name; };
@@ -158,14 +158,14 @@ protected:
         all.push_back({"another program", [] {
                            const char* const words[] = {"/bin/true", nullptr};
                            return syscall(SYS_execve, words[0], words, nullptr) ==
-                                  0;  // does not come back: status 0, and what follows is missing
+                                  0;  // does not return: status 0, and the later attempts are missing
                        }});
         all.push_back({"the end", [] { return true; }});
         return all;
     }
 
-    // What fcntl() and ioctl() can ask the kernel to do beyond this process: signals to anybody when a pipe becomes
-    // readable, locks and leases that others wait for, memory.
+    // The effects beyond this process that fcntl() and ioctl() can request from the kernel: signals to any process when
+    // a pipe becomes readable, locks and leases that other processes wait for, memory.
     [[nodiscard]] std::vector<Attempt> attempts_by_descriptors(pid_t parent) const {
         return {
             {"owner of signals", [=, this] { return fcntl(pipe_[0], F_SETOWN, parent) == 0; }},
@@ -195,7 +195,7 @@ protected:
         };
     }
 
-    // Calls that take the number of a process.
+    // Calls that take a process id.
     [[nodiscard]] static std::vector<Attempt> attempts_on_the_parent(pid_t parent) {
         return {
             {"processors of the parent",
@@ -288,17 +288,17 @@ TEST_F(Sandbox, HasNoFilesButTheInput) {
     EXPECT_EQ(possible([&] { return with_input() && restrict_files(); }, reading), "input\n");
 }
 
-// A thread that a library started before: whoever is in the process can make it do anything.
+// A thread that a library started earlier: an attacker in the process can make it do anything.
 TEST_F(Sandbox, HasNoFilesInAThreadThatWasThereBefore) {
 #if defined(__SANITIZE_THREAD__)
-    return;  // has a thread of its own that cannot be asked
+    return;  // it has a thread of its own that cannot be asked
 #endif
     std::promise<void> go;
     std::promise<bool> done;
     std::thread other;
     const auto start_thread = [&] {
         other = std::thread([&] {
-            sigset_t all;  // as some libraries do in theirs
+            sigset_t all;  // some libraries block all signals in their threads
             sigfillset(&all);
             pthread_sigmask(SIG_BLOCK, &all, nullptr);
             go.get_future().wait();
@@ -317,7 +317,7 @@ TEST_F(Sandbox, HasNoFilesInAThreadThatWasThereBefore) {
     EXPECT_EQ(possible([&] { return start_thread() && restrict_files(); }, reading), "");
 }
 
-// The filter of calls is one reason why it cannot; this is the other.
+// The filter of calls is one reason why the process cannot send signals; Landlock is the other.
 TEST_F(Sandbox, SendsNoSignalsWhereTheKernelCanScopeThem) {
     const pid_t parent = getpid();
     const std::vector<Attempt> signals = {{"to the parent", [=] { return kill(parent, 0) == 0; }},

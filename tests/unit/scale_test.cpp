@@ -29,8 +29,8 @@ TEST(Scale, AgreesWithTheReference) {
             for (int j = 0; j < 17; ++j) {
                 for (int i = 0; i < 61; ++i) {
                     const reference::Vector n = reference::scaled(grid.at(i, j), static_cast<double>(s), mode);
-                    // Near the horizon the clamp makes z of xy sensitive: its square is good to a few units in the last
-                    // place.
+                    // Near the horizon, the clamp makes z of xy sensitive. Its square is exact to a few units in the
+                    // last place.
                     EXPECT_NEAR(static_cast<double>(result->x.at(i, j)), n.x, 1e-6);
                     EXPECT_NEAR(static_cast<double>(result->y.at(i, j)), n.y, 1e-6);
                     EXPECT_NEAR(static_cast<double>(result->z.at(i, j)), n.z, mode == ScaleMode::xy ? 1e-3 : 1e-6);
@@ -70,7 +70,7 @@ TEST(Scale, IsWhatBakingWithScaledBumpinessGives) {
     EXPECT_LE(largest_angle(*scale(std::move(*gentle), 5.0f), *steep), 1e-4);
 }
 
-// Two degrees apart at 1/2 and 39 at 2 on a normal tilted by 32 degrees, as scale.h says.
+// On a normal tilted by 32 degrees, the modes differ by two degrees at 1/2 and by 39 degrees at 2, as scale.h says.
 TEST(Scale, ModesDifferAsDocumented) {
     const double tilt = 32.0 * 3.14159265358979 / 180;
     const auto angle = [&](float s) {

@@ -53,7 +53,7 @@ TEST(EncodePicture, TakesTheFewestChannels) {
     ASSERT_TRUE(colors);
     EXPECT_EQ(color_type(*colors), 2);
 
-    // What was written is what is read.
+    // Reading the file must give the written picture.
     for (const auto& [png, made] : {std::pair{&*indexed, &picture}, {&*colors, &many}}) {
         const std::string path = testing::TempDir() + "encode_picture." + std::to_string(getpid()) + ".png";
         ASSERT_TRUE(write_file(path, *png));

@@ -12,12 +12,12 @@ namespace {
 using tex::Extent;
 
 TEST(Strength, OfTheSameSurfaceGrowsWithTheResolution) {
-    // 0.1 m of height over 2 m by 1 m.
+    // 0.1 m of height on an area of 2 m by 1 m.
     const tex::Strength coarse = tex::strength_from_world({512, 256}, 0.1, 2.0, 1.0);
     EXPECT_FLOAT_EQ(coarse.x, 25.6f);
     EXPECT_FLOAT_EQ(coarse.y, 25.6f);
     EXPECT_FLOAT_EQ(tex::strength_from_world({2048, 1024}, 0.1, 2.0, 1.0).x, 4 * 25.6f);
-    // Texels twice as high as wide.
+    // Texels are twice as high as wide.
     EXPECT_FLOAT_EQ(tex::strength_from_world({512, 256}, 0.1, 2.0, 2.0).y, 12.8f);
 }
 
@@ -32,7 +32,7 @@ TEST(Strength, FromTextureWidthsIsColumns) {
     EXPECT_FLOAT_EQ(tex::strength_from_uv({512, 64}, 0.05).y, 25.6f);
 }
 
-// bake() wants it finite: infinity would make slopes of what is flat.
+// bake() requires a finite strength: with infinity, flat areas would get slopes.
 TEST(Strength, IsFinite) {
     constexpr float kMost = std::numeric_limits<float>::max();
     EXPECT_EQ(tex::strength_from_uv({512, 64}, 1e308).x, kMost);

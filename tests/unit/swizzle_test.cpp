@@ -32,7 +32,7 @@ MipChain bumps(Extent extent, float height) {
     return chain;
 }
 
-// Packed, and with the mark torn off.
+// A packed texture, with its swizzle mark removed.
 Texture unmarked(const MipChain& chain, Encoding encoding) {
     auto texture = pack(chain, {encoding, YAxis::up, Effort::fast});
     EXPECT_TRUE(texture);
@@ -64,7 +64,7 @@ TEST(Swizzle, OfFlatMapsIsToldFromTheirLength) {
     EXPECT_EQ(guess(unmarked(bumps({16, 16}, 0.0f), Encoding::rgba8)), "rgb");
 }
 
-// No value of a flat map is negative, signed though it is.
+// No value of a flat map is negative, although the format is signed.
 TEST(Swizzle, OfFlatFloatsIsToldFromBothReadings) {
     const auto flat = [](std::initializer_list<float> texel) {
         Texture texture;
@@ -114,7 +114,7 @@ TEST(Swizzle, OfRealFilesIsToldFromTheirTexels) {
     for (const auto& [file, name] : expected) {
         auto texture = read_texture(shared_data() / "dds" / file);
         ASSERT_TRUE(texture) << texture.error().message();
-        texture->swizzle_known = false;  // whatever the file says
+        texture->swizzle_known = false;  // ignore the file's own statement
         EXPECT_EQ(guess(*texture), name) << file;
     }
 }

@@ -20,7 +20,7 @@ TEST(Target, KernelsRunOnEachInstructionSetThatTheTestsAskFor) {
 }
 
 TEST(Target, OfThisProcessorIsTheBestThereIs) {
-    // Highway numbers better targets lower.
+    // Highway gives better targets lower numbers.
     EXPECT_EQ(tex::kernel_target(), hwy::SupportedAndGeneratedTargets().front());
 }
 

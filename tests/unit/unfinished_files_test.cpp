@@ -39,7 +39,7 @@ protected:
         close(openat(folder_, name.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600));
     }
 
-    // What body() does to the folder in a process of its own, which ends with status 0.
+    // The effect of body() on the folder. It runs in a separate process, which must end with status 0.
     template <class Body>
     void in_a_process(const Body& body) {
         const pid_t child = fork();
@@ -64,7 +64,7 @@ TEST_F(UnfinishedFiles, OnlyThoseThatExistAreRemoved) {
             const NameSection section;
             one.add(section, folder_, "one");
             two.add(section, folder_, "two");
-            two.remove(section);  // has another owner now
+            two.remove(section);  // it has a different owner now
         }
         remove_unfinished_files();
         _exit(0);
@@ -97,7 +97,7 @@ extern "C" void end_now(int) {
     _exit(0);
 }
 
-// Files come and get their names on several threads; the signal comes to any of them at any time.
+// Several threads create files and give them names. The signal comes to any of them at any time.
 TEST_F(UnfinishedFiles, ASignalAtAnyMomentLeavesNoTemporaryName) {
     for (int round = 0; round < 6; ++round) {
         SCOPED_TRACE(round);

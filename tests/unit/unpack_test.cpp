@@ -87,7 +87,7 @@ TEST(Decode, NamesPlanesByChannelsAndTellsTheirKind) {
     }
 }
 
-// The blocks' own decoders are the oracle: every texel of every block, to the last bit, at sizes around the widths of
+// Compares every texel of every block with the blocks' own decoders, to the last bit, at sizes near the widths of
 // vectors.
 TEST(Decode, AgreesWithTheBlockDecodersToTheLastBit) {
     for (const Format format : {Format::bc1_unorm, Format::bc2_unorm, Format::bc3_unorm, Format::bc4_unorm,
@@ -137,7 +137,7 @@ TEST(Unpack, ReadsComponentsWhereTheSwizzleHasThem) {
     options.swizzle = swizzle_from("1y1x");
     const float xy = std::sqrt(1 + 1.0f / 255 / 255);
     expect_near(first_of(texture, options), {-1 / xy, 1 / 255.0f / xy, 0});
-    options.swizzle = swizzle_from("yyyx");  // y three times: the first counts
+    options.swizzle = swizzle_from("yyyx");  // y three times: the first one is used
     expect_near(first_of(texture, options), {-std::sqrt(0.5f), std::sqrt(0.5f), 0});
 }
 
@@ -229,7 +229,7 @@ TEST(Unpack, TellsSignedFloatsFromUnsignedOnes) {
     };
     expect_near(first_of(rgb({0.5f, 0.5f, 1.0f})), {0, 0, 1});        // unsigned flat
     expect_near(first_of(rgb({0.0f, 0.0f, 1.0f})), {0, 0, 1});        // signed flat
-    expect_near(first_of(rgb({0.6f, 0.0f, 0.8f})), {0.6f, 0, 0.8f});  // leans right only
+    expect_near(first_of(rgb({0.6f, 0.0f, 0.8f})), {0.6f, 0, 0.8f});  // leans to the right only
     expect_near(first_of(rgb({0.8f, 0.5f, 0.9f})), {0.6f, 0, 0.8f});  // the same, unsigned
     expect_near(first_of(rgb({0.5f, 0.5f, 0.5f, -0.1f, 0.0f, 1.0f})), {0.57735f, 0.57735f, 0.57735f}, 1e-5f);
     Texture told = rgb({0.0f, 0.0f, 1.0f});
@@ -280,7 +280,7 @@ TEST(Unpack, ReadsPicturesByTheNamesOfTheirPlanes) {
     expect_near(first(half), {-0.57735f, -0.57735f, 0.57735f}, 1e-5f);
 }
 
-// The same bytes for every target, number of threads and kind of row end.
+// The same bytes on every target, with every number of threads and with every kind of row end.
 TEST(Unpack, GivesTheSameBytesEverywhere) {
     for (const auto& row : kFormatNames) {
         if (format_info(row.value).channels < 2) continue;
