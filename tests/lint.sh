@@ -192,7 +192,7 @@ ban 'MulAdd|NegMulAdd|MulSub|ApproximateReciprocal|std::fma\b|std::thread' \
 
 # -- documents and scripts ------------------------------------------------------------------------------------
 if [ -e README.md ]; then
-    # the backquotes belong to Markdown
+    # shellcheck disable=SC2016  # the backquotes belong to Markdown
     example=$(sed -n '/^```cpp$/,/^```$/p' README.md | sed '1d;$d')
     [ "$example" = "$(sed 1,2d samples/bake_and_pack.cpp)" ] ||
         complain "README.md's C++ example is not samples/bake_and_pack.cpp"

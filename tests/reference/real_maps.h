@@ -28,7 +28,7 @@ inline bool is_label(LabelSource source) { return source != LabelSource::measure
 
 struct RealMap {
     std::string path;        // below ../shared/data
-    std::optional<YAxis> y;  // nullopt: SOURCES.md says that it cannot be told
+    std::optional<YAxis> y;  // nullopt: SOURCES.md says that it cannot be determined
     LabelSource source = LabelSource::measured;
     bool intact = true;  // false: SOURCES.md names a damage, or it is not a tangent-space map
     bool tiles = false;  // both tiling ratios in SOURCES.md are below 2

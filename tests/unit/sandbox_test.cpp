@@ -291,7 +291,7 @@ TEST_F(Sandbox, HasNoFilesButTheInput) {
 // A thread that a library started earlier: an attacker in the process can make it do anything.
 TEST_F(Sandbox, HasNoFilesInAThreadThatWasThereBefore) {
 #if defined(__SANITIZE_THREAD__)
-    return;  // it has a thread of its own that cannot be asked
+    return;  // its own internal thread cannot be asked
 #endif
     std::promise<void> go;
     std::promise<bool> done;
