@@ -60,7 +60,7 @@ struct ChannelFile {
 [[nodiscard]] ChannelFile parse_channel_file(const std::string& text);
 [[nodiscard]] Result<Plane<float>> read_channel(Job& job, const ChannelFile& source, const Execution& execution);
 
-// Reads the heights of jobs with all of the groups above, and prints the warnings about it.
+// Reads the heights of jobs with all of the groups above, and prints the warnings about them.
 class HeightReader {
 public:
     StrengthOptions strength;

@@ -34,7 +34,7 @@ class LayerOptions {
 public:
     void add(Command& command);
 
-    // Throws UsageError if an option is given neither exactly once nor once for each of `count` layers.
+    // Throws UsageError unless each option is absent, given once, or given once for each of `count` layers.
     void check(std::size_t count) const;
 
     [[nodiscard]] const std::vector<std::string>& details() const { return details_; }
