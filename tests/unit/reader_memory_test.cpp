@@ -35,7 +35,7 @@ struct Limits {
 };
 
 // The limits of a process after a grant, if its address space was limited to `space`.
-Limits after_grant(std::int64_t space, std::uint64_t result, std::int64_t memory) {
+[[maybe_unused]] Limits after_grant(std::int64_t space, std::uint64_t result, std::int64_t memory) {
     const pid_t child = fork();
     if (child == 0) {
         const rlimit of_space{static_cast<rlim_t>(space), static_cast<rlim_t>(space)};
