@@ -68,6 +68,7 @@ cli::ExitCode CheckNormals::work(cli::Console& console) {
 
 Result<void> CheckNormals::check(const std::vector<cli::Task>& tasks) {
     std::vector<std::string> inputs;
+    inputs.reserve(tasks.size());
     for (const cli::Task& task : tasks) inputs.push_back(task.input);
     documents_.check(
         inputs,

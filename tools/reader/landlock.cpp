@@ -129,7 +129,7 @@ std::vector<pid_t> all_threads() {
     DIR* const folder = opendir("/proc/self/task");
     if (folder == nullptr) return threads;
     while (const dirent* entry = readdir(folder)) {
-        if (entry->d_name[0] != '.') threads.push_back(std::atoi(entry->d_name));
+        if (entry->d_name[0] != '.') threads.push_back(static_cast<pid_t>(std::strtol(entry->d_name, nullptr, 10)));
     }
     closedir(folder);
     return threads;

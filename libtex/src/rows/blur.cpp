@@ -53,7 +53,8 @@ void blur_down(PlaneView<const float> across, const std::vector<float>& weights,
     constexpr int kTile = 256;
     for (int i = 0; i < width; i += kTile) {
         for (int j = begin; j < end; ++j) {
-            std::transform(rows.begin() + (j - begin), rows.begin() + (j - begin) + 2 * radius + 1, window.begin(),
+            const auto top = rows.begin() + (j - begin);
+            std::transform(top, top + static_cast<std::ptrdiff_t>(window.size()), window.begin(),
                            [i](const float* row) { return row + i; });
             smooth_column(window.data(), weights.data(), radius, std::min(kTile, width - i), out.row(j) + i);
         }

@@ -109,7 +109,7 @@ Result<void> Attempt::prepare() {
 
 // To be called if the base level decides how another level is read.
 Result<void> Attempt::look_at_base_level() {
-    const Result<void> seen = rows(0).visit(input_, [this](const Image& image, int, int count) {
+    Result<void> seen = rows(0).visit(input_, [this](const Image& image, int, int count) {
         for (int k = 0; k < count; ++k) {
             const float* channels[4] = {};
             for (std::size_t c = 0; c < texture_.planes.size(); ++c)
