@@ -205,24 +205,27 @@ protected:
                  for (int k = 0; k < CPU_SETSIZE; ++k) CPU_SET(k, &set);
                  return sched_setaffinity(parent, sizeof set, &set) == 0;
              }},
-            {"which are its processors",
-             [=] {
-                 cpu_set_t set;
-                 return syscall(SYS_sched_getaffinity, parent, sizeof set, &set) > 0;
-             }},
-            {"limits of the parent",
-             [=] {
-                 rlimit limit{};
-                 return syscall(SYS_prlimit64, parent, RLIMIT_CORE, nullptr, &limit) == 0;
-             }},
-            {"schedule of the parent",
-             [=] {
-                 const sched_param none{};
-                 return sched_setscheduler(parent, SCHED_OTHER, &none) == 0;
-             }},
-            {"priority of the parent", [=] { return setpriority(PRIO_PROCESS, static_cast<id_t>(parent), 19) == 0; }},
-            {"session of the parent", [=] { return syscall(SYS_getsid, parent) > 0; }},
-            {"survival of the parent", [] { return prctl(PR_SET_PDEATHSIG, 0) == 0; }},
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // their runtimes ask it of other threads
+                {"which are its processors",
+                 [=] {
+                     cpu_set_t set;
+                     return syscall(SYS_sched_getaffinity, parent, sizeof set, &set) > 0;
+                 }},
+#endif
+                {"limits of the parent",
+                 [=] {
+                     rlimit limit{};
+                     return syscall(SYS_prlimit64, parent, RLIMIT_CORE, nullptr, &limit) == 0;
+                 }},
+                {"schedule of the parent",
+                 [=] {
+                     const sched_param none{};
+                     return sched_setscheduler(parent, SCHED_OTHER, &none) == 0;
+                 }},
+                {"priority of the parent",
+                 [=] { return setpriority(PRIO_PROCESS, static_cast<id_t>(parent), 19) == 0; }},
+                {"session of the parent", [=] { return syscall(SYS_getsid, parent) > 0; }},
+                {"survival of the parent", [] { return prctl(PR_SET_PDEATHSIG, 0) == 0; }},
         };
     }
 
