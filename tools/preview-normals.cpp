@@ -34,7 +34,7 @@ PreviewNormals::PreviewNormals(const cli::ProgramRow& row) : NormalsConverter(ro
     command.input("MAP...", "normal maps; with -o all go onto one sheet; - is standard input");
     files.add(command, true);
     command
-        .choice(output.container, "--container", "KIND", kContainerNames,
+        .choice(output.container, "--container", "TYPE", kContainerNames,
                 "the file type, if the output's name does not say it (a pipe)")
         .preset = "by extension; png for -";
     sheet_.add(command, scene_);

@@ -15,8 +15,8 @@ inline constexpr Named<ExitCode> kExitCodeNames[] = {
     {ExitCode::findings, "1", "check-normals found problems, compare-normals found a difference over the limits"},
     {ExitCode::usage, "2", "the command line is wrong; nothing was read or written"},
     {ExitCode::io, "3", "a file cannot be opened, read or written; out of memory, disk or threads"},
-    {ExitCode::data, "4", "a file is damaged, of an unsupported kind, or does not fit the options"},
-    {ExitCode::bug, "5", "a bug of ours"},
+    {ExitCode::data, "4", "a file is damaged, of an unsupported type, or does not fit the options"},
+    {ExitCode::bug, "5", "a bug in this program"},
 };
 
 inline constexpr const char* kBugReport =

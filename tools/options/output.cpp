@@ -59,14 +59,15 @@ std::string extension_of(Container container) {
     return {};
 }
 
-void OutputOptions::add(Command& command, std::string format_default, std::string y_default) {
+void OutputOptions::add(Command& command, std::string format_default, std::string y_default,
+                        Container standard_output) {
     command.group("Output");
     command.choice(format, "--format", "F", kEncodingNames, "how normals are stored").preset =
         std::move(format_default);
     command
-        .choice(container, "--container", "KIND", kContainerNames,
+        .choice(container, "--container", "TYPE", kContainerNames,
                 "the file type, if the output's name does not say it (a pipe)")
-        .preset = "by extension; dds for -";
+        .preset = fmt::format("by extension; {} for -", name_of(kContainerNames, standard_output));
     command.choice(y, "--y", "AXIS", kYAxisNames, "which way green points in the output").preset = std::move(y_default);
     command.choice(effort, "--effort", "E", kEffortNames, "how hard block encoders search for the smallest error");
     command.choice(metric, "--metric", "M", kMetricNames, "the error that --effort best minimises; angle implies best");

@@ -25,7 +25,8 @@ struct OutputOptions {
     bool dds_mark = WriteOptions{}.dds_mark;
 
     // `format_default` and `y_default` appear in the help.
-    void add(Command& command, std::string format_default, std::string y_default);
+    void add(Command& command, std::string format_default, std::string y_default,
+             Container standard_output = Container::dds);
 
     // The container of `output`; for "-" it is `standard_output`. Throws UsageError if the name does not show the
     // container.

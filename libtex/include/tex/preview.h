@@ -126,7 +126,7 @@ struct Material {
 };
 
 // The camera orbits the origin, looks at it, and is so far away that the whole shape is in the picture. A plane seen
-// straight on (yaw and pitch 0) fills a picture of its own proportions exactly, so that texels and pixels coincide if
+// straight on (yaw and pitch 0) fills a picture that has its proportions exactly, so that texels and pixels coincide if
 // their numbers are equal; the eye is then at (0, 0, 1 / tan(field_of_view / 2)).
 struct Camera {
     float yaw = 0.0f;             // degrees to the right
