@@ -146,6 +146,9 @@ protected:
         const std::vector<Attempt> others = attempts_on_the_parent(parent);
         all.insert(all.end(), others.begin(), others.end());
         if (certain) return all;
+        all.push_back({"size of a pipe", [this] { return fcntl(pipe_[0], F_SETPIPE_SZ, 1 << 17) > 0; }});
+        all.push_back({"lease", [this] { return fcntl(opened_, F_SETLEASE, F_RDLCK) == 0; }});
+        all.push_back({"notes of a folder", [this] { return fcntl(opened_folder_, F_NOTIFY, DN_CREATE) == 0; }});
         all.push_back({"memory of the parent", [=, this] {
                            char text[8];
                            const iovec here{text, 1}, there{const_cast<char*>(folder_.data()), 1};
@@ -165,7 +168,7 @@ protected:
     }
 
     // The effects beyond this process that fcntl() and ioctl() can request from the kernel: signals to any process when
-    // a pipe becomes readable, locks and leases that other processes wait for, memory.
+    // a pipe becomes readable, locks that other processes wait for, memory.
     [[nodiscard]] std::vector<Attempt> attempts_by_descriptors(pid_t parent) const {
         return {
             {"owner of signals", [=, this] { return fcntl(pipe_[0], F_SETOWN, parent) == 0; }},
@@ -181,9 +184,6 @@ protected:
                  const int on = 1;
                  return ioctl(pipe_[0], FIOASYNC, &on) == 0;
              }},
-            {"size of a pipe", [this] { return fcntl(pipe_[0], F_SETPIPE_SZ, 1 << 17) > 0; }},
-            {"lease", [this] { return fcntl(opened_, F_SETLEASE, F_RDLCK) == 0; }},
-            {"notes of a folder", [this] { return fcntl(opened_folder_, F_NOTIFY, DN_CREATE) == 0; }},
             {"lock",
              [this] {
                  const struct flock lock { F_RDLCK, SEEK_SET, 0, 0, 0 };
@@ -224,7 +224,8 @@ protected:
                  }},
                 {"priority of the parent",
                  [=] { return setpriority(PRIO_PROCESS, static_cast<id_t>(parent), 19) == 0; }},
-                {"session of the parent", [=] { return syscall(SYS_getsid, parent) > 0; }},
+                {"session of the parent",  // 0 where its leader lives outside this namespace of processes
+                 [=] { return syscall(SYS_getsid, parent) >= 0; }},
                 {"survival of the parent", [] { return prctl(PR_SET_PDEATHSIG, 0) == 0; }},
         };
     }
