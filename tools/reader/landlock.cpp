@@ -142,12 +142,14 @@ bool restrict_other_threads(int rules) {
     order.rules = rules;
     const OrderHandler handler;
     if (!handler.is_sound()) return false;
-    std::vector<pid_t> restricted = {static_cast<pid_t>(syscall(SYS_gettid))};
+    const pid_t self = static_cast<pid_t>(syscall(SYS_gettid));
+    std::vector<pid_t> restricted = {self};
     bool sound = true;
     bool found = false;
     do {  // repeat, because an unrestricted thread may have started another one
         const std::vector<pid_t> threads = all_threads();
-        sound = sound && !threads.empty();
+        // The list may be missing (no /proc), or its ids those of another namespace of processes.
+        sound = sound && std::find(threads.begin(), threads.end(), self) != threads.end();
         found = false;
         for (const pid_t thread : threads) {
             if (std::find(restricted.begin(), restricted.end(), thread) != restricted.end()) continue;
