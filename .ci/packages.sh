@@ -15,7 +15,9 @@ test_packages=(
 )
 # The browser takes 300 MB. Without it, its tests report that they were skipped.
 # shellcheck disable=SC2034
-gate_packages=(clang-14 clang-format-14 clang-tidy-14 ccache libbenchmark-dev chromium)
+gate_packages=(
+    clang-14 clang-format-14 clang-tidy-14 ccache libbenchmark-dev chromium g++-aarch64-linux-gnu qemu-user-static
+)
 
 as_root() {
     if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi

@@ -43,6 +43,13 @@ std::vector<char*> pointers(std::vector<std::string>& words) {
     return result;
 }
 
+// The commands of this build, or wrappers with their names in another folder, which run those of another machine.
+std::string path_of(const std::string& program) {
+    if (program.find('/') != std::string::npos) return program;
+    const char* folder = std::getenv("TEX_PROGRAMS");
+    return std::string(folder == nullptr ? TEX_BINARY_DIR : folder) + "/" + program;
+}
+
 }  // namespace
 
 Scratch::Scratch() {
@@ -86,7 +93,7 @@ Ran run(const Scratch& scratch, const std::string& program, const std::vector<st
     posix_spawn_file_actions_addopen(&actions, 2, streams.path("err").c_str(), O_WRONLY | O_CREAT, 0600);
     posix_spawn_file_actions_addchdir_np(&actions, scratch.path().c_str());
 
-    std::vector<std::string> words = {program.find('/') == std::string::npos ? TEX_BINARY_DIR "/" + program : program};
+    std::vector<std::string> words = {path_of(program)};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<std::string> environment = setting.environment;
     for (char** variable = environ; *variable != nullptr; ++variable) {

@@ -1,0 +1,70 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# The same bytes on arm64: cross-builds libtex and the commands, and runs the kernels' tests and the matrix of bytes
+# (tests/cli/matrix_test.cpp, against tests/golden/commands.txt) under QEMU. The reader process is left out, because
+# OpenImageIO would bring 240 more packages. Needs g++-aarch64-linux-gnu and qemu-user-static, and a release build,
+# whose cli_tests start the commands. The last line is "arm64: N passed, M failed".
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+root=$PWD/build/arm64-root
+packages=(
+    libc6-dev libstdc++-12-dev libpng-dev libopenexr-dev libopencolorio-dev libdeflate-dev libtbb-dev libhwy-dev
+    libfmt-dev nlohmann-json3-dev libtomlplusplus-dev libgtest-dev libgmock-dev libsquish-dev
+)
+
+# Unpacks the packages for arm64 and what they depend on. Nothing is installed on this system.
+make_root() {
+    local state=$root.apt file link
+    rm -rf "$root" "$state"
+    mkdir -p "$root" "$state/lists/partial" "$state/cache/archives/partial"
+    touch "$state/status"
+    local options=(
+        -q -o APT::Architecture=arm64 -o APT::Architectures=arm64 -o APT::Sandbox::User=root
+        -o "Dir::State::Lists=$state/lists" -o "Dir::State::status=$state/status" -o "Dir::Cache=$state/cache"
+    )
+    apt-get "${options[@]}" update
+    apt-get "${options[@]}" -y --no-install-recommends --download-only install "${packages[@]}"
+    for file in "$state"/cache/archives/*.deb; do dpkg -x "$file" "$root"; done
+    # Absolute links would lead out of the root.
+    find "$root" -type l -lname '/*' | while IFS= read -r link; do
+        ln -sfn "$root$(readlink "$link")" "$link"
+    done
+    rm -rf "$state"
+    touch "$root/complete"
+}
+
+# The commands under QEMU, with their names, for a test program of this machine that runs them.
+make_wrappers() {
+    local command
+    rm -rf build/arm64/emulated
+    mkdir -p build/arm64/emulated
+    for command in tools/*-normals.cpp; do
+        command=$(basename "$command" .cpp)
+        printf '#!/bin/sh\nexec qemu-aarch64-static -L %q %q "$@"\n' "$root" "$PWD/build/arm64/$command" \
+            >"build/arm64/emulated/$command"
+        chmod +x "build/arm64/emulated/$command"
+    done
+}
+
+passed=0
+failed=0
+# Runs a test program of GoogleTest and adds up its counts.
+tests() {
+    local log=build/arm64/tests.log count
+    "$@" 2>&1 | tee "$log" | grep -v '^\[ RUN\|^\[       OK\|^\[---' || true
+    count=$(sed -n 's/^\[  PASSED  \] \([0-9]*\) test.*/\1/p' "$log")
+    passed=$((passed + ${count:-0}))
+    count=$(sed -n 's/^\[  FAILED  \] \([0-9]*\) test.*/\1/p' "$log")
+    failed=$((failed + ${count:-0}))
+    [ "$(grep -c '^\[  PASSED  \]' "$log")" -eq 1 ] || failed=$((failed + 1))  # it ended before the end
+}
+
+[ -e "$root/complete" ] || make_root >/dev/null
+cmake --preset arm64 >/dev/null
+cmake --build --preset arm64
+make_wrappers
+tests qemu-aarch64-static -L "$root" build/arm64/unit_tests
+TEX_PROGRAMS=$PWD/build/arm64/emulated tests build/release/cli_tests --gtest_filter='*Matrix.*Golden*'
+echo "arm64: $passed passed, $failed failed"
+[ "$failed" -eq 0 ]
