@@ -12,25 +12,16 @@
 #include "unit/fields.h"
 #include "unit/targets.h"
 
+namespace tex {
 namespace {
 
-using tex::Extent;
-using tex::Fade;
-using tex::kDomains;
-using tex::kWraps;
-using tex::MipChain;
-using tex::MipDomain;
-using tex::MipFilter;
-using tex::MipOptions;
-using tex::NormalMap;
-using tex::Wrap;
-using tex::fields::noise_normals;
-using tex::fields::same_bytes;
+using fields::noise_normals;
+using fields::same_bytes;
 
 // -- against the reference ---------------------------------------------------------------------------------
 
 TEST(Mip, AgreesWithTheReferenceForEveryFilterDomainWrapAndSize) {
-    for (const auto& filter : tex::kMipFilterNames) {
+    for (const auto& filter : kMipFilterNames) {
         for (const MipDomain domain : kDomains) {
             for (const Wrap wrap : kWraps) {
                 for (const Extent extent : {Extent{1, 1}, Extent{2, 2}, Extent{3, 5}, Extent{15, 16}, Extent{17, 33},
@@ -39,13 +30,13 @@ TEST(Mip, AgreesWithTheReferenceForEveryFilterDomainWrapAndSize) {
                     MipOptions options = options_of(filter.value, domain, wrap);
                     options.fade = Fade{2, 9};
                     const MipChain chain = chain_of(base, options);
-                    const auto truth = tex::reference::build_mip_chain(tex::reference::grid_of(base), options);
+                    const auto truth = reference::build_mip_chain(reference::grid_of(base), options);
                     ASSERT_EQ(chain.levels.size(), truth.size());
                     for (std::size_t k = 0; k < truth.size(); ++k) {
                         ASSERT_LT(largest_angle(chain.levels[k], truth[k]), 0.01)
-                            << filter.name << " " << name_of(tex::kMipDomainNames, domain) << " "
-                            << name_of(tex::kWrapNames, wrap) << " " << extent.width << "x" << extent.height
-                            << " level " << k;
+                            << filter.name << " " << name_of(kMipDomainNames, domain) << " "
+                            << name_of(kWrapNames, wrap) << " " << extent.width << "x" << extent.height << " level "
+                            << k;
                     }
                 }
             }
@@ -59,7 +50,7 @@ TEST(Mip, AxesMayWrapDifferently) {
         for (const Wrap wrap_y : kWraps) {
             MipOptions options = options_of(MipFilter::lanczos3, MipDomain::vector, wrap_x);
             options.wrap_y = wrap_y;
-            const auto truth = tex::reference::build_mip_chain(tex::reference::grid_of(base), options);
+            const auto truth = reference::build_mip_chain(reference::grid_of(base), options);
             EXPECT_LT(largest_angle(chain_of(base, options).levels[1], truth[1]), 0.01);
         }
     }
@@ -70,7 +61,7 @@ TEST(Mip, AxesMayWrapDifferently) {
 // The chain must be the same on every target and with each number of threads.
 void expect_same_bytes(const NormalMap& base, const MipOptions& options, const std::vector<int>& threads) {
     std::optional<MipChain> first;
-    tex::on_every_target([&] {
+    on_every_target([&] {
         for (const int count : threads) {
             MipChain chain = chain_of(base, options, count);
             if (!first)
@@ -86,7 +77,7 @@ void expect_same_bytes(const NormalMap& base, const MipOptions& options, const s
 
 TEST(Mip, GivesTheSameBytesOnEveryTarget) {
     for (const Extent extent : {Extent{64, 96}, Extent{53, 123}, Extent{140, 33}}) {
-        for (const auto& filter : tex::kMipFilterNames) {
+        for (const auto& filter : kMipFilterNames) {
             for (const MipDomain domain : kDomains) {
                 MipOptions options = options_of(filter.value, domain, Wrap::mirror);
                 options.fade = Fade{1, 20};
@@ -110,11 +101,11 @@ TEST(Mip, GivesTheSameBytesForEveryNumberOfThreads) {
 TEST(Mip, ReportsProgressUpwardsThroughAllLevels) {
     std::vector<double> seen = {0.0};
     const auto chain =
-        tex::build_mip_chain(noise_normals({301, 300}), options_of(MipFilter::mitchell, MipDomain::slope, Wrap::clamp),
-                             {1, [&](double fraction) {
-                                  seen.push_back(fraction);
-                                  return true;
-                              }});
+        build_mip_chain(noise_normals({301, 300}), options_of(MipFilter::mitchell, MipDomain::slope, Wrap::clamp),
+                        {1, [&](double fraction) {
+                             seen.push_back(fraction);
+                             return true;
+                         }});
     ASSERT_TRUE(chain);
     EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
     EXPECT_GT(seen.size(), 4u);
@@ -122,9 +113,10 @@ TEST(Mip, ReportsProgressUpwardsThroughAllLevels) {
 }
 
 TEST(Mip, CanBeCancelled) {
-    const auto result = tex::build_mip_chain(noise_normals({512, 512}), {}, {1, [](double) { return false; }});
+    const auto result = build_mip_chain(noise_normals({512, 512}), {}, {1, [](double) { return false; }});
     ASSERT_FALSE(result);
-    EXPECT_EQ(result.error().code, tex::ErrorCode::cancelled);
+    EXPECT_EQ(result.error().code, ErrorCode::cancelled);
 }
 
 }  // namespace
+}  // namespace tex
