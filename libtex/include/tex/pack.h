@@ -17,11 +17,16 @@ namespace tex {
 
 // How hard the block encoders search for the smallest error (dxt5nm, bc5 and bc5_snorm; the others are exact).
 //
-//   best     no block could have a smaller squared error
+//   best     no block could have a smaller squared error. This is exact if all values are whole codes, as those of
+//            8-bit sources are in dxt5nm and bc5. Others are first rounded to 1/1024 of a code, so that the root mean
+//            square error of a block is at most 1/900 of a code above the smallest one
 //   normal   no channel of a block has a larger squared error than a plain fit, which puts the endpoints at the
-//            extremes and refines them twice by linear least squares, of values rounded to 1/128 of a code. This holds
-//            for best too. Three or more values that lie on a palette with spacings of at least 4/3 codes, as those of
-//            blocks that were decoded earlier do, are encoded to the same values within 1/10 of a code
+//            extremes and refines them twice by linear least squares; halves are rounded up. This holds if all values
+//            of the block are whole codes. Others are first rounded to 1/128 of a code, and fewer than one block in
+//            1000 has a larger error than a plain fit of the rounded values: texels and endpoints in the middle
+//            between two codes are not always rounded up. Three or more values that lie on a palette with spacings of
+//            at least 4/3 codes, as those of blocks that were decoded earlier do, are encoded to the same values
+//            within 1/10 of a code
 //   fast     refines once and does not check the result. The root mean square error of a block may exceed that of the
 //            palette between the extremes, before rounding, by the effect of rounding: half a code (of 255) in BC4
 //            blocks, or one code if their range is smaller; 2.8 codes in dxt5nm's green (whose palette leaves 1/16 of

@@ -102,7 +102,8 @@ HWY_INLINE BlockWords choose_bc4(const Group& group, Bc4Codes codes, const Choic
     Ends chosen;
     F is_six[kParts];
     for (int p = 0; p < kParts; ++p) {
-        const auto better = hn::Lt(six.error[p], eight.error[p]);
+        const auto better =
+            hn::Lt(hn::Mul(six.error[p], constant(7.0f * 7.0f)), hn::Mul(eight.error[p], constant(5.0f * 5.0f)));
         is_six[p] = hn::IfThenElseZero(better, constant(65535.0f));
         chosen.high[p] = hn::IfThenElse(better, six.low[p], eight.high[p]);
         chosen.low[p] = hn::IfThenElse(better, six.high[p], eight.low[p]);
@@ -114,23 +115,13 @@ HWY_INLINE BlockWords choose_bc4(const Group& group, Bc4Codes codes, const Choic
          hn::IfThenElse(better, word(cut(5)), word(cut(7))), hn::IfThenElseZero(better, word(8))});
 }
 
-// Zero if all texels are whole codes.
-HWY_INLINE W fractions_of(const W* texels) {
-    W any = texels[0];
-    for (int k = 1; k < 16; ++k) any = hn::Or(any, texels[k]);
-    return hn::And(any, word(static_cast<int>(kFine) - 1));
-}
-
 // Texels keep the indices for which the endpoints were solved.
 HWY_INLINE BlockWords fast_bc4(const W* texels, Bc4Codes codes) {
     const Words d;
     Group group;
     make_group<Precision::coarse>(texels, group);
-    const Parts fractions = to_floats(fractions_of(texels));
-    hn::Mask<Floats> whole[kParts];
-    for (int p = 0; p < kParts; ++p) whole[p] = hn::Eq(fractions.part[p], hn::Zero(Floats()));
     Choice choice;
-    const Ramp ramp = Fitter<EightValues>(group, {static_cast<float>(codes.top)}).solve(0.0f, whole, choice);
+    const Ramp ramp = Fitter<EightValues>(group, {static_cast<float>(codes.top)}).solve(0.0f, group.whole, choice);
     return bc4_words(group, codes, choice, {ramp.factor, ramp.offset, word(cut(7)), hn::Zero(d)});
 }
 
@@ -145,21 +136,19 @@ HWY_INLINE BlockWords normal_bc4(const W* texels, Bc4Codes codes, bool& extremes
         fitter.start<Precision::coarse>(g, j, 2, found);
     Choice eight;
     fitter.score<Precision::full>(found, nullptr, eight);
-    fitter.start<Precision::full>(0.0f, 0.0f, 3, eight);
+    fitter.plain(eight);
     fitter.whole_codes(eight);
     const Fitter<SixValues> six_fitter(group, {top});
     Choice six;
     six_fitter.start<Precision::full>(0.0f, 1.0f, 2, six);
     // A spacing of one code has no error if all texels are whole codes.
-    const Parts fractions = to_floats(fractions_of(texels));
     F open[kParts];
     for (int p = 0; p < kParts; ++p) {
         const F range = hn::Mul(group.greatest[p], group.unit[p]);
         const auto lowest = hn::Eq(group.base[p], hn::Zero(Floats()));
         const auto extreme = hn::Or(lowest, hn::Eq(hn::Add(group.base[p], range), constant(top)));
         extremes |= !hn::AllFalse(Floats(), hn::And(extreme, hn::Gt(range, hn::Zero(Floats()))));
-        const F least_range =
-            hn::IfThenElse(hn::Eq(fractions.part[p], hn::Zero(Floats())), constant(7.0f), constant(0.5f));
+        const F least_range = hn::IfThenElse(group.whole[p], constant(7.0f), constant(0.5f));
         open[p] = hn::IfThenElseZero(hn::Gt(range, least_range), constant(65535.0f));
     }
     offer_bc4_palettes(group, to_words(open), top, eight, six);
@@ -204,7 +193,7 @@ HWY_INLINE BlockWords normal_green(const W* texels) {
     set_single_greens(group, found);
     Choice best;
     fitter.score<Precision::full>(found, nullptr, best);
-    fitter.start<Precision::full>(0.0f, 0.0f, 3, best);
+    fitter.plain(best);
     F wide[kParts];  // two spacings are 8/3 codes or more
     for (int p = 0; p < kParts; ++p) {
         wide[p] = hn::IfThenElseZero(hn::Gt(group.greatest[p], hn::Mul(group.per_unit[p], constant(2.5f))),

@@ -24,17 +24,21 @@
 // If a block of green needs a single value, it takes it from single_greens.h. Greens are scored by the thresholds
 // between values (fit_greens-inl.h), which needs no indices.
 //
-// What is guaranteed. normal: the last three steps are those of a plain fit (the extremes, refined twice by least
-// squares), so no block is worse than that fit. fast: the comparison is with the palette between the extremes (in
-// green: less 1/16 of the range at both ends), exact and not refined. Least squares are not worse than that palette.
-// Rounding then moves values by at most half a code of alpha (one code if the range is less) and by at most 2.8 codes
-// of green. The root mean square error of a block exceeds that of this palette by at most that much, plus 1/400 of the
-// range for the coarse sums of fast. It can be larger only if least squares leave the range of codes.
+// What is guaranteed. normal: the three steps of (0, 0) are a plain fit: the extremes, refined twice by least squares,
+// with halves rounded up. If all texels of a block are whole codes, they are computed without rounding, so no block is
+// worse than that fit. Otherwise texels or endpoints that lie almost in the middle (see Precision) may be rounded the
+// other way, and the fit then takes another path: fewer than one block in 1000 becomes worse. fast: the comparison is
+// with the palette between the extremes (in green: less 1/16 of the range at both ends), exact and not refined. Least
+// squares are not worse than that palette. Rounding then moves values by at most half a code of alpha (one code if the
+// range is less) and by at most 2.8 codes of green. The root mean square error of a block exceeds that of this palette
+// by at most that much, plus 1/400 of the range for the coarse sums of fast. It can be larger only if least squares
+// leave the range of codes.
 //
 // Precision: values are rounded to 1/128 of a code, then scaled by a power of two such that 16 bits hold the block's
 // range. The coarse sums, with which most starts of alpha are compared, use 9 of these bits; the full sums, which
-// decide, use all of them. Texels within 1/2000 of a spacing of the middle between two values may take either value.
-// Blocks lie in lanes; their order and number do not affect the result.
+// decide, use all of them. If not all texels are whole codes, those within 1/1300 of a spacing of the middle between
+// two values may take either value. Errors are exact for whole codes of a range of at most 127, and otherwise rounded
+// by less than range^2 / 10^6. Blocks lie in lanes; their order and number do not affect the result.
 
 #pragma once
 

@@ -3,7 +3,7 @@
 //
 // With 4 values of spacing s from a on, the squared error is that of a alone, less 2 s times the sum of max(0, v - t)
 // over the texels v and the three thresholds t between values. Because max(0, v - t) = max(v, t) - t, maxima and means
-// of 16 bits are enough.
+// of 16 bits are enough. Unlike those of Fitter, these errors are not multiplied by n^2.
 //
 // Compiled once for each Highway target, as part of fit.cpp.
 

@@ -102,6 +102,8 @@ struct Group {
     F base[kParts], unit[kParts], per_unit[kParts];
     F greatest[kParts];
     F sum[kParts], high_sum[kParts];  // sums of the values, and of kHighUnit * high
+    hn::Mask<Floats> whole[kParts];   // set if all texels are whole codes
+    F ties[kParts];                   // what to add before values are rounded to indices (kTiesUp)
 };
 
 // Texels of four rows: 16 vectors in units of 1/128 code, clamped to 0 to `top` codes. Transposing within 16 bytes is
@@ -159,6 +161,13 @@ HWY_INLINE void load_texels(const float* const rows[4], int top, bool negate, W*
 // Sums of coarse precision use only the high parts of values.
 enum class Precision { coarse, full };
 
+// Added to values before they become indices, in units of the ramps (fit_kinds-inl.h): 2048 for each spacing. Rounding
+// moves them by -2 to 1 units. For whole codes, 2 units are added, so that the middle between two values always goes to
+// the greater one. Other whole codes are at least 4 units away from the middle, because a palette spans at most 255
+// codes: their indices are exact.
+constexpr float kTiesUp = 2.0f;
+constexpr float kTiesEitherWay = 0.5f;
+
 template <Precision kPrecision>
 HWY_INLINE void make_group(const W* v, Group& group) {
     const Words d;
@@ -166,10 +175,13 @@ HWY_INLINE void make_group(const W* v, Group& group) {
     const hn::Rebind<std::uint32_t, Floats> du;
     W least = v[0];
     W greatest = v[0];
+    W bits = v[0];
     for (int k = 1; k < 16; ++k) {
         least = hn::Min(least, v[k]);
         greatest = hn::Max(greatest, v[k]);
+        bits = hn::Or(bits, v[k]);
     }
+    const Parts fractions = to_floats(hn::And(bits, word(static_cast<int>(kFine) - 1)));
     // Values are multiplied by the power of two that moves the greatest one into the range 32768 to 65535.
     const Parts ranges = to_floats(hn::Sub(greatest, least));
     const Parts bases = to_floats(least);
@@ -182,6 +194,10 @@ HWY_INLINE void make_group(const W* v, Group& group) {
         group.unit[p] = hn::Div(constant(1.0f), group.per_unit[p]);  // exact: powers of two
         group.greatest[p] = hn::Mul(range, factors[p]);
         group.base[p] = hn::Mul(bases.part[p], constant(1.0f / kFine));
+        group.whole[p] = hn::Eq(fractions.part[p], hn::Zero(df));
+        group.ties[p] = hn::Zero(df);
+        if constexpr (kPrecision == Precision::full)
+            group.ties[p] = hn::IfThenElse(group.whole[p], constant(kTiesUp), constant(kTiesEitherWay));
     }
     const W factor = to_words(factors);
     W high_sum = hn::Zero(d);

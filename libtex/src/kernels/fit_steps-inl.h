@@ -16,89 +16,11 @@
 #include <hwy/highway.h>
 
 #include "kernels/fit_group-inl.h"
+#include "kernels/fit_kinds-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tex {
 namespace HWY_NAMESPACE {
-
-HWY_INLINE F clamped(F value, float most) { return hn::Min(hn::Max(value, hn::Zero(Floats())), constant(most)); }
-HWY_INLINE F rounded(F value) { return hn::Floor(hn::Add(value, constant(0.5f))); }
-
-// BC4 with 8 values: different endpoints of 8 bits.
-struct EightValues {
-    static constexpr int kSteps = 7;
-    float top;
-
-    // Rounds endpoints, in codes, to values that the block can hold.
-    HWY_INLINE void round(F& low, F& high) const {
-        const F a = clamped(rounded(low), top);
-        const F b = clamped(rounded(high), top);
-        // Equal endpoints would mean 6 values, so take the codes on both sides.
-        const F floor = clamped(hn::Floor(low), top - 1.0f);
-        const auto apart = hn::Gt(b, a);
-        low = hn::IfThenElse(apart, a, floor);
-        high = hn::IfThenElse(apart, b, hn::Add(floor, constant(1.0f)));
-    }
-    // The 8-bit codes that the decoder makes from these codes.
-    HWY_INLINE F widen(F code) const { return code; }
-};
-
-// BC4 with 6 values. The lowest and the greatest code are not used here.
-struct SixValues {
-    static constexpr int kSteps = 5;
-    float top;
-
-    HWY_INLINE void round(F& low, F& high) const {
-        low = clamped(rounded(low), top);
-        high = hn::Max(clamped(rounded(high), top), low);
-    }
-    HWY_INLINE F widen(F code) const { return code; }
-};
-
-// DXT5nm's green: 4 values, endpoints of 6 bits.
-struct Greens {
-    static constexpr int kSteps = 3;
-    float top = 63.0f;
-
-    HWY_INLINE void round(F& low, F& high) const {
-        const F scale = constant(63.0f / 255.0f);
-        const F a = clamped(rounded(hn::Mul(low, scale)), top);
-        const F b = clamped(rounded(hn::Mul(high, scale)), top);
-        low = hn::Min(a, b);
-        high = hn::Max(a, b);
-    }
-    HWY_INLINE F widen(F code) const {
-        return hn::Add(hn::Mul(code, constant(4.0f)), hn::Floor(hn::Mul(code, constant(1.0f / 16.0f))));
-    }
-};
-
-// Turns a value into an index, counted from the lower endpoint. q = value * factor / 65536 + offset has 2^kIndexBits
-// for each spacing. The additions saturate at both ends of the palette: k = (q - cut) / 2^kIndexBits.
-struct Ramp {
-    W factor, offset;
-};
-constexpr int kIndexBits = 11;
-constexpr int cut(int steps) { return 65536 - ((steps + 1) << kIndexBits); }
-
-HWY_INLINE W index(W value, W factor, W offset, W cut) {
-    return hn::ShiftRight<kIndexBits>(hn::SaturatedSub(hn::SaturatedAdd(hn::MulHigh(value, factor), offset), cut));
-}
-
-// The ramp of local endpoints a <= b.
-template <class Kind>
-HWY_INLINE Ramp make_ramp(const F (&a)[kParts], const F (&b)[kParts]) {
-    constexpr float kUnit = static_cast<float>(1 << kIndexBits);
-    F factor[kParts], offset[kParts];
-    for (int p = 0; p < kParts; ++p) {
-        const F span = hn::Sub(b[p], a[p]);
-        const F exact =
-            hn::Div(constant(65536.0f * kUnit * static_cast<float>(Kind::kSteps)), hn::Max(span, constant(1.0f)));
-        factor[p] = hn::IfThenElseZero(hn::Gt(span, hn::Zero(Floats())), hn::Min(exact, constant(65535.0f)));
-        const F start = hn::Mul(hn::Mul(a[p], factor[p]), constant(1.0f / 65536.0f));
-        offset[p] = clamped(hn::Sub(constant(static_cast<float>(cut(Kind::kSteps)) + 0.5f * kUnit), start), 65535.0f);
-    }
-    return {to_words(factor), to_words(offset)};
-}
 
 // Sums over the indices k and the values v of the texels.
 struct Sums {
@@ -125,7 +47,8 @@ struct Ends {
     F low[kParts], high[kParts];
 };
 
-// The best endpoints so far, as stored codes, and their error less a constant of the block, in local units.
+// The best endpoints so far, as stored codes, and their error less a constant of the block, in local units, multiplied
+// by the square of the number of spacings.
 struct Choice : Ends {
     F error[kParts];
     Choice() {
@@ -146,6 +69,26 @@ template <class Kind>
 class Fitter {
 public:
     Fitter(const Group& group, Kind kind) : group_(group), kind_(kind) {}
+
+    // The plain fit: the extremes, refined twice by least squares. If all texels are whole codes, all of it is exact,
+    // with halves rounded up; errors are too, up to a range of 127 codes.
+    HWY_INLINE void plain(Choice& choice) const {
+        const F one = constant(1.0f);
+        Ends ends;
+        for (int p = 0; p < kParts; ++p) {
+            ends.low[p] = kind_.stored(group_.base[p], one);
+            ends.high[p] = kind_.stored(code(group_.greatest[p], p), one);
+        }
+        for (int round = 0; round < 3; ++round) {
+            for (int p = 0; p < kParts; ++p) kind_.round_stored(ends.low[p], ends.high[p]);
+            const Moments m = moments<Precision::full>(sum_up<Kind, Precision::full>(group_, ramp_of(ends)));
+            for (int p = 0; p < kParts; ++p) {
+                choice.offer(p, error_of(m, p, local(ends.low[p], p), local(ends.high[p], p)), ends.low[p],
+                             ends.high[p]);
+                if (round < 2) refine_exactly(m, p, ends);
+            }
+        }
+    }
 
     // Takes `steps` steps. At the first endpoints, n - j + g spacings span the range, and the lower endpoint lies g / 2
     // spacings above the least texel.
@@ -215,7 +158,7 @@ public:
             ends.low[p] = code(a, p);
             ends.high[p] = code(b, p);
         }
-        const Ramp ramp = make_ramp<Kind>(at.low, at.high);
+        const Ramp ramp = make_ramp<Kind>(at.low, at.high, group_.ties);
         const Moments m = moments<Precision::coarse>(sum_up<Kind, Precision::coarse>(group_, ramp));
         F narrow[kParts];
         auto any_narrow = hn::Lt(constant(0.0f), constant(0.0f));
@@ -243,7 +186,7 @@ public:
             a[p] = local(stored.low[p], p);
             b[p] = local(stored.high[p], p);
         }
-        return make_ramp<Kind>(a, b);
+        return make_ramp<Kind>(a, b, group_.ties);
     }
 
     // Converts a local value to codes, and a stored code to a local value.
@@ -283,21 +226,32 @@ protected:
         return m;
     }
 
-    // The sum of (v - a - k spacing)^2, less that of (v - c)^2, where c is the middle of the range of values. Indices
-    // are counted from n / 2 and values from c, which keeps the numbers, and so their rounding, small.
-    HWY_INLINE F error_of(const Moments& m, int p, F a, F b) const {
+    // The moments of indices counted from n / 2 and of values counted from the middle of their range, which keeps the
+    // numbers, and so their rounding, small.
+    struct Centred {
+        F k, kk, v, kv;
+    };
+    HWY_INLINE Centred centred(const Moments& m, int p) const {
         constexpr float kHalf = 0.5f * kSteps;
-        constexpr float kMiddle = 32768.0f;
-        const F spacing = hn::Mul(hn::Sub(b, a), constant(1.0f / kSteps));
-        const F middle = hn::Sub(hn::Mul(hn::Add(a, b), constant(0.5f)), constant(kMiddle));
         const F k = hn::Sub(m.k.part[p], constant(16.0f * kHalf));
-        const F kk =
-            hn::Add(hn::Sub(m.kk.part[p], hn::Mul(m.k.part[p], constant(kSteps))), constant(16.0f * kHalf * kHalf));
-        const F v = hn::Sub(m.v[p], constant(16.0f * kMiddle));
-        const F kv = hn::Sub(hn::Sub(m.kv.part[p], hn::Mul(m.v[p], constant(kHalf))), hn::Mul(k, constant(kMiddle)));
-        const F from_middle = hn::Mul(middle, hn::Sub(hn::Mul(constant(16.0f), middle), hn::Add(v, v)));
-        const F cross = hn::Sub(hn::Mul(middle, k), kv);
-        return hn::Add(from_middle, hn::Mul(spacing, hn::Add(hn::Mul(spacing, kk), hn::Add(cross, cross))));
+        return {
+            k,
+            hn::Add(hn::Sub(m.kk.part[p], hn::Mul(m.k.part[p], constant(kSteps))), constant(16.0f * kHalf * kHalf)),
+            hn::Sub(m.v[p], constant(16.0f * kMiddle)),
+            hn::Sub(hn::Sub(m.kv.part[p], hn::Mul(m.v[p], constant(kHalf))), hn::Mul(k, constant(kMiddle))),
+        };
+    }
+
+    // n^2 times: the sum of (v - a - k spacing)^2, less that of (v - c)^2, where c is the middle of the range of
+    // values.
+    HWY_INLINE F error_of(const Moments& m, int p, F a, F b) const {
+        const Centred c = centred(m, p);
+        const F span = hn::Sub(b, a);
+        const F middle = hn::Sub(hn::Mul(hn::Add(a, b), constant(0.5f)), constant(kMiddle));
+        const F from_middle = hn::Mul(middle, hn::Sub(hn::Mul(constant(16.0f), middle), hn::Add(c.v, c.v)));
+        const F cross = hn::Mul(hn::Sub(hn::Mul(middle, c.k), c.kv), constant(2.0f * kSteps));
+        return hn::Add(hn::Mul(from_middle, constant(kSteps * kSteps)),
+                       hn::Mul(span, hn::Add(hn::Mul(span, c.kk), cross)));
     }
 
     // Replaces endpoints by the ones that suit the indices best, by linear least squares.
@@ -314,6 +268,28 @@ protected:
         ends.low[p] = hn::IfThenElse(solvable, code(start, p), ends.low[p]);
         ends.high[p] = hn::IfThenElse(solvable, code(end, p), ends.high[p]);
     }
+
+    // The same, with each endpoint rounded once, by its division. The endpoints are those of stored(). If all texels
+    // are whole codes, numerators and denominators are exact: they are multiples of half a code, and below 2^23 of
+    // them.
+    HWY_INLINE void refine_exactly(const Moments& m, int p, Ends& ends) const {
+        const Floats d;
+        const Centred c = centred(m, p);
+        const F determinant = hn::Sub(hn::Mul(constant(16.0f), c.kk), hn::Mul(c.k, c.k));
+        const F slope = hn::Sub(hn::Mul(constant(16.0f), c.kv), hn::Mul(c.k, c.v));
+        const F middle = hn::Sub(hn::Mul(c.v, c.kk), hn::Mul(c.k, c.kv));
+        const F half = hn::Mul(slope, constant(0.5f * kSteps));
+        const F base = hn::Add(group_.base[p], hn::Mul(constant(kMiddle), group_.unit[p]));
+        const F whole = hn::Mul(base, determinant);
+        const F low = hn::Add(whole, hn::Mul(hn::Sub(middle, half), group_.unit[p]));
+        const F high = hn::Add(whole, hn::Mul(hn::Add(middle, half), group_.unit[p]));
+        const auto solvable = hn::Gt(determinant, hn::Zero(d));
+        const F denominator = hn::Max(determinant, constant(1.0f));
+        ends.low[p] = hn::IfThenElse(solvable, kind_.stored(low, denominator), ends.low[p]);
+        ends.high[p] = hn::IfThenElse(solvable, kind_.stored(high, denominator), ends.high[p]);
+    }
+
+    static constexpr float kMiddle = 32768.0f;  // of the range of local values
 
     const Group& group_;
     const Kind kind_;
