@@ -193,6 +193,26 @@ TEST(Bake, AgreesWithTheReferenceForEveryKernelWrapAndSize) {
     }
 }
 
+TEST(Bake, HeightsNearTheGreatestFloatHaveTheirSlopes) {
+    const float four[] = {0.0f, 3e38f, 0.0f, -3e38f};
+    const NormalMap map =
+        baked(field_of({4, 1}, 1e-38f, Wrap::repeat, [&](int i, int) { return static_cast<double>(four[i]); }), {});
+    EXPECT_NEAR(map.x.at(0, 0), -3 / std::sqrt(10.0), 1e-6);
+    EXPECT_NEAR(map.z.at(0, 0), 1 / std::sqrt(10.0), 1e-6);
+    EXPECT_NEAR(map.x.at(2, 0), 3 / std::sqrt(10.0), 1e-6);
+    for (const BakeOptions& options : all_kernels()) {
+        for (const Wrap wrap : kWraps) {
+            for (const double scale : {1e-30, 1e30, 3e38}) {
+                const HeightField field = field_of({19, 13}, static_cast<float>(7 / scale), wrap,
+                                                   [&](int i, int j) { return scale * noise(i, j); });
+                ASSERT_LT(largest_angle(baked(field, options), tex::reference::bake(field, options)), 0.01)
+                    << name_of(tex::kGradientKernelNames, options.kernel) << " " << name_of(tex::kWrapNames, wrap)
+                    << " " << scale;
+            }
+        }
+    }
+}
+
 TEST(Bake, AxesMayWrapDifferently) {
     for (const Wrap wrap_x : kWraps) {
         for (const Wrap wrap_y : kWraps) {

@@ -51,7 +51,8 @@ struct BakeOptions {
 //
 // (Blinn 1978; Catlike Coding, Rendering 6, 1.3.) Computed in float: slopes are exact to rounding, and lengths to 2
 // units in the last place. Slopes are clamped to +-1e15, so that every finite height gives a finite unit normal with
-// z > 0. Heights must be finite (see height_field()).
+// z > 0. Heights must be finite (see height_field()). Only if bumpiness is above 2^40 (or HeightOptions::blur_sigma
+// above 0) are heights beyond +-1e34 limited to that first.
 //
 // Preconditions (asserted): 1 <= width, height <= kMaxExtent; finite bumpiness; gaussian_sigma in range.
 // Errors: out_of_memory, cancelled.

@@ -21,20 +21,25 @@ constexpr int kLanes = static_cast<int>(hn::MaxLanes(kD));
 
 HWY_INLINE V clamped(V v, V limit) { return hn::Min(hn::Max(v, hn::Neg(limit)), limit); }
 
-void LimitHeights(const float* in, int count, float* out) {
-    const V limit = hn::Set(kD, kMaxHeight);
-    for (int i = 0; i < count; i += kLanes) hn::StoreU(clamped(hn::LoadU(kD, in + i), limit), kD, out + i);
+// The scaled height at `in`.
+HWY_INLINE V height(const float* in, V scale) {
+    return clamped(hn::Mul(hn::LoadU(kD, in), scale), hn::Set(kD, kMaxHeight));
 }
 
-void ContinueHeights(const float* inner, const float* edge, const float* other, bool reflected, float drift, int count,
-                     float* out) {
-    const V limit = hn::Set(kD, kMaxHeight);
+void LimitHeights(const float* in, float scale, int count, float* out) {
+    const V s = hn::Set(kD, scale);
+    for (int i = 0; i < count; i += kLanes) hn::StoreU(height(in + i, s), kD, out + i);
+}
+
+void ContinueHeights(const float* inner, const float* edge, const float* other, bool reflected, float drift,
+                     float scale, int count, float* out) {
+    const V s = hn::Set(kD, scale);
     const V two = hn::Set(kD, 2.0f);
     const V periods = hn::Set(kD, drift);
     for (int i = 0; i < count; i += kLanes) {
-        const V h = clamped(hn::LoadU(kD, inner + i), limit);
-        const V e = clamped(hn::LoadU(kD, edge + i), limit);
-        const V o = clamped(hn::LoadU(kD, other + i), limit);
+        const V h = height(inner + i, s);
+        const V e = height(edge + i, s);
+        const V o = height(other + i, s);
         const V base = reflected ? hn::Sub(hn::Mul(two, e), h) : h;
         hn::StoreU(hn::Add(base, hn::Mul(periods, hn::Sub(e, o))), kD, out + i);
     }
@@ -142,11 +147,13 @@ HWY_EXPORT(DeriveColumn);
 HWY_EXPORT(NormalsBySmoothing);
 HWY_EXPORT(WidenSlopeBounds);
 
-void limit_heights(const float* in, int count, float* out) { HWY_DYNAMIC_DISPATCH(LimitHeights)(in, count, out); }
+void limit_heights(const float* in, float scale, int count, float* out) {
+    HWY_DYNAMIC_DISPATCH(LimitHeights)(in, scale, count, out);
+}
 
-void continue_heights(const float* inner, const float* edge, const float* other, bool reflected, float drift, int count,
-                      float* out) {
-    HWY_DYNAMIC_DISPATCH(ContinueHeights)(inner, edge, other, reflected, drift, count, out);
+void continue_heights(const float* inner, const float* edge, const float* other, bool reflected, float drift,
+                      float scale, int count, float* out) {
+    HWY_DYNAMIC_DISPATCH(ContinueHeights)(inner, edge, other, reflected, drift, scale, count, out);
 }
 
 void normals_by_difference(const float* left, const float* right, const float* down, const float* up, float scale_x,

@@ -11,23 +11,26 @@
 
 namespace tex {
 
-// Heights are limited to this. Beyond it, sums of differences could become infinite, and infinity minus infinity is
-// NaN.
+// Heights are limited to this after they are scaled. Beyond it, sums of differences could become infinite, and infinity
+// minus infinity is NaN.
 inline constexpr float kMaxHeight = 1e34f;
+
+// The scale at which no finite height reaches kMaxHeight. A power of two, so that it rounds no height above 1e-33.
+inline constexpr float kHeightScale = 0x1p-16f;
 
 // Slopes are clamped to this, so that their squares are finite.
 inline constexpr float kMaxSlope = 1e15f;
 
-// out[i] = in[i], limited to +-kMaxHeight.
-void limit_heights(const float* in, int count, float* out);
+// out[i] = scale in[i], limited to +-kMaxHeight.
+void limit_heights(const float* in, float scale, int count, float* out);
 
 // A row of heights beyond the border (see HeightIndex in rows/border.h):
 //
 //     out[i] = (reflected ? 2 edge[i] - inner[i] : inner[i]) + drift (edge[i] - other[i])
 //
-// where all inputs are limited to +-kMaxHeight first.
-void continue_heights(const float* inner, const float* edge, const float* other, bool reflected, float drift, int count,
-                      float* out);
+// where all inputs are scaled and limited to +-kMaxHeight first.
+void continue_heights(const float* inner, const float* edge, const float* other, bool reflected, float drift,
+                      float scale, int count, float* out);
 
 // normalize(-slope_x, -slope_y, 1) with slope_x = (right - left) scale_x, slope_y = (up - down) scale_y.
 void normals_by_difference(const float* left, const float* right, const float* down, const float* up, float scale_x,

@@ -2,6 +2,8 @@
 
 #include "rows/bake_rows.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "rows/blur.h"
@@ -30,6 +32,12 @@ float bumpiness(float value, int texels) { return texels > 1 ? value : 0.0f; }
 // The factor of a difference. The smoothed kernels include it in their weights.
 float step(const Gradient& gradient) { return !gradient.is_difference() || gradient.forward ? 1.0f : 0.5f; }
 
+// What heights are multiplied by, and bumpiness divided by, so that no finite height is limited. Bumpiness above 2^40
+// could make slopes of heights so small that scaling would round them.
+float height_scale(const HeightFieldHead& head) {
+    return std::max(std::abs(head.bumpiness_x), std::abs(head.bumpiness_y)) <= 0x1p40f ? kHeightScale : 1.0f;
+}
+
 }  // namespace
 
 Gradient gradient_of(const BakeOptions& options) {
@@ -46,9 +54,11 @@ Gradient gradient_of(const BakeOptions& options) {
 }
 
 BakeRows::BakeRows(Extent extent, RowOf heights, const Gradient& gradient, const HeightFieldHead& head, int first)
-    : extent_(extent), gradient_(gradient), scale_x_(step(gradient) * bumpiness(head.bumpiness_x, extent.width)),
-      scale_y_(step(gradient) * bumpiness(head.bumpiness_y, extent.height)),
-      rows_(extent, std::move(heights), head.wrap_x, head.wrap_y, gradient.radius, 2 * gradient.radius + 1),
+    : extent_(extent), gradient_(gradient),
+      scale_x_(step(gradient) * bumpiness(head.bumpiness_x, extent.width) / height_scale(head)),
+      scale_y_(step(gradient) * bumpiness(head.bumpiness_y, extent.height) / height_scale(head)),
+      rows_(extent, std::move(heights), head.wrap_x, head.wrap_y, gradient.radius, 2 * gradient.radius + 1,
+            height_scale(head)),
       next_(first - gradient.radius) {
     if (gradient.is_difference()) return;
     const int window = 2 * gradient.radius + 1;

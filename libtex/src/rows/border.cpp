@@ -55,7 +55,7 @@ const float* height_row(const RowOf& heights, Extent extent, Wrap wrap, int j, f
     const HeightIndex at = height_index(wrap, j, extent.height);
     if (at.plain()) return heights(at.index);
     continue_heights(heights(at.index), heights(at.edge), heights(at.other), at.reflected, static_cast<float>(at.drift),
-                     extent.width, beyond);
+                     1.0f, extent.width, beyond);
     return beyond;
 }
 
@@ -64,9 +64,9 @@ int aligned_count(int count) {
     return (count + kStep - 1) / kStep * kStep;
 }
 
-HeightRows::HeightRows(Extent extent, RowOf heights, Wrap wrap_x, Wrap wrap_y, int apron, int kept)
+HeightRows::HeightRows(Extent extent, RowOf heights, Wrap wrap_x, Wrap wrap_y, int apron, int kept, float scale)
     : extent_(extent), heights_(std::move(heights)), wrap_x_(wrap_x), wrap_y_(wrap_y), apron_(apron), kept_(kept),
-      lead_(aligned_count(apron)), rows_(Extent{lead_ + extent.width + lead_, kept}, 0.0f) {}
+      scale_(scale), lead_(aligned_count(apron)), rows_(Extent{lead_ + extent.width + lead_, kept}, 0.0f) {}
 
 HeightRows::HeightRows(PlaneView<const float> heights, Wrap wrap_x, Wrap wrap_y, int apron, int kept)
     : HeightRows(
@@ -79,10 +79,10 @@ const float* HeightRows::fetch(int j) {
     float* out = rows_.row(wrap_around(j, kept_)) + lead_;
     const HeightIndex at = height_index(wrap_y_, j, extent_.height);
     if (at.plain()) {
-        limit_heights(heights_(at.index), width, out);
+        limit_heights(heights_(at.index), scale_, width, out);
     } else {
         continue_heights(heights_(at.index), heights_(at.edge), heights_(at.other), at.reflected,
-                         static_cast<float>(at.drift), width, out);
+                         static_cast<float>(at.drift), scale_, width, out);
     }
     for (int k = 1; k <= apron_; ++k) {
         const float left = height_at(out, height_index(wrap_x_, -k, width));

@@ -44,11 +44,11 @@ const float* height_row(const RowOf& heights, Extent extent, Wrap wrap, int j, f
 // beyond the top and the bottom exist too. The last `kept` rows are kept in memory, for a filter that moves down the
 // field row by row.
 //
-// Heights are limited to +-kMaxHeight (kernels/bake.h). Rows are aligned for whole vectors. A row may be read and
-// written from -lead() to one whole vector past width + apron.
+// Heights are multiplied by `scale`, then limited to +-kMaxHeight (kernels/bake.h). Rows are aligned for whole vectors.
+// A row may be read and written from -lead() to one whole vector past width + apron.
 class HeightRows {
 public:
-    HeightRows(Extent extent, RowOf heights, Wrap wrap_x, Wrap wrap_y, int apron, int kept);
+    HeightRows(Extent extent, RowOf heights, Wrap wrap_x, Wrap wrap_y, int apron, int kept, float scale = 1.0f);
     HeightRows(PlaneView<const float> heights, Wrap wrap_x, Wrap wrap_y, int apron, int kept);
 
     // Computes row j, which replaces the row `kept` rows above it. Rows must be fetched from top to bottom.
@@ -65,6 +65,7 @@ private:
     Wrap wrap_y_;
     int apron_;
     int kept_;
+    float scale_;
     int lead_;
     Plane<float> rows_;
 };
