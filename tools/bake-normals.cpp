@@ -96,7 +96,7 @@ Result<void> BakeNormals::process(cli::Job& job) {
     options.slopes = running.json;
     const auto baked = bake_file(job.task.input, job.task.output, job.task.container, options, job.until(1.0));
     if (!baked) return cli::HeightReader::with_remedy(baked.error());
-    reader_.note(baked->heights);
+    reader_.note(job, baked->heights);
     cli::wrote_levels(job, job.task.output, baked->levels);
     cli::report_texture(job, baked->extent, baked->levels, options.pack, baked->bytes);
     const SlopeRange& slopes = baked->slopes;

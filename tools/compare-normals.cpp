@@ -29,6 +29,7 @@ private:
     cli::PairOptions pair_;
     cli::CompareDocuments documents_;
     cli::RunOptions running_;
+    cli::ComparisonRun run_{command.inputs(), pair_.warnings()};
 };
 
 CompareNormals::CompareNormals(const cli::ProgramRow& row) : Program(row) {
@@ -62,7 +63,7 @@ cli::ExitCode CompareNormals::work(cli::Console& console) {
     if (code) return *code;
     console.error(code.error().message());
     const cli::ExitCode failed = cli::exit_code(code.error().code);
-    return running_.json ? std::max(failed, cli::print_failure(console, command.inputs(), code.error())) : failed;
+    return running_.json ? std::max(failed, cli::print_failure(console, run_, code.error())) : failed;
 }
 
 Result<cli::ExitCode> CompareNormals::compare_files(cli::Console& console) {
@@ -82,8 +83,7 @@ Result<cli::ExitCode> CompareNormals::compare_files(cli::Console& console) {
         auto comparison = compare(a->levels[k], b->levels[k], shown);
         if (!comparison) return comparison.error();
         cli::ComparedLevel level{static_cast<int>(k), a->levels[k].extent(), comparison->error};
-        if (printed == cli::ExitCode::done)
-            printed = cli::print_level(console, names, level, running_.json, k == first);
+        if (printed == cli::ExitCode::done) printed = cli::print_level(console, run_, level, running_.json, k == first);
         const cli::ExitCode judged = pair_.judge(console, level.number, level.error);
         level.within = judged == cli::ExitCode::done;
         code = std::max({code, judged, printed});

@@ -69,7 +69,7 @@ protected:
     // What a run printed and wrote, with the name of its folder removed.
     [[nodiscard]] std::string result_of(const Line& line, const std::string& folder, int code, const std::string& out,
                                         const std::string& err) const {
-        std::string text = fmt::format("{}\n{}\n{}", code, out, err);
+        std::string text = fmt::format("{}\n{}\n{}", code, without_seconds(out), err);
         for (const std::string& name : line.outputs) text += "\n" + scratch_.read(folder + "/" + name);
         return replaced(text, scratch_.path(folder), "OUT");
     }

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 #include <thread>
@@ -149,6 +150,11 @@ std::vector<std::string> lines_of(const std::string& text) {
     std::istringstream stream(text);
     for (std::string line; std::getline(stream, line);) lines.push_back(line);
     return lines;
+}
+
+std::string without_seconds(const std::string& json) {
+    static const std::regex seconds(",\"seconds\":[-+.e0-9]+");
+    return std::regex_replace(json, seconds, "");
 }
 
 }  // namespace tex::cli

@@ -62,4 +62,7 @@ Ran shell(const Scratch& scratch, const std::string& script);
 
 [[nodiscard]] std::vector<std::string> lines_of(const std::string& text);
 
+// JSON lines without their times, which differ from run to run.
+[[nodiscard]] std::string without_seconds(const std::string& json);
+
 }  // namespace tex::cli

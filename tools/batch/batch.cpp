@@ -83,6 +83,7 @@ private:
             return !stopped();
         });
         Outcome outcome;
+        const Clock::time_point start = Clock::now();
         try {
             auto result = would_clobber(task) ? Error{ErrorCode::io, task.output, "exists, and --no-clobber is given"}
                                               : process_(job);
@@ -98,6 +99,8 @@ private:
         outcome.text = job.text();
         outcome.code = job.code();
         outcome.warnings = job.warnings();
+        outcome.remarks = job.remarks();
+        outcome.seconds = seconds_since(start);
         outcome.outputs = job.outputs();
         outcome.prerequisites = task.prerequisites();
         outcome.has_levels = has_level(task.output);

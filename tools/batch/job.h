@@ -48,12 +48,20 @@ public:
 
     [[nodiscard]] int threads() const { return threads_; }
 
-    void warn(std::string sentence) { warnings_.push_back(std::move(sentence)); }  // printed after "FILE: "
+    // Printed after "FILE: ", the input. `file` is the file that the warning is about, if it is another one.
+    void warn(std::string sentence, const std::string& file = {}) {
+        warnings_.push_back({file.empty() ? task.input : file, std::move(sentence)});
+    }
+    // A warning that the command prints once for many files: only --json prints it for each.
+    void remark(std::string sentence, const std::string& file = {}) {
+        remarks_.push_back({file.empty() ? task.input : file, std::move(sentence)});
+    }
     void say(std::string_view text) { text_ += text; }            // on standard output, unless --json is given
     void raise(ExitCode code) { code_ = std::max(code_, code); }  // the run exits with this code or a higher one
     void wrote(std::string path) { outputs_.push_back(std::move(path)); }
 
-    [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
+    [[nodiscard]] const std::vector<FileWarning>& warnings() const { return warnings_; }
+    [[nodiscard]] const std::vector<FileWarning>& remarks() const { return remarks_; }
     [[nodiscard]] const std::vector<std::string>& outputs() const { return outputs_; }
     [[nodiscard]] const std::string& text() const { return text_; }
     [[nodiscard]] ExitCode code() const { return code_; }
@@ -62,7 +70,7 @@ private:
     int threads_;
     std::function<bool(double)> advance_;
     double reached_ = 0.0;
-    std::vector<std::string> warnings_;
+    std::vector<FileWarning> warnings_, remarks_;
     std::vector<std::string> outputs_;
     std::string text_;
     ExitCode code_ = ExitCode::done;

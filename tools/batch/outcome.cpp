@@ -16,7 +16,10 @@ void Reporter::finish(std::size_t place, Outcome outcome) {
 }
 
 void Reporter::report(const Outcome& outcome) {
-    for (const std::string& warning : outcome.warnings) console_.warning(fmt::format("{}: {}", outcome.input, warning));
+    for (const FileWarning& warning : outcome.warnings) {
+        const std::string prefix = warning.file == outcome.input ? "" : warning.file + ": ";
+        console_.warning(fmt::format("{}: {}{}", outcome.input, prefix, warning.message));
+    }
     if (outcome.error) {
         if (outcome.error->code == ErrorCode::cancelled) return;
         const Error error = outcome.error->of(outcome.input);
@@ -51,6 +54,10 @@ std::string Reporter::json_line(const Outcome& outcome) {
         }
         line.update(outcome.report);
     }
+    std::vector<FileWarning> warnings = outcome.warnings;
+    warnings.insert(warnings.end(), outcome.remarks.begin(), outcome.remarks.end());
+    line["warnings"] = warnings_json(warnings);
+    line["seconds"] = outcome.seconds;
     return to_line(line);
 }
 

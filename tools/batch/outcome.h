@@ -29,9 +29,11 @@ struct Outcome {  // NOLINT(bugprone-exception-escape): the tool follows the noe
     bool is_silent = false;   // no message is printed for the error
     bool has_levels = false;  // each level has its own output
     Json report;
-    std::string text;                // for standard output, unless --json is given
-    ExitCode code = ExitCode::done;  // what the command found, apart from `error`
-    std::vector<std::string> warnings;
+    std::string text;                   // for standard output, unless --json is given
+    ExitCode code = ExitCode::done;     // what the command found, apart from `error`
+    std::vector<FileWarning> warnings;  // printed, and in the JSON
+    std::vector<FileWarning> remarks;   // in the JSON alone
+    float seconds = 0.0f;               // of wall-clock time
     std::vector<std::string> outputs;
     std::vector<std::string> prerequisites;
 };

@@ -115,16 +115,27 @@ Error HeightReader::with_remedy(const Error& error) {
     return {error.code, error.file, error.reason + "; --fill-invalid fills in the nearest valid ones"};
 }
 
-void HeightReader::note(const HeightReport& report) {
-    if (report.luma_texels > 0) ++luma_files_;
+namespace {
+
+std::string luma_text(std::int64_t texels) {
+    return fmt::format("R, G and B differ in {} texels: their luma is the height; --channel chooses another", texels);
+}
+
+}  // namespace
+
+void HeightReader::note(Job& job, const HeightReport& report) {
+    if (report.luma_texels == 0) return;
+    job.remark(luma_text(report.luma_texels));
+    const std::lock_guard lock(mutex_);
+    // Files that are read in parallel arrive in any order. The alphabetically first one is named.
+    if (luma_files_++ == 0 || job.task.input < first_luma_file_) first_luma_file_ = job.task.input;
     luma_texels_ += report.luma_texels;
 }
 
 void HeightReader::warn_of_luma(Console& console) const {
     if (luma_files_ == 0) return;
-    console.warning(
-        fmt::format("R, G and B differ in {} texels of {} file{}: their luma is the height; --channel chooses another",
-                    luma_texels_.load(), luma_files_.load(), luma_files_ == 1 ? "" : "s"));
+    const std::string more = luma_files_ > 1 ? fmt::format(" and {} more", luma_files_ - 1) : std::string();
+    console.warning(fmt::format("{}{}: {}", first_luma_file_, more, luma_text(luma_texels_)));
 }
 
 }  // namespace tex::cli

@@ -3,8 +3,8 @@
 
 #pragma once
 
-#include <atomic>
 #include <cstdint>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -71,14 +71,15 @@ public:
     [[nodiscard]] static Error with_remedy(const Error& error);
 
     // Counts the results of reading a job's heights. Any thread may call this.
-    void note(const HeightReport& report);
+    void note(Job& job, const HeightReport& report);
 
     // Prints one warning for all files whose heights were guessed from colours.
     void warn_of_luma(Console& console) const;
 
 private:
-    std::atomic<std::int64_t> luma_files_{0};
-    std::atomic<std::int64_t> luma_texels_{0};
+    std::mutex mutex_;
+    std::string first_luma_file_;
+    std::int64_t luma_files_ = 0, luma_texels_ = 0;
 };
 
 }  // namespace tex::cli

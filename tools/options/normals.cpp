@@ -19,6 +19,10 @@ std::string swizzle_name(const Swizzle& swizzle) {
     return name.empty() ? to_string(swizzle) : std::string(name);
 }
 
+std::string guess_text(const std::string& swizzle) {
+    return fmt::format("layout not stated; guessed {} from the texels; --swizzle sets it", swizzle);
+}
+
 Encoding exact_encoding(const SourceInfo& input) {
     const FormatInfo info = format_info(input.format);
     for (const auto& row : kEncodingNames) {
@@ -74,8 +78,7 @@ void NormalsReader::add(Command& command, bool with_keep_length) {
 void NormalsReader::warn_of_guesses(Console& console) const {
     for (const auto& [name, guesses] : guesses_) {
         const std::string more = guesses.count > 1 ? fmt::format(" and {} more", guesses.count - 1) : std::string();
-        console.warning(fmt::format("{}{}: layout not stated; guessed {} from the texels; --swizzle sets it",
-                                    guesses.first, more, name));
+        console.warning(fmt::format("{}{}: {}", guesses.first, more, guess_text(name)));
     }
 }
 
@@ -93,12 +96,13 @@ SourceOptions NormalsReader::options(const Job& job, const Reading& reading) con
 }
 
 void NormalsReader::note(Job& job, const std::string& path, const SourceInfo& info) {
-    const std::string prefix = path == job.task.input ? std::string() : path + ": ";
-    for (const std::string& remark : info.remarks) job.warn(prefix + remark);
-    if (info.srgb) job.warn(prefix + "declares sRGB colours, which normals are not; its values are used as they are");
+    for (const std::string& remark : info.remarks) job.warn(remark, path);
+    if (info.srgb) job.warn("declares sRGB colours, which normals are not; its values are used as they are", path);
     if (!info.guessed) return;
+    const std::string name = swizzle_name(info.swizzle);
+    job.remark(guess_text(name), path);
     const std::lock_guard lock(mutex_);
-    Guesses& guesses = guesses_[swizzle_name(info.swizzle)];
+    Guesses& guesses = guesses_[name];
     // Files that are read in parallel arrive in any order. The alphabetically first one is named.
     if (guesses.count++ == 0 || path < guesses.first) guesses.first = path;
 }

@@ -40,8 +40,8 @@ Result<Texture> PairOptions::read(const std::string& path, int which, const Read
     const auto swizzle = guess_swizzle(*texture, {execution.threads, silent});
     if (!swizzle) return swizzle.error().of(path);
     if (*swizzle != texture->swizzle && warned_of_.insert(path).second) {
-        console.warning(
-            fmt::format("{}: layout not stated; guessed {} from the texels", path, name_of(kSwizzleNames, *swizzle)));
+        warn(console, path,
+             fmt::format("layout not stated; guessed {} from the texels", name_of(kSwizzleNames, *swizzle)));
     }
     texture->swizzle = *swizzle;
     texture->y_axis = y_[which].value_or(texture->y_axis);
@@ -58,14 +58,22 @@ Result<MipChain> PairOptions::read_levels(const std::string& path, int which, co
 }
 
 std::pair<std::size_t, std::size_t> PairOptions::levels(const MipChain& a, const MipChain& b,
-                                                        const std::vector<std::string>& names, Console& console) const {
+                                                        const std::vector<std::string>& names, Console& console) {
     const auto first = static_cast<std::size_t>(level_);
     if (!all_levels_) return {first, first + 1};
     if (a.levels.size() != b.levels.size()) {
-        console.warning(fmt::format("levels: {} of {}, {} of {}; only those that both have are compared",
-                                    a.levels.size(), names[0], b.levels.size(), names[1]));
+        const std::size_t counts[] = {a.levels.size(), b.levels.size()};
+        const std::size_t more = counts[0] > counts[1] ? 0 : 1;
+        warn(console, names[more],
+             fmt::format("has {} levels, {} has {}; only those that both have are compared", counts[more],
+                         names[1 - more], counts[1 - more]));
     }
     return {0, std::min(a.levels.size(), b.levels.size())};
+}
+
+void PairOptions::warn(Console& console, const std::string& file, const std::string& sentence) {
+    console.warning(fmt::format("{}: {}", file, sentence));
+    warnings_.push_back({file, sentence});
 }
 
 Result<void> PairOptions::check_level(std::size_t level, const MipChain& a, const MipChain& b,

@@ -16,6 +16,7 @@
 #include <tex/texture.h>
 
 #include "cli/command.h"
+#include "reports/json.h"
 
 namespace tex::cli {
 
@@ -34,8 +35,7 @@ public:
     // The first level that is compared, and the level after the last one. Warns if the maps differ in their number of
     // levels.
     [[nodiscard]] std::pair<std::size_t, std::size_t> levels(const MipChain& a, const MipChain& b,
-                                                             const std::vector<std::string>& names,
-                                                             Console& console) const;
+                                                             const std::vector<std::string>& names, Console& console);
     // Returns an error if a map lacks `level` or if the two differ in extent there. `names` are their files.
     [[nodiscard]] static Result<void> check_level(std::size_t level, const MipChain& a, const MipChain& b,
                                                   const std::vector<std::string>& names);
@@ -43,12 +43,18 @@ public:
     // Returns ExitCode::findings, and prints an error for each figure above its limit; or returns ExitCode::done.
     [[nodiscard]] ExitCode judge(Console& console, int level, const AngularError& error) const;
 
+    // The warnings so far.
+    [[nodiscard]] const std::vector<FileWarning>& warnings() const { return warnings_; }
+
 private:
+    void warn(Console& console, const std::string& file, const std::string& sentence);
+
     std::optional<YAxis> y_[2];
     int level_ = 0;
     bool all_levels_ = false;
     std::optional<double> max_mean_, max_p999_, max_;  // degrees
     std::set<std::string> warned_of_;                  // files
+    std::vector<FileWarning> warnings_;
 };
 
 }  // namespace tex::cli

@@ -26,21 +26,27 @@ Json json_of(const std::vector<std::string>& inputs) {
     return line;
 }
 
+std::string line_of(const ComparisonRun& run, Json line) {
+    line["warnings"] = warnings_json(run.warnings);
+    line["seconds"] = seconds_since(run.start);
+    return to_line(line);
+}
+
 }  // namespace
 
-ExitCode print_level(Console& console, const std::vector<std::string>& inputs, const ComparedLevel& level, bool as_json,
+ExitCode print_level(Console& console, const ComparisonRun& run, const ComparedLevel& level, bool as_json,
                      bool is_first) {
     const AngularError& e = level.error;
     if (as_json) {
         const auto degrees = [](double angle) { return static_cast<float>(angle); };
-        Json line = json_of(inputs);
+        Json line = json_of(run.inputs);
         line["level"] = level.number;
         line["extent"] = {level.extent.width, level.extent.height};
         line["texels"] = e.texels;
         line["degrees"] = {{"mean", degrees(e.mean)}, {"rms", degrees(e.rms)},    {"p50", degrees(e.p50)},
                            {"p99", degrees(e.p99)},   {"p99.9", degrees(e.p999)}, {"max", degrees(e.max)}};
         line["max_at"] = {e.max_column, e.max_row};
-        return console.print(to_line(line));
+        return console.print(line_of(run, std::move(line)));
     }
     std::string text;
     if (is_first) {
@@ -53,10 +59,10 @@ ExitCode print_level(Console& console, const std::vector<std::string>& inputs, c
     return console.print(text);
 }
 
-ExitCode print_failure(Console& console, const std::vector<std::string>& inputs, const Error& error) {
-    Json line = json_of(inputs);
+ExitCode print_failure(Console& console, const ComparisonRun& run, const Error& error) {
+    Json line = json_of(run.inputs);
     line["error"] = error_json(error, "");
-    return console.print(to_line(line));
+    return console.print(line_of(run, std::move(line)));
 }
 
 void CompareDocuments::add(Command& command) {

@@ -11,15 +11,22 @@
 
 #include "cli/command.h"
 #include "reports/html_report.h"
+#include "reports/json.h"
 
 namespace tex::cli {
 
-// Prints the figures of a level: as a line of a table (the first line has a heading above it) or as JSON. `inputs` are
-// the two files.
-[[nodiscard]] ExitCode print_level(Console& console, const std::vector<std::string>& inputs, const ComparedLevel& level,
-                                   bool as_json, bool is_first);
+// What every line of JSON contains.
+struct ComparisonRun {
+    const std::vector<std::string>& inputs;  // the two files
+    const std::vector<FileWarning>& warnings;
+    Clock::time_point start = Clock::now();
+};
+
+// Prints the figures of a level: as a line of a table (the first line has a heading above it) or as JSON.
+[[nodiscard]] ExitCode print_level(Console& console, const ComparisonRun& run, const ComparedLevel& level, bool as_json,
+                                   bool is_first);
 // Prints a failure as JSON.
-[[nodiscard]] ExitCode print_failure(Console& console, const std::vector<std::string>& inputs, const Error& error);
+[[nodiscard]] ExitCode print_failure(Console& console, const ComparisonRun& run, const Error& error);
 
 // --heatmap, --heatmap-scale, --report.
 class CompareDocuments {

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -15,6 +16,27 @@ namespace tex::cli {
 
 using Json =
     nlohmann::basic_json<nlohmann::ordered_map, std::vector, std::string, bool, std::int64_t, std::uint64_t, float>;
+
+// A warning about a file.
+struct FileWarning {
+    std::string file;
+    std::string message;
+};
+
+// Warnings as --json prints them, with --quiet too.
+[[nodiscard]] inline Json warnings_json(const std::vector<FileWarning>& warnings) {
+    Json json = Json::array();
+    for (const FileWarning& warning : warnings) json.push_back({{"file", warning.file}, {"message", warning.message}});
+    return json;
+}
+
+using Clock = std::chrono::steady_clock;
+
+// The wall-clock time since `start`. It is the only figure that differs from run to run, so it ends its line.
+[[nodiscard]] inline float seconds_since(Clock::time_point start) {
+    const auto passed = std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - start);
+    return static_cast<float>(static_cast<double>(passed.count()) * 1e-6);
+}
 
 // The failure as --json prints it. The file is named if it is not `input`, but another input or an output.
 [[nodiscard]] inline Json error_json(const Error& error, const std::string& input) {
