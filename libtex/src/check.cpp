@@ -82,6 +82,31 @@ bool same_everywhere(const TexelCounts& counts, int channels) {
     return true;
 }
 
+// True if a channel varies that holds no component and is no copy of one.
+bool has_more_data(const Stored& stored, const TexelCounts& counts) {
+    const auto& planes = stored.image->planes;
+    const auto holds_component = [&](std::size_t c) {
+        return stored.swizzle[c] == Component::x || stored.swizzle[c] == Component::y ||
+               stored.swizzle[c] == Component::z;
+    };
+    const auto equal = [&](std::size_t a, std::size_t b) {
+        for (int j = 0; j < stored.extent().height; ++j) {
+            const float* row = planes[a].row(j);
+            if (!std::equal(row, row + stored.extent().width, planes[b].row(j))) return false;
+        }
+        return true;
+    };
+    const std::size_t channels = std::min(planes.size(), stored.swizzle.size());
+    for (std::size_t c = 0; c < channels; ++c) {
+        if (holds_component(c) || counts.high[c] == counts.low[c]) continue;
+        bool copied = false;
+        for (std::size_t other = 0; other < channels; ++other)
+            copied = copied || (holds_component(other) && equal(c, other));
+        if (!copied) return true;
+    }
+    return false;
+}
+
 // Floats are read in the same way as by unpack().
 bool is_signed(const Texture& texture, const Image& image, const Swizzle& swizzle) {
     if (const std::optional<bool> known = is_unsigned(image.sample, range_of(texture.normal_encoding, {})))
@@ -199,6 +224,7 @@ Result<CheckReport> check(const std::string& file, const Texture& texture, const
         report.swizzle = subject.stored.swizzle;
         report.extent = texture.extent();
         report.levels = static_cast<int>(texture.levels.size());
+        report.more_data = subject.has_vectors && has_more_data(subject.stored, subject.counts);
         report.y = subject.y;
         return report;
     });

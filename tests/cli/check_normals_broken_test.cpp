@@ -55,38 +55,4 @@ TEST_F(CheckNormalsBroken, EveryRuleHasAFileThatTriggersItAlone) {
     EXPECT_EQ(seen.size(), rules().size());
 }
 
-std::string with(std::string text, const std::string& word, const std::string& by) {
-    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + by.size()))
-        text.replace(at, word.size(), by);
-    return text;
-}
-
-// Runs the command that a finding suggests, as printed (with its placeholders for other files and numbers filled in).
-// Its output must no longer have the finding.
-TEST_F(CheckNormalsBroken, EveryFixRepairsItsFinding) {
-    ASSERT_EQ(run(scratch_, "bake-normals", {"waves.png", "-o", "source.exr", "--bumpiness", "8", "--no-sync"}).code,
-              0);
-    std::size_t repaired = 0;
-    for (const std::string& name : names_) {
-        const std::string id = name.substr(0, 4);
-        if (find_rule(id)->fix.empty()) continue;
-        const auto report = nlohmann::json::parse(check(id, name).out);
-        std::string fix = report["findings"][0].value("fix", "");
-        const auto output = fix.find("FIXED.");
-        ASSERT_NE(output, std::string::npos) << id << ": " << fix;
-        const std::string fixed = fix.substr(output);
-        fix = with(with(with(fix, "HEIGHT", "../waves.png"), "SOURCE", "../source.exr"), "FIRST,LAST", "0,3");
-        const Ran ran = shell(scratch_, "cd broken && " + fix + " --no-sync");
-        EXPECT_EQ(ran.code, 0) << fix << ran.err;
-        const auto after = nlohmann::json::parse(check(id, fixed).out);
-        for (const auto& finding : after["findings"]) {
-            EXPECT_NE(finding["id"], id) << fix << finding;
-            EXPECT_NE(finding["severity"], "error") << fix << finding;
-        }
-        ++repaired;
-    }
-    const auto has_fix = [](const Rule& rule) { return !rule.fix.empty(); };
-    EXPECT_EQ(repaired, static_cast<std::size_t>(std::count_if(rules().begin(), rules().end(), has_fix)));
-}
-
 }  // namespace tex::cli

@@ -44,7 +44,9 @@ TEST_F(CheckNormals, FindingsNameFileRuleFigureAndFix) {
     ASSERT_GE(lines.size(), 3u) << ran.out;
     EXPECT_TRUE(lines[0].starts_with("down.dds: error N401 wrong-y: ")) << lines[0];
     EXPECT_NE(lines[0].find("correlation -"), std::string::npos);
-    EXPECT_EQ(lines[1], "    fix: unpack-normals down.dds --y-in down --y up -o FIXED.png");
+    EXPECT_EQ(
+        lines[1],
+        "    fix: pack-normals down.dds --keep-length --y-in down --y up --format dxt5nm --effort best -o FIXED.dds");
     EXPECT_TRUE(lines.back().starts_with("2 files: 1 error, ")) << lines.back();
 }
 

@@ -8,26 +8,12 @@
 #include <fmt/format.h>
 
 #include "cli/text.h"
+#include "reports/fixes.h"
 
 namespace tex::cli {
 namespace {
 
 std::string_view name_of_y(YAxis y) { return name_of(kYAxisNames, y); }
-
-void replace_word(std::string& text, std::string_view word, std::string_view by) {
-    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + by.size())) {
-        text.replace(at, word.size(), by);
-    }
-}
-
-// A file name, quoted for a shell.
-std::string quoted(const std::string& name) {
-    constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+@%,:=";
-    if (!name.empty() && name.find_first_not_of(kPlain) == std::string::npos) return name;
-    std::string text = "'";
-    for (const char c : printable(name)) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return text + "'";
-}
 
 Json region_json(const Region& region) {
     Json json;
@@ -41,19 +27,6 @@ Json region_json(const Region& region) {
 
 }  // namespace
 
-std::string fix_of(const Finding& finding, const CheckReport& report, const Requirements& require) {
-    std::string fix(finding.rule->fix);
-    if (finding.rule->id == "N108") {
-        const std::string_view wanted = require.encoding ? name_of(kEncodingNames, *require.encoding) : "";
-        if (wanted.empty()) return {};
-        replace_word(fix, "WANTED", wanted);
-    }
-    replace_word(fix, "WANTED", name_of_y(require.y.value_or(YAxis::up)));
-    replace_word(fix, "MEASURED", name_of_y(report.y.y.value_or(YAxis::up)));
-    replace_word(fix, "FILE", quoted(report.file));
-    return fix;
-}
-
 std::string findings_text(const CheckReport& report, const Requirements& require) {
     std::string text;
     for (const Finding& finding : report.findings) {
@@ -62,8 +35,8 @@ std::string findings_text(const CheckReport& report, const Requirements& require
         sentence.remove_suffix(1);
         text += fmt::format("{}: {} {} {}: {}: {}\n", printable(report.file), name_of(kSeverityNames, finding.severity),
                             rule.id, rule.name, sentence, printable(finding.message));
-        const std::string fix = fix_of(finding, report, require);
-        if (!fix.empty()) text += fmt::format("    fix: {}\n", fix);
+        const Fix fix = fix_of(finding, report, require);
+        if (!fix.text.empty()) text += fmt::format("    {}: {}\n", fix.is_command ? "fix" : "advice", fix.text);
     }
     return text;
 }
@@ -108,8 +81,8 @@ Json findings_json(const CheckReport& report, const Requirements& require) {
         item["regions"] = Json::array();
         for (const Region& region : finding.regions) item["regions"].push_back(region_json(region));
         if (finding.has_texel) item["texel"] = {finding.column, finding.row};
-        const std::string fix = fix_of(finding, report, require);
-        if (!fix.empty()) item["fix"] = fix;
+        const Fix fix = fix_of(finding, report, require);
+        if (!fix.text.empty()) item[fix.is_command ? "fix" : "advice"] = fix.text;
         json["findings"].push_back(std::move(item));
     }
     json["explained"] = report.explained;

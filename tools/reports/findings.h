@@ -11,9 +11,6 @@
 
 namespace tex::cli {
 
-// The command that fixes the finding in this file, or empty.
-[[nodiscard]] std::string fix_of(const Finding& finding, const CheckReport& report, const Requirements& require);
-
 // One line for each finding, with its fix below: "maps/a.dds: error N401 wrong-y: Green points ...: green points down
 // instead of up".
 [[nodiscard]] std::string findings_text(const CheckReport& report, const Requirements& require);

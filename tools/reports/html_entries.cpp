@@ -10,7 +10,7 @@
 #include <tex/sheet.h>
 #include <tex/swizzle.h>
 
-#include "reports/findings.h"
+#include "reports/fixes.h"
 #include "reports/html.h"
 #include "reports/html_report.h"
 
@@ -67,8 +67,9 @@ std::string finding_html(const Finding& finding, const CheckReport& report, cons
     if (const std::string places = places_text(finding); !places.empty())
         figures += (figures.empty() ? "" : "; ") + places;
     if (!figures.empty()) html += fmt::format("<p class=\"figures\">{}</p>\n", html_text(figures));
-    const std::string fix = fix_of(finding, report, require);
-    if (!fix.empty()) html += fmt::format("<p class=\"fix\">Fix: <code>{}</code></p>\n", html_text(fix));
+    const Fix fix = fix_of(finding, report, require);
+    const char* form = fix.is_command ? "<p class=\"fix\">Fix: <code>{}</code></p>\n" : "<p class=\"fix\">{}</p>\n";
+    if (!fix.text.empty()) html += fmt::format(fmt::runtime(form), html_text(fix.text));
     return html + "</li>\n";
 }
 
@@ -183,7 +184,7 @@ Result<HtmlEntry> compare_entry(const std::vector<ComparedLevel>& levels, HtmlMa
     const ComparedLevel& first = levels.front();
     entry.row = fmt::format(
         "<td>{}</td><td>{}</td>",
-        within ? "<span class=\"chip clean\">none passed</span>" : chip(Severity::error, "over a limit"), first.number);
+        within ? "<span class=\"chip clean\">within the limits</span>" : chip(Severity::error, "over a limit"), first.number);
     for (const double angle : {first.error.mean, first.error.p999, first.error.max})
         entry.row += fmt::format("<td>{:.4f}</td>", angle);
 

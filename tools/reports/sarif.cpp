@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <tex/tex.h>
 
-#include "reports/findings.h"
+#include "reports/fixes.h"
 #include "reports/json.h"
 
 namespace tex::cli {
@@ -64,9 +64,9 @@ Json result_json(const CheckReport& report, const Finding& finding, const Requir
     json["ruleId"] = finding.rule->id;
     json["ruleIndex"] = finding.rule - rules().data();
     json["level"] = level_of(finding.severity);
-    const std::string fix = fix_of(finding, report, require);
-    json["message"] =
-        text_json(fmt::format("{} {}.{}", finding.rule->sentence, finding.message, fix.empty() ? "" : " Fix: " + fix));
+    const Fix fix = fix_of(finding, report, require);
+    json["message"] = text_json(fmt::format("{} {}.{}{}{}", finding.rule->sentence, finding.message,
+                                            fix.text.empty() ? "" : " ", fix.is_command ? "Fix: " : "", fix.text));
     json["locations"] = Json::array({location_json(report.file)});
     const int level = finding.regions.empty() ? 0 : finding.regions.front().level;
     json["partialFingerprints"] = {{"rule/v1", fmt::format("{}:{}:{}", finding.rule->id, level, report.file)}};

@@ -56,7 +56,9 @@ struct Rule {
     bool on;                       // off: checked only if the options enable it or require what it checks
     std::string_view sentence;     // what is wrong, as one sentence
     std::string_view explanation;  // how it is detected, why it matters, what causes it
-    std::string_view fix;          // a command in which FILE stands for the file, a sentence, or empty
+    // A command or a sentence, or empty. In a command, FILE stands for the file, FIXED for a new one, SAME for the
+    // encoding that keeps every bit, WANTED and MEASURED for directions of green, LEVELS for a number of levels.
+    std::string_view fix;
     // Ids of rules that this fault triggers too, separated by blanks: their findings are left out.
     std::string_view explains;
 };
@@ -147,6 +149,7 @@ struct CheckReport {
     Swizzle swizzle{};  // guess_swizzle(): what the file states or the texels suggest
     Extent extent;
     int levels = 0;
+    bool more_data = false;  // a channel varies that holds no component of the normals: roughness, a mask
     YEvidence y;
     std::optional<PairEvidence> pair;
 };

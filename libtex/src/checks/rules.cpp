@@ -17,15 +17,15 @@ constexpr Rule kRules[] = {
     {"N102", "header-disagrees", file, warning, true, "The header contradicts the data.",
      "A size, count or flag in the header is not what the data are. This reader overlooks it; other readers refuse the "
      "file or read other texels.",
-     "pack-normals FILE -o FIXED.dds", ""},
+     "pack-normals FILE --keep-length --format SAME -o FIXED", ""},
     {"N103", "mips-incomplete", file, warning, true, "The mip chain ends before 1x1.",
      "A texture with some levels but not all is incomplete in OpenGL and samples as black there unless the application "
      "limits the levels.",
-     "mip-normals FILE -o FIXED.dds", ""},
+     "mip-normals FILE --keep-length --format SAME -o FIXED", ""},
     {"N104", "trailing-bytes", file, warning, true, "Bytes follow the last level.",
      "They are not part of the texture: an appended file, a second surface that the header does not mention, or an "
      "exporter's wrong size.",
-     "pack-normals FILE -o FIXED.dds", ""},
+     "pack-normals FILE --keep-length --format SAME -o FIXED", ""},
     {"N105", "not-power-of-two", file, error, false, "A side is not a power of two.",
      "Old hardware and some engines cannot mip-map or repeat such textures. Off unless pow2 is required.", "", ""},
     {"N106", "not-multiple-of-4", file, warning, true, "A side of a block-compressed texture is not a multiple of 4.",
@@ -33,24 +33,25 @@ constexpr Rule kRules[] = {
     {"N107", "too-large", file, error, true, "A side is longer than allowed.",
      "16384 texels are the limit of Direct3D 12; max-extent requires less.", "", ""},
     {"N108", "wrong-format", file, error, true, "The format is not the required one.",
-     "format=NAME requires an encoding (format and swizzle) or a format.",
-     "pack-normals FILE --format WANTED -o FIXED.dds", ""},
+     "format=NAME requires an encoding (format and swizzle) or a format.", "pack-normals FILE --format SAME -o FIXED",
+     ""},
     {"N109", "wrong-levels", file, error, true, "The number of levels is not the required one.",
      "mips=full requires a chain down to 1x1, mips=none a single level, mips=N that many.",
-     "mip-normals FILE -o FIXED.dds", "N103"},
+     "mip-normals FILE --keep-length --mips LEVELS --format SAME -o FIXED", "N103"},
     {"N110", "wrong-extent", file, error, true, "The extent is not the required one.",
      "extent=WIDTHxHEIGHT requires it.", "", ""},
     {"N111", "srgb-format", file, error, true, "The file declares its colours as sRGB.",
      "A GPU that believes it decodes every normal with the sRGB curve: flat becomes a lean of 51 degrees.",
-     "pack-normals FILE -o FIXED.dds", ""},
+     "pack-normals FILE --keep-length --format SAME -o FIXED", ""},
     {"N112", "wrong-declared-y", file, error, true, "The file declares another direction of green than required.",
-     "KTX2 and EXR files of libtex say which way y points.", "unpack-normals FILE --y WANTED -o FIXED.exr", ""},
+     "KTX2 and EXR files of libtex say which way y points.",
+     "pack-normals FILE --keep-length --y-in WANTED --y WANTED --format SAME -o FIXED", ""},
 
     // -- the vectors ------------------------------------------------------------------------------------------
     {"N201", "not-unit-length", values, note, true, "Vectors are not of unit length.",
      "More than 5 % of the vectors are shorter or longer than 1 by more than two codes of 8 bits. Shaders that do not "
      "normalise light them wrongly. Filters and blends without renormalisation do this, painting too.",
-     "pack-normals FILE --format rgb8 -o FIXED.png", ""},
+     "pack-normals FILE --format SAME -o FIXED", ""},
     {"N202", "z-below-zero", values, warning, true, "Vectors point into the surface.",
      "z is below zero by more than two codes. Encodings that rebuild z cannot hold that, and lighting from the front "
      "turns black.",
@@ -64,7 +65,7 @@ constexpr Rule kRules[] = {
     {"N205", "null-vector", values, error, true, "Vectors point nowhere.",
      "They are shorter than 0.1: middle grey, where a mask or a border was painted into the map. Normalising them "
      "gives NaN in a shader.",
-     "pack-normals FILE --format rgb8 -o FIXED.png", "N201"},
+     "pack-normals FILE --format SAME -o FIXED", "N201"},
     {"N206", "constant", values, note, true, "All texels are the same.",
      "A placeholder or a failed bake: a texture of 1x1 would do.", "", "N201 N207 N208 N209 N305 N403"},
     {"N207", "leaning", values, warning, true, "The map leans as a whole.",
@@ -74,25 +75,25 @@ constexpr Rule kRules[] = {
     {"N208", "biased-flat", values, note, true, "Flat texels are biased.",
      "8 bits have no exact zero: code 127 means -0.0039, code 128 +0.0039. A quarter of the map or more is flat, and "
      "all of it leans the same way, by 0.32 degrees; blended as detail it tilts the base.",
-     "unpack-normals FILE --snap-flat -o FIXED.exr", ""},
+     "unpack-normals FILE --keep-length --snap-flat --level all --format SAME -o FIXED", ""},
     {"N209", "blue-not-z", values, warning, true, "Blue does not hold z.",
      "Blue is constant while x and y vary: the file has two components, and its third channel is a filler. Readers "
      "that do not rebuild z get bent normals.",
-     "pack-normals FILE --format bc5 -o FIXED.dds", "N201 N202 N205"},
+     "pack-normals FILE --swizzle rg --format SAME -o FIXED", "N201 N202 N205"},
     {"N210", "grey-picture", values, error, true, "The picture is grey.",
      "R, G and B are equal everywhere: this is a height or bump map, not a normal map.",
-     "bake-normals FILE -o FIXED.dds",
+     "bake-normals FILE --bumpiness TEXELS --format SAME -o FIXED",
      "N201 N202 N203 N205 N206 N207 N208 N209 N213 N214 N301 N302 N303 N304 N305 N306 N308 N401 N402 N403 N404 N501 "
      "N502 "
      "N503 N504"},
     {"N211", "dxt5nm-red", values, note, true, "R is not 255 in the layout of DXT5nm.",
      "Unity's shaders multiply R and A to read x from either; where R is not 255, x comes out too small (or 0). "
      "Shaders that read A and G alone are right. Require format=dxt5nm where R matters.",
-     "pack-normals FILE --format dxt5nm -o FIXED.dds", ""},
+     "pack-normals FILE --format SAME -o FIXED", ""},
     {"N212", "alpha-not-one", values, note, true, "Alpha is not 255 beside x in R.",
      "Unity's UnpackNormalmapRGorAG multiplies x by A. A height or gloss there bends the normals, unless the shader "
      "reads R, G and B alone.",
-     "pack-normals FILE --format rgb8 -o FIXED.png", ""},
+     "pack-normals FILE --keep-length --format SAME -o FIXED", ""},
     {"N213", "object-space", values, error, true, "The normals are not in tangent space.",
      "z points away from the surface in many texels and the vectors face all directions: an object-space or "
      "world-space map.",
@@ -120,11 +121,11 @@ constexpr Rule kRules[] = {
      "The map was baked from heights of few values, 8 bits say: slopes take few values too, which shows as terraces in "
      "reflections. Bake "
      "from 16 bits, or blur the heights.",
-     "bake-normals HEIGHT --blur 1 -o FIXED.dds", ""},
+     "Bake it again from heights of 16 bits or floats, or with --blur 1.", ""},
     {"N306", "bc-blocks", damage, warning, true, "The map shows the 4x4 blocks of texture compression.",
      "Either an uncompressed file holds texels that were BC-compressed before, or the steps between the blocks of a "
      "compressed one are twice those inside. DXT1 and DXT5 with normals in R, G and B do this.",
-     "pack-normals SOURCE --format bc5 -o FIXED.dds", "N201 N202 N304"},
+     "Compress it again from its uncompressed source, as BC5 or DXT5nm.", "N201 N202 N304"},
     {"N307", "seam", damage, error, false, "The map does not meet itself at its borders.",
      "The step across the border is larger than nearly all steps inside. Off unless tiles is required.", "", ""},
     {"N308", "channels-exchanged", damage, error, true, "Two channels are exchanged.",
@@ -136,39 +137,40 @@ constexpr Rule kRules[] = {
     {"N401", "wrong-y", convention, error, true, "Green points the other way than required.",
      "The slopes of a height field have no curl; here they have none only if y is turned. y=up is OpenGL, Unity, "
      "Blender, glTF; y=down is DirectX, Unreal.",
-     "unpack-normals FILE --y-in MEASURED --y WANTED -o FIXED.png", "N112 N404"},
+     "pack-normals FILE --keep-length --y-in MEASURED --y WANTED --format SAME -o FIXED", "N112 N404"},
     {"N402", "mixed-y", convention, error, true, "Green points up in one part of the map and down in another.",
      "Maps of both conventions were pasted together.", "", "N401 N403 N404"},
     {"N403", "y-undecidable", convention, note, true, "Which way green points cannot be told.",
      "The map is flat, noise, or no height field. Reported where y is required.", "", ""},
     {"N404", "y-contradicts-file", convention, error, true, "Green points the other way than the file declares.",
-     "The file's own mark of y (KTX2, EXR) is not what the texels show.", "", ""},
+     "The file's own mark of y (KTX2, EXR) is not what the texels show.",
+     "pack-normals FILE --keep-length --y-in MEASURED --y MEASURED --format SAME -o FIXED", ""},
 
     // -- the smaller levels -------------------------------------------------------------------------------------
     {"N501", "level-not-unit", mips, warning, true, "Levels were not renormalised.",
      "Averages of vectors are shorter than 1: without renormalising, distant surfaces turn dull and dark.",
-     "mip-normals FILE -o FIXED.dds", ""},
+     "mip-normals FILE --keep-length --format SAME -o FIXED", ""},
     {"N502", "level-unrelated", mips, error, true, "A level does not follow from the base level.",
      "It correlates by less than 0.44 with the filtered base level: another image, a level sampled instead of "
      "filtered, or one that was shifted by more than a texel.",
-     "mip-normals FILE -o FIXED.dds", "N501 N504"},
+     "mip-normals FILE --keep-length --format SAME -o FIXED", "N501 N504"},
     {"N503", "level-shifted", mips, warning, true, "A level is shifted against the base level.",
      "Its texels lie off the centres of those that they stand for: the map crawls as levels change. Filters of the "
      "wrong phase do this, and sizes that are not powers of two.",
-     "mip-normals FILE -o FIXED.dds", "N502 N504"},
+     "mip-normals FILE --keep-length --format SAME -o FIXED", "N502 N504"},
     {"N504", "fade-unfinished", mips, warning, true, "The chain fades, but its end is not flat.",
      "Detail fades from level to level and then stops fading: distant surfaces keep a faint pattern.",
-     "mip-normals FILE --fade FIRST,LAST -o FIXED.dds", ""},
+     "mip-normals FILE --keep-length --fade FIRST,LAST --format SAME -o FIXED", ""},
 
     // -- the pair ---------------------------------------------------------------------------------------------
     {"N601", "height-mismatch", pair, error, true, "The normals do not follow from the height map.",
      "Their slopes correlate by less than 0.6 with its differences, or only after a shift: another version, another "
      "crop or another map.",
-     "bake-normals HEIGHT -o FIXED.dds", "N602"},
+     "Bake the normals again from this height map, with their old strength.", "N602"},
     {"N602", "height-inverted", pair, warning, true, "White is low in the height map.",
      "The normals follow from it with the opposite sign. Where they are right it is a depth map, and shaders want to "
      "be told; else bake them again.",
-     "bake-normals HEIGHT -o FIXED.dds", ""},
+     "If this is a height map, bake the normals again from it. If it is a depth map, keep both.", ""},
 };
 
 }  // namespace

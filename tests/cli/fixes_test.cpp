@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+// The fixes that check-normals prints: each is run, on every kind of file that has the finding. The finding is gone
+// afterwards, there is no new one, and nothing else is lost.
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <tex/tex.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+
+namespace tex::cli {
+namespace {
+
+std::string with(std::string text, const std::string& word, const std::string& by) {
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + by.size()))
+        text.replace(at, word.size(), by);
+    return text;
+}
+
+}  // namespace
+
+class Fixes : public testing::Test {
+protected:
+    Fixes() {
+        scratch_.add_sample("waves.png", "waves.png");
+        go("cp " TEX_SOURCE_DIR
+           "/samples/broken/N* .; bake-normals waves.png -o n.exr --format float --bumpiness 8 "
+           "--mips all --no-sync");
+    }
+    void go(const std::string& script) {
+        const Ran ran = shell(scratch_, "set -e; " + script);
+        EXPECT_EQ(ran.code, 0) << script << ran.err;
+    }
+    nlohmann::json check(const std::string& name, const std::string& options) {
+        return nlohmann::json::parse(shell(scratch_, "check-normals --json " + options + " " + name).out);
+    }
+    static std::set<std::string> ids(const nlohmann::json& report) {
+        std::set<std::string> all;
+        for (const auto& finding : report["findings"]) all.insert(finding["id"].get<std::string>());
+        return all;
+    }
+    static nlohmann::json finding(const nlohmann::json& report, const std::string& id) {
+        for (const auto& one : report["findings"]) {
+            if (one["id"] == id) return one;
+        }
+        ADD_FAILURE() << id << " is not in " << report;
+        return {};
+    }
+    Texture read(const std::string& name) {
+        auto texture = read_texture(scratch_.path(name));
+        EXPECT_TRUE(texture) << name;
+        return texture ? std::move(*texture) : Texture{};
+    }
+    MipChain vectors(const Texture& texture, YAxis y) {
+        UnpackOptions options;
+        options.keep_length = true;
+        options.y_axis = y;
+        if (const auto swizzle = guess_swizzle(texture)) options.swizzle = *swizzle;
+        auto chain = unpack(texture, options);
+        EXPECT_TRUE(chain);
+        return chain ? std::move(*chain) : MipChain{};
+    }
+
+    // Runs the fix of `id` as printed, with its placeholders filled in. Returns the name of the new file.
+    std::string repair(const std::string& name, const std::string& id, const std::string& options) {
+        const auto before = check(name, options);
+        std::string fix = finding(before, id).value("fix", "");
+        const auto output = fix.rfind("FIXED.");
+        if (output == std::string::npos) {
+            ADD_FAILURE() << id << " of " << name << " has no fix: " << before;
+            return {};
+        }
+        const std::string fixed = fix.substr(output);
+        fix = with(with(fix, "FIRST,LAST", "0,3"), "TEXELS", "8");
+        const Ran ran = shell(scratch_, fix + " --no-sync --quiet");
+        EXPECT_EQ(ran.code, 0) << fix << ran.err;
+        const auto after = check(fixed, options);
+        EXPECT_EQ(ids(after).count(id), 0u) << fix << after;
+        for (const std::string& left : ids(after)) EXPECT_EQ(ids(before).count(left), 1u) << fix << after;
+        expect_nothing_lost(before, after, fix);
+        return fixed;
+    }
+    static void expect_nothing_lost(const nlohmann::json& before, const nlohmann::json& after, const std::string& fix) {
+        const auto info = [](const nlohmann::json& report) {
+            return format_info(*find_by_name(kFormatNames, report["format"].get<std::string>()));
+        };
+        EXPECT_EQ(before["extent"], after["extent"]) << fix;
+        EXPECT_GE(after["levels"], before["levels"]) << fix;
+        EXPECT_GE(info(after).bits, info(before).bits) << fix;
+        const bool compresses = info(after).has_blocks() && !info(before).has_blocks();
+        EXPECT_TRUE(!compresses || fix.find("--format dxt5nm") != std::string::npos) << fix;  // as required
+    }
+
+    // The two files hold the same vectors, with y as given for each.
+    void expect_same_vectors(const std::string& a, YAxis y_a, const std::string& b, YAxis y_b) {
+        const MipChain p = vectors(read(a), y_a), q = vectors(read(b), y_b);
+        ASSERT_EQ(p.levels.size(), q.levels.size()) << a;
+        for (std::size_t k = 0; k < p.levels.size(); ++k) {
+            const Extent extent = p.levels[k].extent();
+            ASSERT_EQ(extent, q.levels[k].extent());
+            float most = 0.0f;
+            for (int j = 0; j < extent.height; ++j) {
+                for (int i = 0; i < extent.width; ++i) {
+                    most = std::max({most, std::abs(p.levels[k].x.at(i, j) - q.levels[k].x.at(i, j)),
+                                     std::abs(p.levels[k].y.at(i, j) - q.levels[k].y.at(i, j)),
+                                     std::abs(p.levels[k].z.at(i, j) - q.levels[k].z.at(i, j))});
+                }
+            }
+            EXPECT_LE(most, 1e-6f) << a << " and " << b << ", level " << k;
+        }
+    }
+    Scratch scratch_;
+};
+
+TEST_F(Fixes, RepairEveryBrokenSample) {
+    std::map<std::string, std::string> options;
+    const Ran list = shell(scratch_, "cat " TEX_SOURCE_DIR "/samples/broken/options.txt");
+    for (const std::string& line : lines_of(list.out))
+        options[line.substr(0, 4)] = with(line.substr(5), "../waves.png", "waves.png");
+    std::set<std::string> repaired;
+    for (const std::string& name : scratch_.list()) {
+        if (!name.starts_with("N")) continue;
+        const std::string id = name.substr(0, 4);
+        const auto found = finding(check(name, options[id]), id);
+        if (find_rule(id)->fix.find("-normals FILE") == std::string_view::npos) {
+            EXPECT_FALSE(found.contains("fix")) << found;
+            EXPECT_EQ(found.value("advice", ""), find_rule(id)->fix);
+            continue;
+        }
+        if (id == "N112") continue;  // too small to show which way green points; see below
+        repair(name, id, options[id]);
+        repaired.insert(id);
+    }
+    EXPECT_EQ(repaired.size(), 19u);
+}
+
+struct Kind {
+    const char* name;
+    const char* format;
+    bool states_y;
+};
+constexpr Kind kKinds[] = {
+    {"m.png", "rgb8", false},      {"m.png", "rgb16", false}, {"m.tif", "rgb16", false}, {"m.tga", "rgb8", false},
+    {"m.dds", "rgba8", false},     {"m.dds", "ag8", false},   {"m.dds", "bc5", false},   {"m.dds", "dxt5nm", false},
+    {"m.dds", "half", false},      {"m.ktx2", "rg16", true},  {"m.ktx2", "bc5", true},   {"m.ktx2", "rgba8", true},
+    {"m.ktx2", "bc5-snorm", true}, {"m.exr", "half", true},   {"m.exr", "float", true},
+};
+
+// Green is turned over, and nothing else changes, in any file.
+TEST_F(Fixes, TurnGreenOverWithoutLoss) {
+    for (const Kind& kind : kKinds) {
+        const std::string name = kind.name;
+        go("pack-normals n.exr -o " + name + " --format " + kind.format + " --no-sync");
+        const std::string fixed = repair(name, "N401", "--require y=down");
+        EXPECT_EQ(read(fixed).format, read(name).format) << kind.format;
+        EXPECT_EQ(read(fixed).levels.size(), read(name).levels.size()) << kind.format;
+        expect_same_vectors(name, YAxis::up, fixed, YAxis::down);
+    }
+}
+
+// A file that is right, but states the other direction, is not turned over.
+TEST_F(Fixes, CorrectOnlyTheStatementOfMislabelledFiles) {
+    for (const Kind& kind : kKinds) {
+        if (!kind.states_y) continue;
+        const std::string name = kind.name;
+        go("pack-normals n.exr --y-in down --y down -o " + name + " --format " + kind.format + " --no-sync");
+        for (const char* id : {"N112", "N404"}) {
+            const std::string fixed = repair(name, id, "--require y=up");
+            EXPECT_EQ(read(fixed).y_axis, YAxis::up);
+            EXPECT_EQ(read(fixed).format, read(name).format) << kind.format;
+            expect_same_vectors(name, YAxis::up, fixed, YAxis::up);
+        }
+    }
+    // Whether this one is right cannot be seen.
+    const auto small = finding(check("N112-wrong-declared-y.ktx2", "--require y=up"), "N112");
+    EXPECT_FALSE(small.contains("fix")) << small;
+    EXPECT_NE(small.value("advice", "").find("do not show which way green points"), std::string::npos) << small;
+}
+
+TEST_F(Fixes, KeepTheBitsOfDeepFiles) {
+    go("convert N201-not-unit-length.png -depth 16 -evaluate multiply 1.0001 -define png:bit-depth=16 d.png;"
+       "cp d.png d201.png; convert N209-blue-not-z.png -evaluate add 3 -channel B -evaluate set 100% -depth 16 "
+       "-define png:bit-depth=16 d209.png;"
+       "unpack-normals N501-level-not-unit.dds -o d501.exr --keep-length --level all --no-sync");
+    for (const auto& [name, id] : {std::pair("d201.png", "N201"), std::pair("d209.png", "N209")}) {
+        ASSERT_EQ(format_info(read(name).format).bits, 16);
+        EXPECT_EQ(repair(name, id, ""), "FIXED.png");
+    }
+    EXPECT_EQ(repair("d501.exr", "N501", ""), "FIXED.exr");
+    const MipChain before = vectors(read("d209.png"), YAxis::up);
+    repair("d209.png", "N209", "");
+    const MipChain after = vectors(read("FIXED.png"), YAxis::up);
+    for (int k = 0; k < 128; ++k) {
+        EXPECT_NEAR(before.levels[0].x.at(k, k), after.levels[0].x.at(k, k), 1e-6f);
+        EXPECT_NEAR(before.levels[0].y.at(k, k), after.levels[0].y.at(k, k), 1e-6f);
+    }
+}
+
+// What a command would lose, no command is offered for.
+TEST_F(Fixes, ThatWouldLoseDataAreSentences) {
+    go("pack-normals n.exr -o plain.png --format rgb8 --no-sync;"
+       "convert plain.png waves.png -alpha off -compose CopyOpacity -composite PNG32:gloss.png;"
+       "convert plain.png -quality 95 photo.jpg; convert plain.png -define dds:compression=dxt1 -define "
+       "dds:mipmaps=0 dxt1.dds; cp plain.png -- -odd.png");
+    const auto gloss = check("gloss.png", "--require y=down");
+    for (const auto& found : gloss["findings"]) EXPECT_FALSE(found.contains("fix")) << found;
+    EXPECT_NE(finding(gloss, "N401").value("advice", "").find("a file of its own"), std::string::npos) << gloss;
+    EXPECT_NE(finding(check("dxt1.dds", "--require y=down"), "N401").value("advice", "").find("bc1-unorm"),
+              std::string::npos);
+    EXPECT_EQ(repair("photo.jpg", "N401", "--require y=down"), "FIXED.png") << "JPEG would lose more";
+    EXPECT_EQ(repair("./-odd.png", "N401", "--require y=down"), "FIXED.png");
+    const Ran text = shell(scratch_, "check-normals gloss.png --require y=down");
+    EXPECT_NE(text.out.find("\n    advice: A command would drop"), std::string::npos) << text.out;
+    EXPECT_EQ(text.out.find("    fix: "), std::string::npos) << text.out;
+}
+
+// SARIF and the page print the same words as the text.
+TEST_F(Fixes, AreTheSameInEveryReport) {
+    go("pack-normals n.exr -o m.dds --format rgba8 --no-sync");
+    const Ran ran = shell(scratch_, "check-normals m.dds --require y=down --sarif s.json --report r.html");
+    const std::string fix = "pack-normals m.dds --keep-length --y-in up --y down --format rgba8 -o FIXED.dds";
+    EXPECT_NE(ran.out.find("    fix: " + fix + "\n"), std::string::npos) << ran.out;
+    EXPECT_NE(scratch_.read("s.json").find("Fix: " + fix), std::string::npos);
+    EXPECT_NE(scratch_.read("r.html").find("<code>" + fix + "</code>"), std::string::npos);
+    EXPECT_EQ(finding(check("m.dds", "--require y=down"), "N401")["fix"], fix);
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "reports/fixes.h"
+
+#include <optional>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <tex/container.h>
+
+#include "cli/text.h"
+#include "options/output.h"
+
+namespace tex::cli {
+namespace {
+
+void replace_word(std::string& text, std::string_view word, std::string_view by) {
+    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + by.size())) {
+        text.replace(at, word.size(), by);
+    }
+}
+
+// A file name, quoted for a shell. A name that begins with a hyphen is not an option.
+std::string quoted(const std::string& name) {
+    constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+@%,:=";
+    const std::string file = name.size() > 1 && name.front() == '-' ? "./" + name : name;
+    if (!file.empty() && file.find_first_not_of(kPlain) == std::string::npos) return file;
+    std::string text = "'";
+    for (const char c : printable(file)) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return text + "'";
+}
+
+// The encoding that holds every stored component of this layout with as many bits; none if there is no such encoding.
+std::optional<Encoding> same_encoding(Format format, const Swizzle& swizzle) {
+    const auto is_at = [&](std::size_t channel, Component component) { return swizzle[channel] == component; };
+    const bool xyz = is_at(0, Component::x) && is_at(1, Component::y) && is_at(2, Component::z);
+    const bool ag = is_at(3, Component::x) && is_at(1, Component::y) && !is_at(2, Component::z);
+    const bool xy = is_at(0, Component::x) && is_at(1, Component::y) && !is_at(2, Component::z);
+    const auto if_holds = [](bool holds, Encoding encoding) {
+        return holds ? std::optional<Encoding>(encoding) : std::nullopt;
+    };
+    switch (format) {
+        case Format::bc3_unorm: return if_holds(ag, Encoding::dxt5nm);
+        case Format::bc5_unorm: return if_holds(xy, Encoding::bc5);
+        case Format::bc5_snorm: return if_holds(xy, Encoding::bc5_snorm);
+        case Format::rg8_unorm: return if_holds(xy, Encoding::rg8);
+        case Format::rg16_unorm: return if_holds(xy, Encoding::rg16);
+        case Format::rgb8_unorm: return if_holds(xyz, Encoding::rgb8);
+        case Format::rgba8_unorm: return ag ? Encoding::ag8 : if_holds(xyz, Encoding::rgba8);
+        case Format::rgb16_unorm:
+        case Format::rgba16_unorm: return if_holds(xyz, Encoding::rgb16);
+        case Format::rg16_float:
+        case Format::rgb16_float:
+        case Format::rgba16_float: return if_holds(xyz || xy, Encoding::half);
+        case Format::rg32_float:
+        case Format::rgb32_float:
+        case Format::rgba32_float: return if_holds(xyz || xy, Encoding::float_);
+        default: return std::nullopt;
+    }
+}
+
+// The encoding of heights with as many bits.
+Encoding encoding_of_heights(Format format) {
+    const FormatInfo info = format_info(format);
+    if (info.sample == SampleKind::floating) return info.bits == 16 ? Encoding::half : Encoding::float_;
+    return info.bits == 16 ? Encoding::rgb16 : Encoding::rgb8;
+}
+
+// A container and an encoding that it can hold.
+struct Target {
+    Container container = Container::png;
+    Encoding encoding = Encoding::rgb8;
+};
+
+// The file's own container if possible: JPEG would lose more, and some containers cannot be written or hold one level.
+std::optional<Target> target_for(const std::string& file, Encoding encoding, bool with_levels) {
+    const std::optional<Container> own = container_of(file);
+    for (const std::optional<Container> container :
+         {own, std::optional(Container::png), std::optional(Container::exr), std::optional(Container::dds)}) {
+        if (!container || *container == Container::jpeg || (with_levels && !can_hold_levels(*container))) continue;
+        if (can_hold(*container, encoding)) return Target{*container, encoding};
+        // An alpha of 1 is no data; a container that always has alpha takes it.
+        for (const auto& [with, without] :
+             {std::pair(Encoding::rgba8, Encoding::rgb8), std::pair(Encoding::rgb8, Encoding::rgba8)}) {
+            if (encoding == with && can_hold(*container, without)) return Target{*container, without};
+        }
+    }
+    return std::nullopt;
+}
+
+bool is_any_of(std::string_view id, std::initializer_list<std::string_view> ids) {
+    for (const std::string_view other : ids) {
+        if (id == other) return true;
+    }
+    return false;
+}
+
+// True if the texels measure in the direction that the command would state.
+bool is_clear(std::string_view id, const CheckReport& report, const Requirements& require) {
+    if (id == "N112") return report.y.y && report.y.y == require.y;
+    return !is_any_of(id, {"N401", "N404"}) || report.y.y.has_value();
+}
+
+// What the file becomes; none if no command writes that.
+std::optional<Target> target_of(std::string_view id, const CheckReport& report, const Requirements& require) {
+    const bool grey = id == "N210";
+    Swizzle swizzle = report.swizzle;
+    if (id == "N209" && swizzle[0] == Component::x && swizzle[1] == Component::y) swizzle[2] = Component::z;
+    std::optional<Encoding> encoding =
+        grey ? encoding_of_heights(report.format) : same_encoding(report.format, swizzle);
+    if (id == "N108" || (encoding && require.encoding)) encoding = require.encoding;
+    if (id == "N208" && encoding) encoding = Encoding::half;
+    if (!encoding) return std::nullopt;
+    const bool builds = is_any_of(id, {"N103", "N109", "N501", "N502", "N503", "N504"}) && require.levels != 1;
+    return target_for(report.file, *encoding, builds || report.levels > 1);
+}
+
+std::string levels_text(const Requirements& require) {
+    const int levels = require.levels.value_or(0);
+    return levels == 0 ? "all" : levels == 1 ? "none" : std::to_string(levels);
+}
+
+}  // namespace
+
+Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements& require) {
+    const std::string_view id = finding.rule->id;
+    std::string fix(finding.rule->fix);
+    if (fix.find("-normals FILE") == std::string::npos) return {fix};
+    if (id == "N108" && !require.encoding) return {"Store the file in the format that is required."};
+    if (report.more_data) {
+        return {
+            "A command would drop what the channels beside the normals hold. Move it to a file of its own, or correct "
+            "the normals in the program that made this file."};
+    }
+    if (!is_clear(id, report, require)) {
+        return {
+            "The texels do not show which way green points. Find that out first: if it is as required, only the "
+            "statement is wrong."};
+    }
+    const std::optional<Target> target = target_of(id, report, require);
+    if (!target) {
+        return {fmt::format("No command writes {} with this layout. Correct the file in the program that made it.",
+                            name_of(kFormatNames, report.format))};
+    }
+    std::string same(name_of(kEncodingNames, target->encoding));
+    if (format_info(encoding_info(target->encoding).format).has_blocks()) same += " --effort best";
+    replace_word(fix, "SAME", same);
+    replace_word(fix, "WANTED", name_of(kYAxisNames, require.y.value_or(YAxis::up)));
+    replace_word(fix, "MEASURED", name_of(kYAxisNames, report.y.y.value_or(YAxis::up)));
+    replace_word(fix, "LEVELS", levels_text(require));
+    replace_word(fix, "FIXED", "FIXED" + extension_of(target->container));
+    replace_word(fix, "FILE", quoted(report.file));  // last, because a name may contain the words above
+    return {fix, true};
+}
+
+}  // namespace tex::cli
