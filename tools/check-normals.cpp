@@ -12,6 +12,7 @@
 #include "options/rules.h"
 #include "reports/check_documents.h"
 #include "reports/findings.h"
+#include "reports/github.h"
 
 namespace {
 
@@ -42,6 +43,8 @@ CheckNormals::CheckNormals(const cli::ProgramRow& row) : Batch(row) {
     rules_.add(command);
     documents_.add(command);
     command.check([this] {
+        if (running.json && documents_.is_for_github())
+            throw cli::UsageError("--json and --github contradict each other");
         if (!reads_nothing()) return;
         if (!command.inputs().empty()) throw cli::UsageError("--list and --explain take no files");
         if (documents_.has_page()) throw cli::UsageError("--list and --explain write no --report");
@@ -91,7 +94,8 @@ Result<void> CheckNormals::process(cli::Job& job) {
                                    [&](const Finding& finding) { return rules_.fails(finding); });
     if (fails && !documents_.writes_baseline()) job.raise(cli::ExitCode::findings);
     const Requirements& require = rules_.checks().require;
-    job.say(cli::findings_text(*report, require) + cli::pair_text(*report));
+    job.say(documents_.is_for_github() ? cli::github_text(*report, require)
+                                       : cli::findings_text(*report, require) + cli::pair_text(*report));
     job.report = cli::findings_json(*report, require);
     if (known > 0) job.report["known"] = known;
     if (auto added = documents_.add(job, *report, require); !added) return added;

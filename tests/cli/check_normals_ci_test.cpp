@@ -42,7 +42,7 @@ protected:
 
 TEST_F(CheckNormalsCi, WorkflowsPassAndFail) {
     for (const auto& [file, document] :
-         {std::pair<const char*, const char*>{"github.yml", "normals.sarif"}, {"gitlab.yml", "normals.xml"}}) {
+         {std::pair<const char*, const char*>{"github.yml", "normals.html"}, {"gitlab.yml", "normals.xml"}}) {
         bake("art/a_n.dds", "up");
         const Ran good = shell(scratch_, steps(file));
         EXPECT_EQ(good.code, 0) << file << good.out << good.err;
@@ -52,6 +52,8 @@ TEST_F(CheckNormalsCi, WorkflowsPassAndFail) {
         const Ran bad = shell(scratch_, steps(file));
         EXPECT_EQ(bad.code, 1) << file << bad.out << bad.err;
         EXPECT_NE(scratch_.read(document).find("N401"), std::string::npos);
+        const bool annotates = bad.out.find("::error file=art/a_n.dds,title=N401 wrong-y::") != std::string::npos;
+        EXPECT_EQ(annotates, std::string_view(file) == "github.yml") << bad.out;
     }
 }
 

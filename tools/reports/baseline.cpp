@@ -3,19 +3,63 @@
 #include "reports/baseline.h"
 
 #include <cstdint>
-#include <filesystem>
+#include <cstdio>
+#include <memory>
+
+#include <sys/stat.h>
+
+#include <fmt/format.h>
 
 #include "batch/text_file.h"
 #include "cli/text.h"
 #include "reports/json.h"
 
 namespace tex::cli {
+namespace {
 
-Baseline::Key Baseline::key_of(const CheckReport& report, const Finding& finding) {
-    const int level = finding.regions.empty() ? 0 : finding.regions.front().level;
-    // File names may contain any bytes; JSON's strings may not.
-    return {printable(std::filesystem::path(report.file).lexically_normal().generic_string()),
-            std::string(finding.rule->id), level};
+namespace fs = std::filesystem;
+
+int level_of(const Finding& finding) { return finding.regions.empty() ? 0 : finding.regions.front().level; }
+
+// The absolute path without links being followed; the path itself if there is no working directory.
+fs::path absolute_of(const fs::path& path) {
+    std::error_code error;
+    const fs::path absolute = fs::absolute(path, error);
+    return (error ? path : absolute).lexically_normal();
+}
+
+}  // namespace
+
+std::string content_of(const std::string& path) {
+    struct stat status {};
+    if (stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return {};
+    const std::unique_ptr<FILE, int (*)(FILE*)> file(
+        std::fopen(path.c_str(), "rbe"), [](FILE* opened) { return opened == nullptr ? 0 : std::fclose(opened); });
+    if (!file) return {};
+    std::uint64_t hash = 0xcbf29ce484222325u, size = 0;  // FNV-1a
+    std::vector<unsigned char> buffer(1 << 16);
+    while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), file.get())) {
+        for (std::size_t k = 0; k < count; ++k) hash = (hash ^ buffer[k]) * 0x100000001b3u;
+        size += count;
+    }
+    if (std::ferror(file.get()) != 0) return {};
+    return fmt::format("{}-{:016x}", size, hash);
+}
+
+Baseline::Baseline(const std::string& path) : folder_(absolute_of(path).parent_path()) {}
+
+// File names may contain any bytes; JSON's strings may not.
+std::string Baseline::name_of_file(const std::string& file) const {
+    if (folder_.empty()) return printable(fs::path(file).lexically_normal().generic_string());
+    const fs::path absolute = absolute_of(file), relative = absolute.lexically_relative(folder_);
+    return printable((relative.empty() ? absolute : relative).generic_string());
+}
+
+void Baseline::insert(const Entry& entry) {
+    const auto& [file, id, level, content] = entry;
+    entries_.insert(entry);
+    by_file_.emplace(file, id, level);
+    if (!content.empty()) by_content_.emplace(content, id, level);
 }
 
 Result<Baseline> Baseline::read(const std::string& path) {
@@ -27,45 +71,50 @@ Result<Baseline> Baseline::read(const std::string& path) {
 Result<Baseline> Baseline::parse(const std::string& path, const std::string& text) {
     const Json json = Json::parse(text, nullptr, false);
     const auto bad = [&](const char* reason) { return Error{ErrorCode::bad_data, path, reason}; };
-    const bool known = json.is_object() && json.contains("version") && json["version"] == 1;
+    const bool known = json.is_object() && json.contains("version") && (json["version"] == 1 || json["version"] == 2);
     if (!known || !json.contains("findings") || !json["findings"].is_array()) {
         return bad("not a baseline that check-normals wrote");
     }
-    Baseline baseline;
+    Baseline baseline = json["version"] == 1 ? Baseline() : Baseline(path);
     for (const Json& item : json["findings"]) {
-        const bool whole = item.is_object() && item.contains("file") && item["file"].is_string() &&
-                           item.contains("id") && item["id"].is_string();
-        if (!whole) return bad("a finding without file or id");
+        const auto is_text = [&](const char* key) { return item.contains(key) && item[key].is_string(); };
+        if (!item.is_object() || !is_text("file") || !is_text("id")) return bad("a finding without file or id");
         const bool has_level = item.contains("level") && item["level"].is_number_integer();
         const auto level = has_level ? item["level"].get<std::int64_t>() : 0;
         constexpr std::int64_t kMostLevels = 1000;
         if (level < 0 || level > kMostLevels) return bad("a finding on a level that no file has");
-        baseline.known_.emplace(item["file"].get<std::string>(), item["id"].get<std::string>(),
-                                static_cast<int>(level));
+        baseline.insert({item["file"].get<std::string>(), item["id"].get<std::string>(), static_cast<int>(level),
+                         is_text("content") ? item["content"].get<std::string>() : std::string()});
     }
     return baseline;
 }
 
-void Baseline::add(const CheckReport& report) {
-    for (const Finding& finding : report.findings) known_.insert(key_of(report, finding));
+void Baseline::add(const CheckReport& report, const std::string& content) {
+    for (const Finding& finding : report.findings)
+        insert({name_of_file(report.file), std::string(finding.rule->id), level_of(finding), content});
 }
 
-int Baseline::accept(CheckReport& report) const {
+int Baseline::accept(CheckReport& report, const std::string& content) const {
+    const std::string file = name_of_file(report.file);
     return static_cast<int>(std::erase_if(report.findings, [&](const Finding& finding) {
-        return finding.rule->id != "N101" && known_.count(key_of(report, finding)) > 0;
+        const std::string id(finding.rule->id);
+        if (id == "N101") return false;
+        const int level = level_of(finding);
+        return by_file_.count({file, id, level}) > 0 || by_content_.count({content, id, level}) > 0;
     }));
 }
 
 std::string Baseline::text() const {
     std::string lines;
-    for (const auto& [file, id, level] : known_) {
+    for (const auto& [file, id, level, content] : entries_) {
         Json item;
         item["file"] = file;
         item["id"] = id;
         item["level"] = level;
+        if (!content.empty()) item["content"] = content;
         lines += (lines.empty() ? "\n    " : ",\n    ") + item.dump(-1, ' ', false, Json::error_handler_t::replace);
     }
-    return "{\n  \"version\": 1,\n  \"findings\": [" + lines + (lines.empty() ? "" : "\n  ") + "]\n}\n";
+    return "{\n  \"version\": 2,\n  \"findings\": [" + lines + (lines.empty() ? "" : "\n  ") + "]\n}\n";
 }
 
 }  // namespace tex::cli

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // baseline.h: findings that a project has accepted.
 //
-// A JSON file to be kept beside the textures: {"version": 1, "findings": [{"file": "a.dds", "id": "N201", "level": 0},
-// ...]}, sorted, with one finding on each line. A finding is identified by its file, rule and level; its figures may
-// change.
+// A JSON file to be kept beside the textures: {"version": 2, "findings": [{"file": "a.dds", "id": "N201", "level": 0,
+// "content": "349680-5f3e..."}, ...]}, sorted, with one finding on each line. A finding is known by its rule, its
+// level, and either its file or the file's content, so that neither an edit nor a rename revives it. Its figures may
+// change. Files are relative to the folder of the baseline. Baselines of version 1 have no contents, and files as they
+// were given.
 
 #pragma once
 
+#include <filesystem>
 #include <set>
 #include <string>
 #include <tuple>
@@ -16,24 +19,37 @@
 
 namespace tex::cli {
 
+// The size of a regular file and a hash of its bytes; empty if it cannot be read, or only once. The hash tells apart
+// the textures of a project; it is no protection from forgery.
+[[nodiscard]] std::string content_of(const std::string& path);
+
 class Baseline {
 public:
+    Baseline() = default;
+    // An empty baseline that will be written to `path`.
+    explicit Baseline(const std::string& path);
+
     // Errors: io, bad_data.
     [[nodiscard]] static Result<Baseline> read(const std::string& path);
     // The same from memory. `path` appears in messages. Errors: bad_data.
     [[nodiscard]] static Result<Baseline> parse(const std::string& path, const std::string& text);
 
-    // Adds the findings of the report to the known ones.
-    void add(const CheckReport& report);
+    // Adds the findings of the report to the known ones. `content` is that of its file, or empty.
+    void add(const CheckReport& report, const std::string& content);
     // Removes known findings from the report. Returns their number.
-    int accept(CheckReport& report) const;
+    int accept(CheckReport& report, const std::string& content) const;
     [[nodiscard]] std::string text() const;
 
 private:
-    using Key = std::tuple<std::string, std::string, int>;  // file, id, level
-    [[nodiscard]] static Key key_of(const CheckReport& report, const Finding& finding);
+    using Key = std::tuple<std::string, std::string, int>;                 // file or content, id, level
+    using Entry = std::tuple<std::string, std::string, int, std::string>;  // file, id, level, content
 
-    std::set<Key> known_;
+    [[nodiscard]] std::string name_of_file(const std::string& file) const;
+    void insert(const Entry& entry);
+
+    std::filesystem::path folder_;  // that files are relative to; empty: files are as given
+    std::set<Entry> entries_;
+    std::set<Key> by_file_, by_content_;
 };
 
 }  // namespace tex::cli

@@ -22,6 +22,7 @@ void CheckDocuments::add(Command& command) {
     add_file(page_path_, "--report", "write a page with the findings and pictures, on which the light can be moved");
     add_file(sarif_, "--sarif", "write the findings as SARIF 2.1.0");
     add_file(junit_, "--junit", "write the findings as JUnit XML");
+    command.flag(is_for_github_, "--github", "print the findings as GitHub's workflow commands: annotations");
     add_file(baseline_path_, "--baseline", "accept the findings that this file lists");
     add_file(baseline_written_, "--baseline-write", "write such a file with all findings, and do not fail for them");
 }
@@ -38,6 +39,7 @@ void CheckDocuments::check(const std::vector<std::string>& inputs, std::vector<N
     }
     if (has_page()) check_read_twice("--report", inputs);
     sizes_ = html_sizes(inputs.size());
+    new_baseline_ = Baseline(baseline_written_);
 }
 
 Result<void> CheckDocuments::read() {
@@ -49,11 +51,13 @@ Result<void> CheckDocuments::read() {
 }
 
 int CheckDocuments::accept(CheckReport& report) {
+    const std::string content =
+        report.findings.empty() || (!baseline_ && !writes_baseline()) ? std::string() : content_of(report.file);
     if (writes_baseline()) {
         const std::lock_guard lock(mutex_);
-        new_baseline_.add(report);  // includes findings that --baseline accepts
+        new_baseline_.add(report, content);  // includes findings that --baseline accepts
     }
-    return baseline_ ? baseline_->accept(report) : 0;
+    return baseline_ ? baseline_->accept(report, content) : 0;
 }
 
 Result<void> CheckDocuments::add(Job& job, const CheckReport& report, const Requirements& require) {
@@ -71,7 +75,8 @@ Result<void> CheckDocuments::add_to_page(Job& job, const CheckReport& report, co
     if (!report.error) {
         const auto texture = read_texture(job.task.input, job.read_options);
         if (!texture) return texture.error();
-        auto drawn = draw_html_map(job.task.input, *texture, report.swizzle, sizes_, job.until(1.0));
+        auto drawn = draw_html_map(job.task.input, *texture, report.swizzle, report.y.y.value_or(texture->y_axis),
+                                   sizes_, job.until(1.0));
         // A file that holds no normals has findings, and no pictures.
         if (drawn)
             map = std::move(*drawn);

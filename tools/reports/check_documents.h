@@ -19,12 +19,14 @@
 
 namespace tex::cli {
 
-// --report, --sarif, --junit, --baseline, --baseline-write.
+// --report, --sarif, --junit, --github, --baseline, --baseline-write.
 class CheckDocuments {
 public:
     void add(Command& command);
 
     [[nodiscard]] bool has_page() const { return !page_path_.empty(); }
+    // Findings are printed for GitHub instead of for people.
+    [[nodiscard]] bool is_for_github() const { return is_for_github_; }
     [[nodiscard]] bool writes_baseline() const { return !baseline_written_.empty(); }
 
     // Throws UsageError if a document is an input or one of `others`.
@@ -47,6 +49,7 @@ private:
     [[nodiscard]] Result<void> add_to_page(Job& job, const CheckReport& report, const Requirements& require);
 
     std::string page_path_, sarif_, junit_, baseline_path_, baseline_written_;  // or empty
+    bool is_for_github_ = false;
     std::mutex mutex_;
     std::optional<Baseline> baseline_;
     Baseline new_baseline_;

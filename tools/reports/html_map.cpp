@@ -37,14 +37,15 @@ struct View {
 constexpr View kViews[] = {
     {Show::normals, "normals", "the colours of the map with green up: x, y and z as red, green and blue"},
     {Show::mips, "mip chain", "all levels beside each other, largest first"},
-    {Show::tilt, "tilt", "the angle to the surface in degrees, dark 0 to light 90"},
+    {Show::tilt, "tilt", "the angle to the surface in degrees, from dark (0) to light (90)"},
     {Show::curl, "curl",
-     "curl in blue and orange: pale where the map can be a height field's; its legend shows whether y is up or down"},
-    {Show::length, "length", "length of the stored vectors less 1: pale where it is right", true},
-    {Show::z_error, "z error", "stored z less the z that x and y imply: pale where it is right", true},
+     "curl in blue and orange, pale where the map can come from a height field; the legend says whether y is up or "
+     "down"},
+    {Show::length, "length", "length of the stored vectors minus 1, pale where it is right", true},
+    {Show::z_error, "z error", "stored z minus the z that x and y imply, pale where it is right", true},
 };
 
-Result<HtmlPicture> draw(const HtmlMap& map, Show show, int size, const char* caption, const char* alt,
+Result<HtmlPicture> draw(const HtmlMap& map, Show show, int size, const std::string& caption, const char* alt,
                          const Execution& execution) {
     PreviewScene scene;
     scene.map = &map.chain;
@@ -70,8 +71,10 @@ Result<void> draw_pictures(HtmlMap& map, const HtmlSizes& sizes, const Execution
     for (const View& view : kViews) {
         if (view.needs_z && map.without_z()) continue;
         if (view.show == Show::mips && map.stored_levels == 1) continue;
-        auto drawn = draw(map, view.show, view.show == Show::mips ? 2 * sizes.view : sizes.view, view.caption, view.alt,
-                          execution);
+        std::string caption = view.caption;
+        if (view.show == Show::curl && map.y == YAxis::down) caption += ", with green read as down";
+        auto drawn =
+            draw(map, view.show, view.show == Show::mips ? 2 * sizes.view : sizes.view, caption, view.alt, execution);
         if (!drawn) return drawn.error();
         map.views.push_back(std::move(*drawn));
     }
@@ -170,18 +173,19 @@ Result<HtmlPicture> html_picture(const Texture& picture, std::string caption, st
     return HtmlPicture{std::move(caption), std::move(alt), picture.extent(), std::move(*png)};
 }
 
-Result<HtmlMap> draw_html_map(const std::string& file, const Texture& texture, const Swizzle& swizzle,
+Result<HtmlMap> draw_html_map(const std::string& file, const Texture& texture, const Swizzle& swizzle, YAxis y,
                               const HtmlSizes& sizes, const Execution& execution) {
     HtmlMap map;
     map.file = file;
     map.format = texture.format;
     map.swizzle = swizzle;
-    map.y = texture.y_axis;
+    map.y = y;
     map.extent = texture.extent();
     map.stored_levels = static_cast<int>(texture.levels.size());
 
     UnpackOptions options;
     options.swizzle = swizzle;
+    options.y_axis = y;
     options.keep_length = true;  // so that errors stay visible
     auto chain = unpack(texture, options, execution);
     if (!chain) return chain.error();

@@ -55,7 +55,7 @@ struct HtmlMap {
     std::string file;
     Format format = Format::rgba8_unorm;
     Swizzle swizzle{};
-    YAxis y = YAxis::up;  // as the file states, else up
+    YAxis y = YAxis::up;  // as it is shown: as measured, else as the file states, else up
     Extent extent;
     int stored_levels = 0;
     MipChain chain;  // for further pictures; may be cleared
@@ -81,8 +81,9 @@ struct HtmlMap {
 // Converts a picture for a page. Errors: out_of_memory.
 [[nodiscard]] Result<HtmlPicture> html_picture(const Texture& picture, std::string caption, std::string alt);
 
-// Draws a texture whose channels have the meaning that `swizzle` gives. Errors: those of the verbs.
+// Draws a texture whose channels have the meaning that `swizzle` gives, with green as `y` says. Errors: those of the
+// verbs.
 [[nodiscard]] Result<HtmlMap> draw_html_map(const std::string& file, const Texture& texture, const Swizzle& swizzle,
-                                            const HtmlSizes& sizes, const Execution& execution);
+                                            YAxis y, const HtmlSizes& sizes, const Execution& execution);
 
 }  // namespace tex::cli
