@@ -246,6 +246,56 @@ TEST_F(ReportPage, FiltersAndSortsManyFiles) {
     EXPECT_EQ(js("document.querySelector('#files tbody th').textContent").get<std::string>(), "w.dds");
 }
 
+// Stages start as they come into view. Nothing moves then, however long the page is.
+TEST_F(ReportPage, LinksReachFilesAnywhereOnALongPage) {
+    shell(
+        "convert waves.png -crop 100x60+3+5 +repage odd.png; convert waves.png -crop 48x128+0+0 +repage high.png;"
+        "for n in waves odd high; do bake-normals $n.png -o $n.dds --format rgba8 --bumpiness 6; done; mkdir many;"
+        "for k in $(seq 100 299); do case $((k % 3)) in 0) n=waves;; 1) n=odd;; 2) n=high;; esac; "
+        "cp $n.dds many/$k.dds; done; mv many/150.dds many/150-$(printf 'long%.0s' $(seq 40)).dds;"
+        "check-normals many/*.dds --report page.html");
+    for (const int width : {1280, 390}) {
+        browser_->set_viewport(width, 1000);
+        open("page.html");
+        const double height = js("document.documentElement.scrollHeight").get<double>();
+        for (const int file : {150, 3, 198, 77}) {
+            const std::string section = "document.getElementById('file-" + std::to_string(file) + "')";
+            js("document.querySelector('a[href=\"#file-" + std::to_string(file) + "\"]').click()");
+            js("new Promise(done => { let last = -1, same = 0; const look = () => { same = scrollY === last ? same + 1 "
+               ": 0; last = scrollY; same > 20 ? done() : requestAnimationFrame(look); }; look(); })");
+            EXPECT_TRUE(browser_->wait_for("!!" + section + ".querySelector('canvas') && !" + section +
+                                           ".querySelector('.view').hidden"));
+            const double top = js(section + ".getBoundingClientRect().top").get<double>();
+            EXPECT_NEAR(top, 12.0, 2.0) << "file " << file << " in a window " << width << " wide";
+        }
+        EXPECT_EQ(js("document.documentElement.scrollHeight").get<double>(), height) << width;
+    }
+}
+
+TEST_F(ReportPage, OpensWithGreenAsMeasured) {
+    shell(
+        "bake-normals waves.png -o up.dds --bumpiness 6; bake-normals waves.png -o down.png --bumpiness 6 --y down;"
+        "bake-normals waves.png -o down.dds --bumpiness 6 --y down");
+    const auto lit = [&](const std::string& map) {
+        shell("check-normals " + map + " --report page.html");
+        open("page.html");
+        wait_for_light();
+        Extent extent;
+        return canvas(extent);
+    };
+    const std::vector<int> up = lit("up.dds");
+    EXPECT_EQ(js("document.querySelector('.stage select[name=yA]').value").get<std::string>(), "up");
+    for (const char* map : {"down.dds", "down.png"}) {
+        const std::vector<int> down = lit(map);
+        EXPECT_EQ(js("document.querySelector('.stage select[name=yA]').value").get<std::string>(), "down") << map;
+        EXPECT_NE(text(".stage .command").find("--y-in down"), std::string::npos) << map;
+        ASSERT_EQ(down.size(), up.size());
+        double sum = 0.0;
+        for (std::size_t k = 0; k < up.size(); ++k) sum += std::abs(up[k] - down[k]);
+        EXPECT_LT(sum / static_cast<double>(up.size()), 1.5) << map << " is lit as the same map with green up";
+    }
+}
+
 // With TEX_SCREENSHOTS set to a folder, pictures of the page are left there.
 TEST_F(ReportPage, HasTwoThemesAndFitsNarrowWindows) {
     shell(

@@ -44,13 +44,14 @@ std::string stage(const HtmlEntry& entry, std::size_t number) {
     const HtmlMap& map = entry.maps.front();
     const HtmlPicture& still = map.lit.png.empty() ? map.thumbnail : map.lit;
     const bool has_levels = !map.shown().levels.empty();
-    std::string html = "<div class=\"stage\"";
+    std::string html =
+        fmt::format("<div class=\"stage\" style=\"--shape: {} / {}\"", map.extent.width, map.extent.height);
     if (has_levels) html += fmt::format(" data-map=\"{}\"", number);
     if (has_levels && entry.maps.size() > 1) html += fmt::format(" data-other=\"{}\"", number + 1);
     html += ">\n";
     html += figure(still, map.file);
     if (!has_levels)
-        html += "<p class=\"remark\">There are too many files in this report for a light that moves.</p>\n";
+        html += "<p class=\"remark\">This report has too many files for a light that you can move.</p>\n";
     return html + "</div>\n";
 }
 

@@ -71,7 +71,7 @@ class Stage {
     const map = this.maps[this.map];
     this.canvas = element("canvas", {
       tabindex: 0, role: "img", "aria-describedby": "keys", onkeydown: (e) => this.key(e), onpointermove: (e) => this.move(e), onpointerdown: (e) => this.move(e),
-      "aria-label": `${map.file} under a light that can be moved`,
+      "aria-label": `${map.file} under a light that you can move`,
     });
     this.view = element("div", {class: "view", hidden: true}, this.canvas);
     this.divider = element("div", {class: "split"});
@@ -81,8 +81,7 @@ class Stage {
     this.still.before(this.view);
     this.caption = this.figure.querySelector("figcaption");
     this.stillCaption = this.caption.textContent;
-    this.panel = element("div", {class: "panel"});
-    this.figure.after(this.panel);
+    this.panel = this.root.querySelector(".panel");
     this.fillPanel();
   }
 
@@ -104,7 +103,7 @@ class Stage {
     this.splitLabel = labelled("split", this.controls.split);
     this.greenLabelB = labelled("green in B", this.greenB);
     this.legend = element("div", {class: "legend wide", hidden: true});
-    this.command = element("code", {class: "command", title: "makes this picture at the terminal"});
+    this.command = element("code", {class: "command", title: "the command that makes this picture"});
     this.gpu = element("p", {class: "remark wide"});
     this.spoken = element("span", {class: "unseen", role: "status"});
     this.panel.replaceChildren(
@@ -202,8 +201,8 @@ class Stage {
       this.legend.replaceChildren(legend[0], bar, legend[1]);
     }
     this.command.textContent = this.commandLine();
-    const stored = map.first > 0 ? ` Level ${map.first} of the file: larger ones would make this report too large.` : "";
-    const how = this.used.packed ? "as the file stores it" : map.packed ? "decoded to 8 bits: WebGL does not take these blocks here" : "with 8 bits a channel";
+    const stored = map.first > 0 ? ` Level ${map.first} of the file; larger levels would make this report too large.` : "";
+    const how = this.used.packed ? "as the file stores it" : map.packed ? "decoded to 8 bits, because WebGL does not support these blocks here" : "with 8 bits per channel";
     this.gpu.textContent = `On the GPU: ${map.format}, ${how}.${stored} Drawn: ${this.canvas.width} x ${this.canvas.height}.`;
   }
 
@@ -221,13 +220,26 @@ class Stage {
     return words.concat("--size", this.size.join("x")).join(" ");
   }
 
-  // Goes back to the still picture, because canvases take memory.
+  // Shows the still picture again, because canvases take memory.
   rest() {
     this.view.hidden = true;
     this.still.hidden = false;
     this.caption.textContent = this.stillCaption;
     this.canvas.width = this.canvas.height = 1;
   }
+}
+
+// Gives every stage an empty panel as high as the panel of the first one, which is not drawn yet. Stages that start
+// later then change no height above or below them.
+function reservePanels(roots, maps, lighting) {
+  roots.forEach((root) => root.querySelector("figure").after(element("div", {class: "panel"})));
+  const first = roots[0].stage = new Stage(roots[0], maps, lighting);
+  first.panel.style.minHeight = "0";
+  const measure = () => {
+    if (first.b === first.other && first.show === "lit") document.documentElement.style.setProperty("--panel", `${first.panel.offsetHeight}px`);
+  };
+  measure();
+  window.addEventListener("resize", measure);
 }
 
 // Stages start when they come into view.
@@ -239,12 +251,13 @@ function makeStages() {
   try {
     lighting = new Lighting(maps);
   } catch (error) {
-    document.querySelector("footer").append(element("p", {}, `This browser draws no light: ${error.message}.`));
+    document.querySelector("footer").append(element("p", {}, `This browser cannot light the maps: ${error.message}.`));
     return;
   }
   document.body.append(element("p", {id: "keys", class: "unseen"},
-    "Arrow keys move the light, with Shift slowly. Page up and page down raise and lower it. Plus and minus change the bump scale, brackets the split. " +
-    "Y turns green over, L changes the kind of light, Home resets."));
+    "The arrow keys move the light, more slowly with Shift. Page Up and Page Down raise and lower it. Plus and minus change the bump scale; brackets move the split. " +
+    "Y flips green, L changes the kind of light, and Home resets everything."));
+  reservePanels(roots, maps, lighting);
   const live = new Map();  // in the order of last use
   const watch = new IntersectionObserver((entries) => {
     for (const {target, isIntersecting} of entries) {
