@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "rows/swizzle_evidence.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <tex/swizzle.h>
+
+namespace tex {
+namespace {
+
+struct Row {
+    std::vector<float> r, g, b, a;
+    explicit Row(int width) : r(width), g(width), b(width), a(width) {}
+};
+
+float code(double n) { return static_cast<float>(n * 0.5 + 0.5); }
+
+// x, y, z in R, G, B; or x in A and y in G.
+void set(Row& row, int i, int j, bool rgb) {
+    const auto k = static_cast<std::size_t>(i);
+    const double x = 0.5 * std::sin(0.3 * i + 0.1 * j), y = 0.4 * std::cos(0.2 * j - 0.1 * i);
+    row.r[k] = rgb ? code(x) : 1.0f;
+    row.g[k] = code(y);
+    row.b[k] = rgb ? code(std::sqrt(1.0 - x * x - y * y)) : 1.0f;
+    row.a[k] = rgb ? 1.0f : code(x);
+}
+
+// The layout that is found if the texels for which `is_rgb` holds are x, y, z and the others are DXT5nm.
+template <class IsRgb>
+std::string layout(Extent extent, int rows, IsRgb&& is_rgb) {
+    SwizzleEvidence evidence(extent, SampleKind::unorm);
+    for (int j = 0; j < rows; ++j) {
+        Row row(extent.width);
+        for (int i = 0; i < extent.width; ++i) set(row, i, j, is_rgb(i, j));
+        evidence.add_row(j, {row.r.data(), row.g.data(), row.b.data(), row.a.data()});
+    }
+    return std::string(name_of(kSwizzleNames, evidence.layout()));
+}
+
+// Of a map of 2^21 texels, every second column of every second row is examined: from the first one.
+TEST(SwizzleEvidence, LooksAtEverySecondRowAndColumnOfALargeMap) {
+    const Extent large{2048, 1024};
+    EXPECT_EQ(layout(large, 64, [](int i, int j) { return i % 2 == 0 && j % 2 == 0; }), "rgb");
+    EXPECT_EQ(layout(large, 64, [](int i, int j) { return i % 2 != 0 || j % 2 != 0; }), "dxt5nm");
+    const Extent larger{4096, 2048};  // every third
+    EXPECT_EQ(layout(larger, 64, [](int i, int j) { return i % 3 == 0 && j % 3 == 0; }), "rgb");
+    EXPECT_EQ(layout(larger, 64, [](int i, int j) { return i % 3 != 0 || j % 3 != 0; }), "dxt5nm");
+}
+
+TEST(SwizzleEvidence, LooksAtEveryTexelOfASmallMap) {
+    const Extent small{64, 64};
+    EXPECT_EQ(layout(small, 64, [](int, int) { return false; }), "dxt5nm");
+    EXPECT_EQ(layout(small, 64, [](int, int) { return true; }), "rgb");
+    EXPECT_EQ(layout(small, 64, [](int i, int j) { return i == 63 && j == 63; }), "rgb") << "R is not constant";
+    EXPECT_EQ(layout({1024, 1024}, 2, [](int i, int j) { return i == 1023 && j == 1; }), "rgb") << "2^20 are small";
+}
+
+}  // namespace
+}  // namespace tex
