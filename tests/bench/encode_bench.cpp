@@ -3,7 +3,8 @@
 //
 //     encode_bench [MAP ... | DIRECTORY ... | ENCODER.so ...]
 //
-// Without maps: ../shared/data/normal and pairs beside the source tree. An ENCODER.so has the function
+// Without maps: ../shared/data/normal and pairs beside the source tree or, if they are missing, bakes of the samples.
+// An ENCODER.so has the function
 //
 //     extern "C" void encode(const uint8_t* rgba, int width, int height, size_t pitch, uint8_t* blocks)
 //
@@ -183,6 +184,17 @@ double encode_others(const Map& map, std::vector<std::byte>& blocks,
     return median(seconds);
 }
 
+// Adds a map whose x and y are codes of 8 bits.
+void add_codes(Map map, std::vector<Map>& maps) {
+    for (int j = 0; j < map.height; ++j) {
+        for (int i = 0; i < map.width; ++i) {
+            const auto code = [](float n) { return static_cast<std::uint8_t>(n * 127.5f + 128.0f); };
+            map.rgba8.insert(map.rgba8.end(), {255, code(map.normals.y.at(i, j)), 0, code(map.normals.x.at(i, j))});
+        }
+    }
+    maps.push_back(std::move(map));
+}
+
 void add_map(const fs::path& path, std::vector<Map>& maps) {
     const tex::Result<tex::Image> image = tex::read_image(path.string());
     if (!image) {
@@ -203,11 +215,32 @@ void add_map(const fs::path& path, std::vector<Map>& maps) {
         for (int i = 0; i < map.width; ++i) {
             map.normals.x.at(i, j) = 2.0f * image->planes[0].at(i, j) - 1.0f;
             map.normals.y.at(i, j) = 2.0f * image->planes[1].at(i, j) - 1.0f;
-            const auto code = [](float n) { return static_cast<std::uint8_t>(n * 127.5f + 128.0f); };
-            map.rgba8.insert(map.rgba8.end(), {255, code(map.normals.y.at(i, j)), 0, code(map.normals.x.at(i, j))});
         }
     }
-    maps.push_back(std::move(map));
+    add_codes(std::move(map), maps);
+}
+
+// Adds the normals of a height map, rounded to 8 bits as in the other maps.
+void add_heights(const std::string& path, std::vector<Map>& maps) {
+    const tex::Result<tex::Image> image = tex::read_image(path);
+    auto field = image ? tex::height_field(*image, {}) : tex::Result<tex::HeightField>(image.error());
+    if (!field) {
+        std::fprintf(stderr, "encode_bench: %s\n", field.error().message().c_str());
+        return;
+    }
+    field->bumpiness_x = field->bumpiness_y = 8.0f;
+    tex::Result<tex::NormalMap> normals = tex::bake(*field);
+    if (!normals) return;
+    Map map{fs::path(path).stem().string(), std::move(*normals), 0, 0, {}};
+    map.width = map.normals.extent().width / 4 * 4;
+    map.height = map.normals.extent().height / 4 * 4;
+    for (tex::Plane<float>* plane : {&map.normals.x, &map.normals.y}) {
+        for (int j = 0; j < map.height; ++j) {
+            for (int i = 0; i < map.width; ++i)
+                plane->at(i, j) = std::round(127.5f * plane->at(i, j) + 127.5f) / 127.5f - 1.0f;
+        }
+    }
+    add_codes(std::move(map), maps);
 }
 
 void add_directory(const fs::path& directory, std::vector<Map>& maps) {
@@ -374,6 +407,14 @@ int main(int argc, char** argv) {
             if (fs::is_directory(std::string(TEX_SOURCE_DIR) + folder))
                 add_directory(std::string(TEX_SOURCE_DIR) + folder, maps);
         }
+    }
+    if (maps.empty()) {
+        std::fprintf(stderr,
+                     "encode_bench: no maps; bakes of the samples instead, which the figures of RESULTS.md "
+                     "do not contain\n");
+        for (const char* name : {"bricks", "hemisphere", "ramp", "waves"})
+            add_heights(TEX_SOURCE_DIR "/samples/" + std::string(name) + ".png", maps);
+        if (maps.empty()) return 3;
     }
     std::printf("%-28s %-22s %9s %8s %8s %8s %8s %8s\n", "map", "encoder", "Mtexel/s", "mean", "green", "alpha",
                 "p99.9", "largest");
