@@ -184,7 +184,8 @@ Result<HtmlEntry> compare_entry(const std::vector<ComparedLevel>& levels, HtmlMa
     const ComparedLevel& first = levels.front();
     entry.row = fmt::format(
         "<td>{}</td><td>{}</td>",
-        within ? "<span class=\"chip clean\">within the limits</span>" : chip(Severity::error, "over a limit"), first.number);
+        within ? "<span class=\"chip clean\">within the limits</span>" : chip(Severity::error, "over a limit"),
+        first.number);
     for (const double angle : {first.error.mean, first.error.p999, first.error.max})
         entry.row += fmt::format("<td>{:.4f}</td>", angle);
 

@@ -50,8 +50,7 @@ std::string stage(const HtmlEntry& entry, std::size_t number) {
     if (has_levels && entry.maps.size() > 1) html += fmt::format(" data-other=\"{}\"", number + 1);
     html += ">\n";
     html += figure(still, map.file);
-    if (!has_levels)
-        html += "<p class=\"remark\">This report has too many files for a light that you can move.</p>\n";
+    if (!has_levels) html += "<p class=\"remark\">This report has too many files for a light that you can move.</p>\n";
     return html + "</div>\n";
 }
 
