@@ -39,7 +39,9 @@ struct Maker {
         failed = true;
     }
     std::vector<std::byte> encoded(const Texture& texture, Container container, WriteOptions options = {}) {
-        auto bytes = encode_file(texture, container, options);
+        Texture stored = texture;
+        if (container == Container::dds) stored.swizzle_known = stored.y_known = false;  // as other tools write them
+        auto bytes = encode_file(stored, container, options);
         if (bytes) return std::move(*bytes);
         fail(bytes.error());
         return std::vector<std::byte>(256);

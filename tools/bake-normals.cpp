@@ -89,8 +89,8 @@ Result<void> BakeNormals::process(cli::Job& job) {
     options.strength = [this](Extent extent) { return reader_.strength.strength(extent); };
     options.bake = bake_;
     options.mip = mips_.options(mips_.levels_for(job.task), wrap_);
-    options.pack =
-        output.pack_options(output.format.value_or(default_encoding(job.task.container)), output.y.value_or(YAxis::up));
+    constexpr bool kKnown = true;
+    options.pack = output.pack_options(output.format.value_or(default_encoding(job.task.container)), YAxis::up, kKnown);
     options.write = output.write_options(job);
     options.level_names = cli::level_names(job.task.output);
     options.slopes = running.json;

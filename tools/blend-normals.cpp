@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // blend-normals: adds detail normals to base normals.
 
+#include <algorithm>
+
 #include <tex/tex.h>
 
 #include "batch/repack.h"
@@ -11,6 +13,16 @@
 namespace {
 
 using namespace tex;
+
+// A direction of green that is assumed for all maps has no effect if the texels of all of them show the other one, and
+// if the output does not state it.
+void trust_if_all_agree(BlendFileReport& report) {
+    const auto doubtful = [](const SourceInfo& info) { return info.y_doubtful; };
+    if (report.pack.y_known || !doubtful(report.source)) return;
+    if (!std::all_of(report.details.begin(), report.details.end(), doubtful)) return;
+    report.source.y_doubtful = false;
+    for (SourceInfo& detail : report.details) detail.y_doubtful = false;
+}
 
 class BlendNormals : public cli::NormalsConverter {
 public:
@@ -79,20 +91,21 @@ Result<void> BlendNormals::check(const std::vector<cli::Task>& tasks) {
 
 Result<void> BlendNormals::process(cli::Job& job) {
     BlendFileOptions options;
-    options.source = normals.options(job);
+    options.source = normals.options(job, {false, false, {}, {}, true});
     options.layers = layers_.layers(job, details_of(job.task), normals);
     options.blend = blend_;
     options.blend.wrap_x = wrap_.x;
     options.blend.wrap_y = wrap_.y;
     options.mip = mips_.options(mips_.levels_for(job.task), wrap_);
     options.pack = [&](const SourceInfo& base) {
-        return output.pack_options(output.format ? *output.format : cli::encoding_of(base, job.task),
-                                   output.y.value_or(base.y_axis));
+        return output.pack_options(output.format ? *output.format : cli::encoding_of(base, job.task), base.y_axis,
+                                   base.y_known);
     };
     options.write = output.write_options(job);
     options.level_names = cli::level_names(job.task.output);
-    const auto blended = blend_file(job.task.input, job.task.output, job.task.container, options, job.until(1.0));
+    auto blended = blend_file(job.task.input, job.task.output, job.task.container, options, job.until(1.0));
     if (!blended) return blended.error();
+    trust_if_all_agree(*blended);
     normals.note(job, job.task.input, blended->source);
     for (std::size_t k = 0; k < blended->details.size(); ++k)
         normals.note(job, options.layers[k].input, blended->details[k]);

@@ -61,7 +61,7 @@ Result<void> PreviewNormals::check(const std::vector<cli::Task>& tasks) {
 
 Result<void> PreviewNormals::process(cli::Job& job) {
     const std::vector<std::string> names = job.task.inputs();
-    const cli::Reading reading = {false, false, {}, !sheet_.is_difference()};
+    const cli::Reading reading = {false, false, {}, !sheet_.is_difference(), true};
     std::vector<cli::SampledMap> maps;
     for (const std::string& name : names) {
         const double share = static_cast<double>(maps.size() + 1) / static_cast<double>(names.size());

@@ -27,9 +27,6 @@ namespace tex {
 namespace {
 
 constexpr int kLeastSide = 32;  // in texels; smaller maps get no statistics
-constexpr double kLeastCorrelation = 0.2;
-constexpr double kLeastConfidence = 0.99;
-constexpr double kLeastUsable = 0.5;  // the share of texels that must hold a normal
 
 Error bad_option(std::string reason) { return {ErrorCode::bad_option, {}, std::move(reason)}; }
 
@@ -144,9 +141,7 @@ Result<void> measure(Subject& subject) {
     subject.curl = measure_curl(stored);
     subject.y.correlation = subject.curl.correlation;
     subject.y.confidence = subject.curl.confidence;
-    const bool decided = std::abs(subject.curl.correlation) >= kLeastCorrelation &&
-                         subject.curl.confidence >= kLeastConfidence && subject.curl.usable >= kLeastUsable;
-    if (decided) subject.y.y = subject.curl.correlation > 0.0 ? YAxis::up : YAxis::down;
+    subject.y.y = clear_y(subject.curl);
     return {};
 }
 

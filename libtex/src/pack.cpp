@@ -26,7 +26,7 @@ Result<Texture> pack_chain(const MipChain& chain, const PackOptions& options, co
     texture.swizzle = encoding.swizzle;
     texture.swizzle_known = true;
     texture.y_axis = options.y_axis;
-    texture.y_known = true;
+    texture.y_known = options.y_known;
 
     std::int64_t total = 0;
     for (const NormalMap& map : chain.levels) total += map.extent().texels();

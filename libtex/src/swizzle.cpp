@@ -2,12 +2,32 @@
 
 #include <tex/swizzle.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include <tex/unpack.h>
 
 #include "rows/swizzle_evidence.h"
 #include "threads/guard.h"
 
 namespace tex {
+namespace {
+
+constexpr Component kNormalComponents[] = {Component::x, Component::y, Component::z};
+
+}  // namespace
+
+std::string layout_name(const Swizzle& swizzle) {
+    const auto place = [](const Swizzle& in, Component component) {
+        return std::find(in.begin(), in.end(), component) - in.begin();
+    };
+    for (const Named<Swizzle>& row : kSwizzleNames) {
+        const bool same = std::all_of(std::begin(kNormalComponents), std::end(kNormalComponents),
+                                      [&](Component c) { return place(row.value, c) == place(swizzle, c); });
+        if (same) return std::string(row.name);
+    }
+    return to_string(swizzle);
+}
 
 Result<Swizzle> guess_swizzle(const Texture& texture, const Execution& execution) {
     return guarded([&]() -> Result<Swizzle> {

@@ -31,6 +31,31 @@ std::vector<std::string> writers() {
 
 }  // namespace
 
+// A PSD of 8x8 texels with this compression of its texels.
+std::string psd_with(std::uint32_t compression) {
+    std::string file = "8BPS" + std::string("\0\1\0\0\0\0\0\0\0\3", 10) + big_endian(8) + big_endian(8);
+    file += std::string("\0\x8\0\3", 4) + std::string(12, '\0');  // 8 bits, RGB; no palette, resources or layers
+    return file + big_endian(compression).substr(2) + std::string(3 * 8 * 8, '\x80');
+}
+
+TEST(BadInput, OfAKindThatTheDecoderLacksIsUnsupportedAndNotDamaged) {
+    const Scratch scratch;
+    scratch.write("raw.psd", psd_with(0));
+    scratch.write("zip.psd", psd_with(2));
+    scratch.write("cut.psd", psd_with(0).substr(0, 100));
+    const auto go = [&](const char* name) {
+        return run(scratch, "unpack-normals", {name, "-o", "x.png", "--no-sync", "--json"});
+    };
+    EXPECT_EQ(go("raw.psd").code, 0);
+    const Ran zip = go("zip.psd");
+    EXPECT_EQ(zip.code, 4);
+    EXPECT_EQ(nlohmann::json::parse(zip.out)["error"]["code"], "unsupported") << zip.out;
+    EXPECT_NE(zip.err.find("ZIP compression in PSD is not supported"), std::string::npos) << zip.err;
+    const Ran cut = go("cut.psd");
+    EXPECT_EQ(cut.code, 4);
+    EXPECT_EQ(nlohmann::json::parse(cut.out)["error"]["code"], "bad-data") << cut.out;
+}
+
 class EveryBadInput : public testing::TestWithParam<std::string> {
 protected:
     EveryBadInput() {

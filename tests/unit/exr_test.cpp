@@ -238,6 +238,7 @@ Texture texture_of(Format format, Extent extent, int levels) {
     Texture texture;
     texture.format = format;
     texture.y_axis = YAxis::down;
+    texture.y_known = true;
     for (int k = 0; k < levels; ++k) {
         Image image;
         Level level{level_extent(extent, k), {}};

@@ -82,13 +82,29 @@ TEST(PreviewMeasures, AreWhatTheirNamesSay) {
     EXPECT_DOUBLE_EQ(measure(Show::slope, map, 3.0f, {})->scale.greatest, 3.0);
 }
 
+TEST(PreviewMeasures, TiltEndsAtAnAngleThatSuitsTheMap) {
+    const auto end = [](float x, float z) {
+        return measure(Show::tilt, uniform_map({40, 40}, x, 0.0f, z), 0.0f, {})->scale.greatest;
+    };
+    EXPECT_DOUBLE_EQ(end(0.0f, 1.0f), 0.1);
+    EXPECT_DOUBLE_EQ(end(0.2f, 0.98f), 15.0);  // 11.5 degrees
+    EXPECT_DOUBLE_EQ(end(0.6f, 0.8f), 45.0);
+    EXPECT_DOUBLE_EQ(end(1.0f, 0.1f), 90.0);
+    EXPECT_DOUBLE_EQ(end(0.5f, -0.5f), 180.0);
+    NormalMap map = uniform_map({40, 40}, 0.05f, 0.0f, 1.0f);
+    map.x.at(3, 3) = 1.0f;  // a single texel
+    map.z.at(3, 3) = 0.0f;
+    EXPECT_DOUBLE_EQ(measure(Show::tilt, map, 0.0f, {})->scale.greatest, 5.0);
+    EXPECT_DOUBLE_EQ(measure(Show::tilt, map, 60.0f, {})->scale.greatest, 60.0);
+}
+
 TEST(PreviewMeasures, CurlTellsGreenThatIsUpsideDown) {
     const auto sound = measure(Show::curl, waves({96, 96}, false), 0.0f, {});
     const auto wrong = measure(Show::curl, waves({96, 96}, true), 0.0f, {});
     ASSERT_TRUE(sound);
     ASSERT_TRUE(wrong);
-    EXPECT_EQ(sound->scale.title.find("curl: y up, r = "), 0u) << sound->scale.title;
-    EXPECT_EQ(wrong->scale.title.find("curl: y DOWN, r = -"), 0u) << wrong->scale.title;
+    EXPECT_EQ(sound->scale.title.find("curl: y up, r="), 0u) << sound->scale.title;
+    EXPECT_EQ(wrong->scale.title.find("curl: y DOWN, r=-"), 0u) << wrong->scale.title;
     double small = 0.0, large = 0.0;
     for (int j = 1; j < 95; ++j) {
         for (int i = 1; i < 95; ++i) {
@@ -118,7 +134,16 @@ TEST(PreviewLegend, NamesTheEndsInTheSameWayInEveryLocale) {
     EXPECT_TRUE(code_at(picture, 10, 10) == (Code{1, 2, 3}));
     const Vec3 first = viridis(0.0);
     EXPECT_TRUE(code_at(picture, 8, 60) == (Code{display_code(first.x), display_code(first.y), display_code(first.z)}));
-    EXPECT_EQ(with_legend(plain_picture({3, 2}, {}), {"title", 0.0, 1.0, Palette::viridis}).extent(), (Extent{3, 38}));
+    EXPECT_EQ(with_legend(plain_picture({3, 2}, {}), {"title", 0.0, 1.0, Palette::viridis}).extent(), (Extent{96, 38}));
+}
+
+// A title that does not fit between the values goes below them, so that no figure is cut.
+TEST(PreviewLegend, PutsALongTitleBelowTheValues) {
+    const ColorScale scale{"curl: y DOWN, r=-0.998", -0.05, 0.05, Palette::diverging};
+    EXPECT_EQ(with_legend(plain_picture({320, 2}, {}), scale).extent(), (Extent{320, 38}));
+    EXPECT_EQ(with_legend(plain_picture({160, 2}, {}), scale).extent(), (Extent{160, 50}));
+    EXPECT_EQ(with_legend(plain_picture({64, 2}, {}), scale).extent(), (Extent{96, 62}));
+    EXPECT_EQ(legend(96, 1, scale).extent, (Extent{96, kLegendRows}));
 }
 
 TEST(PreviewCanvas, DrawsLettersAndCutsWhatDoesNotFit) {

@@ -38,6 +38,11 @@ protected:
         return pack(chain_from(wavy_map({20, 12})), {encoding, y_axis}).value();
     }
 
+    [[nodiscard]] static Texture without_marks(Texture texture) {
+        texture.swizzle_known = texture.y_known = false;
+        return texture;
+    }
+
     std::string folder_;
 };
 
@@ -58,14 +63,14 @@ TEST_F(SourceFiles, AreReadAsTheySay) {
 }
 
 TEST_F(SourceFiles, ThatDoNotSayAreReadAsTheirTexelsLook) {
-    const std::string png = write("a.png", packed(Encoding::ag8));
+    const std::string png = write("a.png", without_marks(packed(Encoding::ag8)));
     const Source source = read_normals(png).value();
     EXPECT_TRUE(source.info.guessed);
     EXPECT_EQ(name_of(kSwizzleNames, source.info.swizzle), "dxt5nm");
     SourceOptions options;
     options.r_or_a = true;
     EXPECT_EQ(read_normals(png, options).value().info.swizzle[3], Component::x);
-    const std::string rgba = write("b.png", packed(Encoding::rgba8));
+    const std::string rgba = write("b.png", without_marks(packed(Encoding::rgba8)));
     EXPECT_EQ(read_normals(rgba, options).value().info.swizzle[0], Component::x);
     EXPECT_FALSE(read_normals(rgba).value().info.guessed);
     options.unpack.swizzle = Swizzle{Component::other, Component::y, Component::z, Component::x};

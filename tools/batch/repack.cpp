@@ -27,9 +27,10 @@ Encoding Repacker::encoding(const SourceInfo&, const Task& task) const { return 
 Result<void> Repacker::process(Job& job) {
     PackFileOptions with = options(job);
     with.source = normals.options(job);
+    with.source.doubt_y = output.y.has_value();  // otherwise y stays as it is, and the output does not state it
     with.pack = [&](const SourceInfo& info) {
-        return output.pack_options(output.format ? *output.format : encoding(info, job.task),
-                                   output.y.value_or(info.y_axis));
+        return output.pack_options(output.format ? *output.format : encoding(info, job.task), info.y_axis,
+                                   info.y_known);
     };
     with.write = output.write_options(job);
     with.level_names = level_names(job.task.output);

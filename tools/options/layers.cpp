@@ -112,7 +112,7 @@ std::vector<LayerFile> LayerOptions::layers(Job& job, const std::vector<std::str
     for (std::size_t k = 0; k < names.size(); ++k) {
         LayerFile& layer = files.emplace_back();
         layer.input = names[k];
-        layer.source = normals.options(job, {false, true, y_in_.of(k, std::nullopt)});
+        layer.source = normals.options(job, {false, true, y_in_.of(k, std::nullopt), {}, true});
         layer.scale = scale_.of(k, layer.scale);
         std::tie(layer.tiling_x, layer.tiling_y) = tiling_.of(k, {layer.tiling_x, layer.tiling_y});
         std::tie(layer.offset_x, layer.offset_y) = offset_.of(k, {layer.offset_x, layer.offset_y});

@@ -13,14 +13,11 @@
 namespace tex::cli {
 namespace {
 
-// The swizzle's name in the table ("rgb"), or its letters: "1y1x".
-std::string swizzle_name(const Swizzle& swizzle) {
-    const std::string_view name = name_of(kSwizzleNames, swizzle);
-    return name.empty() ? to_string(swizzle) : std::string(name);
-}
-
-std::string guess_text(const std::string& swizzle) {
-    return fmt::format("layout not stated; guessed {} from the texels; --swizzle sets it", swizzle);
+std::string guess_text(const std::string& layout) {
+    // A grey picture with alpha has the texels of such a map with y in R, G and B.
+    const std::string_view evidence =
+        layout == "dxt5nm" ? " (A varies; R and B are constant, or R, G and B are equal)" : "";
+    return fmt::format("layout not stated; guessed {} from the texels{}; --swizzle sets it", layout, evidence);
 }
 
 Encoding exact_encoding(const SourceInfo& input) {
@@ -49,7 +46,7 @@ Encoding encoding_of(const SourceInfo& input, const Task& task) {
 }
 
 void report_input(Job& job, const SourceInfo& info) {
-    job.report["source"] = {{"format", name_of(kFormatNames, info.format)}, {"swizzle", swizzle_name(info.swizzle)}};
+    job.report["source"] = {{"format", name_of(kFormatNames, info.format)}, {"swizzle", layout_name(info.swizzle)}};
 }
 
 void NormalsReader::add(Command& command, bool with_keep_length) {
@@ -91,6 +88,7 @@ SourceOptions NormalsReader::options(const Job& job, const Reading& reading) con
     options.unpack.keep_length = reading.keep_length.value_or(unpack.keep_length);
     if (bc5_order) options.bc5_swizzle = *bc5_order == Bc5Order::xy ? kSwizzleXy : kSwizzleYx;
     options.r_or_a = rg_or_ag;
+    options.doubt_y = reading.doubt_y;
     options.file_y_first = reading.is_detail && !reading.y;
     return options;
 }
@@ -98,8 +96,14 @@ SourceOptions NormalsReader::options(const Job& job, const Reading& reading) con
 void NormalsReader::note(Job& job, const std::string& path, const SourceInfo& info) {
     for (const std::string& remark : info.remarks) job.warn(remark, path);
     if (info.srgb) job.warn("declares sRGB colours, which normals are not; its values are used as they are", path);
+    if (info.y_doubtful) {
+        job.warn(fmt::format("green is taken to point {}, but the texels show the other direction; {} sets it",
+                             name_of(kYAxisNames, info.y_axis),
+                             path == job.task.input ? "--y-in" : "--y-in, or --detail-y-in for a detail,"),
+                 path);
+    }
     if (!info.guessed) return;
-    const std::string name = swizzle_name(info.swizzle);
+    const std::string name = layout_name(info.swizzle);
     job.remark(guess_text(name), path);
     const std::lock_guard lock(mutex_);
     Guesses& guesses = guesses_[name];

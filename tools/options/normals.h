@@ -36,6 +36,7 @@ struct Reading {
     bool is_detail = false;       // the file's own y overrides --y-in, which is the base's
     std::optional<YAxis> y = {};  // overrides all of that
     std::optional<bool> keep_length = {};
+    bool doubt_y = false;  // warn if y is assumed and the texels clearly show the other direction
 };
 
 class NormalsReader {

@@ -112,7 +112,8 @@ void report_texture(Job& job, Extent extent, int levels, const PackOptions& pack
     job.report["extent"] = {extent.width, extent.height};
     job.report["levels"] = levels;
     job.report["format"] = name_of(kEncodingNames, pack.encoding);
-    job.report["y"] = name_of(kYAxisNames, pack.y_axis);
+    job.report["y"] = nullptr;
+    if (pack.y_known) job.report["y"] = name_of(kYAxisNames, pack.y_axis);
     job.report["bytes"] = bytes;
 }
 

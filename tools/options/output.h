@@ -32,9 +32,11 @@ struct OutputOptions {
     // container.
     [[nodiscard]] Container container_for(const std::string& output, Container standard_output) const;
 
-    // A metric of angles implies the best effort.
-    [[nodiscard]] PackOptions pack_options(Encoding encoding, YAxis y_axis) const {
-        return {encoding, y_axis, metric == Metric::angle ? Effort::best : effort, metric};
+    // Without --y, y is that of the input, and is stated only if it is known. A metric of angles implies the best
+    // effort.
+    [[nodiscard]] PackOptions pack_options(Encoding encoding, YAxis input, bool input_known) const {
+        const Effort effort_for_metric = metric == Metric::angle ? Effort::best : effort;
+        return {encoding, y.value_or(input), effort_for_metric, metric, y || input_known};
     }
     // The job's write options, with the user's choices.
     [[nodiscard]] WriteOptions write_options(const Job& job) const;

@@ -40,8 +40,7 @@ Result<Texture> PairOptions::read(const std::string& path, int which, const Read
     const auto swizzle = guess_swizzle(*texture, {execution.threads, silent});
     if (!swizzle) return swizzle.error().of(path);
     if (*swizzle != texture->swizzle && warned_of_.insert(path).second) {
-        warn(console, path,
-             fmt::format("layout not stated; guessed {} from the texels", name_of(kSwizzleNames, *swizzle)));
+        warn(console, path, fmt::format("layout not stated; guessed {} from the texels", layout_name(*swizzle)));
     }
     texture->swizzle = *swizzle;
     texture->y_axis = y_[which].value_or(texture->y_axis);

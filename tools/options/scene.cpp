@@ -224,7 +224,7 @@ Result<SampledMap> read_sampled_map(Job& job, const std::string& path, NormalsRe
 Result<SceneFiles> SceneOptions::read(Job& job, NormalsReader& normals, const Execution& execution) const {
     SceneFiles files;
     if (!detail.empty()) {
-        auto map = read_sampled_map(job, detail, normals, {false, true, detail_y_in, false}, preview, execution);
+        auto map = read_sampled_map(job, detail, normals, {false, true, detail_y_in, false, true}, preview, execution);
         if (!map) return map.error();
         files.detail = std::move(*map);
     }

@@ -3,6 +3,7 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstring>
 #include <memory>
 #include <string_view>
@@ -62,6 +63,8 @@ void describe(const OIIO::ImageSpec& spec, const NativeType& type, ReaderHeader&
     const int container = static_cast<int>(8 * reader_type_bytes(type.type));
     const int bits = spec.get_int_attribute("oiio:BitsPerSample", container);
     header.bits = static_cast<std::uint32_t>(bits >= 1 && bits <= container ? bits : container);
+    const std::string description = spec.get_string_attribute("ImageDescription");
+    std::strncpy(header.description, description.c_str(), sizeof header.description - 1);
     for (int c = 0; c < spec.nchannels; ++c) {
         const std::string& name = spec.channelnames[static_cast<std::size_t>(c)];
         std::strncpy(header.names[c], name.c_str(), sizeof header.names[c] - 1);
@@ -87,6 +90,23 @@ bool read_strip(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, const Type
     return input.read_scanlines(0, 0, y, y_end, spec.z, 0, spec.nchannels, type, to);
 }
 
+// Refuses because of what OpenImageIO reports. Only its words show whether a file is damaged or of a kind that it
+// cannot decode; where it is not sure, it says "corrupt", too.
+bool refuse_picture(ReaderHeader& header, const std::string& message) {
+    std::string words = message;
+    std::transform(words.begin(), words.end(), words.begin(), [](unsigned char c) { return std::tolower(c); });
+    const auto says = [&](std::string_view text) { return words.find(text) != std::string::npos; };
+    if (says("corrupt") || !(says("unsupported") || says("not supported"))) {
+        return refuse(header, ErrorCode::bad_data, "damaged: " + message);
+    }
+    // Compressions of PSD: 2 is ZIP, 3 ZIP with prediction (Adobe Photoshop File Formats Specification).
+    if (says("unsupported compression 2") || says("unsupported compression 3")) {
+        return refuse(header, ErrorCode::unsupported,
+                      "ZIP compression in PSD is not supported; save the picture with RLE or without compression");
+    }
+    return refuse(header, ErrorCode::unsupported, message);
+}
+
 }  // namespace
 
 bool decode(const Task& task, ReaderHeader& header) {
@@ -97,7 +117,7 @@ bool decode(const Task& task, ReaderHeader& header) {
     config.attribute("oiio:RawColor", 1);
     OIIO::ImageSpec spec;
     const std::string path = "/proc/self/fd/" + std::to_string(kInputDescriptor);
-    if (!input->open(path, spec, config)) return refuse(header, ErrorCode::bad_data, "damaged: " + input->geterror());
+    if (!input->open(path, spec, config)) return refuse_picture(header, input->geterror());
 
     if (const std::string_view reason = unsupported_reason(task.format, spec); !reason.empty()) {
         return refuse(header, ErrorCode::unsupported, std::string(reason));
@@ -125,7 +145,7 @@ bool decode(const Task& task, ReaderHeader& header) {
         const int end = std::min(begin + rows, spec.height);
         // Some decoders report success but leave an error message behind.
         if (!read_strip(*input, spec, type.read_as, begin, end, strip.data()) || input->has_error()) {
-            return refuse(header, ErrorCode::bad_data, "damaged: " + input->geterror());
+            return refuse_picture(header, input->geterror());
         }
         put_bytes(kReaderDataOffset + static_cast<std::uint64_t>(begin) * bytes_of_row, strip.data(),
                   static_cast<std::uint64_t>(end - begin) * bytes_of_row);

@@ -41,6 +41,7 @@ OIIO::ImageSpec spec_of(const ReaderHeader& picture) {
     OIIO::ImageSpec spec(picture.width, picture.height, picture.channels, type_of(picture.type));
     spec.attribute("oiio:UnassociatedAlpha", 1);  // alpha is data; RGB must not be divided by it
     spec.attribute("DateTime", "");               // otherwise the TIFF writer uses the clock
+    if (picture.description[0] != '\0') spec.attribute("ImageDescription", picture.description);
     spec.attribute("jpeg:subsampling", "4:4:4");  // x and y of a normal are stored in the chroma
     return spec;
 }

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <tex/swizzle.h>
+
 #include "cli/text.h"
 #include "reports/fixes.h"
 
@@ -55,7 +57,7 @@ Json findings_json(const CheckReport& report, const Requirements& require) {
         json["error"] = {{"code", name_of(kErrorCodeNames, report.error->code)}, {"reason", report.error->reason}};
     } else {
         json["format"] = name_of(kFormatNames, report.format);
-        json["swizzle"] = to_string(report.swizzle);
+        json["swizzle"] = layout_name(report.swizzle);
         json["extent"] = {report.extent.width, report.extent.height};
         json["levels"] = report.levels;
         json["y"] = {{"measured", report.y.y ? Json(name_of_y(*report.y.y)) : Json()},

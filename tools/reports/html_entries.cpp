@@ -26,8 +26,7 @@ std::string fact(const char* name, const std::string& value) {
 std::string extent_text(Extent extent) { return fmt::format("{} x {}", extent.width, extent.height); }
 
 std::string layout_text(Format format, const Swizzle& swizzle) {
-    const std::string_view name = name_of(kSwizzleNames, swizzle);
-    return fmt::format("{}, {}", name_of(kFormatNames, format), name.empty() ? to_string(swizzle) : std::string(name));
+    return fmt::format("{}, {}", name_of(kFormatNames, format), layout_name(swizzle));
 }
 
 std::string chip(Severity severity, const std::string& text) {

@@ -126,6 +126,10 @@ struct Image {
     // The EXR attribute normalEncoding, or empty: "signed" if the values are the components of normals themselves.
     std::string normal_encoding;
 
+    // What a picture that libtex wrote states about its channels, for example "rgb +y" (see encode_file()), or empty.
+    // read_texture() applies it.
+    std::string normal_mark;
+
     [[nodiscard]] Extent extent() const { return planes.empty() ? Extent{} : planes.front().extent(); }
     // The index of the plane called `name` (exact), or -1.
     [[nodiscard]] int find(const std::string& name) const {

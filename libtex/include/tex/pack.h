@@ -60,6 +60,7 @@ struct PackOptions {
     YAxis y_axis = YAxis::up;  // of the texture; down stores -y
     Effort effort = Effort::normal;
     Metric metric = Metric::component;
+    bool y_known = true;  // whether the texture states y_axis; false if that is only an assumption about the source
 };
 
 // Packs every level of a chain.

@@ -32,7 +32,7 @@ namespace tex {
 //   normals        the colours of the map with y up, (n + 1) / 2
 //   world-normals  the perturbed normal N of the shape in world space, (N + 1) / 2
 //   slope          sqrt(p^2 + q^2), rise per texel                                   0 to a rounded 99.5th percentile
-//   tilt           angle between n and (0, 0, 1) in degrees                          0 to 90
+//   tilt           angle between n and (0, 0, 1) in degrees                          0 to a rounded 99.9th percentile
 //   length         |n| - 1: damage, or filtering without renormalisation             + and -
 //   z-error        z - reconstruct_z(x, y): z that does not belong to x and y        + and -
 //   curl           dq/dx - dp/dy, differences of neighbours: 0 for the normals of    + and -

@@ -27,6 +27,7 @@ struct SourceOptions {
     std::optional<Swizzle> bc5_swizzle;  // of BC5 files, instead of their own; unpack.swizzle takes precedence
     bool r_or_a = false;        // y is in G, and x in A if guess_swizzle() finds it there, else in R; unpack.swizzle
                                 // takes precedence
+    bool doubt_y = false;       // if neither the file nor the caller states y, measure it: SourceInfo::y_doubtful
     bool file_y_first = false;  // the direction that a file states takes precedence over unpack.y_axis
 };
 
@@ -36,6 +37,8 @@ struct SourceInfo {
     Swizzle swizzle = {};      // with which it was read
     bool guessed = false;      // the swizzle comes from the texels, and is not merely rgb in a file that looks like rgb
     YAxis y_axis = YAxis::up;  // with which it was read: the direction of y in the file
+    bool y_known = false;      // y_axis comes from the file or from the caller; otherwise it is assumed
+    bool y_doubtful = false;   // it is assumed, and the texels clearly show the other direction
     bool srgb = false;         // this and remarks: as in Texture
     std::vector<std::string> remarks;
 };

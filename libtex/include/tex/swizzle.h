@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include <string>
+
 #include <tex/execution.h>
 #include <tex/names.h>
 #include <tex/result.h>
@@ -19,6 +21,10 @@ inline constexpr Named<Swizzle> kSwizzleNames[] = {
     {kSwizzleYx, "gr", "y in R, x in G (3Dc, ATI2)"},
     {{Component::z, Component::y, Component::x, Component::other}, "bgr", "z, y, x in R, G, B"},
 };
+
+// The name in kSwizzleNames of the layout with x, y and z in the same channels as in `swizzle`; if there is none, the
+// letters of to_string(). Files, reports and messages name a layout by this word.
+[[nodiscard]] std::string layout_name(const Swizzle& swizzle);
 
 // Finds the channels of `texture` that hold the normal. This is its own swizzle if the file states it or if the format
 // leaves no choice (fewer than four channels). Otherwise the texels of the base level decide, up to about 2^20 of them,

@@ -13,6 +13,11 @@ namespace {
 constexpr float kJump = 0.5f;  // a change of slope over two texels that counts as a jump
 constexpr int kWideMap = 512;
 
+// What makes the direction of green clear.
+constexpr double kLeastCorrelation = 0.2;
+constexpr double kLeastConfidence = 0.99;
+constexpr double kLeastUsable = 0.5;  // the share of texels that must hold a normal
+
 // Length of a region's edge in texels: maps of 128 texels and above have 16 regions or more.
 int region_size(Extent extent) { return std::min(extent.width, extent.height) >= kWideMap ? 64 : 32; }
 
@@ -89,10 +94,16 @@ double CurlSums::correlation() const { return ratio(cross, p_square, q_square); 
 double CurlSums::exchanged_correlation() const { return ratio(exchanged, px_square, qy_square); }
 
 Curl measure_curl(const Stored& stored) {
+    const std::vector<Rect> windows = sample_windows(stored.extent());
+    return measure_curl(stored.extent(), windows, [&](std::size_t k) { return slopes_of(stored, windows[k]); });
+}
+
+Curl measure_curl(Extent extent, const std::vector<Rect>& windows, const std::function<Slopes(std::size_t)>& take) {
     Curl curl;
-    const int size = region_size(stored.extent());
+    const int size = region_size(extent);
     double all = 0.0, usable = 0.0;
-    for (const Rect& window : sample_windows(stored.extent())) {
+    for (std::size_t w = 0; w < windows.size(); ++w) {
+        const Rect& window = windows[w];
         const std::size_t first = curl.regions.size();
         for (int y = 0; y < window.height; y += size) {
             for (int x = 0; x < window.width; x += size) {
@@ -102,7 +113,7 @@ Curl measure_curl(const Stored& stored) {
                 curl.regions.push_back(region);
             }
         }
-        Slopes slopes = slopes_of(stored, window);
+        Slopes slopes = take(w);
         all += static_cast<double>(slopes.extent().texels());
         usable += count_usable(slopes.p);
         for (int k = 0; k < kCurlScales; ++k) {
@@ -129,6 +140,13 @@ Curl measure_curl(const Stored& stored) {
     curl.exchanged_confidence = confidence_of(z_score(curl.regions, best, true));
     curl.usable = all > 0.0 ? usable / all : 0.0;
     return curl;
+}
+
+std::optional<YAxis> clear_y(const Curl& curl) {
+    if (std::abs(curl.correlation) < kLeastCorrelation || curl.confidence < kLeastConfidence ||
+        curl.usable < kLeastUsable)
+        return std::nullopt;
+    return curl.correlation > 0.0 ? YAxis::up : YAxis::down;
 }
 
 }  // namespace tex

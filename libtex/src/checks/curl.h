@@ -7,7 +7,11 @@
 
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <vector>
+
+#include <tex/normal_map.h>
 
 #include "checks/stored.h"
 
@@ -50,5 +54,11 @@ struct Curl {
 };
 
 Curl measure_curl(const Stored& stored);
+
+// The same for parts of a map of this extent; `slopes` returns the slopes of a part, once for each.
+Curl measure_curl(Extent extent, const std::vector<Rect>& windows, const std::function<Slopes(std::size_t)>& slopes);
+
+// Where green points, if that is clear.
+std::optional<YAxis> clear_y(const Curl& curl);
 
 }  // namespace tex

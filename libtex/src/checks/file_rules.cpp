@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include <tex/swizzle.h>
+
 namespace tex {
 namespace {
 
@@ -11,9 +13,9 @@ constexpr std::string_view kTrailing = "after the last level";
 
 bool is_power_of_two(int n) { return (n & (n - 1)) == 0; }
 
-// Describes a texture, for example "bc3-unorm, 1y1x".
+// Describes a texture, for example "bc3-unorm, dxt5nm".
 std::string format_text(const Texture& texture, const Swizzle& swizzle) {
-    return std::string(name_of(kFormatNames, texture.format)) + ", " + to_string(swizzle);
+    return std::string(name_of(kFormatNames, texture.format)) + ", " + layout_name(swizzle);
 }
 
 // Whether two swizzles hold the same components. Channels that the encoding leaves open may hold anything.

@@ -12,22 +12,20 @@
 namespace tex {
 namespace {
 
-constexpr std::int64_t kWholeTexels = std::int64_t{1} << 20;
 constexpr int kWindowSize = 256;
 constexpr int kWindowsAcross = 4;
 constexpr int kPhase = 16;
-constexpr float kLeastZ = 0.05f;
 constexpr int kHoleBorder = 4;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 // The first texel of window k of kWindowsAcross along an axis of n texels.
-int window_begin(int n, int k) {
-    const std::int64_t room = n - std::min(n, kWindowSize);
+int window_begin(int n, int size, int k) {
+    const std::int64_t room = n - std::min(n, size);
     return static_cast<int>(room * k / (kWindowsAcross - 1)) / kPhase * kPhase;
 }
 
-// Texels near one without a normal become unusable too, up to a distance of kHoleBorder: filters and block codecs have
-// mixed these normals with the fill of the hole.
+}  // namespace
+
 void widen_holes(Slopes& slopes) {
     const Extent extent = slopes.extent();
     const auto pass = [&](int length, int lines, auto at) {
@@ -52,8 +50,6 @@ void widen_holes(Slopes& slopes) {
     }
 }
 
-}  // namespace
-
 int Stored::channel(Component component) const {
     const auto count = std::min(image->planes.size(), swizzle.size());
     for (std::size_t c = 0; c < count; ++c) {
@@ -62,13 +58,16 @@ int Stored::channel(Component component) const {
     return -1;
 }
 
-std::vector<Rect> sample_windows(Extent extent) {
-    if (extent.texels() <= kWholeTexels) return {{0, 0, extent.width, extent.height}};
+std::vector<Rect> sample_windows(Extent extent) { return sample_windows(extent, kWindowSize); }
+
+std::vector<Rect> sample_windows(Extent extent, int size) {
+    constexpr std::int64_t kWindows = std::int64_t{kWindowsAcross} * kWindowsAcross;
+    if (extent.texels() <= kWindows * size * size) return {{0, 0, extent.width, extent.height}};
     std::vector<Rect> windows;
     for (int j = 0; j < kWindowsAcross; ++j) {
         for (int i = 0; i < kWindowsAcross; ++i) {
-            windows.push_back({window_begin(extent.width, i), window_begin(extent.height, j),
-                               std::min(extent.width, kWindowSize), std::min(extent.height, kWindowSize)});
+            windows.push_back({window_begin(extent.width, size, i), window_begin(extent.height, size, j),
+                               std::min(extent.width, size), std::min(extent.height, size)});
         }
     }
     return windows;

@@ -40,6 +40,9 @@ struct Rect {
 // Rules that count texels do not sample.
 std::vector<Rect> sample_windows(Extent extent);
 
+// The same with squares of `size` texels: the whole map, if it has no more texels than 16 of them.
+std::vector<Rect> sample_windows(Extent extent, int size);
+
 // Slopes p = -x/z and q = -y/z of a window. They are NaN if a texel has no usable normal: it is not finite, is shorter
 // than 0.5, has z below 0.05, or has x^2 + y^2 above 1.04 and no stored z.
 struct Slopes {
@@ -47,6 +50,12 @@ struct Slopes {
     [[nodiscard]] Extent extent() const { return p.extent(); }
 };
 Slopes slopes_of(const Stored& stored, Rect window);
+
+// Makes the slopes near texels without a normal unusable, too: filters and block codecs have mixed these normals with
+// the fill of the hole.
+void widen_holes(Slopes& slopes);
+
+inline constexpr float kLeastZ = 0.05f;  // of a usable normal
 
 // Halves the size. Each texel is the mean of the four that it covers, or NaN if one of them is NaN.
 Slopes halved(const Slopes& slopes);

@@ -10,6 +10,7 @@
 #include <half.h>
 
 #include "formats/channels.h"
+#include "formats/normal_mark.h"
 
 namespace tex {
 namespace {
@@ -108,6 +109,7 @@ Result<Texture> texture_of(const Image& image) {
     if (!picture) return std::move(picture).error();
     Texture texture = std::move(picture->head);
     texture.normal_encoding = image.normal_encoding;
+    apply_found_mark(image.normal_mark, texture);
     texture.levels.push_back(level_of(image, texture.format, picture->planes));
     return texture;
 }

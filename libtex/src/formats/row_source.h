@@ -31,9 +31,10 @@ public:
     [[nodiscard]] Extent extent() const { return extent_; }
     [[nodiscard]] const std::vector<std::string>& names() const { return names_; }  // of the channels
     [[nodiscard]] std::size_t row_bytes() const { return row_bytes_; }              // of a decoded row
-    [[nodiscard]] SampleKind sample() const { return sample_; }                     // this and the next two as in Image
+    [[nodiscard]] SampleKind sample() const { return sample_; }  // this and the next three as in Image
     [[nodiscard]] int bits() const { return bits_; }
     [[nodiscard]] const std::string& normal_encoding() const { return normal_encoding_; }
+    [[nodiscard]] const std::string& normal_mark() const { return normal_mark_; }
 
     // The number of rows that the file stores as one unit. decode() is cheapest if `first` is a multiple of this
     // number, and `count` either is a multiple too or reaches the last row.
@@ -83,6 +84,8 @@ protected:
         normal_encoding_ = std::move(normal_encoding);
     }
 
+    void describe_normals(std::string mark) { normal_mark_ = std::move(mark); }
+
 private:
     Extent extent_;
     std::vector<std::string> names_;
@@ -90,6 +93,7 @@ private:
     SampleKind sample_ = SampleKind::unorm;
     int bits_ = 8;
     std::string normal_encoding_;
+    std::string normal_mark_;
 };
 
 // Opens the picture in `file`, which must outlive the rows. Errors: those of read_image() that the header reveals.

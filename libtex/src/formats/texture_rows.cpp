@@ -9,6 +9,7 @@
 
 #include "formats/codecs.h"
 #include "formats/level_rows.h"
+#include "formats/normal_mark.h"
 #include "formats/picture.h"
 #include "threads/guard.h"
 
@@ -25,6 +26,7 @@ Result<TextureRows> picture_rows(const InputFile& file, Result<std::unique_ptr<R
     }
     TextureRows texture;
     texture.head = std::move(picture->head);
+    apply_found_mark((*rows)->normal_mark(), texture.head);
     texture.levels.push_back(std::move(*rows));
     texture.planes = std::move(picture->planes);
     texture.rounds = picture->rounds;

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "preview/canvas.h"
 
@@ -17,10 +19,28 @@ constexpr int kMargin = 8;
 constexpr int kBarTop = 6;
 constexpr int kBarHeight = 10;
 constexpr int kTextTop = 21;
+constexpr int kLineRows = 12;  // of a line of the title below the values
+constexpr int kLeastWidth = 96;
 
 // Nobody can distinguish this many colours. Together with the colours of the letters, they fit into the palette of a
 // PNG.
 constexpr double kColorSteps = 240.0;
+
+// Breaks the title at blanks into lines of at most `width` pixels, so that no figure is cut.
+std::vector<std::string> lines_of(const std::string& title, int unit, int width) {
+    std::vector<std::string> lines;
+    for (std::size_t at = 0; at < title.size();) {
+        const std::size_t end = std::min(title.find(' ', at), title.size());
+        const std::string word = fitted(std::string_view(title).substr(at, end - at), unit, width);
+        at = end + 1;
+        if (!lines.empty() && text_width(lines.back() + " " + word, unit) <= width) {
+            lines.back() += " " + word;
+        } else {
+            lines.push_back(word);
+        }
+    }
+    return lines;
+}
 
 }  // namespace
 
@@ -43,8 +63,14 @@ std::string number(double value) {
     return {text, end.ptr};
 }
 
-Level legend(int width, int unit, const ColorScale& scale) {
-    Canvas canvas(Extent{width, kLegendRows * unit});
+Level legend(int width, int unit, const ColorScale& scale, Title place) {
+    const std::string left = number(scale.least), right = number(scale.greatest);
+    const int side = std::max(text_width(left, unit), text_width(right, unit)) + 2 * kMargin * unit;
+    const int between = width - 2 * side;
+    std::vector<std::string> lines;
+    if (place == Title::may_be_below && text_width(scale.title, unit) > between)
+        lines = lines_of(scale.title, unit, width - 2 * kMargin * unit);
+    Canvas canvas(Extent{width, (kLegendRows + kLineRows * static_cast<int>(lines.size())) * unit});
     const int bar = std::max(1, width - 2 * kMargin * unit);
     for (int i = 0; i < bar; ++i) {
         const Vec3 color = scale.color(scale.least + (scale.greatest - scale.least) *
@@ -52,20 +78,22 @@ Level legend(int width, int unit, const ColorScale& scale) {
         canvas.fill((width - bar) / 2 + i, kBarTop * unit, {1, kBarHeight * unit},
                     {display_code(color.x), display_code(color.y), display_code(color.z)});
     }
-    const std::string left = number(scale.least), right = number(scale.greatest);
-    const int y = kTextTop * unit;
+    int y = kTextTop * unit;
     canvas.text(kMargin * unit, y, unit, left);
     canvas.text(width - kMargin * unit - text_width(right, unit), y, unit, right);
-    const int side = std::max(text_width(left, unit), text_width(right, unit)) + 2 * kMargin * unit;
-    const std::string title = fitted(scale.title, unit, width - 2 * side);
-    canvas.text((width - text_width(title, unit)) / 2, y, unit, title);
+    const auto put = [&](const std::string& line) { canvas.text((width - text_width(line, unit)) / 2, y, unit, line); };
+    if (lines.empty()) put(fitted(scale.title, unit, between));
+    for (const std::string& line : lines) {
+        y += kLineRows * unit;
+        put(line);
+    }
     return std::move(std::move(canvas).take().levels.front());
 }
 
 Texture with_legend(Texture picture, const ColorScale& scale) {
     const Level& level = picture.levels.front();
-    const int width = level.extent.width, top = level.extent.height;
-    const Level below = legend(width, text_scale(width), scale);
+    const int width = std::max(level.extent.width, kLeastWidth), top = level.extent.height;
+    const Level below = legend(width, text_scale(width), scale, Title::may_be_below);
     Canvas canvas({width, top + below.extent.height});
     canvas.draw(0, 0, level);
     canvas.draw(0, top, below);

@@ -27,11 +27,13 @@ struct ColorScale {
 [[nodiscard]] std::string number(double value);
 
 // A bar of the colours with the values at its ends and the title between them: a picture of `width` pixels by
-// kLegendRows times `unit` rows.
+// kLegendRows times `unit` rows. If there is no room for the title between the values, it is shortened or put below
+// them, which adds rows.
+enum class Title { between_values, may_be_below };
 inline constexpr int kLegendRows = 36;
-[[nodiscard]] Level legend(int width, int unit, const ColorScale& scale);
+[[nodiscard]] Level legend(int width, int unit, const ColorScale& scale, Title place = Title::between_values);
 
-// The picture with its legend below.
+// The picture with its legend below. A picture that is too narrow for a legend gets wider.
 [[nodiscard]] Texture with_legend(Texture picture, const ColorScale& scale);
 
 }  // namespace tex::render

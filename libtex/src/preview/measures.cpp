@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -89,7 +90,7 @@ Mixed mixed_at(const Slopes& slopes, int i, int j) {
 }
 
 std::string curl_title(const Curl& curl) {
-    const std::string figure = ", r = " + number(curl.correlation);
+    const std::string figure = ", r=" + number(curl.correlation);
     constexpr double kSure = 0.95;
     if (curl.confidence < kSure) return "curl: y unclear" + figure;
     return (curl.correlation > 0.0 ? "curl: y up" : "curl: y DOWN") + figure;
@@ -126,14 +127,14 @@ double nice(double value) {
     return power * 10.0;
 }
 
-}  // namespace
-
-bool is_measure(Show show) {
-    return show == Show::slope || show == Show::tilt || show == Show::length || show == Show::z_error ||
-           show == Show::curl;
+// The least of these angles that is not below `degrees`.
+double nice_angle(double degrees) {
+    constexpr double kAngles[] = {0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0, 45.0, 60.0, 90.0, 180.0};
+    return *std::lower_bound(std::begin(kAngles), std::end(kAngles) - 1, degrees);
 }
 
-double round_maximum(const Plane<float>& values, double least) {
+// The value in |values| below which this many thousandths of them lie; 0 if none is finite.
+double quantile(const Plane<float>& values, std::size_t thousandths) {
     std::vector<float> sizes;
     sizes.reserve(static_cast<std::size_t>(values.extent().texels()));
     for (int j = 0; j < values.extent().height; ++j) {
@@ -142,11 +143,21 @@ double round_maximum(const Plane<float>& values, double least) {
             if (size <= 3e38f) sizes.push_back(size);  // false for infinity and NaN
         }
     }
-    if (sizes.empty()) return nice(least);
-    const std::size_t rank = std::min(sizes.size() - 1, sizes.size() * 995 / 1000);
-    std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(rank), sizes.end());
-    return nice(std::max(static_cast<double>(sizes[rank]), least));
+    if (sizes.empty()) return 0.0;
+    const std::size_t rank = std::min(sizes.size() - 1, sizes.size() * thousandths / 1000);
+    const auto place = sizes.begin() + static_cast<std::ptrdiff_t>(rank);
+    std::nth_element(sizes.begin(), place, sizes.end());
+    return static_cast<double>(*place);
 }
+
+}  // namespace
+
+bool is_measure(Show show) {
+    return show == Show::slope || show == Show::tilt || show == Show::length || show == Show::z_error ||
+           show == Show::curl;
+}
+
+double round_maximum(const Plane<float>& values, double least) { return nice(std::max(quantile(values, 995), least)); }
 
 Result<Measure> measure(Show show, const NormalMap& map, float maximum, const Execution& execution) {
     if (show == Show::curl) return measure_curl_of(map, maximum, execution);
@@ -164,7 +175,7 @@ Result<Measure> measure(Show show, const NormalMap& map, float maximum, const Ex
             break;
         case Show::tilt:
             scale.title = "tilt, degrees";
-            if (choose) scale.greatest = 90.0;
+            if (choose) scale.greatest = nice_angle(quantile(result.values, 999));
             break;
         case Show::length:
         case Show::z_error:

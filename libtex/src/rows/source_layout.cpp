@@ -32,6 +32,7 @@ SourceInfo source_info(const Texture& head, const Swizzle& swizzle, const Source
     const bool as_expected = name_of(kSwizzleNames, swizzle) == "rgb" && head.swizzle[3] != Component::x;
     info.guessed = leaves_a_choice(head) && !options.unpack.swizzle && !options.r_or_a && !as_expected;
     const bool told = options.file_y_first && head.y_known;
+    info.y_known = head.y_known || options.unpack.y_axis;
     info.y_axis = told ? head.y_axis : options.unpack.y_axis.value_or(head.y_axis);
     info.srgb = head.srgb;
     info.remarks = head.remarks;

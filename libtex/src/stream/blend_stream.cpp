@@ -30,6 +30,7 @@ struct Input {
     Wrap wrap_x = Wrap::repeat;
     Wrap wrap_y = Wrap::repeat;
     std::optional<RowsInStep> step;  // empty: the whole map is held in memory
+    std::optional<YWitness> witness;
 };
 
 class Blending {
@@ -132,8 +133,12 @@ Result<void> Blending::prepare() {
     }
     report_.source = base_.file.info();
     report_.levels = holds_levels(container_, options_.level_names) ? levels_to_build(options_.mip, report_.extent) : 1;
-    report_.pack = options_.pack ? options_.pack(report_.source)
-                                 : PackOptions{default_encoding(container_), report_.source.y_axis};
+    if (options_.pack) {
+        report_.pack = options_.pack(report_.source);
+    } else {
+        report_.pack = {default_encoding(container_), report_.source.y_axis};
+        report_.pack.y_known = report_.source.y_known;
+    }
     return {};
 }
 
@@ -146,8 +151,10 @@ Result<std::unique_ptr<StripWriter>> Blending::open_writer() const {
 Result<PlacedMap> Blending::place(Input& input, std::deque<ArrivingMap>& arriving, const Execution& execution) {
     if (!input.step) return place_chain(input.file.chain(), input.map, input.wrap_x, input.wrap_y, execution);
     MapFile& file = input.file;
-    ArrivingMap& map =
-        arriving.emplace_back(file.texture(), report_.extent, file.sources(), file.rule(), file.finder(), *input.step);
+    input.witness.reset();
+    if (file.doubts_y()) input.witness.emplace(report_.extent);
+    ArrivingMap& map = arriving.emplace_back(file.texture(), report_.extent, file.sources(), file.rule(), file.finder(),
+                                             input.witness ? &*input.witness : nullptr, *input.step);
     return PlacedMap{nullptr,     [&map](int j) { return map.row(j); }, report_.extent, input.map, input.wrap_x,
                      input.wrap_y};
 }
@@ -192,6 +199,10 @@ Result<bool> Blending::run(const Execution& execution) {
     bool right = true;
     for (Input& input : inputs_) right = input.file.was_right() && right;
     if (!right) return false;
+    for (std::size_t k = 0; k < inputs_.size(); ++k) {
+        SourceInfo& info = k == 0 ? report_.source : report_.details[k - 1];
+        if (inputs_[k].witness) info.y_doubtful = inputs_[k].witness->contradicts();
+    }
     if (const Result<void> committed = writer_->commit(); !committed) return committed.error();
     report_.bytes = writer_->file_bytes();
     return true;

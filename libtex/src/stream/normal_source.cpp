@@ -6,6 +6,7 @@
 
 #include "formats/texture_rows.h"
 #include "rows/source_layout.h"
+#include "stream/y_witness.h"
 
 namespace tex {
 namespace {
@@ -29,6 +30,7 @@ Result<Source> unpack_source(Texture texture, const SourceOptions& options, bool
     Result<MipChain> chain = unpack(texture, unpack_options(source.info, options), execution);
     if (!chain) return chain.error();
     source.chain = std::move(*chain);
+    if (options.doubt_y && !source.info.y_known) source.info.y_doubtful = contradicts_y(source.chain.levels.front());
     return source;
 }
 

@@ -28,6 +28,7 @@ PackOptions pack_options(const PackFileOptions& options, Container container, co
     PackOptions pack;
     pack.encoding = default_encoding(container);
     pack.y_axis = source.y_axis;
+    pack.y_known = source.y_known;
     return pack;
 }
 
@@ -165,7 +166,10 @@ Result<void> Attempt::stream_level(std::size_t k, StripWriter& writer, const Exe
         rows(k).choose_planes(wanted);
     }
     RowStream stream(rows(k), input_, static_cast<int>(k - first_), levels, writer, execution, sizes_);
-    UnpackStage normals(texture_, extent, sources_, rule_, options_.scale, finder, stream.sink());
+    std::optional<YWitness> witness;
+    if (k == first_ && options_.source.doubt_y && !report_.source.y_known) witness.emplace(extent);
+    UnpackStage normals(texture_, extent, sources_, rule_, options_.scale, finder, witness ? &*witness : nullptr,
+                        stream.sink());
     constexpr int kFromTheTop = 0;
     LevelStage mips(extent, levels, kFromTheTop, options_.mip.value_or(MipOptions()), stream.strips());
     std::optional<RoughnessStage> roughness;
@@ -176,6 +180,7 @@ Result<void> Attempt::stream_level(std::size_t k, StripWriter& writer, const Exe
     }
     Result<void> done = stream.run(normals, mips, roughness ? &*roughness : nullptr);
     if (done && finder != nullptr) correction_ = finder->correction();
+    if (done && witness) report_.source.y_doubtful = witness->contradicts();
     return done;
 }
 

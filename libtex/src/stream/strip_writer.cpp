@@ -255,7 +255,7 @@ bool holds_levels(Container container, const LevelNames& names) { return names |
 
 StripPacking packing_of(const PackOptions& options, Extent extent, int levels) {
     const EncodingInfo encoding = encoding_info(options.encoding);
-    return {{encoding.format, extent, levels, encoding.swizzle, true, options.y_axis, true},
+    return {{encoding.format, extent, levels, encoding.swizzle, true, options.y_axis, options.y_known},
             [options](const Strip& strip, std::byte* out) {
                 pack_rows(strip.map, strip.height, options, 0, strip.height, out);
             }};

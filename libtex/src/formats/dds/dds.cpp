@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <cstring>
 #include <optional>
+#include <string>
+#include <string_view>
 
 #include <tex/mip_chain.h>
 
@@ -13,6 +15,7 @@
 #include "formats/claims.h"
 #include "formats/dds/dds_format.h"
 #include "formats/marks.h"
+#include "formats/normal_mark.h"
 
 namespace tex {
 namespace {
@@ -21,6 +24,14 @@ constexpr std::size_t kMagicBytes = kDdsMagic.size();
 constexpr std::size_t kHeaderBytes = 124;
 constexpr std::size_t kPixelFormatBytes = 32;
 constexpr std::size_t kDx10Bytes = 20;
+
+// The mark of libtex in the reserved words: a tag, then up to kMarkBytes of text.
+constexpr std::size_t kReservedAt = 28;  // in the header
+constexpr std::size_t kReservedWords = 11;
+constexpr std::size_t kMarkWord = 3;
+constexpr std::string_view kMarkTag = "LTEX";
+constexpr std::size_t kMarkBytes = 12;
+static_assert(kMarkBytes >= kLongestNormalMark);
 
 // DDS_HEADER::dwFlags, dwCaps and dwCaps2 (ddraw.h).
 constexpr std::uint32_t kDdsdCaps = 0x1;
@@ -59,6 +70,19 @@ std::optional<DdsPixelFormat> legacy_pixel_format(const TextureHead& head) {
     return legacy;
 }
 
+// dwReserved1, in which tools write their signatures: GIMP in words 0 to 3, NVIDIA's in words 7 to 10. Word 3, which
+// GIMP reads only after its own signature, begins the mark of libtex.
+void write_reserved(ByteWriter& writer, const TextureHead& head) {
+    const std::string mark = normal_mark(head);
+    const std::size_t end = writer.size() + kReservedWords * sizeof(std::uint32_t);
+    if (!mark.empty()) {
+        writer.zeros(kMarkWord * sizeof(std::uint32_t));
+        writer.text(kMarkTag);
+        writer.text(mark);
+    }
+    writer.zeros(end - writer.size());
+}
+
 // dwPitchOrLinearSize: the number of bytes of a row of texels, or of the base level for block formats.
 std::uint32_t pitch_or_size(const TextureHead& head, Rearrange rearrange) {
     const Extent base = format_info(head.format).has_blocks() ? head.extent : Extent{head.extent.width, 1};
@@ -76,6 +100,7 @@ struct Header {
     std::uint32_t mip_map_count = 0;
     DdsPixelFormat pixel_format;
     std::uint32_t caps2 = 0;
+    std::string mark;                              // of libtex, see normal_mark.h
     std::size_t end = kMagicBytes + kHeaderBytes;  // where the levels begin
     bool has_dx10 = false;
     std::uint32_t dxgi = 0;
@@ -89,6 +114,15 @@ Error bad_data(const std::string& name, std::string reason) { return {ErrorCode:
 
 Error unsupported(const std::string& name, std::string reason) {
     return {ErrorCode::unsupported, name, std::move(reason)};
+}
+
+// The mark in the reserved words; empty if there is none.
+std::string mark_of(const std::byte* reserved) {
+    const char* const tag = reinterpret_cast<const char*>(reserved + kMarkWord * sizeof(std::uint32_t));
+    if (std::string_view(tag, kMarkTag.size()) != kMarkTag) return {};
+    const char* const text = tag + kMarkTag.size();
+    const std::string mark(text, strnlen(text, kMarkBytes));
+    return mark.empty() ? "?" : mark;
 }
 
 Result<Header> parse_header(const std::byte* data, std::size_t size, const std::string& name) {
@@ -114,6 +148,7 @@ Result<Header> parse_header(const std::byte* data, std::size_t size, const std::
     header.width = field(3);
     header.depth = field(5);
     header.mip_map_count = field(6);
+    header.mark = mark_of(data + kMagicBytes + kReservedAt);
     header.pixel_format = {field(19), field(20), field(21), {field(22), field(23), field(24), field(25)}};
     header.caps2 = field(27);
     if (header.pixel_format.four_cc == fourcc("DX10") && (header.pixel_format.flags & kDdpfFourCc) != 0) {
@@ -192,7 +227,7 @@ FileLayout dds_layout(const TextureHead& head, const WriteOptions& options) {
     writer.u32(pitch_or_size(head, layout.rearrange));
     writer.u32(0);  // depth
     writer.u32(static_cast<std::uint32_t>(head.levels));
-    writer.zeros(11 * sizeof(std::uint32_t));  // reserved: some tools write their signature here
+    write_reserved(writer, head);
     writer.u32(kPixelFormatBytes);
     writer.u32(pixel_format.flags);
     writer.u32(pixel_format.four_cc);
@@ -241,6 +276,8 @@ Result<StoredTexture> parse_dds(const FetchBytes& fetch, std::size_t size, const
     texture.srgb = texels->srgb;
     texture.remarks = std::move(header->remarks);
     texture.remarks.insert(texture.remarks.end(), texels->remarks.begin(), texels->remarks.end());
+
+    apply_found_mark(header->mark, texture);
 
     const int wanted = wanted_levels(*header, *extent, texture.remarks);
     std::size_t left = size - header->end;

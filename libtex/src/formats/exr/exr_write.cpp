@@ -85,7 +85,8 @@ Imf::Header header_of(const TextureHead& texture) {
         std::find(texture.swizzle.begin(), texture.swizzle.end(), Component::x) != texture.swizzle.end();
     if (holds_normals) {
         header.insert(kNormalEncoding, Imf::StringAttribute("signed"));
-        header.insert(kNormalYAxis, Imf::StringAttribute(std::string(name_of(kYAxisNames, texture.y_axis))));
+        if (texture.y_known)
+            header.insert(kNormalYAxis, Imf::StringAttribute(std::string(name_of(kYAxisNames, texture.y_axis))));
     }
     return header;
 }

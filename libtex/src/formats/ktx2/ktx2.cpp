@@ -16,14 +16,13 @@
 #include "formats/claims.h"
 #include "formats/ktx2/ktx2_descriptor.h"
 #include "formats/marks.h"
+#include "formats/normal_mark.h"
 
 namespace tex {
 namespace {
 
 constexpr std::size_t kHeaderBytes = 80;      // identifier, header and index
 constexpr std::size_t kLevelIndexBytes = 24;  // for each level
-
-constexpr std::string_view kNormalKey = "libtex.normal";
 
 // Other VkFormats that can be read. Texels with `bgr` store blue first.
 struct VkRow {
@@ -55,12 +54,6 @@ Error unsupported(const std::string& name, std::string reason) {
 
 // -- writing -------------------------------------------------------------------------------------------------
 
-std::string normal_value(const TextureHead& head) {
-    std::string value = head.swizzle == kSwizzleDxt5nm ? "dxt5nm" : to_string(head.swizzle);
-    if (head.y_known) value += head.y_axis == YAxis::up ? " +y" : " -y";
-    return value;
-}
-
 void write_entry(ByteWriter& writer, std::string_view key, std::string_view value) {
     writer.u32(static_cast<std::uint32_t>(key.size() + value.size() + 2));
     writer.text(key);
@@ -75,7 +68,7 @@ std::vector<std::byte> key_values(const TextureHead& head) {
     ByteWriter writer;
     write_entry(writer, "KTXorientation", "rd");
     write_entry(writer, "KTXwriter", "libtex");
-    if (head.swizzle_known) write_entry(writer, kNormalKey, normal_value(head));
+    if (const std::string mark = normal_mark(head); !mark.empty()) write_entry(writer, kNormalKey, mark);
     return writer.take();
 }
 
@@ -133,33 +126,6 @@ std::optional<std::vector<KeyValue>> parse_key_values(const std::byte* data, std
     return entries;
 }
 
-// Applies the value of "libtex.normal". False unless it is a value that ktx2_layout() writes.
-bool apply_normal_key(std::string_view value, Texture& texture) {
-    const std::size_t blank = value.find(' ');
-    const std::string_view swizzle_text = value.substr(0, blank);
-    Swizzle swizzle;
-    if (swizzle_text == "dxt5nm") {
-        swizzle = kSwizzleDxt5nm;
-    } else {
-        if (swizzle_text.size() != 4) return false;
-        for (std::size_t c = 0; c < 4; ++c) {
-            const auto component = find_by_name(kComponentNames, swizzle_text.substr(c, 1));
-            if (!component) return false;
-            swizzle[c] = *component;
-        }
-    }
-    if (blank != std::string_view::npos) {
-        const std::string_view y = value.substr(blank + 1);
-        if (y != "+y" && y != "-y") return false;
-        texture.y_axis = y == "+y" ? YAxis::up : YAxis::down;
-        texture.y_known = true;
-    }
-    texture.swizzle = swizzle;
-    texture.swizzle_known = true;
-    texture.normal_encoding = "signed";
-    return true;
-}
-
 // KTXswizzle names the stored channel that a shader reads as R, G, B and A: "ag01" means that A holds x and G holds y.
 bool apply_ktx_swizzle(std::string_view value, Texture& texture) {
     constexpr std::string_view kChannels = "rgba";
@@ -201,8 +167,7 @@ Result<bool> apply_key_values(const FetchBytes& fetch, std::size_t size, const K
             texture.remarks.push_back("KTXswizzle was not understood");
         }
         if (entry.key == kNormalKey) {
-            own = apply_normal_key(entry.value, texture);
-            if (!own) texture.remarks.push_back("the key libtex.normal was not understood");
+            own = apply_found_mark(entry.value, texture);
         }
     }
     return upwards;

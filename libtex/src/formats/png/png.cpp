@@ -17,6 +17,7 @@
 #include <string>
 
 #include "formats/claims.h"
+#include "formats/normal_mark.h"
 #include "formats/png/png_state.h"
 #include "threads/guard.h"
 
@@ -79,6 +80,8 @@ void on_read(png_structp png, png_bytep data, std::size_t count) {
     if (!static_cast<PngReader*>(png_get_io_ptr(png))->take(data, count)) png_error(png, "the file ends too early");
 }
 
+constexpr png_byte kTextChunk[] = "tEXt";
+
 bool read_header(PngReader& reader) {
     reader.png =
         png_create_read_struct_2(PNG_LIBPNG_VER_STRING, static_cast<PngState*>(&reader), on_png_error, on_png_warning,
@@ -90,17 +93,29 @@ bool read_header(PngReader& reader) {
     if (reader.info == nullptr) png_error(png, "out of memory");
     png_set_read_fn(png, &reader, on_read);
     png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
-    // Only IHDR, PLTE, tRNS, IDAT and IEND have an effect; other chunks are not parsed.
+    // Only IHDR, PLTE, tRNS, IDAT, IEND and the text before the texels have an effect; other chunks are not parsed.
     png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
+    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_AS_DEFAULT, kTextChunk, 1);
     // libtex checks the limits itself, with its own reasons, after the header has been checked.
     png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
     png_read_info(png, reader.info);
+    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, kTextChunk, 1);
     reader.width = png_get_image_width(png, reader.info);
     reader.height = png_get_image_height(png, reader.info);
     reader.color_type = png_get_color_type(png, reader.info);
     reader.bit_depth = png_get_bit_depth(png, reader.info);
     reader.file_row_bytes = static_cast<std::int64_t>(png_get_rowbytes(png, reader.info));
     return true;
+}
+
+// The mark of libtex in the text before the texels; empty if there is none.
+std::string mark_of(PngReader& reader) {
+    png_textp texts = nullptr;
+    const int count = png_get_text(reader.png, reader.info, &texts, nullptr);
+    for (int k = 0; k < count; ++k) {
+        if (texts[k].key == kNormalKey) return {texts[k].text, texts[k].text_length};
+    }
+    return {};
 }
 
 // Palettes become colours, tRNS becomes alpha, and grey of 1, 2 and 4 bits becomes 8 bits by multiplication (by 255, 85
@@ -204,6 +219,7 @@ Result<void> PngRows::open(const ReadOptions& options) {
         *extent, channel_names(reader_.channels),
         static_cast<std::size_t>(extent->width) * static_cast<std::size_t>(reader_.channels * reader_.sample_bits / 8));
     describe_samples(SampleKind::unorm, reader_.color_type == PNG_COLOR_TYPE_PALETTE ? 8 : reader_.bit_depth);
+    describe_normals(mark_of(reader_));
     return {};
 }
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "formats/normal_mark.h"
 #include "formats/png/png_state.h"
 #include "formats/row_target.h"
 #include "threads/guard.h"
@@ -56,8 +57,11 @@ void on_write(png_structp png, png_bytep data, std::size_t count) {
 
 void on_flush(png_structp) {}
 
-// `palette` is null unless the colours are indexed.
-bool begin_rows(PngWriter& writer, Extent extent, int color_type, int bits, const std::vector<png_color>* palette) {
+// `palette` is null unless the colours are indexed. `mark` may be empty.
+bool begin_rows(PngWriter& writer, Extent extent, int color_type, int bits, const std::vector<png_color>* palette,
+                const std::string& mark) {
+    char key[kNormalKey.size() + 1] = {};
+    kNormalKey.copy(key, kNormalKey.size());
     writer.png =
         png_create_write_struct_2(PNG_LIBPNG_VER_STRING, static_cast<PngState*>(&writer), on_png_error, on_png_warning,
                                   static_cast<PngState*>(&writer), on_png_allocate, on_png_free);
@@ -73,6 +77,14 @@ bool begin_rows(PngWriter& writer, Extent extent, int color_type, int bits, cons
     png_set_IHDR(png, writer.info, static_cast<png_uint_32>(extent.width), static_cast<png_uint_32>(extent.height),
                  bits, color_type, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
     if (palette != nullptr) png_set_PLTE(png, writer.info, palette->data(), static_cast<int>(palette->size()));
+    if (!mark.empty()) {
+        png_text text = {};
+        text.compression = PNG_TEXT_COMPRESSION_NONE;  // tEXt
+        text.key = key;
+        text.text = const_cast<char*>(mark.c_str());  // libpng copies both
+        text.text_length = mark.size();
+        png_set_text(png, writer.info, &text, 1);
+    }
     png_write_info(png, writer.info);
     if (bits == 16) png_set_swap(png);  // levels are little-endian, PNG is big-endian
     return true;
@@ -108,8 +120,8 @@ class PngTarget final : public RowTarget {
 public:
     PngTarget(std::size_t row_bytes, WriteBytes write) : row_bytes_(row_bytes), write_(std::move(write)) {}
 
-    Result<void> begin(Extent extent, int color_type, int bits) {
-        if (!begin_rows(writer_, extent, color_type, bits, nullptr)) return writer_.error();
+    Result<void> begin(Extent extent, int color_type, int bits, const std::string& mark) {
+        if (!begin_rows(writer_, extent, color_type, bits, nullptr, mark)) return writer_.error();
         return {};
     }
     Result<void> put(int, const std::byte* rows, int count) override {
@@ -149,8 +161,9 @@ Result<std::unique_ptr<RowTarget>> open_png_target(const TextureHead& head, Writ
         }
         const std::size_t row_bytes = static_cast<std::size_t>(head.extent.width) * format.block_bytes;
         auto target = std::make_unique<PngTarget>(row_bytes, std::move(write));
-        if (const Result<void> begun = target->begin(head.extent, color_type, format.bits); !begun)
+        if (const Result<void> begun = target->begin(head.extent, color_type, format.bits, normal_mark(head)); !begun) {
             return begun.error();
+        }
         return std::unique_ptr<RowTarget>(std::move(target));
     });
 }
@@ -166,7 +179,7 @@ Result<std::vector<std::byte>> encode_indexed_png(const Level& indices, const st
         for (const PngColor& color : palette) colors.push_back({color.r, color.g, color.b});
         PngWriter writer;
         const Extent extent = indices.extent;
-        if (!begin_rows(writer, extent, PNG_COLOR_TYPE_PALETTE, 8, &colors) ||
+        if (!begin_rows(writer, extent, PNG_COLOR_TYPE_PALETTE, 8, &colors, {}) ||
             !put_rows(writer, indices.bytes.data(), extent.height, static_cast<std::size_t>(extent.width)) ||
             !end_rows(writer)) {
             return writer.error();

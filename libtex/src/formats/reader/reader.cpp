@@ -18,6 +18,7 @@
 
 #include "files/system_error.h"
 #include "formats/codecs.h"
+#include "formats/normal_mark.h"
 #include "formats/reader/reader_process.h"
 #include "threads/guard.h"
 
@@ -68,6 +69,7 @@ Result<ReaderPicture> ReaderPicture::open(Container container, const TextureHead
     header.height = head.extent.height;
     header.channels = info.channels;
     header.type = texel_type(info);
+    description_of(normal_mark(head)).copy(header.description, sizeof header.description - 1);
     Result<Descriptor> rows = memory_file({});
     if (!rows) return rows.error();
     if (!write_exactly(rows->get(), 0, std::as_bytes(std::span(&header, 1))))

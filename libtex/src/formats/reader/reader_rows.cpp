@@ -18,6 +18,7 @@
 
 #include "files/system_error.h"
 #include "formats/claims.h"
+#include "formats/normal_mark.h"
 #include "formats/reader/reader_process.h"
 #include "threads/guard.h"
 
@@ -262,6 +263,8 @@ Result<void> ReaderRows::open(const ReadOptions& options) {
     if (!scale) return scale.error();
     scale_ = *scale;
     describe_samples(scale_.kind, scale_.bits);
+    const std::string_view text(header_.description, strnlen(header_.description, sizeof header_.description));
+    describe_normals(std::string(mark_in_description(text)));
     return {};
 }
 
