@@ -86,7 +86,9 @@ TEST(ExrCompressions, AreReadToTheSameBitsAsByOpenImageIo) {
             std::string stored;
             const std::vector<float> theirs = read(path, stored);
             ASSERT_FALSE(theirs.empty()) << compression << ": " << OIIO::geterror();
-            EXPECT_EQ(stored.substr(0, stored.find(':')), compression);
+            // OpenImageIO uses ZIP instead of DWA for scan lines of one channel.
+            const bool is_zip = stored == "zip" && compression[0] == 'd' && kind.channels == 1 && kind.tile == 0;
+            EXPECT_TRUE(stored == compression || is_zip) << compression << ": " << stored;
             const auto ours = tex::read_image(path);
             ASSERT_TRUE(ours) << compression << ": " << ours.error().message();
             ASSERT_EQ(ours->extent(), kind.extent);
