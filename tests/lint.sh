@@ -16,32 +16,6 @@ ban() {
     [ -z "$hits" ] || complain "$why"$'\n'"$hits"
 }
 
-# Today's offenders: the rule named first on each line allows them until they are fixed. This list only shrinks.
-offenders='
-verb      libtex/src/rows/pack_rows.h libtex/src/rows/mip_rows.h libtex/src/rows/source_layout.h
-verb      libtex/src/rows/unpack_rows.h libtex/src/rows/roughness_rows.h libtex/src/rows/axis_filter.h
-verb      libtex/src/rows/bake_rows.h libtex/src/rows/blend_rows.h libtex/src/rows/color.h
-verb      libtex/src/kernels/blend.h libtex/src/kernels/roughness.h libtex/src/kernels/encode.h libtex/src/kernels/fit.h
-'
-declare -A allowed=()  # RULE NAME
-while read -r rule names; do
-    for name in $names; do allowed["$rule $name"]=yes; done
-done <<<"$offenders"
-# ban_but RULE PATTERN WHY FILE...: like ban, for the files that the list does not allow. Prints the listed files that
-# no longer break the rule.
-ban_but() {
-    local rule=$1 pattern=$2 why=$3 file checked=()
-    shift 3
-    for file in "$@"; do
-        if [ -z "${allowed["$rule $file"]-}" ]; then
-            checked+=("$file")
-        elif ! grep -qP -e "$pattern" "$file"; then
-            echo "lint: note: $file does not offend $rule any more: take it off the list"
-        fi
-    done
-    ban "$pattern" "$why" "${checked[@]}"
-}
-
 # The files of the tree. In a clone, these are the files that git tracks or would add, so that build folders do not
 # count.
 if git rev-parse --is-inside-work-tree >/dev/null 2>&1; then
@@ -82,6 +56,7 @@ for header in libtex/include/tex/*.h; do
         complain "$header does not export what it declares"
     grep -q "<tex/$name.h>" libtex/include/tex/tex.h || [ "$name" = tex ] || complain "tex.h does not include $name.h"
     case $header_only in *" $name "*) continue ;; esac
+    case $name in *_options) need "libtex/include/tex/${name%_options}.h" "$header has no verb"; continue ;; esac
     need "libtex/src/$name.cpp" "$header promises functions"
 done
 for source in libtex/src/*.cpp; do
@@ -160,7 +135,7 @@ twice=$(awk '
         else first[name] = FILENAME
     }' "${typed[@]}")
 while read -r name files_of_it; do
-    [ -z "$name" ] || [ -n "${allowed["type $name"]-}" ] || complain "two types are called $name: $files_of_it"
+    [ -z "$name" ] || complain "two types are called $name: $files_of_it"
 done <<<"$twice"
 
 # -- who may know what ------------------------------------------------------------------------------------------
@@ -172,12 +147,12 @@ mapfile -t below_verbs < <(select_files '^libtex/src/(rows|kernels|blocks)/')
 mapfile -t outside_color < <(printf '%s\n' "${library[@]}" | grep -v '/color\.' || true)
 mapfile -t outside_formats < <(printf '%s\n' "${library[@]}" | grep -v '/formats/' || true)
 mapfile -t outside_reader < <(select_files '^(libtex|tools)/.*\.(cpp|h)$' | grep -v '^tools/reader/' || true)
-ban_but highway '#include [<"]hwy/|\bHWY_|\bhwy::' 'only kernels/ knows Highway' "${outside_kernels[@]}"
+ban '#include [<"]hwy/|\bHWY_|\bhwy::' 'only kernels/ knows Highway' "${outside_kernels[@]}"
 verbs='bake|blend|check|color|compare|heat_map|image_io|mip|pack|pipeline|preview|roughness|scale|sheet|source|unpack'
-ban_but verb "#include <tex/($verbs|tex)\.h>" 'rows/, kernels/ and blocks/ include no header of a verb' \
+ban "#include <tex/($verbs|tex)\.h>" 'rows/, kernels/ and blocks/ include no header of a verb' \
     "${below_verbs[@]}"
-ban_but two-ways '\b(?!is_|take_)[a-z]+_whole\b|\bcan_stream\b' 'files go one way, through streams' "${library[@]}"
-ban_but container '\bis_texture\b|case (tex::)?Container::' 'only the table of formats/ tells file types apart' \
+ban '\b(?!is_|take_)[a-z]+_whole\b|\bcan_stream\b' 'files go one way, through streams' "${library[@]}"
+ban '\bis_texture\b|case (tex::)?Container::' 'only the table of formats/ tells file types apart' \
     "${outside_formats_and_tools[@]}"
 ban '#include <OpenColorIO' 'only color knows OpenColorIO' "${outside_color[@]}"
 ban '#include <(png\.h|OpenEXR/|Imf)' 'only formats/ knows libpng and OpenEXR' "${outside_formats[@]}"

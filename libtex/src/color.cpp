@@ -10,7 +10,8 @@ namespace tex {
 
 Result<void> to_linear(Image& image, const ColorOptions& options) {
     return guarded([&]() -> Result<void> {
-        const Result<LinearRows> rows = LinearRows::make(image.names, image.sample, image.bits, options);
+        const Result<LinearRows> rows =
+            LinearRows::make(image.names, image.sample, image.bits, options.config, options.space);
         if (!rows) return rows.error();
         return rows->convert(image, image.extent().height);
     });

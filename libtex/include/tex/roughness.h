@@ -41,21 +41,14 @@
 #include <tex/execution.h>
 #include <tex/image.h>
 #include <tex/mip.h>
-#include <tex/names.h>
 #include <tex/normal_map.h>
 #include <tex/pack.h>
 #include <tex/result.h>
+#include <tex/roughness_options.h>
 #include <tex/texture.h>
 
 #pragma GCC visibility push(default)
 namespace tex {
-
-enum class RoughnessModel { toksvig, vmf };
-
-inline constexpr Named<RoughnessModel> kRoughnessModelNames[] = {
-    {RoughnessModel::toksvig, "toksvig", "all of the lost variance (Toksvig 2005)"},
-    {RoughnessModel::vmf, "vmf", "a quarter of it, as in The Order: 1886 (von Mises-Fisher)"},
-};
 
 // Perceptual roughness, 0 to 1. levels[0] is the base level; extents are those of level_extent().
 struct RoughnessChain {

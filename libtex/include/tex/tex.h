@@ -59,18 +59,24 @@
 #include <tex/texture.h>
 
 #include <tex/bake.h>
+#include <tex/bake_options.h>
 #include <tex/blend.h>
+#include <tex/blend_options.h>
 #include <tex/check.h>
 #include <tex/compare.h>
 #include <tex/heat_map.h>
 #include <tex/mip.h>
+#include <tex/mip_options.h>
 #include <tex/pack.h>
+#include <tex/pack_options.h>
 #include <tex/preview.h>
 #include <tex/roughness.h>
+#include <tex/roughness_options.h>
 #include <tex/scale.h>
 #include <tex/sheet.h>
 #include <tex/swizzle.h>
 #include <tex/unpack.h>
+#include <tex/unpack_options.h>
 
 #include <tex/color.h>
 #include <tex/container.h>

@@ -3,12 +3,11 @@
 
 #pragma once
 
-#include <optional>
-
 #include <tex/execution.h>
 #include <tex/mip_chain.h>
 #include <tex/result.h>
 #include <tex/texture.h>
+#include <tex/unpack_options.h>
 
 #pragma GCC visibility push(default)
 namespace tex {
@@ -21,27 +20,6 @@ namespace tex {
 // Precondition (asserted): 0 <= level < levels.size(), and the level has level_bytes() bytes.
 // Errors: out_of_memory, cancelled.
 [[nodiscard]] Result<Image> decode(const Texture& texture, int level, const Execution& execution = {});
-
-// How stored floats are read. (Integers are unambiguous: unorm is unsigned, snorm is signed.)
-enum class ValueRange {
-    automatic,  // as the file states; else by the values, see unpack()
-    signed_,    // components of the normal themselves
-    unsigned_,  // (n + 1) / 2
-};
-
-inline constexpr Named<ValueRange> kValueRangeNames[] = {
-    {ValueRange::automatic, "auto", "as the file says, else by the values"},
-    {ValueRange::signed_, "signed", "floats are the normal's components, -1 to 1"},
-    {ValueRange::unsigned_, "unsigned", "floats are (n + 1) / 2, 0 to 1"},
-};
-
-struct UnpackOptions {
-    std::optional<Swizzle> swizzle;            // instead of the texture's own
-    std::optional<YAxis> y_axis;               // instead of the texture's own; without it, y is up in pictures
-    ValueRange range = ValueRange::automatic;  // for floats only
-    bool snap_flat = false;                    // 8-bit unorm values from 127/255 to 128/255 are 0, not -+0.0039
-    bool keep_length = false;                  // do not normalise vectors, to pack them again without loss
-};
 
 // The normals of every level of a texture. unorm values become n = 2 c - 1; y is negated if it points down in the
 // texture. If the swizzle holds z, vectors are normalised (shorter than 1e-6: (0, 0, 1); z below 0: as stored). If it

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include <tex/blend.h>
+#include <tex/blend_options.h>
 
 #include "kernels/normal_row.h"
 

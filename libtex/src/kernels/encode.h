@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include <tex/pack.h>
+#include <tex/pack_options.h>
 
 #include "blocks/extent.h"
 

@@ -44,7 +44,7 @@
 
 #include <cstddef>
 
-#include <tex/pack.h>
+#include <tex/pack_options.h>
 
 #include "blocks/bc4.h"
 

@@ -5,7 +5,7 @@
 
 #pragma once
 
-#include <tex/roughness.h>
+#include <tex/roughness_options.h>
 
 namespace tex {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <tex/image.h>
-#include <tex/mip.h>
+#include <tex/mip_options.h>
 
 namespace tex {
 

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include <tex/bake.h>
+#include <tex/bake_options.h>
 
 #include "kernels/bake.h"
 #include "rows/border.h"

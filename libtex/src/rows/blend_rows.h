@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include <tex/blend.h>
+#include <tex/blend_options.h>
 
 #include "kernels/normal_row.h"
 #include "rows/sampler.h"

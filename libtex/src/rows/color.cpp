@@ -108,8 +108,8 @@ std::string some_spaces(const OCIO::ConstConfigRcPtr& config) {
     return count > kMost ? names + " ..." : names;
 }
 
-Error conversion_fails(const ColorOptions& options, const std::exception& thrown) {
-    return {ErrorCode::bad_data, options.config, "the conversion fails: " + reason_of(thrown)};
+Error conversion_fails(const std::string& config, const std::exception& thrown) {
+    return {ErrorCode::bad_data, config, "the conversion fails: " + reason_of(thrown)};
 }
 
 Result<OCIO::ConstConfigRcPtr> load(const std::string& path) {
@@ -124,26 +124,26 @@ Result<OCIO::ConstConfigRcPtr> load(const std::string& path) {
     }
 }
 
-Result<ConvertRow> by_config(const ColorOptions& options) {
+Result<ConvertRow> by_config(const std::string& file, const std::string& space) {
     OCIO::SetLoggingLevel(OCIO::LOGGING_LEVEL_NONE);  // libtex prints nothing
-    const Result<OCIO::ConstConfigRcPtr> loaded = load(options.config);
+    const Result<OCIO::ConstConfigRcPtr> loaded = load(file);
     if (!loaded) return loaded.error();
     const OCIO::ConstConfigRcPtr& config = loaded.value();
-    if (!config->getColorSpace(options.space.c_str())) {
-        return Error{ErrorCode::bad_option, options.config,
-                     "no colour space \"" + options.space + "\"; there are " + some_spaces(config)};
+    if (!config->getColorSpace(space.c_str())) {
+        return Error{ErrorCode::bad_option, file,
+                     "no colour space \"" + space + "\"; there are " + some_spaces(config)};
     }
     if (!config->getColorSpace(OCIO::ROLE_SCENE_LINEAR)) {
-        return Error{ErrorCode::bad_option, options.config, "the configuration has no role scene_linear"};
+        return Error{ErrorCode::bad_option, file, "the configuration has no role scene_linear"};
     }
     try {
-        const auto processor = config->getProcessor(options.space.c_str(), OCIO::ROLE_SCENE_LINEAR);
+        const auto processor = config->getProcessor(space.c_str(), OCIO::ROLE_SCENE_LINEAR);
         return ConvertRow([on_cpu = processor->getDefaultCPUProcessor()](const ColorRows& rows, int width) {
             OCIO::PlanarImageDesc row(rows.row[0], rows.row[1], rows.row[2], nullptr, width, 1);
             on_cpu->apply(row);
         });
     } catch (const OCIO::Exception& thrown) {
-        return conversion_fails(options, thrown);
+        return conversion_fails(file, thrown);
     }
 }
 
@@ -152,14 +152,14 @@ Result<ConvertRow> by_config(const ColorOptions& options) {
 const char* opencolorio_version() { return OCIO::GetVersion(); }
 
 Result<LinearRows> LinearRows::make(const std::vector<std::string>& names, SampleKind sample, int bits,
-                                    const ColorOptions& options) {
+                                    const std::string& config, const std::string& space) {
     LinearRows rows;
-    rows.options_ = options;
+    rows.config_ = config;
     rows.planes_ = colour_planes(names);
     if (rows.planes_.empty()) {
         return Error{ErrorCode::bad_option, {}, "a colour space needs the channels R, G and B, or a single one"};
     }
-    Result<ConvertRow> convert = options.config.empty() ? built_in(sample, bits, options.space) : by_config(options);
+    Result<ConvertRow> convert = config.empty() ? built_in(sample, bits, space) : by_config(config, space);
     if (!convert) return convert.error();
     rows.convert_ = std::move(*convert);
     return rows;
@@ -182,7 +182,7 @@ Result<void> LinearRows::convert(Image& image, int count) const {
         }
         return {};
     } catch (const OCIO::Exception& thrown) {
-        return conversion_fails(options_, thrown);
+        return conversion_fails(config_, thrown);
     }
 }
 

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include <tex/color.h>
 #include <tex/image.h>
 #include <tex/result.h>
 
@@ -23,17 +22,17 @@ using ConvertRow = std::function<void(const ColorRows& rows, int width)>;
 
 class LinearRows {
 public:
-    // Makes the conversion for pictures with these channels and samples. May throw std::bad_alloc. Errors: those of
-    // to_linear().
+    // Makes the conversion from a colour space for pictures with these channels and samples: see ColorOptions. May
+    // throw std::bad_alloc. Errors: those of to_linear().
     static Result<LinearRows> make(const std::vector<std::string>& names, SampleKind sample, int bits,
-                                   const ColorOptions& options);
+                                   const std::string& config, const std::string& space);
 
     // Converts rows 0 to count - 1 of an image, as to_linear() does. Several threads may call at once. May throw
     // std::bad_alloc. Errors: bad_data.
     [[nodiscard]] Result<void> convert(Image& image, int count) const;
 
 private:
-    ColorOptions options_;
+    std::string config_;
     std::vector<std::size_t> planes_;  // the planes that hold colour: three or one
     ConvertRow convert_;
 };

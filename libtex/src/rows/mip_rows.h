@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include <tex/mip.h>
+#include <tex/mip_options.h>
 
 #include "kernels/normal_row.h"
 #include "rows/axis_filter.h"

@@ -6,7 +6,7 @@
 #include <cstddef>
 
 #include <tex/normal_map.h>
-#include <tex/pack.h>
+#include <tex/pack_options.h>
 
 namespace tex {
 

@@ -7,7 +7,7 @@
 
 #include <tex/format.h>
 #include <tex/image.h>
-#include <tex/pack.h>
+#include <tex/pack_options.h>
 
 namespace tex {
 

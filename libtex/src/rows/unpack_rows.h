@@ -8,7 +8,7 @@
 
 #include <tex/image.h>
 #include <tex/result.h>
-#include <tex/unpack.h>
+#include <tex/unpack_options.h>
 
 #include "kernels/unpack.h"
 

@@ -2,7 +2,7 @@
 
 #include "stream/layout_finder.h"
 
-#include "rows/source_layout.h"
+#include "stream/source_layout.h"
 
 namespace tex {
 

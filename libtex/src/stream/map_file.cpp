@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "rows/source_layout.h"
 #include "stream/normal_source.h"
 #include "stream/row_stream.h"
+#include "stream/source_layout.h"
 
 namespace tex {
 

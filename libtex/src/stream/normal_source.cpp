@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "formats/texture_rows.h"
-#include "rows/source_layout.h"
+#include "stream/source_layout.h"
 #include "stream/y_witness.h"
 
 namespace tex {

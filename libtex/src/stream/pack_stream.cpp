@@ -11,10 +11,10 @@
 
 #include "formats/texture_rows.h"
 #include "rows/mip_rows.h"
-#include "rows/source_layout.h"
 #include "stream/layout_finder.h"
 #include "stream/level_stage.h"
 #include "stream/own_roughness.h"
+#include "stream/source_layout.h"
 #include "stream/strip_writer.h"
 #include "stream/unpack_stage.h"
 #include "threads/parallel.h"

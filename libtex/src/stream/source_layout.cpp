@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "rows/source_layout.h"
+#include "stream/source_layout.h"
 
 #include "rows/unpack_rows.h"
 
