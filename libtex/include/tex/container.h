@@ -63,9 +63,10 @@ struct WriteOptions {
 // files.
 //
 // If it is known what the channels hold (swizzle_known), the file states it: layout_name() of the swizzle, and "+y" or
-// "-y" if y is known, for example "dxt5nm +y". DDS holds the text in its reserved words 3 to 6, after 'LTEX'; KTX2 under
-// the key "libtex.normal"; PNG in a tEXt chunk with that keyword; TIFF, TGA and JPEG in their description. EXR has the
-// attributes normalEncoding = "signed" and, if y is known, normalYAxis = "up" or "down". read_texture() believes them.
+// "-y" if y is known, for example "dxt5nm +y". DDS holds the text in its reserved words 3 to 6, after 'LTEX'; KTX2
+// under the key "libtex.normal"; PNG in a tEXt chunk with that keyword; TIFF, TGA and JPEG in their description. EXR
+// has the attributes normalEncoding = "signed" and, if y is known, normalYAxis = "up" or "down". read_texture()
+// believes them.
 //
 // Errors: unsupported  the container cannot hold the format (the reason says what it can hold)
 //         io           the reader process cannot be started
