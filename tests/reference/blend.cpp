@@ -89,6 +89,15 @@ Grid<Vector> blend(const Grid<Vector>& base, const std::vector<Grid<Vector>>& de
     const auto lower = static_cast<std::size_t>(level);
     const std::size_t upper = std::min(lower + 1, detail.size() - 1);
 
+    // The mask covers the result; its values are kept in x.
+    Grid<Vector> mask({1, 1});
+    mask.at(0, 0).x = 1;
+    if (!layer.mask.empty()) {
+        mask = Grid<Vector>(layer.mask.extent());
+        for (int j = 0; j < mask.extent.height; ++j) {
+            for (int i = 0; i < mask.extent.width; ++i) mask.at(i, j).x = static_cast<double>(layer.mask.at(i, j));
+        }
+    }
     Grid<Vector> result(base.extent);
     for (int j = 0; j < base.extent.height; ++j) {
         for (int i = 0; i < base.extent.width; ++i) {
@@ -99,7 +108,9 @@ Grid<Vector> blend(const Grid<Vector>& base, const std::vector<Grid<Vector>>& de
                             level - static_cast<double>(lower));
             b = scaled(normalised(b), static_cast<double>(layer.scale), options.scale_mode);
             b = {c * b.x - s * b.y, s * b.x + c * b.y, b.z};
-            result.at(i, j) = normalised(lerp(a, blended(a, b, options.mode), static_cast<double>(layer.strength)));
+            const double shown = bilinear(mask, (i + 0.5) / width, 1 - (j + 0.5) / height, Wrap::clamp, Wrap::clamp).x;
+            const double weight = static_cast<double>(layer.strength) * std::clamp(shown, 0.0, 1.0);
+            result.at(i, j) = normalised(lerp(a, blended(a, b, options.mode), weight));
         }
     }
     return result;

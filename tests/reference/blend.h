@@ -16,7 +16,7 @@ Vector blended(Vector base, Vector detail, BlendMode mode);
 // The bilinear sample at (u, v), v upwards, in widths and heights; not normalised.
 Vector bilinear(const Grid<Vector>& map, double u, double v, Wrap wrap_x, Wrap wrap_y);
 
-// The result of blend() for a base with the result's extent and one layer without a mask. The layer has all the levels
+// The result of blend() for a base with the result's extent and one layer. The layer has all the levels
 // that it needs.
 Grid<Vector> blend(const Grid<Vector>& base, const std::vector<Grid<Vector>>& detail, const Layer& layer,
                    const BlendOptions& options);
