@@ -20,6 +20,7 @@ public:
 
 private:
     void add_kernel();
+    static void warn_of_steep(cli::Job& job, const BakeFileReport& baked, Encoding encoding);
     [[nodiscard]] cli::OutputRules rules() const override;
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] Result<void> process(cli::Job& job) override;
@@ -99,9 +100,21 @@ Result<void> BakeNormals::process(cli::Job& job) {
     reader_.note(job, baked->heights);
     cli::wrote_levels(job, job.task.output, baked->levels);
     cli::report_texture(job, baked->extent, baked->levels, options.pack, baked->bytes);
+    warn_of_steep(job, *baked, options.pack.encoding);
     const SlopeRange& slopes = baked->slopes;
     job.report["slopes"] = {{"x", {slopes.min_x, slopes.max_x}}, {"y", {slopes.min_y, slopes.max_y}}};
     return {};
+}
+
+void BakeNormals::warn_of_steep(cli::Job& job, const BakeFileReport& baked, Encoding encoding) {
+    job.report["steep_texels"] = baked.steep_texels;
+    if (baked.steep_texels == 0) return;
+    const float steepest = steepest_slope(encoding);
+    job.warn(
+        fmt::format("{} of {} texels are steeper than {} can hold, which stores all slopes above {:.{}f} alike; lower "
+                    "the strength, choose a deeper --format, or name the value of texels without data by --no-data",
+                    baked.steep_texels, baked.extent.texels(), name_of(kEncodingNames, encoding), steepest,
+                    steepest < 100.0f ? 1 : 0));
 }
 
 cli::ExitCode BakeNormals::finish(cli::Console& console) {

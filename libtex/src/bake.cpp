@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "kernels/bake.h"
 #include "rows/bake_rows.h"
@@ -48,7 +49,7 @@ Result<NormalMap> bake(const HeightField& field, const BakeOptions& options, con
 
 SlopeRange slope_range(const NormalMap& map, const Execution& execution) {
     const Extent extent = map.extent();
-    SlopeCollector slopes;
+    SlopeCollector slopes(std::numeric_limits<float>::infinity(), true);
     const auto body = [&](int begin, int end) { slopes.add(map, begin, end); };
     const Execution silent{execution.threads, {}};
     const auto done = parallel_for(silent, extent.height, strip_rows(extent.width, 1), body);

@@ -13,6 +13,14 @@ Result<void> to_linear(Image& image, const ColorOptions& options) {
         const Result<LinearRows> rows =
             LinearRows::make(image.names, image.sample, image.bits, options.config, options.space);
         if (!rows) return rows.error();
+        if (image.no_data) {
+            Image texel;
+            texel.names = image.names;
+            for (std::size_t k = 0; k < image.names.size(); ++k)
+                texel.planes.emplace_back(Extent{1, 1}, *image.no_data);
+            if (Result<void> converted = rows->convert(texel, 1); !converted) return converted;
+            image.no_data = texel.planes.front().at(0, 0);
+        }
         return rows->convert(image, image.extent().height);
     });
 }

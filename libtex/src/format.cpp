@@ -3,7 +3,9 @@
 #include <tex/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "blocks/extent.h"
 
@@ -78,6 +80,19 @@ static_assert([] {
 }  // namespace
 
 FormatInfo format_info(Format format) { return kFormats[static_cast<std::size_t>(format)].info; }
+
+float steepest_slope(Encoding encoding) {
+    const EncodingInfo info = encoding_info(encoding);
+    const FormatInfo format = format_info(info.format);
+    if (format.sample == SampleKind::floating) return std::numeric_limits<float>::infinity();
+    const bool has_z = std::find(info.swizzle.begin(), info.swizzle.end(), Component::z) != info.swizzle.end();
+    const int bits = format.has_blocks() ? 8 : format.bits;
+    // In codes: the range from 0 to 1.
+    const double half_range = 0.5 * (std::pow(2.0, bits) - (format.sample == SampleKind::snorm ? 2 : 1));
+    if (has_z) return static_cast<float>(half_range);
+    const double x = 1.0 - 0.5 / half_range;
+    return static_cast<float>(x / std::sqrt(1.0 - x * x));
+}
 
 std::optional<Format> format_of(SampleKind sample, int bits, int channels) {
     const auto* row = std::find_if(std::begin(kFormats), std::end(kFormats), [&](const FormatRow& r) {

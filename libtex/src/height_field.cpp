@@ -79,6 +79,8 @@ Result<HeightField> height_field(const Image& image, const HeightOptions& option
         if (std::optional<Error> wrong = check_blur(options)) return std::move(*wrong);
         const Result<HeightSource> source = find_height_source(image.names, options.channel);
         if (!source) return source.error();
+        const Result<HeightOptions> with = with_no_data(options, image.no_data, image.names, *source, nullptr);
+        if (!with) return with.error();
         const Extent extent = image.extent();
         HeightField field{Plane<float>(extent), 1.0f, 1.0f, options.wrap_x, options.wrap_y};
         // Progress: the steps before are fast compared with filling and blurring.
@@ -89,7 +91,7 @@ Result<HeightField> height_field(const Image& image, const HeightOptions& option
         const auto take = [&](int begin, int end) {
             HeightCounts all;
             for (int j = begin; j < end; ++j) {
-                const HeightCounts counts = take_heights(image, *source, options, j, field.height.row(j));
+                const HeightCounts counts = take_heights(image, *source, *with, j, field.height.row(j));
                 all.luma += counts.luma;
                 all.invalid += counts.invalid;
             }
@@ -102,7 +104,7 @@ Result<HeightField> height_field(const Image& image, const HeightOptions& option
         if (invalid_texels > 0) {
             if (!options.fill_invalid || invalid_texels == extent.texels()) {
                 const auto [column, row] = first_invalid(field.height);
-                return invalid_heights(invalid_texels, column, row, extent, options);
+                return invalid_heights(invalid_texels, column, row, extent, *with);
             }
             auto done =
                 fill_from_nearest(field.height.view(), options.wrap_x, options.wrap_y, execution, {taken, filled});

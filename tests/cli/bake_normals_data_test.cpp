@@ -45,7 +45,8 @@ TEST_P(RealHeights, AreBakedOrRefusedWithASentence) {
     const std::string input = (kHeights / GetParam()).string();
     for (const std::string& output : kOutputs) {
         const Ran ran = run(scratch, "bake-normals", {input, "-o", output, "--effort", "fast", "--no-sync", "--quiet"});
-        const bool holds_nan = GetParam().find("nan_inf") != std::string::npos;
+        const bool holds_nan =
+            GetParam().find("nan_inf") != std::string::npos || GetParam().find("nodata") != std::string::npos;
         EXPECT_EQ(ran.code, holds_nan ? 4 : 0) << output << ": " << ran.err;
         EXPECT_EQ(lines_of(ran.err).size(), holds_nan ? 1u : 0u) << ran.err;
         EXPECT_EQ(scratch.has(output), !holds_nan);
@@ -53,6 +54,23 @@ TEST_P(RealHeights, AreBakedOrRefusedWithASentence) {
         EXPECT_EQ(run(scratch, "bake-normals", {input, "-o", output, "--fill-invalid", "--effort", "fast"}).code, 0)
             << output;
     }
+}
+
+// GDAL's tag names -9999. The texels are at the border, where they would be cliffs of 5000 m.
+TEST(HeightsWithoutData, AreNoCliffs) {
+    const std::string input = (kHeights / "dtm_283x259_f32_nodata-9999.tif").string();
+    if (!std::filesystem::exists(input)) GTEST_SKIP() << "no ../shared/data";
+    const Scratch scratch;
+    const Ran refused = run(scratch, "bake-normals", {input, "-o", "x.dds"});
+    EXPECT_EQ(refused.code, 4);
+    EXPECT_NE(refused.err.find("276 heights are NaN, infinite or no-data"), std::string::npos) << refused.err;
+    EXPECT_FALSE(scratch.has("x.dds"));
+    const Ran filled = run(scratch, "bake-normals", {input, "-o", "x.dds", "--fill-invalid"});
+    EXPECT_EQ(filled.code, 0) << filled.err;
+    EXPECT_EQ(filled.err, "");
+    const Ran cliffs = run(scratch, "bake-normals", {input, "-o", "x.dds", "--no-data", "none"});
+    EXPECT_EQ(cliffs.code, 0) << cliffs.err;
+    EXPECT_NE(cliffs.err.find("are steeper than dxt5nm"), std::string::npos) << cliffs.err;
 }
 
 }  // namespace tex::cli

@@ -120,8 +120,25 @@ TEST_F(BakeNormals, NumbersAreChecked) {
     refuses({"--mips", "keep"}, "must be all, none or a number of at least 1");
     refuses({"--fade", "3,3"}, "--fade: 3 is not less than 3");
     refuses({"--fade", "-1,3"}, "--fade: -1 is not at least 0");
-    refuses({"--no-data", "none"}, "--no-data: 'none' is not a number");
+    refuses({"--no-data", "nothing"}, "--no-data: 'nothing' is not a number");
+    EXPECT_EQ(bake({"bricks.png", "-o", "y.dds", "--no-data", "none"}).code, 0);
     EXPECT_EQ(bake({"bricks.png", "-o", "y.dds", "--no-data", "-9999", "--kernel", "gaussian:1.5"}).code, 0);
+}
+
+TEST_F(BakeNormals, WarnsOfSlopesThatTheEncodingCannotHold) {
+    const auto steep = [&](const std::vector<std::string>& options, const std::string& output, bool warns) {
+        std::vector<std::string> line = {"waves.png", "-o", output, "--json"};
+        line.insert(line.end(), options.begin(), options.end());
+        const Ran ran = bake(line);
+        EXPECT_EQ(ran.code, 0) << ran.err;
+        EXPECT_EQ(ran.err.find("are steeper than") != std::string::npos, warns) << ran.err;
+        EXPECT_EQ(nlohmann::json::parse(ran.out)["steep_texels"] > 0, warns) << ran.out;
+    };
+    steep({"--bumpiness", "8"}, "x.dds", false);
+    steep({"--bumpiness", "1000"}, "x.dds", true);
+    steep({"--bumpiness", "1000", "--format", "rgb16"}, "x.png", false);
+    steep({"--bumpiness", "1e9", "--format", "rgb16"}, "x.png", true);
+    steep({"--bumpiness", "1e9"}, "x.exr", false);
 }
 
 TEST_F(BakeNormals, LevelsGoOnlyWhereTheyFit) {

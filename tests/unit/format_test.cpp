@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <tex/format.h>
 
+#include <cmath>
 #include <set>
 #include <string_view>
 
@@ -55,6 +56,18 @@ TEST(Format, EncodingsStoreXAndYAndFillTheRestAsPromised) {
     EXPECT_EQ(to_string(encoding_info(Encoding::bc5).swizzle), "xy01");
     EXPECT_EQ(to_string(encoding_info(Encoding::rgb8).swizzle), "xyz1");
     EXPECT_EQ(encoding_info(Encoding::dxt5nm).format, Format::bc3_unorm);
+}
+
+TEST(SteepestSlope, IsTheLastOneThatAnEncodingStoresApart) {
+    EXPECT_NEAR(steepest_slope(Encoding::dxt5nm), 11.26f, 0.01f);  // x = 1 - 1/255
+    EXPECT_NEAR(steepest_slope(Encoding::bc5), 11.26f, 0.01f);
+    EXPECT_NEAR(steepest_slope(Encoding::bc5_snorm), 11.24f, 0.01f);
+    EXPECT_NEAR(steepest_slope(Encoding::rg8), 11.26f, 0.01f);
+    EXPECT_NEAR(steepest_slope(Encoding::rg16), 181.0f, 0.1f);
+    EXPECT_EQ(steepest_slope(Encoding::rgba8), 127.5f);  // z = 1/127.5
+    EXPECT_EQ(steepest_slope(Encoding::rgb16), 32767.5f);
+    EXPECT_TRUE(std::isinf(steepest_slope(Encoding::half)));
+    EXPECT_TRUE(std::isinf(steepest_slope(Encoding::float_)));
 }
 
 }  // namespace

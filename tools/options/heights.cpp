@@ -3,6 +3,7 @@
 #include "options/heights.h"
 
 #include <cstdlib>
+#include <limits>
 
 #include <fmt/format.h>
 #include <tex/image_io.h>
@@ -84,8 +85,11 @@ void HeightGroup::add(Command& command) {
                    "blur the heights first, by a Gaussian of SIGMA texels");
     command.flag(options.fill_invalid, "--fill-invalid",
                  "replace NaN, infinite and no-data texels by the nearest valid one");
-    command.option("--no-data", "V", "texels of exactly this value are invalid",
-                   [this](const std::string& text) { options.no_data = parse_float(text); });
+    command.option("--no-data", "V",
+                   "texels of exactly this value are invalid; none ignores the value that a TIFF names",
+                   [this](const std::string& text) {
+                       options.no_data = text == "none" ? std::numeric_limits<float>::quiet_NaN() : parse_float(text);
+                   });
 }
 
 ChannelFile parse_channel_file(const std::string& text) {
@@ -105,6 +109,7 @@ Result<Plane<float>> read_channel(Job& job, const ChannelFile& source, const Exe
     if (!image) return image.error();
     HeightOptions channel;
     channel.channel = source.channel;
+    channel.no_data = std::numeric_limits<float>::quiet_NaN();
     auto values = height_field(*image, channel, execution);
     if (!values) return values.error().of(source.file);
     return std::move(values->height);

@@ -134,6 +134,12 @@ bool decode(const Task& task, ReaderHeader& header) {
     }
     const NativeType type = native_type(spec);
     describe(spec, type, header);
+    if (task.format == "tiff") {
+        if (const std::optional<double> value = tiff_no_data()) {
+            header.has_no_data = 1;
+            header.no_data = *value;
+        }
+    }
     put_header(header);
     put_progress();
     wait_for_room();

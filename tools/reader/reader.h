@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include <tex/result.h>
@@ -43,6 +44,10 @@ int landlock_version();
 // processes (seccomp). Returns false if the kernel refuses the filter. If either restriction is refused, the other one
 // and the limits still apply.
 bool filter_calls();
+
+// The value that the input, a TIFF, names as that of texels without data (GDAL_NODATA), in units of its samples. None
+// if it names no finite number.
+std::optional<double> tiff_no_data();
 
 // Both send their answer to kResultDescriptor. After a refusal they return false.
 bool decode(const Task& task, ReaderHeader& header);

@@ -161,5 +161,10 @@ struct EncodingInfo {
 
 [[nodiscard]] EncodingInfo encoding_info(Encoding encoding);
 
+// The slope from which on all slopes are stored alike. Without z: the component rounds to 1, so that the surface
+// becomes vertical; 11.3 for 8 bits, 181 for 16 bits. With z: z rounds to its least positive code; 127 and 32767.
+// Infinite for half and float.
+[[nodiscard]] float steepest_slope(Encoding encoding);
+
 }  // namespace tex
 #pragma GCC visibility pop

@@ -86,10 +86,12 @@ inline constexpr Named<HeightChannel> kHeightChannelNames[] = {
 
 struct HeightOptions {
     HeightChannel channel = HeightChannel::automatic;
-    std::optional<float> no_data;  // texels of exactly this value (after rounding to float) are invalid
-    bool fill_invalid = false;     // invalid texels take the value of the nearest valid one
-    bool invert = false;           // h becomes 1 - h, for maps in which white is low
-    float blur_sigma = 0.0f;       // standard deviation of a Gaussian blur in texels; 0 is none; at most 256
+    // Texels of exactly this value (after rounding to float) are invalid. None: Image::no_data, if the file names it.
+    // NaN: no value is.
+    std::optional<float> no_data;
+    bool fill_invalid = false;  // invalid texels take the value of the nearest valid one
+    bool invert = false;        // h becomes 1 - h, for maps in which white is low
+    float blur_sigma = 0.0f;    // standard deviation of a Gaussian blur in texels; 0 is none; at most 256
     Wrap wrap_x = Wrap::repeat;
     Wrap wrap_y = Wrap::repeat;
 };

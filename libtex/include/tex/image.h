@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -129,6 +130,8 @@ struct Image {
     // What a picture that libtex wrote states about its channels, for example "rgb +y" (see encode_file()), or empty.
     // read_texture() applies it.
     std::string normal_mark;
+    // The value of texels without data, if the file names one (GDAL_NODATA in TIFF).
+    std::optional<float> no_data;
 
     [[nodiscard]] Extent extent() const { return planes.empty() ? Extent{} : planes.front().extent(); }
     // The index of the plane called `name` (exact), or -1.

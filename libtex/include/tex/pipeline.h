@@ -53,7 +53,8 @@ struct BakeFileReport {
     int levels = 1;
     std::size_t bytes = 0;  // of the output; the sum over all its files
     HeightReport heights;
-    SlopeRange slopes;  // zeros unless BakeFileOptions::slopes is set
+    SlopeRange slopes;              // zeros unless BakeFileOptions::slopes is set
+    std::int64_t steep_texels = 0;  // of the base level: slopes above steepest_slope() of the encoding
 };
 
 // Bakes the height map `input` ("-" is standard input) and writes it to `output` as a file of type `container`.

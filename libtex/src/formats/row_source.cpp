@@ -19,6 +19,7 @@ Result<Image> RowSource::read_all() {
     image.bits = bits();
     image.normal_encoding = normal_encoding();
     image.normal_mark = normal_mark();
+    image.no_data = no_data();
     std::vector<std::byte> rows(row_bytes() * static_cast<std::size_t>(rows_together()));
     for (int j = 0; j < extent().height; j += rows_together()) {
         const int count = std::min(rows_together(), extent().height - j);

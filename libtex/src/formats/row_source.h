@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,6 +36,7 @@ public:
     [[nodiscard]] int bits() const { return bits_; }
     [[nodiscard]] const std::string& normal_encoding() const { return normal_encoding_; }
     [[nodiscard]] const std::string& normal_mark() const { return normal_mark_; }
+    [[nodiscard]] std::optional<float> no_data() const { return no_data_; }  // as in Image
 
     // The number of rows that the file stores as one unit. decode() is cheapest if `first` is a multiple of this
     // number, and `count` either is a multiple too or reaches the last row.
@@ -85,6 +87,7 @@ protected:
     }
 
     void describe_normals(std::string mark) { normal_mark_ = std::move(mark); }
+    void describe_no_data(std::optional<float> value) { no_data_ = value; }
 
 private:
     Extent extent_;
@@ -94,6 +97,7 @@ private:
     int bits_ = 8;
     std::string normal_encoding_;
     std::string normal_mark_;
+    std::optional<float> no_data_;
 };
 
 // Opens the picture in `file`, which must outlive the rows. Errors: those of read_image() that the header reveals.

@@ -132,6 +132,16 @@ void WidenSlopeBounds(const float* x, const float* y, const float* z, int count,
               hn::GetLane(hn::MinOfLanes(kD, min_y)), hn::GetLane(hn::MaxOfLanes(kD, max_y))};
 }
 
+int CountBelow(const float* values, float limit, int count) {
+    const V least = hn::Set(kD, limit);
+    std::size_t below = 0;
+    for (int i = 0; i < count; i += kLanes) {
+        const auto inside = hn::FirstN(kD, static_cast<std::size_t>(count - i));
+        below += hn::CountTrue(kD, hn::And(inside, hn::Lt(hn::LoadU(kD, values + i), least)));
+    }
+    return static_cast<int>(below);
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace tex
 HWY_AFTER_NAMESPACE();
@@ -146,6 +156,7 @@ HWY_EXPORT(DeriveRow);
 HWY_EXPORT(DeriveColumn);
 HWY_EXPORT(NormalsBySmoothing);
 HWY_EXPORT(WidenSlopeBounds);
+HWY_EXPORT(CountBelow);
 
 void limit_heights(const float* in, float scale, int count, float* out) {
     HWY_DYNAMIC_DISPATCH(LimitHeights)(in, scale, count, out);
@@ -176,6 +187,10 @@ void normals_by_smoothing(const float* const* du, const float* dv, const float* 
 
 void widen_slope_bounds(const float* x, const float* y, const float* z, int count, SlopeBounds& bounds) {
     HWY_DYNAMIC_DISPATCH(WidenSlopeBounds)(x, y, z, count, bounds);
+}
+
+int count_below(const float* values, float limit, int count) {
+    return HWY_DYNAMIC_DISPATCH(CountBelow)(values, limit, count);
 }
 
 }  // namespace tex

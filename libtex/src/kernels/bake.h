@@ -60,4 +60,7 @@ struct SlopeBounds {
 // Widens `bounds` by a row of normals. Texels past `count` are ignored.
 void widen_slope_bounds(const float* x, const float* y, const float* z, int count, SlopeBounds& bounds);
 
+// The number of texels in a row whose value is less than `limit`.
+int count_below(const float* values, float limit, int count);
+
 }  // namespace tex

@@ -3,10 +3,12 @@
 #include "rows/height_source.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string_view>
 
 #include "kernels/height_field.h"
+#include "rows/color.h"
 
 namespace tex {
 namespace {
@@ -109,6 +111,24 @@ std::optional<Error> check_blur(const HeightOptions& options) {
     return Error{ErrorCode::bad_option, {}, "the blur's sigma must be from 0 to 256 texels"};
 }
 
+Result<HeightOptions> with_no_data(const HeightOptions& options, std::optional<float> no_data,
+                                   const std::vector<std::string>& names, const HeightSource& source,
+                                   const LinearRows* linear) {
+    HeightOptions with = options;
+    if (options.no_data || !no_data) return with;
+    // A texel whose channels all have that value.
+    Image texel;
+    texel.names = names;
+    for (std::size_t k = 0; k < names.size(); ++k) texel.planes.emplace_back(Extent{1, 1}, *no_data);
+    if (linear != nullptr) {
+        if (const Result<void> converted = linear->convert(texel, 1); !converted) return converted.error();
+    }
+    Plane<float> height(Extent{1, 1});
+    take_row(texel, source, 0, height.row(0));
+    with.no_data = height.at(0, 0);
+    return with;
+}
+
 HeightCounts take_heights(const Image& image, const HeightSource& source, const HeightOptions& options, int j,
                           float* out) {
     const float no_data = options.no_data.value_or(std::numeric_limits<float>::quiet_NaN());
@@ -119,7 +139,8 @@ HeightCounts take_heights(const Image& image, const HeightSource& source, const 
 }
 
 Error invalid_heights(std::int64_t invalid, int column, int row, Extent extent, const HeightOptions& options) {
-    const std::string kinds = options.no_data ? "NaN, infinite or no-data" : "NaN or infinite";
+    const bool named = options.no_data && !std::isnan(*options.no_data);
+    const std::string kinds = named ? "NaN, infinite or no-data" : "NaN or infinite";
     if (invalid == extent.texels()) return {ErrorCode::bad_data, {}, "no texel has a height: all are " + kinds};
     return {ErrorCode::bad_data,
             {},

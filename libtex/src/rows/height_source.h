@@ -4,12 +4,15 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <tex/height_field.h>
 
 namespace tex {
+
+class LinearRows;
 
 // The source of heights: one unchanged plane, or a mixture of R, G and B.
 struct HeightSource {
@@ -29,6 +32,12 @@ struct HeightCounts {
     std::int64_t luma = 0;     // texels for which `automatic` took luma
     std::int64_t invalid = 0;  // NaN, infinite or no-data texels, which are now NaN
 };
+
+// `options` with the no-data value of the picture, if it has one and the options do not say otherwise. `linear`
+// converts the picture's colours; it may be null.
+Result<HeightOptions> with_no_data(const HeightOptions& options, std::optional<float> no_data,
+                                   const std::vector<std::string>& names, const HeightSource& source,
+                                   const LinearRows* linear);
 
 // Reads row j of a picture as heights, cleaned and inverted as the options say, but neither filled nor blurred.
 HeightCounts take_heights(const Image& image, const HeightSource& source, const HeightOptions& options, int j,

@@ -3,6 +3,7 @@
 #include "stream/bake_stream.h"
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -53,7 +54,10 @@ Result<void> prepare(const BakeFileOptions& options, Heights& heights) {
     Result<HeightSource> source = find_height_source(rows.names(), options.heights.channel);
     if (!source) return source.error();
     heights.source = *source;
-    heights.options = options.heights;
+    Result<HeightOptions> with = with_no_data(options.heights, rows.no_data(), rows.names(), heights.source,
+                                              heights.linear ? &*heights.linear : nullptr);
+    if (!with) return with.error();
+    heights.options = std::move(*with);
     return {};
 }
 
@@ -67,7 +71,7 @@ Result<void> fill(InputFile& file, const Execution& execution, Heights& heights)
     heights.source = {HeightChannel::automatic, 0};
     heights.linear.reset();
     heights.options.invert = false;
-    heights.options.no_data.reset();
+    heights.options.no_data = std::numeric_limits<float>::quiet_NaN();
     return {};
 }
 
@@ -121,12 +125,10 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
     StripWriter& writer = **opened;
     RowStream stream(*heights->rows, file.path(), 0, report.levels, writer, onward, sizes);
     if (heights->linear) stream.convert([&](Image& rows, int count) { return heights->linear->convert(rows, count); });
-    SlopeCollector slopes;
-    if (options.slopes) {
-        stream.watch([&slopes](const Strip& strip) {
-            if (strip.level == 0) slopes.add(strip.map, 0, strip.height);
-        });
-    }
+    SlopeCollector slopes(steepest_slope(options.pack.encoding), options.slopes);
+    stream.watch([&slopes](const Strip& strip) {
+        if (strip.level == 0) slopes.add(strip.map, 0, strip.height);
+    });
     HeightStage stage(extent, heights->source, heights->options, gradient, head_of(extent, options), stream.sink(),
                       std::move(heights->last));
     LevelStage levels(extent, report.levels, stage.start(), options.mip, stream.strips());
@@ -136,6 +138,7 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
     const HeightCounts& counts = stage.counts();
     report.heights = {heights->counts.luma + counts.luma, heights->counts.invalid + counts.invalid};
     report.slopes = slopes.range();
+    report.steep_texels = slopes.steep_texels();
     return report;
 }
 

@@ -42,7 +42,7 @@ inline constexpr int kResultDescriptor = 3;
 inline constexpr int kInputDescriptor = 4;
 inline constexpr int kProgressDescriptor = 5;
 
-inline constexpr std::uint32_t kReaderMagic = 0x32786574;  // "tex2": changes with the layout below
+inline constexpr std::uint32_t kReaderMagic = 0x33786574;  // "tex3": changes with the layout below
 inline constexpr int kMaxReaderChannels = 64;
 inline constexpr std::size_t kReaderDataOffset = 8192;
 
@@ -83,6 +83,9 @@ struct ReaderHeader {
     std::uint32_t landlock = 0;  // the kernel's version of Landlock
     std::uint64_t rows_done = 0;
     std::uint64_t bytes = 0;  // of an encoded file
+    std::uint32_t has_no_data = 0;
+    std::uint32_t unused = 0;
+    double no_data = 0;  // samples of this value hold no data, as the file says
     char reason[1024] = {};
     char description[1024] = {};  // of the picture: text, cut off at this length
     char names[kMaxReaderChannels][64] = {};

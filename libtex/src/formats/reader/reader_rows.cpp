@@ -206,6 +206,7 @@ public:
 private:
     Result<void> start(const ReadOptions& options);
     Result<Scale> find_scale();
+    [[nodiscard]] std::optional<float> no_data_value() const;
     [[nodiscard]] bool fetch(int first, int count, std::byte* rows) const {
         const std::uint64_t offset = kReaderDataOffset + static_cast<std::uint64_t>(first) * row_bytes();
         return read_exactly(result_.get(), offset, rows, row_bytes() * static_cast<std::size_t>(count));
@@ -265,6 +266,7 @@ Result<void> ReaderRows::open(const ReadOptions& options) {
     describe_samples(scale_.kind, scale_.bits);
     const std::string_view text(header_.description, strnlen(header_.description, sizeof header_.description));
     describe_normals(std::string(mark_in_description(text)));
+    describe_no_data(no_data_value());
     return {};
 }
 
@@ -287,6 +289,26 @@ Result<Scale> ReaderRows::find_scale() {
             scale = {SampleKind::unorm, bits, scale.bits - bits};
         }
         return scale;
+    });
+}
+
+// What store() makes of samples that hold no data. None if no sample can have that value.
+std::optional<float> ReaderRows::no_data_value() const {
+    const double value = header_.no_data;
+    if (header_.has_no_data == 0 || !std::isfinite(value)) return std::nullopt;
+    return with_type(header_.type, [&](auto zero) -> std::optional<float> {
+        using T = decltype(zero);
+        if constexpr (std::is_integral_v<T>) {
+            const double top = scale_.shift == 0 ? static_cast<double>(std::numeric_limits<T>::max())
+                                                 : static_cast<double>((std::uint64_t{1} << scale_.bits) - 1);
+            if (value < static_cast<double>(std::numeric_limits<T>::min()) || value > top || value != std::floor(value))
+                return std::nullopt;
+            return to_float(
+                static_cast<T>(static_cast<std::uint64_t>(static_cast<std::int64_t>(value)) << scale_.shift), scale_);
+        } else {
+            constexpr double kMost = std::numeric_limits<float>::max();
+            return to_float(static_cast<T>(static_cast<float>(std::clamp(value, -kMost, kMost))), scale_);
+        }
     });
 }
 
