@@ -24,7 +24,7 @@ using Row = std::array<double, 4>;
 
 // The numbers of the row of the manual that begins with these encodings.
 Row row_of_the_manual(const std::string& encodings) {
-    std::ifstream manual(TEX_SOURCE_DIR "/man/normal-maps.7.in");
+    std::ifstream manual(TEX_SOURCE_DIR "/man/shared/encoding-errors.mdoc");
     const std::string start = ".It Cm " + encodings + " Ta ";
     for (std::string line; std::getline(manual, line);) {
         if (!line.starts_with(start)) continue;
