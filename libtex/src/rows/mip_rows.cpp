@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include <tex/mip_chain.h>
+
 #include "kernels/mip.h"
 #include "rows/border.h"
 
