@@ -14,7 +14,7 @@ namespace {
 
 struct Row {
     std::vector<float> r, g, b, a;
-    explicit Row(int width) : r(width), g(width), b(width), a(width) {}
+    explicit Row(std::size_t width) : r(width), g(width), b(width), a(width) {}
 };
 
 float code(double n) { return static_cast<float>(n * 0.5 + 0.5); }
@@ -34,7 +34,7 @@ template <class IsRgb>
 std::string layout(Extent extent, int rows, IsRgb&& is_rgb) {
     SwizzleEvidence evidence(extent, SampleKind::unorm);
     for (int j = 0; j < rows; ++j) {
-        Row row(extent.width);
+        Row row(static_cast<std::size_t>(extent.width));
         for (int i = 0; i < extent.width; ++i) set(row, i, j, is_rgb(i, j));
         evidence.add_row(j, {row.r.data(), row.g.data(), row.b.data(), row.a.data()});
     }

@@ -23,7 +23,7 @@ void replace_word(std::string& text, std::string_view word, std::string_view by)
 // A file name, quoted for a shell. A name that begins with a hyphen is not an option.
 std::string quoted(const std::string& name) {
     constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+@%,:=";
-    const std::string file = name.size() > 1 && name.front() == '-' ? "./" + name : name;
+    std::string file = name.size() > 1 && name.front() == '-' ? "./" + name : name;
     if (!file.empty() && file.find_first_not_of(kPlain) == std::string::npos) return file;
     std::string text = "'";
     for (const char c : printable(file)) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
