@@ -57,7 +57,8 @@ TEST_F(CheckNormals, SeverityDecidesWhetherItFails) {
         return check(more).code;
     };
     EXPECT_EQ(with({}), 1);
-    EXPECT_EQ(with({"--disable", "N401"}), 0);
+    EXPECT_EQ(with({"--disable", "N401"}), 1) << "the file says that y is down: N112";
+    EXPECT_EQ(with({"--disable", "N401", "--disable", "N112"}), 0);
     EXPECT_EQ(with({"--severity", "wrong-y=warning"}), 0);
     EXPECT_EQ(with({"--severity", "wrong-y=warning", "--fail-on", "warning"}), 1);
 }
@@ -79,7 +80,7 @@ TEST_F(CheckNormals, ConfigurationIsReadAndTheCommandLineWins) {
     }
     EXPECT_EQ(check({"good.dds", "--config", "gone.toml"}).code, 3);
     // By id in one place and by name in the other: the command line overrides the file.
-    scratch_.write("off.toml", "require = [\"y=up\"]\ndisable = [\"wrong-y\"]\n");
+    scratch_.write("off.toml", "require = [\"y=up\"]\ndisable = [\"wrong-y\", \"N112\"]\n");
     EXPECT_EQ(check({"down.dds", "--config", "off.toml"}).code, 0);
     EXPECT_EQ(check({"down.dds", "--config", "off.toml", "--enable", "N401"}).code, 1);
     EXPECT_EQ(check({"down.dds", "--config", "off.toml", "--enable", "N401", "--disable", "N401"}).code, 0);
