@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
+#include "cli/unmarked.h"
 
 namespace tex::cli {
 namespace {
@@ -45,12 +46,7 @@ protected:
         return text;
     }
     // Removes what a file states.
-    void forget(const std::string& name) const {
-        auto texture = read_texture(scratch_.path(name));
-        ASSERT_TRUE(texture);
-        texture->swizzle_known = texture->y_known = false;
-        ASSERT_TRUE(write_texture(scratch_.path(name), *texture));
-    }
+    void forget(const std::string& name) const { remove_marks(scratch_, name); }
     // The findings of check-normals, by file, except those of JPEG's losses.
     [[nodiscard]] std::string findings(std::vector<std::string> names, const std::string& y) const {
         names.insert(names.end(), {"--json", "--require", "y=" + y, "--disable", "N304"});

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
+#include "cli/unmarked.h"
 
 namespace tex::cli {
 
@@ -92,6 +93,7 @@ TEST_F(PackNormals, FlippingTwiceGivesTheSameWhereLengthsAreKept) {
 
 TEST_F(PackNormals, LayoutsWithoutAMarkAreToldFromTheirTexels) {
     does("pack-normals", {"n.dds", "-o", "ag.png", "--format", "ag8"});
+    remove_marks(scratch_, "ag.png");
     does("pack-normals", {"ag.png", "-o", "guessed.dds", "--format", "float"},
          "ag.png: layout not stated; guessed dxt5nm from the texels");
     does("pack-normals", {"ag.png", "-o", "told.dds", "--format", "float", "--swizzle", "dxt5nm"});
@@ -106,7 +108,7 @@ TEST_F(PackNormals, LayoutsWithoutAMarkAreToldFromTheirTexels) {
     const Ran many = go("pack-normals", {"rgb.png", "ag.png", "more.png", "--out-dir", "out", "--json"});
     EXPECT_EQ(many.err,
               "pack-normals: warning: ag.png and 1 more: layout not stated; guessed dxt5nm from the "
-              "texels; --swizzle sets it\n");
+              "texels (A varies; R and B are constant, or R, G and B are equal); --swizzle sets it\n");
     EXPECT_EQ(nlohmann::json::parse(lines_of(many.out).at(1))["source"]["swizzle"], "dxt5nm");
     const Ran wrong = go("pack-normals", {"n.dds", "-o", "z.dds", "--swizzle", "dxt5n"});
     EXPECT_EQ(wrong.code, 2);

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
+#include "cli/unmarked.h"
 
 namespace tex::cli {
 
@@ -131,6 +132,7 @@ TEST_F(PreviewNormals, ReadsMapsAsTheOtherCommandsDo) {
         return scratch_.read("x.png");
     };
     bake_as("ag.png", "ag8");
+    remove_marks(scratch_, "ag.png");
     const std::string told = bytes({"ag.png", "--swizzle", "dxt5nm"});
     EXPECT_EQ(bytes({"ag.png"}, "ag.png: layout not stated; guessed dxt5nm from the texels"), told);
     EXPECT_NE(bytes({"ag.png", "--swizzle", "rgb"}), told);
