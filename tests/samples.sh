@@ -16,10 +16,10 @@ if [ $# -gt 1 ]; then
         --detail "$scratch/waves_normals.png" --detail-tiling 6 \
         --show height,normals,plain,lit --size 220 --light -1,1,0.9 --tint 0.6,0.28,0.18 --specular 0.12 --no-legend
     cmp "$scratch/strip.png" "$samples/strip.png"
-    # The README's picture of +Y and -Y. Its captions are the names of the files.
+    # The README's picture of +Y and -Y, both read as +Y. Its captions are the names of the files.
     "$2" "$samples/hemisphere.png" -o "$scratch/+Y.png" --bumpiness 112 --y up
     "$2" "$samples/hemisphere.png" -o "$scratch/-Y.png" --bumpiness 112 --y down
     "$3" "$scratch/+Y.png" "$scratch/-Y.png" -o "$scratch/y_axis.png" --show normals,lit --columns 4 --size 200 \
-        --light -0.3,1,0.8 --specular 0.15 --no-legend
+        --light -0.3,1,0.8 --specular 0.15 --no-legend --y-in up
     cmp "$scratch/y_axis.png" "$samples/y_axis.png"
 fi

@@ -3,10 +3,14 @@
 
 #include <tex/color.h>
 
+#include <OpenColorIO/OpenColorIO.h>
+
 #include "rows/color.h"
 #include "threads/guard.h"
 
 namespace tex {
+
+const char* opencolorio_version() { return OCIO_NAMESPACE::GetVersion(); }
 
 Result<void> to_linear(Image& image, const ColorOptions& options) {
     return guarded([&]() -> Result<void> {

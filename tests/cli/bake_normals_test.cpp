@@ -126,6 +126,7 @@ TEST_F(BakeNormals, NumbersAreChecked) {
 }
 
 TEST_F(BakeNormals, WarnsOfSlopesThatTheEncodingCannotHold) {
+    scratch_.add_sample("waves.png", "waves.png");
     const auto steep = [&](const std::vector<std::string>& options, const std::string& output, bool warns) {
         std::vector<std::string> line = {"waves.png", "-o", output, "--json"};
         line.insert(line.end(), options.begin(), options.end());

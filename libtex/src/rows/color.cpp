@@ -149,8 +149,6 @@ Result<ConvertRow> by_config(const std::string& file, const std::string& space) 
 
 }  // namespace
 
-const char* opencolorio_version() { return OCIO::GetVersion(); }
-
 Result<LinearRows> LinearRows::make(const std::vector<std::string>& names, SampleKind sample, int bits,
                                     const std::string& config, const std::string& space) {
     LinearRows rows;
