@@ -17,8 +17,8 @@ namespace tex {
 //            square error of a block is at most 1/900 of a code above the smallest one
 //   normal   no channel of a block has a larger squared error than a plain fit, which puts the endpoints at the
 //            extremes and refines them twice by linear least squares; halves are rounded up. This holds if all values
-//            of the block are whole codes. Others are first rounded to 1/128 of a code, and fewer than one block in
-//            1000 has a larger error than a plain fit of the rounded values: texels and endpoints in the middle
+//            of the block are whole codes. Others are first rounded to 1/128 of a code, and about one block in 1000
+//            has a larger error than a plain fit of the rounded values: texels and endpoints in the middle
 //            between two codes are not always rounded up. Three or more values that lie on a palette with spacings of
 //            at least 4/3 codes, as those of blocks that were decoded earlier do, are encoded to the same values
 //            within 1/10 of a code

@@ -27,7 +27,7 @@
 // What is guaranteed. normal: the three steps of (0, 0) are a plain fit: the extremes, refined twice by least squares,
 // with halves rounded up. If all texels of a block are whole codes, they are computed without rounding, so no block is
 // worse than that fit. Otherwise texels or endpoints that lie almost in the middle (see Precision) may be rounded the
-// other way, and the fit then takes another path: fewer than one block in 1000 becomes worse. fast: the comparison is
+// other way, and the fit then takes another path: about one block in 1000 becomes worse. fast: the comparison is
 // with the palette between the extremes (in green: less 1/16 of the range at both ends), exact and not refined. Least
 // squares are not worse than that palette. Rounding then moves values by at most half a code of alpha (one code if the
 // range is less) and by at most 2.8 codes of green. The root mean square error of a block exceeds that of this palette
