@@ -3,6 +3,10 @@
 
 #include "formats/normal_mark.h"
 
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <tex/tex.h>
@@ -26,6 +30,13 @@ Swizzle swizzle_from(const std::string& letters) {
 
 class NormalMark : public testing::Test {
 protected:
+    void SetUp() override {
+        std::string pattern = testing::TempDir() + "normal_mark_XXXXXX";  // tests run side by side
+        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+        folder_ = pattern;
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
     // The texture after a trip through a file.
     Texture through(const Texture& texture, Container container) {
         const auto bytes = encode_file(texture, container);
@@ -36,7 +47,7 @@ protected:
         EXPECT_TRUE(back) << back.error().message();
         return std::move(*back);
     }
-    const std::string folder_ = testing::TempDir();
+    std::string folder_;
 };
 
 TEST(NormalMarkText, IsTheNameOfTheLayoutAndY) {
