@@ -57,7 +57,7 @@ Result<void> prepare(const BakeFileOptions& options, Heights& heights) {
     Result<HeightOptions> with = with_no_data(options.heights, rows.no_data(), rows.names(), heights.source,
                                               heights.linear ? &*heights.linear : nullptr);
     if (!with) return with.error();
-    heights.options = std::move(*with);
+    heights.options = *with;
     return {};
 }
 
