@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fixes that check-normals prints: each is run, on every kind of file that has the finding. The finding is gone
+// The fixes that check-normals prints: each is run, on every file type that has the finding. The finding is gone
 // afterwards, there is no new one, and nothing else is lost.
 
 #include <algorithm>
@@ -210,13 +210,13 @@ TEST_F(Fixes, ThatWouldLoseDataAreSentences) {
        "dds:mipmaps=0 dxt1.dds; cp plain.png -- -odd.png");
     const auto gloss = check("gloss.png", "--require y=down");
     for (const auto& found : gloss["findings"]) EXPECT_FALSE(found.contains("fix")) << found;
-    EXPECT_NE(finding(gloss, "N401").value("advice", "").find("a file of its own"), std::string::npos) << gloss;
+    EXPECT_NE(finding(gloss, "N401").value("advice", "").find("another file"), std::string::npos) << gloss;
     EXPECT_NE(finding(check("dxt1.dds", "--require y=down"), "N401").value("advice", "").find("bc1-unorm"),
               std::string::npos);
     EXPECT_EQ(repair("photo.jpg", "N401", "--require y=down"), "FIXED.png") << "JPEG would lose more";
     EXPECT_EQ(repair("./-odd.png", "N401", "--require y=down"), "FIXED.png");
     const Ran text = shell(scratch_, "check-normals gloss.png --require y=down");
-    EXPECT_NE(text.out.find("\n    advice: A command would drop"), std::string::npos) << text.out;
+    EXPECT_NE(text.out.find("\n    advice: The commands would drop"), std::string::npos) << text.out;
     EXPECT_EQ(text.out.find("    fix: "), std::string::npos) << text.out;
 }
 

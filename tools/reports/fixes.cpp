@@ -129,8 +129,8 @@ Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements
     if (id == "N108" && !require.encoding) return {"Store the file in the format that is required."};
     if (report.more_data) {
         return {
-            "A command would drop what the channels beside the normals hold. Move it to a file of its own, or correct "
-            "the normals in the program that made this file."};
+            "The commands would drop what the other channels hold. Move that to another file, or correct the normals "
+            "in the program that made this file."};
     }
     if (!is_clear(id, report, require)) {
         return {
