@@ -9,5 +9,5 @@
 int main(int argc, char** argv) {
     tex::cli::ProcessHost host;
     const auto count = static_cast<std::size_t>(argc > 0 ? argc - 1 : 0);
-    return static_cast<int>(tex::cli::run(tex::cli::programs().front(), {argv + 1, count}, host));
+    tex::cli::ProcessHost::end(tex::cli::run(tex::cli::programs().front(), {argv + 1, count}, host));
 }

@@ -111,6 +111,23 @@ TEST_P(LittleMemory, IsOneSentence) {
 INSTANTIATE_TEST_SUITE_P(Commands, LittleMemory, testing::ValuesIn(kMemories),
                          [](const auto& test) { return std::string(test.param.name); });
 
+// TBB allocates memory where it starts a thread, and nobody can catch that exception.
+TEST_F(Limits, AThreadWithoutMemoryIsReplacedOrIsOneSentence) {
+    const std::string preload = "export LD_PRELOAD=" TEX_BINARY_DIR "/no_thread_memory.so";
+    const std::string command = "preview-normals a.dds -o out.png --threads 4";
+    ASSERT_EQ(shell(scratch_, command).code, 0);
+    const std::string whole = scratch_.read("out.png");
+    for (const char* size : {"", " --size 4096"}) {  // less than the second that the other threads have, and more
+        fs::remove(scratch_.path("out.png"));
+        const Ran ran = run_after(preload, command + size);
+        if (ran.code != 0) {
+            expect_refused(ran, command);
+        } else if (*size == '\0') {
+            EXPECT_EQ(scratch_.read("out.png"), whole);
+        }
+    }
+}
+
 // -- what files may claim, and what their decoders may use ----------------------------------------------------------
 
 TEST_F(Limits, MoreTexelsThanAllowedAreRefusedInEveryFormat) {

@@ -7,6 +7,8 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
+#include <new>
 #include <string>
 
 #include <fcntl.h>
@@ -97,6 +99,27 @@ extern "C" void on_signal(int signal) {
 
 extern "C" void on_alarm(int) { end_by_signal(g_signal); }
 
+// A thread that gets no memory where nobody can catch the exception: in TBB, while a thread starts. Usually, the other
+// threads do its work. If the command has not ended within a second, it may wait for this thread, so the process ends
+// here. The stack is not unwound, because other threads may be anywhere. Any other exception that nobody caught is a
+// defect: abort().
+[[noreturn]] void on_terminate() {
+    static std::atomic_flag is_ending;
+    try {
+        if (std::current_exception() != nullptr) throw;
+    } catch (const std::bad_alloc&) {
+        while (is_ending.test_and_set()) pause();  // another thread ends the process
+        sleep(kPatience);
+        remove_unfinished_files();
+        write_all(STDERR_FILENO, program_invocation_short_name);
+        write_all(STDERR_FILENO, ": error: out of memory\n");
+        _exit(static_cast<int>(ExitCode::io));
+    } catch (...) {  // printed below
+    }
+    __gnu_cxx::__verbose_terminate_handler();
+    std::abort();
+}
+
 void catch_signals() {
     for (const int signal : kSignals) {
         struct sigaction before {};
@@ -139,7 +162,10 @@ bool ProcessHost::err_has_color() const {
     return err_is_terminal() && (no_color == nullptr || *no_color == '\0');
 }
 
-void ProcessHost::begin() { catch_signals(); }
+void ProcessHost::begin() {
+    catch_signals();
+    std::set_terminate(on_terminate);
+}
 
 std::string_view ProcessHost::interruption() const {
     switch (g_signal) {
@@ -151,5 +177,13 @@ std::string_view ProcessHost::interruption() const {
 }
 
 void ProcessHost::end_interrupted() { end_by_signal(g_signal); }
+
+void ProcessHost::end(ExitCode code) {
+#if defined(__SANITIZE_ADDRESS__)
+    std::exit(static_cast<int>(code));  // looks for leaks
+#else
+    _exit(static_cast<int>(code));
+#endif
+}
 
 }  // namespace tex::cli

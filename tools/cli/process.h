@@ -8,6 +8,7 @@
 
 #pragma once
 
+#include "cli/exit_code.h"
 #include "cli/host.h"
 
 namespace tex::cli {
@@ -27,6 +28,9 @@ public:
     void begin() override;
     [[nodiscard]] std::string_view interruption() const override;
     void end_interrupted() override;  // by the signal: does not return
+
+    // Ends the process. Runs no destructors of static objects: a thread that TBB is just starting may need them.
+    [[noreturn]] static void end(ExitCode code);
 };
 
 }  // namespace tex::cli
