@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // bake-normals: height maps to normal maps.
 
+#include <optional>
+
 #include <fmt/format.h>
 #include <tex/tex.h>
 
@@ -24,6 +26,10 @@ private:
     [[nodiscard]] cli::OutputRules rules() const override;
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] Result<void> process(cli::Job& job) override;
+    [[nodiscard]] BakeFileOptions options(cli::Job& job) const;
+    [[nodiscard]] std::optional<Step> step(cli::Job& job) override { return options(job); }
+    void note(cli::Job& job, const StepsReport& done) override { reader_.note(job, done.heights); }
+    [[nodiscard]] Error with_remedy(const Error& error) const override { return cli::HeightReader::with_remedy(error); }
     [[nodiscard]] cli::ExitCode finish(cli::Console& console) override;
 
     cli::HeightReader reader_;
@@ -80,7 +86,7 @@ Result<void> BakeNormals::check(const std::vector<cli::Task>& tasks) {
     return reader_.color.check();
 }
 
-Result<void> BakeNormals::process(cli::Job& job) {
+BakeFileOptions BakeNormals::options(cli::Job& job) const {
     BakeFileOptions options;
     options.read = job.read_options;
     options.heights = reader_.heights.options;
@@ -95,12 +101,17 @@ Result<void> BakeNormals::process(cli::Job& job) {
     options.write = output.write_options(job);
     options.level_names = cli::level_names(job.task.output);
     options.slopes = running.json;
-    const auto baked = bake_file(job.task.input, job.task.output, job.task.container, options, job.until(1.0));
-    if (!baked) return cli::HeightReader::with_remedy(baked.error());
+    return options;
+}
+
+Result<void> BakeNormals::process(cli::Job& job) {
+    const BakeFileOptions with = options(job);
+    const auto baked = bake_file(job.task.input, job.task.output, job.task.container, with, job.until(1.0));
+    if (!baked) return with_remedy(baked.error());
     reader_.note(job, baked->heights);
     cli::wrote_levels(job, job.task.output, baked->levels);
-    cli::report_texture(job, baked->extent, baked->levels, options.pack, baked->bytes);
-    warn_of_steep(job, *baked, options.pack.encoding);
+    cli::report_texture(job, baked->extent, baked->levels, with.pack, baked->bytes);
+    warn_of_steep(job, *baked, with.pack.encoding);
     const SlopeRange& slopes = baked->slopes;
     job.report["slopes"] = {{"x", {slopes.min_x, slopes.max_x}}, {"y", {slopes.min_y, slopes.max_y}}};
     return {};

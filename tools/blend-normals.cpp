@@ -2,6 +2,7 @@
 // blend-normals: adds detail normals to base normals.
 
 #include <algorithm>
+#include <optional>
 
 #include <tex/tex.h>
 
@@ -38,6 +39,8 @@ private:
     [[nodiscard]] cli::OutputRules rules() const override { return {{}, Container::dds, joins(), layers_.files()}; }
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] Result<void> process(cli::Job& job) override;
+    [[nodiscard]] BlendFileOptions options(cli::Job& job) const;
+    [[nodiscard]] std::optional<Step> step(cli::Job& job) override { return options(job); }
 
     BlendOptions blend_;
     cli::LayerOptions layers_;
@@ -89,7 +92,7 @@ Result<void> BlendNormals::check(const std::vector<cli::Task>& tasks) {
     return {};
 }
 
-Result<void> BlendNormals::process(cli::Job& job) {
+BlendFileOptions BlendNormals::options(cli::Job& job) const {
     BlendFileOptions options;
     options.source = normals.options(job, {false, false, {}, {}, true});
     options.layers = layers_.layers(job, details_of(job.task), normals);
@@ -97,18 +100,23 @@ Result<void> BlendNormals::process(cli::Job& job) {
     options.blend.wrap_x = wrap_.x;
     options.blend.wrap_y = wrap_.y;
     options.mip = mips_.options(mips_.levels_for(job.task), wrap_);
-    options.pack = [&](const SourceInfo& base) {
+    options.pack = [this, &job](const SourceInfo& base) {
         return output.pack_options(output.format ? *output.format : cli::encoding_of(base, job.task), base.y_axis,
                                    base.y_known);
     };
     options.write = output.write_options(job);
     options.level_names = cli::level_names(job.task.output);
-    auto blended = blend_file(job.task.input, job.task.output, job.task.container, options, job.until(1.0));
+    return options;
+}
+
+Result<void> BlendNormals::process(cli::Job& job) {
+    const BlendFileOptions with = options(job);
+    auto blended = blend_file(job.task.input, job.task.output, job.task.container, with, job.until(1.0));
     if (!blended) return blended.error();
     trust_if_all_agree(*blended);
     normals.note(job, job.task.input, blended->source);
     for (std::size_t k = 0; k < blended->details.size(); ++k)
-        normals.note(job, options.layers[k].input, blended->details[k]);
+        normals.note(job, with.layers[k].input, blended->details[k]);
     cli::report_input(job, blended->source);
     cli::wrote_levels(job, job.task.output, blended->levels);
     cli::report_texture(job, blended->extent, blended->levels, blended->pack, blended->bytes);

@@ -185,6 +185,10 @@ ExitCode Batch::run_tasks(const std::vector<Task>& tasks, Console& console) {
     return code;
 }
 
+Task Converter::task_for(const std::string& input, const std::string& output_name) const {
+    return task_of(input, output_name, output, rules());
+}
+
 Result<std::vector<Task>> Converter::plan() const {
     const auto inputs = files.list_inputs(command);
     if (!inputs) return inputs.error();

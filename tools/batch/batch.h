@@ -7,7 +7,12 @@
 
 #pragma once
 
+#include <optional>
+#include <string>
+#include <tuple>
 #include <vector>
+
+#include <tex/steps.h>
 
 #include "batch/job.h"
 #include "batch/plan.h"
@@ -50,6 +55,25 @@ public:
     using Batch::Batch;
 
     OutputOptions output;
+
+    // For build-normals, which decides itself about inputs and outputs, and joins steps. Command::parse() has read the
+    // options.
+
+    // The task that makes `output` from `input`. Throws UsageError if the name does not show the file type, or if the
+    // file type cannot hold the format.
+    [[nodiscard]] Task task_for(const std::string& input, const std::string& output) const;
+    // As check(), for such a task.
+    [[nodiscard]] Result<void> check_task(const Task& task) { return check({task}); }
+    // As process(), for a job of such a task.
+    [[nodiscard]] Result<void> process_task(Job& job) { return process(job); }
+    // What process() does, as a step of apply_steps(). Nothing if the command does something else.
+    [[nodiscard]] virtual std::optional<Step> step(Job&) { return std::nullopt; }
+    // Prints the warnings that the step's result calls for. Any thread may call this.
+    virtual void note(Job&, const StepsReport&) {}
+    // The error with the option that avoids it, if there is one.
+    [[nodiscard]] virtual Error with_remedy(const Error& error) const { return error; }
+    // As finish().
+    void finish_steps(Console& console) { std::ignore = finish(console); }
 
 protected:
     [[nodiscard]] virtual OutputRules rules() const { return {}; }

@@ -18,6 +18,23 @@ const std::vector<std::string>& known_fields() {
     return fields;
 }
 
+// Cuts ":-SUFFIX" off a field and returns the suffix.
+std::string suffix_to_drop(std::string& field) {
+    const std::size_t colon = field.find(':');
+    if (colon == std::string::npos) return {};
+    const std::string rest = field.substr(colon + 1);
+    field.resize(colon);
+    if (field != "stem" || rest.size() < 2 || rest.front() != '-') {
+        throw UsageError(
+            fmt::format("'{{{}:{}}}': only {{stem:-SUFFIX}} takes something off", printable(field), printable(rest)));
+    }
+    return rest.substr(1);
+}
+
+std::string without_suffix(const std::string& stem, const std::string& suffix) {
+    return stem.size() > suffix.size() && stem.ends_with(suffix) ? stem.substr(0, stem.size() - suffix.size()) : stem;
+}
+
 }  // namespace
 
 NameFields name_fields(const std::string& path) {
@@ -58,13 +75,14 @@ NamePattern::NamePattern(std::string_view text) {
             const std::size_t close = text.find('}', k);
             if (close == std::string_view::npos)
                 throw UsageError(fmt::format("'{}' has a {{ without its }}", printable(text)));
-            const std::string field(text.substr(k + 1, close - k - 1));
+            std::string field(text.substr(k + 1, close - k - 1));
+            const std::string without = suffix_to_drop(field);
             if (std::find(known_fields().begin(), known_fields().end(), field) == known_fields().end()) {
                 throw UsageError(fmt::format("a field must be one of {}, not '{}'{}", join(known_fields()),
                                              printable(field), did_you_mean(field, known_fields())));
             }
             end_literal();
-            pieces_.push_back({true, field});
+            pieces_.push_back({true, field, without});
             k = close;
         } else {
             literal += c;
@@ -81,7 +99,7 @@ std::string NamePattern::expand(const NameFields& fields) const {
         else if (piece.text == "dir")
             name += fields.dir;
         else if (piece.text == "stem")
-            name += fields.stem;
+            name += without_suffix(fields.stem, piece.without);
         else if (piece.text == "ext")
             name += fields.ext;
         else if (piece.text == "format")

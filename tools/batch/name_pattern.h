@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // name_pattern.h: builds the names of outputs from the names of inputs: --name '{stem}_mip{level}{ext}'.
+//
+// {stem:-_h} is the stem without _h at its end, if it has it there.
 
 #pragma once
 
@@ -39,6 +41,7 @@ private:
     struct Piece {
         bool is_field;
         std::string text;
+        std::string without = {};  // taken from the end of the field
     };
     std::vector<Piece> pieces_;
 };

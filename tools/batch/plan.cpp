@@ -48,6 +48,15 @@ std::string output_name(const std::string& input, const FileOptions& files, cons
 
 }  // namespace
 
+Task task_of(const std::string& input, const std::string& name, const OutputOptions& output, const OutputRules& rules) {
+    Task task{input, name};
+    task.shared = rules.shared;
+    task.container = output.container_for(with_level(name, 0), rules.standard_output);
+    if (output.format) OutputOptions::check_holds(with_level(name, 0), task.container, *output.format);
+    if (rules.amend) rules.amend(task);
+    return task;
+}
+
 std::vector<Task> plan_outputs(std::vector<std::string> inputs, const FileOptions& files, const OutputOptions& output,
                                const OutputRules& rules) {
     std::vector<std::string> joined;
@@ -62,12 +71,9 @@ std::vector<Task> plan_outputs(std::vector<std::string> inputs, const FileOption
         throw UsageError(fmt::format("no input for -o: {} names none", printable(files.files_from)));
     std::vector<Task> tasks;
     for (const std::string& input : inputs) {
-        Task task{input, files.output.empty() ? output_name(input, files, output, rules) : files.output};
+        const std::string name = files.output.empty() ? output_name(input, files, output, rules) : files.output;
+        Task task = task_of(input, name, output, rules);
         task.joined = joined;
-        task.shared = rules.shared;
-        task.container = output.container_for(with_level(task.output, 0), rules.standard_output);
-        if (output.format) OutputOptions::check_holds(with_level(task.output, 0), task.container, *output.format);
-        if (rules.amend) rules.amend(task);
         tasks.push_back(std::move(task));
     }
     if (!files.depfile.empty()) check_depfile_names(tasks);

@@ -25,6 +25,11 @@ struct OutputRules {
     std::function<void(Task& task)> amend = {};  // adds the files that options name for this task; may be empty
 };
 
+// The task that makes `name`, which may contain kLevelMark, from `input`. Throws UsageError if the name does not show
+// its file type, or if that cannot hold the format.
+[[nodiscard]] Task task_of(const std::string& input, const std::string& name, const OutputOptions& output,
+                           const OutputRules& rules);
+
 // Pairs every input with its output. Throws UsageError if two inputs have the same output, if an output is an input
 // (links are followed), or if a name does not show its file type. Creates nothing.
 [[nodiscard]] std::vector<Task> plan_outputs(std::vector<std::string> inputs, const FileOptions& files,

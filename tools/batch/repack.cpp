@@ -14,6 +14,10 @@ ExitCode NormalsConverter::finish(Console& console) {
     return ExitCode::done;
 }
 
+void NormalsConverter::note(Job& job, const StepsReport& done) {
+    for (const MapRead& map : done.maps) normals.note(job, map.file, map.info);
+}
+
 void Repacker::add_files(const char* inputs) {
     command.usage("NORMALS... -o FILE");
     command.usage("NORMALS... --out-dir DIR [--name PATTERN]");
@@ -24,16 +28,21 @@ void Repacker::add_files(const char* inputs) {
 
 Encoding Repacker::encoding(const SourceInfo&, const Task& task) const { return default_encoding(task.container); }
 
-Result<void> Repacker::process(Job& job) {
+PackFileOptions Repacker::all_options(Job& job) const {
     PackFileOptions with = options(job);
     with.source = normals.options(job);
     with.source.doubt_y = output.y.has_value();  // otherwise y stays as it is, and the output does not state it
-    with.pack = [&](const SourceInfo& info) {
+    with.pack = [this, &job](const SourceInfo& info) {
         return output.pack_options(output.format ? *output.format : encoding(info, job.task), info.y_axis,
                                    info.y_known);
     };
     with.write = output.write_options(job);
     with.level_names = level_names(job.task.output);
+    return with;
+}
+
+Result<void> Repacker::process(Job& job) {
+    const PackFileOptions with = all_options(job);
     const auto packed = pack_file(job.task.input, job.task.output, job.task.container, with, job.until(1.0));
     if (!packed) return packed.error();
     normals.note(job, job.task.input, packed->source);

@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include <optional>
+
 #include <tex/pipeline.h>
 
 #include "batch/batch.h"
@@ -18,6 +20,8 @@ public:
 
     NormalsReader normals;
 
+    void note(Job& job, const StepsReport& done) override;
+
 protected:
     [[nodiscard]] ExitCode finish(Console& console) override;
 };
@@ -26,6 +30,8 @@ protected:
 class Repacker : public NormalsConverter {
 public:
     using NormalsConverter::NormalsConverter;
+
+    [[nodiscard]] std::optional<Step> step(Job& job) override { return all_options(job); }
 
 protected:
     // Adds the usage, the inputs, the files and the way normal maps are read. `inputs` is the help text of the inputs.
@@ -39,6 +45,9 @@ protected:
     virtual void report(Job&, const PackFileReport&) const {}
 
     [[nodiscard]] Result<void> process(Job& job) override;
+
+private:
+    [[nodiscard]] PackFileOptions all_options(Job& job) const;
 };
 
 // If `name` contains {level}, the names of the files that hold one level each; else empty.

@@ -33,6 +33,16 @@ namespace tex {
 // Returns the name of the file for a level, if each level gets its own file. May throw std::bad_alloc only.
 using LevelNames = std::function<std::string(int level)>;
 
+// Another file with the same normals, made from the same reading. A file that can hold one level gets the base level.
+struct MoreFile {
+    std::string output;
+    LevelNames level_names;  // as in BakeFileOptions
+    Container container = Container::dds;
+    int levels = 0;                                      // at most so many of the levels that are made; 0: all
+    std::function<PackOptions(const SourceInfo&)> pack;  // as in PackFileOptions
+    WriteOptions write;
+};
+
 // What bake_file() does: read_image(), to_linear() if color.space is not empty, height_field(), bake(),
 // build_mip_chain(), pack(), write_texture().
 struct BakeFileOptions {
@@ -44,8 +54,9 @@ struct BakeFileOptions {
     MipOptions mip;
     PackOptions pack;
     WriteOptions write;
-    LevelNames level_names;  // one file for each level, and `output` is not written; empty: one file
-    bool slopes = false;     // whether BakeFileReport::slopes is computed
+    LevelNames level_names;      // one file for each level, and `output` is not written; empty: one file
+    std::vector<MoreFile> more;  // appear after `output`, in this order
+    bool slopes = false;         // whether BakeFileReport::slopes is computed
 };
 
 struct BakeFileReport {
@@ -106,6 +117,7 @@ struct PackFileOptions {
     std::function<PackOptions(const SourceInfo&)> pack;
     WriteOptions write;
     LevelNames level_names;                  // as in BakeFileOptions
+    std::vector<MoreFile> more;              // as in BakeFileOptions
     std::optional<RoughnessFile> roughness;  // only if `mip` is set
 };
 
@@ -167,7 +179,8 @@ struct BlendFileOptions {
     // As in PackFileOptions, given the properties of the base.
     std::function<PackOptions(const SourceInfo& base)> pack;
     WriteOptions write;
-    LevelNames level_names;  // as in BakeFileOptions
+    LevelNames level_names;      // as in BakeFileOptions
+    std::vector<MoreFile> more;  // as in BakeFileOptions
 };
 
 struct BlendFileReport {

@@ -83,6 +83,7 @@
 #include <tex/image_io.h>
 #include <tex/pipeline.h>
 #include <tex/source.h>
+#include <tex/steps.h>
 
 #pragma GCC visibility push(default)
 namespace tex {

@@ -7,12 +7,18 @@
 
 #include <tex/pipeline.h>
 
+#include "stream/map_source.h"
 #include "stream/row_stream.h"
 
 namespace tex {
 
 // Does what blend_file() does. May throw std::bad_alloc.
 Result<BlendFileReport> blend_stream(const std::string& input, const std::string& output, Container container,
+                                     const BlendFileOptions& options, const Execution& execution,
+                                     const StreamSizes& sizes = {});
+
+// The same for a base from any source.
+Result<BlendFileReport> blend_stream(MapSource& base, const std::string& output, Container container,
                                      const BlendFileOptions& options, const Execution& execution,
                                      const StreamSizes& sizes = {});
 

@@ -12,7 +12,7 @@
 namespace tex {
 
 Result<void> MapFile::open_texture() {
-    Result<TextureRows> opened = open_texture_rows(*file_, options_.read);
+    Result<TextureRows> opened = made_ != nullptr ? made_->open() : open_texture_rows(*file_, options_.read);
     if (!opened) return opened.error();
     texture_ = std::move(*opened);
     return {};
@@ -20,6 +20,7 @@ Result<void> MapFile::open_texture() {
 
 // A stream is read into memory, because the map may have to be read as a whole, or twice.
 Result<void> MapFile::open() {
+    if (made_ != nullptr) return open_texture();
     Result<InputFile> file = InputFile::open(path_);
     if (!file) return file.error();
     file_.emplace(std::move(*file));
@@ -29,6 +30,13 @@ Result<void> MapFile::open() {
 
 Result<void> MapFile::hold(bool base_only, const Execution& execution) {
     texture_.reset();
+    if (made_ != nullptr) {
+        Result<Source> source = read_normals(*made_, options_, base_only, execution);
+        if (!source) return source.error();
+        chain_ = std::move(source->chain);
+        info_ = std::move(source->info);
+        return {};
+    }
     if (!file_) {
         Result<InputFile> file = InputFile::open(path_);
         if (!file) return file.error();
@@ -75,10 +83,33 @@ Result<void> MapFile::open_again() {
     const Extent extent = rows()->extent();
     finder_.reset();
     texture_.reset();
-    if (Result<void> again = file_->rewind(); !again) return again;
+    if (file_) {
+        if (Result<void> again = file_->rewind(); !again) return again;
+    }
     if (Result<void> opened = open_texture(); !opened) return opened;
     if (texture_ && rows()->extent() == extent) return {};
     return Error{ErrorCode::io, path_, "changed while it was read"};
+}
+
+Result<void> MapFile::settle_layout() {
+    while (true) {
+        if (Result<void> ready = prepare(); !ready) return ready;
+        LayoutFinder* const open = finder();
+        if (open == nullptr) return {};
+        Result<void> seen = rows()->visit(path_, [&](const Image& image, int, int count) {
+            for (int k = 0; k < count; ++k) {
+                const float* channels[4] = {};
+                for (std::size_t c = 0; c < texture_->planes.size(); ++c)
+                    channels[c] = image.planes[texture_->planes[c]].row(k);
+                open->add_row(channels);
+            }
+            return Result<void>();
+        });
+        if (!seen) return seen;
+        const bool right = was_right();
+        if (Result<void> again = open_again(); !again) return again;
+        if (right) return prepare();
+    }
 }
 
 }  // namespace tex

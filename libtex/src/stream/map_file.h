@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// map_file.h: a file of normals that is read row by row or held in memory as a whole map.
+// map_file.h: a map of normals that is read row by row or held in memory as a whole: a file, or another source.
 
 #pragma once
 
@@ -12,6 +12,7 @@
 #include "files/input_file.h"
 #include "formats/texture_rows.h"
 #include "stream/layout_finder.h"
+#include "stream/map_source.h"
 
 namespace tex {
 
@@ -19,6 +20,7 @@ class MapFile {
 public:
     // Both must outlive this object.
     MapFile(const std::string& path, const SourceOptions& options) : path_(path), options_(options) {}
+    MapFile(MapSource& made, const SourceOptions& options) : path_(made.path()), options_(options), made_(&made) {}
     MapFile(const MapFile&) = delete;
     MapFile& operator=(const MapFile&) = delete;
 
@@ -34,6 +36,9 @@ public:
     bool was_right();
     // Opens the file again, for another reading. Errors: io, and those of open().
     Result<void> open_again();
+    // Reads the rows until the layout is known, then opens the file again and calls prepare(). For callers that cannot
+    // take back what they made from the rows. Errors: those of reading.
+    Result<void> settle_layout();
 
     [[nodiscard]] const std::string& path() const { return path_; }
     [[nodiscard]] RowSource* rows() const { return texture_ ? texture_->levels.front().get() : nullptr; }
@@ -52,6 +57,7 @@ private:
 
     const std::string& path_;
     const SourceOptions& options_;
+    MapSource* const made_ = nullptr;  // instead of a file
     std::optional<InputFile> file_;
     std::optional<TextureRows> texture_;
     KnownLayout known_;

@@ -44,4 +44,12 @@ Result<Source> read_normals(InputFile& file, const SourceOptions& options, bool 
     return source;
 }
 
+Result<Source> read_normals(MapSource& map, const SourceOptions& options, bool base_only, const Execution& execution) {
+    Result<Texture> texture = read_all(map.open());
+    if (!texture) return texture.error().of(map.path());
+    Result<Source> source = unpack_source(std::move(*texture), options, base_only, execution);
+    if (!source) return source.error().of(map.path());
+    return source;
+}
+
 }  // namespace tex

@@ -14,23 +14,13 @@
 #include "stream/layout_finder.h"
 #include "stream/level_stage.h"
 #include "stream/own_roughness.h"
+#include "stream/shared_writer.h"
 #include "stream/source_layout.h"
-#include "stream/strip_writer.h"
 #include "stream/unpack_stage.h"
 #include "threads/parallel.h"
 
 namespace tex {
 namespace {
-
-// The options with which pack_file() packs a map that `source` describes.
-PackOptions pack_options(const PackFileOptions& options, Container container, const SourceInfo& source) {
-    if (options.pack) return options.pack(source);
-    PackOptions pack;
-    pack.encoding = default_encoding(container);
-    pack.y_axis = source.y_axis;
-    pack.y_known = source.y_known;
-    return pack;
-}
 
 // What one attempt leaves for the next.
 struct Kept {
@@ -98,13 +88,12 @@ Result<void> Attempt::prepare() {
         const std::string asked = std::to_string(*options_.level);
         return Error{ErrorCode::bad_option, input_, "has no level " + asked + ", only " + std::to_string(held)};
     }
-    end_ = options_.level || options_.mip || !holds_levels(container_, options_.level_names) ? first_ + 1 : held;
+    const bool holds = any_holds_levels(container_, options_.level_names, options_.more);
+    end_ = options_.level || options_.mip || !holds ? first_ + 1 : held;
     report_.extent = rows(first_).extent();
-    report_.pack = pack_options(options_, container_, report_.source);
+    report_.pack = packing_for(options_.pack, container_, report_.source);
     report_.levels = static_cast<int>(end_ - first_);
-    if (options_.mip && holds_levels(container_, options_.level_names)) {
-        report_.levels = levels_to_build(*options_.mip, report_.extent);
-    }
+    if (options_.mip && holds) report_.levels = levels_to_build(*options_.mip, report_.extent);
     return {};
 }
 
@@ -141,9 +130,9 @@ Result<std::optional<OwnRoughness>> Attempt::own_roughness() const {
 }
 
 Result<std::unique_ptr<StripWriter>> Attempt::open_writer() const {
-    const StripPacking packing = packing_of(report_.pack, report_.extent, report_.levels);
-    Result<std::unique_ptr<StripWriter>> normals =
-        StripWriter::open({output_, options_.level_names}, container_, packing, options_.write);
+    std::vector<FileTarget> targets = {{{output_, options_.level_names}, container_, report_.pack, options_.write}};
+    add_targets(options_.more, report_.source, targets);
+    Result<std::unique_ptr<StripWriter>> normals = open_targets(targets, report_.extent, report_.levels);
     if (!normals || !options_.roughness) return normals;
     const RoughnessFile& file = *options_.roughness;
     const StripPacking rough = packing_of(file, report_.extent, roughness_levels());
@@ -217,7 +206,7 @@ Result<std::optional<PackFileReport>> Attempt::run() {
 
 }  // namespace
 
-Result<PackFileReport> pack_stream(InputFile& file, const std::string& output, Container container,
+Result<PackFileReport> pack_stream(MapSource& source, const std::string& output, Container container,
                                    const PackFileOptions& options, const Execution& execution,
                                    const StreamSizes& sizes) {
     double told = 0.0;  // a new attempt does not move progress backwards
@@ -228,16 +217,22 @@ Result<PackFileReport> pack_stream(InputFile& file, const std::string& output, C
     KnownLayout known;
     Kept kept;
     while (true) {
-        Result<TextureRows> texture = open_texture_rows(file, options.source.read);
+        Result<TextureRows> texture = source.open();
         if (!texture) return texture.error();
-        Attempt attempt(*texture, file.path(), output, container, options, onward, sizes, known, kept);
+        Attempt attempt(*texture, source.path(), output, container, options, onward, sizes, known, kept);
         Result<std::optional<PackFileReport>> done = attempt.run();
         if (!done) return done.error();
         if (*done) return **done;
         known = attempt.correction();
         *texture = {};
-        if (const Result<void> again = file.rewind(); !again) return again.error();
     }
+}
+
+Result<PackFileReport> pack_stream(InputFile& file, const std::string& output, Container container,
+                                   const PackFileOptions& options, const Execution& execution,
+                                   const StreamSizes& sizes) {
+    OpenFileMap source(file, options.source.read);
+    return pack_stream(source, output, container, options, execution, sizes);
 }
 
 }  // namespace tex

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Joins the steps; stream/made_map.cpp makes the rows of those before the last.
+
+#include <tex/steps.h>
+
+#include <cassert>
+
+#include "stream/blend_stream.h"
+#include "stream/made_map.h"
+#include "stream/pack_stream.h"
+#include "threads/guard.h"
+
+namespace tex {
+namespace {
+
+struct LastStep {
+    MapSource* map;  // null if the last step is the only one, which reads the file itself
+    const std::string& input;
+    const std::string& output;
+    const Container container;
+    const Execution& execution;
+    StepsReport& report;
+
+    Result<void> operator()(const BakeFileOptions& options) const {
+        const Result<BakeFileReport> done = bake_file(input, output, container, options, execution);
+        if (!done) return done.error();
+        report.pack = options.pack;
+        report.heights = done->heights;
+        return take(*done);
+    }
+    Result<void> operator()(const PackFileOptions& options) const {
+        const Result<PackFileReport> done = map == nullptr ? pack_file(input, output, container, options, execution)
+                                                           : pack_stream(*map, output, container, options, execution);
+        if (!done) return done.error();
+        report.pack = done->pack;
+        report.maps.push_back({input, done->source});
+        return take(*done);
+    }
+    Result<void> operator()(const BlendFileOptions& options) const {
+        const Result<BlendFileReport> done = map == nullptr ? blend_file(input, output, container, options, execution)
+                                                            : blend_stream(*map, output, container, options, execution);
+        if (!done) return done.error();
+        report.pack = done->pack;
+        report.maps.push_back({input, done->source});
+        for (std::size_t k = 0; k < done->details.size(); ++k)
+            report.maps.push_back({options.layers[k].input, done->details[k]});
+        return take(*done);
+    }
+
+private:
+    template <class Report>
+    Result<void> take(const Report& done) const {
+        report.extent = done.extent;
+        report.levels = done.levels;
+        report.bytes = done.bytes;
+        return {};
+    }
+};
+
+}  // namespace
+
+Result<StepsReport> apply_steps(const std::string& input, const std::vector<Step>& steps, const std::string& output,
+                                Container container, const Execution& execution) {
+    assert(!steps.empty());
+    for (std::size_t k = 0; k < steps.size(); ++k) {
+        assert(k == 0 || !std::holds_alternative<BakeFileOptions>(steps[k]));
+        [[maybe_unused]] const auto* pack = std::get_if<PackFileOptions>(&steps[k]);
+        assert(k + 1 == steps.size() || pack == nullptr || (!pack->mip && !pack->roughness));
+    }
+    return guarded([&]() -> Result<StepsReport> {
+        StepsReport report;
+        const std::unique_ptr<MapSource> map = made_map(input, steps, steps.size() - 1, execution, report);
+        const LastStep last{map.get(), input, output, container, execution, report};
+        if (const Result<void> done = std::visit(last, steps.back()); !done) return done.error().of(input);
+        return report;
+    });
+}
+
+}  // namespace tex

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "stream/open_heights.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "stream/filled_heights.h"
+#include "stream/height_stage.h"
+#include "stream/last_rows.h"
+#include "stream/row_stream.h"
+#include "threads/parallel.h"
+
+namespace tex {
+namespace {
+
+// Errors: those of an option that does not fit the picture.
+Result<void> prepare(const BakeFileOptions& options, Heights& heights) {
+    const RowSource& rows = *heights.rows;
+    if (!options.color.space.empty()) {
+        auto linear = LinearRows::make(rows.names(), rows.sample(), rows.bits(), options.color.config, options.color.space);
+        if (!linear) return linear.error();
+        heights.linear = std::move(*linear);
+    }
+    if (std::optional<Error> wrong = check_blur(options.heights)) return std::move(*wrong);
+    Result<HeightSource> source = find_height_source(rows.names(), options.heights.channel);
+    if (!source) return source.error();
+    heights.source = *source;
+    Result<HeightOptions> with = with_no_data(options.heights, rows.no_data(), rows.names(), heights.source,
+                                              heights.linear ? &*heights.linear : nullptr);
+    if (!with) return with.error();
+    heights.options = *with;
+    return {};
+}
+
+// Fills invalid heights. This stage needs all rows at once.
+Result<void> fill(InputFile& file, const Execution& execution, Heights& heights) {
+    Result<std::unique_ptr<RowSource>> filled =
+        fill_heights(*heights.rows, file.path(), heights.source, heights.options,
+                     heights.linear ? &*heights.linear : nullptr, execution, heights.counts);
+    if (!filled) return filled.error();
+    heights.rows = std::move(*filled);
+    heights.source = {HeightChannel::automatic, 0};
+    heights.linear.reset();
+    heights.options.invert = false;
+    heights.options.no_data = std::numeric_limits<float>::quiet_NaN();
+    return {};
+}
+
+// Output that is written from the top cannot wait until the last rows arrive.
+Result<void> find_last_rows(InputFile& file, const BakeFileOptions& options, const Gradient& gradient,
+                            const Execution& execution, Heights& heights) {
+    const int count = std::min(HeightStage::reach(heights.options, gradient), heights.rows->extent().height);
+    Result<Image> last = last_rows(file, heights.rows, options.read, count, execution);
+    if (!last) return last.error();
+    heights.last = std::move(*last);
+    return heights.linear ? heights.linear->convert(*heights.last, count) : Result<void>();
+}
+
+}  // namespace
+
+HeightFieldHead head_of(Extent extent, const BakeFileOptions& options) {
+    const Strength strength = options.strength ? options.strength(extent) : Strength();
+    return {strength.x, strength.y, options.heights.wrap_x, options.heights.wrap_y};
+}
+
+Result<Heights> open_heights(InputFile& file, RowOrder order, const BakeFileOptions& options, const Gradient& gradient,
+                             const Execution& execution) {
+    Result<std::unique_ptr<RowSource>> rows = open_rows(file, options.read);
+    if (!rows) return rows.error();
+    Heights heights;
+    heights.rows = std::move(*rows);
+    if (const Result<void> fits = prepare(options, heights); !fits)
+        return after_all_rows(*heights.rows, file.path(), fits.error());
+    if (options.heights.fill_invalid) {
+        if (const Result<void> filled = fill(file, execution, heights); !filled) return filled.error();
+    }
+    if (order == RowOrder::from_the_top && options.heights.wrap_y == Wrap::repeat) {
+        const double done = options.heights.fill_invalid ? 1.0 : 0.0;
+        const Result<void> found = find_last_rows(file, options, gradient, part_of(execution, done, 1.0), heights);
+        if (!found) return found.error();
+    }
+    return heights;
+}
+
+}  // namespace tex
