@@ -179,7 +179,7 @@ if [ -e README.md ]; then
 fi
 manual=$(mktemp -d)
 trap 'rm -rf "$manual"' EXIT
-for source in $(select_files '^man/[a-z-]+\.[17]\.in$'); do
+for source in $(select_files '^man/[a-z.-]+\.[157]\.in$'); do
     cmake -D IN="$source" -D OUT="$manual/$(basename "$source" .in)" -P man/assemble.cmake ||
         complain "$source cannot be assembled"
 done

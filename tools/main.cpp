@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// main() of every command. Runs the command that is linked into the program.
+// main() of every command. build-normals has all commands; the others have their own.
 
 #include <cstddef>
 
@@ -9,5 +9,5 @@
 int main(int argc, char** argv) {
     tex::cli::ProcessHost host;
     const auto count = static_cast<std::size_t>(argc > 0 ? argc - 1 : 0);
-    tex::cli::ProcessHost::end(tex::cli::run(tex::cli::programs().front(), {argv + 1, count}, host));
+    tex::cli::ProcessHost::end(tex::cli::run(*tex::cli::find_program(TEX_COMMAND), {argv + 1, count}, host));
 }

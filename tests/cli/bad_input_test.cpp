@@ -25,7 +25,9 @@ std::string big_endian(std::uint32_t value) {
 // The commands that write an output for each input.
 std::vector<std::string> writers() {
     std::vector<std::string> names = commands();
-    std::erase_if(names, [](const std::string& name) { return name == "check-normals" || name == "compare-normals"; });
+    std::erase_if(names, [](const std::string& name) {
+        return name == "build-normals" || name == "check-normals" || name == "compare-normals";
+    });
     return names;
 }
 

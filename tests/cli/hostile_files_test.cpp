@@ -122,7 +122,9 @@ std::vector<std::string> tested_commands() {
 #if defined(__SANITIZE_ADDRESS__)
     return {"bake-normals", "check-normals"};
 #else
-    return commands();
+    std::vector<std::string> names = commands();
+    std::erase(names, "build-normals");  // takes a manifest
+    return names;
 #endif
 }
 

@@ -3,6 +3,8 @@
 #include "options/toml_bounds.h"
 
 #include <algorithm>
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -17,7 +19,9 @@ namespace {
 // not matter.
 class Scanner {
 public:
-    explicit Scanner(std::string_view text) : text_(text) {}
+    // `outside` is called with each place outside strings and comments; it may be empty.
+    explicit Scanner(std::string_view text, std::function<void(std::size_t at)> outside = {})
+        : text_(text), outside_(std::move(outside)) {}
 
     // The line (from 1) of the first statement that nests too deeply; 0 if there is none.
     int line_of_excess() {
@@ -28,6 +32,7 @@ public:
             } else if (c == '#') {
                 at_ = std::min(text_.find('\n', at_), text_.size());
             } else {
+                if (outside_) outside_(at_);
                 ++at_;
                 count(c);
             }
@@ -86,6 +91,7 @@ private:
     }
 
     std::string_view text_;
+    std::function<void(std::size_t)> outside_;
     std::size_t at_ = 0;
     int line_ = 1;
     int levels_ = 0;          // around the text at at_
@@ -103,6 +109,17 @@ void check_toml_bounds(const std::string& path, std::string_view text) {
         throw UsageError(fmt::format("{}: line {}: keys and lists nest deeper than {} levels", printable(path), line,
                                      kMostTomlLevels));
     }
+}
+
+std::string ascii_outside_strings(std::string_view text) {
+    std::string ascii(text.substr(text.starts_with("\xef\xbb\xbf") ? 3 : 0));
+    const std::string_view scanned = ascii;
+    std::vector<std::size_t> foreign;
+    Scanner(scanned, [&](std::size_t at) {
+        if (static_cast<unsigned char>(scanned[at]) > 0x7e) foreign.push_back(at);
+    }).line_of_excess();
+    for (const std::size_t at : foreign) ascii[at] = '?';
+    return ascii;
 }
 
 }  // namespace tex::cli

@@ -19,7 +19,11 @@ inline constexpr int kMostTomlLevels = 64;
 // than kMostTomlLevels. Each dot of a key or of a table's name counts as one level, and so does each array and each
 // inline table. (So an accepted file gives a tree of at most twice as many levels: those of a table's name and those of
 // a key in it.) This function does not check that the text is TOML; the parser does.
-// text is TOML is left to the parser.
 void check_toml_bounds(const std::string& path, std::string_view text);
+
+// The text without a byte order mark at its beginning, and with a question mark instead of each byte outside strings
+// and comments that is not ASCII: the behaviour of toml++ 3.3 is undefined for such letters there, and no key may have
+// one.
+[[nodiscard]] std::string ascii_outside_strings(std::string_view text);
 
 }  // namespace tex::cli

@@ -1,0 +1,366 @@
+// SPDX-License-Identifier: Apache-2.0
+// build-normals makes what is not up to date, and no more.
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <map>
+#include <thread>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+
+namespace tex::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kManifest = R"(version = 1
+[defaults]
+out-dir = "out"
+[[rule]]
+match = "shared/*.png"
+steps = [ { bake = { bumpiness = 2 } } ]
+[[rule]]
+match = "art/**/*_h.{png,tif}"
+exclude = "art/wip/**"
+name = "{dir}/{stem:-_h}_n.dds"
+steps = [ { bake = { bumpiness = 4 } }, { blend = { detail = "out/shared/grain.dds", tiling = 3 } }, { mip = {} } ]
+outputs = [ {}, { format = "bc5", y = "down", name = "{dir}/{stem:-_h}_ue.ktx2" } ]
+)";
+
+}  // namespace
+
+class BuildNormals : public testing::Test {
+protected:
+    BuildNormals() {
+        scratch_.write("normals.toml", kManifest);
+        for (const char* name : {"art/wall_h.png", "art/sub/floor_h.PNG", "art/wip/new_h.png", "shared/grain.png"}) {
+            fs::create_directories(fs::path(scratch_.path(name)).parent_path());
+            scratch_.add_sample(name[0] == 's' ? "waves.png" : "ramp.png", name);
+        }
+    }
+    // Runs it. The results are what it did to each input: "made", "current" ...
+    Ran build(std::vector<std::string> arguments = {}, const Setting& setting = {}) {
+        arguments.insert(arguments.end(), {"--json", "--no-sync"});
+        const Ran ran = run(scratch_, "build-normals", arguments, setting);
+        done_.clear();
+        for (const std::string& line : lines_of(ran.out)) {
+            const auto result = nlohmann::json::parse(line, nullptr, false);
+            if (result.is_discarded()) continue;
+            done_[result.value("input", std::string())] = result.value("status", std::string("failed"));
+        }
+        return ran;
+    }
+    [[nodiscard]] std::size_t count(const std::string& status) const {
+        return static_cast<std::size_t>(
+            std::count_if(done_.begin(), done_.end(), [&](const auto& done) { return done.second == status; }));
+    }
+    // All outputs and their contents.
+    [[nodiscard]] std::map<std::string, std::string> outputs() const {
+        std::map<std::string, std::string> all;
+        for (const std::string& name : scratch_.list()) {
+            if (name.starts_with("out/") && fs::is_regular_file(scratch_.path(name))) all[name] = scratch_.read(name);
+        }
+        return all;
+    }
+
+    Scratch scratch_;
+    std::map<std::string, std::string> done_;
+};
+
+TEST_F(BuildNormals, MakesWhatTheCommandsMakeOneAfterTheOther) {
+    ASSERT_EQ(build().code, 0);
+    EXPECT_EQ(count("made"), 3u);
+    const Ran ran =
+        shell(scratch_,
+              "set -e; bake-normals shared/grain.png -o g.dds --bumpiness 2\n"
+              "bake-normals art/wall_h.png -o 1.exr --bumpiness 4 --format float\n"
+              "blend-normals 1.exr -o 2.exr --detail g.dds --tiling 3 --format float --quiet\n"
+              "mip-normals 2.exr -o n.dds; mip-normals 2.exr -o ue.ktx2 --format bc5 --y down\n"
+              "cmp g.dds out/shared/grain.dds; cmp n.dds out/art/wall_n.dds; cmp ue.ktx2 out/art/wall_ue.ktx2\n");
+    EXPECT_EQ(ran.code, 0) << ran.out << ran.err;
+    EXPECT_TRUE(scratch_.has("out/art/sub/floor_n.dds"));
+    EXPECT_FALSE(scratch_.has("out/art/wip"));
+}
+
+TEST_F(BuildNormals, MakesNothingTwice) {
+    ASSERT_EQ(build().code, 0);
+    const auto first = outputs();
+    ASSERT_EQ(build().code, 0);
+    EXPECT_EQ(count("current"), 3u);
+    // A checkout gives all files new times.
+    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    ASSERT_EQ(shell(scratch_, "touch art/*.png art/sub/* shared/*; cp -r . ../copy; rm -r ../copy").code, 0);
+    ASSERT_EQ(build().code, 0);
+    EXPECT_EQ(count("current"), 3u);
+    // The state may be lost: then everything is made again, with the same bytes.
+    fs::remove(scratch_.path(".normals.toml.state"));
+    ASSERT_EQ(build().code, 0);
+    EXPECT_EQ(count("made"), 3u);
+    EXPECT_EQ(outputs(), first);
+    scratch_.write(".normals.toml.state", "damaged");
+    ASSERT_EQ(build().code, 0);
+    EXPECT_EQ(count("made"), 3u);
+}
+
+TEST_F(BuildNormals, ContentsDecideAndNotTimes) {
+    ASSERT_EQ(build().code, 0);
+    const auto old = fs::last_write_time(scratch_.path("art/wall_h.png")) - std::chrono::hours(1);
+    fs::remove(scratch_.path("art/wall_h.png"));
+    scratch_.add_sample("hemisphere.png", "art/wall_h.png");
+    fs::last_write_time(scratch_.path("art/wall_h.png"), old);
+    ASSERT_EQ(build().code, 0);
+    EXPECT_EQ(done_["art/wall_h.png"], "made");
+    EXPECT_EQ(count("current"), 2u);
+    // A file that options name.
+    fs::remove(scratch_.path("shared/grain.png"));
+    scratch_.add_sample("hemisphere.png", "shared/grain.png");
+    ASSERT_EQ(build({"--dry-run"}).code, 0);
+    EXPECT_EQ(count("stale"), 3u);
+    ASSERT_EQ(build().code, 0);
+    EXPECT_EQ(count("made"), 3u);
+}
+
+TEST_F(BuildNormals, AnEditOfOneRuleMakesItsMatches) {
+    ASSERT_EQ(build().code, 0);
+    std::string manifest = kManifest;
+    manifest.replace(manifest.find("tiling = 3"), 10, "tiling = 5");
+    scratch_.write("normals.toml", "# a comment\n" + manifest);
+    ASSERT_EQ(build().code, 0);
+    EXPECT_EQ(count("made"), 2u);
+    EXPECT_EQ(done_["shared/grain.png"], "current");
+    // One more output leaves the others alone.
+    const auto before = fs::last_write_time(scratch_.path("out/art/wall_n.dds"));
+    manifest.replace(manifest.find("{}, {"), 5, "{}, { name = \"{dir}/{stem}.exr\" }, {");
+    scratch_.write("normals.toml", manifest);
+    ASSERT_EQ(build().code, 0);
+    EXPECT_TRUE(scratch_.has("out/art/wall_h.exr"));
+    EXPECT_EQ(fs::last_write_time(scratch_.path("out/art/wall_n.dds")), before);
+}
+
+TEST_F(BuildNormals, LostAndChangedOutputsAreMadeAgain) {
+    ASSERT_EQ(build().code, 0);
+    const auto first = outputs();
+    fs::remove(scratch_.path("out/art/wall_ue.ktx2"));
+    scratch_.write("out/art/sub/floor_n.dds", "changed");
+    ASSERT_EQ(build().code, 0);
+    EXPECT_EQ(count("made"), 2u);
+    EXPECT_EQ(outputs(), first);
+}
+
+TEST_F(BuildNormals, PruneRemovesOutputsOfVanishedInputsAndNothingElseDoes) {
+    ASSERT_EQ(build().code, 0);
+    fs::remove(scratch_.path("art/wall_h.png"));
+    scratch_.write("out/art/mine.dds", "not made here");
+    ASSERT_EQ(build().code, 0);
+    EXPECT_TRUE(scratch_.has("out/art/wall_n.dds"));
+    ASSERT_EQ(build({"--prune", "--dry-run"}).code, 0);
+    EXPECT_TRUE(scratch_.has("out/art/wall_n.dds"));
+    ASSERT_EQ(build({"--prune"}).code, 0);
+    EXPECT_FALSE(scratch_.has("out/art/wall_n.dds"));
+    EXPECT_FALSE(scratch_.has("out/art/wall_ue.ktx2"));
+    EXPECT_TRUE(scratch_.has("out/art/mine.dds"));
+    EXPECT_TRUE(scratch_.has("out/art/sub/floor_n.dds"));
+}
+
+TEST_F(BuildNormals, OneBadFileFailsAlone) {
+    scratch_.write("art/broken_h.png", "no picture");
+    fs::create_symlink("nowhere", scratch_.path("art/gone_h.png"));
+    scratch_.add_sample("ramp.png", "art/twin_h.png");
+    scratch_.add_sample("ramp.png", "art/twin_h.tif");  // a PNG, but the name counts
+    scratch_.add_sample("ramp.png", "art/WALL_h.png");
+    const Ran ran = build();
+    EXPECT_EQ(ran.code, 4);
+    EXPECT_EQ(count("failed"), 6u) << ran.err;
+    EXPECT_EQ(count("made"), 2u);
+    EXPECT_NE(ran.err.find("art/broken_h.png: "), std::string::npos) << ran.err;
+    EXPECT_NE(ran.err.find("art/twin_h.png and art/twin_h.tif have the same output out/art/twin_n.dds; rename or "
+                           "exclude one"),
+              std::string::npos)
+        << ran.err;
+    EXPECT_NE(ran.err.find("differ only in the case of letters, out/art/wall_n.dds"), std::string::npos) << ran.err;
+    EXPECT_FALSE(scratch_.has("out/art/broken_n.dds"));
+    ASSERT_EQ(build().code, 4);
+    EXPECT_EQ(count("current"), 2u);
+    // What needs a file that cannot be made fails with a sentence that says so.
+    scratch_.write("shared/grain.png", "no picture");
+    const Ran all = build();
+    EXPECT_EQ(all.code, 4);
+    EXPECT_NE(all.err.find("needs out/shared/grain.dds, which could not be made"), std::string::npos) << all.err;
+}
+
+TEST_F(BuildNormals, OddNamesAreOrdinary) {
+    const std::vector<std::string> names = {
+        "quo'te\".png", "new\nline.png", "bytes\xff\x01.png", "$(x) %41;#.png", std::string(200, 'l') + ".png",
+        "-o.png"};
+    fs::create_directory(scratch_.path("odd"));
+    for (const std::string& name : names) scratch_.add_sample("ramp.png", "odd/" + name);
+    scratch_.write("normals.toml",
+                   "version = 1\n[[rule]]\nmatch = \"odd/*.png\"\nname = \"made/{stem}.dds\"\nsteps = [ { "
+                   "bake = {} } ]\n");
+    const Ran ran = build();
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(count("made"), names.size());
+    for (const std::string& name : names)
+        EXPECT_TRUE(scratch_.has("made/" + name.substr(0, name.size() - 4) + ".dds")) << name;
+    ASSERT_EQ(build().code, 0);
+    EXPECT_EQ(count("current"), names.size());
+}
+
+TEST_F(BuildNormals, MistakesAreFoundBeforeAnythingIsWritten) {
+    const std::string rule = "[[rule]]\nmatch = \"art/*_h.png\"\nsteps = [ { bake = {} } ]\n";
+    const struct {
+        std::string text;
+        const char* error;
+    } mistakes[] = {
+        {rule + "name = \"same.dds\"\n[[rule]]\nmatch = \"shared/*\"\nname = \"same.dds\"\nsteps = [ { bake = {} } ]\n",
+         "line 6, column 1: art/wall_h.png and shared/grain.png have the same output same.dds, by the rules 1 and 2"},
+        {rule + "name = \"shared/grain.png\"\n[[rule]]\nmatch = \"shared/*\"\nsteps = [ { bake = {} } ]\n",
+         "line 2, column 1: the output shared/grain.png of art/wall_h.png is an input"},
+        {rule + "outputs = [ {}, {} ]\n",
+         "two outputs of art/wall_h.png are one file, art/wall_h.dds; give each a name"},
+        {"[[rule]]\nmatch = \"art/*.png\"\nsteps = [ { bake = {} }, { blend = { detail = \"art/wall_h.dds\" } } ]\n",
+         "line 2, column 1: rules need each other's outputs: rule 1 needs 1"},
+    };
+    for (const auto& mistake : mistakes) {
+        scratch_.write("normals.toml", "version = 1\n" + mistake.text);
+        const auto before = scratch_.list();
+        const Ran ran = build();
+        EXPECT_EQ(ran.code, 2);
+        EXPECT_NE(ran.err.find(std::string("build-normals: error: normals.toml: ")), std::string::npos) << ran.err;
+        EXPECT_NE(ran.err.find(mistake.error), std::string::npos) << ran.err;
+        EXPECT_EQ(scratch_.list(), before);
+    }
+    EXPECT_EQ(build({"none.toml"}).code, 3);
+    EXPECT_EQ(build({"a", "b"}).code, 2);
+}
+
+TEST_F(BuildNormals, ExplainPrintsTheRuleAndTheCommandLines) {
+    const Ran ran = run(scratch_, "build-normals", {"--explain", "art/wall_h.png"});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    for (const char* part : {"rule 2 (line 7)", "tiling = 3  (line 11)", "effort = normal  (default of mip-normals)",
+                             "y = down  (outputs, line 12)", "reads out/shared/grain.dds",
+                             "bake-normals art/wall_h.png -o step1.exr --bumpiness 4 --format float"})
+        EXPECT_NE(ran.out.find(part), std::string::npos) << part << "\n" << ran.out;
+    EXPECT_EQ(run(scratch_, "build-normals", {"--explain", "out/art/wall_n.dds"}).out, ran.out);
+    EXPECT_EQ(run(scratch_, "build-normals", {"--explain", "other.png"}).code, 2);
+    EXPECT_FALSE(scratch_.has("out"));
+}
+
+TEST_F(BuildNormals, PathsAreRelativeToTheManifest) {
+    const Scratch elsewhere;
+    const Ran ran = run(elsewhere, "build-normals", {scratch_.path("normals.toml"), "--no-sync", "--quiet"});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_TRUE(scratch_.has("out/art/wall_n.dds"));
+    ASSERT_EQ(build().code, 0);
+    EXPECT_EQ(count("current"), 3u) << "names in the state are relative, too";
+    EXPECT_TRUE(elsewhere.list().empty());
+}
+
+TEST_F(BuildNormals, EveryNumberOfThreadsMakesTheSameBytes) {
+    std::map<std::string, std::string> first;
+    for (const char* threads : {"1", "2", "8"}) {
+        fs::remove_all(scratch_.path("out"));
+        ASSERT_EQ(build({"--threads", threads, "--memory", "1"}).code, 0);
+        if (first.empty()) first = outputs();
+        EXPECT_EQ(outputs(), first);
+    }
+}
+
+TEST_F(BuildNormals, ACloneWithAWarmCacheMakesNothing) {
+    ASSERT_EQ(build({"--cache", "cache"}).code, 0);
+    EXPECT_EQ(count("made"), 3u);
+    const auto first = outputs();
+    fs::remove_all(scratch_.path("out"));
+    fs::remove(scratch_.path(".normals.toml.state"));
+    ASSERT_EQ(build({"--cache", "cache"}).code, 0);
+    EXPECT_EQ(count("cached"), 3u);
+    EXPECT_EQ(outputs(), first);
+    // A flipped bit is noticed and repaired.
+    fs::remove_all(scratch_.path("out"));
+    for (const std::string& name : scratch_.list()) {
+        if (!name.starts_with("cache/") || !fs::is_regular_file(scratch_.path(name))) continue;
+        std::string entry = scratch_.read(name);
+        entry[entry.size() / 2] = static_cast<char>(entry[entry.size() / 2] ^ 16);
+        scratch_.write(name, entry);
+    }
+    const Ran repaired = run(scratch_, "build-normals", {"--cache", "cache", "--no-sync"});
+    EXPECT_EQ(repaired.out, "3 made, 0 up to date, 0 from the cache (5 damaged entries repaired)\n");
+    EXPECT_EQ(outputs(), first);
+    fs::remove_all(scratch_.path("out"));
+    ASSERT_EQ(build({"--cache", "cache"}).code, 0);
+    EXPECT_EQ(count("cached"), 3u);
+    EXPECT_EQ(outputs(), first);
+}
+
+TEST_F(BuildNormals, TwoBuildersAtOnceDoNoHarm) {
+    const Ran ran = shell(scratch_,
+                          "build-normals --cache cache --no-sync & first=$!; build-normals --cache cache --no-sync & "
+                          "wait $! && wait $first");
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    const auto both = outputs();
+    fs::remove_all(scratch_.path("out"));
+    ASSERT_EQ(build().code, 0);
+    EXPECT_EQ(outputs(), both);
+}
+
+TEST_F(BuildNormals, AKilledRunLeavesNothingThatTheNextDoesNotRepair) {
+    for (int k = 0; k < 12; ++k) scratch_.add_sample("bricks.png", fmt::format("art/m{}_h.png", k));
+    ASSERT_EQ(build().code, 0);
+    const auto expected = outputs();
+    for (int k = 0; k < 8; ++k) {
+        fs::remove_all(scratch_.path("out"));
+        Setting setting;
+        setting.interrupt_after_ms = 5 + 17 * k;
+        setting.signal = k % 4 == 3 ? SIGINT : SIGKILL;
+        build({"--cache", "cache" + std::to_string(k % 2)}, setting);
+        for (const auto& [name, contents] : outputs()) {
+            if (!expected.contains(name)) continue;
+            EXPECT_TRUE(contents == expected.at(name)) << name;
+        }
+        ASSERT_EQ(build({"--cache", "cache" + std::to_string(k % 2)}).code, 0);
+        EXPECT_EQ(outputs(), expected);
+    }
+}
+
+TEST_F(BuildNormals, LevelsCanHaveTheirOwnFiles) {
+    scratch_.write("normals.toml",
+                   "version = 1\n[[rule]]\nmatch = \"art/*_h.png\"\nname = \"out/{stem}_{level}.png\"\nsteps "
+                   "= [ { bake = {} } ]\n");
+    ASSERT_EQ(build({"--cache", "cache"}).code, 0);
+    EXPECT_TRUE(scratch_.has("out/wall_h_0.png"));
+    EXPECT_TRUE(scratch_.has("out/wall_h_5.png"));
+    ASSERT_EQ(build().code, 0);
+    EXPECT_EQ(count("current"), 1u);
+    fs::remove(scratch_.path("out/wall_h_3.png"));
+    ASSERT_EQ(build().code, 0);
+    EXPECT_EQ(count("made"), 1u);
+    EXPECT_TRUE(scratch_.has("out/wall_h_3.png"));
+}
+
+TEST_F(BuildNormals, ReadOnlyOutputsGetARemedy) {
+    ASSERT_EQ(build().code, 0);
+    std::string manifest = kManifest;
+    manifest.replace(manifest.find("bumpiness = 2"), 13, "bumpiness = 3");
+    scratch_.write("normals.toml", manifest);
+    fs::permissions(scratch_.path("out/shared/grain.dds"), fs::perms::owner_read);
+    const Ran ran = build();
+    if (ran.code == 0) GTEST_SKIP() << "this user may replace read-only files";
+    EXPECT_EQ(ran.code, 4);
+    EXPECT_NE(ran.err.find("make it writable (chmod u+w, p4 edit) or remove it"), std::string::npos) << ran.err;
+}
+
+TEST_F(BuildNormals, OutputVersionCanBePinned) {
+    scratch_.write("normals.toml", std::string("output-version = 1\n") + kManifest);
+    EXPECT_EQ(build().code, 0);
+    scratch_.write("normals.toml", std::string("output-version = 999\n") + kManifest);
+    const Ran ran = build();
+    EXPECT_EQ(ran.code, 2);
+    EXPECT_NE(ran.err.find("output-version = 999, but this program makes version 1"), std::string::npos) << ran.err;
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// builder.h: brings the outputs of a manifest up to date.
+
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "build/recipe.h"
+#include "build/work.h"
+#include "options/run.h"
+
+namespace tex::cli {
+
+struct BuildOptions {
+    std::string root;  // empty: the working directory
+    std::string state_file;
+    int output_version = 1;       // part of every key
+    std::int64_t memory = 0;      // bytes that all files together may take; 0: half of the machine's
+    std::string cache;            // a folder; empty: none
+    std::int64_t cache_size = 0;  // bytes; 0: no limit
+    bool dry_run = false;
+    bool prune = false;
+    bool no_sync = false;
+};
+
+// The version of the bytes that this program makes. It changes when an output changes with the same settings.
+inline constexpr int kOutputVersion = 1;
+
+// Makes what is not up to date. Prints a line for each texture with --json, and a summary without.
+[[nodiscard]] ExitCode build(const std::vector<Recipe>& recipes, const WorkList& work, const BuildOptions& options,
+                             const RunOptions& running, Console& console);
+
+}  // namespace tex::cli

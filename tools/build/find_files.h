@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// find_files.h: the files of a tree that match patterns.
+
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "build/glob.h"
+
+namespace tex::cli {
+
+struct FoundFile {
+    std::string path;  // relative to the folder that was searched
+    std::int64_t size = 0;
+};
+
+struct FileSearch {
+    std::vector<const Glob*> globs;
+    // Whether a folder is left out. The path ends with "/".
+    std::function<bool(const std::string& folder)> skip;
+    // Called for each folder that cannot be read.
+    std::function<void(const std::string& folder, const std::string& reason)> unreadable;
+};
+
+// The regular files below `root` (empty: the working directory) that match a pattern, sorted by path. Links to files
+// and folders are followed; a link to a folder that contains it is not.
+[[nodiscard]] std::vector<FoundFile> find_files(const std::string& root, const FileSearch& search);
+
+}  // namespace tex::cli
