@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // build-normals: brings a tree of textures up to date, as a manifest says.
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 
@@ -35,6 +36,7 @@ BuildNormals::BuildNormals(const cli::ProgramRow& row) : Program(row) {
     command.usage("[MANIFEST]");
     command.usage("[MANIFEST] --explain FILE");
     command.input("MANIFEST", "what to build (default: normals.toml)");
+    command.finds_things();
     command.group("Build");
     cli::Row& root = command.text(root_, "--root", "DIR", "the folder that paths of the manifest are relative to");
     root.completes = cli::Completes::directories;
@@ -88,6 +90,11 @@ cli::ExitCode BuildNormals::work(cli::Console& console) {
         recipes.emplace_back(manifest, rule, static_cast<int>(recipes.size()) + 1, build_.root, console);
     const cli::WorkList work = cli::list_work(manifest, recipes, build_.root);
     if (!explain_.empty()) return console.print(cli::explanation_of(explain_, recipes, work));
+    for (std::size_t k = 0; k < recipes.size(); ++k) {
+        const auto makes = [k](const cli::BuildTask& task) { return task.recipe == k; };
+        if (std::any_of(work.tasks.begin(), work.tasks.end(), makes)) continue;
+        console.warning(fmt::format("{}: line {}: no file is left for this rule", path, recipes[k].rule().place.line));
+    }
     return cli::build(recipes, work, build_, running_, console);
 }
 

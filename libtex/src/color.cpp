@@ -29,4 +29,8 @@ Result<void> to_linear(Image& image, const ColorOptions& options) {
     });
 }
 
+Result<std::vector<std::string>> color_files(const ColorOptions& options) {
+    return guarded([&] { return files_of_conversion(options.config, options.space); });
+}
+
 }  // namespace tex

@@ -354,6 +354,28 @@ TEST_F(BuildNormals, ReadOnlyOutputsGetARemedy) {
     EXPECT_NE(ran.err.find("make it writable (chmod u+w, p4 edit) or remove it"), std::string::npos) << ran.err;
 }
 
+TEST_F(BuildNormals, ACheckThatFailsKeepsTheOldOutput) {
+    const std::string rule =
+        "version = 1\n[[rule]]\nmatch = \"art/*_h.png\"\nname = \"out/{stem}.dds\"\nsteps = [ { bake = "
+        "{ bumpiness = 9 } } ]\n";
+    scratch_.write("normals.toml", rule + "check = { require = [\"mips=full\", \"format=dxt5nm\"], max-p999 = 30 }\n");
+    ASSERT_EQ(build().code, 0);
+    const auto first = outputs();
+    EXPECT_EQ(first.size(), 1u);
+    ASSERT_EQ(build().code, 0);
+    EXPECT_EQ(count("current"), 1u);
+    scratch_.write("normals.toml", rule + "check = { require = \"format=bc5\", max-p999 = 0.001 }\n");
+    const Ran ran = build();
+    EXPECT_EQ(ran.code, 1);
+    EXPECT_EQ(count("refused"), 1u);
+    EXPECT_NE(ran.err.find("error: out/wall_h.dds: "), std::string::npos) << ran.err;
+    EXPECT_NE(ran.err.find("level 0: p99.9 "), std::string::npos) << ran.err;
+    EXPECT_EQ(outputs(), first) << "the old output stays, and no other file";
+    // The direction of y and the layout are those that were packed, although a DDS does not state them.
+    scratch_.write("normals.toml", rule + "outputs = [ { y = \"down\" } ]\ncheck = { max-mean = 2 }\n");
+    EXPECT_EQ(build().code, 0);
+}
+
 TEST_F(BuildNormals, OutputVersionCanBePinned) {
     scratch_.write("normals.toml", std::string("output-version = 1\n") + kManifest);
     EXPECT_EQ(build().code, 0);

@@ -117,6 +117,12 @@ TEST(Manifest, MistakesNameTheirPlaceAndTheRemedy) {
         "n.toml: line 6, column 13: bake: name.png: a png file cannot");
     EXPECT_EQ(refusal_of("[ { bake = {} } ]", "outputs = [ { fromat = \"bc5\" } ]"),
               "n.toml: line 5, column 15: fromat: bake-normals has no such option here; did you mean format?");
+    EXPECT_EQ(refusal_of("[ { bake = {} } ]", "check = { requir = 1 }"),
+              "n.toml: line 5, column 11: check: requir is no key of a check; did you mean require?");
+    EXPECT_EQ(refusal_of("[ { bake = {} } ]", "check = { require = \"mps=full\" }").substr(0, 45),
+              "n.toml: line 5, column 11: check: --require: ");
+    EXPECT_EQ(refusal_of("[ { bake = {} } ]", "check = { config = \"a\" }"),
+              "n.toml: line 5, column 11: check: config is no key of a check");
     EXPECT_EQ(refusal_of("[ { bake = { format = \"bc5\" } }, { mip = {} } ]").substr(0, 34),
               "n.toml: line 4, column 22: format:");
 }

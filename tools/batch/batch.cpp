@@ -186,7 +186,8 @@ ExitCode Batch::run_tasks(const std::vector<Task>& tasks, Console& console) {
 }
 
 Task Converter::task_for(const std::string& input, const std::string& output_name) const {
-    return task_of(input, output_name, output, rules());
+    std::call_once(rules_are_known_, [this] { known_rules_ = rules(); });
+    return task_of(input, output_name, output, known_rules_);
 }
 
 Result<std::vector<Task>> Converter::plan() const {

@@ -7,6 +7,7 @@
 
 #pragma once
 
+#include <mutex>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -78,6 +79,11 @@ public:
 protected:
     [[nodiscard]] virtual OutputRules rules() const { return {}; }
     [[nodiscard]] Result<std::vector<Task>> plan() const override;
+
+private:
+    // rules(), for task_for(): they may come from files.
+    mutable std::once_flag rules_are_known_;
+    mutable OutputRules known_rules_;
 };
 
 }  // namespace tex::cli

@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <deque>
 #include <filesystem>
 #include <new>
 #include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include "batch/text_file.h"
 #include "build/build_run.h"
 #include "cli/text.h"
 #include "files/system_error.h"
@@ -16,6 +23,32 @@ namespace tex::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+// A file without a name, in memory, that a texture is in while it is checked. Nothing of it is left, however the run
+// ends.
+class MemoryFile {
+public:
+    MemoryFile() : fd_(memfd_create("texture", MFD_CLOEXEC)) {}
+    MemoryFile(const MemoryFile&) = delete;
+    MemoryFile& operator=(const MemoryFile&) = delete;
+    ~MemoryFile() {
+        if (fd_ >= 0) close(fd_);
+    }
+    [[nodiscard]] bool is_open() const { return fd_ >= 0; }
+    [[nodiscard]] std::string path() const { return fmt::format("/proc/self/fd/{}", fd_); }
+
+private:
+    const int fd_;
+};
+
+// The output of `maker` that the recipe reads.
+std::string needed_file(const BuildTask& maker, const Recipe& recipe) {
+    for (const std::string& file : recipe.files()) {
+        const std::string name = fs::path(file).lexically_normal().string();
+        if (std::find(maker.outputs.begin(), maker.outputs.end(), name) != maker.outputs.end()) return name;
+    }
+    return maker.outputs.front();
+}
 
 }  // namespace
 
@@ -35,18 +68,45 @@ Error BuildRun::with_remedy(const Error& error, const std::string& output) const
     return {error.code, error.file, error.reason + "; make it writable (chmod u+w, p4 edit) or remove it"};
 }
 
-Result<Made> BuildRun::make(const BuildTask& task, const std::vector<Stale>& stale, double& counted) {
+Result<Made> BuildRun::make(const BuildTask& task, const std::vector<Stale>& stale, double& counted, Outcome& outcome) {
+    const Recipe& recipe = recipes_[task.recipe];
+    const bool is_checked = recipe.check().is_given();
+    std::deque<MemoryFile> waiting;
+    const auto in_memory = [&waiting] { return waiting.emplace_back().path(); };
     std::vector<WantedOutput> wanted;
     for (const Stale& one : stale) {
-        wanted.push_back({one.index, contents_.path(task.outputs[one.index])});
-        if (const auto created = create_folders(wanted.back().path); !created) return created.error();
+        const std::string target = contents_.path(task.outputs[one.index]);
+        if (const auto created = create_folders(target); !created) return created.error();
+        wanted.push_back({one.index, target, is_checked ? in_memory() : std::string()});
     }
-    const MakeSettings settings{running_, write_, [&](double fraction) {
-                                    advance(counted, static_cast<double>(task.size), fraction);
-                                    return !stopped();
-                                }};
-    Result<Made> made = make_texture(recipes_[task.recipe], contents_.path(task.input), wanted, settings, console_);
+    MakeSettings settings{running_, write_, [&](double fraction) {
+                              advance(counted, static_cast<double>(task.size), fraction);
+                              return !stopped();
+                          }};
+    if (recipe.check().compares()) settings.source = in_memory();
+    if (!std::all_of(waiting.begin(), waiting.end(), [](const MemoryFile& file) { return file.is_open(); }))
+        return Error{ErrorCode::out_of_memory, {}, system_reason(errno)};
+    Result<Made> made = make_texture(recipe, contents_.path(task.input), wanted, settings, console_);
     if (!made) return with_remedy(made.error(), wanted.front().path);
+    if (!is_checked) return made;
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+        const MadeTexture texture{wanted[k].write_to, settings.source, made->packs[k], task.outputs[wanted[k].index]};
+        const Execution execution{running_.threads, [this](double) { return !stopped(); }};
+        const auto findings = recipe.check().findings(texture, running_.read, execution);
+        if (!findings) return findings.error();
+        for (const std::string& sentence : *findings) {
+            outcome.code = ExitCode::findings;
+            console_.error(fmt::format("{}: {}", texture.name, sentence));
+            outcome.report["findings"].push_back({{"output", texture.name}, {"message", sentence}});
+        }
+    }
+    if (outcome.code == ExitCode::findings) return made;
+    for (const WantedOutput& output : wanted) {
+        const auto bytes = read_text_file(output.write_to);
+        if (!bytes) return bytes.error();
+        if (const auto put = write_text_file(output.path, *bytes, write_); !put)
+            return with_remedy(put.error(), output.path);
+    }
     return made;
 }
 
@@ -104,16 +164,22 @@ Result<void> BuildRun::make_stale(const BuildTask& task, Judgement judgement, do
         outcome.report["status"] = "cached";
         return {};
     }
-    const Result<Made> made = make(task, judgement.stale, counted);
+    const Result<Made> made = make(task, judgement.stale, counted, outcome);
     if (!made) return made.error();
+    outcome.warnings.insert(outcome.warnings.end(), made->warnings.begin(), made->warnings.end());
+    outcome.remarks.insert(outcome.remarks.end(), made->remarks.begin(), made->remarks.end());
+    if (outcome.code == ExitCode::findings) {
+        outcome.report["status"] = "refused";
+        return {};
+    }
     for (std::size_t k = 0; k < judgement.stale.size(); ++k) {
         const Stale& stale = judgement.stale[k];
         if (auto recorded = record(task, stale, judgement.inputs, made->files[k], outcome); !recorded) return recorded;
         if (!cache_.is_used() || has_level(task.outputs[stale.index])) continue;
         const auto stored = cache_.store(key_of(stale.settings, judgement.inputs), made->files[k].front());
-        if (!stored) outcome.warnings.push_back("the cache does not take it: " + stored.error().message());
+        if (!stored)
+            outcome.warnings.push_back({task.input, "the cache does not take it: " + stored.error().message()});
     }
-    outcome.warnings.insert(outcome.warnings.end(), made->warnings.begin(), made->warnings.end());
     texels_ += made->report.extent.texels();
     outcome.report["status"] = "made";
     outcome.report["extent"] = {made->report.extent.width, made->report.extent.height};
@@ -129,7 +195,7 @@ Result<void> BuildRun::bring_up_to_date(std::size_t index, Outcome& outcome) {
     outcome.report["rule"] = recipe.number();
     if (!task.refusal.empty()) return Error{ErrorCode::bad_option, task.input, task.refusal};
     for (const std::size_t needed : task.needs) {
-        const std::string name = printable(work_.tasks[needed].outputs.front());
+        const std::string name = printable(needed_file(work_.tasks[needed], recipe));
         if (failed_[needed])
             return Error{ErrorCode::bad_data, task.input, fmt::format("needs {}, which could not be made", name)};
         if (!stale_[needed]) continue;
@@ -159,6 +225,7 @@ Result<void> BuildRun::bring_up_to_date(std::size_t index, Outcome& outcome) {
         // What is recorded now would be wrong if the input changes, so that is checked after the files are made, and
         // the record is forgotten.
         if (Result<void> made = make_stale(task, std::move(*judged), counted, outcome); !made) return made;
+        if (outcome.code == ExitCode::findings) return {};
         if (contents_.stamp(task.input) == before) return {};
         for (const std::string& output : task.outputs) judge_.forget(output);
         outcome.outputs.clear();
@@ -171,6 +238,7 @@ Outcome BuildRun::outcome_of(std::size_t index) {
     Outcome outcome;
     outcome.input = task.input;
     outcome.has_levels = true;  // a list of outputs
+    const auto start = std::chrono::steady_clock::now();
     try {
         if (const auto done = bring_up_to_date(index, outcome); !done) outcome.error = done.error();
     } catch (const std::bad_alloc&) {
@@ -179,10 +247,11 @@ Outcome BuildRun::outcome_of(std::size_t index) {
         outcome.error = Error{ErrorCode::io, {}, fmt::format("{}; {}", exception.what(), kBugReport)};
         outcome.is_bug = true;
     }
-    if (outcome.error) {
+    if (outcome.error || outcome.code == ExitCode::findings) {
         failed_[index] = true;
         ++totals_.failed;
     }
+    outcome.seconds = std::chrono::duration<float>(std::chrono::steady_clock::now() - start).count();
     ++finished_;
     return outcome;
 }

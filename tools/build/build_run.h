@@ -51,7 +51,7 @@ private:
     Result<void> record(const BuildTask& task, const Stale& made, const Digest& inputs,
                         const std::vector<std::string>& paths, Outcome& outcome);
     void list_stale(const BuildTask& task, const std::vector<Stale>& stale, Outcome& outcome);
-    Result<Made> make(const BuildTask& task, const std::vector<Stale>& stale, double& counted);
+    Result<Made> make(const BuildTask& task, const std::vector<Stale>& stale, double& counted, Outcome& outcome);
     Result<void> create_folders(const std::string& output) const;
     [[nodiscard]] Error with_remedy(const Error& error, const std::string& output) const;
     void prune();

@@ -71,10 +71,7 @@ Recipe::Recipe(const Manifest& manifest, const RuleSettings& rule, int number, c
     : manifest_(manifest), rule_(rule), number_(number), root_(root) {
     for (const std::string& pattern : rule.match) match_.emplace_back(pattern);
     for (const std::string& pattern : rule.exclude) exclude_.emplace_back(pattern);
-    if (!rule.check.empty()) {
-        const Setting& first = rule.check.front();
-        fail_at(manifest.path, first.place, "check is not supported yet");
-    }
+    check_ = std::make_unique<TextureCheck>(manifest, rule.check, console);
     for (std::size_t k = 0; k + 1 < rule.steps.size(); ++k) {
         before_.push_back(ready(rule.steps[k], nullptr, false, kBetween, console));
         check_order(rule.steps[k], before_.back(), k, console);
@@ -185,6 +182,7 @@ void Recipe::check_order(const StepSettings& step, const ReadyCommand& command, 
     Job job(task, console, read, write, 1, [](double) { return true; });
     const std::optional<Step> made = command.converter->step(job);
     if (!made && !is_only) fail("must be the only step");
+    if (!made && check_->is_given()) fail("makes no normals, so check cannot be used");
     if (made && index > 0 && std::holds_alternative<BakeFileOptions>(*made)) fail("must be the first step");
     const auto* const packed = made ? std::get_if<PackFileOptions>(&*made) : nullptr;
     if (packed != nullptr && packed->mip && !is_last) fail("builds levels, so it must be the last step");
@@ -199,6 +197,8 @@ void Recipe::add_output(const OutputSettings& output, Console& console) {
     } catch (const UsageError& error) {
         fail_at(manifest_.path, output.place, fmt::format("name: {}", error.what()));
     }
+    if (check_->is_given() && has_level(out))
+        fail_at(manifest_.path, output.place, "check needs all levels in one file");
     RecipeOutput made{ready(rule_.steps.back(), &output, true, out, console), std::move(*name), {}, output.place};
     const std::size_t last = rule_.steps.size() - 1;
     check_order(rule_.steps.back(), made.last, last, console);
@@ -211,6 +211,7 @@ void Recipe::add_output(const OutputSettings& output, Console& console) {
     made.settings += settings_of(rule_.steps[last].command, made.last);
     const Task task = made.last.converter->task_for("input", out);
     made.settings += fmt::format("{} {}\n", name_of(kContainerNames, task.container), has_level(out) ? "levels" : "");
+    made.settings += check_->text();
     if (outputs_.empty()) {
         const auto add_files = [this](const Task& of) {
             for (const std::string& file : of.prerequisites()) {

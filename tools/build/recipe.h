@@ -14,6 +14,7 @@
 #include "batch/name_pattern.h"
 #include "build/glob.h"
 #include "build/manifest.h"
+#include "build/texture_check.h"
 #include "cli/console.h"
 #include "cli/programs.h"
 
@@ -57,6 +58,8 @@ public:
     // Throws UsageError if it leads out of the root.
     [[nodiscard]] std::string output_name(const std::string& input, std::size_t output) const;
 
+    [[nodiscard]] const TextureCheck& check() const { return *check_; }
+
     // The files that options name and every output depends on, relative to the root.
     [[nodiscard]] const std::vector<std::string>& files() const { return files_; }
     // The command lines that do the same, one for each step, for people.
@@ -76,6 +79,7 @@ private:
     const int number_;
     const std::string root_;
     std::vector<Glob> match_, exclude_;
+    std::unique_ptr<TextureCheck> check_;
     std::vector<ReadyCommand> before_;
     std::vector<RecipeOutput> outputs_;
     std::vector<std::string> files_;

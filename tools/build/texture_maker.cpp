@@ -22,10 +22,11 @@ public:
         return jobs_.emplace_back(tasks_.back(), console_, settings_.running.read, settings_.write,
                                   settings_.running.threads, settings_.advance);
     }
-    [[nodiscard]] std::vector<std::string> warnings() const {
-        std::vector<std::string> all;
-        for (const Job& job : jobs_) all.insert(all.end(), job.warnings().begin(), job.warnings().end());
-        return all;
+    void add_warnings(Made& made) const {
+        for (const Job& job : jobs_) {
+            made.warnings.insert(made.warnings.end(), job.warnings().begin(), job.warnings().end());
+            made.remarks.insert(made.remarks.end(), job.remarks().begin(), job.remarks().end());
+        }
     }
 
 private:
@@ -41,6 +42,20 @@ int levels_of(const Step& step) {
     if (const auto* blend = std::get_if<BlendFileOptions>(&step)) return blend->mip.levels;
     const auto& pack = std::get<PackFileOptions>(step);
     return pack.mip ? pack.mip->levels : 0;
+}
+
+// Makes the step store how it packs its output.
+void keep_packing(Step& step, PackOptions& kept) {
+    const auto keep = [&kept](std::function<PackOptions(const SourceInfo&)>& pack) {
+        pack = [inner = std::move(pack), &kept](const SourceInfo& source) { return kept = inner(source); };
+    };
+    if (const auto* bake = std::get_if<BakeFileOptions>(&step)) {
+        kept = bake->pack;
+    } else if (auto* pack = std::get_if<PackFileOptions>(&step)) {
+        keep(pack->pack);
+    } else {
+        keep(std::get<BlendFileOptions>(step).pack);
+    }
 }
 
 // Takes the output of a step as one more file of another step.
@@ -92,7 +107,7 @@ Result<Made> run_commands(const Recipe& recipe, const std::string& input, const 
         if (const Result<void> done = converter.process_task(job); !done) return done.error();
         made.files.push_back(job.outputs());
     }
-    made.warnings = jobs.warnings();
+    jobs.add_warnings(made);
     return made;
 }
 
@@ -117,7 +132,9 @@ Result<Made> make_texture(const Recipe& recipe, const std::string& input, const 
     std::vector<Ending> endings;
     for (const WantedOutput& output : wanted) {
         Converter& converter = *recipe.outputs()[output.index].last.converter;
-        Job& job = jobs.add(converter.task_for(from, output.path));
+        Task task = converter.task_for(from, output.path);
+        if (!output.write_to.empty()) task.output = output.write_to;
+        Job& job = jobs.add(std::move(task));
         std::optional<Step> step = converter.step(job);
         if (!step) return run_commands(recipe, input, wanted, jobs);
         endings.push_back({std::move(*step), &job.task});
@@ -126,10 +143,20 @@ Result<Made> make_texture(const Recipe& recipe, const std::string& input, const 
         const int levels = levels_of(a.step);
         return levels > 0 && (levels_of(b.step) == 0 || levels < levels_of(b.step));
     };
+    std::vector<PackOptions> packs(wanted.size());
+    for (std::size_t k = 0; k < endings.size(); ++k) keep_packing(endings[k].step, packs[k]);
     std::iter_swap(endings.begin(), std::max_element(endings.begin(), endings.end(), has_fewer));
     const Task* const first = endings.front().task;
     std::vector<MoreFile> more;
     for (std::size_t k = 1; k < endings.size(); ++k) more.push_back(more_file(endings[k].step, *endings[k].task));
+    if (!settings.source.empty()) {
+        MoreFile& source = more.emplace_back();
+        source.output = settings.source;
+        source.container = Container::exr;
+        source.levels = 1;
+        source.pack = [](const SourceInfo&) { return PackOptions{Encoding::float_}; };
+        source.write.sync = false;
+    }
     steps.push_back(std::move(endings.front().step));
     std::visit([&](auto& options) { options.more = std::move(more); }, steps.back());
     const Execution execution{settings.running.threads, settings.advance};
@@ -140,7 +167,10 @@ Result<Made> make_texture(const Recipe& recipe, const std::string& input, const 
         return reader.with_remedy(done.error());
     }
     note(recipe, output, input, *done, jobs);
-    Made made{std::move(*done), {}, jobs.warnings()};
+    Made made;
+    made.report = std::move(*done);
+    made.packs = std::move(packs);
+    jobs.add_warnings(made);
     for (const WantedOutput& file : wanted) {
         // A file that holds one level has no other names.
         made.files.push_back(files_of(file.path, made.report.levels));

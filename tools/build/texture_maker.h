@@ -19,19 +19,22 @@ struct MakeSettings {
     const RunOptions& running;
     WriteOptions write;
     std::function<bool(double fraction)> advance;  // returns false if the work must stop
+    std::string source = {};                       // if not empty, the normals before packing go here, as EXR
 };
 
 // What was made.
 struct Made {
     StepsReport report;
     std::vector<std::vector<std::string>> files;  // of each output that was asked for
-    std::vector<std::string> warnings;
+    std::vector<PackOptions> packs;               // the same, if they are textures
+    std::vector<FileWarning> warnings, remarks;   // as in Job
 };
 
 // One output to make: its place in the recipe, and the path of its file (with kLevelMark if each level has its own).
 struct WantedOutput {
     std::size_t index;
     std::string path;
+    std::string write_to = {};  // if not empty, the bytes go here instead
 };
 
 // Makes `wanted` from the file `input`. The folders exist. Errors: those of the commands.

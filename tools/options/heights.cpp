@@ -45,9 +45,12 @@ Result<void> ColorGroup::check() const {
 }
 
 std::vector<std::string> ColorGroup::files() const {
+    if (!is_given()) return {};
+    auto files = color_files(options());
+    if (files) return std::move(*files);
+    // The error is reported by check().
     const std::string config = options().config;
-    if (!is_given() || config.empty() || config.starts_with("ocio://")) return {};
-    return {config};
+    return config.empty() || config.starts_with("ocio://") ? std::vector<std::string>() : std::vector{config};
 }
 
 void StrengthOptions::add(Command& command) {

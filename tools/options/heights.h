@@ -29,7 +29,7 @@ struct ColorGroup {
     // UsageError for such a name; returns an error if the configuration cannot be read.
     [[nodiscard]] Result<void> check() const;
 
-    // The configuration, if it is a file, because outputs depend on it.
+    // The configuration, if it is a file, and the tables that it uses, because outputs depend on them.
     [[nodiscard]] std::vector<std::string> files() const;
 };
 

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <tex/image.h>
 #include <tex/result.h>
@@ -33,6 +34,10 @@ struct ColorOptions {
 //         bad_data    the configuration is damaged
 //         out_of_memory
 [[nodiscard]] Result<void> to_linear(Image& image, const ColorOptions& options);
+
+// The files on which to_linear() depends: the configuration, if it is a file, and the tables (LUTs) that it uses for
+// options.space. Empty without a configuration. Errors: those of to_linear() that concern the configuration.
+[[nodiscard]] Result<std::vector<std::string>> color_files(const ColorOptions& options);
 
 // The version of OpenColorIO: "2.1.2".
 [[nodiscard]] const char* opencolorio_version();

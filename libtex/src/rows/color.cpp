@@ -124,11 +124,8 @@ Result<OCIO::ConstConfigRcPtr> load(const std::string& path) {
     }
 }
 
-Result<ConvertRow> by_config(const std::string& file, const std::string& space) {
-    OCIO::SetLoggingLevel(OCIO::LOGGING_LEVEL_NONE);  // libtex prints nothing
-    const Result<OCIO::ConstConfigRcPtr> loaded = load(file);
-    if (!loaded) return loaded.error();
-    const OCIO::ConstConfigRcPtr& config = loaded.value();
+Result<OCIO::ConstProcessorRcPtr> processor_of(const OCIO::ConstConfigRcPtr& config, const std::string& file,
+                                               const std::string& space) {
     if (!config->getColorSpace(space.c_str())) {
         return Error{ErrorCode::bad_option, file,
                      "no colour space \"" + space + "\"; there are " + some_spaces(config)};
@@ -137,8 +134,20 @@ Result<ConvertRow> by_config(const std::string& file, const std::string& space) 
         return Error{ErrorCode::bad_option, file, "the configuration has no role scene_linear"};
     }
     try {
-        const auto processor = config->getProcessor(space.c_str(), OCIO::ROLE_SCENE_LINEAR);
-        return ConvertRow([on_cpu = processor->getDefaultCPUProcessor()](const ColorRows& rows, int width) {
+        return config->getProcessor(space.c_str(), OCIO::ROLE_SCENE_LINEAR);
+    } catch (const OCIO::Exception& thrown) {
+        return conversion_fails(file, thrown);
+    }
+}
+
+Result<ConvertRow> by_config(const std::string& file, const std::string& space) {
+    OCIO::SetLoggingLevel(OCIO::LOGGING_LEVEL_NONE);  // libtex prints nothing
+    const Result<OCIO::ConstConfigRcPtr> config = load(file);
+    if (!config) return config.error();
+    const Result<OCIO::ConstProcessorRcPtr> processor = processor_of(*config, file, space);
+    if (!processor) return processor.error();
+    try {
+        return ConvertRow([on_cpu = (*processor)->getDefaultCPUProcessor()](const ColorRows& rows, int width) {
             OCIO::PlanarImageDesc row(rows.row[0], rows.row[1], rows.row[2], nullptr, width, 1);
             on_cpu->apply(row);
         });
@@ -148,6 +157,26 @@ Result<ConvertRow> by_config(const std::string& file, const std::string& space) 
 }
 
 }  // namespace
+
+Result<std::vector<std::string>> files_of_conversion(const std::string& file, const std::string& space) {
+    std::vector<std::string> files;
+    if (space.empty() || file.empty()) return files;
+    OCIO::SetLoggingLevel(OCIO::LOGGING_LEVEL_NONE);
+    const Result<OCIO::ConstConfigRcPtr> config = load(file);
+    if (!config) return config.error();
+    const Result<OCIO::ConstProcessorRcPtr> processor = processor_of(*config, file, space);
+    if (!processor) return processor.error();
+    if (!file.starts_with("ocio://")) files.push_back(file);
+    try {
+        const OCIO::ConstProcessorMetadataRcPtr metadata = (*processor)->getProcessorMetadata();
+        const OCIO::ConstContextRcPtr context = (*config)->getCurrentContext();
+        for (int k = 0; k < metadata->getNumFiles(); ++k)
+            files.emplace_back(context->resolveFileLocation(metadata->getFile(k)));
+    } catch (const OCIO::Exception& thrown) {
+        return conversion_fails(file, thrown);
+    }
+    return files;
+}
 
 Result<LinearRows> LinearRows::make(const std::vector<std::string>& names, SampleKind sample, int bits,
                                     const std::string& config, const std::string& space) {

@@ -20,6 +20,9 @@ struct ColorRows {
 };
 using ConvertRow = std::function<void(const ColorRows& rows, int width)>;
 
+// What color_files() returns. May throw std::bad_alloc.
+Result<std::vector<std::string>> files_of_conversion(const std::string& config, const std::string& space);
+
 class LinearRows {
 public:
     // Makes the conversion from a colour space for pictures with these channels and samples: see ColorOptions. May
