@@ -109,10 +109,11 @@ TEST_F(Color, TableAndFormulaAgreeToTheLastBit) {
 
 TEST_F(Color, FilesAreTheConfigurationAndItsTables) {
     std::filesystem::create_directory(folder_ + "/luts");
-    make("luts/missing.spi1d", "Version 1\nFrom 0.0 1.0\nLength 2\nComponents 1\n{\n0.0\n0.5\n}\n");
+    const std::string table =
+        make("luts/missing.spi1d", "Version 1\nFrom 0.0 1.0\nLength 2\nComponents 1\n{\n0.0\n0.5\n}\n");
     const auto files = color_files({"broken", config_});
     ASSERT_TRUE(files) << files.error().message();
-    EXPECT_EQ(*files, (std::vector<std::string>{config_, folder_ + "/luts/missing.spi1d"}));
+    EXPECT_EQ(*files, (std::vector<std::string>{config_, table}));
     EXPECT_EQ(*color_files({"gamma2", config_}), std::vector<std::string>{config_});
     EXPECT_TRUE(color_files({"sRGB", ""})->empty());
     EXPECT_EQ(color_files({"none", config_}).error().code, ErrorCode::bad_option);
