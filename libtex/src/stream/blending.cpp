@@ -110,7 +110,7 @@ Result<PlacedMap> Blending::place(Input& input, std::deque<ArrivingMap>& arrivin
     return PlacedMap{nullptr, [&map](int j) { return map.row(j); }, extent_, input.map, input.wrap_x, input.wrap_y};
 }
 
-void Blending::judge_y(SourceInfo& base, std::vector<SourceInfo>& details) const {
+void Blending::judge_y(SourceInfo& base, std::vector<SourceInfo>& details) {
     for (std::size_t k = 0; k < inputs_.size(); ++k) {
         SourceInfo& info = k == 0 ? base : details[k - 1];
         if (inputs_[k].witness) info.y_doubtful = inputs_[k].witness->contradicts();

@@ -42,7 +42,7 @@ public:
     [[nodiscard]] const SourceInfo& source() { return base_.file.info(); }  // of the base
     [[nodiscard]] std::vector<SourceInfo> details() const;
     // Sets SourceInfo::y_doubtful of the base and of the details, after the last reading.
-    void judge_y(SourceInfo& base, std::vector<SourceInfo>& details) const;
+    void judge_y(SourceInfo& base, std::vector<SourceInfo>& details);
 
     // One reading of the maps: the rows of those that are read in step, and what makes normals of them.
     struct Reading {

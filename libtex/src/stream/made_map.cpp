@@ -169,7 +169,8 @@ public:
         };
         const PackOptions pack = packing_of_step(options_.pack, blending_->source());
         TextureRows texture = made_texture(pack.y_axis, pack.y_known);
-        texture.levels.push_back(std::make_unique<MadeRows>(*reading_->rows, path(), blending_->extent(), pack.y_axis, make));
+        texture.levels.push_back(
+            std::make_unique<MadeRows>(*reading_->rows, path(), blending_->extent(), pack.y_axis, make));
         return texture;
     }
 

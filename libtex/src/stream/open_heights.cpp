@@ -19,7 +19,8 @@ namespace {
 Result<void> prepare(const BakeFileOptions& options, Heights& heights) {
     const RowSource& rows = *heights.rows;
     if (!options.color.space.empty()) {
-        auto linear = LinearRows::make(rows.names(), rows.sample(), rows.bits(), options.color.config, options.color.space);
+        auto linear =
+            LinearRows::make(rows.names(), rows.sample(), rows.bits(), options.color.config, options.color.space);
         if (!linear) return linear.error();
         heights.linear = std::move(*linear);
     }
