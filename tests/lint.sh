@@ -188,7 +188,8 @@ for section in $(select_files '^man/shared/'); do
 done
 # The pages refer to each other and are not installed, so that remark is ignored. Every other remark counts.
 # (One page at a time: in a longer output, lines of its two streams get into each other.)
-remarks=$(for page in "$manual"/*; do mandoc -T lint -W style "$page" 2>&1; done | grep -v 'referenced manual not found\|outdated mandoc.db' || true)
+remarks=$(for page in "$manual"/*; do mandoc -T lint -W style "$page" 2>&1; done |
+    grep -v 'referenced manual not found\|outdated mandoc.db' || true)
 [ -z "$remarks" ] || complain "mandoc complains about a man page"$'\n'"$remarks"
 shellcheck -x "${scripts[@]}" || complain "shellcheck complains about a script"
 
