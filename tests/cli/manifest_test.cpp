@@ -105,7 +105,7 @@ TEST(Manifest, MistakesNameTheirPlaceAndTheRemedy) {
     EXPECT_EQ(refusal_of("[ { bake = {}, mip = {} } ]"),
               "n.toml: line 4, column 11: a step holds one command, such as { bake = {} }");
     EXPECT_EQ(refusal_of("[ { scale = { scale = 2 } }, { bake = {} } ]"),
-              "n.toml: line 4, column 32: bake must be the first step");
+              "n.toml: line 4, column 40: bake must be the first step");
     EXPECT_EQ(refusal_of("[ { mip = {} }, { scale = { scale = 2 } } ]"),
               "n.toml: line 4, column 13: mip builds levels, so it must be the last step");
     EXPECT_EQ(refusal_of("[ { bake = {} }, { preview = {} } ]", "name = \"{stem}.png\"").substr(27),

@@ -13,13 +13,13 @@
 namespace tex::cli {
 namespace {
 
-const Setting* find_setting(const Settings& settings, const std::string& key) {
-    const auto found =
-        std::find_if(settings.begin(), settings.end(), [&](const Setting& setting) { return setting.key == key; });
+const OptionSetting* find_setting(const Settings& settings, const std::string& key) {
+    const auto found = std::find_if(settings.begin(), settings.end(),
+                                    [&](const OptionSetting& setting) { return setting.key == key; });
     return found == settings.end() ? nullptr : &*found;
 }
 
-std::string value_text(const Setting& setting) {
+std::string value_text(const OptionSetting& setting) {
     return setting.is_flag ? (setting.is_on ? "true" : "false") : join(setting.values, ", ");
 }
 
@@ -29,7 +29,7 @@ std::string settings_text(const StepSettings& step, const OutputSettings* output
     for (const Row& row : command.rows()) {
         if (row.hidden || row.group == kHelpGroup || row.group == "Files" || row.group == "Running") continue;
         const std::string key = row.name().substr(2);
-        const Setting* setting = output == nullptr ? nullptr : find_setting(output->settings, key);
+        const OptionSetting* setting = output == nullptr ? nullptr : find_setting(output->settings, key);
         const char* from = "outputs, ";
         if (setting == nullptr) {
             setting = find_setting(step.settings, key);

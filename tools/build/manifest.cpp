@@ -48,7 +48,7 @@ private:
     [[nodiscard]] const toml::array& array_of(const toml::node& node, const std::string& what) const;
     [[nodiscard]] int number_of(const toml::node& node, const std::string& what) const;
     [[nodiscard]] std::string value_of(const std::string& key, const toml::node& node) const;
-    [[nodiscard]] Setting setting_of(const toml::key& key, const toml::node& node) const;
+    [[nodiscard]] OptionSetting setting_of(const toml::key& key, const toml::node& node) const;
     [[nodiscard]] Settings settings_of(const toml::table& table) const;
     [[nodiscard]] std::vector<OutputSettings> outputs_of(const toml::node& node) const;
     [[nodiscard]] StepSettings step_of(const toml::node& node) const;
@@ -122,8 +122,8 @@ std::string ManifestReader::value_of(const std::string& key, const toml::node& n
     fail(node, printable(key) + " must be a string, a number, true, false or a list of strings and numbers");
 }
 
-Setting ManifestReader::setting_of(const toml::key& key, const toml::node& node) const {
-    Setting setting;
+OptionSetting ManifestReader::setting_of(const toml::key& key, const toml::node& node) const {
+    OptionSetting setting;
     setting.key = key.str();
     setting.place = place_of(key.source());
     if (node.is_boolean()) {
@@ -142,7 +142,8 @@ Setting ManifestReader::setting_of(const toml::key& key, const toml::node& node)
 Settings ManifestReader::settings_of(const toml::table& table) const {
     Settings settings;
     for (const auto& [key, node] : table) settings.push_back(setting_of(key, node));
-    std::sort(settings.begin(), settings.end(), [](const Setting& a, const Setting& b) { return a.key < b.key; });
+    std::sort(settings.begin(), settings.end(),
+              [](const OptionSetting& a, const OptionSetting& b) { return a.key < b.key; });
     return settings;
 }
 
@@ -178,13 +179,13 @@ StepSettings ManifestReader::step_of(const toml::node& node) const {
     step.settings = settings_of(table_of(value, step.command));
     const auto found = defaults_.commands.find(step.command);
     if (found == defaults_.commands.end()) return step;
-    for (const Setting& setting : found->second) {
+    for (const OptionSetting& setting : found->second) {
         const bool is_set = std::any_of(step.settings.begin(), step.settings.end(),
-                                        [&](const Setting& own) { return own.key == setting.key; });
+                                        [&](const OptionSetting& own) { return own.key == setting.key; });
         if (!is_set) step.settings.push_back(setting);
     }
     std::sort(step.settings.begin(), step.settings.end(),
-              [](const Setting& a, const Setting& b) { return a.key < b.key; });
+              [](const OptionSetting& a, const OptionSetting& b) { return a.key < b.key; });
     return step;
 }
 
@@ -204,7 +205,7 @@ void ManifestReader::read_defaults(const toml::table& table) {
         } else {
             Settings& settings = defaults_.commands[std::string(key.str())] =
                 settings_of(table_of(node, std::string(key.str())));
-            for (Setting& setting : settings) setting.is_default = true;
+            for (OptionSetting& setting : settings) setting.is_default = true;
         }
     }
 }

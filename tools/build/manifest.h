@@ -21,7 +21,7 @@ struct Place {
 };
 
 // One option of a command: "height-range = 0.05".
-struct Setting {
+struct OptionSetting {
     std::string key;                  // the option's name without its dashes
     std::vector<std::string> values;  // as they would be typed, one for each time that the option is given
     bool is_list = false;             // an array, which stands for several values or for one with commas
@@ -30,7 +30,7 @@ struct Setting {
     bool is_default = false;          // from [defaults]
     Place place;
 };
-using Settings = std::vector<Setting>;  // sorted by key
+using Settings = std::vector<OptionSetting>;  // sorted by key
 
 struct StepSettings {
     std::string command;  // "bake", for bake-normals

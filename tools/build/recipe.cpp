@@ -85,7 +85,7 @@ bool Recipe::takes(const std::string& input) const {
            std::none_of(exclude_.begin(), exclude_.end(), matches);
 }
 
-void Recipe::add_option(const Setting& setting, const Command& command, const std::vector<std::string>& groups,
+void Recipe::add_option(const OptionSetting& setting, const Command& command, const std::vector<std::string>& groups,
                         std::vector<std::string>& arguments) const {
     const auto fail = [&](const std::string& reason) {
         fail_at(manifest_.path, setting.place, fmt::format("{}: {}", printable(setting.key), reason));
@@ -132,13 +132,14 @@ ReadyCommand Recipe::ready(const StepSettings& step, const OutputSettings* outpu
     if (!is_last) std::erase(groups, kOutputGroup);
     const auto overrides = [&](const std::string& key) {
         return output != nullptr && std::any_of(output->settings.begin(), output->settings.end(),
-                                                [&](const Setting& setting) { return setting.key == key; });
+                                                [&](const OptionSetting& setting) { return setting.key == key; });
     };
-    for (const Setting& setting : step.settings) {
+    for (const OptionSetting& setting : step.settings) {
         if (!overrides(setting.key)) add_option(setting, table, groups, command.arguments);
     }
     if (output != nullptr) {
-        for (const Setting& setting : output->settings) add_option(setting, table, {kOutputGroup}, command.arguments);
+        for (const OptionSetting& setting : output->settings)
+            add_option(setting, table, {kOutputGroup}, command.arguments);
     }
     std::sort(command.arguments.begin(), command.arguments.end(),
               [](const std::string& a, const std::string& b) { return cut(a, '=').first < cut(b, '=').first; });
@@ -151,7 +152,7 @@ ReadyCommand Recipe::ready(const StepSettings& step, const OutputSettings* outpu
     const auto place_of = [&](const std::string& message) {
         for (const auto* settings : {&step.settings, output != nullptr ? &output->settings : nullptr}) {
             if (settings == nullptr) continue;
-            for (const Setting& setting : *settings) {
+            for (const OptionSetting& setting : *settings) {
                 if (message.starts_with("--" + setting.key + ":")) return setting.place;
             }
         }

@@ -68,7 +68,7 @@ public:
 private:
     [[nodiscard]] ReadyCommand ready(const StepSettings& step, const OutputSettings* output, bool is_last,
                                      const std::string& out, Console& console) const;
-    void add_option(const Setting& setting, const Command& command, const std::vector<std::string>& groups,
+    void add_option(const OptionSetting& setting, const Command& command, const std::vector<std::string>& groups,
                     std::vector<std::string>& arguments) const;
     [[nodiscard]] std::string with_root(const std::string& argument, const Command& command) const;
     void check_order(const StepSettings& step, const ReadyCommand& command, std::size_t index, Console& console) const;

@@ -32,7 +32,7 @@ TextureCheck::TextureCheck(const Manifest& manifest, const Settings& settings, C
     for (const Row& row : command_.rows()) {
         if (is_key(row)) known.push_back(row.name().substr(2));
     }
-    for (const Setting& setting : settings) {
+    for (const OptionSetting& setting : settings) {
         const auto fail = [&](const std::string& reason) {
             fail_at(manifest.path, setting.place, fmt::format("check: {}{}", printable(setting.key), reason));
         };
@@ -48,7 +48,7 @@ TextureCheck::TextureCheck(const Manifest& manifest, const Settings& settings, C
         std::ignore = command_.parse(pointers, console);
         std::ignore = rules_.read(command_, {}, {});
     } catch (const UsageError& error) {
-        const auto at = std::find_if(settings.begin(), settings.end(), [&](const Setting& setting) {
+        const auto at = std::find_if(settings.begin(), settings.end(), [&](const OptionSetting& setting) {
             return std::string_view(error.what()).starts_with("--" + setting.key);
         });
         fail_at(manifest.path, at == settings.end() ? settings.front().place : at->place,
