@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // build-normals makes what is not up to date, and no more.
 
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -296,6 +297,45 @@ TEST_F(BuildNormals, ACloneWithAWarmCacheMakesNothing) {
     ASSERT_EQ(build({"--cache", "cache"}).code, 0);
     EXPECT_EQ(count("cached"), 3u);
     EXPECT_EQ(outputs(), first);
+}
+
+// A key names the contents that were there before the file was read. If the file is replaced in between, the cache must
+// not keep what was made from the other contents.
+TEST_F(BuildNormals, AnInputThatIsReplacedWhileItIsReadNeverReachesTheCache) {
+    scratch_.write("normals.toml",
+                   "version = 1\n[[rule]]\nmatch = \"swapped.png\"\nsteps = [ { bake = {} } ]\n"
+                   "outputs = [ { name = \"out/{stem}.dds\" } ]\n");
+    const std::string contents[] = {scratch_.read("art/wall_h.png"), scratch_.read("shared/grain.png")};
+    std::string right[2];
+    for (const int k : {0, 1}) {
+        scratch_.write("swapped.png", contents[k]);
+        ASSERT_EQ(build().code, 0);
+        right[k] = scratch_.read("out/swapped.dds");
+    }
+    ASSERT_NE(right[0], right[1]);
+    std::atomic<bool> is_done{false};
+    std::thread editor([&] {
+        for (int k = 0; !is_done; k = 1 - k) {
+            scratch_.write("new.tmp", contents[k]);
+            fs::rename(scratch_.path("new.tmp"), scratch_.path("swapped.png"));
+        }
+    });
+    for (int run = 0; run < 40; ++run) {
+        fs::remove(scratch_.path(".normals.toml.state"));
+        build({"--cache", fmt::format("cache{}", run)});  // may fail, because the file changes again and again
+    }
+    is_done = true;
+    editor.join();
+    for (int run = 0; run < 40; ++run) {
+        const std::string cache = fmt::format("cache{}", run);
+        if (!fs::is_directory(scratch_.path(cache))) continue;
+        for (const int k : {0, 1}) {
+            scratch_.write("swapped.png", contents[k]);
+            fs::remove(scratch_.path(".normals.toml.state"));
+            EXPECT_EQ(build({"--cache", cache}).code, 0);
+            EXPECT_EQ(scratch_.read("out/swapped.dds"), right[k]) << cache;
+        }
+    }
 }
 
 TEST_F(BuildNormals, TwoBuildersAtOnceDoNoHarm) {

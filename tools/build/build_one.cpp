@@ -156,25 +156,37 @@ void BuildRun::list_stale(const BuildTask& task, const std::vector<Stale>& stale
     }
 }
 
-// Makes what is stale, unless the cache has it.
-Result<void> BuildRun::make_stale(const BuildTask& task, Judgement judgement, double& counted, Outcome& outcome) {
-    if (Result<void> fetched = fetch(task, judgement, outcome); !fetched) return fetched;
+// What stat() says about all files that the outputs are made from.
+std::vector<std::optional<FileStamp>> BuildRun::stamps_of(const BuildTask& task) const {
+    std::vector<std::optional<FileStamp>> stamps = {contents_.stamp(task.input)};
+    for (const std::string& file : recipes_[task.recipe].files()) stamps.push_back(contents_.stamp(file));
+    return stamps;
+}
+
+// Makes what is stale, unless the cache has it. Returns false if a file was replaced while it was read. Nothing is then
+// recorded or put into the cache, because its key names the contents before.
+Result<bool> BuildRun::make_stale(const BuildTask& task, Judgement judgement,
+                                  const std::vector<std::optional<FileStamp>>& stamps, double& counted,
+                                  Outcome& outcome) {
+    if (Result<void> fetched = fetch(task, judgement, outcome); !fetched) return fetched.error();
     if (judgement.stale.empty()) {
         ++totals_.cached;
         outcome.report["status"] = "cached";
-        return {};
+        return stamps_of(task) == stamps;
     }
     const Result<Made> made = make(task, judgement.stale, counted, outcome);
     if (!made) return made.error();
+    if (stamps_of(task) != stamps) return false;
     outcome.warnings.insert(outcome.warnings.end(), made->warnings.begin(), made->warnings.end());
     outcome.remarks.insert(outcome.remarks.end(), made->remarks.begin(), made->remarks.end());
     if (outcome.code == ExitCode::findings) {
         outcome.report["status"] = "refused";
-        return {};
+        return true;
     }
     for (std::size_t k = 0; k < judgement.stale.size(); ++k) {
         const Stale& stale = judgement.stale[k];
-        if (auto recorded = record(task, stale, judgement.inputs, made->files[k], outcome); !recorded) return recorded;
+        if (auto recorded = record(task, stale, judgement.inputs, made->files[k], outcome); !recorded)
+            return recorded.error();
         if (!cache_.is_used() || has_level(task.outputs[stale.index])) continue;
         const auto stored = cache_.store(key_of(stale.settings, judgement.inputs), made->files[k].front());
         if (!stored)
@@ -186,7 +198,7 @@ Result<void> BuildRun::make_stale(const BuildTask& task, Judgement judgement, do
     outcome.report["levels"] = made->report.levels;
     outcome.report["bytes"] = made->report.bytes;
     ++totals_.made;
-    return {};
+    return true;
 }
 
 Result<void> BuildRun::bring_up_to_date(std::size_t index, Outcome& outcome) {
@@ -208,7 +220,7 @@ Result<void> BuildRun::bring_up_to_date(std::size_t index, Outcome& outcome) {
     double counted = 0.0;
     constexpr int kMostAttempts = 3;
     for (int attempt = 1; attempt <= kMostAttempts; ++attempt) {
-        const auto before = contents_.stamp(task.input);
+        const auto stamps = stamps_of(task);
         Result<Judgement> judged = judge_.judge(task, recipe);
         if (!judged) return judged.error();
         if (judged->stale.empty()) {
@@ -222,15 +234,18 @@ Result<void> BuildRun::bring_up_to_date(std::size_t index, Outcome& outcome) {
             list_stale(task, judged->stale, outcome);
             return {};
         }
-        // What is recorded now would be wrong if the input changes, so that is checked after the files are made, and
-        // the record is forgotten.
-        if (Result<void> made = make_stale(task, std::move(*judged), counted, outcome); !made) return made;
-        if (outcome.code == ExitCode::findings) return {};
-        if (contents_.stamp(task.input) == before) return {};
+        const Result<bool> made = make_stale(task, std::move(*judged), stamps, counted, outcome);
+        if (!made) return made.error();
+        if (*made) return {};
         for (const std::string& output : task.outputs) judge_.forget(output);
+        outcome.code = ExitCode::done;
+        outcome.report.erase("findings");
         outcome.outputs.clear();
+        outcome.warnings.clear();
+        outcome.remarks.clear();
     }
-    return Error{ErrorCode::io, contents_.path(task.input), "changes while it is read"};
+    return Error{ErrorCode::io, contents_.path(task.input),
+                 "this file, or one that its rule reads, changes while it is read"};
 }
 
 Outcome BuildRun::outcome_of(std::size_t index) {

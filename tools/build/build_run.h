@@ -7,6 +7,7 @@
 #include <chrono>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,7 +47,9 @@ private:
     void work_on(TaskQueue& queue);
     Outcome outcome_of(std::size_t index);
     Result<void> bring_up_to_date(std::size_t index, Outcome& outcome);
-    Result<void> make_stale(const BuildTask& task, Judgement judgement, double& counted, Outcome& outcome);
+    Result<bool> make_stale(const BuildTask& task, Judgement judgement,
+                            const std::vector<std::optional<FileStamp>>& stamps, double& counted, Outcome& outcome);
+    [[nodiscard]] std::vector<std::optional<FileStamp>> stamps_of(const BuildTask& task) const;
     Result<void> fetch(const BuildTask& task, Judgement& judgement, Outcome& outcome);
     Result<void> record(const BuildTask& task, const Stale& made, const Digest& inputs,
                         const std::vector<std::string>& paths, Outcome& outcome);
