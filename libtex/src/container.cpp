@@ -2,6 +2,10 @@
 
 #include <tex/container.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <span>
 #include <string>
 
 #include "files/atomic_file.h"
@@ -36,6 +40,23 @@ bool lists(std::string_view list, const std::string& extension) {
     return end == list.size() || list[end] == ',' || lists(list.substr(end), extension);
 }
 
+// The compressed form of the file `bytes`.
+Result<std::vector<std::byte>> compressed(const Codec& codec, const FileLayout& layout, int level,
+                                          const std::vector<std::byte>& bytes) {
+    std::vector<std::byte> packed;
+    const auto read = [&](std::uint64_t offset, std::span<std::byte> target) -> Result<void> {
+        std::memcpy(target.data(), bytes.data() + offset, target.size());
+        return {};
+    };
+    const auto write = [&](std::uint64_t offset, std::span<const std::byte> source) -> Result<void> {
+        packed.resize(std::max(packed.size(), static_cast<std::size_t>(offset) + source.size()));
+        std::copy(source.begin(), source.end(), packed.begin() + static_cast<std::ptrdiff_t>(offset));
+        return {};
+    };
+    if (const auto size = codec.compress(layout, level, read, write); !size) return size.error();
+    return packed;
+}
+
 }  // namespace
 
 std::optional<Container> container_of(std::string_view path) {
@@ -54,16 +75,21 @@ bool can_hold_blocks(Container container) { return can_hold(container, Encoding:
 
 bool can_hold_levels(Container container) { return codec_of(container).has_levels; }
 
+bool can_compress(Container container) { return codec_of(container).compress != nullptr; }
+
 Encoding default_encoding(Container container) { return codec_of(container).default_encoding; }
 
 Result<std::vector<std::byte>> encode_file(const Texture& texture, Container container, const WriteOptions& options) {
     return guarded([&]() -> Result<std::vector<std::byte>> {
         const Codec& codec = codec_of(container);
-        if (codec.layout != nullptr) {
-            if (const Result<void> held = check_holds(codec, texture.format); !held) return held.error();
+        if (codec.layout != nullptr || options.zstd != 0) {
+            if (const Result<void> held = check_holds(codec, texture.format, options); !held) return held.error();
             TextureHead head = head_of(texture);
             if (!codec.has_levels) head.levels = 1;
-            return assemble(texture, codec.layout(head, options));
+            const FileLayout layout = codec.layout(head, options);
+            std::vector<std::byte> bytes = assemble(texture, layout);
+            if (options.zstd > 0) return compressed(codec, layout, options.zstd, bytes);
+            return bytes;
         }
         if (codec.open_target != nullptr) return encode_rows(codec.open_target, texture, codec.has_levels);
         return encode_with_reader(texture, container, options.reader);

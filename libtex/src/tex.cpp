@@ -3,6 +3,7 @@
 #include <tex/tex.h>
 
 #include "formats/exr/exr.h"
+#include "formats/ktx2/compress_ktx2.h"
 #include "formats/png/png.h"
 #include "kernels/target.h"
 
@@ -15,6 +16,7 @@ Runtime runtime() {
             {{"highway", highway_version()},
              {"libdeflate", inflater_version()},
              {"libpng", png_version()},
+             {"libzstd", zstd_version()},
              {"opencolorio", opencolorio_version()},
              {"openexr", exr_version()}}};
 }

@@ -51,8 +51,8 @@ TEST_P(EveryCommand, VersionIsOneLineOrJson) {
     EXPECT_EQ(json["program"], GetParam());
     EXPECT_EQ(json["version"], TEX_VERSION);
     EXPECT_EQ(json["libtex"], TEX_VERSION);
-    for (const char* name : {"fmt", "highway", "libdeflate", "libpng", "nlohmann-json", "onetbb", "opencolorio",
-                             "openexr", "openimageio"}) {
+    for (const char* name : {"fmt", "highway", "libdeflate", "libpng", "libzstd", "nlohmann-json", "onetbb",
+                             "opencolorio", "openexr", "openimageio"}) {
         EXPECT_TRUE(json["dependencies"].contains(name) &&
                     std::isdigit(static_cast<unsigned char>(json["dependencies"][name].get<std::string>().at(0))) != 0)
             << name;

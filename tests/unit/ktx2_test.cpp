@@ -155,7 +155,7 @@ TEST(Ktx2, TellsUnsupportedFromDamaged) {
     EXPECT_EQ(code_with(kWidthAt, 8), "read");
     EXPECT_EQ(code_with(kVkFormatAt, 0), "unsupported");    // Basis
     EXPECT_EQ(code_with(kVkFormatAt, 145), "unsupported");  // BC7
-    EXPECT_EQ(code_with(kSchemeAt, 2), "unsupported");      // Zstandard
+    EXPECT_EQ(code_with(kSchemeAt, 1), "unsupported");      // BasisLZ
     EXPECT_EQ(code_with(kFacesAt, 6), "unsupported");
     EXPECT_EQ(code_with(kFacesAt, 0), "bad-data");
     EXPECT_EQ(code_with(kDepthAt, 2), "unsupported");

@@ -2,7 +2,9 @@
 
 #include "options/output.h"
 
+#include <charconv>
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -35,6 +37,19 @@ std::string containers_for(Encoding encoding) {
         if (can_hold(row.value, encoding)) names.emplace_back(row.meaning);
     }
     return join(names);
+}
+
+// "zstd" or "zstd:LEVEL".
+int parse_zstd(const std::string& text) {
+    constexpr int kDefault = 9, kHighest = 22;
+    const auto [scheme, level] = cut(text, ':');
+    int number = kDefault;
+    if (text.find(':') != std::string::npos) {
+        const auto [end, error] = std::from_chars(level.data(), level.data() + level.size(), number);
+        if (error != std::errc() || end != level.data() + level.size()) number = 0;
+    }
+    if (scheme == "zstd" && number >= 1 && number <= kHighest) return number;
+    throw UsageError(fmt::format("'{}' is neither zstd nor zstd:N with N from 1 to {}", printable(text), kHighest));
 }
 
 }  // namespace
@@ -73,9 +88,17 @@ void OutputOptions::add(Command& command, std::string format_default, std::strin
     command.choice(metric, "--metric", "M", kMetricNames, "the error that --effort best minimises; angle implies best");
     command.choice(dds_header, "--dds-header", "H", kDdsHeaderNames, "the header of DDS files");
     command.flag(dds_mark, "--dds-mark", "mark DDS files as normal maps, as NVIDIA's tools do");
+    command.option("--supercompress", "zstd[:N]", "compress the levels of KTX2 files; N is from 1 (fast) to 22 (small)",
+                   [this](const std::string& text) { zstd = parse_zstd(text); });
 }
 
 Container OutputOptions::container_for(const std::string& output, Container standard_output) const {
+    const Container chosen = container_of_output(output, standard_output);
+    if (zstd == 0 || can_compress(chosen)) return chosen;
+    throw UsageError(fmt::format("{}: --supercompress needs a KTX2 file", printable(output)));
+}
+
+Container OutputOptions::container_of_output(const std::string& output, Container standard_output) const {
     const std::optional<Container> named = container_of(output);
     if (container) {
         if (named && *named != *container) {
@@ -105,6 +128,7 @@ WriteOptions OutputOptions::write_options(const Job& job) const {
     WriteOptions write = job.write_options;
     write.dds_header = dds_header;
     write.dds_mark = dds_mark;
+    write.zstd = zstd;
     return write;
 }
 

@@ -23,13 +23,14 @@ struct OutputOptions {
     Metric metric = PackOptions{}.metric;
     DdsHeader dds_header = WriteOptions{}.dds_header;
     bool dds_mark = WriteOptions{}.dds_mark;
+    int zstd = WriteOptions{}.zstd;
 
     // `format_default` and `y_default` appear in the help.
     void add(Command& command, std::string format_default, std::string y_default,
              Container standard_output = Container::dds);
 
     // The container of `output`; for "-" it is `standard_output`. Throws UsageError if the name does not show the
-    // container.
+    // container, or if the container cannot be compressed as the user asks.
     [[nodiscard]] Container container_for(const std::string& output, Container standard_output) const;
 
     // Without --y, y is that of the input, and is stated only if it is known. A metric of angles implies the best
@@ -43,6 +44,9 @@ struct OutputOptions {
 
     // Throws UsageError if the container cannot hold `encoding`.
     static void check_holds(const std::string& output, Container container, Encoding encoding);
+
+private:
+    [[nodiscard]] Container container_of_output(const std::string& output, Container standard_output) const;
 };
 
 // The library's default encoding for each container: "dxt5nm in dds, ktx2; rgb8 in png, tga, ...".

@@ -35,6 +35,9 @@ inline constexpr Named<Container> kContainerNames[] = {
 [[nodiscard]] bool can_hold(Container container, Format format);
 [[nodiscard]] bool can_hold_levels(Container container);
 
+// Whether WriteOptions::zstd compresses this container: ktx2.
+[[nodiscard]] bool can_compress(Container container);
+
 // Whether a container can hold block formats. dds and ktx2 can: they are files for a GPU and hold all mip levels by
 // default. The others are pictures.
 [[nodiscard]] bool can_hold_blocks(Container container);
@@ -52,6 +55,7 @@ inline constexpr Named<DdsHeader> kDdsHeaderNames[] = {
 struct WriteOptions {
     DdsHeader dds_header = DdsHeader::legacy;
     bool dds_mark = false;    // DDPF_NORMAL, and the swizzle code 'A2D5' for dxt5nm, as NVIDIA's tools write them
+    int zstd = 0;             // KTX2: 1 (fast) to 22 (small) compresses each level with Zstandard; 0 does not
     bool sync = true;         // fdatasync before the rename
     bool no_clobber = false;  // do not replace an existing file; report an error (io)
     ReadOptions reader;       // the reader process also encodes TIFF, TGA, BMP and JPEG
@@ -68,7 +72,8 @@ struct WriteOptions {
 // has the attributes normalEncoding = "signed" and, if y is known, normalYAxis = "up" or "down". read_texture()
 // believes them.
 //
-// Errors: unsupported  the container cannot hold the format (the reason says what it can hold)
+// Errors: unsupported  the container cannot hold the format (the reason says what it can hold), or zstd
+//         bad_option   zstd is not from 0 to 22
 //         io           the reader process cannot be started
 //         bad_data     the reader process crashed or did not end in time
 //         out_of_memory
@@ -105,8 +110,8 @@ void remove_unfinished_files() noexcept;
 // that ATI's and NVIDIA's tools leave in dwRGBBitCount (xGxR, A2XY, A2D5, RxBG ...), uncompressed formats by masks (8,
 // 16, 24 and 32 bits) and by FourCC (36, 110 to 116), the DXGI formats of Format in their unorm, snorm, float, typeless
 // and sRGB forms. Missing header flags are accepted. Texture::remarks lists the faults that the reader ignored. Cube
-// maps, volumes and arrays are unsupported. KTX2: the VkFormats of Format, without supercompression, one layer, one
-// face, one depth.
+// maps, volumes and arrays are unsupported. KTX2: the VkFormats of Format, also with levels compressed by Zstandard or
+// ZLIB, one layer, one face, one depth. BasisLZ and UASTC are unsupported.
 // ATI2 without a swizzle code holds y first (3Dc, ATI 2005); with 'A2XY' x is first.
 // EXR: all levels of a mip-mapped file; the base level only if the extents of the levels are rounded up. Anything else
 // is read as a picture: one level.

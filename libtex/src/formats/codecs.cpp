@@ -10,6 +10,7 @@
 #include "formats/dds/dds.h"
 #include "formats/exr/exr.h"
 #include "formats/exr/exr_rows.h"
+#include "formats/ktx2/compress_ktx2.h"
 #include "formats/ktx2/ktx2.h"
 #include "formats/png/png.h"
 #include "formats/reader/reader_rows.h"
@@ -49,7 +50,8 @@ constexpr Codec kCodecs[] = {
      .has_levels = true,
      .default_encoding = Encoding::dxt5nm,
      .parse = parse_ktx2,
-     .layout = [](const TextureHead& head, const WriteOptions&) { return ktx2_layout(head); }},
+     .layout = [](const TextureHead& head, const WriteOptions&) { return ktx2_layout(head); },
+     .compress = compress_ktx2},
     {.container = Container::png,
      .magic = kPngMagic,
      .holds = is_unorm_picture,
@@ -87,7 +89,15 @@ const Codec& codec_of(Container container) {
                          [&](const Codec& codec) { return codec.container == container; });
 }
 
-Result<void> check_holds(const Codec& codec, Format format) {
+Result<void> check_holds(const Codec& codec, Format format, const WriteOptions& options) {
+    constexpr int kHighestLevel = 22;  // of Zstandard
+    if (options.zstd < 0 || options.zstd > kHighestLevel)
+        return Error{ErrorCode::bad_option, {}, "zstd must be from 0 to " + std::to_string(kHighestLevel)};
+    if (options.zstd > 0 && codec.compress == nullptr) {
+        return Error{ErrorCode::unsupported,
+                     {},
+                     std::string(name_of(kContainerNames, codec.container)) + " is not compressed with Zstandard"};
+    }
     if (codec.holds(format_info(format))) return {};
     return Error{ErrorCode::unsupported,
                  {},

@@ -15,6 +15,7 @@
 
 #include "files/input_file.h"
 #include "formats/file_layout.h"
+#include "formats/ktx2/level_inflater.h"
 #include "formats/row_source.h"
 #include "formats/row_target.h"
 #include "formats/stored_texture.h"
@@ -43,14 +44,17 @@ struct Codec {
     // strips in any order. It sets `open_target` if it takes rows in their order. If the reader process encodes the
     // file as a whole, `reader_name` is OpenImageIO's name for the type.
     FileLayout (*layout)(const TextureHead& head, const WriteOptions& options) = nullptr;
+    Result<std::uint64_t> (*compress)(const FileLayout& layout, int level, const ReadBytes& read,
+                                      const WriteBytes& write) = nullptr;  // with Zstandard, when all bytes are known
     OpenTarget open_target = nullptr;
     const char* reader_name = nullptr;
 };
 
 [[nodiscard]] const Codec& codec_of(Container container);
 
-// Errors: unsupported (the file type cannot hold the format).
-[[nodiscard]] Result<void> check_holds(const Codec& codec, Format format);
+// Errors: unsupported (the file type cannot hold the format, or is not compressed with Zstandard), bad_option
+// (options.zstd is out of range).
+[[nodiscard]] Result<void> check_holds(const Codec& codec, Format format, const WriteOptions& options);
 
 // The codec that reads a file beginning with `head`: the one with this magic, otherwise the reader's.
 [[nodiscard]] const Codec& codec_for(std::span<const std::byte> head);

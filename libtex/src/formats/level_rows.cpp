@@ -2,12 +2,15 @@
 
 #include "formats/level_rows.h"
 
+#include <algorithm>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "blocks/extent.h"
 #include "formats/channels.h"
 #include "formats/claims.h"
+#include "formats/ktx2/level_inflater.h"
 #include "kernels/decode.h"
 
 namespace tex {
@@ -22,27 +25,44 @@ public:
         pitch_ = level_bytes(texture_->head.format, {extent.width, 1});
         describe(extent, channel_names(texture_->head), pitch_ / static_cast<std::size_t>(info_.block.height));
         describe_samples(info_.sample, info_.bits);
+        if (texture_->supercompression != Supercompression::none) open_inflater(texture_->levels[k]);
     }
 
     [[nodiscard]] int rows_together() const override { return info_.block.height; }
-    [[nodiscard]] bool is_random() const override { return true; }
+    [[nodiscard]] bool is_random() const override { return inflater_ == nullptr; }
     void choose_planes(const std::vector<bool>& wanted) override { wanted_ = wanted; }
 
     Result<void> decode(int first, int count, std::byte* rows) override;
     void store(const std::byte* rows, int first, int end, Image& image) const override;
 
 private:
-    // Reads rows of blocks or of texels from the file.
-    [[nodiscard]] Result<void> fetch(int first, int count, std::byte* out) const {
-        const std::size_t pitch = stored_pitch(*texture_, extent().width);
-        const std::uint64_t offset = offset_ + static_cast<std::uint64_t>(first) * pitch;
-        const std::size_t wanted = pitch * static_cast<std::size_t>(count);
-        const Result<std::size_t> got = file_.read_at(static_cast<std::int64_t>(offset), out, wanted);
+    void open_inflater(const StoredTexture::Place& place);
+    [[nodiscard]] Result<void> read(std::uint64_t offset, std::span<std::byte> bytes) const {
+        const Result<std::size_t> got = file_.read_at(static_cast<std::int64_t>(offset), bytes.data(), bytes.size());
         if (!got) return got.error();
-        if (*got < wanted) return Error{ErrorCode::bad_data, file_.path(), "the file ends too early"};
+        if (*got < bytes.size()) return Error{ErrorCode::bad_data, file_.path(), "the file ends too early"};
         return {};
     }
-    [[nodiscard]] Result<void> convert(int first, int count, std::byte* rows) const {
+    // Reads rows of blocks or of texels from the file.
+    [[nodiscard]] Result<void> fetch(int first, int count, std::byte* out) {
+        const std::size_t pitch = stored_pitch(*texture_, extent().width);
+        const std::uint64_t offset = static_cast<std::uint64_t>(first) * pitch;
+        const std::span<std::byte> bytes(out, pitch * static_cast<std::size_t>(count));
+        if (inflater_ == nullptr) return read(offset_ + offset, bytes);
+        const Result<void> done = texture_->upwards ? copy(offset, bytes) : inflater_->read(offset, bytes);
+        return done ? done : Result<void>(done.error().of(file_.path()));
+    }
+    // Reads bytes of the inflated level. Rows that run upwards are read from the end, so the level is inflated once.
+    [[nodiscard]] Result<void> copy(std::uint64_t offset, std::span<std::byte> bytes) {
+        if (inflated_.empty()) {
+            std::vector<std::byte> level(pitch_ * static_cast<std::size_t>(extent().height));
+            if (Result<void> done = inflater_->read(0, level); !done) return done;
+            inflated_ = std::move(level);
+        }
+        std::copy_n(inflated_.begin() + static_cast<std::ptrdiff_t>(offset), bytes.size(), bytes.begin());
+        return {};
+    }
+    [[nodiscard]] Result<void> convert(int first, int count, std::byte* rows) {
         std::vector<std::byte> stored(stored_pitch(*texture_, extent().width) * static_cast<std::size_t>(count));
         if (Result<void> fetched = fetch(first, count, stored.data()); !fetched) return fetched;
         convert_rows(*texture_, stored.data(), extent().width, count, rows);
@@ -54,8 +74,16 @@ private:
     const std::uint64_t offset_;
     const FormatInfo info_;
     std::size_t pitch_ = 0;  // bytes of a row of blocks or texels, in head.format
+    std::unique_ptr<LevelInflater> inflater_;
+    std::vector<std::byte> inflated_;  // only if rows run upwards
     std::vector<bool> wanted_ = std::vector<bool>(4, true);
 };
+
+void LevelRows::open_inflater(const StoredTexture::Place& place) {
+    const auto from_file = [this](std::uint64_t offset, std::span<std::byte> bytes) { return read(offset, bytes); };
+    inflater_ = LevelInflater::make(texture_->supercompression, from_file, place,
+                                    level_bytes(texture_->head.format, place.extent));
+}
 
 Result<void> LevelRows::decode(int first, int count, std::byte* rows) {
     if (texture_->upwards) {

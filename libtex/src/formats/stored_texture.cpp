@@ -2,10 +2,13 @@
 
 #include "formats/stored_texture.h"
 
+#include <cstring>
+#include <span>
 #include <utility>
 
 #include "blocks/extent.h"
 #include "formats/file_layout.h"
+#include "formats/ktx2/level_inflater.h"
 
 namespace tex {
 
@@ -40,7 +43,17 @@ Result<Texture> load_texture(ParseTexture parse, const std::byte* data, std::siz
         Level level{place.extent, std::vector<std::byte>(level_bytes(texture.format, place.extent))};
         const int width = place.extent.width;
         const int rows = blocks_across(place.extent.height, block);
-        const std::byte* source = data + place.offset;
+        std::vector<std::byte> inflated;
+        if (stored.supercompression != Supercompression::none) {
+            inflated.resize(level.bytes.size());
+            const auto read = [data](std::uint64_t offset, std::span<std::byte> bytes) -> Result<void> {
+                std::memcpy(bytes.data(), data + offset, bytes.size());
+                return {};
+            };
+            const auto inflater = LevelInflater::make(stored.supercompression, read, place, inflated.size());
+            if (const Result<void> done = inflater->read(0, inflated); !done) return done.error().of(name);
+        }
+        const std::byte* source = inflated.empty() ? data + place.offset : inflated.data();
         if (!stored.upwards) {
             convert_rows(stored, source, width, rows, level.bytes.data());
         } else {

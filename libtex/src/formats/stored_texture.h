@@ -22,16 +22,21 @@ namespace tex {
 // Reads bytes of a file. Precondition: the file has them. Errors: io.
 using FetchBytes = std::function<Result<std::vector<std::byte>>(std::uint64_t offset, std::size_t count)>;
 
+// How KTX2 compresses the bytes of each level.
+enum class Supercompression { none, zstd, zlib };
+
 struct StoredTexture {
     struct Place {
         Extent extent;
         std::uint64_t offset = 0;
+        std::uint64_t bytes = 0;  // in the file
     };
     Texture head;                       // without levels
     std::vector<Place> levels;          // all of their bytes are within the file
     std::optional<FieldLayout> fields;  // of the file's texels; none: they are in head.format,
     bool bgr = false;                   // except that red and blue may be exchanged
     bool upwards = false;               // the bottom row comes first; never with blocks
+    Supercompression supercompression = Supercompression::none;
 };
 
 // The number of bytes that the file uses for a row of texels, or for a row of blocks.

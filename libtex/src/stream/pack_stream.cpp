@@ -136,8 +136,10 @@ Result<std::unique_ptr<StripWriter>> Attempt::open_writer() const {
     if (!normals || !options_.roughness) return normals;
     const RoughnessFile& file = *options_.roughness;
     const StripPacking rough = packing_of(file, report_.extent, roughness_levels());
+    WriteOptions write = options_.write;
+    if (!can_compress(file.container)) write.zstd = 0;
     Result<std::unique_ptr<StripWriter>> roughness =
-        StripWriter::open({file.output, file.level_names}, file.container, rough, options_.write, Opened::late);
+        StripWriter::open({file.output, file.level_names}, file.container, rough, write, Opened::late);
     if (!roughness) return roughness;
     return StripWriter::pair(std::move(*normals), std::move(*roughness));
 }

@@ -3,7 +3,9 @@
 #include "stream/strip_writer.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -15,52 +17,11 @@
 #include "formats/reader/reader.h"
 #include "rows/pack_rows.h"
 #include "rows/roughness_rows.h"
+#include "stream/texture_writer.h"
 #include "threads/guard.h"
 
 namespace tex {
 namespace {
-
-// Writes containers in which the place of every level is known from the start: DDS, KTX2.
-class TextureWriter final : public StripWriter {
-public:
-    // `first` is the level with which the file begins.
-    TextureWriter(std::unique_ptr<OutputFile> file, FileLayout layout, StripPacking packing, int first)
-        : file_(std::move(file)), layout_(std::move(layout)), packing_(std::move(packing)), first_(first) {}
-
-    Result<void> begin() { return file_->write_at(0, layout_.head); }
-    [[nodiscard]] bool is_in_order(const Strip&) const override { return false; }
-    Result<void> write(Strip& strip) override;
-    Result<void> commit() override { return file_->commit(); }
-    [[nodiscard]] std::size_t file_bytes() const override { return layout_.size; }
-
-private:
-    const std::unique_ptr<OutputFile> file_;
-    const FileLayout layout_;
-    const StripPacking packing_;
-    const int first_;
-};
-
-Result<void> TextureWriter::write(Strip& strip) {
-    return guarded([&]() -> Result<void> {
-        const Format format = packing_.head.format;
-        const Extent extent{strip.map.extent().width, strip.height};
-        const std::size_t size = level_bytes(format, extent);
-        const std::size_t stored_size = stored_level_bytes(format, extent, layout_.rearrange);
-        const bool rearranged = layout_.rearrange != Rearrange::none;
-        strip.bytes.resize(size + (rearranged ? stored_size : 0));
-        packing_.pack(strip, strip.bytes.data());
-        std::span<const std::byte> stored(strip.bytes.data(), size);
-        if (rearranged) {
-            std::byte* target = strip.bytes.data() + size;
-            rearrange_texels(format, layout_.rearrange, strip.bytes.data(), size / format_info(format).block_bytes,
-                             target);
-            stored = {target, stored_size};
-        }
-        // Each strip begins at the first row of a row of blocks.
-        const std::size_t before = stored_level_bytes(format, {extent.width, strip.first}, layout_.rearrange);
-        return file_->write_at(layout_.levels[static_cast<std::size_t>(strip.level - first_)].offset + before, stored);
-    });
-}
 
 // Writes pictures, whose rows are compressed one after the other. Strips that come too early are packed and wait.
 class PictureWriter final : public StripWriter {
@@ -224,8 +185,8 @@ Opening open_file(const std::string& path, Container container, const StripPacki
     const TextureHead& head = packing.head;
     const Codec& codec = codec_of(container);
     FileLayout layout;
-    if (codec.layout != nullptr) {
-        if (const Result<void> held = check_holds(codec, head.format); !held) return held.error().of(path);
+    if (codec.layout != nullptr || options.zstd != 0) {
+        if (const Result<void> held = check_holds(codec, head.format, options); !held) return held.error().of(path);
         layout = codec.layout(head, options);
     }
     const std::size_t bytes = codec.layout != nullptr ? layout.size : level_bytes(head.format, head.extent);
@@ -243,7 +204,9 @@ Opening open_file(const std::string& path, Container container, const StripPacki
             std::make_unique<EncodedWriter>(path, std::move(*file), packing, std::move(*picture)));
     }
     auto texture = std::make_unique<TextureWriter>(std::move(*file), std::move(layout), packing, first);
-    if (const Result<void> begun = texture->begin(); !begun) return begun.error();
+    const Result<void> begun =
+        options.zstd > 0 ? texture->begin_compressed(path, codec, options.zstd) : texture->begin();
+    if (!begun) return begun.error();
     return std::unique_ptr<StripWriter>(std::move(texture));
 }
 

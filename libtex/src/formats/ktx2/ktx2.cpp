@@ -15,6 +15,7 @@
 #include "formats/channels.h"
 #include "formats/claims.h"
 #include "formats/ktx2/ktx2_descriptor.h"
+#include "formats/ktx2/level_inflater.h"
 #include "formats/marks.h"
 #include "formats/normal_mark.h"
 
@@ -83,6 +84,18 @@ struct Ktx2Header {
     std::uint32_t key_values_offset, key_values_bytes;
 };
 
+constexpr std::uint32_t kBasisLz = 1;  // a scheme that needs a transcoder
+
+// The schemes that can be read (KTX 2.0, 3.2).
+std::optional<Supercompression> find_scheme(std::uint32_t scheme) {
+    switch (scheme) {
+        case 0: return Supercompression::none;
+        case 2: return Supercompression::zstd;
+        case 3: return Supercompression::zlib;
+        default: return std::nullopt;
+    }
+}
+
 Ktx2Header parse_header(const std::byte* data) {
     const auto field = [&](std::size_t offset) { return load_u32(data + offset); };
     return {field(12), field(20), field(24), field(28), field(32),
@@ -90,7 +103,9 @@ Ktx2Header parse_header(const std::byte* data) {
 }
 
 Result<Extent> check_header(const Ktx2Header& header, const std::string& name, const ReadOptions& options) {
-    if (header.supercompression != 0) {
+    if (header.supercompression == kBasisLz)
+        return unsupported(name, "BasisLZ is not supported; \"ktx transcode --target bc5\" makes a file that is");
+    if (!find_scheme(header.supercompression)) {
         return unsupported(name,
                            "supercompression scheme " + std::to_string(header.supercompression) + " is not supported");
     }
@@ -174,20 +189,28 @@ Result<bool> apply_key_values(const FetchBytes& fetch, std::size_t size, const K
 }
 
 // The place of level k, from its entry in the level index.
-Result<StoredTexture::Place> place_of(const std::byte* entry, std::size_t size, std::size_t k, Format format,
-                                      Extent extent, const std::string& name) {
+Result<StoredTexture::Place> place_of(const std::byte* entry, std::size_t size, std::size_t k,
+                                      const StoredTexture& texture, Extent extent, const std::string& name) {
+    const bool is_compressed = texture.supercompression != Supercompression::none;
     const std::uint64_t offset = load_u64(entry);
     const std::uint64_t bytes = load_u64(entry + 8);
-    const std::size_t wanted = level_bytes(format, extent);
+    const std::uint64_t decoded = is_compressed ? load_u64(entry + 16) : bytes;
+    const std::size_t wanted = level_bytes(texture.head.format, extent);
     const std::string level_text = "level " + std::to_string(k);
-    if (bytes != wanted) {
+    if (decoded != wanted) {
         return bad_data(name,
-                        level_text + " has " + std::to_string(bytes) + " bytes instead of " + std::to_string(wanted));
+                        level_text + " has " + std::to_string(decoded) + " bytes instead of " + std::to_string(wanted));
     }
     if (offset > size || bytes > size - offset) {
         return bad_data(name, "truncated: " + level_text + " ends beyond the end of the file");
     }
-    return StoredTexture::Place{extent, offset};
+    if (is_compressed) {
+        const Result<void> fits =
+            check_claim(name, extent, static_cast<double>(wanted), static_cast<std::int64_t>(bytes),
+                        most_inflation(texture.supercompression));
+        if (!fits) return fits.error();
+    }
+    return StoredTexture::Place{extent, offset, bytes};
 }
 
 }  // namespace
@@ -249,6 +272,8 @@ Result<StoredTexture> parse_ktx2(const FetchBytes& fetch, std::size_t size, cons
     const Result<Extent> extent = check_header(header, name, options);
     if (!extent) return extent.error();
     const std::optional<VkRow> row = find_vk_format(header.vk_format);
+    if (!row && header.vk_format == 0)
+        return unsupported(name, "UASTC is not supported; \"ktx transcode --target bc5\" makes a file that is");
     if (!row) return unsupported(name, "VkFormat " + std::to_string(header.vk_format) + " is not supported");
     const auto levels = std::max<std::uint32_t>(1, header.levels);  // 0: the reader generates the other levels
     if (levels > static_cast<std::uint32_t>(level_count(*extent))) {
@@ -264,6 +289,7 @@ Result<StoredTexture> parse_ktx2(const FetchBytes& fetch, std::size_t size, cons
 
     StoredTexture stored;
     stored.bgr = row->bgr;
+    stored.supercompression = *find_scheme(header.supercompression);
     Texture& texture = stored.head;
     texture.format = row->format;
     texture.swizzle = likely_swizzle(row->format);
@@ -275,7 +301,7 @@ Result<StoredTexture> parse_ktx2(const FetchBytes& fetch, std::size_t size, cons
         return unsupported(name, "blocks whose rows run upwards (KTXorientation) are not supported");
     }
     for (std::size_t k = 0; k < levels; ++k) {
-        const Result<StoredTexture::Place> place = place_of(index->data() + k * kLevelIndexBytes, size, k, row->format,
+        const Result<StoredTexture::Place> place = place_of(index->data() + k * kLevelIndexBytes, size, k, stored,
                                                             level_extent(*extent, static_cast<int>(k)), name);
         if (!place) return place.error();
         stored.levels.push_back(*place);

@@ -61,7 +61,7 @@ Result<ReaderInfo> reader_info(const ReadOptions& options) {
 Result<ReaderPicture> ReaderPicture::open(Container container, const TextureHead& head, const ReadOptions& options) {
     const FormatInfo info = format_info(head.format);
     const Codec& codec = codec_of(container);
-    if (Result<void> held = check_holds(codec, head.format); !held) return held.error();
+    if (Result<void> held = check_holds(codec, head.format, {}); !held) return held.error();
     if (codec.reader_name == nullptr)
         return Error{ErrorCode::unsupported, {}, "nothing that the reader process encodes"};
     ReaderHeader header;

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// compress_ktx2.h: compresses KTX2 files with Zstandard (RFC 8878).
+
+#pragma once
+
+#include <cstdint>
+
+#include <tex/result.h>
+
+#include "formats/file_layout.h"
+#include "formats/ktx2/level_inflater.h"
+#include "formats/row_target.h"
+
+namespace tex {
+
+// Compresses the levels of a KTX2 file with Zstandard. `layout` is that of the file without compression, which `read`
+// reads; `level` is from 1 (fast) to 22 (small). Returns the size of the compressed file. Equal files give equal bytes.
+// Throws std::bad_alloc. Errors: out_of_memory; those of `read` and `write`.
+[[nodiscard]] Result<std::uint64_t> compress_ktx2(const FileLayout& layout, int level, const ReadBytes& read,
+                                                  const WriteBytes& write);
+
+// The version of libzstd at run time: "1.5.4".
+[[nodiscard]] const char* zstd_version();
+
+}  // namespace tex
