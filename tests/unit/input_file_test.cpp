@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <thread>
@@ -39,6 +40,15 @@ TEST_F(InputFileTest, ReadsAWholeFile) {
     const auto bytes = read_whole_file(make("a", content));
     ASSERT_TRUE(bytes) << bytes.error().message();
     EXPECT_EQ(text(*bytes), content);
+}
+
+TEST_F(InputFileTest, AnEarlierInterruptionIsNotOneAtTheEnd) {
+    auto file = InputFile::open(make("a", "abc"));
+    ASSERT_TRUE(file);
+    std::byte bytes[8];
+    ASSERT_EQ(*file->read(bytes, 3), 3u);
+    errno = EINTR;
+    EXPECT_EQ(*file->read(bytes, 8), 0u);
 }
 
 TEST_F(InputFileTest, ReadsAFifo) {
