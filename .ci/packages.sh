@@ -11,12 +11,15 @@ build_packages=(
 # shellcheck disable=SC2034
 test_packages=(
     libgtest-dev libgmock-dev libsquish-dev libosmesa6-dev libgl-dev
-    imagemagick openimageio-tools python3-jsonschema libxml2-utils mandoc shellcheck dpkg-dev file git strace zsh fish
+    imagemagick openimageio-tools python3-jsonschema python3-yaml libxml2-utils mandoc shellcheck dpkg-dev file git strace
+    zsh fish
 )
-# The browser takes 300 MB. Without it, its tests report that they were skipped.
+# The browser takes 300 MB. Without it and GNU parallel, their tests report that they were skipped. The test on a Slurm
+# cluster of its own exists only if Slurm is installed.
 # shellcheck disable=SC2034
 gate_packages=(
     clang-14 clang-format-14 clang-tidy-14 ccache libbenchmark-dev chromium g++-aarch64-linux-gnu qemu-user-static
+    slurmctld slurmd slurm-client munge parallel
 )
 
 as_root() {

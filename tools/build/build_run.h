@@ -33,7 +33,7 @@ public:
         : recipes_(recipes), work_(work), options_(options), running_(running), console_(console),
           contents_(options.root, state_.memos), judge_(state_, contents_, options.output_version),
           reporter_(console, work.tasks.size(), running.json), cache_(options.cache), failed_(work.tasks.size()),
-          stale_(work.tasks.size()) {
+          stale_(work.tasks.size()), results_(work.tasks.size()) {
         write_.sync = !options.no_sync;
         write_.reader = running.read;
     }
@@ -42,7 +42,8 @@ public:
 
 private:
     void read_state();
-    void save_state();
+    void save_state(BuildState::Memos memos_of);
+    void save_now_and_then();
     void run_tasks();
     void work_on(TaskQueue& queue);
     Outcome outcome_of(std::size_t index);
@@ -76,6 +77,7 @@ private:
     Cache cache_;
     std::vector<std::atomic<bool>> failed_;
     std::vector<std::atomic<bool>> stale_;  // in a dry run
+    std::vector<BuildResult> results_;
     BuildTotals totals_;
     bool lost_names_ = false;  // outputs were removed from the state
     std::atomic<std::size_t> finished_{0};
@@ -83,6 +85,8 @@ private:
     double all_bytes_ = 1.0;
     std::atomic<std::int64_t> texels_{0};
     std::mutex throwing_;
+    std::mutex saving_;
+    std::chrono::steady_clock::time_point next_save_ = std::chrono::steady_clock::now() + std::chrono::seconds(1);
     std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
     std::exception_ptr thrown_;
 };

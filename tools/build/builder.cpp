@@ -31,14 +31,39 @@ constexpr int kMostFilesAtOnce = 8;
 
 void BuildRun::read_state() {
     if (const auto text = read_text_file(options_.state_file)) state_ = BuildState::parse(*text);
+    if (options_.shard_state.empty()) return;
+    // What an earlier try of this shard has made.
+    if (const auto text = read_text_file(options_.shard_state)) {
+        BuildState earlier = BuildState::parse(*text);
+        for (auto& [name, record] : earlier.outputs) state_.outputs[name] = std::move(record);
+        for (const auto& [name, memo] : earlier.memos) state_.memos[name] = memo;
+    }
 }
 
-void BuildRun::save_state() {
-    if (options_.dry_run || (!judge_.has_changed() && !contents_.has_changed() && !lost_names_)) return;
+void BuildRun::save_state(BuildState::Memos memos_of) {
+    const std::string& file = options_.is_shard ? options_.shard_state : options_.state_file;
+    if (file.empty() || options_.dry_run || (!judge_.has_changed() && !contents_.has_changed() && !lost_names_)) return;
     WriteOptions write;
     write.sync = false;  // the state may be lost
-    if (const auto saved = write_text_file(options_.state_file, state_.text(), write); !saved)
+    std::string text;
+    {
+        const auto outputs = judge_.hold();
+        const auto memos = contents_.hold();
+        text = state_.text(memos_of);
+    }
+    if (const auto saved = write_text_file(file, text, write); !saved)
         console_.warning(fmt::format("{}; the next run will make everything again", saved.error().message()));
+}
+
+// Saves the state during a long run, so that less is lost if it is killed. This takes a fiftieth of the time at most.
+void BuildRun::save_now_and_then() {
+    using std::chrono::steady_clock;
+    const std::unique_lock lock(saving_, std::try_to_lock);
+    const auto begun = steady_clock::now();
+    if (!lock || begun < next_save_) return;
+    save_state(BuildState::Memos::all);
+    const auto ended = steady_clock::now();
+    next_save_ = ended + std::max<steady_clock::duration>(std::chrono::seconds(1), 50 * (ended - begun));
 }
 
 // An estimate: streams take little, pictures that the reader process decodes are held whole, and so are detail maps.
@@ -75,6 +100,10 @@ void BuildRun::work_on(TaskQueue& queue) {
         while (const auto index = queue.take()) {
             Outcome outcome = outcome_of(*index);
             queue.finish(*index);
+            results_[*index] = {outcome.error ? "failed" : outcome.report.value("status", std::string()),
+                                outcome.error ? std::optional(outcome.error->of(outcome.input)) : std::nullopt,
+                                outcome.seconds};
+            save_now_and_then();
             reporter_.finish(*index, std::move(outcome));
             if (stopped()) queue.stop();
         }
@@ -156,7 +185,7 @@ ExitCode BuildRun::run() {
     }
     const std::string_view by = host.interruption();
     if (by.empty() && options_.prune && work_.unreadable.empty()) prune();
-    save_state();
+    save_state(BuildState::Memos::used);
     if (cache_.is_used() && options_.cache_size > 0 && !options_.dry_run) cache_.shrink(options_.cache_size, console_);
     if (!by.empty()) {
         console_.error(
@@ -164,6 +193,7 @@ ExitCode BuildRun::run() {
         host.end_interrupted();
         return ExitCode::io;
     }
+    if (options_.finished && !options_.dry_run) code = std::max(code, options_.finished(results_, state_));
     for (const Recipe& recipe : recipes_) {
         for (const ReadyCommand& command : recipe.before()) command.converter->finish_steps(console_);
         for (const RecipeOutput& output : recipe.outputs()) output.last.converter->finish_steps(console_);

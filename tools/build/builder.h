@@ -4,10 +4,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "build/build_result.h"
 #include "build/recipe.h"
+#include "build/state.h"
 #include "build/work.h"
 #include "options/run.h"
 
@@ -16,6 +19,8 @@ namespace tex::cli {
 struct BuildOptions {
     std::string root;  // empty: the working directory
     std::string state_file;
+    bool is_shard = false;        // state_file is read and not written, because other shards share it,
+    std::string shard_state;      // but this file is, until the shard ends, so that it can go on; empty: none
     int output_version = 1;       // part of every key
     std::int64_t memory = 0;      // bytes that all files together may take; 0: half of the machine's
     std::string cache;            // a folder; empty: none
@@ -23,6 +28,8 @@ struct BuildOptions {
     bool dry_run = false;
     bool prune = false;
     bool no_sync = false;
+    // Called at the end of a run that was not interrupted, with a result for each task.
+    std::function<ExitCode(const std::vector<BuildResult>& results, const BuildState& state)> finished = {};
 };
 
 // The version of the bytes that this program makes. It changes when an output changes with the same settings.

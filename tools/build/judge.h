@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <atomic>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -39,6 +40,8 @@ public:
     // Forgets an output, because it is about to be replaced.
     void forget(const std::string& output);
     [[nodiscard]] bool has_changed() const { return changed_; }
+    // Keeps all other threads out while the outputs are read.
+    [[nodiscard]] std::unique_lock<std::mutex> hold() { return std::unique_lock(mutex_); }
 
 private:
     [[nodiscard]] std::string why_stale(const std::string& output, const Digest& settings, const Digest& inputs);
@@ -47,7 +50,7 @@ private:
     BuildState& state_;
     Contents& contents_;
     const int version_;
-    bool changed_ = false;
+    std::atomic<bool> changed_{false};
 };
 
 // The name under which the cache knows an output.

@@ -151,10 +151,10 @@ std::optional<FileStamp> FileStamp::of(const std::string& path) {
                      nanoseconds(status.st_ctim)};
 }
 
-std::string BuildState::text() const {
+std::string BuildState::text(Memos memos_of) const {
     std::string text(kHead);
     for (const auto& [name, memo] : memos) {
-        if (!memo.is_used) continue;
+        if (!memo.is_used && memos_of == Memos::used) continue;
         const FileStamp& stamp = memo.stamp;
         text += fmt::format("file\t{}\t{}\t{}\t{}\t{}\t{}\t", stamp.device, stamp.inode, stamp.size, stamp.mtime,
                             stamp.ctime, memo.digest.hex());

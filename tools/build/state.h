@@ -4,6 +4,7 @@
 
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <map>
 #include <mutex>
@@ -55,7 +56,9 @@ struct BuildState {
     std::unordered_map<std::string, Memo> memos;
     std::map<std::string, OutputRecord> outputs;  // by the name that the recipe gives, which may hold kLevelMark
 
-    [[nodiscard]] std::string text() const;
+    // The memos to write: a run that comes to its end has used all that it will need again.
+    enum class Memos { used, all };
+    [[nodiscard]] std::string text(Memos memos_of = Memos::used) const;
     // Returns an empty state if the text is damaged or of another version.
     [[nodiscard]] static BuildState parse(std::string_view text);
 };
@@ -73,6 +76,8 @@ public:
     [[nodiscard]] Result<Digest> digest(const std::string& name);
     // The same for a file that this run has just written, and that nobody else writes.
     [[nodiscard]] Result<Digest> digest_of_own(const std::string& name);
+    // Keeps all other threads out while the memos are read.
+    [[nodiscard]] std::unique_lock<std::mutex> hold() { return std::unique_lock(mutex_); }
     // Whether a memo was added.
     [[nodiscard]] bool has_changed() const { return changed_; }
 
@@ -82,7 +87,7 @@ private:
     const std::string root_;
     std::mutex mutex_;
     std::unordered_map<std::string, Memo>& memos_;
-    bool changed_ = false;
+    std::atomic<bool> changed_{false};
 };
 
 }  // namespace tex::cli

@@ -82,6 +82,7 @@
 #include <tex/container.h>
 #include <tex/image_io.h>
 #include <tex/pipeline.h>
+#include <tex/probe.h>
 #include <tex/source.h>
 #include <tex/steps.h>
 

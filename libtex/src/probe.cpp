@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <tex/probe.h>
+
+#include "files/input_file.h"
+#include "formats/codecs.h"
+#include "formats/row_source.h"
+#include "threads/guard.h"
+
+namespace tex {
+
+Result<Extent> probe(const std::string& path, const ReadOptions& options) {
+    return guarded([&]() -> Result<Extent> {
+        Result<InputFile> file = InputFile::open(path);
+        if (!file) return std::move(file).error();
+        if (codec_for(file->head()).magic.empty())
+            return Error{ErrorCode::unsupported, path, "only the reader process knows the extent of this type"};
+        const auto rows = open_rows(*file, options);
+        if (!rows) return rows.error().of(path);
+        return (*rows)->extent();
+    });
+}
+
+}  // namespace tex
