@@ -3,7 +3,7 @@
 // MikkTSpace, as WebAssembly) and meshoptimizer. Run it by hand, if meshes are added to tests/unit/tangents_test.cpp:
 //
 //     mkdir dump modules && npm install --prefix modules mikktspace@1.1.1 meshoptimizer@1.3.0
-//     TEX_TANGENTS_DUMP=dump build/release/unit_tests --gtest_filter='Tangents.AreThose*'
+//     TEX_TANGENTS_DUMP=dump build/release/unit_tests --gtest_filter='TangentsGolden.*'
 //     cp tests/peers/tangents.mjs modules && node modules/tangents.mjs dump >tests/golden/tangents.txt
 //
 // The test writes the corners of its meshes into `dump`. With a second folder, the script writes the tangents there, as

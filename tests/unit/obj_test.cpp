@@ -13,8 +13,14 @@ namespace {
 constexpr const char* kQuad =
     "# a quad\r\nv 0 0 0\nv 1 0 0 0.5 0.5 0.5\nv +1 1 0\nv 0 1 1e-50\nvt 0 0\nvt 1 0\nvt 1 1 0\nvt 0 1\nvn 0 0 1\n";
 
+Result<Mesh> parse_with_quad(const char* faces) {
+    std::string text = kQuad;
+    text.append(faces);
+    return parse_obj(text);
+}
+
 TEST(Obj, TriangulatesPolygonsAsFans) {
-    const auto mesh = parse_obj(std::string(kQuad) + "f 1/1/1 2/2/1 3/3/1 4/4/1\n");
+    const auto mesh = parse_with_quad("f 1/1/1 2/2/1 3/3/1 4/4/1\n");
     ASSERT_TRUE(mesh) << mesh.error().reason;
     ASSERT_EQ(mesh->parts.size(), 1u);
     const MeshPart& part = mesh->parts[0];
@@ -29,7 +35,7 @@ TEST(Obj, TriangulatesPolygonsAsFans) {
 }
 
 TEST(Obj, CountsNegativeIndicesFromTheEnd) {
-    const auto mesh = parse_obj(std::string(kQuad) + "f -4/-4 -3/-3 -2/-2\nv 9 9 9\nf -1 1 2\n");
+    const auto mesh = parse_with_quad("f -4/-4 -3/-3 -2/-2\nv 9 9 9\nf -1 1 2\n");
     ASSERT_TRUE(mesh) << mesh.error().reason;
     EXPECT_EQ(mesh->parts[0].positions[0].x, 0.0f);
     EXPECT_EQ(mesh->parts[0].positions[3].x, 9.0f);
@@ -38,9 +44,9 @@ TEST(Obj, CountsNegativeIndicesFromTheEnd) {
 }
 
 TEST(Obj, MakesPartsOfObjectsAndMaterials) {
-    const auto mesh = parse_obj(std::string(kQuad) +
-                                "o a\nusemtl red brick\nf 1 2 3\nusemtl blue\nf 1 2 4\nusemtl red brick\nf 2 3 4\n"
-                                "o b\nf 1 \\\n2 3\n");
+    const auto mesh = parse_with_quad(
+        "o a\nusemtl red brick\nf 1 2 3\nusemtl blue\nf 1 2 4\nusemtl red brick\nf 2 3 4\n"
+        "o b\nf 1 \\\n2 3\n");
     ASSERT_TRUE(mesh) << mesh.error().reason;
     ASSERT_EQ(mesh->parts.size(), 3u);
     EXPECT_EQ(mesh->parts[0].triangles(), 2u);

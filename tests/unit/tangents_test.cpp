@@ -86,19 +86,19 @@ void expect_golden(const MeshPart& part, const std::string& name, const std::map
     EXPECT_EQ(digest(*meshopt, part.v_axis), row->second.meshopt);
 }
 
-TEST(Tangents, AreThoseOfBothLibrariesToTheLastBitOnTwoHundredRandomMeshes) {
+TEST(TangentsGolden, AreThoseOfBothLibrariesToTheLastBitOnTwoHundredRandomMeshes) {
     const auto rows = golden_rows();
     for (unsigned seed = 1; seed <= 200; ++seed)
         expect_golden(random_part(seed), "random-" + std::to_string(seed), rows);
 }
 
-TEST(Tangents, AreThoseOfBothLibrariesToTheLastBitOnSheets) {
+TEST(TangentsGolden, AreThoseOfBothLibrariesToTheLastBitOnSheets) {
     const auto rows = golden_rows();
     expect_golden(wavy_part(24), "sheet", rows);
     expect_golden(wavy_part(24, true), "mirrored-sheet", rows);
 }
 
-TEST(Tangents, AreThoseOfBothLibrariesToTheLastBitOnRealMeshes) {
+TEST(TangentsGolden, AreThoseOfBothLibrariesToTheLastBitOnRealMeshes) {
     const fs::path folder = TEX_SOURCE_DIR "/../shared/data/mesh";
     if (!fs::exists(folder)) GTEST_SKIP() << "no shared data";
     const auto rows = golden_rows();
