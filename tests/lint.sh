@@ -148,13 +148,15 @@ mapfile -t outside_color < <(printf '%s\n' "${library[@]}" | grep -v '/color\.' 
 mapfile -t outside_formats < <(printf '%s\n' "${library[@]}" | grep -v '/formats/' || true)
 mapfile -t outside_reader < <(select_files '^(libtex|tools)/.*\.(cpp|h)$' | grep -v '^tools/reader/' || true)
 ban '#include [<"]hwy/|\bHWY_|\bhwy::' 'only kernels/ knows Highway' "${outside_kernels[@]}"
-verbs='bake|blend|check|color|compare|heat_map|image_io|mip|pack|pipeline|preview|probe|roughness|scale|sheet|source'
-verbs+='|unpack'
+verbs='bake|blend|check|color|compare|heat_map|image_io|mesh_io|mip|pack|pipeline|preview|probe|roughness|scale|sheet'
+verbs+='|source|tangents|unpack'
 ban "#include <tex/($verbs|tex)\.h>" 'rows/, kernels/ and blocks/ include no header of a verb' \
     "${below_verbs[@]}"
 ban '\b(?!is_|take_)[a-z]+_whole\b|\bcan_stream\b' 'files go one way, through streams' "${library[@]}"
 ban '\bis_texture\b|case (tex::)?Container::' 'only the table of formats/ tells file types apart' \
     "${outside_formats_and_tools[@]}"
+mapfile -t outside_mesh < <(printf '%s\n' "${library[@]}" | grep -v '/mesh/' || true)
+ban '#include <nlohmann/' 'only mesh/ knows nlohmann-json' "${outside_mesh[@]}"
 ban '#include <OpenColorIO' 'only color knows OpenColorIO' "${outside_color[@]}"
 ban '#include <(png\.h|OpenEXR/|Imf)' 'only formats/ knows libpng and OpenEXR' "${outside_formats[@]}"
 ban '\+ 3\) / 4' 'blocks/extent.h counts blocks' "${library[@]}"

@@ -52,6 +52,7 @@
 #include <tex/format.h>
 #include <tex/height_field.h>
 #include <tex/image.h>
+#include <tex/mesh.h>
 #include <tex/mip_chain.h>
 #include <tex/names.h>
 #include <tex/normal_map.h>
@@ -75,12 +76,14 @@
 #include <tex/scale.h>
 #include <tex/sheet.h>
 #include <tex/swizzle.h>
+#include <tex/tangents.h>
 #include <tex/unpack.h>
 #include <tex/unpack_options.h>
 
 #include <tex/color.h>
 #include <tex/container.h>
 #include <tex/image_io.h>
+#include <tex/mesh_io.h>
 #include <tex/pipeline.h>
 #include <tex/probe.h>
 #include <tex/source.h>

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// mesh_io.h: reads triangle meshes from glTF 2.0 (.gltf, .glb) and Wavefront OBJ files.
+//
+// The first bytes of a file, not its name, decide how it is read.
+//
+// glTF   Buffers are inside the file (GLB), in data URIs (base64), or in files beside it. Such a file must be named by
+//        a relative path that stays in the folder of the .gltf file or below it: "mesh.bin", "parts/mesh.bin". URIs
+//        with a scheme, absolute paths and ".." are refused, because a mesh from a stranger must not choose what is
+//        read. Read: triangles, strips and fans (points and lines are skipped); indices of 8, 16 and 32 bits; POSITION,
+//        NORMAL, TANGENT and up to kMaxUvSets sets TEXCOORD_n, as floats or as integers (KHR_mesh_quantization); sparse
+//        accessors; matrices, translations, rotations and scales of nodes. Vertices that no triangle uses are dropped.
+//        Ignored: skins, morph targets, animations, cameras, extensions that the file does not require.
+// OBJ    v, vt, vn, f, o, usemtl. Polygons become fans around their first corner. Faces of the same object and material
+//        are one part. A part has UVs or normals if all of its corners have them. All else is ignored.
+
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include <tex/mesh.h>
+#include <tex/result.h>
+
+#pragma GCC visibility push(default)
+namespace tex {
+
+inline constexpr int kMaxUvSets = 8;
+
+struct MeshReadOptions {
+    // The largest size in bytes of the file and of each file beside it.
+    std::int64_t max_bytes = std::int64_t{4} << 30;
+};
+
+// Reads a mesh. `path` "-" reads standard input; glTF from there can have no buffers in other files. Every part of the
+// result passes check_part(); there is at least one part.
+//
+// Errors: io           the file or one beside it cannot be opened or read
+//         bad_data     empty, truncated, damaged; indices out of range; infinite or NaN coordinates; nodes that contain
+//                      themselves; accessors that leave their buffers; no triangles
+//         unsupported  valid, but of a type not handled (FBX, PLY, glTF 1.0, compressed geometry, a required extension
+//                      that is not listed above); more than max_bytes
+//         out_of_memory
+// No file content makes this function crash or hang. The memory that it uses stays in proportion to the bytes that the
+// files hold, not to what they claim.
+[[nodiscard]] Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options = {});
+
+}  // namespace tex
+#pragma GCC visibility pop

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "mesh/gltf.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <tex/mesh_io.h>
+
+namespace tex {
+namespace {
+
+Error bad(std::string reason) { return {ErrorCode::bad_data, {}, std::move(reason)}; }
+Error unsupported(std::string reason) { return {ErrorCode::unsupported, {}, std::move(reason)}; }
+
+std::uint32_t load_u32(std::span<const std::byte> bytes, std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t k = 4; k-- > 0;) value = value << 8 | std::to_integer<std::uint32_t>(bytes[at + k]);
+    return value;
+}
+
+std::string_view text_of(std::span<const std::byte> bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+struct Chunks {
+    std::string_view json;
+    std::span<const std::byte> binary;
+};
+
+// GLB: a header of 12 bytes, a chunk of JSON, and perhaps one of bytes (glTF 2.0, 4.4).
+Result<Chunks> split(std::span<const std::byte> bytes) {
+    if (!text_of(bytes).starts_with("glTF")) return Chunks{text_of(bytes), {}};
+    constexpr std::uint32_t kJson = 0x4e4f534a, kBinary = 0x004e4942;
+    if (bytes.size() < 20) return bad("truncated: a GLB file has a header of 20 bytes");
+    if (const std::uint32_t version = load_u32(bytes, 4); version != 2)
+        return unsupported("its GLB version is " + std::to_string(version) + ", only 2 is supported");
+    const std::uint32_t total = load_u32(bytes, 8), length = load_u32(bytes, 12);
+    if (total > bytes.size()) {
+        return bad("truncated: its header claims " + std::to_string(total) + " bytes, there are " +
+                   std::to_string(bytes.size()));
+    }
+    if (total < 20 || load_u32(bytes, 16) != kJson) return bad("its first chunk is not JSON");
+    if (length > total - 20) return bad("truncated: its JSON leaves the file");
+    Chunks chunks{text_of(bytes.subspan(20, length)), {}};
+    const std::span<const std::byte> rest = bytes.subspan(20 + std::size_t{length}, total - 20 - length);
+    if (rest.size() < 8 || load_u32(rest, 4) != kBinary) return chunks;
+    const std::uint32_t size = load_u32(rest, 0);
+    if (size > rest.size() - 8) return bad("truncated: its binary chunk leaves the file");
+    chunks.binary = rest.subspan(8, size);
+    return chunks;
+}
+
+// Extensions that change neither triangles nor their attributes.
+bool is_harmless(std::string_view extension) {
+    for (const std::string_view known : {"KHR_mesh_quantization", "KHR_lights_punctual", "KHR_texture_basisu",
+                                         "EXT_texture_webp", "EXT_texture_avif", "MSFT_texture_dds"}) {
+        if (extension == known) return true;
+    }
+    return extension.starts_with("KHR_materials_");
+}
+
+Result<void> check_asset(JsonValue root) {
+    const std::optional<std::string> version = root["asset"]["version"].text();
+    if (!version) return bad("is JSON, but not glTF: asset.version is missing");
+    if (!version->starts_with("2.")) return unsupported("its glTF version is " + *version + ", only 2.x is supported");
+    const JsonValue required = root["extensionsRequired"];
+    for (std::size_t k = 0; k < required.size(); ++k) {
+        const std::string name = required[k].text().value_or("");
+        if (!is_harmless(name)) return unsupported("requires the extension " + name + ", which is not supported");
+    }
+    return {};
+}
+
+std::vector<MeshMaterial> materials_of(JsonValue root) {
+    const JsonValue list = root["materials"];
+    std::vector<MeshMaterial> materials(list.size());
+    for (std::size_t k = 0; k < materials.size(); ++k) {
+        materials[k].name = list[k]["name"].text().value_or("");
+        const JsonValue normal = list[k]["normalTexture"];
+        const auto texture = normal["index"].count();
+        if (!texture) continue;
+        materials[k].uv_set =
+            static_cast<int>(std::min<std::int64_t>(normal["texCoord"].count().value_or(0), kMaxUvSets));
+        const auto image = root["textures"][static_cast<std::size_t>(*texture)]["source"].count();
+        if (!image) continue;
+        const std::string uri = root["images"][static_cast<std::size_t>(*image)]["uri"].text().value_or("");
+        if (!uri.starts_with("data:")) materials[k].normal_map = uri;
+    }
+    return materials;
+}
+
+// Reads primitives. What a file claims is compared with its bytes: triangles that use the same numbers many times over
+// would take memory out of proportion.
+class PrimitiveReader {
+public:
+    PrimitiveReader(JsonValue root, GltfBuffers& buffers) : materials_(root["materials"].size()), buffers_(buffers) {}
+
+    Result<void> read(JsonValue primitive, MeshPart& part);
+
+private:
+    using Read = std::vector<std::uint32_t>;
+
+    Result<Read> corners_of(JsonValue primitive, std::size_t vertices);
+    Read used_of(Read& corners, std::size_t vertices);
+    Result<const GltfAccessor*> attribute(JsonValue attributes, const std::string& name, int components);
+    template <class T>
+    Result<void> fill(JsonValue attributes, const std::string& name, const Read& used, std::vector<T>& values);
+    Result<void> read_attributes(JsonValue attributes, const Read& used, MeshPart& part);
+
+    std::size_t materials_;
+    GltfBuffers& buffers_;
+    std::size_t vertices_ = 0;  // of this primitive
+    std::size_t corners_ = 0;   // of all primitives so far
+    std::uint32_t round_ = 0;
+    std::vector<std::uint32_t> seen_in_;  // for each vertex, the primitive that last used it
+    std::vector<std::uint32_t> place_;
+};
+
+// Corners of triangles from those of lists, strips and fans (glTF 2.0, 3.7.2.1).
+Result<std::vector<std::uint32_t>> triangles_of(std::vector<std::uint32_t> corners, std::int64_t mode) {
+    if (mode == 4) {
+        if (corners.size() % 3 != 0) return bad("has " + std::to_string(corners.size()) + " corners of triangles");
+        return corners;
+    }
+    std::vector<std::uint32_t> result;
+    for (std::size_t k = 2; k < corners.size(); ++k) {
+        const std::size_t odd = mode == 5 ? k % 2 : 0;
+        const std::uint32_t a = mode == 5 ? corners[k - 2] : corners[0];
+        result.insert(result.end(), {a, corners[k - 1 + odd], corners[k - odd]});
+    }
+    return result;
+}
+
+Result<PrimitiveReader::Read> PrimitiveReader::corners_of(JsonValue primitive, std::size_t vertices) {
+    const auto mode = primitive["mode"].is_null() ? std::optional<std::int64_t>(4) : primitive["mode"].count();
+    if (!mode || *mode > 6) return bad("its mode is not one of glTF's");
+    const JsonValue index = primitive["indices"];
+    const GltfAccessor* indices = nullptr;
+    if (!index.is_null()) {
+        const auto accessor = buffers_.accessor(index);
+        if (!accessor) return accessor.error();
+        indices = *accessor;
+        if (indices->components != 1 || (indices->type != 5121 && indices->type != 5123 && indices->type != 5125))
+            return bad("its indices are not unsigned integers");
+    }
+    Read corners;
+    if (*mode < 4) return corners;  // points and lines
+    const std::size_t count = indices == nullptr ? vertices : indices->count;
+    corners_ += count;
+    if (corners_ > buffers_.bytes() || count / 3 > kMaxTriangles)
+        return bad("claims more triangles than the bytes of the file can hold");
+    corners.resize(count);
+    for (std::size_t k = 0; k < count; ++k) {
+        corners[k] = indices == nullptr ? static_cast<std::uint32_t>(k) : indices->integer(k);
+        if (corners[k] >= vertices) {
+            return bad("index " + std::to_string(corners[k]) + " is out of range: there are " +
+                       std::to_string(vertices) + " vertices");
+        }
+    }
+    return triangles_of(std::move(corners), *mode);
+}
+
+// Numbers the vertices that corners use, in the order of the file, and returns their old numbers.
+PrimitiveReader::Read PrimitiveReader::used_of(Read& corners, std::size_t vertices) {
+    if (seen_in_.size() < vertices) {
+        seen_in_.resize(vertices, 0);
+        place_.resize(vertices);
+    }
+    ++round_;
+    Read used;
+    for (const std::uint32_t v : corners) {
+        if (seen_in_[v] == round_) continue;
+        seen_in_[v] = round_;
+        used.push_back(v);
+    }
+    std::sort(used.begin(), used.end());
+    for (std::size_t k = 0; k < used.size(); ++k) place_[used[k]] = static_cast<std::uint32_t>(k);
+    for (std::uint32_t& v : corners) v = place_[v];
+    return used;
+}
+
+void assign(const GltfAccessor& a, std::size_t k, Float2& v) { v = {a.number(k, 0), a.number(k, 1)}; }
+void assign(const GltfAccessor& a, std::size_t k, Float3& v) { v = {a.number(k, 0), a.number(k, 1), a.number(k, 2)}; }
+void assign(const GltfAccessor& a, std::size_t k, Float4& v) {
+    v = {a.number(k, 0), a.number(k, 1), a.number(k, 2), a.number(k, 3)};
+}
+
+Result<const GltfAccessor*> PrimitiveReader::attribute(JsonValue attributes, const std::string& name, int components) {
+    const auto accessor = buffers_.accessor(attributes[name]);
+    if (!accessor) {
+        Error error = accessor.error();
+        if (error.file.empty()) error.reason = name + ": " + error.reason;
+        return error;
+    }
+    if ((*accessor)->components != components || (*accessor)->type == 5125)
+        return bad(name + " has numbers of the wrong type");
+    if (vertices_ != 0 && (*accessor)->count != vertices_) {
+        return bad(name + " has " + std::to_string((*accessor)->count) + " elements for " + std::to_string(vertices_) +
+                   " vertices");
+    }
+    return accessor;
+}
+
+template <class T>
+Result<void> PrimitiveReader::fill(JsonValue attributes, const std::string& name, const Read& used,
+                                   std::vector<T>& values) {
+    const auto accessor = attribute(attributes, name, static_cast<int>(sizeof(T) / sizeof(float)));
+    if (!accessor) return accessor.error();
+    values.resize(used.size());
+    for (std::size_t k = 0; k < used.size(); ++k) assign(**accessor, used[k], values[k]);
+    return {};
+}
+
+Result<void> PrimitiveReader::read_attributes(JsonValue attributes, const Read& used, MeshPart& part) {
+    if (const auto done = fill(attributes, "POSITION", used, part.positions); !done) return done;
+    if (!attributes["NORMAL"].is_null()) {
+        if (const auto done = fill(attributes, "NORMAL", used, part.normals); !done) return done;
+    }
+    if (!attributes["TANGENT"].is_null()) {
+        if (const auto done = fill(attributes, "TANGENT", used, part.tangents); !done) return done;
+    }
+    for (int set = 0; set < kMaxUvSets; ++set) {
+        const std::string name = "TEXCOORD_" + std::to_string(set);
+        if (attributes[name].is_null()) continue;
+        if (part.uvs.size() != static_cast<std::size_t>(set))
+            return bad("has " + name + ", but not TEXCOORD_" + std::to_string(part.uvs.size()));
+        part.uvs.emplace_back();
+        if (const auto done = fill(attributes, name, used, part.uvs.back()); !done) return done;
+    }
+    return {};
+}
+
+Result<void> PrimitiveReader::read(JsonValue primitive, MeshPart& part) {
+    if (!primitive["extensions"]["KHR_draco_mesh_compression"].is_null() && primitive["attributes"].is_null())
+        return unsupported("is compressed by Draco");
+    const JsonValue attributes = primitive["attributes"], material = primitive["material"];
+    vertices_ = 0;
+    const auto positions = attribute(attributes, "POSITION", 3);
+    if (!positions) return positions.error();
+    vertices_ = (*positions)->count;
+    auto corners = corners_of(primitive, vertices_);
+    if (!corners) return corners.error();
+    if (!material.is_null()) {
+        const auto number = material.count();
+        if (!number || static_cast<std::size_t>(*number) >= materials_) return bad("its material does not exist");
+        part.material = static_cast<int>(*number);
+    }
+    if (corners->empty()) return {};
+    const Read used = used_of(*corners, vertices_);
+    part.indices = std::move(*corners);
+    part.v_axis = YAxis::down;
+    return read_attributes(attributes, used, part);
+}
+
+Result<void> read_primitives(JsonValue root, GltfBuffers& buffers, Mesh& mesh) {
+    PrimitiveReader reader(root, buffers);
+    const JsonValue meshes = root["meshes"];
+    for (std::size_t m = 0; m < meshes.size(); ++m) {
+        const JsonValue primitives = meshes[m]["primitives"];
+        for (std::size_t p = 0; p < primitives.size(); ++p) {
+            MeshPart part;
+            part.name = meshes[m]["name"].text().value_or("");
+            part.mesh = static_cast<int>(m);
+            part.primitive = static_cast<int>(p);
+            auto done = reader.read(primitives[p], part);
+            if (done && part.indices.empty()) continue;
+            if (done) done = check_part(part);
+            if (!done) {
+                Error error = done.error();
+                if (error.file.empty())
+                    error.reason =
+                        "mesh " + std::to_string(m) + ", primitive " + std::to_string(p) + ": " + error.reason;
+                return error;
+            }
+            mesh.parts.push_back(std::move(part));
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+bool is_gltf(std::span<const std::byte> head) {
+    const std::string_view text = text_of(head);
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    return text.starts_with("glTF") || (first != std::string_view::npos && text[first] == '{');
+}
+
+Result<Mesh> parse_gltf(std::span<const std::byte> bytes, const LoadBeside& load) {
+    const auto chunks = split(bytes);
+    if (!chunks) return chunks.error();
+    const auto document = JsonDocument::parse(chunks->json);
+    if (!document) return document.error();
+    const JsonValue root = document->root();
+    if (const auto checked = check_asset(root); !checked) return checked.error();
+    Mesh mesh;
+    auto nodes = gltf_nodes(root);
+    if (!nodes) return nodes.error();
+    mesh.nodes = std::move(*nodes);
+    GltfBuffers buffers(root, chunks->json.size(), chunks->binary, load);
+    if (const auto read = read_primitives(root, buffers, mesh); !read) return read.error();
+    if (mesh.parts.empty()) return bad("has no triangles");
+    mesh.materials = materials_of(root);
+    return mesh;
+}
+
+}  // namespace tex

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// obj.h: reads Wavefront OBJ (Advanced Visualizer Manual, appendix B1: Object Files).
+
+#pragma once
+
+#include <string_view>
+
+#include <tex/mesh.h>
+#include <tex/result.h>
+
+namespace tex {
+
+// Whether a text begins as an OBJ file does: with a comment or a known keyword.
+bool is_obj(std::string_view head);
+
+// Errors: bad_data, without a file.
+Result<Mesh> parse_obj(std::string_view text);
+
+}  // namespace tex

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <tex/tangents.h>
+
+#include <cassert>
+#include <string>
+#include <utility>
+
+#include "mesh/meshopt.h"
+#include "mesh/mikktspace.h"
+#include "threads/guard.h"
+
+namespace tex {
+namespace {
+
+Result<std::vector<Float4>> tangents_of(const MeshPart& part, TangentMethod method, int uv_set,
+                                        const Execution& execution) {
+    switch (method) {
+        case TangentMethod::mikktspace: return mikktspace_tangents(part, uv_set, execution);
+        case TangentMethod::meshopt: return meshopt_tangents(part, uv_set, execution);
+    }
+    return Error{ErrorCode::bad_option, {}, "unknown method"};
+}
+
+}  // namespace
+
+Result<std::vector<Float4>> make_tangents(const MeshPart& part, TangentMethod method, int uv_set,
+                                          const Execution& execution) {
+    assert(check_part(part));
+    return guarded([&]() -> Result<std::vector<Float4>> {
+        if (part.normals.empty()) return Error{ErrorCode::bad_option, {}, "the mesh has no normals"};
+        if (uv_set < 0 || static_cast<std::size_t>(uv_set) >= part.uvs.size()) {
+            return Error{
+                ErrorCode::bad_option,
+                {},
+                "the mesh has no UV set " + std::to_string(uv_set) + ": it has " + std::to_string(part.uvs.size())};
+        }
+        auto tangents = tangents_of(part, method, uv_set, execution);
+        // Both methods take v to point up.
+        if (tangents && part.v_axis == YAxis::down) {
+            for (Float4& t : *tangents) t.w = -t.w;
+        }
+        return tangents;
+    });
+}
+
+}  // namespace tex
