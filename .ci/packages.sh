@@ -11,8 +11,8 @@ build_packages=(
 # shellcheck disable=SC2034
 test_packages=(
     libgtest-dev libgmock-dev libsquish-dev libosmesa6-dev libgl-dev
-    imagemagick openimageio-tools python3-jsonschema python3-yaml libxml2-utils mandoc shellcheck dpkg-dev file git strace
-    zsh fish
+    imagemagick openimageio-tools python3-jsonschema python3-yaml libxml2-utils mandoc shellcheck dpkg-dev file git
+    strace zsh fish
 )
 # The browser takes 300 MB. Without it and GNU parallel, their tests report that they were skipped. The gate tests
 # farms on a Slurm cluster of its own.
