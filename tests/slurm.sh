@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # slurm.sh COMMANDS: builds textures on a real Slurm, with the commands of the folder COMMANDS and
-# samples/farm/slurm.sh, while a worker is killed, a node is taken down, a slurmd is killed together with its jobs, and a
-# batch shell is killed. Shards are sent again as --merge says. In the end, all outputs must have the bytes that one
+# samples/farm/slurm.sh, while a worker is killed, a node is taken down, a slurmd is killed together with its jobs, and
+# a batch shell is killed. Shards are sent again as --merge says. In the end, all outputs must have the bytes that one
 # plain run makes.
 #
 # Starts a cluster of three nodes on this machine, which needs no service and no configuration, and ends it. Takes half
-# a minute. Needs Debian's packages slurmctld, slurmd, slurm-client and munge. Exit status 77: no cluster can be started.
+# a minute. Needs Debian's packages slurmctld, slurmd, slurm-client and munge. Exit status 77: no cluster can be
+# started.
 set -euo pipefail
 samples=$(cd "$(dirname "${BASH_SOURCE[0]}")/../samples" && pwd)
 commands=$(cd "$1" && pwd)
