@@ -166,7 +166,7 @@ TEST_F(BuildNormalsFarm, MergeFindsWhatIsMissing) {
     EXPECT_EQ(missing.code, 1) << missing.err;
     EXPECT_EQ(missing.out, fmt::format("{}\n", lost));
     EXPECT_NE(missing.err.find(fmt::format("shard {} has not reported", lost)), std::string::npos) << missing.err;
-    EXPECT_NE(missing.err.find(fmt::format("send again the shards {}\n", lost)), std::string::npos) << missing.err;
+    EXPECT_NE(missing.err.find(fmt::format("send these shards again: {}\n", lost)), std::string::npos) << missing.err;
     // A report that the shell's pattern does not find is one that is missing.
     EXPECT_EQ(merge({"none/*.jsonl"}).code, 3);
     // What is there already is not made again: the merge has recorded the rest.

@@ -242,7 +242,7 @@ ExitCode Merge::print() {
         print_texture(texture, plan_.tasks[k].input, owner[k], lines);
     }
     for (const auto& [shard, count] : silent)
-        console_.error(fmt::format("shard {} has not reported: {} textures are missing", shard, count));
+        console_.error(fmt::format("shard {} has not reported; textures missing: {}", shard, count));
     const std::vector<int> numbers(again.begin(), again.end());
     const std::string list = fmt::format("{}", fmt::join(numbers, ","));
     if (running_.json) {
@@ -255,8 +255,8 @@ ExitCode Merge::print() {
     }
     if (left > 0) {
         console_.error(
-            fmt::format("{} of {} textures are not made; {}", left, textures_.size(),
-                        list.empty() ? "sending shards again would not help" : "send again the shards " + list));
+            fmt::format("not made: {} of {} textures; {}", left, textures_.size(),
+                        list.empty() ? "sending shards again would not help" : "send these shards again: " + list));
     }
     return list.empty() ? code_ : std::max(code_, console_.print(list + "\n"));
 }
