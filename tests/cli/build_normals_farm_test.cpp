@@ -311,7 +311,7 @@ TEST_F(BuildNormalsFarm, TexturesThatCannotBeMadeAreNamedByThePlan) {
     const Ran merged = merge();
     EXPECT_EQ(merged.code, 4);
     EXPECT_EQ(merged.out, "");
-    EXPECT_NE(merged.err.find("2 of 11 textures are not made; sending shards again would not help"), std::string::npos)
+    EXPECT_NE(merged.err.find("not made: 2 of 11 textures; sending shards again would not help"), std::string::npos)
         << merged.err;
 }
 
