@@ -45,6 +45,7 @@ private:
     void run_tasks();
     void work_on(TaskQueue& queue);
     Outcome outcome_of(std::size_t index);
+    Result<void> fail_with(ExitCode cause, const BuildTask& task, const std::string& name, Outcome& outcome);
     Result<void> bring_up_to_date(std::size_t index, Outcome& outcome);
     Result<void> make_stale(const BuildTask& task, Judgement judgement, double& counted, Outcome& outcome);
     Result<void> fetch(const BuildTask& task, Judgement& judgement, Outcome& outcome);
@@ -55,6 +56,7 @@ private:
     Result<void> create_folders(const std::string& output) const;
     [[nodiscard]] Error with_remedy(const Error& error, const std::string& output) const;
     void prune();
+    [[nodiscard]] ExitCode write_depfile() const;
     [[nodiscard]] QueuedTask queued(const BuildTask& task) const;
     void advance(double& counted, double size, double fraction);
     [[nodiscard]] std::string progress_words() const;
@@ -71,7 +73,7 @@ private:
     Judge judge_;
     Reporter reporter_;
     Cache cache_;
-    std::vector<std::atomic<bool>> failed_;
+    std::vector<std::atomic<ExitCode>> failed_;  // how, or ExitCode::done
     std::vector<std::atomic<bool>> stale_;  // in a dry run
     BuildTotals totals_;
     bool lost_names_ = false;  // outputs were removed from the state

@@ -17,6 +17,7 @@
 #include <tex/container.h>
 #include <unistd.h>
 
+#include "batch/depfile.h"
 #include "batch/text_file.h"
 #include "build/build_run.h"
 #include "cli/text.h"
@@ -35,6 +36,9 @@ void BuildRun::read_state() {
 
 void BuildRun::save_state() {
     if (options_.dry_run || (!judge_.has_changed() && !contents_.has_changed() && !lost_names_)) return;
+    if (options_.is_part) {
+        for (auto& [name, memo] : state_.memos) memo.is_used = true;
+    }
     WriteOptions write;
     write.sync = false;  // the state may be lost
     if (const auto saved = write_text_file(options_.state_file, state_.text(), write); !saved)
@@ -141,6 +145,28 @@ void BuildRun::prune() {
     }
 }
 
+// Writes which files the outputs that are up to date were made from.
+ExitCode BuildRun::write_depfile() const {
+    if (options_.depfile.empty() || options_.dry_run || options_.is_part) return ExitCode::done;
+    std::vector<Dependency> dependencies;
+    for (std::size_t k = 0; k < work_.tasks.size(); ++k) {
+        const BuildTask& task = work_.tasks[k];
+        Dependency& dependency = dependencies.emplace_back();
+        for (const std::string& output : task.outputs) {
+            const auto record = state_.outputs.find(output);
+            if (failed_[k] != ExitCode::done || record == state_.outputs.end()) continue;
+            for (const auto& [file, digest] : record->second.files) dependency.outputs.push_back(contents_.path(file));
+        }
+        dependency.inputs = {contents_.path(task.input), options_.manifest};
+        for (const std::string& file : recipes_[task.recipe].files()) dependency.inputs.push_back(contents_.path(file));
+    }
+    const auto text = depfile_text(dependencies);
+    const auto written = text ? write_text_file(options_.depfile, *text) : Result<void>(text.error());
+    if (written) return ExitCode::done;
+    console_.error(written.error().message());
+    return exit_code(written.error().code);
+}
+
 ExitCode BuildRun::run() {
     std::optional<tbb::global_control> limit;
     if (running_.threads > 1)
@@ -155,8 +181,9 @@ ExitCode BuildRun::run() {
         code = std::max(code, ExitCode::io);
     }
     const std::string_view by = host.interruption();
-    if (by.empty() && options_.prune && work_.unreadable.empty()) prune();
+    if (by.empty() && options_.prune && !options_.is_part && work_.unreadable.empty()) prune();
     save_state();
+    if (by.empty()) code = std::max(code, write_depfile());
     if (cache_.is_used() && options_.cache_size > 0 && !options_.dry_run) cache_.shrink(options_.cache_size, console_);
     if (!by.empty()) {
         console_.error(

@@ -14,8 +14,10 @@
 namespace tex::cli {
 
 struct BuildOptions {
-    std::string root;  // empty: the working directory
+    std::string root;      // empty: the working directory
+    std::string manifest;  // its file
     std::string state_file;
+    std::string depfile;          // empty: none
     int output_version = 1;       // part of every key
     std::int64_t memory = 0;      // bytes that all files together may take; 0: half of the machine's
     std::string cache;            // a folder; empty: none
@@ -23,6 +25,8 @@ struct BuildOptions {
     bool dry_run = false;
     bool prune = false;
     bool no_sync = false;
+    bool is_part = false;  // the work is a part of the tree: nothing is pruned, and what is known about the rest stays
+    bool lists_made = false;  // prints a line for each output that is made
 };
 
 // The version of the bytes that this program makes. It changes when an output changes with the same settings.
