@@ -205,7 +205,7 @@ TEST_F(CheckNormals, DocumentsNeverReplaceWhatIsRead) {
         refuses({"good.dds", option, "list", "--files-from", "list"}, "list is the file of --files-from");
         refuses({"good.dds", option, "bricks.png", "--height", "bricks.png"}, "bricks.png is the file of --height");
         refuses({"good.dds", option, "checks.toml", "--config", "./checks.toml"},
-                "normals.toml is the file of --config");
+                "checks.toml is the file of --config");
         refuses({"good.dds", option, "-"}, "needs the name of a file");
         refuses({"good.dds", option, "."}, "is a folder");
     }

@@ -74,7 +74,7 @@ private:
     Reporter reporter_;
     Cache cache_;
     std::vector<std::atomic<ExitCode>> failed_;  // how, or ExitCode::done
-    std::vector<std::atomic<bool>> stale_;  // in a dry run
+    std::vector<std::atomic<bool>> stale_;       // in a dry run
     BuildTotals totals_;
     bool lost_names_ = false;  // outputs were removed from the state
     std::atomic<std::size_t> finished_{0};
