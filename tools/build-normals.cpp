@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <optional>
+#include <memory>
 
 #include <fmt/format.h>
 
@@ -13,6 +13,7 @@
 #include "build/farm.h"
 #include "build/manifest.h"
 #include "build/recipe.h"
+#include "build/watch.h"
 #include "build/work.h"
 #include "cli/usage_error.h"
 #include "options/run.h"
@@ -27,8 +28,14 @@ public:
     [[nodiscard]] cli::ExitCode work(cli::Console& console) override;
 
 private:
+    [[nodiscard]] std::string manifest() const;
+    [[nodiscard]] Result<std::unique_ptr<cli::BuildTree>> read(cli::Console& console);
+    void find(cli::BuildTree& tree, const cli::FolderVisitor& entered, cli::Console& console) const;
+    [[nodiscard]] cli::ExitCode watch(cli::Console& console);
+
     std::string root_;
     std::string explain_;
+    bool watch_ = false;
     cli::BuildOptions build_;
     cli::Farm farm_;
     cli::RunOptions running_;
@@ -46,6 +53,7 @@ BuildNormals::BuildNormals(const cli::ProgramRow& row) : Program(row) {
     command.flag(build_.dry_run, "--dry-run", "print what would be made, and why; write nothing");
     command.text(explain_, "--explain", "FILE", "print the rule, the settings and the command lines for one file")
         .completes = cli::Completes::files;
+    command.flag(watch_, "--watch", "stay, and build what is saved, until interrupted");
     command.flag(build_.prune, "--prune", "remove outputs that no rule makes any more");
     command.text(build_.cache, "--cache", "DIR", "take outputs from this folder if they are there, and put them there")
         .completes = cli::Completes::directories;
@@ -55,14 +63,23 @@ BuildNormals::BuildNormals(const cli::ProgramRow& row) : Program(row) {
         .option("--memory", "BYTES", "start a file only while all together need no more (K, M, G)",
                 [this](const std::string& text) { build_.memory = cli::parse_count(text); })
         .preset = "half of the machine's";
+    command.text(build_.depfile, "--depfile", "FILE", "write what each output was made from, for Make and Ninja")
+        .completes = cli::Completes::files;
     command.flag(build_.no_sync, "--no-sync", "do not wait until outputs are on the disk");
     farm_.add(command);
     running_.add(command);
     command.example("build-normals", "Reads normals.toml and brings every output up to date.");
     command.example("build-normals --dry-run", "What would be made, and why.");
+    command.example("build-normals --watch --no-sync", "Builds what is saved, while people work.");
     command.example("build-normals art/normals.toml --explain art/wall_h.png", "Everything about one file.");
     command.check([this] {
         if (command.inputs().size() > 1 && !farm_.merges()) throw cli::UsageError("give one manifest");
+        if (watch_ && (build_.dry_run || !explain_.empty()))
+            throw cli::UsageError("--watch goes neither with --dry-run nor with --explain");
+        if (watch_ && farm_.is_used()) throw cli::UsageError("--watch and --plan exclude each other");
+        if (watch_ && !command.inputs().empty() && command.inputs().front() == "-")
+            throw cli::UsageError("--watch needs a manifest in a file, not on standard input");
+        if (build_.depfile == "-") throw cli::UsageError("--depfile: needs a file, not standard output");
         if (build_.cache_size > 0 && build_.cache.empty()) throw cli::UsageError("--cache-size needs --cache");
     });
 }
@@ -72,50 +89,81 @@ cli::ExitCode failed(const Error& error, cli::Console& console) {
     return cli::exit_code(error.code);
 }
 
-cli::ExitCode BuildNormals::work(cli::Console& console) {
+std::string BuildNormals::manifest() const {
+    if (!command.inputs().empty() && !farm_.merges()) return command.inputs().front();
+    return farm_.plan() ? farm_.plan()->manifest : "normals.toml";
+}
+
+// Reads the manifest, without looking for files.
+Result<std::unique_ptr<cli::BuildTree>> BuildNormals::read(cli::Console& console) {
     namespace fs = std::filesystem;
-    if (running_.quiet) console.be_quiet();
-    if (const auto read = farm_.read_plan(); !read) return failed(read.error(), console);
-    const bool is_named = !command.inputs().empty() && !farm_.merges();
-    const std::string path = is_named       ? command.inputs().front()
-                             : farm_.plan() ? farm_.plan()->manifest
-                                            : "normals.toml";
-    const auto text = cli::read_text_file(path);
-    if (!text) return failed(text.error(), console);
-    const cli::Manifest manifest = cli::parse_manifest(path, *text, cli::step_names());
+    const std::string path = manifest();
+    auto text = cli::read_text_file(path);
+    if (!text) return text.error();
+    auto tree = std::make_unique<cli::BuildTree>();
+    tree->text = std::move(*text);
+    tree->manifest = cli::parse_manifest(path, tree->text, cli::step_names());
+    const cli::Manifest& manifest = tree->manifest;
     const fs::path file = path == "-" ? fs::path("normals.toml") : fs::path(path);
     if (!command.given("--root") && farm_.plan()) root_ = farm_.plan()->root;
     build_.root = root_.empty() ? file.parent_path().string() : root_;
     while (build_.root.size() > 1 && build_.root.ends_with('/')) build_.root.pop_back();
     if (build_.root == ".") build_.root.clear();
+    build_.manifest = path;
     build_.state_file = (file.parent_path() / ("." + file.filename().string() + ".state")).string();
     build_.output_version = manifest.output_version.value_or(cli::kOutputVersion);
     if (build_.output_version > cli::kOutputVersion) {
         throw cli::UsageError(fmt::format("{}: output-version = {}, but this program makes version {}", path,
                                           build_.output_version, cli::kOutputVersion));
     }
-    farm_.check_fits(path, *text, build_, console);
-    if (farm_.merges()) return farm_.merge(command.inputs(), build_, running_, console);
-    std::vector<cli::Recipe> recipes;
-    recipes.reserve(manifest.rules.size());
+    farm_.check_fits(path, tree->text, build_, console);
+    if (farm_.merges()) return tree;
+    tree->recipes.reserve(manifest.rules.size());
     for (const cli::RuleSettings& rule : manifest.rules)
-        recipes.emplace_back(manifest, rule, static_cast<int>(recipes.size()) + 1, build_.root, console);
-    if (farm_.plan()) return farm_.run_shard(recipes, build_, running_, console);
-    const cli::WorkList work = cli::list_work(manifest, recipes, build_.root);
-    if (!explain_.empty()) return console.print(cli::explanation_of(explain_, recipes, work));
-    for (std::size_t k = 0; k < recipes.size(); ++k) {
+        tree->recipes.emplace_back(manifest, rule, static_cast<int>(tree->recipes.size()) + 1, build_.root, console);
+    return tree;
+}
+
+// Finds the files of the tree.
+void BuildNormals::find(cli::BuildTree& tree, const cli::FolderVisitor& entered, cli::Console& console) const {
+    tree.work = cli::list_work(tree.manifest, tree.recipes, build_.root, entered);
+    if (!explain_.empty()) return;
+    for (std::size_t k = 0; k < tree.recipes.size(); ++k) {
         const auto makes = [k](const cli::BuildTask& task) { return task.recipe == k; };
-        if (std::any_of(work.tasks.begin(), work.tasks.end(), makes)) continue;
-        console.warning(fmt::format("{}: line {}: no file is left for this rule", path, recipes[k].rule().place.line));
+        if (std::any_of(tree.work.tasks.begin(), tree.work.tasks.end(), makes)) continue;
+        console.warning(fmt::format("{}: line {}: this rule applies to no file", tree.manifest.path,
+                                    tree.recipes[k].rule().place.line));
     }
+}
+
+cli::ExitCode BuildNormals::watch(cli::Console& console) {
+    const auto load = [&](const cli::FolderVisitor& entered) {
+        auto tree = read(console);
+        if (tree) find(**tree, entered, console);
+        return tree;
+    };
+    return cli::watch(manifest(), load, build_, running_, console);
+}
+
+cli::ExitCode BuildNormals::work(cli::Console& console) {
+    if (running_.quiet) console.be_quiet();
+    if (watch_) return watch(console);
+    if (const auto plan = farm_.read_plan(); !plan) return failed(plan.error(), console);
+    const auto loaded = read(console);
+    if (!loaded) return failed(loaded.error(), console);
+    cli::BuildTree& tree = **loaded;
+    if (farm_.merges()) return farm_.merge(command.inputs(), build_, running_, console);
+    if (farm_.plan()) return farm_.run_shard(tree.recipes, build_, running_, console);
+    find(tree, {}, console);
+    if (!explain_.empty()) return console.print(cli::explanation_of(explain_, tree.recipes, tree.work));
     if (farm_.is_used()) {
         cli::FarmPlan head;
-        head.manifest = path;
+        head.manifest = build_.manifest;
         head.root = root_;
-        head.manifest_digest = cli::digest_of(*text);
-        return farm_.write_plan(head, work, build_, running_, console);
+        head.manifest_digest = cli::digest_of(tree.text);
+        return farm_.write_plan(head, tree.work, build_, running_, console);
     }
-    return cli::build(recipes, work, build_, running_, console);
+    return cli::build(tree.recipes, tree.work, build_, running_, console);
 }
 
 const cli::Registered<BuildNormals> kRegistered(

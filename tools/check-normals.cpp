@@ -53,7 +53,7 @@ CheckNormals::CheckNormals(const cli::ProgramRow& row) : Batch(row) {
     running.add(command);
     command.example("check-normals --require format=dxt5nm --require mips=full --require y=up art/**/*_n.dds",
                     "What a build requires of its normal maps.");
-    command.example("check-normals --config normals.toml --sarif findings.sarif --junit findings.xml --files-from list",
+    command.example("check-normals --config checks.toml --sarif findings.sarif --junit findings.xml --files-from list",
                     "In continuous integration.");
     command.example("check-normals art/**/*_n.dds --report report.html",
                     "A page with pictures, on which the light can be moved.");
@@ -82,7 +82,8 @@ Result<void> CheckNormals::check(const std::vector<cli::Task>& tasks) {
 
 Result<void> CheckNormals::process(cli::Job& job) {
     const Execution execution = job.until(documents_.has_page() ? 0.5 : 1.0);
-    auto report = check_file(job.task.input, rules_.checks(), job.read_options, execution);
+    const cli::Demands& demands = rules_.demands_of(job.task.input);
+    auto report = check_file(job.task.input, demands.checks, job.read_options, execution);
     if (!report) return report.error();
     if (report->error && report->error->code == ErrorCode::cancelled) return *report->error;
     const int known = documents_.accept(*report);
@@ -91,14 +92,14 @@ Result<void> CheckNormals::process(cli::Job& job) {
         job.raise(cli::exit_code(report->error->code));
     }
     const bool fails = std::any_of(report->findings.begin(), report->findings.end(),
-                                   [&](const Finding& finding) { return rules_.fails(finding); });
+                                   [&](const Finding& finding) { return demands.fails(finding); });
     if (fails && !documents_.writes_baseline()) job.raise(cli::ExitCode::findings);
-    const Requirements& require = rules_.checks().require;
+    const Requirements& require = demands.checks.require;
     job.say(documents_.is_for_github() ? cli::github_text(*report, require)
                                        : cli::findings_text(*report, require) + cli::pair_text(*report));
     job.report = cli::findings_json(*report, require);
     if (known > 0) job.report["known"] = known;
-    if (auto added = documents_.add(job, *report, require); !added) return added;
+    if (auto added = documents_.add(job, *report, demands); !added) return added;
     const std::lock_guard lock(mutex_);
     totals_.add(*report, known);
     return {};
@@ -107,7 +108,7 @@ Result<void> CheckNormals::process(cli::Job& job) {
 cli::ExitCode CheckNormals::finish(cli::Console& console) {
     const std::string summary = totals_.text();
     const cli::ExitCode printed = running.json ? cli::ExitCode::done : console.print(summary + "\n");
-    return std::max(printed, documents_.write(console, rules_.checks().require, rules_.fail_on(), summary));
+    return std::max(printed, documents_.write(console, summary));
 }
 
 const cli::Registered<CheckNormals> kRegistered(

@@ -57,7 +57,10 @@ cli::ExitCode CompareNormals::work(cli::Console& console) {
     if (running_.quiet) console.be_quiet();
     cli::Host& host = console.host();
     host.begin();
-    const auto code = compare_files(console);
+    auto code = compare_files(console);
+    if (code) {
+        if (auto written = documents_.write_depfile(command.inputs()); !written) code = written.error();
+    }
     console.clear_progress();
     if (!host.interruption().empty()) host.end_interrupted();
     if (code) return *code;

@@ -64,12 +64,12 @@ TEST_F(CheckNormals, SeverityDecidesWhetherItFails) {
 }
 
 TEST_F(CheckNormals, ConfigurationIsReadAndTheCommandLineWins) {
-    scratch_.write("normals.toml",
+    scratch_.write("checks.toml",
                    "require = [\"y=up\", \"mips=full\"]\nfail-on = \"error\"\n[severity]\nwrong-y = \"warning\"\n");
-    EXPECT_EQ(check({"down.dds", "--config", "normals.toml"}).code, 0);
-    EXPECT_EQ(check({"down.dds", "--config", "normals.toml", "--fail-on", "warning"}).code, 1);
-    EXPECT_EQ(check({"down.dds", "--config", "normals.toml", "--severity", "N401=error"}).code, 1);
-    EXPECT_EQ(check({"good.dds", "--config", "normals.toml", "--require", "y=down", "--severity", "N401=error"}).code,
+    EXPECT_EQ(check({"down.dds", "--config", "checks.toml"}).code, 0);
+    EXPECT_EQ(check({"down.dds", "--config", "checks.toml", "--fail-on", "warning"}).code, 1);
+    EXPECT_EQ(check({"down.dds", "--config", "checks.toml", "--severity", "N401=error"}).code, 1);
+    EXPECT_EQ(check({"good.dds", "--config", "checks.toml", "--require", "y=down", "--severity", "N401=error"}).code,
               1);
     for (const char* text : {"require = 3", "require = [\"y=left\"]", "requires = []", "[severity]\nN999 = \"error\"",
                              "fail-on = \"fatal\"", "x = ["}) {
@@ -193,7 +193,7 @@ TEST_F(CheckNormals, HeightMapsAreComparedWithTheirNormals) {
 
 TEST_F(CheckNormals, DocumentsNeverReplaceWhatIsRead) {
     scratch_.write("list", "good.dds\n");
-    scratch_.write("normals.toml", "");
+    scratch_.write("checks.toml", "");
     const std::string before = scratch_.read("good.dds");
     const auto refuses = [&](std::vector<std::string> arguments, const std::string& reason) {
         const Ran ran = check(arguments);
@@ -204,8 +204,8 @@ TEST_F(CheckNormals, DocumentsNeverReplaceWhatIsRead) {
         refuses({"good.dds", option, "good.dds"}, "good.dds is the input good.dds");
         refuses({"good.dds", option, "list", "--files-from", "list"}, "list is the file of --files-from");
         refuses({"good.dds", option, "bricks.png", "--height", "bricks.png"}, "bricks.png is the file of --height");
-        refuses({"good.dds", option, "normals.toml", "--config", "./normals.toml"},
-                "normals.toml is the file of --config");
+        refuses({"good.dds", option, "checks.toml", "--config", "./checks.toml"},
+                "checks.toml is the file of --config");
         refuses({"good.dds", option, "-"}, "needs the name of a file");
         refuses({"good.dds", option, "."}, "is a folder");
     }

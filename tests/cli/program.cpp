@@ -82,16 +82,16 @@ std::vector<std::string> Scratch::list() const {
     return names;
 }
 
-Ran run(const Scratch& scratch, const std::string& program, const std::vector<std::string>& arguments,
-        const Setting& setting) {
-    const Scratch streams;
-    streams.write("in", setting.input);
-    const std::string out = setting.stdout_path.empty() ? streams.path("out") : setting.stdout_path;
+Background::Background(const Scratch& scratch, const std::string& program, const std::vector<std::string>& arguments,
+                       const Setting& setting)
+    : stdout_path_(setting.stdout_path) {
+    streams_.write("in", setting.input);
+    const std::string out = stdout_path_.empty() ? streams_.path("out") : stdout_path_;
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, 0, streams.path("in").c_str(), O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, 0, streams_.path("in").c_str(), O_RDONLY, 0);
     posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), O_WRONLY | O_CREAT, 0600);
-    posix_spawn_file_actions_addopen(&actions, 2, streams.path("err").c_str(), O_WRONLY | O_CREAT, 0600);
+    posix_spawn_file_actions_addopen(&actions, 2, streams_.path("err").c_str(), O_WRONLY | O_CREAT, 0600);
     posix_spawn_file_actions_addchdir_np(&actions, scratch.path().c_str());
 
     std::vector<std::string> words = {path_of(program)};
@@ -103,19 +103,27 @@ Ran run(const Scratch& scratch, const std::string& program, const std::vector<st
         if (name == "OCIO=" || std::any_of(setting.environment.begin(), setting.environment.end(), is_set)) continue;
         environment.emplace_back(*variable);
     }
-    pid_t child = 0;
-    const int failed =
-        posix_spawn(&child, words[0].c_str(), &actions, nullptr, pointers(words).data(), pointers(environment).data());
+    const int failed = posix_spawn(&process_, words[0].c_str(), &actions, nullptr, pointers(words).data(),
+                                   pointers(environment).data());
     posix_spawn_file_actions_destroy(&actions);
     if (failed != 0) throw std::runtime_error("cannot start " + words[0]);
-    if (setting.signal != 0) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(setting.interrupt_after_ms) +
-                                    std::chrono::microseconds(setting.interrupt_after_us));
-        kill(child, setting.signal);
-    }
+}
+
+Background::~Background() {
+    if (process_ == 0) return;
+    kill(process_, SIGKILL);
+    waitpid(process_, nullptr, 0);
+}
+
+std::string Background::out() const { return stdout_path_.empty() ? streams_.read("out") : std::string(); }
+
+void Background::send(int signal) const { kill(process_, signal); }
+
+Ran Background::wait() {
     int status = 0;
     rusage usage{};
-    wait4(child, &status, 0, &usage);
+    wait4(process_, &status, 0, &usage);
+    process_ = 0;
     Ran ran;
     ran.peak_bytes = std::int64_t{usage.ru_maxrss} * 1024;
     const auto seconds = [](const timeval& time) {
@@ -123,9 +131,20 @@ Ran run(const Scratch& scratch, const std::string& program, const std::vector<st
     };
     ran.cpu_seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
     ran.code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
-    if (setting.stdout_path.empty()) ran.out = streams.read("out");
-    ran.err = streams.read("err");
+    ran.out = out();
+    ran.err = err();
     return ran;
+}
+
+Ran run(const Scratch& scratch, const std::string& program, const std::vector<std::string>& arguments,
+        const Setting& setting) {
+    Background started(scratch, program, arguments, setting);
+    if (setting.signal != 0) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(setting.interrupt_after_ms) +
+                                    std::chrono::microseconds(setting.interrupt_after_us));
+        started.send(setting.signal);
+    }
+    return started.wait();
 }
 
 Ran shell(const Scratch& scratch, const std::string& script) {

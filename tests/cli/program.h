@@ -48,6 +48,30 @@ struct Setting {
     int signal = 0;
 };
 
+// A program that runs while the test goes on, in the scratch folder. It is killed together with its object.
+class Background {
+public:
+    // `program` is a command of the build, or a path.
+    Background(const Scratch& scratch, const std::string& program, const std::vector<std::string>& arguments,
+               const Setting& setting = {});
+    ~Background();
+    Background(const Background&) = delete;
+    Background& operator=(const Background&) = delete;
+
+    // What it has printed so far.
+    [[nodiscard]] std::string out() const;
+    [[nodiscard]] std::string err() const { return streams_.read("err"); }
+
+    void send(int signal) const;
+    // Waits until it ends. To be called once.
+    [[nodiscard]] Ran wait();
+
+private:
+    const Scratch streams_;
+    const std::string stdout_path_;
+    int process_ = 0;
+};
+
 // Runs `program` (a command of the build, or a path) with these arguments, in the scratch folder.
 Ran run(const Scratch& scratch, const std::string& program, const std::vector<std::string>& arguments,
         const Setting& setting = {});

@@ -20,6 +20,7 @@
 #include "batch/name_pattern.h"
 #include "batch/outcome.h"
 #include "batch/text_file.h"
+#include "batch/up_to_date.h"
 #include "cli/usage_error.h"
 #include "threads/fork_join.h"
 
@@ -35,9 +36,10 @@ using Process = std::function<Result<void>(Job& job)>;
 class Runner {
 public:
     Runner(const std::vector<Task>& tasks, Console& console, const WriteOptions& write, const RunOptions& running,
-           Process process)
-        : tasks_(tasks), console_(console), write_(write), running_(running), process_(std::move(process)),
-          reporter_(console, tasks.size(), running.json), shows_progress_(running.shows_progress(console.host())) {}
+           bool update, Process process)
+        : tasks_(tasks), console_(console), write_(write), running_(running), update_(update),
+          process_(std::move(process)), reporter_(console, tasks.size(), running.json),
+          shows_progress_(running.shows_progress(console.host())) {}
 
     // Every worker takes the next file that no worker has taken yet, so files are started in the order of the inputs.
     void run() {
@@ -85,9 +87,7 @@ private:
         Outcome outcome;
         const Clock::time_point start = Clock::now();
         try {
-            auto result = would_clobber(task) ? Error{ErrorCode::io, task.output, "exists, and --no-clobber is given"}
-                                              : process_(job);
-            if (!result) outcome.error = result.error();
+            if (const auto result = update_ ? update(job) : make(job); !result) outcome.error = result.error();
         } catch (const std::bad_alloc&) {
             outcome.error = Error{ErrorCode::out_of_memory, {}, "out of memory"};
         } catch (const std::exception& exception) {
@@ -112,6 +112,25 @@ private:
         return outcome;
     }
 
+    [[nodiscard]] Result<void> make(Job& job) {
+        if (would_clobber(job.task)) return Error{ErrorCode::io, job.task.output, "exists, and --no-clobber is given"};
+        return process_(job);
+    }
+
+    // The same unless the outputs are up to date. They do not count as such if an input changes meanwhile.
+    [[nodiscard]] Result<void> update(Job& job) {
+        const std::optional<std::int64_t> change = latest_change(job.task);
+        if (change && is_up_to_date(job.task, *change)) {
+            job.report["status"] = "current";
+            for (std::string& output : job.task.outputs()) job.wrote(std::move(output));
+            return {};
+        }
+        Result<void> made = make(job);
+        job.report["status"] = "made";
+        if (made && change && latest_change(job.task) != change) make_outdated(job.task, *change);
+        return made;
+    }
+
     // Checked before the work is done. The library checks again when it writes.
     [[nodiscard]] bool would_clobber(const Task& task) const {
         struct stat status {};
@@ -122,6 +141,7 @@ private:
     Console& console_;
     const WriteOptions& write_;
     const RunOptions& running_;
+    const bool update_;
     Process process_;
     Reporter reporter_;
     bool shows_progress_;
@@ -167,7 +187,7 @@ ExitCode Batch::run_tasks(const std::vector<Task>& tasks, Console& console) {
     write.sync = !files.no_sync;
     write.no_clobber = files.no_clobber;
     write.reader = running.read;
-    Runner runner(tasks, console, write, running, [this](Job& job) { return process(job); });
+    Runner runner(tasks, console, write, running, files.update, [this](Job& job) { return process(job); });
     runner.run();
     const Reporter& reporter = runner.reporter();
     if (const std::string_view by = host.interruption(); !by.empty()) {

@@ -23,20 +23,20 @@ namespace fs = std::filesystem;
 bool is_block_encoding(Encoding encoding) { return format_info(encoding_info(encoding).format).has_blocks(); }
 
 // The name pattern for --out-dir if the user gives none.
-std::string default_pattern(const OutputOptions& output, const OutputRules& rules) {
+std::string default_pattern(const FileOptions& files, const OutputOptions& output, const OutputRules& rules) {
     std::optional<Container> container = output.container;
     if (!container && output.format) {
         if (is_block_encoding(*output.format)) container = Container::dds;
     } else if (!container) {
         container = rules.batch;
     }
-    return "{stem}" + (container ? extension_of(*container) : "{ext}");
+    return (files.root.empty() ? "{stem}" : "{dir}/{stem}") + (container ? extension_of(*container) : "{ext}");
 }
 
 std::string output_name(const std::string& input, const FileOptions& files, const OutputOptions& output,
                         const OutputRules& rules) {
-    NameFields fields = name_fields(input);
-    const std::string pattern = files.name.empty() ? default_pattern(output, rules) : files.name;
+    NameFields fields = files.fields_of(input);
+    const std::string pattern = files.name.empty() ? default_pattern(files, output, rules) : files.name;
     if (output.format) {
         fields.format = name_of(kEncodingNames, *output.format);
     } else if (const NamePattern parsed(pattern); parsed.uses("format")) {
@@ -82,16 +82,17 @@ std::vector<Task> plan_outputs(std::vector<std::string> inputs, const FileOption
 }
 
 Result<void> create_folders(const FileOptions& files, const std::vector<Task>& tasks) {
-    if (files.out_dir.empty()) return {};
+    if (files.out_dir.empty() && !files.names_folders()) return {};
     const auto failed = [](const fs::path& path, const std::error_code& error) {
         return Error{ErrorCode::io, path.string(), "cannot create this folder: " + system_reason(error.value())};
     };
     std::error_code error;
-    fs::create_directory(fs::path(files.out_dir) / "", error);
+    if (!files.out_dir.empty()) fs::create_directory(fs::path(files.out_dir) / "", error);
     if (error && !is_folder(files.out_dir)) return failed(files.out_dir, error);
     for (const Task& task : tasks) {
         for (const std::string& output : task.outputs()) {
             const fs::path folder = fs::path(output).parent_path();
+            if (folder.empty()) continue;
             fs::create_directories(folder, error);
             if (error) return failed(folder, error);
         }

@@ -35,7 +35,7 @@ struct OutputRules {
 [[nodiscard]] std::vector<Task> plan_outputs(std::vector<std::string> inputs, const FileOptions& files,
                                              const OutputOptions& output, const OutputRules& rules);
 
-// Creates --out-dir (but not its parents) and, below it, the folders that {dir} requires.
+// Creates --out-dir (but not its parents) and, below it or without it, the folders that {dir} requires.
 [[nodiscard]] Result<void> create_folders(const FileOptions& files, const std::vector<Task>& tasks);
 
 }  // namespace tex::cli

@@ -143,6 +143,8 @@ Result<void> BuildRun::record(const BuildTask& task, const Stale& made, const Di
         files.push_back(is_below ? path.substr(options_.root.size() + 1) : path);
     }
     outcome.outputs.insert(outcome.outputs.end(), files.begin(), files.end());
+    if (options_.lists_made)
+        outcome.text += fmt::format("{} -> {}\n", printable(task.input), printable(with_level(files.front(), 0)));
     return judge_.record(task, made, inputs, files);
 }
 
@@ -201,6 +203,18 @@ Result<bool> BuildRun::make_stale(const BuildTask& task, Judgement judgement,
     return true;
 }
 
+// A texture that needs `name` fails in the same way as that did.
+Result<void> BuildRun::fail_with(ExitCode cause, const BuildTask& task, const std::string& name, Outcome& outcome) {
+    const std::string reason = fmt::format("needs {}, which could not be made", name);
+    if (cause != ExitCode::findings)
+        return Error{cause == ExitCode::io ? ErrorCode::io : ErrorCode::bad_data, task.input, reason};
+    outcome.code = cause;
+    outcome.report["status"] = "refused";
+    outcome.report["findings"].push_back({{"output", task.outputs.front()}, {"message", reason}});
+    console_.error(fmt::format("{}: {}", task.input, reason));
+    return {};
+}
+
 Result<void> BuildRun::bring_up_to_date(std::size_t index, Outcome& outcome) {
     const BuildTask& task = work_.tasks[index];
     const Recipe& recipe = recipes_[task.recipe];
@@ -208,8 +222,8 @@ Result<void> BuildRun::bring_up_to_date(std::size_t index, Outcome& outcome) {
     if (!task.refusal.empty()) return Error{ErrorCode::bad_option, task.input, task.refusal};
     for (const std::size_t needed : task.needs) {
         const std::string name = printable(needed_file(work_.tasks[needed], recipe));
-        if (failed_[needed])
-            return Error{ErrorCode::bad_data, task.input, fmt::format("needs {}, which could not be made", name)};
+        if (const ExitCode cause = failed_[needed]; cause != ExitCode::done)
+            return fail_with(cause, task, name, outcome);
         if (!stale_[needed]) continue;
         stale_[index] = true;
         std::vector<Stale> all(task.outputs.size());
@@ -263,7 +277,7 @@ Outcome BuildRun::outcome_of(std::size_t index) {
         outcome.is_bug = true;
     }
     if (outcome.error || outcome.code == ExitCode::findings) {
-        failed_[index] = true;
+        failed_[index] = outcome.error ? std::max(outcome.code, exit_code(outcome.error->code)) : outcome.code;
         ++totals_.failed;
     }
     outcome.seconds = std::chrono::duration<float>(std::chrono::steady_clock::now() - start).count();

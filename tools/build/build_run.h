@@ -47,6 +47,7 @@ private:
     void run_tasks();
     void work_on(TaskQueue& queue);
     Outcome outcome_of(std::size_t index);
+    Result<void> fail_with(ExitCode cause, const BuildTask& task, const std::string& name, Outcome& outcome);
     Result<void> bring_up_to_date(std::size_t index, Outcome& outcome);
     Result<bool> make_stale(const BuildTask& task, Judgement judgement,
                             const std::vector<std::optional<FileStamp>>& stamps, double& counted, Outcome& outcome);
@@ -59,6 +60,7 @@ private:
     Result<void> create_folders(const std::string& output) const;
     [[nodiscard]] Error with_remedy(const Error& error, const std::string& output) const;
     void prune();
+    [[nodiscard]] ExitCode write_depfile() const;
     [[nodiscard]] QueuedTask queued(const BuildTask& task) const;
     void advance(double& counted, double size, double fraction);
     [[nodiscard]] std::string progress_words() const;
@@ -75,8 +77,8 @@ private:
     Judge judge_;
     Reporter reporter_;
     Cache cache_;
-    std::vector<std::atomic<bool>> failed_;
-    std::vector<std::atomic<bool>> stale_;  // in a dry run
+    std::vector<std::atomic<ExitCode>> failed_;  // how, or ExitCode::done
+    std::vector<std::atomic<bool>> stale_;       // in a dry run
     std::vector<BuildResult> results_;
     BuildTotals totals_;
     bool lost_names_ = false;  // outputs were removed from the state

@@ -17,6 +17,7 @@
 #include <tex/container.h>
 #include <unistd.h>
 
+#include "batch/depfile.h"
 #include "batch/text_file.h"
 #include "build/build_run.h"
 #include "cli/text.h"
@@ -43,6 +44,7 @@ void BuildRun::read_state() {
 void BuildRun::save_state(BuildState::Memos memos_of) {
     const std::string& file = options_.is_shard ? options_.shard_state : options_.state_file;
     if (file.empty() || options_.dry_run || (!judge_.has_changed() && !contents_.has_changed() && !lost_names_)) return;
+    if (options_.is_part) memos_of = BuildState::Memos::all;
     WriteOptions write;
     write.sync = false;  // the state may be lost
     std::string text;
@@ -170,6 +172,28 @@ void BuildRun::prune() {
     }
 }
 
+// Writes which files the outputs that are up to date were made from.
+ExitCode BuildRun::write_depfile() const {
+    if (options_.depfile.empty() || options_.dry_run || options_.is_part) return ExitCode::done;
+    std::vector<Dependency> dependencies;
+    for (std::size_t k = 0; k < work_.tasks.size(); ++k) {
+        const BuildTask& task = work_.tasks[k];
+        Dependency& dependency = dependencies.emplace_back();
+        for (const std::string& output : task.outputs) {
+            const auto record = state_.outputs.find(output);
+            if (failed_[k] != ExitCode::done || record == state_.outputs.end()) continue;
+            for (const auto& [file, digest] : record->second.files) dependency.outputs.push_back(contents_.path(file));
+        }
+        dependency.inputs = {contents_.path(task.input), options_.manifest};
+        for (const std::string& file : recipes_[task.recipe].files()) dependency.inputs.push_back(contents_.path(file));
+    }
+    const auto text = depfile_text(dependencies);
+    const auto written = text ? write_text_file(options_.depfile, *text) : Result<void>(text.error());
+    if (written) return ExitCode::done;
+    console_.error(written.error().message());
+    return exit_code(written.error().code);
+}
+
 ExitCode BuildRun::run() {
     std::optional<tbb::global_control> limit;
     if (running_.threads > 1)
@@ -184,8 +208,9 @@ ExitCode BuildRun::run() {
         code = std::max(code, ExitCode::io);
     }
     const std::string_view by = host.interruption();
-    if (by.empty() && options_.prune && work_.unreadable.empty()) prune();
+    if (by.empty() && options_.prune && !options_.is_part && work_.unreadable.empty()) prune();
     save_state(BuildState::Memos::used);
+    if (by.empty()) code = std::max(code, write_depfile());
     if (cache_.is_used() && options_.cache_size > 0 && !options_.dry_run) cache_.shrink(options_.cache_size, console_);
     if (!by.empty()) {
         console_.error(

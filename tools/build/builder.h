@@ -17,10 +17,12 @@
 namespace tex::cli {
 
 struct BuildOptions {
-    std::string root;  // empty: the working directory
+    std::string root;      // empty: the working directory
+    std::string manifest;  // its file
     std::string state_file;
     bool is_shard = false;        // state_file is read and not written, because other shards share it,
     std::string shard_state;      // but this file is, until the shard ends, so that it can go on; empty: none
+    std::string depfile;          // empty: none
     int output_version = 1;       // part of every key
     std::int64_t memory = 0;      // bytes that all files together may take; 0: half of the machine's
     std::string cache;            // a folder; empty: none
@@ -28,6 +30,8 @@ struct BuildOptions {
     bool dry_run = false;
     bool prune = false;
     bool no_sync = false;
+    bool is_part = false;  // the work is a part of the tree: nothing is pruned, and what is known about the rest stays
+    bool lists_made = false;  // prints a line for each output that is made
     // Called at the end of a run that was not interrupted, with a result for each task.
     std::function<ExitCode(const std::vector<BuildResult>& results, const BuildState& state)> finished = {};
 };

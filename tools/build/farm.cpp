@@ -37,7 +37,8 @@ std::string state_beside(const std::string& report) {
 }  // namespace
 
 void Farm::add(Command& command) {
-    command.usage("[MANIFEST] --plan FILE [--shard I/N [--report FILE]]");
+    command.usage("[MANIFEST] --plan FILE");
+    command.usage("--plan FILE --shard I/N [--report FILE]");
     command.usage("--plan FILE --merge REPORT...");
     command.group("Farm");
     command.text(plan_path_, "--plan", "FILE", "write what is to be made, with its costs, for the shards of a farm")

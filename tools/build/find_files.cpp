@@ -31,6 +31,7 @@ private:
     // `folder` is "" or ends with "/".
     void enter(const std::string& folder) {
         const std::string path = root_.empty() ? (folder.empty() ? "." : folder) : root_ + "/" + folder;
+        if (search_.entered) search_.entered(folder);
         const std::unique_ptr<DIR, int (*)(DIR*)> dir(opendir(path.c_str()),
                                                       [](DIR* open) { return open == nullptr ? 0 : closedir(open); });
         struct stat status {};

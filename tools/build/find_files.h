@@ -17,10 +17,15 @@ struct FoundFile {
     std::int64_t size = 0;
 };
 
+// Takes a folder below the root: "" or a path that ends with "/".
+using FolderVisitor = std::function<void(const std::string& folder)>;
+
 struct FileSearch {
     std::vector<const Glob*> globs;
     // Whether a folder is left out. The path ends with "/".
     std::function<bool(const std::string& folder)> skip;
+    // Called with each folder before it is read; may be empty.
+    FolderVisitor entered;
     // Called for each folder that cannot be read.
     std::function<void(const std::string& folder, const std::string& reason)> unreadable;
 };

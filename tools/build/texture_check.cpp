@@ -82,11 +82,12 @@ Result<void> TextureCheck::compare_with_source(const MadeTexture& made, const Re
 Result<std::vector<std::string>> TextureCheck::findings(const MadeTexture& made, const ReadOptions& read,
                                                         const Execution& execution) const {
     std::vector<std::string> sentences;
-    const auto report = check_file(made.file, rules_.checks(), read, execution);
+    const auto report = check_file(made.file, rules_.demands().checks, read, execution);
     if (!report) return report.error();
     if (report->error) return *report->error;
     for (const Finding& finding : report->findings) {
-        if (rules_.fails(finding)) sentences.push_back(fmt::format("{} ({})", finding.message, finding.rule->name));
+        if (rules_.demands().fails(finding))
+            sentences.push_back(fmt::format("{} ({})", finding.message, finding.rule->name));
     }
     if (compares_) {
         if (const auto done = compare_with_source(made, read, execution, sentences); !done) return done.error();

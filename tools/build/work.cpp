@@ -10,7 +10,6 @@
 
 #include <fmt/format.h>
 
-#include "build/find_files.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
 
@@ -42,8 +41,9 @@ std::vector<std::string> output_folders(const std::vector<Recipe>& recipes) {
 
 class Lister {
 public:
-    Lister(const Manifest& manifest, const std::vector<Recipe>& recipes, const std::string& root)
-        : manifest_(manifest), recipes_(recipes), root_(root) {}
+    Lister(const Manifest& manifest, const std::vector<Recipe>& recipes, const std::string& root,
+           const FolderVisitor& entered)
+        : manifest_(manifest), recipes_(recipes), root_(root), entered_(entered) {}
 
     WorkList list() {
         find_inputs();
@@ -64,6 +64,7 @@ private:
     const Manifest& manifest_;
     const std::vector<Recipe>& recipes_;
     const std::string& root_;
+    const FolderVisitor& entered_;
     WorkList work_;
     std::unordered_map<std::string, std::size_t> makers_;  // the task that makes an output
     std::vector<std::set<std::size_t>> needed_;            // the recipes that each recipe needs
@@ -79,6 +80,7 @@ void Lister::find_inputs() {
     search.skip = [&](const std::string& folder) {
         return std::find(folders.begin(), folders.end(), folder) != folders.end();
     };
+    search.entered = entered_;
     search.unreadable = [&](const std::string& folder, const std::string& reason) {
         work_.unreadable.push_back(folder + ": " + reason);
     };
@@ -171,8 +173,36 @@ void Lister::check_cycle(std::size_t recipe, std::vector<std::size_t>& open) {
 
 }  // namespace
 
-WorkList list_work(const Manifest& manifest, const std::vector<Recipe>& recipes, const std::string& root) {
-    return Lister(manifest, recipes, root).list();
+WorkList list_work(const Manifest& manifest, const std::vector<Recipe>& recipes, const std::string& root,
+                   const FolderVisitor& entered) {
+    return Lister(manifest, recipes, root, entered).list();
+}
+
+WorkList part_of(const WorkList& work, std::set<std::size_t> part) {
+    for (std::size_t before = 0; before != part.size();) {
+        before = part.size();
+        for (std::size_t k = 0; k < work.tasks.size(); ++k) {
+            const std::vector<std::size_t>& needs = work.tasks[k].needs;
+            const auto is_in = [&](std::size_t needed) { return part.contains(needed); };
+            if (std::any_of(needs.begin(), needs.end(), is_in)) part.insert(k);
+        }
+    }
+    std::vector<std::size_t> open(part.begin(), part.end());
+    while (!open.empty()) {
+        const std::size_t task = open.back();
+        open.pop_back();
+        for (const std::size_t needed : work.tasks[task].needs) {
+            if (part.insert(needed).second) open.push_back(needed);
+        }
+    }
+    std::unordered_map<std::size_t, std::size_t> place;
+    for (const std::size_t task : part) place.emplace(task, place.size());
+    WorkList list;
+    for (const std::size_t task : part) {
+        BuildTask& copy = list.tasks.emplace_back(work.tasks[task]);
+        for (std::size_t& needed : copy.needs) needed = place.at(needed);
+    }
+    return list;
 }
 
 }  // namespace tex::cli

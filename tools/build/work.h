@@ -4,9 +4,11 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "build/find_files.h"
 #include "build/recipe.h"
 
 namespace tex::cli {
@@ -30,7 +32,13 @@ struct WorkList {
 // inputs, unless a pattern begins with its name. Two inputs of one recipe whose outputs have the same name, or names
 // that differ only in the case of letters, are refused, and the others are made.
 //
+// Calls `entered`, unless it is empty, with each folder before it is read.
+//
 // Throws UsageError: two recipes with one output; an output that is an input; recipes that need each other's outputs.
-[[nodiscard]] WorkList list_work(const Manifest& manifest, const std::vector<Recipe>& recipes, const std::string& root);
+[[nodiscard]] WorkList list_work(const Manifest& manifest, const std::vector<Recipe>& recipes, const std::string& root,
+                                 const FolderVisitor& entered = {});
+
+// The tasks `part`, those that need them, and those that they need.
+[[nodiscard]] WorkList part_of(const WorkList& work, std::set<std::size_t> part);
 
 }  // namespace tex::cli

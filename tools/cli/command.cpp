@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "batch/text_file.h"
 #include "cli/completion.h"
 #include "cli/help.h"
 #include "cli/text.h"
@@ -128,16 +129,35 @@ std::string Command::unknown_option(const std::string& name) const {
     return fmt::format("unknown option {}{}", printable(name), did_you_mean(name, names));
 }
 
+Result<std::vector<std::string>> Command::arguments_in(const std::string& file) {
+    if (file == "-" && has_read_standard_input_) throw UsageError("standard input can only be read once");
+    has_read_standard_input_ = has_read_standard_input_ || file == "-";
+    const auto text = read_text_file(file);
+    if (!text) return text.error();
+    return list_of(*text);
+}
+
 // Gives each row its values, and keeps the inputs. Returns the first mistake that --help overrides: an unknown option
-// or an empty name.
-std::string Command::sort(Arguments arguments) {
+// or an empty name. Errors: a file of arguments cannot be read.
+Result<std::string> Command::sort(Arguments given) {
+    std::vector<std::string> arguments(given.begin(), given.end());
+    std::size_t from_file = 0;  // the arguments before this place are from a file, or were looked at
     std::string mistake;
     bool only_inputs = false;
     for (std::size_t k = 0; k < arguments.size(); ++k) {
-        const std::string_view argument = arguments[k];
+        const std::string argument = arguments[k];
+        if (!only_inputs && k >= from_file && argument.size() > 1 && argument.front() == '@') {
+            const auto more = arguments_in(argument.substr(1));
+            if (!more) return more.error();
+            const auto place = arguments.begin() + static_cast<std::ptrdiff_t>(k);
+            arguments.insert(arguments.erase(place), more->begin(), more->end());
+            from_file = k + more->size();
+            --k;
+            continue;
+        }
         if (only_inputs || !is_option(argument)) {
             if (argument.empty() && mistake.empty()) mistake = "an input name is empty";
-            inputs_.emplace_back(argument);
+            inputs_.push_back(argument);
             continue;
         }
         only_inputs = argument == "--";
@@ -170,7 +190,11 @@ void Command::take_values() {
 }
 
 std::optional<ExitCode> Command::parse(Arguments arguments, Console& console) {
-    const std::string mistake = sort(arguments);
+    const Result<std::string> sorted = sort(arguments);
+    if (!sorted) {
+        console.error(sorted.error().message());
+        return exit_code(sorted.error().code);
+    }
     try {
         take_values();
     } catch (const UsageError&) {
@@ -180,7 +204,9 @@ std::optional<ExitCode> Command::parse(Arguments arguments, Console& console) {
     if (version_) return console.print(given("--json") ? version_json(*this) : version_text(*this));
     if (list_options_) return console.print(option_list(*this));
     if (!completion_.empty()) return console.print(completion_script(*this, completion_));
-    if (!mistake.empty()) throw UsageError(mistake);
+    if (!sorted->empty()) throw UsageError(*sorted);
+    if (has_read_standard_input_ && std::find(inputs_.begin(), inputs_.end(), "-") != inputs_.end())
+        throw UsageError("standard input can only be read once");
     for (const auto& check : checks_) check();
     return std::nullopt;
 }

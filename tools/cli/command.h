@@ -7,7 +7,8 @@
 // library's own default.
 //
 // The value of an option is the next argument, whatever it is, or the rest of the same argument: "--name VALUE",
-// "--name=VALUE", "-o FILE", "-oFILE". Everything after "--" is an input.
+// "--name=VALUE", "-o FILE", "-oFILE". Everything after "--" is an input. Before that, "@FILE" stands for the arguments
+// in FILE, one a line or separated by NUL; "@-" reads standard input.
 
 #pragma once
 
@@ -20,6 +21,7 @@
 #include <vector>
 
 #include <tex/names.h>
+#include <tex/result.h>
 
 #include "cli/console.h"
 #include "cli/exit_code.h"
@@ -120,6 +122,8 @@ public:
     // The options in `names` that were given.
     [[nodiscard]] std::vector<std::string> given_of(const std::vector<std::string>& names) const;
     [[nodiscard]] const std::vector<std::string>& inputs() const { return inputs_; }
+    // Whether @- was given.
+    [[nodiscard]] bool has_read_standard_input() const { return has_read_standard_input_; }
 
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] const std::string& summary() const { return summary_; }
@@ -132,7 +136,8 @@ public:
 private:
     Row& choice_row(const std::string& names, std::string value, std::string help, std::vector<Word> words,
                     std::function<void(const std::string& name)> take);
-    [[nodiscard]] std::string sort(Arguments arguments);
+    [[nodiscard]] Result<std::vector<std::string>> arguments_in(const std::string& file);
+    [[nodiscard]] Result<std::string> sort(Arguments given);
     [[nodiscard]] std::string unknown_option(const std::string& name) const;
     void take_values();
 
@@ -146,6 +151,7 @@ private:
     std::deque<Row> rows_;
     std::vector<std::function<void()>> checks_;
     bool finds_ = false;
+    bool has_read_standard_input_ = false;
     bool help_ = false;
     bool version_ = false;
     bool list_options_ = false;

@@ -12,7 +12,7 @@ enum class ExitCode { done = 0, findings = 1, usage = 2, io = 3, data = 4, bug =
 
 inline constexpr Named<ExitCode> kExitCodeNames[] = {
     {ExitCode::done, "0", "done"},
-    {ExitCode::findings, "1", "check-normals found problems, compare-normals found a difference over the limits"},
+    {ExitCode::findings, "1", "a check found problems, or a limit was exceeded"},
     {ExitCode::usage, "2", "the command line is wrong; nothing was read or written"},
     {ExitCode::io, "3", "a file cannot be opened, read or written; out of memory, disk or threads"},
     {ExitCode::data, "4", "a file is damaged, of an unsupported type, or does not fit the options"},

@@ -73,6 +73,8 @@ std::string help_text(const Command& command) {
         out += fmt::format("\n{}:\n", group);
         if (group == groups_in_order(command).front())
             add_entry(out, "  " + command.input().name, command.input().meaning);
+        if (group == groups_in_order(command).front())
+            add_entry(out, "  @FILE", "more arguments, one a line or separated by NUL; @- is standard input");
         for (const Row& row : command.rows()) {
             if (row.group == group && !row.hidden) add_entry(out, left_column(row), explanation(row));
         }

@@ -88,6 +88,17 @@ std::string join(const std::vector<std::string>& words, std::string_view between
     return fmt::format("{}", fmt::join(words, between));
 }
 
+std::vector<std::string> list_of(std::string_view text) {
+    const char separator = text.find('\0') == std::string_view::npos ? '\n' : '\0';
+    std::vector<std::string> entries;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find(separator), text.size());
+        if (end > 0) entries.emplace_back(text.substr(0, end));
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return entries;
+}
+
 std::string printable(std::string_view text) {
     std::string safe;
     while (!text.empty()) {

@@ -21,6 +21,9 @@ namespace tex::cli {
 // "a, b, c".
 [[nodiscard]] std::string join(const std::vector<std::string>& words, std::string_view between = ", ");
 
+// The entries of a list: its lines, without the empty ones, or, if the list contains a NUL, what is before each NUL.
+[[nodiscard]] std::vector<std::string> list_of(std::string_view text);
+
 // Returns `text` with control characters (including U+0080 to U+009F), invisible format characters (such as U+202E,
 // which reverses the direction of the text after it) and bytes that are not UTF-8 written as \xNN. So a file name
 // cannot break a line, control the terminal or look like another name.

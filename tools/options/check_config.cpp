@@ -19,37 +19,92 @@ namespace {
 
 class Reader {
 public:
-    Reader(const std::string& path, const toml::table& table) : path_(path), table_(table) {}
+    explicit Reader(const std::string& path) : path_(path) {}
 
-    CheckConfig read() const {
+    CheckConfig read(const toml::table& table) const {
         CheckConfig config;
-        const std::vector<std::string> known = {"require", "enable", "disable", "fail-on", "severity"};
-        for (const auto& [key, node] : table_) {
-            const std::string name(key.str());
-            if (std::find(known.begin(), known.end(), name) == known.end()) {
-                fail(node, fmt::format("unknown key '{}'{}", printable(name), did_you_mean(name, known)));
-            }
+        check_keys(table, {"rule"});
+        add(table, config.settings);
+        const toml::node* const rules = table.get("rule");
+        if (rules == nullptr) return config;
+        if (!rules->is_array()) fail(*rules, "a rule begins with [[rule]]");
+        for (const toml::node& node : *rules->as_array()) {
+            if (!node.is_table()) fail(node, "a rule begins with [[rule]]");
+            config.rules.push_back(rule(*node.as_table(), config.settings));
         }
-        for (const auto& [text, node] : strings("require")) {
-            if (auto added = add_requirement(config.options.require, text); !added)
-                fail(*node, printable(added.error().reason));
-        }
-        for (const auto& [text, node] : strings("enable")) config.options.enable.push_back(rule_name(text, *node));
-        for (const auto& [text, node] : strings("disable")) config.options.disable.push_back(rule_name(text, *node));
-        if (const toml::node* node = table_.get("fail-on")) config.fail_on = severity(*node);
-        read_severities(config);
         return config;
     }
 
 private:
     [[noreturn]] void fail(const toml::node& node, const std::string& reason) const {
-        throw UsageError(fmt::format("{}: line {}: {}", printable(path_), node.source().begin.line, reason));
+        const toml::source_position& place = node.source().begin;
+        throw UsageError(fmt::format("{}: line {}, column {}: {}", printable(path_), place.line, place.column, reason));
     }
 
-    std::vector<std::pair<std::string, const toml::node*>> strings(const char* key) const {
+    void check_keys(const toml::table& table, const std::vector<std::string>& more) const {
+        std::vector<std::string> known = {"require", "enable", "disable", "fail-on", "severity"};
+        known.insert(known.end(), more.begin(), more.end());
+        for (const auto& [key, node] : table) {
+            const std::string name(key.str());
+            if (std::find(known.begin(), known.end(), name) == known.end()) {
+                fail(node, fmt::format("unknown key '{}'{}", printable(name), did_you_mean(name, known)));
+            }
+        }
+    }
+
+    CheckRule rule(const toml::table& table, const CheckSettings& top_level) const {
+        check_keys(table, {"match", "exclude"});
+        if (table.get("match") == nullptr) fail(table, "a rule needs match, a pattern of files");
+        CheckRule rule;
+        rule.match = globs(table, "match");
+        rule.exclude = globs(table, "exclude");
+        rule.settings = top_level;
+        add(table, rule.settings);
+        return rule;
+    }
+
+    std::vector<Glob> globs(const toml::table& table, const char* key) const {
+        std::vector<Glob> globs;
+        for (const auto& [text, node] : strings(table, key, true)) {
+            try {
+                globs.emplace_back(text);
+            } catch (const UsageError& error) {
+                fail(*node, fmt::format("{}: {}", key, error.what()));
+            }
+        }
+        return globs;
+    }
+
+    // Adds what the table says to the settings, and overrides them.
+    void add(const toml::table& table, CheckSettings& settings) const {
+        CheckOptions& options = settings.options;
+        for (const auto& [text, node] : strings(table, "require")) {
+            if (auto added = add_requirement(options.require, text); !added)
+                fail(*node, printable(added.error().reason));
+        }
+        for (const auto& [text, node] : strings(table, "enable")) {
+            options.enable.push_back(rule_name(text, *node));
+            std::erase_if(options.disable,
+                          [&name = text](const std::string& other) { return find_rule(other) == find_rule(name); });
+        }
+        for (const auto& [text, node] : strings(table, "disable")) options.disable.push_back(rule_name(text, *node));
+        if (const toml::node* node = table.get("fail-on")) settings.fail_on = severity(*node);
+        const toml::node* const severities = table.get("severity");
+        if (severities == nullptr) return;
+        if (!severities->is_table()) fail(*severities, "severity must be a table");
+        for (const auto& [key, value] : *severities->as_table())
+            options.severity.emplace_back(rule_name(std::string(key.str()), value), severity(value));
+    }
+
+    std::vector<std::pair<std::string, const toml::node*>> strings(const toml::table& table, const char* key,
+                                                                   bool may_be_one = false) const {
         std::vector<std::pair<std::string, const toml::node*>> list;
-        const toml::node* node = table_.get(key);
+        const toml::node* node = table.get(key);
         if (node == nullptr) return list;
+        if (may_be_one && node->is_string()) {
+            list.emplace_back(node->as_string()->get(), node);
+            return list;
+        }
         if (!node->is_array()) fail(*node, fmt::format("{} must be a list of strings", key));
         for (const toml::node& item : *node->as_array()) {
             if (!item.is_string()) fail(item, fmt::format("{} must hold strings only", key));
@@ -69,20 +124,15 @@ private:
         return *found;
     }
 
-    void read_severities(CheckConfig& config) const {
-        const toml::node* node = table_.get("severity");
-        if (node == nullptr) return;
-        if (!node->is_table()) fail(*node, "severity must be a table");
-        for (const auto& [key, value] : *node->as_table()) {
-            config.options.severity.emplace_back(rule_name(std::string(key.str()), value), severity(value));
-        }
-    }
-
     const std::string& path_;
-    const toml::table& table_;
 };
 
 }  // namespace
+
+bool CheckRule::takes(const std::string& path) const {
+    const auto matches = [&](const Glob& glob) { return glob.matches(path); };
+    return std::any_of(match.begin(), match.end(), matches) && std::none_of(exclude.begin(), exclude.end(), matches);
+}
 
 Result<CheckConfig> read_check_config(const std::string& path) {
     const auto text = read_text_file(path);
@@ -92,18 +142,12 @@ Result<CheckConfig> read_check_config(const std::string& path) {
 
 CheckConfig parse_check_config(const std::string& path, const std::string& text) {
     check_toml_bounds(path, text);
-    // The behaviour of toml++ 3.3 is undefined for non-ASCII letters outside strings and comments. None of our keys and
-    // values has such a letter. So they are replaced by question marks, which are refused like any other mistake. A
-    // byte order mark may come first.
-    std::string ascii = text.substr(text.starts_with("\xef\xbb\xbf") ? 3 : 0);
-    std::replace_if(
-        ascii.begin(), ascii.end(), [](char c) { return static_cast<unsigned char>(c) > 0x7e; }, '?');
     try {
-        const toml::table table = toml::parse(ascii);
-        return Reader(path, table).read();
+        const toml::table table = toml::parse(ascii_outside_strings(text));
+        return Reader(path).read(table);
     } catch (const toml::parse_error& error) {
-        throw UsageError(
-            fmt::format("{}: line {}: {}", printable(path), error.source().begin.line, printable(error.description())));
+        throw UsageError(fmt::format("{}: line {}, column {}: {}", printable(path), error.source().begin.line,
+                                     error.source().begin.column, printable(error.description())));
     } catch (const BrokenToml&) {
         throw UsageError(fmt::format("{}: this is not TOML", printable(path)));
     }

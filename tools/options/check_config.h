@@ -9,23 +9,44 @@
 //     [severity]
 //     not-unit-length = "error"
 //
+//     [[rule]]                         # adds to the above for the files that it matches; the first rule that does wins
+//     match   = "ui/**"
+//     exclude = "ui/old/**"
+//     disable = ["N307"]
+//
 // Options of the command line add to the file and override it.
 
 #pragma once
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <tex/check.h>
 
+#include "build/glob.h"
+
 namespace tex::cli {
 
-struct CheckConfig {
+struct CheckSettings {
     CheckOptions options;
     std::optional<Severity> fail_on;
 };
 
-// Throws UsageError if the file names something that does not exist; the message has the line if it is known. Errors:
+// What is demanded of the files that match.
+struct CheckRule {
+    std::vector<Glob> match, exclude;  // of paths relative to the folder of the configuration
+    CheckSettings settings;            // with those of the top level
+
+    [[nodiscard]] bool takes(const std::string& path) const;
+};
+
+struct CheckConfig {
+    CheckSettings settings;  // of files that no rule matches
+    std::vector<CheckRule> rules;
+};
+
+// Throws UsageError if the file names something that does not exist; the message has the place. Errors:
 // io.
 [[nodiscard]] Result<CheckConfig> read_check_config(const std::string& path);
 

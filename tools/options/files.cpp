@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <string_view>
+#include <optional>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -20,16 +20,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The names in a list: one on each line or, if the list contains a NUL, one before each NUL.
-std::vector<std::string> names_in(const std::string& text) {
-    const char separator = text.find('\0') == std::string::npos ? '\n' : '\0';
-    std::vector<std::string> names;
-    for (std::string_view rest = text; !rest.empty();) {
-        const std::size_t end = std::min(rest.find(separator), rest.size());
-        if (end > 0) names.emplace_back(rest.substr(0, end));
-        rest.remove_prefix(std::min(end + 1, rest.size()));
-    }
-    return names;
+std::optional<std::string> relative_below(const fs::path& folder, const fs::path& path) {
+    const fs::path relative = path.lexically_relative(folder);
+    if (relative.empty() || *relative.begin() == "..") return std::nullopt;
+    return relative.string();
+}
+
+// Without a slash at its end.
+fs::path absolute_path(const std::string& path) {
+    fs::path whole = fs::absolute(path.empty() ? "." : path).lexically_normal();
+    return whole.has_filename() ? whole : whole.parent_path();
 }
 
 }  // namespace
@@ -37,6 +37,16 @@ std::vector<std::string> names_in(const std::string& text) {
 bool is_folder(const std::string& path) {
     std::error_code error;
     return path.ends_with('/') || fs::is_directory(path, error);
+}
+
+std::optional<std::string> path_below(const std::string& folder, const std::string& path) {
+    const fs::path of_folder = absolute_path(folder), of_path = absolute_path(path);
+    if (auto relative = relative_below(of_folder, of_path)) return relative;
+    std::error_code error;
+    const fs::path real_folder = fs::weakly_canonical(of_folder, error);
+    const fs::path named = fs::weakly_canonical(of_path.parent_path(), error) / of_path.filename();
+    if (auto relative = relative_below(real_folder, named)) return relative;
+    return relative_below(real_folder, fs::weakly_canonical(of_path, error));
 }
 
 void FileOptions::add(Command& command, bool joins) {
@@ -50,8 +60,14 @@ void FileOptions::add(Command& command, bool joins) {
     };
     command.text(out_dir, "--out-dir", "DIR", "the folder for the outputs of many inputs, created if missing")
         .completes = Completes::directories;
-    command.text(name, "--name", "PATTERN", "names of outputs, made of {dir} {stem} {ext} {level} {format}");
+    command.text(name, "--name", "PATTERN",
+                 "names of outputs, made of {dir} {stem} {stem:-SUFFIX} {ext} {level} {format}");
+    command
+        .text(root, "--root", "DIR",
+              "{dir} is relative to this folder, which holds the inputs; the default of --name begins with {dir}/")
+        .completes = Completes::directories;
     add_list(command);
+    command.flag(update, "--update", "skip inputs whose outputs are newer than everything that they are made from");
     command.text(depfile, "--depfile", "FILE", "write what each output was made from, for Make and Ninja").completes =
         Completes::files;
     command.flag(no_clobber, "--no-clobber", "never replace a file");
@@ -62,6 +78,9 @@ void FileOptions::add(Command& command, bool joins) {
 void FileOptions::check(const Command& command) const {
     if (!output.empty() && !out_dir.empty()) throw UsageError("--output and --out-dir contradict each other");
     if (!output.empty() && !name.empty()) throw UsageError("--output and --name contradict each other");
+    if (!output.empty() && !root.empty()) throw UsageError("--output and --root contradict each other");
+    if (!root.empty() && !name.empty() && !names_folders())
+        throw UsageError("--root has no effect, because --name does not contain {dir}");
     check_inputs(command);
     if (output.empty() && out_dir.empty() && name.empty()) throw UsageError("no output: give -o FILE or --out-dir DIR");
     if (depfile == "-") throw UsageError("--depfile: needs a file, not standard output");
@@ -70,6 +89,7 @@ void FileOptions::check(const Command& command) const {
     }
     if (output != "-") return;
     if (command.given("--json")) throw UsageError("-o - and --json both want standard output");
+    if (update) throw UsageError("-o - and --update contradict each other");
     if (no_clobber) throw UsageError("-o - and --no-clobber contradict each other");
     if (!depfile.empty()) throw UsageError("--depfile has no name for standard output");
 }
@@ -92,7 +112,8 @@ void FileOptions::add_list(Command& command) {
 
 void FileOptions::check_inputs(const Command& command) const {
     if (command.inputs().empty() && files_from.empty()) throw UsageError("no input; see " + command.name() + " --help");
-    const auto dashes = std::count(command.inputs().begin(), command.inputs().end(), "-") + (files_from == "-" ? 1 : 0);
+    const auto dashes = std::count(command.inputs().begin(), command.inputs().end(), "-") +
+                        (files_from == "-" ? 1 : 0) + (command.has_read_standard_input() ? 1 : 0);
     if (dashes > 1) throw UsageError("standard input can only be read once");
 }
 
@@ -101,7 +122,7 @@ Result<std::vector<std::string>> FileOptions::list_inputs(const Command& command
     if (!files_from.empty()) {
         const auto list = read_text_file(files_from);
         if (!list) return list.error();
-        const std::vector<std::string> listed = names_in(*list);
+        const std::vector<std::string> listed = list_of(*list);
         inputs.insert(inputs.end(), listed.begin(), listed.end());
         if (inputs.empty() && !allow_empty) {
             throw UsageError(
@@ -111,10 +132,20 @@ Result<std::vector<std::string>> FileOptions::list_inputs(const Command& command
     return inputs;
 }
 
+NameFields FileOptions::fields_of(const std::string& input) const {
+    NameFields fields = name_fields(input);
+    if (root.empty() || input == "-") return fields;
+    const auto dir = path_below(root, fields.dir);
+    if (!dir) throw UsageError(fmt::format("{} is not in --root {}", printable(input), printable(root)));
+    fields.dir = *dir;
+    return fields;
+}
+
 std::string FileOptions::place(const std::string& pattern, const NameFields& fields) const {
     const NamePattern parsed(pattern);
     std::string file = parsed.expand(fields);
     if (file == "-") throw UsageError("a name made of a pattern is -, which is standard output; -o - writes there");
+    if (parsed.uses("dir") && file.starts_with("./")) file.erase(0, 2);
     if (out_dir.empty()) return file;
     const fs::path dir = fs::path(fields.dir).lexically_normal();
     if (parsed.uses("dir") && (dir.is_absolute() || *dir.begin() == "..")) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,13 +18,19 @@ namespace tex::cli {
 // Whether `path` can only be a folder: it is one, or ends in a slash.
 [[nodiscard]] bool is_folder(const std::string& path);
 
+// `path` relative to `folder` (empty: the working directory), if it is there: by name or, if names do not show it,
+// through links. The folder itself is ".".
+[[nodiscard]] std::optional<std::string> path_below(const std::string& folder, const std::string& path);
+
 struct FileOptions {
     std::string output;  // "-" for standard output, whichever of its names was given
     std::string out_dir;
     std::string name;
+    std::string root;
     std::string files_from;
     bool allow_empty = false;
     std::string depfile;
+    bool update = false;
     bool no_clobber = false;
     bool no_sync = false;
 
@@ -35,6 +42,12 @@ struct FileOptions {
     // The inputs of the command line and of --files-from. Errors: the list cannot be read. Throws UsageError if there
     // is no input at all, unless allow_empty is set: a list that a script made wrongly must not pass for success.
     [[nodiscard]] Result<std::vector<std::string>> list_inputs(const Command& command) const;
+
+    // The fields of a name for this input. {dir} is relative to --root if that option is given. Throws UsageError if
+    // the input is not in that folder.
+    [[nodiscard]] NameFields fields_of(const std::string& input) const;
+    // Whether folders are made for outputs without --out-dir.
+    [[nodiscard]] bool names_folders() const { return !name.empty() && NamePattern(name).uses("dir"); }
 
     // The output name that `pattern` gives, below --out-dir if that option is given.
     [[nodiscard]] std::string place(const std::string& pattern, const NameFields& fields) const;

@@ -2,6 +2,8 @@
 
 #include "options/rules.h"
 
+#include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
@@ -9,7 +11,7 @@
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
-#include "options/check_config.h"
+#include "options/files.h"
 
 namespace tex::cli {
 namespace {
@@ -72,23 +74,40 @@ void RuleOptions::add(Command& command) {
 }
 
 // The words of the file come first, so that those of the command line override them.
-Result<void> RuleOptions::merge_config(const Command& command) {
-    checks_ = given_;
-    fail_on_ = least_failing_;
-    if (config_.empty()) return {};
-    const auto config = read_check_config(config_);
-    if (!config) return config.error();
-    checks_ = config->options;
-    for (const std::string& text : required_) require(checks_.require, text);
-    append(checks_.enable, given_.enable);
-    append(checks_.severity, given_.severity);
+Demands RuleOptions::merged(const CheckSettings& settings, const Command& command) const {
+    Demands demands{settings.options, settings.fail_on.value_or(least_failing_)};
+    CheckOptions& checks = demands.checks;
+    for (const std::string& text : required_) require(checks.require, text);
+    append(checks.enable, given_.enable);
+    append(checks.severity, given_.severity);
     // A rule may appear with its id in one place and with its name in the other.
     for (const std::string& name : given_.enable) {
-        std::erase_if(checks_.disable, [&](const std::string& other) { return find_rule(other) == find_rule(name); });
+        std::erase_if(checks.disable, [&](const std::string& other) { return find_rule(other) == find_rule(name); });
     }
-    append(checks_.disable, given_.disable);
-    if (config->fail_on && !command.given("--fail-on")) fail_on_ = *config->fail_on;
+    append(checks.disable, given_.disable);
+    if (command.given("--fail-on")) demands.fail_on = least_failing_;
+    return demands;
+}
+
+Result<void> RuleOptions::merge_config(const Command& command) {
+    CheckConfig config;
+    if (!config_.empty()) {
+        auto read = read_check_config(config_);
+        if (!read) return read.error();
+        config = std::move(*read);
+    }
+    demands_ = merged(config.settings, command);
+    for (const CheckRule& rule : config.rules) of_rules_.push_back(merged(rule.settings, command));
+    file_rules_ = std::move(config.rules);
     return {};
+}
+
+const Demands& RuleOptions::demands_of(const std::string& path) const {
+    if (file_rules_.empty() || path == "-") return demands_;
+    const auto name = path_below(std::filesystem::path(config_).parent_path().string(), path);
+    const auto rule = std::find_if(file_rules_.begin(), file_rules_.end(),
+                                   [&](const CheckRule& candidate) { return name && candidate.takes(*name); });
+    return rule == file_rules_.end() ? demands_ : of_rules_[static_cast<std::size_t>(rule - file_rules_.begin())];
 }
 
 Result<void> RuleOptions::read(const Command& command, const std::vector<Task>& tasks, const ReadOptions& read) {
@@ -100,7 +119,8 @@ Result<void> RuleOptions::read(const Command& command, const std::vector<Task>& 
     auto field = height_field(*image, {});
     if (!field) return field.error().of(height_file_);
     height_ = std::move(*field);
-    checks_.height = &*height_;
+    demands_.checks.height = &*height_;
+    for (Demands& demands : of_rules_) demands.checks.height = &*height_;
     return {};
 }
 

@@ -12,8 +12,17 @@
 
 #include "batch/task.h"
 #include "cli/command.h"
+#include "options/check_config.h"
 
 namespace tex::cli {
+
+// What is demanded of a file.
+struct Demands {
+    CheckOptions checks;
+    Severity fail_on = Severity::error;
+
+    [[nodiscard]] bool fails(const Finding& finding) const { return finding.severity >= fail_on; }
+};
 
 // --require, --enable, --disable, --severity, --config, --fail-on, --height, --list, --explain.
 class RuleOptions {
@@ -29,13 +38,15 @@ public:
     // cannot be read.
     [[nodiscard]] Result<void> read(const Command& command, const std::vector<Task>& tasks, const ReadOptions& read);
 
-    // The options and the configuration together. Valid after read().
-    [[nodiscard]] const CheckOptions& checks() const { return checks_; }
-    [[nodiscard]] bool fails(const Finding& finding) const { return finding.severity >= fail_on_; }
-    [[nodiscard]] Severity fail_on() const { return fail_on_; }
+    // The options and the configuration together, for a file that no [[rule]] of the configuration matches. Valid after
+    // read().
+    [[nodiscard]] const Demands& demands() const { return demands_; }
+    // The same for the file `path`.
+    [[nodiscard]] const Demands& demands_of(const std::string& path) const;
 
 private:
     [[nodiscard]] Result<void> merge_config(const Command& command);
+    [[nodiscard]] Demands merged(const CheckSettings& settings, const Command& command) const;
 
     CheckOptions given_;                        // from the command line, without `require`
     std::vector<std::string> required_;         // --require
@@ -44,8 +55,9 @@ private:
     bool list_ = false;
     const Rule* explain_ = nullptr;
 
-    CheckOptions checks_;
-    Severity fail_on_ = Severity::error;
+    Demands demands_;
+    std::vector<CheckRule> file_rules_;  // of the configuration
+    std::vector<Demands> of_rules_;      // for each of them
     std::optional<HeightField> height_;
 };
 

@@ -7,9 +7,10 @@
 
 #include <tex/container.h>
 
+#include "batch/depfile.h"
 #include "batch/text_file.h"
+#include "cli/usage_error.h"
 #include "reports/html_map.h"
-#include "reports/junit.h"
 #include "reports/sarif.h"
 
 namespace tex::cli {
@@ -25,15 +26,28 @@ void CheckDocuments::add(Command& command) {
     command.flag(is_for_github_, "--github", "print the findings as GitHub's workflow commands: annotations");
     add_file(baseline_path_, "--baseline", "accept the findings that this file lists");
     add_file(baseline_written_, "--baseline-write", "write such a file with all findings, and do not fail for them");
+    add_file(depfile_, "--depfile", "write what the documents were made from, for Make and Ninja");
+}
+
+std::vector<std::string> CheckDocuments::written() const {
+    std::vector<std::string> files = {page_path_, sarif_, junit_, baseline_written_};
+    std::erase(files, std::string());
+    return files;
 }
 
 // No two documents may be the same file, except that the written baseline may be the one that is read.
 void CheckDocuments::check(const std::vector<std::string>& inputs, std::vector<NamedFile> others) {
+    if (!depfile_.empty() && written().empty()) throw UsageError("--depfile needs a document, such as --report");
+    sources_ = inputs;
+    for (const NamedFile& other : others) sources_.push_back(other.path);
+    if (baseline_path_ != baseline_written_) sources_.push_back(baseline_path_);
+    std::erase(sources_, std::string());
     for (const NamedFile& document : std::initializer_list<NamedFile>{{"--baseline-write", baseline_written_},
                                                                       {"--baseline", baseline_path_},
                                                                       {"--report", page_path_},
                                                                       {"--sarif", sarif_},
-                                                                      {"--junit", junit_}}) {
+                                                                      {"--junit", junit_},
+                                                                      {"--depfile", depfile_}}) {
         if (!document.path.empty() && document.option != "--baseline") check_document(document, inputs, others);
         others.push_back(document);
     }
@@ -60,12 +74,14 @@ int CheckDocuments::accept(CheckReport& report) {
     return baseline_ ? baseline_->accept(report, content) : 0;
 }
 
-Result<void> CheckDocuments::add(Job& job, const CheckReport& report, const Requirements& require) {
+Result<void> CheckDocuments::add(Job& job, const CheckReport& report, const Demands& demands) {
     if (has_page()) {
-        if (auto added = add_to_page(job, report, require); !added) return added;
+        if (auto added = add_to_page(job, report, demands.checks.require); !added) return added;
     }
     const std::lock_guard lock(mutex_);
-    if (!sarif_.empty() || !junit_.empty()) reports_.insert_or_assign(job.task.input, report);
+    if (!sarif_.empty() || !junit_.empty()) {
+        reports_.insert_or_assign(job.task.input, JudgedReport{report, demands.checks.require, demands.fail_on});
+    }
     return {};
 }
 
@@ -87,9 +103,8 @@ Result<void> CheckDocuments::add_to_page(Job& job, const CheckReport& report, co
     return {};
 }
 
-ExitCode CheckDocuments::write(Console& console, const Requirements& require, Severity fail_on,
-                               const std::string& summary) const {
-    std::vector<CheckReport> all;
+ExitCode CheckDocuments::write(Console& console, const std::string& summary) const {
+    std::vector<JudgedReport> all;
     for (const auto& [file, report] : reports_) all.push_back(report);
     ExitCode code = ExitCode::done;
     const auto write = [&](const std::string& path, const std::string& text) {
@@ -98,10 +113,17 @@ ExitCode CheckDocuments::write(Console& console, const Requirements& require, Se
         console.error(written.error().message());
         code = std::max(code, exit_code(written.error().code));
     };
-    if (!sarif_.empty()) write(sarif_, sarif_text(all, require));
-    if (!junit_.empty()) write(junit_, junit_text(all, require, fail_on));
+    if (!sarif_.empty()) write(sarif_, sarif_text(all));
+    if (!junit_.empty()) write(junit_, junit_text(all));
     if (has_page()) write(page_path_, page_.page(summary));
     if (writes_baseline()) write(baseline_written_, new_baseline_.text());
+    if (depfile_.empty() || code != ExitCode::done) return code;
+    if (const auto text = depfile_text({{written(), sources_}})) {
+        write(depfile_, *text);
+    } else {
+        console.error(text.error().message());
+        code = exit_code(text.error().code);
+    }
     return code;
 }
 

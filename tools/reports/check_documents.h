@@ -14,12 +14,14 @@
 #include "batch/collisions.h"
 #include "batch/job.h"
 #include "cli/command.h"
+#include "options/rules.h"
 #include "reports/baseline.h"
 #include "reports/html_report.h"
+#include "reports/junit.h"
 
 namespace tex::cli {
 
-// --report, --sarif, --junit, --github, --baseline, --baseline-write.
+// --report, --sarif, --junit, --github, --baseline, --baseline-write, --depfile.
 class CheckDocuments {
 public:
     void add(Command& command);
@@ -39,24 +41,25 @@ public:
     [[nodiscard]] int accept(CheckReport& report);
 
     // Adds a file to the documents. Any thread may call this. Errors: those of reading the file again for its pictures.
-    [[nodiscard]] Result<void> add(Job& job, const CheckReport& report, const Requirements& require);
+    [[nodiscard]] Result<void> add(Job& job, const CheckReport& report, const Demands& demands);
 
     // Writes all of them. `summary` is the first sentence of the page.
-    [[nodiscard]] ExitCode write(Console& console, const Requirements& require, Severity fail_on,
-                                 const std::string& summary) const;
+    [[nodiscard]] ExitCode write(Console& console, const std::string& summary) const;
 
 private:
+    [[nodiscard]] std::vector<std::string> written() const;
     [[nodiscard]] Result<void> add_to_page(Job& job, const CheckReport& report, const Requirements& require);
 
-    std::string page_path_, sarif_, junit_, baseline_path_, baseline_written_;  // or empty
+    std::string page_path_, sarif_, junit_, baseline_path_, baseline_written_, depfile_;  // or empty
+    std::vector<std::string> sources_;  // what the documents are made from
     bool is_for_github_ = false;
     std::mutex mutex_;
     std::optional<Baseline> baseline_;
     Baseline new_baseline_;
     HtmlReport page_{"check-normals", check_columns()};
     HtmlSizes sizes_;  // of the page's pictures
-    std::map<std::string, CheckReport>
-        reports_;  // by file, so that the documents do not depend on the order in which files end
+    // By file, so that the documents do not depend on the order in which files end.
+    std::map<std::string, JudgedReport> reports_;
 };
 
 }  // namespace tex::cli

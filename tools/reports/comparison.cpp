@@ -11,6 +11,7 @@
 #include <tex/sheet.h>
 
 #include "batch/collisions.h"
+#include "batch/depfile.h"
 #include "batch/text_file.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
@@ -82,6 +83,9 @@ void CompareDocuments::add(Command& command) {
         .text(page_path_, "--report", "FILE",
               "write a page with the figures and pictures of both maps, on which the light can be moved")
         .completes = Completes::files;
+    command
+        .text(depfile_, "--depfile", "FILE", "write what the heat map and the page were made from, for Make and Ninja")
+        .completes = Completes::files;
 }
 
 void CompareDocuments::check(const std::vector<std::string>& inputs) const {
@@ -92,6 +96,10 @@ void CompareDocuments::check(const std::vector<std::string>& inputs) const {
         const auto container = container_of(heat_map_path_);
         if (!container || !can_hold(*container, Encoding::rgb8))
             throw UsageError(fmt::format("--heatmap: {}: unsupported picture format", printable(heat_map_path_)));
+    }
+    if (!depfile_.empty()) {
+        if (heat_map_path_.empty() && page_path_.empty()) throw UsageError("--depfile needs --heatmap or --report");
+        check_document({"--depfile", depfile_}, inputs, {heat_map_file, page});
     }
     if (page_path_.empty()) return;
     check_document(page, inputs, {heat_map_file});
@@ -118,6 +126,14 @@ Result<void> CompareDocuments::write_page(const std::vector<ComparedLevel>& leve
     return write_text_file(
         page_path_, page.page(fmt::format("level {}: mean {:.4f}, 99.9th percentile {:.4f}, largest {:.4f} degrees",
                                           levels.front().number, e.mean, e.p999, e.max)));
+}
+
+Result<void> CompareDocuments::write_depfile(const std::vector<std::string>& inputs) const {
+    if (depfile_.empty()) return {};
+    std::vector<std::string> outputs = {heat_map_path_, page_path_};
+    std::erase(outputs, std::string());
+    const auto text = depfile_text({{outputs, inputs}});
+    return text ? write_text_file(depfile_, *text) : text.error();
 }
 
 }  // namespace tex::cli

@@ -28,7 +28,7 @@ struct ComparisonRun {
 // Prints a failure as JSON.
 [[nodiscard]] ExitCode print_failure(Console& console, const ComparisonRun& run, const Error& error);
 
-// --heatmap, --heatmap-scale, --report.
+// --heatmap, --heatmap-scale, --report, --depfile.
 class CompareDocuments {
 public:
     void add(Command& command);
@@ -45,9 +45,12 @@ public:
     [[nodiscard]] Result<void> write_page(const std::vector<ComparedLevel>& levels, HtmlMap a, HtmlMap b,
                                           const Plane<float>& degrees) const;
 
+    // Writes what the documents were made from, if the user requests it.
+    [[nodiscard]] Result<void> write_depfile(const std::vector<std::string>& inputs) const;
+
 private:
-    std::string heat_map_path_, page_path_;  // or empty
-    std::optional<double> heat_map_scale_;   // degrees; none: the largest angle
+    std::string heat_map_path_, page_path_, depfile_;  // or empty
+    std::optional<double> heat_map_scale_;             // degrees; none: the largest angle
 };
 
 }  // namespace tex::cli

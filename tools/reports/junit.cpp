@@ -34,9 +34,11 @@ std::string escaped(std::string_view text) {
     }
 }
 
-std::string test_case(const CheckReport& report, const Requirements& require, Severity fail_on) {
+std::string test_case(const JudgedReport& judged) {
+    const CheckReport& report = judged.report;
+    const Requirements& require = judged.require;
     CheckReport failing = report, other = report;
-    const auto fails = [&](const Finding& finding) { return finding.severity >= fail_on; };
+    const auto fails = [&](const Finding& finding) { return finding.severity >= judged.fail_on; };
     std::erase_if(failing.findings, [&](const Finding& finding) { return !fails(finding); });
     std::erase_if(other.findings, fails);
     std::string xml = fmt::format("    <testcase classname=\"check-normals\" name=\"{}\">\n", escaped(report.file));
@@ -57,18 +59,20 @@ std::string test_case(const CheckReport& report, const Requirements& require, Se
 
 }  // namespace
 
-std::string junit_text(const std::vector<CheckReport>& reports, const Requirements& require, Severity fail_on) {
+std::string junit_text(const std::vector<JudgedReport>& reports) {
     const auto count = [&](auto holds) { return std::count_if(reports.begin(), reports.end(), holds); };
-    const auto errors = count([](const CheckReport& report) { return report.error.has_value(); });
-    const auto failures = count([&](const CheckReport& report) {
-        return !report.error && std::any_of(report.findings.begin(), report.findings.end(),
-                                            [&](const Finding& finding) { return finding.severity >= fail_on; });
+    const auto errors = count([](const JudgedReport& judged) { return judged.report.error.has_value(); });
+    const auto failures = count([](const JudgedReport& judged) {
+        const std::vector<Finding>& findings = judged.report.findings;
+        return !judged.report.error && std::any_of(findings.begin(), findings.end(), [&](const Finding& finding) {
+            return finding.severity >= judged.fail_on;
+        });
     });
     std::string xml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n";
     xml += fmt::format(
         "  <testsuite name=\"check-normals\" tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"0\" time=\"0\">\n",
         reports.size(), failures, errors);
-    for (const CheckReport& report : reports) xml += test_case(report, require, fail_on);
+    for (const JudgedReport& judged : reports) xml += test_case(judged);
     return xml + "  </testsuite>\n</testsuites>\n";
 }
 

@@ -10,9 +10,15 @@
 
 namespace tex::cli {
 
-// One test case for each file: a failure with the findings at or above `fail_on`; an error if the file could not be
+// What was found in a file, and what was demanded of it.
+struct JudgedReport {
+    CheckReport report;
+    Requirements require;
+    Severity fail_on = Severity::error;
+};
+
+// One test case for each file: a failure with the findings at or above its `fail_on`; an error if the file could not be
 // read. Lesser findings become its output.
-[[nodiscard]] std::string junit_text(const std::vector<CheckReport>& reports, const Requirements& require,
-                                     Severity fail_on);
+[[nodiscard]] std::string junit_text(const std::vector<JudgedReport>& reports);
 
 }  // namespace tex::cli

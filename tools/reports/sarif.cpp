@@ -81,7 +81,7 @@ Json result_json(const CheckReport& report, const Finding& finding, const Requir
 
 }  // namespace
 
-std::string sarif_text(const std::vector<CheckReport>& reports, const Requirements& require) {
+std::string sarif_text(const std::vector<JudgedReport>& reports) {
     Json driver;
     driver["name"] = "check-normals";
     driver["version"] = version();
@@ -89,7 +89,7 @@ std::string sarif_text(const std::vector<CheckReport>& reports, const Requiremen
     for (const Rule& rule : rules()) driver["rules"].push_back(rule_json(rule));
 
     Json results = Json::array(), notifications = Json::array();
-    for (const CheckReport& report : reports) {
+    for (const auto& [report, require, fail_on] : reports) {
         for (const Finding& finding : report.findings) results.push_back(result_json(report, finding, require));
         if (!report.error || !report.findings.empty()) continue;
         Json notification;

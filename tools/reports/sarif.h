@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include <tex/check.h>
+#include "reports/junit.h"
 
 namespace tex::cli {
 
 // One run of check-normals. The rules' metadata come from rules(). Files that could not be opened become notifications
 // of the invocation. No time, host or absolute path is added.
-[[nodiscard]] std::string sarif_text(const std::vector<CheckReport>& reports, const Requirements& require);
+[[nodiscard]] std::string sarif_text(const std::vector<JudgedReport>& reports);
 
 }  // namespace tex::cli

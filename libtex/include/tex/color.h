@@ -36,7 +36,8 @@ struct ColorOptions {
 [[nodiscard]] Result<void> to_linear(Image& image, const ColorOptions& options);
 
 // The files on which to_linear() depends: the configuration, if it is a file, and the tables (LUTs) that it uses for
-// options.space. Empty without a configuration. Errors: those of to_linear() that concern the configuration.
+// options.space. Empty without a configuration. OpenColorIO keeps tables in memory; after this call, to_linear() reads
+// them again. Errors: those of to_linear() that concern the configuration.
 [[nodiscard]] Result<std::vector<std::string>> color_files(const ColorOptions& options);
 
 // The version of OpenColorIO: "2.1.2".

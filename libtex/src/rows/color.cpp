@@ -162,6 +162,9 @@ Result<std::vector<std::string>> files_of_conversion(const std::string& file, co
     std::vector<std::string> files;
     if (space.empty() || file.empty()) return files;
     OCIO::SetLoggingLevel(OCIO::LOGGING_LEVEL_NONE);
+    // OpenColorIO keeps every table that it has read, by its name. Who asks for the names in a program that runs for
+    // long wants to know what they are now.
+    OCIO::ClearAllCaches();
     const Result<OCIO::ConstConfigRcPtr> config = load(file);
     if (!config) return config.error();
     const Result<OCIO::ConstProcessorRcPtr> processor = processor_of(*config, file, space);
