@@ -160,7 +160,7 @@ library)
     quietly 'the library cannot be configured' cmake -S "$source" -B "$scratch/build" -G Ninja \
         "${reuse[@]}" -DCMAKE_CXX_COMPILER="$cxx" -DTEX_COMMANDS=OFF -DBUILD_SHARED_LIBS=$shared \
         -DCMAKE_INSTALL_PREFIX="$scratch/stage"
-    without "$scratch/build" CLI11 fmt_DIR nlohmann OpenImageIO seccomp GTest squish osmesa
+    without "$scratch/build" CLI11 fmt_DIR OpenImageIO seccomp GTest squish osmesa
     quietly 'the library cannot be built' cmake --build "$scratch/build" --target install
     check_files "$scratch/stage" "$files"
     use_library "$scratch/program" "$extremes" -DCMAKE_PREFIX_PATH="$scratch/stage"
@@ -169,7 +169,7 @@ subdirectory)
     for shared in ON OFF; do
         folder=$scratch/shared-$shared
         use_library "$folder" "$extremes" "${reuse[@]}" -DLIBTEX_SOURCE="$source" -DBUILD_SHARED_LIBS=$shared
-        without "$folder" CLI11 fmt_DIR nlohmann OpenImageIO seccomp GTest squish osmesa
+        without "$folder" CLI11 fmt_DIR OpenImageIO seccomp GTest squish osmesa
         cmake --install "$folder" --prefix "$folder/stage" >/dev/null
         [ ! -e "$folder/stage" ] || fail "a project that adds libtex installs $(list_files "$folder/stage")"
     done
