@@ -80,7 +80,8 @@ protected:
         const auto begun = WatchClock::now();
         builder.send(signal);
         const Ran ran = builder.wait();
-        EXPECT_EQ(ran.err, "");
+        // Nothing is printed while it waits. On a machine under load it may still build.
+        EXPECT_TRUE(ran.err.empty() || ran.err.starts_with("build-normals: error: interrupted by ")) << ran.err;
         EXPECT_LT(WatchClock::now() - begun, std::chrono::seconds(5));
         return ran.code;
     }
