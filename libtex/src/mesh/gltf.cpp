@@ -204,7 +204,7 @@ Result<const GltfAccessor*> PrimitiveReader::attribute(JsonValue attributes, con
         return bad(name + " has " + std::to_string((*accessor)->count) + " elements for " + std::to_string(vertices_) +
                    " vertices");
     }
-    return accessor;
+    return *accessor;
 }
 
 template <class T>
@@ -218,12 +218,12 @@ Result<void> PrimitiveReader::fill(JsonValue attributes, const std::string& name
 }
 
 Result<void> PrimitiveReader::read_attributes(JsonValue attributes, const Read& used, MeshPart& part) {
-    if (const auto done = fill(attributes, "POSITION", used, part.positions); !done) return done;
+    if (const auto done = fill(attributes, "POSITION", used, part.positions); !done) return done.error();
     if (!attributes["NORMAL"].is_null()) {
-        if (const auto done = fill(attributes, "NORMAL", used, part.normals); !done) return done;
+        if (const auto done = fill(attributes, "NORMAL", used, part.normals); !done) return done.error();
     }
     if (!attributes["TANGENT"].is_null()) {
-        if (const auto done = fill(attributes, "TANGENT", used, part.tangents); !done) return done;
+        if (const auto done = fill(attributes, "TANGENT", used, part.tangents); !done) return done.error();
     }
     for (int set = 0; set < kMaxUvSets; ++set) {
         const std::string name = "TEXCOORD_" + std::to_string(set);
@@ -231,7 +231,7 @@ Result<void> PrimitiveReader::read_attributes(JsonValue attributes, const Read& 
         if (part.uvs.size() != static_cast<std::size_t>(set))
             return bad("has " + name + ", but not TEXCOORD_" + std::to_string(part.uvs.size()));
         part.uvs.emplace_back();
-        if (const auto done = fill(attributes, name, used, part.uvs.back()); !done) return done;
+        if (const auto done = fill(attributes, name, used, part.uvs.back()); !done) return done.error();
     }
     return {};
 }

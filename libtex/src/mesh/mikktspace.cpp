@@ -262,7 +262,7 @@ Result<void> Mikktspace::make_group_tangents(const Execution& execution) {
     const auto made = parallel_for(execution, static_cast<int>(group_ends_.size()), kGrain, [&](int begin, int end) {
         for (int group = begin; group < end; ++group) make_tangents_of(static_cast<std::uint32_t>(group));
     });
-    if (!made) return made;
+    if (!made) return made.error();
     if (too_many_) {
         return Error{ErrorCode::unsupported,
                      {},

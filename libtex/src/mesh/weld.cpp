@@ -108,7 +108,7 @@ Result<void> Welder::sort_into_slabs(const Execution& execution) {
             }
         }
     });
-    if (!counted) return counted;
+    if (!counted) return counted.error();
     slab_ends_.resize(kSlabs);
     std::size_t total = 0;
     for (std::size_t slab = 0; slab < kSlabs; ++slab) {
