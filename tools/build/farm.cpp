@@ -26,8 +26,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostShards = 1 << 20;
-
 // Beside the report, until it is there: what the shard has made so far.
 std::string state_beside(const std::string& report) {
     const fs::path path(report);

@@ -18,6 +18,8 @@
 
 namespace tex::cli {
 
+inline constexpr int kMostShards = 1 << 20;
+
 struct FarmPlan {
     std::string path;      // of the plan, for messages
     std::string manifest;  // its path, as it was given when the plan was made

@@ -14,8 +14,6 @@
 namespace tex::cli {
 namespace {
 
-constexpr int kMostShards = 1 << 20;
-
 Json output_json(const std::string& name, const OutputRecord& record) {
     Json files = Json::array();
     for (const auto& [file, digest] : record.files)
