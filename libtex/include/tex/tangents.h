@@ -47,7 +47,7 @@ inline constexpr int kMaxFan = 4096;
 //         unsupported  more than kMaxFan triangles meet at one vertex, as explained there
 //         out_of_memory, cancelled
 // The same bytes for every number of threads, processor and compiler.
-// Memory: about 110 bytes for each corner, including the result.
+// Memory: about 50 bytes for each corner, including the result.
 [[nodiscard]] Result<std::vector<Float4>> make_tangents(const MeshPart& part,
                                                         TangentMethod method = TangentMethod::mikktspace,
                                                         int uv_set = 0, const Execution& execution = {});
