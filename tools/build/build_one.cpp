@@ -44,7 +44,7 @@ private:
 // The output of `maker` that the recipe reads.
 std::string needed_file(const BuildTask& maker, const Recipe& recipe) {
     for (const std::string& file : recipe.files()) {
-        const std::string name = fs::path(file).lexically_normal().string();
+        std::string name = fs::path(file).lexically_normal().string();
         if (std::find(maker.outputs.begin(), maker.outputs.end(), name) != maker.outputs.end()) return name;
     }
     return maker.outputs.front();
@@ -121,7 +121,7 @@ Result<void> BuildRun::fetch(const BuildTask& task, Judgement& judgement, Outcom
             left.push_back(std::move(stale));
             continue;
         }
-        if (const auto created = create_folders(path); !created) return created;
+        if (auto created = create_folders(path); !created) return created;
         const Result<bool> found = cache_.fetch(key_of(stale.settings, judgement.inputs), path, write_);
         if (!found) return with_remedy(found.error(), path);
         if (!*found) {

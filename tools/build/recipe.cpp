@@ -148,6 +148,7 @@ ReadyCommand Recipe::ready(const StepSettings& step, const OutputSettings* outpu
     if (!is_last) line.emplace_back("--format=float");
     line.insert(line.end(), {"-o", out, "--", "input"});
     std::vector<const char*> pointers;
+    pointers.reserve(line.size());
     for (const std::string& argument : line) pointers.push_back(argument.c_str());
     const auto place_of = [&](const std::string& message) {
         for (const auto* settings : {&step.settings, output != nullptr ? &output->settings : nullptr}) {

@@ -43,6 +43,7 @@ TextureCheck::TextureCheck(const Manifest& manifest, const Settings& settings, C
         text_ += fmt::format("check {} {}\n", setting.key, join(setting.values, "\n"));
     }
     std::vector<const char*> pointers;
+    pointers.reserve(arguments.size());
     for (const std::string& argument : arguments) pointers.push_back(argument.c_str());
     try {
         std::ignore = command_.parse(pointers, console);

@@ -92,8 +92,10 @@ void note(const Recipe& recipe, const RecipeOutput& output, const std::string& i
 
 // The files that an output has if it has this number of levels.
 std::vector<std::string> files_of(const std::string& path, int levels) {
+    const int count = has_level(path) ? levels : 1;
     std::vector<std::string> files;
-    for (int k = 0; k < (has_level(path) ? levels : 1); ++k) files.push_back(with_level(path, k));
+    files.reserve(static_cast<std::size_t>(count));
+    for (int k = 0; k < count; ++k) files.push_back(with_level(path, k));
     return files;
 }
 
