@@ -153,7 +153,7 @@ TEST_F(BuildNormalsWatch, OutputsAndOtherFilesDoNotWakeIt) {
     manifest.replace(manifest.find("{dir}/"), 6, "{dir}/made/{dir}/");
     scratch_.write("normals.toml", manifest);
     Background builder(scratch_, "build-normals", {"--watch", "--no-sync", "--cache", "cache"});
-    ASSERT_TRUE(prints(builder, "2 made, 0 up to date, 0 from the cache\nwatching "));
+    ASSERT_TRUE(prints(builder, "\nwatching "));
     scratch_.write("art/notes.txt", "a note");
     scratch_.write("art/.wall_h.png.swp", "an editor's file");
     std::this_thread::sleep_for(std::chrono::milliseconds(500));
