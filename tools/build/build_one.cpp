@@ -158,11 +158,31 @@ void BuildRun::list_stale(const BuildTask& task, const std::vector<Stale>& stale
     }
 }
 
-// What stat() says about all files that the outputs are made from.
+// What stat() says about the files that the outputs are made from, except those that this or another builder makes.
 std::vector<std::optional<FileStamp>> BuildRun::stamps_of(const BuildTask& task) const {
+    const auto is_made = [&](const std::string& file) {
+        const std::string name = fs::path(file).lexically_normal().string();
+        return std::any_of(task.needs.begin(), task.needs.end(), [&](std::size_t needed) {
+            const std::vector<std::string>& outputs = work_.tasks[needed].outputs;
+            return std::find(outputs.begin(), outputs.end(), name) != outputs.end();
+        });
+    };
     std::vector<std::optional<FileStamp>> stamps = {contents_.stamp(task.input)};
-    for (const std::string& file : recipes_[task.recipe].files()) stamps.push_back(contents_.stamp(file));
+    for (const std::string& file : recipes_[task.recipe].files()) {
+        if (!is_made(file)) stamps.push_back(contents_.stamp(file));
+    }
     return stamps;
+}
+
+// Whether no file was replaced since `stamps`. Another builder may have put the same bytes in the place of a file that
+// both make, so the contents of those are compared with `inputs`.
+Result<bool> BuildRun::are_unchanged(const BuildTask& task, const std::vector<std::optional<FileStamp>>& stamps,
+                                     const Digest& inputs) {
+    if (stamps_of(task) != stamps) return false;
+    if (task.needs.empty()) return true;
+    const Result<Judgement> now = judge_.judge(task, recipes_[task.recipe]);
+    if (!now) return now.error();
+    return now->inputs == inputs;
 }
 
 // Makes what is stale, unless the cache has it. Returns false if a file was replaced while it was read. Nothing is then
@@ -174,11 +194,12 @@ Result<bool> BuildRun::make_stale(const BuildTask& task, Judgement judgement,
     if (judgement.stale.empty()) {
         ++totals_.cached;
         outcome.report["status"] = "cached";
-        return stamps_of(task) == stamps;
+        return are_unchanged(task, stamps, judgement.inputs);
     }
     const Result<Made> made = make(task, judgement.stale, counted, outcome);
     if (!made) return made.error();
-    if (stamps_of(task) != stamps) return false;
+    const Result<bool> unchanged = are_unchanged(task, stamps, judgement.inputs);
+    if (!unchanged || !*unchanged) return unchanged;
     outcome.warnings.insert(outcome.warnings.end(), made->warnings.begin(), made->warnings.end());
     outcome.remarks.insert(outcome.remarks.end(), made->remarks.begin(), made->remarks.end());
     if (outcome.code == ExitCode::findings) {

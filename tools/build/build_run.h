@@ -52,6 +52,8 @@ private:
     Result<bool> make_stale(const BuildTask& task, Judgement judgement,
                             const std::vector<std::optional<FileStamp>>& stamps, double& counted, Outcome& outcome);
     [[nodiscard]] std::vector<std::optional<FileStamp>> stamps_of(const BuildTask& task) const;
+    Result<bool> are_unchanged(const BuildTask& task, const std::vector<std::optional<FileStamp>>& stamps,
+                               const Digest& inputs);
     Result<void> fetch(const BuildTask& task, Judgement& judgement, Outcome& outcome);
     Result<void> record(const BuildTask& task, const Stale& made, const Digest& inputs,
                         const std::vector<std::string>& paths, Outcome& outcome);
