@@ -50,8 +50,8 @@ inline MeshPart random_part(unsigned seed) {
     const auto below = [&](unsigned n) { return static_cast<unsigned>(random() >> 8) % n; };
     const auto coordinate = [&](unsigned steps) { return static_cast<float>(below(steps)) / 8.0f - 1.0f; };
 
-    if (seed % 5 == 0) {  // a sheet with a few wild vertices
-        const bool mirrored = below(2) == 0;  // one draw at a time: compilers order the arguments of a call as they like
+    if (seed % 5 == 0) {                      // a sheet with a few wild vertices
+        const bool mirrored = below(2) == 0;  // drawn first: the order of a call's arguments depends on the compiler
         MeshPart part = wavy_part(3 + static_cast<int>(below(5)), mirrored);
         for (unsigned k = below(6); k > 0; --k) {
             const unsigned v = below(static_cast<unsigned>(part.positions.size()));
