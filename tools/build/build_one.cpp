@@ -198,7 +198,7 @@ Result<bool> BuildRun::make_stale(const BuildTask& task, Judgement judgement,
     }
     const Result<Made> made = make(task, judgement.stale, counted, outcome);
     if (!made) return made.error();
-    const Result<bool> unchanged = are_unchanged(task, stamps, judgement.inputs);
+    Result<bool> unchanged = are_unchanged(task, stamps, judgement.inputs);
     if (!unchanged || !*unchanged) return unchanged;
     outcome.warnings.insert(outcome.warnings.end(), made->warnings.begin(), made->warnings.end());
     outcome.remarks.insert(outcome.remarks.end(), made->remarks.begin(), made->remarks.end());
