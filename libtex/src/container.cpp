@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <span>
 #include <string>
 
@@ -44,16 +43,16 @@ bool lists(std::string_view list, const std::string& extension) {
 Result<std::vector<std::byte>> compressed(const Codec& codec, const FileLayout& layout, int level,
                                           const std::vector<std::byte>& bytes) {
     std::vector<std::byte> packed;
-    const auto read = [&](std::uint64_t offset, std::span<std::byte> target) -> Result<void> {
-        std::memcpy(target.data(), bytes.data() + offset, target.size());
-        return {};
+    const auto fetch = [&](std::uint64_t offset, std::size_t count) -> Result<std::vector<std::byte>> {
+        const auto begin = bytes.begin() + static_cast<std::ptrdiff_t>(offset);
+        return std::vector<std::byte>(begin, begin + static_cast<std::ptrdiff_t>(count));
     };
     const auto write = [&](std::uint64_t offset, std::span<const std::byte> source) -> Result<void> {
         packed.resize(std::max(packed.size(), static_cast<std::size_t>(offset) + source.size()));
         std::copy(source.begin(), source.end(), packed.begin() + static_cast<std::ptrdiff_t>(offset));
         return {};
     };
-    if (const auto size = codec.compress(layout, level, read, write); !size) return size.error();
+    if (const auto size = codec.compress(layout, level, fetch, write); !size) return size.error();
     return packed;
 }
 

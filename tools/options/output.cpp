@@ -41,15 +41,16 @@ std::string containers_for(Encoding encoding) {
 
 // "zstd" or "zstd:LEVEL".
 int parse_zstd(const std::string& text) {
-    constexpr int kDefault = 9, kHighest = 22;
+    constexpr int kDefault = 9;
     const auto [scheme, level] = cut(text, ':');
     int number = kDefault;
     if (text.find(':') != std::string::npos) {
         const auto [end, error] = std::from_chars(level.data(), level.data() + level.size(), number);
         if (error != std::errc() || end != level.data() + level.size()) number = 0;
     }
-    if (scheme == "zstd" && number >= 1 && number <= kHighest) return number;
-    throw UsageError(fmt::format("'{}' is neither zstd nor zstd:N with N from 1 to {}", printable(text), kHighest));
+    if (scheme == "zstd" && number >= 1 && number <= kHighestZstdLevel) return number;
+    throw UsageError(
+        fmt::format("'{}' is neither zstd nor zstd:N with N from 1 to {}", printable(text), kHighestZstdLevel));
 }
 
 }  // namespace

@@ -52,6 +52,8 @@ inline constexpr Named<DdsHeader> kDdsHeaderNames[] = {
     {DdsHeader::dx10, "dx10", "DXGI formats; legacy for rgb8, which has none"},
 };
 
+inline constexpr int kHighestZstdLevel = 22;
+
 struct WriteOptions {
     DdsHeader dds_header = DdsHeader::legacy;
     bool dds_mark = false;    // DDPF_NORMAL, and the swizzle code 'A2D5' for dxt5nm, as NVIDIA's tools write them

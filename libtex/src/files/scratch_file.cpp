@@ -40,16 +40,16 @@ Result<void> ScratchFile::write_at(std::uint64_t offset, std::span<const std::by
     return {};
 }
 
-Result<void> ScratchFile::read_at(std::uint64_t offset, std::span<std::byte> bytes) const {
-    while (!bytes.empty()) {
-        const ssize_t count = pread(file_.get(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
-        if (count < 0 && errno == EINTR) continue;
-        if (count < 0) return system_error(output_, errno);
-        if (count == 0) return Error{ErrorCode::io, output_, "a temporary file is shorter than what was written to it"};
-        bytes = bytes.subspan(static_cast<std::size_t>(count));
-        offset += static_cast<std::uint64_t>(count);
+Result<std::vector<std::byte>> ScratchFile::read_at(std::uint64_t offset, std::size_t count) const {
+    std::vector<std::byte> bytes(count);
+    for (std::size_t done = 0; done < count;) {
+        const ssize_t got = pread(file_.get(), bytes.data() + done, count - done, static_cast<off_t>(offset + done));
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) return system_error(output_, errno);
+        if (got == 0) return Error{ErrorCode::io, output_, "a temporary file is shorter than what was written to it"};
+        done += static_cast<std::size_t>(got);
     }
-    return {};
+    return bytes;
 }
 
 }  // namespace tex

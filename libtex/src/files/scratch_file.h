@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <tex/result.h>
 
@@ -21,9 +22,10 @@ public:
     // out_of_memory.
     static Result<ScratchFile> open(const std::string& output);
 
-    // Any thread may call these. Errors: io, which names the output. read_at() must not read beyond the last byte.
+    // Any thread may call these. Errors: io, which names the output. read_at() may throw std::bad_alloc; it must not
+    // read beyond the last byte.
     [[nodiscard]] Result<void> write_at(std::uint64_t offset, std::span<const std::byte> bytes) const;
-    [[nodiscard]] Result<void> read_at(std::uint64_t offset, std::span<std::byte> bytes) const;
+    [[nodiscard]] Result<std::vector<std::byte>> read_at(std::uint64_t offset, std::size_t count) const;
 
 private:
     ScratchFile(Descriptor file, std::string output) : file_(std::move(file)), output_(std::move(output)) {}

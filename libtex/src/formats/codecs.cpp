@@ -90,9 +90,8 @@ const Codec& codec_of(Container container) {
 }
 
 Result<void> check_holds(const Codec& codec, Format format, const WriteOptions& options) {
-    constexpr int kHighestLevel = 22;  // of Zstandard
-    if (options.zstd < 0 || options.zstd > kHighestLevel)
-        return Error{ErrorCode::bad_option, {}, "zstd must be from 0 to " + std::to_string(kHighestLevel)};
+    if (options.zstd < 0 || options.zstd > kHighestZstdLevel)
+        return Error{ErrorCode::bad_option, {}, "zstd must be from 0 to " + std::to_string(kHighestZstdLevel)};
     if (options.zstd > 0 && codec.compress == nullptr) {
         return Error{ErrorCode::unsupported,
                      {},

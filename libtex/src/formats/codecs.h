@@ -15,7 +15,6 @@
 
 #include "files/input_file.h"
 #include "formats/file_layout.h"
-#include "formats/ktx2/level_inflater.h"
 #include "formats/row_source.h"
 #include "formats/row_target.h"
 #include "formats/stored_texture.h"
@@ -44,7 +43,7 @@ struct Codec {
     // strips in any order. It sets `open_target` if it takes rows in their order. If the reader process encodes the
     // file as a whole, `reader_name` is OpenImageIO's name for the type.
     FileLayout (*layout)(const TextureHead& head, const WriteOptions& options) = nullptr;
-    Result<std::uint64_t> (*compress)(const FileLayout& layout, int level, const ReadBytes& read,
+    Result<std::uint64_t> (*compress)(const FileLayout& layout, int level, const FetchBytes& fetch,
                                       const WriteBytes& write) = nullptr;  // with Zstandard, when all bytes are known
     OpenTarget open_target = nullptr;
     const char* reader_name = nullptr;

@@ -16,6 +16,13 @@
 namespace tex {
 namespace {
 
+Result<void> read_bytes(const InputFile& file, std::uint64_t offset, std::span<std::byte> bytes) {
+    const Result<std::size_t> got = file.read_at(static_cast<std::int64_t>(offset), bytes.data(), bytes.size());
+    if (!got) return got.error();
+    if (*got < bytes.size()) return Error{ErrorCode::bad_data, file.path(), "the file ends too early"};
+    return {};
+}
+
 class LevelRows final : public RowSource {
 public:
     LevelRows(const InputFile& file, std::shared_ptr<const StoredTexture> texture, std::size_t k)
@@ -37,18 +44,12 @@ public:
 
 private:
     void open_inflater(const StoredTexture::Place& place);
-    [[nodiscard]] Result<void> read(std::uint64_t offset, std::span<std::byte> bytes) const {
-        const Result<std::size_t> got = file_.read_at(static_cast<std::int64_t>(offset), bytes.data(), bytes.size());
-        if (!got) return got.error();
-        if (*got < bytes.size()) return Error{ErrorCode::bad_data, file_.path(), "the file ends too early"};
-        return {};
-    }
     // Reads rows of blocks or of texels from the file.
     [[nodiscard]] Result<void> fetch(int first, int count, std::byte* out) {
         const std::size_t pitch = stored_pitch(*texture_, extent().width);
         const std::uint64_t offset = static_cast<std::uint64_t>(first) * pitch;
         const std::span<std::byte> bytes(out, pitch * static_cast<std::size_t>(count));
-        if (inflater_ == nullptr) return read(offset_ + offset, bytes);
+        if (inflater_ == nullptr) return read_bytes(file_, offset_ + offset, bytes);
         const Result<void> done = texture_->upwards ? copy(offset, bytes) : inflater_->read(offset, bytes);
         return done ? done : Result<void>(done.error().of(file_.path()));
     }
@@ -80,8 +81,7 @@ private:
 };
 
 void LevelRows::open_inflater(const StoredTexture::Place& place) {
-    const auto from_file = [this](std::uint64_t offset, std::span<std::byte> bytes) { return read(offset, bytes); };
-    inflater_ = LevelInflater::make(texture_->supercompression, from_file, place,
+    inflater_ = LevelInflater::make(texture_->supercompression, fetch_from(file_), place,
                                     level_bytes(texture_->head.format, place.extent));
 }
 
@@ -116,6 +116,14 @@ void LevelRows::store(const std::byte* rows, int first, int end, Image& image) c
 }
 
 }  // namespace
+
+FetchBytes fetch_from(const InputFile& file) {
+    return [&file](std::uint64_t offset, std::size_t count) -> Result<std::vector<std::byte>> {
+        std::vector<std::byte> bytes(count);
+        if (Result<void> done = read_bytes(file, offset, bytes); !done) return done.error();
+        return bytes;
+    };
+}
 
 std::unique_ptr<RowSource> open_level_rows(const InputFile& file, std::shared_ptr<const StoredTexture> texture,
                                            std::size_t k) {

@@ -11,6 +11,9 @@
 
 namespace tex {
 
+// Reads bytes of a file, which must outlive the function. May throw std::bad_alloc. Errors: io, bad_data.
+[[nodiscard]] FetchBytes fetch_from(const InputFile& file);
+
 // Opens level k. Several threads may read rows at once, whole rows of blocks at a time. The stored values are those
 // that decode() gives. The file must outlive the rows. Precondition: the size of the file is known.
 std::unique_ptr<RowSource> open_level_rows(const InputFile& file, std::shared_ptr<const StoredTexture> texture,

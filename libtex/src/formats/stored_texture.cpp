@@ -2,7 +2,6 @@
 
 #include "formats/stored_texture.h"
 
-#include <cstring>
 #include <span>
 #include <utility>
 
@@ -46,11 +45,7 @@ Result<Texture> load_texture(ParseTexture parse, const std::byte* data, std::siz
         std::vector<std::byte> inflated;
         if (stored.supercompression != Supercompression::none) {
             inflated.resize(level.bytes.size());
-            const auto read = [data](std::uint64_t offset, std::span<std::byte> bytes) -> Result<void> {
-                std::memcpy(bytes.data(), data + offset, bytes.size());
-                return {};
-            };
-            const auto inflater = LevelInflater::make(stored.supercompression, read, place, inflated.size());
+            const auto inflater = LevelInflater::make(stored.supercompression, fetch, place, inflated.size());
             if (const Result<void> done = inflater->read(0, inflated); !done) return done.error().of(name);
         }
         const std::byte* source = inflated.empty() ? data + place.offset : inflated.data();

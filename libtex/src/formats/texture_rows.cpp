@@ -37,14 +37,8 @@ Result<TextureRows> picture_rows(const InputFile& file, Result<std::unique_ptr<R
 Result<TextureRows> stored_rows(InputFile& file, const Codec& codec, const ReadOptions& options) {
     if (const Result<void> settled = file.settle(largest_file(options)); !settled) return settled.error();
     if (*file.size() > largest_file(options)) return file.read_rest(largest_file(options)).error();
-    const FetchBytes fetch = [&file](std::uint64_t offset, std::size_t count) -> Result<std::vector<std::byte>> {
-        std::vector<std::byte> bytes(count);
-        const Result<std::size_t> got = file.read_at(static_cast<std::int64_t>(offset), bytes.data(), count);
-        if (!got) return got.error();
-        if (*got < count) return Error{ErrorCode::bad_data, file.path(), "the file ends too early"};
-        return bytes;
-    };
-    Result<StoredTexture> parsed = codec.parse(fetch, static_cast<std::size_t>(*file.size()), file.path(), options);
+    Result<StoredTexture> parsed =
+        codec.parse(fetch_from(file), static_cast<std::size_t>(*file.size()), file.path(), options);
     if (!parsed) return parsed.error();
     const auto stored = std::make_shared<const StoredTexture>(std::move(*parsed));
     TextureRows texture;

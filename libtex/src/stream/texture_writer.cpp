@@ -13,7 +13,7 @@ Result<void> TextureWriter::commit() {
     const Result<std::uint64_t> size = guarded([&] {
         return compress_(
             layout_, compression_level_,
-            [&](std::uint64_t offset, std::span<std::byte> bytes) { return scratch_->read_at(offset, bytes); },
+            [&](std::uint64_t offset, std::size_t count) { return scratch_->read_at(offset, count); },
             [&](std::uint64_t offset, std::span<const std::byte> bytes) { return file_->write_at(offset, bytes); });
     });
     if (!size) return size.error();

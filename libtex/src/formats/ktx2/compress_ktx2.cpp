@@ -24,8 +24,8 @@ struct FreeCompressor {
 // Compresses one level into the file, from `offset` on.
 class LevelCompressor {
 public:
-    LevelCompressor(int level, const ReadBytes& read, const WriteBytes& write)
-        : context_(ZSTD_createCCtx()), read_(read), write_(write), plain_(kChunk), packed_(kChunk) {
+    LevelCompressor(int level, const FetchBytes& fetch, const WriteBytes& write)
+        : context_(ZSTD_createCCtx()), fetch_(fetch), write_(write), packed_(kChunk) {
         if (context_ == nullptr) throw std::bad_alloc();
         ZSTD_CCtx_setParameter(context_.get(), ZSTD_c_compressionLevel, level);
     }
@@ -37,9 +37,10 @@ public:
         std::uint64_t written = 0;
         for (std::uint64_t done = 0; done < place.bytes;) {
             const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(kChunk, place.bytes - done));
-            if (const Result<void> got = read_(place.offset + done, {plain_.data(), count}); !got) return got.error();
+            const Result<std::vector<std::byte>> plain = fetch_(place.offset + done, count);
+            if (!plain) return plain.error();
             done += count;
-            const Result<std::uint64_t> put = pass(count, done == place.bytes, offset + written);
+            const Result<std::uint64_t> put = pass(*plain, done == place.bytes, offset + written);
             if (!put) return put.error();
             written += *put;
         }
@@ -47,8 +48,8 @@ public:
     }
 
 private:
-    Result<std::uint64_t> pass(std::size_t count, bool is_last, std::uint64_t offset) {
-        ZSTD_inBuffer input = {plain_.data(), count, 0};
+    Result<std::uint64_t> pass(const std::vector<std::byte>& plain, bool is_last, std::uint64_t offset) {
+        ZSTD_inBuffer input = {plain.data(), plain.size(), 0};
         std::uint64_t written = 0;
         while (true) {
             ZSTD_outBuffer output = {packed_.data(), packed_.size(), 0};
@@ -65,9 +66,9 @@ private:
     }
 
     const std::unique_ptr<ZSTD_CCtx, FreeCompressor> context_;
-    const ReadBytes& read_;
+    const FetchBytes& fetch_;
     const WriteBytes& write_;
-    std::vector<std::byte> plain_, packed_;
+    std::vector<std::byte> packed_;
 };
 
 void store(std::vector<std::byte>& bytes, std::size_t offset, std::uint64_t value, std::size_t count) {
@@ -76,11 +77,11 @@ void store(std::vector<std::byte>& bytes, std::size_t offset, std::uint64_t valu
 
 }  // namespace
 
-Result<std::uint64_t> compress_ktx2(const FileLayout& layout, int level, const ReadBytes& read,
+Result<std::uint64_t> compress_ktx2(const FileLayout& layout, int level, const FetchBytes& fetch,
                                     const WriteBytes& write) {
     // Fields of the header, of an entry of the level index, and of the descriptor (KTX 2.0, 3 and 5.2).
     constexpr std::size_t kScheme = 44, kDescriptor = 48, kIndex = 80, kEntry = 24, kBytesPlane0 = 20;
-    LevelCompressor compressor(level, read, write);
+    LevelCompressor compressor(level, fetch, write);
     std::vector<std::byte> head = layout.head;
     std::uint64_t size = head.size();
     for (std::size_t k = layout.levels.size(); k-- > 0;) {

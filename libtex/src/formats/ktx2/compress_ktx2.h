@@ -8,15 +8,15 @@
 #include <tex/result.h>
 
 #include "formats/file_layout.h"
-#include "formats/ktx2/level_inflater.h"
 #include "formats/row_target.h"
+#include "formats/stored_texture.h"
 
 namespace tex {
 
-// Compresses the levels of a KTX2 file with Zstandard. `layout` is that of the file without compression, which `read`
+// Compresses the levels of a KTX2 file with Zstandard. `layout` is that of the file without compression, which `fetch`
 // reads; `level` is from 1 (fast) to 22 (small). Returns the size of the compressed file. Equal files give equal bytes.
-// Throws std::bad_alloc. Errors: out_of_memory; those of `read` and `write`.
-[[nodiscard]] Result<std::uint64_t> compress_ktx2(const FileLayout& layout, int level, const ReadBytes& read,
+// Throws std::bad_alloc. Errors: out_of_memory; those of `fetch` and `write`.
+[[nodiscard]] Result<std::uint64_t> compress_ktx2(const FileLayout& layout, int level, const FetchBytes& fetch,
                                                   const WriteBytes& write);
 
 // The version of libzstd at run time: "1.5.4".

@@ -38,8 +38,8 @@ Result<void> check_frame(std::span<const std::byte> head) {
 
 class ZstdInflater final : public LevelInflater {
 public:
-    ZstdInflater(ReadBytes read, const StoredTexture::Place& place, std::uint64_t decoded)
-        : LevelInflater(std::move(read), place, decoded), stream_(ZSTD_createDStream()), waiting_(kChunk) {
+    ZstdInflater(FetchBytes fetch, const StoredTexture::Place& place, std::uint64_t decoded)
+        : LevelInflater(std::move(fetch), place, decoded), stream_(ZSTD_createDStream()) {
         if (stream_ == nullptr) throw std::bad_alloc();
     }
 
@@ -68,14 +68,15 @@ private:
 // Reads more compressed bytes if none is waiting.
 Result<void> ZstdInflater::fill() {
     if (input_.pos < input_.size || fetched_ == stored()) return {};
-    const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(waiting_.size(), stored() - fetched_));
-    const std::span<std::byte> bytes(waiting_.data(), count);
-    if (Result<void> done = fetch(fetched_, bytes); !done) return done;
+    Result<std::vector<std::byte>> bytes =
+        fetch(fetched_, static_cast<std::size_t>(std::min<std::uint64_t>(kChunk, stored() - fetched_)));
+    if (!bytes) return bytes.error();
+    waiting_ = std::move(*bytes);
     if (fetched_ == 0) {
-        if (Result<void> checked = check_frame(bytes); !checked) return checked;
+        if (Result<void> checked = check_frame(waiting_); !checked) return checked;
     }
-    fetched_ += count;
-    input_ = {waiting_.data(), count, 0};
+    fetched_ += waiting_.size();
+    input_ = {waiting_.data(), waiting_.size(), 0};
     return {};
 }
 
@@ -113,8 +114,8 @@ Result<void> ZstdInflater::end() {
 
 class ZlibInflater final : public LevelInflater {
 public:
-    ZlibInflater(ReadBytes read, const StoredTexture::Place& place, std::uint64_t decoded)
-        : LevelInflater(std::move(read), place, decoded) {}
+    ZlibInflater(FetchBytes fetch, const StoredTexture::Place& place, std::uint64_t decoded)
+        : LevelInflater(std::move(fetch), place, decoded) {}
 
 protected:
     void restart() override { position_ = 0; }
@@ -139,24 +140,24 @@ Result<void> ZlibInflater::inflate() {
     const std::unique_ptr<libdeflate_decompressor, void (*)(libdeflate_decompressor*)> inflater(
         libdeflate_alloc_decompressor(), libdeflate_free_decompressor);
     if (inflater == nullptr) throw std::bad_alloc();
-    std::vector<std::byte> compressed(static_cast<std::size_t>(stored()));
-    if (Result<void> done = fetch(0, compressed); !done) return done;
+    const Result<std::vector<std::byte>> compressed = fetch(0, static_cast<std::size_t>(stored()));
+    if (!compressed) return compressed.error();
     std::vector<std::byte> level(static_cast<std::size_t>(decoded()));
     std::size_t used = 0;
     // Without a place for the size, the result must fill the buffer exactly.
-    const libdeflate_result result = libdeflate_zlib_decompress_ex(inflater.get(), compressed.data(), compressed.size(),
-                                                                   level.data(), level.size(), &used, nullptr);
-    if (result != LIBDEFLATE_SUCCESS || used != compressed.size()) return damaged("not the ZLIB data of this level");
+    const libdeflate_result result = libdeflate_zlib_decompress_ex(
+        inflater.get(), compressed->data(), compressed->size(), level.data(), level.size(), &used, nullptr);
+    if (result != LIBDEFLATE_SUCCESS || used != compressed->size()) return damaged("not the ZLIB data of this level");
     level_ = std::move(level);
     return {};
 }
 
 }  // namespace
 
-std::unique_ptr<LevelInflater> LevelInflater::make(Supercompression scheme, ReadBytes read,
+std::unique_ptr<LevelInflater> LevelInflater::make(Supercompression scheme, FetchBytes fetch,
                                                    const StoredTexture::Place& place, std::uint64_t decoded) {
-    if (scheme == Supercompression::zlib) return std::make_unique<ZlibInflater>(std::move(read), place, decoded);
-    return std::make_unique<ZstdInflater>(std::move(read), place, decoded);
+    if (scheme == Supercompression::zlib) return std::make_unique<ZlibInflater>(std::move(fetch), place, decoded);
+    return std::make_unique<ZstdInflater>(std::move(fetch), place, decoded);
 }
 
 Result<void> LevelInflater::read(std::uint64_t offset, std::span<std::byte> bytes) {

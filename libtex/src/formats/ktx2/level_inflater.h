@@ -5,10 +5,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include <tex/result.h>
 
@@ -16,29 +16,26 @@
 
 namespace tex {
 
-// Reads bytes of a file. Precondition: the file has them. Errors: io.
-using ReadBytes = std::function<Result<void>(std::uint64_t offset, std::span<std::byte> bytes)>;
-
 // The bytes of one level of a compressed file. Zstandard is decoded as a stream, so that only its window is in memory;
 // ZLIB is decoded as a whole. A level that holds too few or too many bytes is an error, and nothing is allocated for
 // bytes beyond its extent.
 class LevelInflater {
 public:
     // `decoded` is the number of bytes of the level. Throws std::bad_alloc.
-    static std::unique_ptr<LevelInflater> make(Supercompression scheme, ReadBytes read,
+    static std::unique_ptr<LevelInflater> make(Supercompression scheme, FetchBytes fetch,
                                                const StoredTexture::Place& place, std::uint64_t decoded);
     LevelInflater(const LevelInflater&) = delete;
     LevelInflater& operator=(const LevelInflater&) = delete;
     virtual ~LevelInflater() = default;
 
     // Decodes bytes at `offset` of the level. Each smaller offset than before starts again from the first byte. Throws
-    // std::bad_alloc. Errors: bad_data; unsupported (a dictionary, a window above 128 MiB); those of `read`. Those of
+    // std::bad_alloc. Errors: bad_data; unsupported (a dictionary, a window above 128 MiB); those of `fetch`. Those of
     // this class do not name the file.
     Result<void> read(std::uint64_t offset, std::span<std::byte> bytes);
 
 protected:
-    LevelInflater(ReadBytes read, const StoredTexture::Place& place, std::uint64_t decoded)
-        : read_(std::move(read)), place_(place), decoded_(decoded) {}
+    LevelInflater(FetchBytes fetch, const StoredTexture::Place& place, std::uint64_t decoded)
+        : fetch_(std::move(fetch)), place_(place), decoded_(decoded) {}
 
     // Goes back to the first byte.
     virtual void restart() = 0;
@@ -47,15 +44,15 @@ protected:
     // Checks that nothing is left after the last byte.
     virtual Result<void> end() = 0;
 
-    // Reads compressed bytes.
-    [[nodiscard]] Result<void> fetch(std::uint64_t offset, std::span<std::byte> bytes) const {
-        return read_(place_.offset + offset, bytes);
+    // Compressed bytes.
+    [[nodiscard]] Result<std::vector<std::byte>> fetch(std::uint64_t offset, std::size_t count) const {
+        return fetch_(place_.offset + offset, count);
     }
     [[nodiscard]] std::uint64_t stored() const { return place_.bytes; }
     [[nodiscard]] std::uint64_t decoded() const { return decoded_; }
 
 private:
-    const ReadBytes read_;
+    const FetchBytes fetch_;
     const StoredTexture::Place place_;
     const std::uint64_t decoded_;
     std::uint64_t position_ = 0;  // of the next byte

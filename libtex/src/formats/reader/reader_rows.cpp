@@ -229,7 +229,7 @@ Result<void> ReaderRows::start(const ReadOptions& options) {
     const std::optional<std::string> format = format_of(file_.head());
     if (!format && is_ktx1(file_.head()))
         return Error{ErrorCode::unsupported, file_.path(), "a KTX file of version 1: only version 2 is read"};
-    if (!format) return Error{ErrorCode::bad_data, file_.path(), "not a picture of any kind that is read here"};
+    if (!format) return Error{ErrorCode::bad_data, file_.path(), "not a picture, or of a type that is not supported"};
     std::optional<int> input = file_.whole_file();
     if (!input) {
         Result<Descriptor> copy = copy_to_memory(file_, options);
