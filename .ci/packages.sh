@@ -14,8 +14,8 @@ test_packages=(
     imagemagick openimageio-tools python3-jsonschema python3-yaml libxml2-utils mandoc shellcheck dpkg-dev file git
     strace zsh fish
 )
-# The browser takes 300 MB. Without it and GNU parallel, their tests report that they were skipped. The gate tests
-# farms on a Slurm cluster of its own.
+# The browser takes 300 MB. Without it and GNU parallel, their tests report that they were skipped. The gate starts
+# a Slurm cluster and builds textures on it.
 # shellcheck disable=SC2034
 gate_packages=(
     clang-14 clang-format-14 clang-tidy-14 ccache libbenchmark-dev chromium g++-aarch64-linux-gnu qemu-user-static

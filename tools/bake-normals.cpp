@@ -22,13 +22,16 @@ public:
 
 private:
     void add_kernel();
-    static void warn_of_steep(cli::Job& job, const BakeFileReport& baked, Encoding encoding);
+    static void warn_of_steep(cli::Job& job, std::int64_t steep_texels, Extent extent, Encoding encoding);
     [[nodiscard]] cli::OutputRules rules() const override;
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] Result<void> process(cli::Job& job) override;
     [[nodiscard]] BakeFileOptions options(cli::Job& job) const;
     [[nodiscard]] std::optional<Step> step(cli::Job& job) override { return options(job); }
-    void note(cli::Job& job, const StepsReport& done) override { reader_.note(job, done.heights); }
+    void note(cli::Job& job, const StepsReport& done) override {
+        reader_.note(job, done.heights);
+        warn_of_steep(job, done.steep_texels, done.extent, done.pack.encoding);
+    }
     [[nodiscard]] Error with_remedy(const Error& error) const override { return cli::HeightReader::with_remedy(error); }
     [[nodiscard]] cli::ExitCode finish(cli::Console& console) override;
 
@@ -111,21 +114,20 @@ Result<void> BakeNormals::process(cli::Job& job) {
     reader_.note(job, baked->heights);
     cli::wrote_levels(job, job.task.output, baked->levels);
     cli::report_texture(job, baked->extent, baked->levels, with.pack, baked->bytes);
-    warn_of_steep(job, *baked, with.pack.encoding);
+    warn_of_steep(job, baked->steep_texels, baked->extent, with.pack.encoding);
     const SlopeRange& slopes = baked->slopes;
     job.report["slopes"] = {{"x", {slopes.min_x, slopes.max_x}}, {"y", {slopes.min_y, slopes.max_y}}};
     return {};
 }
 
-void BakeNormals::warn_of_steep(cli::Job& job, const BakeFileReport& baked, Encoding encoding) {
-    job.report["steep_texels"] = baked.steep_texels;
-    if (baked.steep_texels == 0) return;
+void BakeNormals::warn_of_steep(cli::Job& job, std::int64_t steep_texels, Extent extent, Encoding encoding) {
+    job.report["steep_texels"] = steep_texels;
+    if (steep_texels == 0) return;
     const float steepest = steepest_slope(encoding);
-    job.warn(
-        fmt::format("{} of {} texels are steeper than {} can hold, which stores all slopes above {:.{}f} alike; lower "
-                    "the strength, choose a deeper --format, or name the value of texels without data by --no-data",
-                    baked.steep_texels, baked.extent.texels(), name_of(kEncodingNames, encoding), steepest,
-                    steepest < 100.0f ? 1 : 0));
+    job.warn(fmt::format(
+        "{} of {} texels are steeper than {} can hold, which stores all slopes above {:.{}f} alike; lower "
+        "the strength, choose a deeper --format, or name the value of texels without data by --no-data",
+        steep_texels, extent.texels(), name_of(kEncodingNames, encoding), steepest, steepest < 100.0f ? 1 : 0));
 }
 
 cli::ExitCode BakeNormals::finish(cli::Console& console) {

@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "batch/text_file.h"
 #include "build/builder.h"
 #include "build/explain.h"
 #include "build/farm.h"
@@ -15,6 +14,7 @@
 #include "build/recipe.h"
 #include "build/watch.h"
 #include "build/work.h"
+#include "cli/text_file.h"
 #include "cli/usage_error.h"
 #include "options/run.h"
 

@@ -87,9 +87,10 @@ Result<cli::ExitCode> CompareNormals::compare_files(cli::Console& console) {
         if (!comparison) return comparison.error();
         cli::ComparedLevel level{static_cast<int>(k), a->levels[k].extent(), comparison->error};
         if (printed == cli::ExitCode::done) printed = cli::print_level(console, run_, level, running_.json, k == first);
-        const cli::ExitCode judged = pair_.judge(console, level.number, level.error);
-        level.within = judged == cli::ExitCode::done;
-        code = std::max({code, judged, printed});
+        const std::vector<std::string> violations = pair_.violations(level.number, level.error);
+        for (const std::string& sentence : violations) console.error(sentence);
+        level.within = violations.empty();
+        code = std::max({code, level.within ? cli::ExitCode::done : cli::ExitCode::findings, printed});
         levels.push_back(level);
         if (k > first) continue;
         if (auto written = documents_.write_heat_map(*comparison); !written) return written.error();

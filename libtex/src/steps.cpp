@@ -26,6 +26,7 @@ struct LastStep {
         if (!done) return done.error();
         report.pack = options.pack;
         report.heights = done->heights;
+        report.steep_texels = done->steep_texels;
         return take(*done);
     }
     Result<void> operator()(const PackFileOptions& options) const {

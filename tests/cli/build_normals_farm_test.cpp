@@ -211,6 +211,17 @@ TEST_F(BuildNormalsFarm, MergeTellsWhatCanSucceedFromWhatCannot) {
     EXPECT_EQ(all["textures"], 11);
     EXPECT_EQ(all["again"], nlohmann::json::array({gone["shard"]}));
     EXPECT_EQ(all["repeated"], 1) << "both shards needed the detail map";
+    // What a report says cannot control the terminal.
+    for (int k = 1; k <= 2; ++k) {
+        std::string report = scratch_.read(fmt::format("r/{}.jsonl", k));
+        const std::size_t at = report.find("\"reason\":\"");
+        if (at == std::string::npos) continue;
+        report.insert(at + 10, "\\u001b[2J");
+        scratch_.write(fmt::format("r/{}.jsonl", k), report);
+    }
+    const Ran hostile = merge();
+    EXPECT_EQ(hostile.err.find('\x1b'), std::string::npos);
+    EXPECT_NE(hostile.err.find("[2J"), std::string::npos) << hostile.err;
     // What needs another texture fails with it, and is sent again with it.
     fs::remove(scratch_.path("plain/broken.png"));
     fs::remove(scratch_.path("plain/gone.png"));

@@ -1,78 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // build-normals makes what is not up to date, and no more.
 
-#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <filesystem>
 #include <map>
 #include <thread>
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
-#include <nlohmann/json.hpp>
 
-#include "cli/program.h"
+#include "cli/build_tree.h"
 
 namespace tex::cli {
-namespace {
 
-namespace fs = std::filesystem;
-
-constexpr const char* kManifest = R"(version = 1
-[defaults]
-out-dir = "out"
-[[rule]]
-match = "shared/*.png"
-steps = [ { bake = { bumpiness = 2 } } ]
-[[rule]]
-match = "art/**/*_h.{png,tif}"
-exclude = "art/wip/**"
-name = "{dir}/{stem:-_h}_n.dds"
-steps = [ { bake = { bumpiness = 4 } }, { blend = { detail = "out/shared/grain.dds", tiling = 3 } }, { mip = {} } ]
-outputs = [ {}, { format = "bc5", y = "down", name = "{dir}/{stem:-_h}_ue.ktx2" } ]
-)";
-
-}  // namespace
-
-class BuildNormals : public testing::Test {
-protected:
-    BuildNormals() {
-        scratch_.write("normals.toml", kManifest);
-        for (const char* name : {"art/wall_h.png", "art/sub/floor_h.PNG", "art/wip/new_h.png", "shared/grain.png"}) {
-            fs::create_directories(fs::path(scratch_.path(name)).parent_path());
-            scratch_.add_sample(name[0] == 's' ? "waves.png" : "ramp.png", name);
-        }
-    }
-    // Runs it. The results are what it did to each input: "made", "current" ...
-    Ran build(std::vector<std::string> arguments = {}, const Setting& setting = {}) {
-        arguments.insert(arguments.end(), {"--json", "--no-sync"});
-        const Ran ran = run(scratch_, "build-normals", arguments, setting);
-        done_.clear();
-        for (const std::string& line : lines_of(ran.out)) {
-            const auto result = nlohmann::json::parse(line, nullptr, false);
-            if (result.is_discarded()) continue;
-            done_[result.value("input", std::string())] = result.value("status", std::string("failed"));
-        }
-        return ran;
-    }
-    [[nodiscard]] std::size_t count(const std::string& status) const {
-        return static_cast<std::size_t>(
-            std::count_if(done_.begin(), done_.end(), [&](const auto& done) { return done.second == status; }));
-    }
-    // All outputs and their contents.
-    [[nodiscard]] std::map<std::string, std::string> outputs() const {
-        std::map<std::string, std::string> all;
-        for (const std::string& name : scratch_.list()) {
-            if (name.starts_with("out/") && fs::is_regular_file(scratch_.path(name))) all[name] = scratch_.read(name);
-        }
-        return all;
-    }
-
-    Scratch scratch_;
-    std::map<std::string, std::string> done_;
-};
+class BuildNormals : public BuildTree {};
 
 TEST_F(BuildNormals, MakesWhatTheCommandsMakeOneAfterTheOther) {
     ASSERT_EQ(build().code, 0);
@@ -160,9 +101,18 @@ TEST_F(BuildNormals, PruneRemovesOutputsOfVanishedInputsAndNothingElseDoes) {
     scratch_.write("out/art/mine.dds", "not made here");
     ASSERT_EQ(build().code, 0);
     EXPECT_TRUE(scratch_.has("out/art/wall_n.dds"));
-    ASSERT_EQ(build({"--prune", "--dry-run"}).code, 0);
+    const auto summary = [&](const std::string& option) {
+        return run(scratch_, "build-normals", {"--prune", "--no-sync", option}).out;
+    };
+    EXPECT_EQ(summary("--dry-run"),
+              "remove out/art/wall_n.dds\nremove out/art/wall_ue.ktx2\n0 to make, 2 up to date, 2 to remove\n");
     EXPECT_TRUE(scratch_.has("out/art/wall_n.dds"));
-    ASSERT_EQ(build({"--prune"}).code, 0);
+    // A file that something else has changed is kept, and does not count.
+    const std::string made = scratch_.read("out/art/wall_ue.ktx2");
+    scratch_.write("out/art/wall_ue.ktx2", "changed");
+    EXPECT_EQ(summary("--dry-run"), "remove out/art/wall_n.dds\n0 to make, 2 up to date, 1 to remove\n");
+    scratch_.write("out/art/wall_ue.ktx2", made);
+    EXPECT_EQ(summary("--threads=1"), "0 made, 2 up to date, 2 removed\n");
     EXPECT_FALSE(scratch_.has("out/art/wall_n.dds"));
     EXPECT_FALSE(scratch_.has("out/art/wall_ue.ktx2"));
     EXPECT_TRUE(scratch_.has("out/art/mine.dds"));
@@ -273,116 +223,6 @@ TEST_F(BuildNormals, EveryNumberOfThreadsMakesTheSameBytes) {
     }
 }
 
-TEST_F(BuildNormals, ACloneWithAWarmCacheMakesNothing) {
-    ASSERT_EQ(build({"--cache", "cache"}).code, 0);
-    EXPECT_EQ(count("made"), 3u);
-    const auto first = outputs();
-    fs::remove_all(scratch_.path("out"));
-    fs::remove(scratch_.path(".normals.toml.state"));
-    ASSERT_EQ(build({"--cache", "cache"}).code, 0);
-    EXPECT_EQ(count("cached"), 3u);
-    EXPECT_EQ(outputs(), first);
-    // A flipped bit is noticed and repaired.
-    fs::remove_all(scratch_.path("out"));
-    for (const std::string& name : scratch_.list()) {
-        if (!name.starts_with("cache/") || !fs::is_regular_file(scratch_.path(name))) continue;
-        std::string entry = scratch_.read(name);
-        entry[entry.size() / 2] = static_cast<char>(entry[entry.size() / 2] ^ 16);
-        scratch_.write(name, entry);
-    }
-    const Ran repaired = run(scratch_, "build-normals", {"--cache", "cache", "--no-sync"});
-    EXPECT_EQ(repaired.out, "3 made, 0 up to date, 0 from the cache (5 damaged entries repaired)\n");
-    EXPECT_EQ(outputs(), first);
-    fs::remove_all(scratch_.path("out"));
-    ASSERT_EQ(build({"--cache", "cache"}).code, 0);
-    EXPECT_EQ(count("cached"), 3u);
-    EXPECT_EQ(outputs(), first);
-}
-
-// A key names the contents that were there before the file was read. If the file is replaced in between, the cache must
-// not keep what was made from the other contents.
-TEST_F(BuildNormals, AnInputThatIsReplacedWhileItIsReadNeverReachesTheCache) {
-    scratch_.write("normals.toml",
-                   "version = 1\n[[rule]]\nmatch = \"swapped.png\"\nsteps = [ { bake = {} } ]\n"
-                   "outputs = [ { name = \"out/{stem}.dds\" } ]\n");
-    const std::string contents[] = {scratch_.read("art/wall_h.png"), scratch_.read("shared/grain.png")};
-    std::string right[2];
-    for (const int k : {0, 1}) {
-        scratch_.write("swapped.png", contents[k]);
-        ASSERT_EQ(build().code, 0);
-        right[k] = scratch_.read("out/swapped.dds");
-    }
-    ASSERT_NE(right[0], right[1]);
-    std::atomic<bool> is_done{false};
-    std::thread editor([&] {
-        for (int k = 0; !is_done; k = 1 - k) {
-            scratch_.write("new.tmp", contents[k]);
-            fs::rename(scratch_.path("new.tmp"), scratch_.path("swapped.png"));
-        }
-    });
-    for (int run = 0; run < 40; ++run) {
-        fs::remove(scratch_.path(".normals.toml.state"));
-        build({"--cache", fmt::format("cache{}", run)});  // may fail, because the file changes again and again
-    }
-    is_done = true;
-    editor.join();
-    for (int run = 0; run < 40; ++run) {
-        const std::string cache = fmt::format("cache{}", run);
-        if (!fs::is_directory(scratch_.path(cache))) continue;
-        for (const int k : {0, 1}) {
-            scratch_.write("swapped.png", contents[k]);
-            fs::remove(scratch_.path(".normals.toml.state"));
-            EXPECT_EQ(build({"--cache", cache}).code, 0);
-            EXPECT_EQ(scratch_.read("out/swapped.dds"), right[k]) << cache;
-        }
-    }
-}
-
-TEST_F(BuildNormals, TwoBuildersAtOnceDoNoHarm) {
-    const Ran ran = shell(scratch_,
-                          "build-normals --cache cache --no-sync & first=$!; build-normals --cache cache --no-sync & "
-                          "wait $! && wait $first");
-    EXPECT_EQ(ran.code, 0) << ran.err;
-    const auto both = outputs();
-    fs::remove_all(scratch_.path("out"));
-    ASSERT_EQ(build().code, 0);
-    EXPECT_EQ(outputs(), both);
-}
-
-TEST_F(BuildNormals, AKilledRunLeavesNothingThatTheNextDoesNotRepair) {
-    for (int k = 0; k < 12; ++k) scratch_.add_sample("bricks.png", fmt::format("art/m{}_h.png", k));
-    ASSERT_EQ(build().code, 0);
-    const auto expected = outputs();
-    for (int k = 0; k < 8; ++k) {
-        fs::remove_all(scratch_.path("out"));
-        Setting setting;
-        setting.interrupt_after_ms = 5 + 17 * k;
-        setting.signal = k % 4 == 3 ? SIGINT : SIGKILL;
-        build({"--cache", "cache" + std::to_string(k % 2)}, setting);
-        for (const auto& [name, contents] : outputs()) {
-            if (!expected.contains(name)) continue;
-            EXPECT_TRUE(contents == expected.at(name)) << name;
-        }
-        ASSERT_EQ(build({"--cache", "cache" + std::to_string(k % 2)}).code, 0);
-        EXPECT_EQ(outputs(), expected);
-    }
-}
-
-TEST_F(BuildNormals, LevelsCanHaveTheirOwnFiles) {
-    scratch_.write("normals.toml",
-                   "version = 1\n[[rule]]\nmatch = \"art/*_h.png\"\nname = \"out/{stem}_{level}.png\"\nsteps "
-                   "= [ { bake = {} } ]\n");
-    ASSERT_EQ(build({"--cache", "cache"}).code, 0);
-    EXPECT_TRUE(scratch_.has("out/wall_h_0.png"));
-    EXPECT_TRUE(scratch_.has("out/wall_h_5.png"));
-    ASSERT_EQ(build().code, 0);
-    EXPECT_EQ(count("current"), 1u);
-    fs::remove(scratch_.path("out/wall_h_3.png"));
-    ASSERT_EQ(build().code, 0);
-    EXPECT_EQ(count("made"), 1u);
-    EXPECT_TRUE(scratch_.has("out/wall_h_3.png"));
-}
-
 TEST_F(BuildNormals, ReadOnlyOutputsGetARemedy) {
     ASSERT_EQ(build().code, 0);
     std::string manifest = kManifest;
@@ -429,6 +269,17 @@ TEST_F(BuildNormals, ACheckThatFailsKeepsTheOldOutput) {
     // The direction of y and the layout are those that were packed, although a DDS does not state them.
     scratch_.write("normals.toml", rule + "outputs = [ { y = \"down\" } ]\ncheck = { max-mean = 2 }\n");
     EXPECT_EQ(build().code, 0);
+}
+
+TEST_F(BuildNormals, WarnsAsTheCommandsDo) {
+    scratch_.write("normals.toml",
+                   "version = 1\n[[rule]]\nmatch = \"art/wall_h.png\"\nname = \"{stem}.dds\"\nsteps = [ { bake = { "
+                   "bumpiness = 4000 } } ]\n");
+    const Ran alone = run(scratch_, "bake-normals", {"art/wall_h.png", "-o", "a.dds", "--bumpiness", "4000"});
+    const std::size_t at = alone.err.find("art/wall_h.png: ");
+    ASSERT_NE(at, std::string::npos) << alone.err;
+    EXPECT_NE(alone.err.find("texels are steeper than dxt5nm can hold"), std::string::npos) << alone.err;
+    EXPECT_NE(build().err.find(alone.err.substr(at)), std::string::npos) << alone.err;
 }
 
 TEST_F(BuildNormals, OutputVersionCanBePinned) {

@@ -105,9 +105,9 @@ TEST(Cache, FindsDamagedEntries) {
     const Digest key = digest_of("key");
     scratch.write("a", "contents");
     const WriteOptions write;
-    EXPECT_FALSE(*cache.fetch(key, scratch.path("b"), write));
-    ASSERT_TRUE(cache.store(key, scratch.path("a")));
-    EXPECT_TRUE(*cache.fetch(key, scratch.path("b"), write));
+    EXPECT_TRUE(cache.fetch(key, scratch.path("b"), write)->empty());
+    ASSERT_TRUE(cache.store(key, scratch.path("a"), {scratch.path("a")}));
+    EXPECT_FALSE(cache.fetch(key, scratch.path("b"), write)->empty());
     EXPECT_EQ(scratch.read("b"), "contents");
     const std::string entry = "cache/" + key.hex().substr(0, 2) + "/" + key.hex();
     const std::string whole = scratch.read(entry);
@@ -115,9 +115,9 @@ TEST(Cache, FindsDamagedEntries) {
         std::string damaged = whole;
         damaged[k] = static_cast<char>(damaged[k] ^ 4);
         scratch.write(entry, damaged);
-        ASSERT_FALSE(*cache.fetch(key, scratch.path("c"), write)) << k;
+        ASSERT_TRUE(cache.fetch(key, scratch.path("c"), write)->empty()) << k;
         scratch.write(entry, whole.substr(0, k));
-        ASSERT_FALSE(*cache.fetch(key, scratch.path("c"), write)) << k;
+        ASSERT_TRUE(cache.fetch(key, scratch.path("c"), write)->empty()) << k;
     }
     EXPECT_FALSE(scratch.has("c"));
     EXPECT_EQ(cache.damaged(), 2 * whole.size());
@@ -128,16 +128,16 @@ TEST(Cache, RemovesWhatWasUsedLongestAgo) {
     Cache cache(scratch.path("cache"));
     scratch.write("a", std::string(1000, 'a'));
     for (const char* name : {"1", "2", "3"}) {
-        ASSERT_TRUE(cache.store(digest_of(name), scratch.path("a")));
+        ASSERT_TRUE(cache.store(digest_of(name), scratch.path("a"), {scratch.path("a")}));
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
-    EXPECT_TRUE(*cache.fetch(digest_of("1"), scratch.path("b"), {}));
+    EXPECT_FALSE(cache.fetch(digest_of("1"), scratch.path("b"), {})->empty());
     MemoryHost host;
     Console console("test", host);
     cache.shrink(2500, console);
-    EXPECT_TRUE(*cache.fetch(digest_of("1"), scratch.path("b"), {}));
-    EXPECT_FALSE(*cache.fetch(digest_of("2"), scratch.path("b"), {}));
-    EXPECT_TRUE(*cache.fetch(digest_of("3"), scratch.path("b"), {}));
+    EXPECT_FALSE(cache.fetch(digest_of("1"), scratch.path("b"), {})->empty());
+    EXPECT_TRUE(cache.fetch(digest_of("2"), scratch.path("b"), {})->empty());
+    EXPECT_FALSE(cache.fetch(digest_of("3"), scratch.path("b"), {})->empty());
 }
 
 }  // namespace tex::cli

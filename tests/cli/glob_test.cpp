@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "build/find_files.h"
-#include "build/glob.h"
+#include "cli/glob.h"
 #include "cli/program.h"
 #include "cli/usage_error.h"
 

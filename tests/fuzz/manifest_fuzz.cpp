@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "build/glob.h"
 #include "build/manifest.h"
+#include "cli/glob.h"
 #include "cli/usage_error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

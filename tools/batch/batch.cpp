@@ -19,17 +19,13 @@
 #include "batch/depfile.h"
 #include "batch/name_pattern.h"
 #include "batch/outcome.h"
-#include "batch/text_file.h"
 #include "batch/up_to_date.h"
+#include "cli/text_file.h"
 #include "cli/usage_error.h"
 #include "threads/fork_join.h"
 
 namespace tex::cli {
 namespace {
-
-// The most files that are processed at once, however many processors there are. More threads then speed up each file,
-// and memory use stays that of a few textures.
-constexpr std::size_t kMostFilesAtOnce = 8;
 
 using Process = std::function<Result<void>(Job& job)>;
 

@@ -7,6 +7,7 @@
 
 #pragma once
 
+#include <cstddef>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -23,6 +24,10 @@
 #include "options/run.h"
 
 namespace tex::cli {
+
+// The most files that are processed at once, however many processors there are. More threads then speed up each file,
+// and memory use stays that of a few textures.
+inline constexpr std::size_t kMostFilesAtOnce = 8;
 
 // A command that only reads its inputs (FileOptions::add_inputs). Its tasks have no output.
 class Batch : public Program {

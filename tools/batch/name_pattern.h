@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // name_pattern.h: builds the names of outputs from the names of inputs: --name '{stem}_mip{level}{ext}'.
 //
-// {stem:-_h} is the stem without _h at its end, if it has it there.
+// {stem:-_h} is the stem without the suffix _h; a stem without the suffix stays as it is.
 
 #pragma once
 

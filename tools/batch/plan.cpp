@@ -13,7 +13,6 @@
 #include "batch/name_pattern.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
-#include "files/system_error.h"
 
 namespace tex::cli {
 namespace {
@@ -83,18 +82,12 @@ std::vector<Task> plan_outputs(std::vector<std::string> inputs, const FileOption
 
 Result<void> create_folders(const FileOptions& files, const std::vector<Task>& tasks) {
     if (files.out_dir.empty() && !files.names_folders()) return {};
-    const auto failed = [](const fs::path& path, const std::error_code& error) {
-        return Error{ErrorCode::io, path.string(), "cannot create this folder: " + system_reason(error.value())};
-    };
     std::error_code error;
     if (!files.out_dir.empty()) fs::create_directory(fs::path(files.out_dir) / "", error);
-    if (error && !is_folder(files.out_dir)) return failed(files.out_dir, error);
+    if (error && !is_folder(files.out_dir)) return no_folder_error(files.out_dir, error);
     for (const Task& task : tasks) {
         for (const std::string& output : task.outputs()) {
-            const fs::path folder = fs::path(output).parent_path();
-            if (folder.empty()) continue;
-            fs::create_directories(folder, error);
-            if (error) return failed(folder, error);
+            if (auto created = create_folders_of(output); !created) return created;
         }
     }
     return {};

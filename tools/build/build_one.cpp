@@ -14,9 +14,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "batch/text_file.h"
 #include "build/build_run.h"
 #include "cli/text.h"
+#include "cli/text_file.h"
 #include "files/system_error.h"
 
 namespace tex::cli {
@@ -52,14 +52,6 @@ std::string needed_file(const BuildTask& maker, const Recipe& recipe) {
 
 }  // namespace
 
-Result<void> BuildRun::create_folders(const std::string& output) const {
-    const fs::path folder = fs::path(output).parent_path();
-    std::error_code error;
-    if (!folder.empty()) fs::create_directories(folder, error);
-    if (!error) return {};
-    return Error{ErrorCode::io, folder.string(), "cannot create this folder: " + system_reason(error.value())};
-}
-
 Error BuildRun::with_remedy(const Error& error, const std::string& output) const {
     struct stat status {};
     const bool is_read_only = error.code == ErrorCode::io && stat(output.c_str(), &status) == 0 &&
@@ -76,7 +68,7 @@ Result<Made> BuildRun::make(const BuildTask& task, const std::vector<Stale>& sta
     std::vector<WantedOutput> wanted;
     for (const Stale& one : stale) {
         const std::string target = contents_.path(task.outputs[one.index]);
-        if (const auto created = create_folders(target); !created) return created.error();
+        if (const auto created = create_folders_of(target); !created) return created.error();
         wanted.push_back({one.index, target, is_checked ? in_memory() : std::string()});
     }
     MakeSettings settings{running_, write_, [&](double fraction) {
@@ -117,16 +109,12 @@ Result<void> BuildRun::fetch(const BuildTask& task, Judgement& judgement, Outcom
     for (Stale& stale : judgement.stale) {
         const std::string& output = task.outputs[stale.index];
         const std::string path = contents_.path(output);
-        if (has_level(output)) {  // several files, which the cache does not hold
-            left.push_back(std::move(stale));
-            continue;
-        }
-        if (auto created = create_folders(path); !created) return created;
-        const Result<bool> found = cache_.fetch(key_of(stale.settings, judgement.inputs), path, write_);
+        if (auto created = create_folders_of(path); !created) return created;
+        const auto found = cache_.fetch(key_of(stale.settings, judgement.inputs), path, write_);
         if (!found) return with_remedy(found.error(), path);
-        if (!*found) {
+        if (found->empty()) {
             left.push_back(std::move(stale));
-        } else if (auto recorded = record(task, stale, judgement.inputs, {path}, outcome); !recorded) {
+        } else if (auto recorded = record(task, stale, judgement.inputs, *found, outcome); !recorded) {
             return recorded;
         }
     }
@@ -210,8 +198,9 @@ Result<bool> BuildRun::make_stale(const BuildTask& task, Judgement judgement,
         const Stale& stale = judgement.stale[k];
         if (auto recorded = record(task, stale, judgement.inputs, made->files[k], outcome); !recorded)
             return recorded.error();
-        if (!cache_.is_used() || has_level(task.outputs[stale.index])) continue;
-        const auto stored = cache_.store(key_of(stale.settings, judgement.inputs), made->files[k].front());
+        if (!cache_.is_used()) continue;
+        const std::string output = contents_.path(task.outputs[stale.index]);
+        const auto stored = cache_.store(key_of(stale.settings, judgement.inputs), output, made->files[k]);
         if (!stored)
             outcome.warnings.push_back({task.input, "the cache does not take it: " + stored.error().message()});
     }

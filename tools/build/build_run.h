@@ -59,9 +59,9 @@ private:
                         const std::vector<std::string>& paths, Outcome& outcome);
     void list_stale(const BuildTask& task, const std::vector<Stale>& stale, Outcome& outcome);
     Result<Made> make(const BuildTask& task, const std::vector<Stale>& stale, double& counted, Outcome& outcome);
-    Result<void> create_folders(const std::string& output) const;
     [[nodiscard]] Error with_remedy(const Error& error, const std::string& output) const;
     void prune();
+    bool remove_files(const OutputRecord& output);
     [[nodiscard]] ExitCode write_depfile() const;
     [[nodiscard]] QueuedTask queued(const BuildTask& task) const;
     void advance(double& counted, double size, double fraction);

@@ -18,18 +18,12 @@
 #include <unistd.h>
 
 #include "batch/depfile.h"
-#include "batch/text_file.h"
 #include "build/build_run.h"
 #include "cli/text.h"
+#include "cli/text_file.h"
 #include "files/system_error.h"
 
 namespace tex::cli {
-namespace {
-
-constexpr int kMostFilesAtOnce = 8;
-
-}  // namespace
-
 void BuildRun::read_state() {
     if (const auto text = read_text_file(options_.state_file)) state_ = BuildState::parse(*text);
     if (options_.shard_state.empty()) return;
@@ -127,11 +121,11 @@ void BuildRun::run_tasks() {
     if (memory == 0) memory = static_cast<std::int64_t>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGESIZE) / 2;
     TaskQueue queue(std::move(tasks), memory);
     const int threads = running_.threads > 0 ? running_.threads : tbb::info::default_concurrency();
-    const int workers = std::min({threads, kMostFilesAtOnce, static_cast<int>(work_.tasks.size())});
+    const std::size_t workers = std::min({static_cast<std::size_t>(threads), kMostFilesAtOnce, work_.tasks.size()});
     // The workers are threads of their own: a worker of TBB that waits for a task could be the one that the task needs.
     std::vector<std::thread> others;
     try {
-        for (int k = 1; k < workers; ++k) others.emplace_back([&] { work_on(queue); });
+        for (std::size_t k = 1; k < workers; ++k) others.emplace_back([&] { work_on(queue); });
     } catch (const std::system_error&) {
         // Fewer threads do the work, too.
     }
@@ -151,25 +145,34 @@ void BuildRun::prune() {
             ++record;
             continue;
         }
-        bool is_gone = true;
-        for (const auto& [file, digest] : record->second.files) {
-            const std::string path = contents_.path(file);
-            const Result<Digest> now = contents_.digest(file);
-            if (!now) continue;
-            if (*now != digest) {
-                console_.warning(fmt::format("{} is not removed: something else has changed it", path));
-            } else if (options_.dry_run) {
-                std::ignore = console_.print(fmt::format("remove {}\n", printable(file)));
-                is_gone = false;
-            } else if (std::remove(path.c_str()) != 0) {
-                console_.warning(fmt::format("{}: cannot be removed: {}", path, system_reason(errno)));
-                is_gone = false;
-            }
-        }
-        ++totals_.pruned;
+        const bool is_gone = remove_files(record->second);
         lost_names_ = lost_names_ || is_gone;
         record = is_gone ? state_.outputs.erase(record) : std::next(record);
     }
+}
+
+// Removes the files of an output. Returns false if the state must go on to know them.
+bool BuildRun::remove_files(const OutputRecord& output) {
+    bool is_gone = true, removes = false;
+    for (const auto& [file, digest] : output.files) {
+        const std::string path = contents_.path(file);
+        const Result<Digest> now = contents_.digest(file);
+        if (!now) continue;
+        if (*now != digest) {
+            console_.warning(fmt::format("{} is not removed: something else has changed it", path));
+        } else if (options_.dry_run) {
+            std::ignore = console_.print(fmt::format("remove {}\n", printable(file)));
+            is_gone = false;
+            removes = true;
+        } else if (std::remove(path.c_str()) != 0) {
+            console_.warning(fmt::format("{}: cannot be removed: {}", path, system_reason(errno)));
+            is_gone = false;
+        } else {
+            removes = true;
+        }
+    }
+    if (removes) ++totals_.pruned;
+    return is_gone;
 }
 
 // Writes which files the outputs that are up to date were made from.
@@ -229,7 +232,8 @@ ExitCode BuildRun::run() {
     if (cache_.is_used()) summary += fmt::format(", {} from the cache", totals_.cached.load());
     if (cache_.damaged() > 0) summary += fmt::format(" ({} damaged entries repaired)", cache_.damaged());
     if (totals_.failed > 0) summary += fmt::format(", {} failed", totals_.failed.load());
-    if (totals_.pruned > 0) summary += fmt::format(", {} removed", totals_.pruned.load());
+    if (totals_.pruned > 0)
+        summary += fmt::format(", {} {}", totals_.pruned.load(), options_.dry_run ? "to remove" : "removed");
     return std::max(code, console_.print(summary + "\n"));
 }
 

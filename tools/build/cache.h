@@ -10,7 +10,10 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <tex/container.h>
 #include <tex/result.h>
@@ -28,18 +31,22 @@ public:
 
     [[nodiscard]] bool is_used() const { return !folder_.empty(); }
 
-    // Writes the output `key` to the file `path`. Returns false if there is no such entry, or if it is damaged. Errors:
-    // those of writing `path`.
-    [[nodiscard]] Result<bool> fetch(const Digest& key, const std::string& path, const WriteOptions& write);
-    // Keeps the file `path` as the output `key`. Errors: io.
-    [[nodiscard]] Result<void> store(const Digest& key, const std::string& path);
+    // Writes the output `key` to the file `output`, or to a file for each level if the name contains {level}. Returns
+    // the files; none if there is no such entry, or if it is damaged. Errors: those of writing.
+    [[nodiscard]] Result<std::vector<std::string>> fetch(const Digest& key, const std::string& output,
+                                                         const WriteOptions& write);
+    // Keeps the files of an output, which are those that fetch() returns. Errors: io.
+    [[nodiscard]] Result<void> store(const Digest& key, const std::string& output,
+                                     const std::vector<std::string>& files);
     // Removes the entries that have not been used for the longest time until the others take at most `bytes`.
     void shrink(std::int64_t bytes, Console& console) const;
 
-    [[nodiscard]] std::size_t damaged() const { return damaged_; }  // entries that fetch() has found
+    [[nodiscard]] std::size_t damaged() const { return damaged_; }  // entries that fetch() has met
 
 private:
     [[nodiscard]] std::string entry(const Digest& key) const;
+    [[nodiscard]] std::optional<std::string> read(const Digest& key);
+    [[nodiscard]] Result<void> write(const Digest& key, const std::string& bytes) const;
 
     const std::string folder_;
     std::atomic<std::size_t> damaged_{0};

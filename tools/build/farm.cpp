@@ -13,10 +13,10 @@
 
 #include <fmt/format.h>
 
-#include "batch/text_file.h"
 #include "build/merge.h"
 #include "build/shard_report.h"
 #include "cli/text.h"
+#include "cli/text_file.h"
 #include "cli/usage_error.h"
 #include "cli/value.h"
 #include "files/system_error.h"
@@ -162,11 +162,8 @@ ExitCode Farm::run_shard(const std::vector<Recipe>& recipes, BuildOptions option
     const WorkList work = work_of_shard(recipes, options.root, console);
     options.is_shard = true;
     if (report_.empty()) return build(recipes, work, options, running, console);
-    const fs::path folder = fs::path(report_).parent_path();
-    std::error_code error;
-    if (!folder.empty()) fs::create_directories(folder, error);
-    if (error) {
-        console.error(fmt::format("{}: cannot create this folder: {}", folder.string(), system_reason(error.value())));
+    if (const auto created = create_folders_of(report_); !created) {
+        console.error(created.error().message());
         return ExitCode::io;
     }
     options.shard_state = state_beside(report_);

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "build/glob.h"
+#include "cli/glob.h"
 
 namespace tex::cli {
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/text.h"
 #include "cli/usage_error.h"
 
 namespace tex::cli {
@@ -63,7 +64,7 @@ std::int64_t JsonLine::number(const char* key, std::int64_t least, std::int64_t 
 std::string JsonLine::text(const char* key) const {
     const Json& value = member(key);
     if (!value.is_string()) fail(fmt::format("\"{}\" must be a string", key));
-    return value.get<std::string>();
+    return printable(value.get<std::string>());
 }
 
 std::string JsonLine::as_name(const Json& value, const char* key) const {
@@ -73,7 +74,7 @@ std::string JsonLine::as_name(const Json& value, const char* key) const {
     const std::string digits = hex->get<std::string>();
     std::string name;
     for (std::size_t k = 0; k + 2 <= digits.size(); k += 2) {
-        int code = 0;
+        unsigned code = 0;
         const char* const at = digits.data() + k;
         if (std::from_chars(at, at + 2, code, 16).ptr != at + 2) fail(fmt::format("\"{}\" must be a name", key));
         name += static_cast<char>(code);

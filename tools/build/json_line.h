@@ -25,6 +25,7 @@ public:
 
     [[nodiscard]] bool has(const char* key) const { return object_.contains(key); }
     [[nodiscard]] std::int64_t number(const char* key, std::int64_t least, std::int64_t greatest) const;
+    // Fit to be printed: control characters are escaped.
     [[nodiscard]] std::string text(const char* key) const;
     [[nodiscard]] std::string name(const char* key) const;
     [[nodiscard]] std::vector<std::string> names(const char* key) const;

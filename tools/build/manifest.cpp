@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "build/glob.h"
+#include "cli/glob.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "options/toml.h"

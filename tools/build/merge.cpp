@@ -14,10 +14,10 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-#include "batch/text_file.h"
 #include "build/json_line.h"
 #include "build/shard_report.h"
 #include "cli/text.h"
+#include "cli/text_file.h"
 #include "cli/usage_error.h"
 #include "reports/json.h"
 

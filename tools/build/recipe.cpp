@@ -44,16 +44,6 @@ std::vector<std::string> groups_of(const Command& command) {
 
 bool names_a_file(const Row& row) { return row.completes == Completes::files; }
 
-std::string shell_word(const std::string& word) {
-    const bool plain = !word.empty() && word.find_first_not_of(
-                                            "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                            "0123456789-_./,:=+@%") == std::string::npos;
-    if (plain) return word;
-    std::string text = "'";
-    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return text + "'";
-}
-
 }  // namespace
 
 std::vector<std::string> step_names() {
@@ -253,7 +243,7 @@ std::vector<std::string> Recipe::command_lines(const std::string& input, std::si
         const ReadyCommand& command = is_last ? outputs_[index].last : before_[k];
         const std::string to = is_last ? output_name(input, index) : fmt::format("step{}.exr", k + 1);
         std::string line =
-            fmt::format("{} {} -o {}", command.program->command.name(), shell_word(from), shell_word(to));
+            fmt::format("{} {} -o {}", command.program->command.name(), shell_file(from), shell_file(to));
         for (const std::string& argument : command.arguments) {
             const auto [name, value] = cut(argument, '=');
             line += " " + name;

@@ -12,10 +12,10 @@
 
 #include "batch/batch.h"
 #include "batch/name_pattern.h"
-#include "build/glob.h"
 #include "build/manifest.h"
 #include "build/texture_check.h"
 #include "cli/console.h"
+#include "cli/glob.h"
 #include "cli/programs.h"
 
 namespace tex::cli {

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 #include <tex/tex.h>
 
-#include "cli/host.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
 
@@ -70,13 +69,7 @@ Result<void> TextureCheck::compare_with_source(const MadeTexture& made, const Re
     if (!packed) return packed.error();
     const auto compared = compare(source->chain.levels.front(), packed->chain.levels.front(), execution);
     if (!compared) return compared.error();
-    MemoryHost host;
-    Console console("", host);
-    if (limits_.judge(console, 0, compared->error) == ExitCode::done) return {};
-    for (std::string& line : split(host.err(), '\n')) {
-        constexpr std::string_view kBefore = ": error: ";
-        if (line.starts_with(kBefore)) sentences.push_back(line.substr(kBefore.size()));
-    }
+    for (std::string& sentence : limits_.violations(0, compared->error)) sentences.push_back(std::move(sentence));
     return {};
 }
 

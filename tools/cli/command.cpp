@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 
-#include "batch/text_file.h"
 #include "cli/completion.h"
 #include "cli/help.h"
 #include "cli/text.h"
+#include "cli/text_file.h"
 #include "cli/usage_error.h"
 #include "cli/version.h"
 

@@ -114,6 +114,25 @@ std::string printable(std::string_view text) {
     return safe;
 }
 
+std::string shell_word(const std::string& word) {
+    constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+@%,:=";
+    if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+    const bool is_printable = printable(word) == word;
+    std::string text = is_printable ? "'" : "$'";
+    for (const char c : word) {
+        if (c == '\'') {
+            text += is_printable ? "'\\''" : "\\'";
+        } else {
+            text += c == '\\' && !is_printable ? std::string("\\\\") : std::string(1, c);
+        }
+    }
+    return printable(text) + "'";
+}
+
+std::string shell_file(const std::string& name) {
+    return shell_word(name.size() > 1 && name.front() == '-' ? "./" + name : name);
+}
+
 std::vector<std::string> wrapped(std::string_view text, std::size_t width) {
     std::vector<std::string> lines(1);
     while (!text.empty()) {

@@ -29,6 +29,13 @@ namespace tex::cli {
 // cannot break a line, control the terminal or look like another name.
 [[nodiscard]] std::string printable(std::string_view text);
 
+// `word` as one word of a command line, quoted if a shell needs that. Bytes that printable() escapes are written in
+// $'...', which bash, zsh and ksh understand.
+[[nodiscard]] std::string shell_word(const std::string& word);
+
+// The name of a file as one word of a command line. A name that begins with a hyphen is not an option.
+[[nodiscard]] std::string shell_file(const std::string& name);
+
 // `text` broken at blanks into lines of at most `width` characters. A longer word gets its own line.
 [[nodiscard]] std::vector<std::string> wrapped(std::string_view text, std::size_t width);
 

@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "batch/text_file.h"
 #include "cli/command.h"
 #include "cli/text.h"
+#include "cli/text_file.h"
 #include "cli/usage_error.h"
 #include "options/toml.h"
 #include "options/toml_bounds.h"

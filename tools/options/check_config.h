@@ -24,7 +24,7 @@
 
 #include <tex/check.h>
 
-#include "build/glob.h"
+#include "cli/glob.h"
 
 namespace tex::cli {
 

@@ -10,9 +10,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "batch/text_file.h"
 #include "cli/text.h"
+#include "cli/text_file.h"
 #include "cli/usage_error.h"
+#include "files/system_error.h"
 #include "files/through_file.h"
 
 namespace tex::cli {
@@ -37,6 +38,17 @@ fs::path absolute_path(const std::string& path) {
 bool is_folder(const std::string& path) {
     std::error_code error;
     return path.ends_with('/') || fs::is_directory(path, error);
+}
+
+Result<void> create_folders_of(const std::string& file) {
+    const fs::path folder = fs::path(file).parent_path();
+    std::error_code error;
+    if (!folder.empty()) fs::create_directories(folder, error);
+    return error ? Result<void>(no_folder_error(folder.string(), error)) : Result<void>();
+}
+
+Error no_folder_error(const std::string& folder, const std::error_code& error) {
+    return {ErrorCode::io, folder, "cannot create this folder: " + system_reason(error.value())};
 }
 
 std::optional<std::string> path_below(const std::string& folder, const std::string& path) {

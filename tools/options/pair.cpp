@@ -90,17 +90,17 @@ Result<void> PairOptions::check_level(std::size_t level, const MipChain& a, cons
                  fmt::format("is {}x{} texels, {} is {}x{}", q.width, q.height, names[0], p.width, p.height)};
 }
 
-ExitCode PairOptions::judge(Console& console, int level, const AngularError& error) const {
-    ExitCode code = ExitCode::done;
+std::vector<std::string> PairOptions::violations(int level, const AngularError& error) const {
+    std::vector<std::string> sentences;
     const auto hold = [&](const char* name, double figure, std::optional<double> limit) {
         if (!limit || figure <= *limit) return;
-        console.error(fmt::format("level {}: {} {:.4f} degrees is over the limit of {}", level, name, figure, *limit));
-        code = ExitCode::findings;
+        sentences.push_back(
+            fmt::format("level {}: {} {:.4f} degrees is over the limit of {}", level, name, figure, *limit));
     };
     hold("mean", error.mean, max_mean_);
     hold("p99.9", error.p999, max_p999_);
     hold("max", error.max, max_);
-    return code;
+    return sentences;
 }
 
 }  // namespace tex::cli

@@ -40,8 +40,8 @@ public:
     [[nodiscard]] static Result<void> check_level(std::size_t level, const MipChain& a, const MipChain& b,
                                                   const std::vector<std::string>& names);
 
-    // Returns ExitCode::findings, and prints an error for each figure above its limit; or returns ExitCode::done.
-    [[nodiscard]] ExitCode judge(Console& console, int level, const AngularError& error) const;
+    // A sentence for each figure of a level that is above its limit.
+    [[nodiscard]] std::vector<std::string> violations(int level, const AngularError& error) const;
 
     // The warnings so far.
     [[nodiscard]] const std::vector<FileWarning>& warnings() const { return warnings_; }

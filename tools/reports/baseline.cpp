@@ -10,8 +10,8 @@
 
 #include <fmt/format.h>
 
-#include "batch/text_file.h"
 #include "cli/text.h"
+#include "cli/text_file.h"
 #include "reports/json.h"
 
 namespace tex::cli {

@@ -8,7 +8,7 @@
 #include <tex/container.h>
 
 #include "batch/depfile.h"
-#include "batch/text_file.h"
+#include "cli/text_file.h"
 #include "cli/usage_error.h"
 #include "reports/html_map.h"
 #include "reports/sarif.h"

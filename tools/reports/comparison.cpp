@@ -12,8 +12,8 @@
 
 #include "batch/collisions.h"
 #include "batch/depfile.h"
-#include "batch/text_file.h"
 #include "cli/text.h"
+#include "cli/text_file.h"
 #include "cli/usage_error.h"
 #include "reports/json.h"
 

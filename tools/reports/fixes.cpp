@@ -20,16 +20,6 @@ void replace_word(std::string& text, std::string_view word, std::string_view by)
     }
 }
 
-// A file name, quoted for a shell. A name that begins with a hyphen is not an option.
-std::string quoted(const std::string& name) {
-    constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+@%,:=";
-    std::string file = name.size() > 1 && name.front() == '-' ? "./" + name : name;
-    if (!file.empty() && file.find_first_not_of(kPlain) == std::string::npos) return file;
-    std::string text = "'";
-    for (const char c : printable(file)) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return text + "'";
-}
-
 // The encoding that holds every stored component of this layout with as many bits; none if there is no such encoding.
 std::optional<Encoding> same_encoding(Format format, const Swizzle& swizzle) {
     const auto is_at = [&](std::size_t channel, Component component) { return swizzle[channel] == component; };
@@ -149,7 +139,7 @@ Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements
     replace_word(fix, "MEASURED", name_of(kYAxisNames, report.y.y.value_or(YAxis::up)));
     replace_word(fix, "LEVELS", levels_text(require));
     replace_word(fix, "FIXED", "FIXED" + extension_of(target->container));
-    replace_word(fix, "FILE", quoted(report.file));  // last, because a name may contain the words above
+    replace_word(fix, "FILE", shell_file(report.file));  // last, because a name may contain the words above
     return {fix, true};
 }
 

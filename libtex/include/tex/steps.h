@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <variant>
 #include <vector>
@@ -25,9 +26,10 @@ struct MapRead {
 struct StepsReport {
     Extent extent;  // of the base level
     int levels = 1;
-    std::size_t bytes = 0;  // of all outputs
-    PackOptions pack;       // of `output`
-    HeightReport heights;   // if the first step bakes
+    std::size_t bytes = 0;          // of all outputs
+    PackOptions pack;               // of `output`
+    HeightReport heights;           // if the first step bakes
+    std::int64_t steep_texels = 0;  // as in BakeFileReport, if the only step bakes; maps of floats hold all slopes
     std::vector<MapRead> maps;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "build/glob.h"
+#include "cli/glob.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "batch/text_file.h"
+#include "cli/text_file.h"
 
 #include <cerrno>
 #include <cstdio>
