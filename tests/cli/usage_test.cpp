@@ -105,6 +105,30 @@ TEST_P(EveryUsage, ValuesAreChecked) {
     refuses({"a.png", "--out-dir", ""}, "--out-dir: needs a value");
 }
 
+TEST(Usage, WordsMayBeInCapitalsAndHaveOtherNames) {
+    const Scratch scratch;
+    scratch.add_sample("ramp.png", "a.png");
+    const auto bake = [&](const std::string& output, const std::string& format, const std::string& y) {
+        const Ran ran =
+            run(scratch, "bake-normals", {"a.png", "-o", output, "--format", format, "--y", y, "--no-sync"});
+        EXPECT_EQ(ran.code, 0) << ran.err;
+        return scratch.read(output);
+    };
+    const std::string down = bake("a.dds", "bc5", "down");
+    EXPECT_TRUE(down != bake("b.dds", "bc5", "up"));
+    for (const char* y : {"DirectX", "dx", "DX", "d3d", "DOWN"}) EXPECT_TRUE(bake("b.dds", "BC5", y) == down) << y;
+    for (const char* y : {"OpenGL", "gl", "Up"})
+        EXPECT_TRUE(bake("b.dds", "ATI2", y) == bake("c.dds", "bc5", "up")) << y;
+    EXPECT_TRUE(bake("b.dds", "BC3nm", "up") == bake("c.dds", "dxt5nm", "up"));
+    const auto check = [&](const std::string& demand) {
+        return run(scratch, "check-normals", {"a.dds", "--require", demand, "--fail-on", "error"}).code;
+    };
+    EXPECT_EQ(check("format=BC5"), 0);
+    EXPECT_EQ(check("format=BC3nm"), 1);
+    EXPECT_EQ(check("y=DirectX"), check("y=down"));
+    EXPECT_EQ(check("y=west"), 2);
+}
+
 TEST_P(EveryUsage, InputsAndOutputsMustFit) {
     refuses({}, "no input");
     refuses({"-o", "a.dds"}, "no input");

@@ -32,14 +32,14 @@ NormalMap waves(Extent extent, double steepest, double sign) {
 
 TEST(YWitness, SeesTheDirectionOfGentleAndSteepSurfaces) {
     for (const double steepest : {0.05, 1.0, 6.0}) {
-        EXPECT_FALSE(contradicts_y(waves({96, 80}, steepest, 1.0))) << steepest;
-        EXPECT_TRUE(contradicts_y(waves({96, 80}, steepest, -1.0))) << steepest;
+        EXPECT_EQ(shown_y(waves({96, 80}, steepest, 1.0)), YAxis::up) << steepest;
+        EXPECT_EQ(shown_y(waves({96, 80}, steepest, -1.0)), YAxis::down) << steepest;
     }
 }
 
 TEST(YWitness, SmallAndFlatMapsShowNothing) {
-    EXPECT_FALSE(contradicts_y(waves({31, 96}, 1.0, -1.0)));
-    EXPECT_FALSE(contradicts_y(waves({96, 96}, 0.0, -1.0)));
+    EXPECT_EQ(shown_y(waves({31, 96}, 1.0, -1.0)), std::nullopt);
+    EXPECT_EQ(shown_y(waves({96, 96}, 0.0, -1.0)), std::nullopt);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "cli/command.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -48,8 +49,22 @@ std::vector<std::string> names_of(const std::vector<Word>& words) {
     return names;
 }
 
-void check_word(const std::string& name, const std::vector<std::string>& names) {
-    if (std::find(names.begin(), names.end(), name) != names.end()) return;
+std::string common_word(std::string word) {
+    static constexpr std::pair<std::string_view, std::string_view> kOtherNames[] = {
+        {"opengl", "up"}, {"gl", "up"},    {"directx", "down"}, {"d3d", "down"},
+        {"dx", "down"},   {"ati2", "bc5"}, {"3dc", "bc5"},      {"bc3nm", "dxt5nm"},
+    };
+    for (char& c : word) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    for (const auto& [other, name] : kOtherNames) {
+        if (word == other) return std::string(name);
+    }
+    return word;
+}
+
+std::string known_word(const std::string& name, const std::vector<std::string>& names) {
+    for (const std::string& word : {name, common_word(name)}) {
+        if (std::find(names.begin(), names.end(), word) != names.end()) return word;
+    }
     throw UsageError(
         fmt::format("must be one of {}, not '{}'{}", join(names), printable(name), did_you_mean(name, names)));
 }
@@ -111,11 +126,9 @@ Row& Command::number(int& target, const std::string& names, std::string value, i
 Row& Command::choice_row(const std::string& names, std::string value, std::string help, std::vector<Word> words,
                          std::function<void(const std::string& name)> take) {
     std::vector<std::string> valid = names_of(words);
-    Row& row = option(names, std::move(value), std::move(help),
-                      [valid = std::move(valid), take = std::move(take)](const std::string& name) {
-                          check_word(name, valid);
-                          take(name);
-                      });
+    Row& row = option(
+        names, std::move(value), std::move(help),
+        [valid = std::move(valid), take = std::move(take)](const std::string& name) { take(known_word(name, valid)); });
     row.words = std::move(words);
     row.completes = Completes::words;
     return row;

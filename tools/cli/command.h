@@ -158,13 +158,14 @@ private:
     std::string completion_;
 };
 
-// For options whose value consists of several words: throws UsageError if `name` is not in `names`. The message lists
-// the names and suggests one.
-void check_word(const std::string& name, const std::vector<std::string>& names);
+// The word for what users also call by other names or in capital letters: "up" for "OpenGL".
+[[nodiscard]] std::string common_word(std::string word);
+
+// The one of `names` that `name` or common_word(name) is. Throws UsageError, which lists the names and suggests one.
+[[nodiscard]] std::string known_word(const std::string& name, const std::vector<std::string>& names);
 template <class E, std::size_t N>
 [[nodiscard]] E parse_word(const std::string& name, const Named<E> (&table)[N]) {
-    check_word(name, names_of(words_of(table)));
-    return *find_by_name(table, name);
+    return *find_by_name(table, known_word(name, names_of(words_of(table))));
 }
 
 }  // namespace tex::cli

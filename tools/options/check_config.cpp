@@ -79,7 +79,7 @@ private:
     void add(const toml::table& table, CheckSettings& settings) const {
         CheckOptions& options = settings.options;
         for (const auto& [text, node] : strings(table, "require")) {
-            if (auto added = add_requirement(options.require, text); !added)
+            if (auto added = add_common_requirement(options.require, text); !added)
                 fail(*node, printable(added.error().reason));
         }
         for (const auto& [text, node] : strings(table, "enable")) {
@@ -151,6 +151,12 @@ CheckConfig parse_check_config(const std::string& path, const std::string& text)
     } catch (const BrokenToml&) {
         throw UsageError(fmt::format("{}: this is not TOML", printable(path)));
     }
+}
+
+Result<void> add_common_requirement(Requirements& requirements, const std::string& text) {
+    const std::size_t equal = text.find('=');
+    if (equal == std::string::npos) return add_requirement(requirements, text);
+    return add_requirement(requirements, text.substr(0, equal + 1) + common_word(text.substr(equal + 1)));
 }
 
 }  // namespace tex::cli

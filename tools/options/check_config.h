@@ -28,6 +28,9 @@
 
 namespace tex::cli {
 
+// add_requirement() with common_word() for the value: "y=OpenGL". Errors: bad_option.
+[[nodiscard]] Result<void> add_common_requirement(Requirements& requirements, const std::string& text);
+
 struct CheckSettings {
     CheckOptions options;
     std::optional<Severity> fail_on;

@@ -13,6 +13,8 @@
 namespace tex::cli {
 namespace {
 
+constexpr const char* kMeasured = "measured";
+
 std::string guess_text(const std::string& layout) {
     // A grey picture with alpha has the texels of such a map with y in R, G and B.
     const std::string_view evidence =
@@ -51,14 +53,23 @@ void report_input(Job& job, const SourceInfo& info) {
 
 void NormalsReader::add(Command& command, bool with_keep_length) {
     command.group("Input");
-    command.choice(unpack.y_axis, "--y-in", "AXIS", kYAxisNames, "which way green points in the input").preset =
-        "as the file says, else up";
+    Row& y = command.option("--y-in", "AXIS", "which way green points in the input", [this](const std::string& text) {
+        std::vector<std::string> names = names_of(words_of(kYAxisNames));
+        names.emplace_back(kMeasured);
+        const std::string word = known_word(text, names);
+        measures_y = word == kMeasured;
+        unpack.y_axis = find_by_name(kYAxisNames, word);
+    });
+    y.words = words_of(kYAxisNames);
+    y.words.push_back({kMeasured, "as the texels show; an error if they do not show it clearly"});
+    y.preset = "as the file says, else up";
+    y.completes = Completes::words;
     Row& row = command.option("--swizzle", "S", "which channels hold what", [this](const std::string& text) {
         std::vector<std::string> names = names_of(words_of(kSwizzleNames));
         names.insert(names.end(), {"auto", "rgorag"});
-        check_word(text, names);
-        swizzle = find_by_name(kSwizzleNames, text);
-        rg_or_ag = text == "rgorag";
+        const std::string word = known_word(text, names);
+        swizzle = find_by_name(kSwizzleNames, word);
+        rg_or_ag = word == "rgorag";
     });
     row.words = words_of(kSwizzleNames);
     row.words.insert(row.words.begin(), {"auto", "as the file says, else guessed from the texels"});
@@ -85,6 +96,7 @@ SourceOptions NormalsReader::options(const Job& job, const Reading& reading) con
     options.unpack = unpack;
     options.unpack.swizzle = swizzle;
     if (reading.y) options.unpack.y_axis = reading.y;
+    options.measure_y = measures_y && !reading.y;
     options.unpack.keep_length = reading.keep_length.value_or(unpack.keep_length);
     if (bc5_order) options.bc5_swizzle = *bc5_order == Bc5Order::xy ? kSwizzleXy : kSwizzleYx;
     options.r_or_a = rg_or_ag;

@@ -45,6 +45,7 @@ public:
     bool rg_or_ag = false;           // x in R or A, whichever is not constant
     std::optional<Bc5Order> bc5_order;
     UnpackOptions unpack;
+    bool measures_y = false;  // the texels show which way green points
 
     // `with_keep_length`: --keep-length is an option. Otherwise the command itself chooses.
     void add(Command& command, bool with_keep_length = true);

@@ -24,7 +24,7 @@ const Rule& parse_rule(const std::string& name) {
 }
 
 void require(Requirements& requirements, const std::string& text) {
-    if (const auto added = add_requirement(requirements, text); !added) throw UsageError(added.error().reason);
+    if (const auto added = add_common_requirement(requirements, text); !added) throw UsageError(added.error().reason);
 }
 
 template <class T>

@@ -28,6 +28,7 @@ struct SourceOptions {
     bool r_or_a = false;        // y is in G, and x in A if guess_swizzle() finds it there, else in R; unpack.swizzle
                                 // takes precedence
     bool doubt_y = false;       // if neither the file nor the caller states y, measure it: SourceInfo::y_doubtful
+    bool measure_y = false;     // the texels of the base level decide about y, whatever the file or unpack.y_axis state
     bool file_y_first = false;  // the direction that a file states takes precedence over unpack.y_axis
 };
 
@@ -37,7 +38,7 @@ struct SourceInfo {
     Swizzle swizzle = {};      // with which it was read
     bool guessed = false;      // the swizzle comes from the texels, and is not merely rgb in a file that looks like rgb
     YAxis y_axis = YAxis::up;  // with which it was read: the direction of y in the file
-    bool y_known = false;      // y_axis comes from the file or from the caller; otherwise it is assumed
+    bool y_known = false;      // y_axis comes from the file, the caller or the texels; otherwise it is assumed
     bool y_doubtful = false;   // it is assumed, and the texels clearly show the other direction
     bool srgb = false;         // this and remarks: as in Texture
     std::vector<std::string> remarks;
@@ -51,7 +52,8 @@ struct Source {
 // Reads the normals in a file by read_texture(), guess_swizzle() if it is needed, and unpack(). With `base_only` the
 // smaller levels are left out.
 //
-// Errors, all of which name the file: those of the three functions; unsupported if there is only one channel.
+// Errors, all of which name the file: those of the three functions; unsupported if there is only one channel; bad_data
+// if y is to be measured and the texels do not show it clearly.
 [[nodiscard]] Result<Source> read_normals(const std::string& path, const SourceOptions& options = {},
                                           bool base_only = false, const Execution& execution = {});
 

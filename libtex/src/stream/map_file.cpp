@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "stream/measured_y.h"
 #include "stream/normal_source.h"
 #include "stream/row_stream.h"
 #include "stream/source_layout.h"
@@ -18,13 +19,30 @@ Result<void> MapFile::open_texture() {
     return {};
 }
 
+Result<void> MapFile::measure_y(MapSource& map) {
+    if (!options_.measure_y) return {};
+    Result<SourceOptions> measured = with_measured_y(map, options_);
+    if (!measured) return measured.error();
+    options_.unpack.y_axis = measured->unpack.y_axis;
+    options_.measure_y = options_.file_y_first = false;
+    return {};
+}
+
 // A stream is read into memory, because the map may have to be read as a whole, or twice.
 Result<void> MapFile::open() {
-    if (made_ != nullptr) return open_texture();
+    if (made_ != nullptr) {
+        if (Result<void> measured = measure_y(*made_); !measured) return measured;
+        return open_texture();
+    }
     Result<InputFile> file = InputFile::open(path_);
     if (!file) return file.error();
     file_.emplace(std::move(*file));
     if (Result<void> settled = file_->settle(largest_file(options_.read)); !settled) return settled;
+    if (options_.measure_y) {
+        OpenFileMap map(*file_, options_.read);
+        if (Result<void> measured = measure_y(map); !measured) return measured;
+        if (Result<void> again = file_->rewind(); !again) return again;
+    }
     return open_texture();
 }
 

@@ -18,7 +18,7 @@ namespace tex {
 
 class MapFile {
 public:
-    // Both must outlive this object.
+    // The path or the source must outlive this object.
     MapFile(const std::string& path, const SourceOptions& options) : path_(path), options_(options) {}
     MapFile(MapSource& made, const SourceOptions& options) : path_(made.path()), options_(options), made_(&made) {}
     MapFile(const MapFile&) = delete;
@@ -54,9 +54,10 @@ public:
 
 private:
     Result<void> open_texture();
+    Result<void> measure_y(MapSource& map);
 
     const std::string& path_;
-    const SourceOptions& options_;
+    SourceOptions options_;            // y is no longer to be measured after open()
     MapSource* const made_ = nullptr;  // instead of a file
     std::optional<InputFile> file_;
     std::optional<TextureRows> texture_;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "formats/texture_rows.h"
+#include "stream/measured_y.h"
 #include "stream/source_layout.h"
 #include "stream/y_witness.h"
 
@@ -19,6 +20,22 @@ Result<Swizzle> find_swizzle(const Texture& texture, const SourceOptions& option
     return guessed_swizzle(*guess, options);
 }
 
+// Turns normals that were unpacked with y up, whatever it is, so that their y points up.
+Result<void> turn_up(Source& source) {
+    const std::optional<YAxis> shown = shown_y(source.chain.levels.front());
+    if (!shown) return undecided_y({});
+    source.info.y_axis = *shown;
+    source.info.y_known = true;
+    if (*shown == YAxis::up) return {};
+    for (NormalMap& level : source.chain.levels) {
+        for (int j = 0; j < level.extent().height; ++j) {
+            float* const y = level.y.row(j);
+            for (int i = 0; i < level.extent().width; ++i) y[i] = -y[i];
+        }
+    }
+    return {};
+}
+
 Result<Source> unpack_source(Texture texture, const SourceOptions& options, bool base_only,
                              const Execution& execution) {
     if (base_only) texture.levels.resize(1);
@@ -27,10 +44,16 @@ Result<Source> unpack_source(Texture texture, const SourceOptions& options, bool
     if (!swizzle) return swizzle.error();
     Source source;
     source.info = source_info(texture, *swizzle, options);
-    Result<MipChain> chain = unpack(texture, unpack_options(source.info, options), execution);
+    UnpackOptions unpacking = unpack_options(source.info, options);
+    if (options.measure_y) unpacking.y_axis = YAxis::up;
+    Result<MipChain> chain = unpack(texture, unpacking, execution);
     if (!chain) return chain.error();
     source.chain = std::move(*chain);
-    if (options.doubt_y && !source.info.y_known) source.info.y_doubtful = contradicts_y(source.chain.levels.front());
+    if (options.measure_y) {
+        if (const Result<void> turned = turn_up(source); !turned) return turned.error();
+    } else if (options.doubt_y && !source.info.y_known) {
+        source.info.y_doubtful = shown_y(source.chain.levels.front()) == YAxis::down;
+    }
     return source;
 }
 

@@ -13,6 +13,7 @@
 #include "rows/mip_rows.h"
 #include "stream/layout_finder.h"
 #include "stream/level_stage.h"
+#include "stream/measured_y.h"
 #include "stream/own_roughness.h"
 #include "stream/shared_writer.h"
 #include "stream/source_layout.h"
@@ -211,6 +212,13 @@ Result<std::optional<PackFileReport>> Attempt::run() {
 Result<PackFileReport> pack_stream(MapSource& source, const std::string& output, Container container,
                                    const PackFileOptions& options, const Execution& execution,
                                    const StreamSizes& sizes) {
+    if (options.source.measure_y) {
+        Result<SourceOptions> measured = with_measured_y(source, options.source);
+        if (!measured) return measured.error();
+        PackFileOptions settled = options;
+        settled.source = std::move(*measured);
+        return pack_stream(source, output, container, settled, execution, sizes);
+    }
     double told = 0.0;  // a new attempt does not move progress backwards
     Execution onward{execution.threads, {}};
     if (execution.progress) {

@@ -41,17 +41,16 @@ void YWitness::add_row(int j, const VectorRow& row) {
     }
 }
 
-bool YWitness::contradicts() {
-    if (windows_.empty()) return false;
+std::optional<YAxis> YWitness::y() {
+    if (windows_.empty()) return std::nullopt;
     for (Slopes& slopes : slopes_) widen_holes(slopes);
-    return clear_y(measure_curl(extent_, windows_, [&](std::size_t k) { return std::move(slopes_[k]); })) ==
-           YAxis::down;
+    return clear_y(measure_curl(extent_, windows_, [&](std::size_t k) { return std::move(slopes_[k]); }));
 }
 
-bool contradicts_y(const NormalMap& map) {
+std::optional<YAxis> shown_y(const NormalMap& map) {
     YWitness witness(map.extent());
     for (int j = 0; j < map.extent().height; ++j) witness.add_row(j, {map.x.row(j), map.y.row(j), map.z.row(j)});
-    return witness.contradicts();
+    return witness.y();
 }
 
 }  // namespace tex

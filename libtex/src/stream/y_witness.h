@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <tex/normal_map.h>
@@ -20,8 +21,9 @@ public:
     // Takes row j of the unpacked map, with y up according to the assumption. Each row comes once.
     void add_row(int j, const VectorRow& row);
 
-    // Whether the rows clearly show that y points down. Call it once, after the last row.
-    [[nodiscard]] bool contradicts();
+    // Where y points, if the rows show it clearly. Call it once, after the last row.
+    [[nodiscard]] std::optional<YAxis> y();
+    [[nodiscard]] bool contradicts() { return y() == YAxis::down; }
 
 private:
     const Extent extent_;
@@ -29,7 +31,7 @@ private:
     std::vector<Slopes> slopes_;
 };
 
-// Whether the map as a whole contradicts the assumption.
-[[nodiscard]] bool contradicts_y(const NormalMap& map);
+// The same for a whole map.
+[[nodiscard]] std::optional<YAxis> shown_y(const NormalMap& map);
 
 }  // namespace tex

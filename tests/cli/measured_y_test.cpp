@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// --y-in measured: the texels show which way green points.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "cli/program.h"
+
+namespace tex::cli {
+
+class MeasuredY : public testing::Test {
+protected:
+    MeasuredY() {
+        for (const char* name : {"strip.png", "bricks.png"}) scratch_.add_sample(name, name);
+        for (const char* y : {"up", "down"}) {
+            make("bake-normals", {"strip.png", "-o", std::string(y) + ".png", "--y", y, "--wrap", "clamp"});
+            make("bake-normals", {"bricks.png", "-o", std::string(y) + ".dds", "--y", y, "--bumpiness", "2"});
+        }
+    }
+    void make(const std::string& command, std::vector<std::string> arguments, const Setting& setting = {}) {
+        arguments.insert(arguments.end(), {"--no-sync", "--quiet"});
+        const Ran ran = run(scratch_, command, arguments, setting);
+        EXPECT_EQ(ran.code, 0) << command << " " << arguments[0] << ": " << ran.err;
+        EXPECT_EQ(ran.err, "");
+    }
+    // Whether a command makes the same of `input` if it measures y as if it is told y.
+    void expect_same(const std::string& command, const std::string& input, const std::string& y,
+                     const std::string& output, std::vector<std::string> more) {
+        SCOPED_TRACE(command + " " + input);
+        more.insert(more.begin(), {input, "-o", output, "--y-in", y});
+        make(command, more);
+        const std::string told = scratch_.read(output);
+        more[4] = "measured";
+        make(command, more);
+        EXPECT_TRUE(scratch_.read(output) == told);
+        more[4] = y == "up" ? "down" : "up";
+        make(command, more);
+        EXPECT_FALSE(scratch_.read(output) == told);
+    }
+
+    Scratch scratch_;
+};
+
+TEST_F(MeasuredY, EveryCommandReadsAsIfItWereTold) {
+    for (const std::string y : {"up", "down"}) {
+        for (const std::string type : {".png", ".dds"}) {
+            expect_same("pack-normals", y + type, y, "a.exr", {"--y", "up"});
+            expect_same("mip-normals", y + type, y, "a.ktx2", {"--y", "up", "--format", "bc5"});
+            expect_same("unpack-normals", y + type, y, "a.png", {"--y", "up"});
+            expect_same("scale-normals", y + type, y, "a.png", {"--y", "up", "--scale", "2"});
+            expect_same("preview-normals", y + type, y, "a.png", {"--size", "64"});
+        }
+    }
+}
+
+TEST_F(MeasuredY, EachMapOfABlendShowsItsOwn) {
+    // Base and detail have different directions; details are held or streamed, by their extent.
+    for (const std::string detail : {"down.png", "down.dds"}) {
+        make("blend-normals", {"up.png", "-o", "a.exr", "--detail", detail, "--y-in", "up", "--detail-y-in", "down"});
+        const std::string told = scratch_.read("a.exr");
+        make("blend-normals", {"up.png", "-o", "a.exr", "--detail", detail, "--y-in", "measured"});
+        EXPECT_TRUE(scratch_.read("a.exr") == told) << detail;
+        make("blend-normals", {detail, "-o", "a.exr", "--detail", "up.png", "--y-in", "down", "--detail-y-in", "up"});
+        const std::string other = scratch_.read("a.exr");
+        make("blend-normals", {detail, "-o", "a.exr", "--detail", "up.png", "--y-in", "measured"});
+        EXPECT_TRUE(scratch_.read("a.exr") == other) << detail;
+    }
+}
+
+TEST_F(MeasuredY, OutputsStateIt) {
+    make("pack-normals", {"down.png", "-o", "a.ktx2", "--y-in", "measured"});
+    make("pack-normals", {"down.png", "-o", "b.ktx2", "--y-in", "down"});
+    EXPECT_TRUE(scratch_.read("a.ktx2") == scratch_.read("b.ktx2"));
+}
+
+TEST_F(MeasuredY, StandardInputIsReadToo) {
+    const Ran ran = shell(scratch_,
+                          "cat down.png | pack-normals - -o a.dds --y-in measured --y up --quiet --no-sync\n"
+                          "pack-normals down.png -o b.dds --y-in down --y up --quiet --no-sync; cmp a.dds b.dds");
+    EXPECT_EQ(ran.code, 0) << ran.err;
+}
+
+TEST_F(MeasuredY, MapsThatDoNotShowItAreErrorsThatNameThem) {
+    EXPECT_EQ(shell(scratch_,
+                    "head -c 12288 /dev/zero | tr '\\0' '\\200' >flat.rgb; "
+                    "convert -size 64x64 -depth 8 rgb:flat.rgb PNG24:flat.png || exit 9")
+                  .code,
+              0);
+    for (const char* command : {"pack-normals", "preview-normals"}) {
+        const Ran ran = run(scratch_, command, {"flat.png", "-o", "out.png", "--y-in", "measured", "--quiet"});
+        EXPECT_EQ(ran.code, 4);
+        EXPECT_EQ(ran.err, std::string(command) +
+                               ": error: flat.png: which way green points does not show clearly in the texels\n");
+        EXPECT_FALSE(scratch_.has("out.png"));
+    }
+    const Ran blend = run(scratch_, "blend-normals",
+                          {"up.png", "-o", "out.png", "--detail", "flat.png", "--y-in", "measured", "--quiet"});
+    EXPECT_EQ(blend.code, 4);
+    EXPECT_NE(blend.err.find("flat.png: which way green points"), std::string::npos) << blend.err;
+}
+
+TEST_F(MeasuredY, ItIsAKeyOfManifests) {
+    scratch_.write(
+        "normals.toml",
+        "version = 1\n[[rule]]\nmatch = \"*.png\"\nexclude = [\"strip.png\", \"bricks.png\"]\nname = "
+        "\"out/{stem}.dds\"\nsteps = [ { scale = { scale = 2, y-in = \"Measured\" } }, { mip = { y = \"up\" } } ]\n");
+    make("build-normals", {});
+    make("scale-normals", {"down.png", "-o", "s.exr", "--scale", "2", "--y-in", "down", "--format", "float"});
+    make("mip-normals", {"s.exr", "-o", "s.dds", "--y", "up"});
+    EXPECT_TRUE(scratch_.read("out/down.dds") == scratch_.read("s.dds"));
+}
+
+}  // namespace tex::cli
