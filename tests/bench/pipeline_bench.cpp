@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // pipeline_bench: measures whole processes, from file to file, against the minimum cost of reading the file.
 //
-//     ninja -C build/release pipeline_bench bake-normals && build/release/pipeline_bench [--runs N] [--large] [FOLDER]
+//     ninja -C build/release pipeline_bench bake-normals pack-normals tex-reader &&
+//     build/release/pipeline_bench [--runs N] [--large] [--many] [FOLDER]
 //
 // Prints tables in Markdown. Each row is the median of N (at least 7) pairs of runs. The runs of a pair are the command
 // and its baseline, in turn; ratios are those of the pairs. The commands are those in the folder of this program.
 // Height maps are written to FOLDER (default /tmp/pipeline_bench) and kept there. --large adds the memory of
-// 16384x16384 and 65536x4096 texels.
+// 16384x16384 and 65536x4096 texels; --many prints only the rows of a thousand small files.
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -31,6 +32,7 @@ std::string beside(const std::string& name) { return std::filesystem::path(own_p
 struct Bench {
     int runs = 7;
     bool large = false;
+    bool many = false;
     bool only_makes = false;  // only makes the files that rows need
     std::string folder = "/tmp/pipeline_bench";
 
@@ -175,6 +177,46 @@ void print_many(const Bench& b) {
     }
 }
 
+// A thousand normal maps of the same texels, which the reader process decodes or encodes, against PNG. The processor
+// time of its processes is not that of the command.
+void print_many_kinds(const Bench& b) {
+    Command heights;
+    for (int k = 0; k < 1000; ++k) heights.push_back(b.file("many_8/" + std::to_string(k) + ".png"));
+    const auto add_all = [](Command command, const Command& files) {
+        command.insert(command.end(), {"--threads", "2", "--no-sync", "--quiet"});
+        command.insert(command.end(), files.begin(), files.end());
+        return command;
+    };
+    const auto bake_as = [&](const std::string& kind, const std::string& folder) {
+        return add_all({beside("bake-normals"), "--out-dir", folder, "--name", "{stem}." + kind, "--format", "rgb8",
+                        "--bumpiness", "12"},
+                       heights);
+    };
+    const auto pack = [&](const std::string& kind) {
+        const std::string folder = b.file("many_" + kind);
+        if (!std::filesystem::exists(folder + "/999." + kind)) {
+            std::filesystem::create_directories(folder);
+            bench::run(bake_as(kind, folder));
+        }
+        Command files;
+        for (int k = 0; k < 1000; ++k) files.push_back(folder + "/" + std::to_string(k) + "." + kind);
+        return add_all({beside("pack-normals"), "--out-dir", "/dev/shm/pipeline_bench", "--name", "{stem}.dds",
+                        "--effort", "fast"},
+                       files);
+    };
+    const std::string memory = "/dev/shm/pipeline_bench";
+    std::filesystem::create_directories(memory);
+    for (const std::string kind : {"tif", "tga", "jpg", "bmp"}) {
+        b.row("1000 " + kind + " of 256x256, fast, --no-sync, into " + memory + "; baseline: the same as PNG",
+              pack(kind), pack("png"), 4.0);
+    }
+    for (const std::string kind : {"tif", "tga", "jpg"}) {
+        b.row("1000 PNGs of 256x256 into " + kind + "; baseline: into PNG", bake_as(kind, memory),
+              bake_as("png", memory), 4.0);
+    }
+    std::filesystem::remove_all(memory);
+}
+
 // The input needs no inflating, so encoding takes most of the time. The outputs do not exist beforehand: freeing the
 // pages of a replaced output runs on one thread and takes as long as encoding a tenth of it.
 void print_scaling_of(const Bench& b, int size) {
@@ -250,14 +292,18 @@ int main(int argc, char** argv) {
             b.runs = std::max(7, std::atoi(argv[++k]));
         } else if (std::strcmp(argv[k], "--large") == 0) {
             b.large = true;
+        } else if (std::strcmp(argv[k], "--many") == 0) {
+            b.many = true;
         } else {
             b.folder = argv[k];
         }
     }
     std::filesystem::create_directories(b.folder);
     const auto print_all = [](const Bench& bench) {
-        print_against_decoders(bench);
+        if (!bench.many) print_against_decoders(bench);
         print_many(bench);
+        print_many_kinds(bench);
+        if (bench.many) return;
         print_scaling(bench);
         print_start(bench);
     };

@@ -36,14 +36,16 @@ constexpr std::uint64_t kTcp = 3;                                       // versi
 constexpr std::uint64_t kAbstractSockets = 1;                           // version 6
 constexpr std::uint64_t kSignals = 2;                                   // version 6: to processes outside
 
-// Creates a ruleset without a rule: it forbids everything that this kernel can restrict. Returns a descriptor, or -1.
-int empty_ruleset(int version) {
+// Creates a ruleset without a rule: it forbids everything that this kernel can restrict, except `spared`. Returns a
+// descriptor, or -1.
+int empty_ruleset(int version, std::uint64_t spared = 0) {
     Ruleset ruleset;
     ruleset.files = kFilesOfVersion1;
     if (version >= 2) ruleset.files |= kMovesBetweenFolders;
     if (version >= 3) ruleset.files |= kTruncation;
     if (version >= 4) ruleset.network = kTcp;
     if (version >= 5) ruleset.files |= kControlOfDevices;
+    ruleset.files &= ~spared;
     if (version >= 6) ruleset.scopes = kAbstractSockets | kSignals;
     const std::size_t known = version >= 6 ? 3 : version >= 4 ? 2 : 1;
     return static_cast<int>(syscall(SYS_landlock_create_ruleset, &ruleset, known * sizeof(std::uint64_t), 0));
@@ -198,6 +200,17 @@ bool restrict_files() {
     const bool done = named && restrict_this_thread(rules);
     close(rules);
     return done && others && open("/", O_RDONLY | O_DIRECTORY | O_CLOEXEC) < 0;
+}
+
+// The children look at the list of their threads.
+bool restrict_files_of_zygote() {
+    const int version = landlock_version();
+    if (version < 1) return false;
+    const int rules = empty_ruleset(version, LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR);
+    if (rules < 0) return false;
+    const bool done = restrict_this_thread(rules);
+    close(rules);
+    return done;
 }
 
 }  // namespace tex::reader

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // reader.h: the parts of tex-reader, the one program that links OpenImageIO.
 //
-// reader_protocol.h describes requests and answers. tex-reader decodes one file, or encodes one picture, and ends.
+// reader_protocol.h describes requests and answers. tex-reader decodes one file, or encodes one picture, and ends. Or
+// it is the zygote, which forks a process for each file; that process does the same.
 
 #pragma once
 
@@ -16,12 +17,23 @@
 namespace tex::reader {
 
 struct Task {
+    std::string verb;             // "decode", "encode" or "describe"
     std::string format;           // OpenImageIO's name of the format
     std::int64_t max_texels = 0;  // a picture with more texels is refused
     std::int64_t memory = 0;      // bytes of address space and of the result, together
     int seconds = 1;              // of processor time
     int parent = 0;               // process id; tex-reader ends when its parent ends
 };
+
+// Does the task, under its limits. Returns the exit status; the answer is in kResultDescriptor.
+int run(const Task& task);
+
+// Serves requests that arrive at kRequestsDescriptor, each in a process that it forks, until the socket is closed or
+// the parent has ended. Returns the exit status.
+int serve(int parent);
+
+// Turns off what a decoder could use besides its input file: threads and plug-ins. (The process has no environment.)
+void calm_openimageio();
 
 // Limits memory, time and descriptors, disables the core file, and makes the process end when its parent ends.
 void limit_process(const Task& task);
@@ -44,6 +56,11 @@ int landlock_version();
 // processes (seccomp). Returns false if the kernel refuses the filter. If either restriction is refused, the other one
 // and the limits still apply.
 bool filter_calls();
+
+// The same for the zygote, before its first request. It and its children may still read files, until the children call
+// restrict_files(), and start processes, but not programs.
+bool restrict_files_of_zygote();
+bool filter_calls_of_zygote();
 
 // The value that the input, a TIFF, names as that of texels without data (GDAL_NODATA), in units of its samples. None
 // if it names no finite number.

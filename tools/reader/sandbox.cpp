@@ -14,6 +14,7 @@
 #include <cstdlib>
 #include <initializer_list>
 #include <limits>
+#include <span>
 
 #include "reader.h"
 
@@ -120,6 +121,31 @@ bool allow(scmp_filter_ctx filter, int call, std::initializer_list<scmp_arg_cmp>
                                   conditions.begin()) == 0;
 }
 
+// What the zygote needs besides that, and its children before they call filter_calls(). (Filters add up: a child can
+// lose calls, but not regain them.)
+constexpr int kAllowedInZygote[] = {
+    SCMP_SYS(recvmsg),
+    SCMP_SYS(sendto),
+    SCMP_SYS(ppoll),
+    SCMP_SYS(wait4),
+    SCMP_SYS(waitid),
+    SCMP_SYS(kill),
+    SCMP_SYS(tgkill),
+    SCMP_SYS(getppid),
+    SCMP_SYS(setpgid),
+    SCMP_SYS(set_tid_address),
+    SCMP_SYS(dup2),
+    SCMP_SYS(dup3),
+    SCMP_SYS(close_range),
+    SCMP_SYS(prctl),
+    SCMP_SYS(prlimit64),
+    SCMP_SYS(setrlimit),
+    SCMP_SYS(seccomp),
+    SCMP_SYS(landlock_create_ruleset),
+    SCMP_SYS(landlock_add_rule),
+    SCMP_SYS(landlock_restrict_self),
+};
+
 // Calls that, depending on their arguments, can reach beyond this process or ask for more than is needed:
 // * files are opened for reading only;
 // * the flags of a descriptor may be read, but no other command of fcntl() is allowed: others make the kernel send
@@ -128,22 +154,27 @@ bool allow(scmp_filter_ctx filter, int call, std::initializer_list<scmp_arg_cmp>
 // * limits are read, and processors chosen, for this process only (0);
 // * signals go to this process only;
 // * a new process must be a thread; glibc falls back from clone3, whose flags a filter cannot see, to clone.
-bool allow_conditional(scmp_filter_ctx filter) {
+//
+// The zygote may start processes: fork() shares nothing with them. It has their limits to set, and its own threads'
+// ids are not yet known.
+bool allow_conditional(scmp_filter_ctx filter, bool is_zygote) {
+    constexpr scmp_datum_t kKindOfClone = ~static_cast<scmp_datum_t>(CLONE_CHILD_SETTID | CLONE_CHILD_CLEARTID);
     constexpr scmp_datum_t kWriting = O_WRONLY | O_RDWR | O_CREAT | O_TRUNC | O_APPEND;
     const auto self = static_cast<scmp_datum_t>(getpid());
     return allow(filter, SCMP_SYS(open), {{1, SCMP_CMP_MASKED_EQ, kWriting, 0}}) &&
            allow(filter, SCMP_SYS(openat), {{2, SCMP_CMP_MASKED_EQ, kWriting, 0}}) &&
            allow(filter, SCMP_SYS(fcntl), {{1, SCMP_CMP_EQ, F_GETFD, 0}}) &&
            allow(filter, SCMP_SYS(fcntl), {{1, SCMP_CMP_EQ, F_GETFL, 0}}) &&
-           allow(filter, SCMP_SYS(prlimit64), {{0, SCMP_CMP_EQ, 0, 0}, {2, SCMP_CMP_EQ, 0, 0}}) &&
+           (is_zygote || allow(filter, SCMP_SYS(prlimit64), {{0, SCMP_CMP_EQ, 0, 0}, {2, SCMP_CMP_EQ, 0, 0}})) &&
            allow(filter, SCMP_SYS(sched_setaffinity), {{0, SCMP_CMP_EQ, 0, 0}}) &&
 #ifdef TEX_READER_SHADOW  // whose runtime asks for its threads by their numbers
            allow(filter, SCMP_SYS(sched_getaffinity), {}) &&
 #else
            allow(filter, SCMP_SYS(sched_getaffinity), {{0, SCMP_CMP_EQ, 0, 0}}) &&
 #endif
-           allow(filter, SCMP_SYS(tgkill), {{0, SCMP_CMP_EQ, self, 0}}) &&
+           (is_zygote || allow(filter, SCMP_SYS(tgkill), {{0, SCMP_CMP_EQ, self, 0}})) &&
            allow(filter, SCMP_SYS(clone), {{0, SCMP_CMP_MASKED_EQ, CLONE_THREAD, CLONE_THREAD}}) &&
+           (!is_zygote || allow(filter, SCMP_SYS(clone), {{0, SCMP_CMP_MASKED_EQ, kKindOfClone, SIGCHLD}})) &&
            seccomp_rule_add(filter, SCMP_ACT_ERRNO(ENOSYS), SCMP_SYS(clone3), 0) == 0 &&
            seccomp_rule_add(filter, SCMP_ACT_ERRNO(ENOSYS), SCMP_SYS(openat2), 0) == 0;
 }
@@ -175,14 +206,26 @@ void wait_for_room() {
     } while (size.rlim_cur == kReaderDataOffset);
 }
 
-bool filter_calls() {
+namespace {
+
+bool load_filter(bool is_zygote) {
     scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ERRNO(EPERM));
     if (filter == nullptr) return false;
     bool sound = seccomp_attr_set(filter, SCMP_FLTATR_CTL_TSYNC, 1) == 0;
-    for (const int call : kAllowed) sound = sound && seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, 0) == 0;
-    sound = sound && allow_conditional(filter) && seccomp_load(filter) == 0;
+    const auto allow_all = [&](std::span<const int> calls) {
+        for (const int call : calls) sound = sound && seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, 0) == 0;
+    };
+    allow_all(kAllowed);
+    if (is_zygote) allow_all(kAllowedInZygote);
+    sound = sound && allow_conditional(filter, is_zygote) && seccomp_load(filter) == 0;
     seccomp_release(filter);
     return sound;
 }
+
+}  // namespace
+
+bool filter_calls() { return load_filter(false); }
+
+bool filter_calls_of_zygote() { return load_filter(true); }
 
 }  // namespace tex::reader

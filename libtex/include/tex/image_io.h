@@ -3,7 +3,9 @@
 //
 // The first bytes of a file, not its name, decide how it is read. PNG and EXR are decoded in this process, by libpng
 // and OpenEXR; DDS and KTX2 by libtex; everything else (TIFF, TGA, JPEG, BMP, HDR, PSD ...) by OpenImageIO in a
-// separate reader process, under limits of memory and time. If such a decoder crashes or hangs, the result is an Error.
+// separate reader process for each file, under limits of memory and time. If such a decoder crashes or hangs, the result
+// is an Error. The second such file also starts a process that stays, idle, until this process ends: it has loaded
+// OpenImageIO, has never seen a file, and forks the readers of all later files.
 
 #pragma once
 
@@ -20,7 +22,8 @@ struct ReadOptions {
     // Files that claim more texels than this are refused (unsupported) before memory is allocated.
     std::int64_t max_texels = std::int64_t{1} << 30;
 
-    // The reader program. Empty: the program that was installed (libexec/libtex/tex-reader) or built beside libtex.
+    // The reader program, started for each file. Empty: the program that was installed (libexec/libtex/tex-reader) or
+    // built beside libtex.
     std::string reader;
     std::int64_t reader_memory = std::int64_t{4} << 30;  // bytes: its address space and its result
     int reader_timeout = 120;                            // seconds of wall-clock time

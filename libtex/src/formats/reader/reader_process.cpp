@@ -2,111 +2,32 @@
 
 #include "formats/reader/reader_process.h"
 
-#include <dlfcn.h>
 #include <fcntl.h>
-#include <link.h>
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/ioctl.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
-#include <climits>
 #include <cstring>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "files/system_error.h"
 #include "formats/reader/reader.h"
 #include "formats/reader/reader_memory.h"
+#include "formats/reader/reader_spawn.h"
+#include "formats/reader/reader_zygote.h"
 #include "threads/guard.h"
 
 namespace tex {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-// The folder of the binary that contains this code: libtex, or the program that it is linked into.
-std::string own_folder() {
-    Dl_info info{};
-    link_map* map = nullptr;
-    static const char anchor = 0;
-    std::string object = "/proc/self/exe";
-    if (dladdr1(&anchor, &info, reinterpret_cast<void**>(&map), RTLD_DL_LINKMAP) != 0 && map != nullptr &&
-        map->l_name != nullptr && map->l_name[0] != '\0') {
-        object = map->l_name;
-    }
-    char resolved[PATH_MAX];
-    if (realpath(object.c_str(), resolved) == nullptr) return {};
-    std::string folder = resolved;
-    return folder.erase(folder.rfind('/'));
-}
-
-// Attributes and file actions for a spawned process, freed together.
-class SpawnPlan {
-public:
-    SpawnPlan() {
-        posix_spawnattr_init(&attributes);
-        posix_spawn_file_actions_init(&actions);
-    }
-    ~SpawnPlan() {
-        posix_spawn_file_actions_destroy(&actions);
-        posix_spawnattr_destroy(&attributes);
-    }
-    SpawnPlan(const SpawnPlan&) = delete;
-    SpawnPlan& operator=(const SpawnPlan&) = delete;
-
-    posix_spawnattr_t attributes{};
-    posix_spawn_file_actions_t actions{};
-};
-
-// Starts the program with only the descriptors of the protocol, no environment, default signals, and as the leader of
-// its own process group. A Ctrl-C at the terminal therefore reaches only the caller, and any process that the reader
-// has started ends with the reader. Returns 0 or an errno.
-int spawn(const std::string& program, std::vector<std::string> arguments, int result, int input, int progress,
-          pid_t& child) {
-    // Moves the descriptors to numbers above those that the protocol needs. fcntl() finds no number beyond the limit of
-    // descriptors.
-    constexpr int kFree = kProgressDescriptor + 1;
-    const Descriptor from[] = {Descriptor(fcntl(result, F_DUPFD_CLOEXEC, kFree)),
-                               Descriptor(fcntl(input, F_DUPFD_CLOEXEC, kFree)),
-                               Descriptor(fcntl(progress, F_DUPFD_CLOEXEC, kFree))};
-    if (!from[0] || !from[1] || !from[2]) return errno == EINVAL ? EMFILE : errno;
-    SpawnPlan plan;
-    int failed = 0;
-    const auto check = [&failed](int status) { failed = failed != 0 ? failed : status; };
-    for (int fd = 0; fd < 3; ++fd) {
-        check(posix_spawn_file_actions_addopen(&plan.actions, fd, "/dev/null", fd == 0 ? O_RDONLY : O_WRONLY, 0));
-    }
-    check(posix_spawn_file_actions_adddup2(&plan.actions, from[0].get(), kResultDescriptor));
-    check(posix_spawn_file_actions_adddup2(&plan.actions, from[1].get(), kInputDescriptor));
-    check(posix_spawn_file_actions_adddup2(&plan.actions, from[2].get(), kProgressDescriptor));
-    check(posix_spawn_file_actions_addclosefrom_np(&plan.actions, kProgressDescriptor + 1));
-
-    sigset_t none;
-    sigset_t all;
-    sigemptyset(&none);
-    sigfillset(&all);
-    check(posix_spawnattr_setsigmask(&plan.attributes, &none));
-    check(posix_spawnattr_setsigdefault(&plan.attributes, &all));
-    check(posix_spawnattr_setpgroup(&plan.attributes, 0));
-    check(posix_spawnattr_setflags(&plan.attributes,
-                                   POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP));
-    if (failed != 0) return failed;
-
-    std::vector<char*> argv = {const_cast<char*>(program.c_str())};
-    for (std::string& argument : arguments) argv.push_back(argument.data());
-    argv.push_back(nullptr);
-    char* const no_environment[] = {nullptr};
-    return posix_spawn(&child, program.c_str(), &plan.actions, &plan.attributes, argv.data(), no_environment);
-}
+using Clock = ReaderClock;
 
 enum class News { strip, end, late };
 
@@ -145,23 +66,6 @@ News wait_for_news(int progress, Clock::time_point deadline) {
     }
 }
 
-// How a process ended; all zeros if another part of this program collected it.
-struct Ending {
-    int signal = 0;
-    int status = 0;
-};
-
-Ending collect(pid_t child) {
-    kill(-child, SIGKILL);  // no effect on a process that has ended; ends a process that only closed its pipe
-    int status = 0;
-    pid_t got = -1;
-    do {
-        got = waitpid(child, &status, 0);
-    } while (got < 0 && errno == EINTR);
-    if (got != child) return {};
-    return {WIFSIGNALED(status) ? WTERMSIG(status) : 0, WIFEXITED(status) ? WEXITSTATUS(status) : 0};
-}
-
 std::string does(const ReaderJob& job) { return job.verb == "encode" ? "the encoder" : "the decoder"; }
 
 // Whether this process is limited to less memory than the reader may use. The reader inherits that limit.
@@ -175,6 +79,10 @@ bool is_short_of_memory(std::int64_t reader_memory) {
 Error abnormal_end(const ReaderJob& job, const std::string& program, Ending ending, bool begun, bool is_short) {
     constexpr int kNotLoaded = 127;  // exit status of the dynamic loader and of shells
     const std::string signal = " (signal " + std::to_string(ending.signal) + ")";
+    if (ending.is_unknown) {
+        return {ErrorCode::out_of_memory, job.path,
+                does(job) + " ended with the process that started it, which was killed: out of memory?"};
+    }
     if (ending.signal == SIGKILL) {
         return {ErrorCode::out_of_memory, job.path, does(job) + " was killed by the system: out of memory?"};
     }
@@ -221,16 +129,6 @@ Error reported_error(const ReaderJob& job, const ReaderHeader& header) {
 
 }  // namespace
 
-Result<std::string> find_reader(const ReadOptions& options) {
-    if (!options.reader.empty()) return options.reader;
-    const std::string folder = own_folder();
-    for (const char* place : {"/../libexec/libtex/tex-reader", "/../../libexec/libtex/tex-reader", "/tex-reader"}) {
-        const std::string program = folder + place;
-        if (!folder.empty() && access(program.c_str(), X_OK) == 0) return program;
-    }
-    return Error{ErrorCode::io, {}, "the reader program tex-reader was not found beside libtex"};
-}
-
 Error nonsense(const std::string& path) { return {ErrorCode::bad_data, path, "the decoder handed over nonsense"}; }
 
 bool read_exactly(int fd, std::uint64_t offset, std::byte* to, std::size_t count) {
@@ -270,15 +168,12 @@ struct ReaderProcess::State {
     std::int64_t memory = 0;  // bytes
     Clock::time_point deadline;
     Descriptor progress;
-    pid_t child = -1;
+    ReaderChild child;
     bool has_spoken = false;  // the header is there
     bool has_room = false;    // grant_result() has been called
     bool in_time = true;
     std::optional<Ending> ending;
 
-    ~State() {
-        if (child > 0 && !ending) collect(child);
-    }
     [[nodiscard]] ReaderHeader read_header(bool& whole) const {
         ReaderHeader header;
         const ssize_t got = pread(job.result, &header, sizeof header, 0);
@@ -292,7 +187,7 @@ struct ReaderProcess::State {
         const auto result = whole ? claimed_result(header, job.verb, memory) : std::nullopt;
         if (!result) return;
         has_room = true;
-        grant_result(child, *result, memory);
+        grant_result(child.id(), *result, memory);
     }
     // Waits for the next strip; false if the process has ended.
     bool wait() {
@@ -302,7 +197,7 @@ struct ReaderProcess::State {
         if (news == News::strip && !has_room) grant_room();
         if (news == News::strip) return true;
         in_time = news == News::end;
-        ending = collect(child);
+        ending = child.end();
         return false;
     }
 };
@@ -327,14 +222,12 @@ Result<ReaderProcess> ReaderProcess::start(const ReaderJob& job, const ReadOptio
         if (pipe2(ends, O_CLOEXEC) != 0) return system_error(job.path, errno, "a pipe");
         state->progress = Descriptor(ends[0]);
         const Descriptor childs_end(ends[1]);
-        const int failed =
-            spawn(*program,
-                  {job.verb, job.format, std::to_string(options.max_texels), std::to_string(options.reader_memory),
-                   std::to_string(state->seconds), std::to_string(getpid())},
-                  job.result, job.input, childs_end.get(), state->child);
-        if (failed != 0) {
-            state->child = -1;
-            return system_error(job.path, failed, ("the reader program " + *program + " cannot be started").c_str());
+        const ReaderLimits limits{options.max_texels, options.reader_memory, state->seconds, state->deadline};
+        if (options.reader.empty()) state->child = fork_reader(*program, job, childs_end.get(), limits);
+        if (!state->child) {
+            if (const int failed = start_reader(*program, job, childs_end.get(), limits, state->child); failed != 0)
+                return system_error(job.path, failed,
+                                    ("the reader program " + *program + " cannot be started").c_str());
         }
         return ReaderProcess(std::move(state));
     });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// reader_process.h: runs the reader program once, under a time limit, follows its rows, and says how it ended.
+// reader_process.h: runs a reader for one file, under a time limit, follows its rows, and says how it ended.
 
 #pragma once
 
@@ -13,6 +13,7 @@
 #include <tex/result.h>
 
 #include "files/input_file.h"
+#include "formats/reader/reader_child.h"
 #include "formats/reader/reader_protocol.h"
 
 namespace tex {
@@ -26,15 +27,6 @@ bool write_exactly(int fd, std::uint64_t offset, std::span<const std::byte> byte
 
 // The Error for a result that is impossible.
 Error nonsense(const std::string& path);
-
-// One run of the reader: what it does, the descriptor that it works on, and where the result goes.
-struct ReaderJob {
-    std::string path;  // for messages
-    std::string verb;  // "decode" or "encode"
-    std::string format;
-    int input = -1;
-    int result = -1;  // a memory_file()
-};
 
 class ReaderProcess {
 public:
@@ -59,7 +51,7 @@ private:
     std::unique_ptr<State> state_;
 };
 
-// Runs the reader from start to end. Errors: those of start() and finish().
+// Runs a reader from start to end. Errors: those of start() and finish().
 Result<ReaderHeader> run_reader(const ReaderJob& job, const ReadOptions& options);
 
 }  // namespace tex

@@ -28,6 +28,13 @@
 // The process writes the header, with state `working`, when it is ready. A process that ends before that has not seen
 // its input. It ends with status kNoRoom if even the header cannot be written.
 //
+// From the second file on, libtex spares the start. It starts
+//
+//     tex-reader zygote PARENT
+//
+// with kRequestsDescriptor, a socket of messages, and no other descriptor. This process loads OpenImageIO once and sees
+// no file. For each ReaderRequest it forks a reader, which continues as if it had just been started (reader_zygote.h).
+//
 // The reader is not trusted: everything that it hands over is checked as if it came from the file itself.
 
 #pragma once
@@ -38,9 +45,11 @@
 
 namespace tex {
 
+inline constexpr int kFirstDescriptor = 3;  // after the standard streams, which are /dev/null
 inline constexpr int kResultDescriptor = 3;
 inline constexpr int kInputDescriptor = 4;
 inline constexpr int kProgressDescriptor = 5;
+inline constexpr int kRequestsDescriptor = 3;  // of the zygote
 
 inline constexpr std::uint32_t kReaderMagic = 0x33786574;  // "tex3": changes with the layout below
 inline constexpr int kMaxReaderChannels = 64;
@@ -92,6 +101,33 @@ struct ReaderHeader {
 };
 
 static_assert(std::is_trivially_copyable_v<ReaderHeader> && sizeof(ReaderHeader) <= kReaderDataOffset);
+
+// What libtex asks of the zygote: a process for one job, with the arguments of the command line above. It comes with
+// four descriptors: a socket for ReaderNews, and the result, the input and the pipe for the process.
+struct ReaderRequest {
+    std::uint32_t magic = kReaderMagic;
+    std::int32_t seconds = 0;
+    std::int64_t max_texels = 0;
+    std::int64_t memory = 0;
+    char verb[16] = {};
+    char format[48] = {};
+};
+
+inline constexpr int kRequestDescriptors = 4;
+
+// The answers to a request. The first one comes at once: the id of the new process, from that process, before it does
+// anything else; or, from the zygote, the errno that fork() left. The second one says how the process ended. The zygote
+// sends it when the process has ended and libtex has shut down the socket for writing, which also ends a process that
+// still runs. Until then, the id stays that of the process.
+struct ReaderNews {
+    std::uint32_t magic = kReaderMagic;
+    std::int32_t error = 0;
+    std::int32_t process = 0;
+    std::int32_t signal = 0;
+    std::int32_t status = 0;
+};
+
+static_assert(std::is_trivially_copyable_v<ReaderRequest> && std::is_trivially_copyable_v<ReaderNews>);
 
 inline constexpr std::uint64_t row_bytes(const ReaderHeader& header) {
     return static_cast<std::uint64_t>(header.width) * static_cast<std::uint64_t>(header.channels) *

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <string_view>
+#include <system_error>
+
+#include "reader.h"
+
+namespace tex::reader {
+namespace {
+
+bool write_result(std::uint64_t offset, const void* data, std::uint64_t count) {
+    const auto* from = static_cast<const char*>(data);
+    while (count > 0) {
+        const ssize_t n = pwrite(kResultDescriptor, from, count, static_cast<off_t>(offset));
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return false;
+        from += n;
+        offset += static_cast<std::uint64_t>(n);
+        count -= static_cast<std::uint64_t>(n);
+    }
+    return true;
+}
+
+}  // namespace
+
+void put_bytes(std::uint64_t offset, const void* data, std::uint64_t count) {
+    if (!write_result(offset, data, count)) throw std::bad_alloc();
+}
+
+void put_header(const ReaderHeader& header) {
+    if (!write_result(0, &header, sizeof header)) _exit(kNoRoom);
+}
+
+void put_progress() {
+    const char strip = 0;
+    if (write(kProgressDescriptor, &strip, 1) != 1) _exit(1);  // the parent has ended
+}
+
+bool refuse(ReaderHeader& header, ErrorCode code, const std::string& reason) {
+    header.state = ReaderState::refused;
+    header.error = static_cast<std::uint32_t>(code);
+    std::strncpy(header.reason, reason.c_str(), sizeof header.reason - 1);
+    put_header(header);
+    return false;
+}
+
+namespace {
+
+std::string in_units(std::int64_t bytes) {
+    constexpr std::int64_t kMany = std::int64_t{8} << 20;
+    return bytes < kMany ? std::to_string(bytes >> 10) + " KiB" : std::to_string(bytes >> 20) + " MiB";
+}
+
+// Refuses because of the limit of --reader-memory, or because of a lower limit that this process inherited.
+void refuse_memory(ReaderHeader& header, const Task& task) {
+    const std::int64_t most = memory_limit();
+    refuse(header, most < task.memory ? ErrorCode::out_of_memory : ErrorCode::unsupported,
+           "needs more memory than the " + in_units(std::min(most, task.memory)) + " that a decoder may have");
+}
+
+// The system also refuses a thread if there is no room for its stack, and reports the same error in both cases.
+bool has_room_for_a_thread() {
+    constexpr std::size_t kStack = std::size_t{9} << 20;
+    void* const stack = mmap(nullptr, kStack, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (stack == MAP_FAILED) return false;
+    munmap(stack, kStack);
+    return true;
+}
+
+}  // namespace
+
+void calm_openimageio() {
+    OIIO::attribute("threads", 1);
+    OIIO::attribute("plugin_searchpath", "");
+    OIIO::attribute("tiff:half", 1);
+    OIIO::attribute("limits:channels", kMaxReaderChannels);
+}
+
+int run(const Task& task) {
+    ReaderHeader header;
+    try {
+        static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));  // a result that is too large is then an error of pwrite()
+        limit_process(task);
+        calm_openimageio();
+        header.landlock = static_cast<std::uint32_t>(landlock_version());
+        if (restrict_files()) header.sandboxed |= kFilesRestricted;
+        if (filter_calls()) header.sandboxed |= kCallsFiltered;
+        put_header(header);  // from here on, an error concerns the file
+        if (task.verb == "describe") {
+            std::strncpy(header.reason, OIIO_VERSION_STRING, sizeof header.reason - 1);
+        } else if (!(task.verb == "decode" ? decode(task, header) : encode(task, header))) {
+            return 0;
+        }
+        header.state = ReaderState::done;
+        put_header(header);
+    } catch (const std::bad_alloc&) {
+        refuse_memory(header, task);
+    } catch (const std::system_error& thrown) {  // the system refused threads
+        if (!has_room_for_a_thread()) return refuse_memory(header, task), 0;
+        refuse(header, ErrorCode::out_of_memory, std::string("the decoder gets no threads: ") + thrown.what());
+    } catch (const std::exception& thrown) {
+        refuse(header, ErrorCode::bad_data, thrown.what());
+    }
+    return 0;
+}
+
+}  // namespace tex::reader
