@@ -22,10 +22,9 @@
 namespace tex {
 namespace {
 
-void finish_rows(NormalMap& level, MipDomain domain, float fade, int begin, int end) {
-    for (int j = begin; j < end; ++j) {
-        finish_row({level.x.row(j), level.y.row(j), level.z.row(j)}, level.extent().width, domain, fade);
-    }
+void finish_rows(NormalMap& level, const MipOptions& options, int index, int begin, int end) {
+    for (int j = begin; j < end; ++j)
+        finish_row({level.x.row(j), level.y.row(j), level.z.row(j)}, level.extent().width, options, index);
 }
 
 // One level and the next.
@@ -102,7 +101,7 @@ void make_strip(const Step& step, int begin, int end) {
         for (int plane = 0; plane < step.planes(); ++plane)
             rows.make(source.window(plane, j), j, plane_of(step.to, plane).row(j));
         if (step.filter.halves && !step.from_base()) {
-            finish_rows(step.from, step.options.domain, fade_at(step.options.fade, step.level), 2 * j, 2 * j + 2);
+            finish_rows(step.from, step.options, step.level, 2 * j, 2 * j + 2);
         }
     }
 }
@@ -115,9 +114,7 @@ int strip_rows(Extent extent) {
 
 Result<void> finish_level(NormalMap& level, const MipOptions& options, int index, const Execution& execution,
                           ProgressSpan span) {
-    const auto strip = [&](int begin, int end) {
-        finish_rows(level, options.domain, fade_at(options.fade, index), begin, end);
-    };
+    const auto strip = [&](int begin, int end) { finish_rows(level, options, index, begin, end); };
     return parallel_for(execution, level.extent().height, strip_rows(level.extent()), strip, span);
 }
 
@@ -162,6 +159,7 @@ Result<void> make_levels(const std::vector<Step>& steps, const Execution& execut
 Result<MipChain> build_mip_chain(NormalMap base, const MipOptions& options, const Execution& execution) {
     assert(!base.x.empty() && options.levels >= 0);
     assert(!options.fade || (options.fade->first >= 0 && options.fade->first < options.fade->last));
+    assert(!options.any_z || (options.domain == MipDomain::vector && !options.fade));
     return guarded([&]() -> Result<MipChain> {
         const Extent extent = base.extent();
         const int count = levels_to_build(options, extent);

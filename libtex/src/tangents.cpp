@@ -44,4 +44,14 @@ Result<std::vector<Float4>> make_tangents(const MeshPart& part, TangentMethod me
     });
 }
 
+Result<std::vector<Float4>> stored_tangents(const MeshPart& part) {
+    return guarded([&]() -> Result<std::vector<Float4>> {
+        if (part.tangents.empty()) return Error{ErrorCode::bad_option, {}, "the mesh has no tangents"};
+        std::vector<Float4> corners;
+        corners.reserve(part.indices.size());
+        for (const std::uint32_t v : part.indices) corners.push_back(part.tangents[v]);
+        return corners;
+    });
+}
+
 }  // namespace tex

@@ -11,6 +11,7 @@
 #include <tex/tex.h>
 #include <nlohmann/json.hpp>
 
+#include "cli/meshes.h"
 #include "cli/program.h"
 
 namespace tex::cli {
@@ -63,6 +64,7 @@ protected:
     EveryBadInput() {
         std::filesystem::create_directory(scratch_.path("in"));
         scratch_.add_sample("ramp.png", "good.png");
+        scratch_.write("in/sheet.obj", kSheetObj);
         for (const std::string kind : {"dds", "ktx2", "exr", "png"}) {
             EXPECT_EQ(run(scratch_, "bake-normals", {"good.png", "-o", "in/whole." + kind, "--no-sync"}).code, 0);
             whole_[kind] = scratch_.read("in/whole." + kind);
@@ -74,6 +76,7 @@ protected:
         if (GetParam() == "scale-normals") return {"--scale", "2"};
         if (GetParam() == "blend-normals") return {"--detail", "in/whole.png"};
         if (GetParam() == "mip-normals") return {"--mips", "none"};
+        if (GetParam() == "convert-normals") return {"--mesh", "in/sheet.obj", "--to", "object"};
         return {};
     }
     Ran go(std::vector<std::string> arguments) {

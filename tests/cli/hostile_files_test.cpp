@@ -17,6 +17,7 @@
 
 #include <gtest/gtest.h>
 
+#include "cli/meshes.h"
 #include "cli/program.h"
 
 extern char** environ;
@@ -75,6 +76,7 @@ std::vector<std::string> arguments_for(const std::string& command, const std::st
     if (command == "check-normals") return {file};
     if (command == "compare-normals") return {file, file};
     if (command == "blend-normals") return {file, file, "-o", "out.dds"};
+    if (command == "convert-normals") return {file, "-o", "out.png", "--mesh", "sheet.obj", "--to", "object"};
     if (command == "scale-normals") return {file, "-o", "out.dds", "--scale", "2"};
     if (command == "unpack-normals" || command == "preview-normals") return {file, "-o", "out.png"};
     return {file, "-o", "out.dds"};
@@ -90,6 +92,7 @@ TEST_P(HostileFiles, AreReadOrRefusedInTimeAndMemory) {
     constexpr long kMost = 1 << 20;
 #endif
     const Scratch scratch;
+    scratch.write("sheet.obj", kSheetObj);
     int files = 0;
     for (const auto& entry : fs::directory_iterator(kFolder)) {
         const std::string file = fs::canonical(entry.path()).string();

@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "cli/meshes.h"
 #include "cli/program.h"
 
 namespace tex::cli {
@@ -23,6 +24,7 @@ class Limits : public testing::Test {
 protected:
     Limits() {
         scratch_.add_sample("waves.png", "a.png");
+        scratch_.write("sheet.obj", kSheetObj);
         for (const std::string made : {"a.dds", "a.exr", "a.tif"}) {
             EXPECT_EQ(run(scratch_, "bake-normals",
                           {"a.png", "-o", made, "--format", made == "a.exr" ? "half" : "rgb8", "--no-sync"})
@@ -74,6 +76,7 @@ const Memory kMemories[] = {
     {"Levels", "mip-normals a.exr -o out.exr", 16'000, 800},
     {"Picture", "preview-normals a.dds -o out.png --size 64", 16'000, 800},
     {"Blended", "blend-normals a.dds --detail a.exr -o out.dds", 16'000, 900},
+    {"Converted", "convert-normals a.exr -o out.dds --mesh sheet.obj --to object", 16'000, 900},
     {"OtherReader", "bake-normals a.tif -o out.dds", 256'000, 40'000},
     {"OtherWriter", "unpack-normals a.dds -o out.tif", 256'000, 40'000},
 };

@@ -24,6 +24,7 @@
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
+#include "cli/meshes.h"
 #include "cli/program.h"
 
 namespace tex::cli {
@@ -66,6 +67,12 @@ const Line kLines[] = {
     {"blend",
      "blend-normals",
      {"maps/waves.png", "maps/hemisphere.png", "--detail", "maps/ramp.png", "--tiling", "3", "--rotate", "30"}},
+    {"convert",
+     "convert-normals",
+     {"MAPS", "--mesh", "sheet.obj", "--decoder-in", "godot", "--decoder", "three", "--format", "rgb16"}},
+    {"convert-object",
+     "convert-normals",
+     {"maps/waves.png", "--mesh", "sheet.obj", "--to", "object", "--container", "dds", "--tangents", "meshopt"}},
     {"preview", "preview-normals", {"maps/waves.png", "maps/hemisphere.png", "--size", "96"}},
     {"check", "check-normals", {"MAPS", "bake/hemisphere.dds", "--json"}},
     {"compare", "compare-normals", {"maps/waves.png", "bake/waves.dds", "--json"}},
@@ -95,6 +102,9 @@ const Line kLargeLines[] = {
      "blend-normals",
      {"large-bake/bricks.exr", "--detail", "maps/waves.png", "--tiling", "7", "--format", "rgb16", "--container",
       "png"}},
+    {"large-convert",
+     "convert-normals",
+     {"large-bake/bricks.exr", "--mesh", "sheet.obj", "--to", "object", "--padding", "9"}},
     {"large-preview", "preview-normals", {"large/bricks.dds", "--shape", "sphere", "--size", "96"}},
     {"large-check", "check-normals", {"large/bricks.dds", "--json"}},
     {"large-compare", "compare-normals", {"large-bake/bricks.exr", "large/bricks.dds", "--json"}},
@@ -148,6 +158,7 @@ Hashes run_lines(const std::string& target, int threads, std::span<const Line> l
     const Scratch scratch;
     for (const std::string& height : kHeights) scratch.add_sample(height, height);
     scratch.add_sample("bricks.png", "bricks.png");
+    scratch.write("sheet.obj", kSheetObj);
     fs::create_directory(scratch.path("maps"));
     if (lines.data() != kLines) {
         const Ran ran =

@@ -25,6 +25,7 @@ protected:
     void refuses(const std::vector<std::string>& arguments, const std::string& part) {
         std::vector<std::string> all = arguments;
         if (GetParam() == "scale-normals") all.insert(all.begin(), {"--scale", "2"});
+        if (GetParam() == "convert-normals") all.insert(all.begin(), {"--mesh", "sheet.obj", "--decoder-in", "godot"});
         const Ran ran = run(scratch_, GetParam(), all);
         std::string line;
         for (const std::string& argument : arguments) line += " " + argument;

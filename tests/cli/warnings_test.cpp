@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "cli/meshes.h"
 #include "cli/program.h"
 
 namespace tex::cli {
@@ -22,6 +23,7 @@ class Warnings : public testing::Test {
 protected:
     Warnings() {
         scratch_.add_sample("waves.png", "waves.png");
+        scratch_.write("sheet.obj", kSheetObj);
         scratch_.add_sample("broken/N111-srgb-format.dds", "srgb.dds");
         const Ran made = shell(scratch_,
                                "bake-normals waves.png -o ag.png --format ag8 --bumpiness 6 --no-sync && "
@@ -51,11 +53,13 @@ protected:
 };
 
 TEST_F(Warnings, AreInTheJsonOfEveryCommandThatReadsNormals) {
-    for (const char* command :
-         {"mip-normals", "pack-normals", "unpack-normals", "scale-normals", "preview-normals", "blend-normals"}) {
+    for (const char* command : {"mip-normals", "pack-normals", "unpack-normals", "scale-normals", "preview-normals",
+                                "blend-normals", "convert-normals"}) {
         std::vector<std::string> arguments = {"srgb.dds", "plain.exr", "--out-dir", command, "--no-sync"};
         if (std::string_view(command) == "scale-normals") arguments.insert(arguments.end(), {"--scale", "2"});
         if (std::string_view(command) == "blend-normals") arguments.insert(arguments.end(), {"--detail", "plain.exr"});
+        if (std::string_view(command) == "convert-normals")
+            arguments.insert(arguments.end(), {"--mesh", "sheet.obj", "--decoder-in", "godot"});
         const auto lines = quiet(command, arguments);
         ASSERT_EQ(lines.size(), 2u) << command;
         expect_warning(lines[0], "srgb.dds", "declares sRGB colours");

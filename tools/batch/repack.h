@@ -3,7 +3,9 @@
 
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <string>
 
 #include <tex/pipeline.h>
 
@@ -55,5 +57,14 @@ private:
 
 // Records that the job has written `name` with this number of levels.
 void wrote_levels(Job& job, const std::string& name, int levels);
+
+struct WrittenLevels {
+    int levels = 1;
+    std::size_t bytes = 0;  // of all files
+};
+
+// Writes a texture as the job's output, in one file or in one for each level, and records that. A file type that holds
+// one level gets the base level.
+[[nodiscard]] Result<WrittenLevels> write_levels(Job& job, Texture texture, const WriteOptions& options);
 
 }  // namespace tex::cli

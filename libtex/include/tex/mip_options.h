@@ -59,6 +59,7 @@ struct MipOptions {
     std::optional<Fade> fade;
     Wrap wrap_x = Wrap::repeat;  // clamp repeats the border texel, mirror does not flip vectors
     Wrap wrap_y = Wrap::repeat;
+    bool any_z = false;  // z may be negative, as in object space; else a z below 0 becomes 0
 };
 
 }  // namespace tex

@@ -52,5 +52,8 @@ inline constexpr int kMaxFan = 4096;
                                                         TangentMethod method = TangentMethod::mikktspace,
                                                         int uv_set = 0, const Execution& execution = {});
 
+// The tangents that the part's vertices have, one for each corner. Errors: bad_option (there are none), out_of_memory.
+[[nodiscard]] Result<std::vector<Float4>> stored_tangents(const MeshPart& part);
+
 }  // namespace tex
 #pragma GCC visibility pop

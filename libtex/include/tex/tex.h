@@ -65,7 +65,10 @@
 #include <tex/blend_options.h>
 #include <tex/check.h>
 #include <tex/compare.h>
+#include <tex/convert.h>
+#include <tex/convert_options.h>
 #include <tex/heat_map.h>
+#include <tex/mesh_selection.h>
 #include <tex/mip.h>
 #include <tex/mip_options.h>
 #include <tex/pack.h>

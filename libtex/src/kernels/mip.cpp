@@ -114,10 +114,10 @@ HWY_INLINE void store(Vectors v, float* x, float* y, float* z) {
     hn::StoreU(v.z, kD, z);
 }
 
-void FinishVectors(float* x, float* y, float* z, int count, float fade) {
+void FinishVectors(float* x, float* y, float* z, int count, float fade, float least_z) {
     const V amount = hn::Set(kD, fade);
     for (int i = 0; i < count; i += kLanes) {
-        const V depth = hn::Max(hn::LoadU(kD, z + i), hn::Zero(kD));
+        const V depth = hn::Max(hn::LoadU(kD, z + i), hn::Set(kD, least_z));
         Vectors v = normalised({hn::LoadU(kD, x + i), hn::LoadU(kD, y + i), depth});
         if (fade > 0.0f) v = faded(v, amount);
         store(v, x + i, y + i, z + i);
@@ -174,8 +174,8 @@ void slopes_of_vectors(const float* x, const float* y, const float* z, int count
     HWY_DYNAMIC_DISPATCH(SlopesOfVectors)(x, y, z, count, p, q);
 }
 
-void finish_vectors(float* x, float* y, float* z, int count, float fade) {
-    HWY_DYNAMIC_DISPATCH(FinishVectors)(x, y, z, count, fade);
+void finish_vectors(float* x, float* y, float* z, int count, float fade, float least_z) {
+    HWY_DYNAMIC_DISPATCH(FinishVectors)(x, y, z, count, fade, least_z);
 }
 
 void finish_slopes(float* x, float* y, float* z, int count, float fade) {

@@ -32,9 +32,9 @@ void halve_rows(const float* upper, const float* lower, int count, float* out);
 // p = x / z and q = y / z with z at least 1/256.
 void slopes_of_vectors(const float* x, const float* y, const float* z, int count, float* p, float* q);
 
-// Turns averages into stored values, in place (see build_mip_chain() in mip.h): z < 0 becomes 0, and short vectors
-// become (0, 0, 1). Vectors are normalised, moved towards (0, 0, 1) by fade (0 to 1), and normalised again.
-void finish_vectors(float* x, float* y, float* z, int count, float fade);
+// Turns averages into stored values, in place (see build_mip_chain() in mip.h): z becomes at least least_z, and short
+// vectors become (0, 0, 1). Vectors are normalised, moved towards (0, 0, 1) by fade (0 to 1), and normalised again.
+void finish_vectors(float* x, float* y, float* z, int count, float fade, float least_z = 0.0f);
 
 // The same, from averaged slopes p = x / z in x and q = y / z in y. z is only written.
 void finish_slopes(float* x, float* y, float* z, int count, float fade);

@@ -3,6 +3,7 @@
 #include "rows/mip_rows.h"
 
 #include <algorithm>
+#include <limits>
 
 #include <tex/mip_chain.h>
 
@@ -22,9 +23,10 @@ float fade_at(const std::optional<Fade>& fade, int level) {
     return std::clamp(t, 0.0f, 1.0f);
 }
 
-void finish_row(NormalRow row, int width, MipDomain domain, float fade) {
-    const auto finish = domain == MipDomain::vector ? finish_vectors : finish_slopes;
-    finish(row.x, row.y, row.z, width, fade);
+void finish_row(NormalRow row, int width, const MipOptions& options, int level) {
+    const float fade = fade_at(options.fade, level);
+    if (options.domain == MipDomain::slope) return finish_slopes(row.x, row.y, row.z, width, fade);
+    finish_vectors(row.x, row.y, row.z, width, fade, options.any_z ? -std::numeric_limits<float>::infinity() : 0.0f);
 }
 
 LevelFilter::LevelFilter(Extent from_extent, const MipOptions& options)

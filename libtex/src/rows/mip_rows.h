@@ -19,9 +19,9 @@ int levels_to_build(const MipOptions& options, Extent base);
 // How far level `level` has faded to flat, from 0 to 1.
 float fade_at(const std::optional<Fade>& fade, int level);
 
-// Turns averages into stored values, in place. In the slope domain the averages are those of x/z and y/z, and z is
-// unused.
-void finish_row(NormalRow row, int width, MipDomain domain, float fade);
+// Turns averages of level `level` into stored values, in place. In the slope domain the averages are those of x/z and
+// y/z, and z is unused.
+void finish_row(NormalRow row, int width, const MipOptions& options, int level);
 
 // The filter from one level to the next smaller one.
 struct LevelFilter {

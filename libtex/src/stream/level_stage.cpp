@@ -40,7 +40,7 @@ ShelfRow LevelStage::make_row(LevelStep& step, bool last) {
         }
         averages.owner = kept;
     }
-    finish_row(place.row, width, options_.domain, fade_at(options_.fade, step.to_level));
+    finish_row(place.row, width, options_, step.to_level);
     strips_.finish(step.to_level, j);
     return averages;
 }

@@ -115,9 +115,11 @@ private:
     std::vector<std::int64_t> starts_;
 };
 
-void fill_row(PlaneView<float> heights, const Plane<std::int32_t>& nearest, int j, bool repeats_x, bool repeats_y,
-              RowOfSites& sites) {
-    const auto [columns, rows] = heights.extent;
+using Fill = std::function<void(const NearestTexel& hole)>;
+
+void fill_row(PlaneView<const float> values, const Plane<std::int32_t>& nearest, int j, bool repeats_x, bool repeats_y,
+              RowOfSites& sites, const Fill& fill) {
+    const auto [columns, rows] = values.extent;
     sites.clear();
     // On an axis that repeats, the nearest texel is at most half the axis away on either side.
     const int margin = repeats_x ? columns / 2 + 1 : 0;
@@ -129,8 +131,9 @@ void fill_row(PlaneView<float> heights, const Plane<std::int32_t>& nearest, int 
         sites.add({position, distance * distance, row, column}, columns);
     }
     sites.for_each(columns, [&](int i, const Site& site) {
-        float& height = heights.at(i, j);
-        if (std::isnan(height)) height = heights.at(site.column, site.row);
+        if (!std::isnan(values.at(i, j))) return;
+        const std::int64_t across = site.position - i;
+        fill({i, j, site.column, site.row, across * across + site.square});
     });
 }
 
@@ -140,24 +143,31 @@ bool has_hole(const float* row, int count) {
 
 }  // namespace
 
-Result<void> fill_from_nearest(PlaneView<float> heights, Wrap wrap_x, Wrap wrap_y, const Execution& execution,
-                               ProgressSpan span) {
-    const Extent extent = heights.extent;
+Result<void> visit_holes(PlaneView<const float> values, Wrap wrap_x, Wrap wrap_y, const Execution& execution,
+                         ProgressSpan span, const Fill& fill) {
+    const Extent extent = values.extent;
     const bool repeats_x = wrap_x == Wrap::repeat, repeats_y = wrap_y == Wrap::repeat;
     Plane<std::int32_t> nearest(extent);
     const double half = (span.from + span.to) / 2;
     constexpr int kColumns = 256;
-    const auto columns = [&](int begin, int end) { find_in_columns(heights, repeats_y, begin, end, nearest); };
+    const auto columns = [&](int begin, int end) { find_in_columns(values, repeats_y, begin, end, nearest); };
     if (auto done = parallel_for(execution, extent.width, kColumns, columns, {span.from, half}); !done) return done;
 
     // A hole is written by the thread that processes its row. No thread reads holes, because sites are valid texels.
     const auto rows = [&](int begin, int end) {
         RowOfSites sites;
         for (int j = begin; j < end; ++j) {
-            if (has_hole(heights.row(j), extent.width)) fill_row(heights, nearest, j, repeats_x, repeats_y, sites);
+            if (has_hole(values.row(j), extent.width)) fill_row(values, nearest, j, repeats_x, repeats_y, sites, fill);
         }
     };
     return parallel_for(execution, extent.height, std::max(1, (1 << 15) / extent.width), rows, {half, span.to});
+}
+
+Result<void> fill_from_nearest(PlaneView<float> heights, Wrap wrap_x, Wrap wrap_y, const Execution& execution,
+                               ProgressSpan span) {
+    return visit_holes(heights, wrap_x, wrap_y, execution, span, [heights](const NearestTexel& hole) {
+        heights.at(hole.i, hole.j) = heights.at(hole.column, hole.row);
+    });
 }
 
 }  // namespace tex

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// mesh_selection.h: chooses the parts of a mesh that share a normal map, and their tangents.
+
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tex/execution.h>
+#include <tex/mesh.h>
+#include <tex/names.h>
+#include <tex/result.h>
+
+#pragma GCC visibility push(default)
+namespace tex {
+
+// Where tangents come from: see tangents.h.
+enum class TangentSource { file, mikktspace, meshopt };
+
+inline constexpr Named<TangentSource> kTangentSourceNames[] = {
+    {TangentSource::file, "file", "those that the mesh has stored"},
+    {TangentSource::mikktspace, "mikktspace", "MikkTSpace: most bakers, Blender, Unity, Unreal"},
+    {TangentSource::meshopt, "meshopt", "meshoptimizer 1.3 with its own weights: Godot"},
+};
+
+// Which parts of a mesh use a map. What is not given does not restrict the choice.
+struct MeshSelection {
+    std::string material;                   // a name, or an index into Mesh::materials
+    std::optional<int> primitive;           // MeshPart::primitive
+    std::string node;                       // the parts as this node places them in the scene; else in their own space
+    std::optional<int> uv_set;              // none: the one that the material's normal map uses, or 0
+    std::optional<TangentSource> tangents;  // none: those of the file if all of these parts have them and uv_set is not
+                                            // given; else mikktspace
+};
+
+// The chosen parts, joined. The part has one set of UVs, normals, and no tangents of vertices.
+struct SelectedPart {
+    MeshPart part;
+    std::vector<Float4> tangents;  // one for each element of part.indices
+    TangentSource source = TangentSource::mikktspace;
+};
+
+// Joins the parts that `selection` names. Tangents are made for each part, before a node transforms it.
+//
+// Preconditions (asserted): every part passes check_part().
+// Errors: bad_option   there is no such material, node or part; several nodes have this name; the parts have different
+//                      materials; a part lacks normals, the set of UVs, or the tangents
+//         unsupported  the parts have more than kMaxTriangles triangles; and as make_tangents()
+//         bad_data     as in_scene()
+//         out_of_memory, cancelled
+[[nodiscard]] Result<SelectedPart> select_part(const Mesh& mesh, const MeshSelection& selection,
+                                               const Execution& execution = {});
+
+}  // namespace tex
+#pragma GCC visibility pop

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <tex/convert.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "mesh/coverage.h"
+#include "mesh/frames.h"
+#include "stream/nearest.h"
+#include "threads/guard.h"
+#include "threads/parallel.h"
+
+namespace tex {
+namespace {
+
+// The width in texels of the border that continues triangles in object space.
+constexpr int kGutter = 2;
+
+// In NormalMap::x, marks texels that have no normal yet.
+constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
+
+enum class Direction { to_object, to_tangent };
+
+Result<void> check_space(const TangentSpace& space) {
+    if (space.part.normals.empty()) return Error{ErrorCode::bad_option, {}, "the mesh has no normals"};
+    if (space.uv_set < 0 || static_cast<std::size_t>(space.uv_set) >= space.part.uvs.size())
+        return Error{ErrorCode::bad_option, {}, "the mesh has no UV set " + std::to_string(space.uv_set)};
+    if (space.tangents.size() != space.part.indices.size())
+        return Error{ErrorCode::bad_option, {}, "the mesh has not one tangent for each corner"};
+    return {};
+}
+
+void set(NormalMap& map, int i, int j, Vector3 n) {
+    map.x.at(i, j) = static_cast<float>(n.x);
+    map.y.at(i, j) = static_cast<float>(n.y);
+    map.z.at(i, j) = static_cast<float>(n.z);
+}
+
+// What a strip has counted.
+struct Counts {
+    std::int64_t covered = 0, backward = 0, singular = 0;
+};
+
+// Converts strips of rows, without the padding.
+class StripConverter {
+public:
+    StripConverter(const NormalMap& map, const TangentSpace& space, const CoverageMap& coverage, Direction direction,
+                   ConvertedMap& result)
+        : map_(map), space_(space), coverage_(coverage), direction_(direction), result_(result) {}
+
+    // Threads may convert different strips at the same time.
+    void run(int strip) {
+        std::vector<Covered> texels;
+        overlaps_ += coverage_.cover(strip, texels);
+        const int width = map_.extent().width;
+        std::int32_t triangle = kNoTriangle;  // whose frames these are
+        CornerFrames frames;
+        Counts counts;
+        for (std::size_t k = 0; k < texels.size(); ++k) {
+            const Covered& texel = texels[k];
+            const int i = static_cast<int>(k) % width, j = strip * coverage_.strip_rows() + static_cast<int>(k) / width;
+            result_.coverage.at(i, j) = texel.inside                    ? Coverage::triangle
+                                        : texel.triangle != kNoTriangle ? Coverage::gutter
+                                                                        : Coverage::none;
+            if (texel.triangle == kNoTriangle) {
+                result_.map.x.at(i, j) = kHole;
+                continue;
+            }
+            if (texel.triangle != triangle) {
+                triangle = texel.triangle;
+                frames = CornerFrames(space_, static_cast<std::size_t>(triangle));
+            }
+            convert(frames.at(texel.weights), texel.inside, i, j, counts);
+        }
+        covered_ += counts.covered;
+        backward_ += counts.backward;
+        singular_ += counts.singular;
+    }
+    void finish() {
+        result_.covered = covered_;
+        result_.overlaps = overlaps_;
+        result_.backward = backward_;
+        result_.singular = singular_;
+    }
+
+private:
+    void convert(const Frame& frame, bool inside, int i, int j, Counts& counts) {
+        const Vector3 from{static_cast<double>(map_.x.at(i, j)), static_cast<double>(map_.y.at(i, j)),
+                           static_cast<double>(map_.z.at(i, j))};
+        if (inside) ++counts.covered;
+        if (direction_ == Direction::to_object) return set(result_.map, i, j, decode(frame, from));
+        const std::optional<Vector3> t = encode(frame, from);
+        if (!t) ++counts.singular;
+        if (t && t->z < 0.0) ++counts.backward;
+        set(result_.map, i, j, t.value_or(Vector3{0.0, 0.0, 1.0}));
+    }
+
+    const NormalMap& map_;
+    const TangentSpace& space_;
+    const CoverageMap& coverage_;
+    const Direction direction_;
+    ConvertedMap& result_;
+    std::atomic<std::int64_t> covered_{0}, overlaps_{0}, backward_{0}, singular_{0};
+};
+
+// Fills the texels up to `width` texels from those that have a normal. The others become background.
+Result<void> pad(ConvertedMap& result, std::int64_t width, const Execution& execution, ProgressSpan span) {
+    NormalMap& map = result.map;
+    const auto fill = [&](const NearestTexel& hole) {
+        if (hole.squared > width * width) return set(map, hole.i, hole.j, {0.0, 0.0, 1.0});
+        for (Plane<float>* plane : {&map.x, &map.y, &map.z})
+            plane->at(hole.i, hole.j) = plane->at(hole.column, hole.row);
+        result.coverage.at(hole.i, hole.j) = Coverage::padding;
+    };
+    return visit_holes(map.x.view(), Wrap::repeat, Wrap::repeat, execution, span, fill);
+}
+
+Result<ConvertedMap> convert(const NormalMap& map, const TangentSpace& space, Direction direction, int padding,
+                             const Execution& execution) {
+    assert(check_part(space.part) && map.extent().texels() > 0 && padding >= 0);
+    return guarded([&]() -> Result<ConvertedMap> {
+        if (const auto checked = check_space(space); !checked) return checked.error().of(space.file);
+        const int gutter = direction == Direction::to_object ? std::min(kGutter, padding) : 0;
+        const auto coverage = CoverageMap::make(space.part, space.uv_set, map.extent(), gutter);
+        if (!coverage) return coverage.error().of(space.file);
+        ConvertedMap result{NormalMap(map.extent()), Plane<Coverage>(map.extent())};
+        StripConverter converter(map, space, *coverage, direction, result);
+        const auto strips = [&](int begin, int end) {
+            for (int strip = begin; strip < end; ++strip) converter.run(strip);
+        };
+        const auto converted = parallel_for(execution, coverage->strips(), 1, strips, {0.0, 0.7});
+        if (!converted) return converted.error();
+        converter.finish();
+        if (result.covered == 0)
+            return Error{ErrorCode::bad_option, space.file, "its triangles cover no texel of the map"};
+        const std::int64_t width = std::min(padding, 2 * kMaxExtent) - gutter;
+        if (const auto padded = pad(result, width, execution, {0.7, 1.0}); !padded) return padded.error();
+        return result;
+    });
+}
+
+}  // namespace
+
+Result<ConvertedMap> to_object_space(const NormalMap& map, const TangentSpace& space, const ConvertOptions& options,
+                                     const Execution& execution) {
+    return convert(map, space, Direction::to_object, options.padding, execution);
+}
+
+Result<ConvertedMap> to_tangent_space(const NormalMap& map, const TangentSpace& space, const ConvertOptions& options,
+                                      const Execution& execution) {
+    return convert(map, space, Direction::to_tangent, options.padding, execution);
+}
+
+Result<ConvertedMap> refit(const NormalMap& map, const TangentSpace& from, const TangentSpace& to,
+                           const ConvertOptions& options, const Execution& execution) {
+    const Execution first = part_of(execution, 0.0, 0.5), second = part_of(execution, 0.5, 1.0);
+    const auto object = to_object_space(map, from, {}, first);
+    if (!object) return object.error();
+    auto result = to_tangent_space(object->map, to, options, second);
+    if (!result) return result;
+    const auto [width, height] = map.extent();
+    for (int j = 0; j < height; ++j) {
+        for (int i = 0; i < width; ++i) {
+            if (result->coverage.at(i, j) == Coverage::triangle && object->coverage.at(i, j) != Coverage::triangle)
+                ++result->unmatched;
+        }
+    }
+    return result;
+}
+
+}  // namespace tex

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "mesh/frames.h"
+
+#include <cmath>
+
+namespace tex {
+namespace {
+
+enum class Kind { per_vertex, per_fragment, normalized };
+
+Kind kind_of(Decoder decoder) {
+    switch (decoder) {
+        case Decoder::unity_builtin:
+        case Decoder::godot:
+        case Decoder::substance_vertex: return Kind::per_vertex;
+        case Decoder::three: return Kind::normalized;
+        case Decoder::unity_urp:
+        case Decoder::unity_hdrp:
+        case Decoder::unreal:
+        case Decoder::gltf:
+        case Decoder::blender:
+        case Decoder::substance_fragment: break;
+    }
+    return Kind::per_fragment;
+}
+
+Vector3 operator+(Vector3 a, Vector3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+Vector3 operator*(double s, Vector3 a) { return {s * a.x, s * a.y, s * a.z}; }
+double dot(Vector3 a, Vector3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Vector3 cross(Vector3 a, Vector3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+
+// A vector without length stays as it is.
+Vector3 normalized(Vector3 v) {
+    const double n = std::sqrt(dot(v, v));
+    return n > 1e-30 ? (1.0 / n) * v : v;
+}
+
+Vector3 vector_of(float x, float y, float z) {
+    return {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
+}
+
+Vector3 mix(const std::array<Vector3, 3>& v, const std::array<double, 3>& weights) {
+    return weights[0] * v[0] + weights[1] * v[1] + weights[2] * v[2];
+}
+
+}  // namespace
+
+CornerFrames::CornerFrames(const TangentSpace& space, std::size_t triangle) : decoder_(space.decoder) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t corner = 3 * triangle + k;
+        const Float3& n = space.part.normals[space.part.indices[corner]];
+        const Float4& t = space.tangents[corner];
+        normals_[k] = normalized(vector_of(n.x, n.y, n.z));
+        tangents_[k] = normalized(vector_of(t.x, t.y, t.z));
+        signs_[k] = t.w < 0.0f ? -1.0 : 1.0;
+        bitangents_[k] = signs_[k] * cross(normals_[k], tangents_[k]);
+        if (kind_of(decoder_) == Kind::normalized) bitangents_[k] = normalized(bitangents_[k]);
+    }
+}
+
+Frame CornerFrames::at(const std::array<double, 3>& weights) const {
+    const Vector3 t = mix(tangents_, weights), n = mix(normals_, weights);
+    switch (kind_of(decoder_)) {
+        case Kind::per_vertex: return {t, mix(bitangents_, weights), n};
+        case Kind::normalized: return {normalized(t), normalized(mix(bitangents_, weights)), normalized(n)};
+        case Kind::per_fragment: break;
+    }
+    const double sign = weights[0] * signs_[0] + weights[1] * signs_[1] + weights[2] * signs_[2];
+    return {t, (sign < 0.0 ? -1.0 : 1.0) * cross(n, t), n};
+}
+
+Vector3 decode(const Frame& frame, Vector3 t) {
+    const Vector3 n = t.x * frame.t + t.y * frame.b + t.z * frame.n;
+    if (dot(n, n) > 1e-30) return normalized(n);
+    return dot(frame.n, frame.n) > 1e-30 ? normalized(frame.n) : Vector3{0.0, 0.0, 1.0};
+}
+
+std::optional<Vector3> encode(const Frame& frame, Vector3 n) {
+    const Vector3 r0 = cross(frame.b, frame.n), r1 = cross(frame.n, frame.t), r2 = cross(frame.t, frame.b);
+    const double volume = dot(frame.t, r0);
+    // Below a millionth of a cube with such edges, t would consist of rounding errors.
+    const double cube = dot(frame.t, frame.t) * dot(frame.b, frame.b) * dot(frame.n, frame.n);
+    if (!(volume * volume > 1e-12 * cube)) return std::nullopt;
+    const double s = volume < 0.0 ? -1.0 : 1.0;
+    const Vector3 t{s * dot(n, r0), s * dot(n, r1), s * dot(n, r2)};
+    if (!(dot(t, t) > 0.0)) return std::nullopt;  // n has no length
+    return (1.0 / std::sqrt(dot(t, t))) * t;
+}
+
+}  // namespace tex

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// frames.h: the vectors with which an engine decodes a texel of a normal map, in double.
+
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include <tex/convert_options.h>
+
+namespace tex {
+
+struct Vector3 {
+    double x = 0.0, y = 0.0, z = 0.0;
+};
+
+// T', B' and N' of convert_options.h. They need be neither unit nor perpendicular.
+struct Frame {
+    Vector3 t, b, n;
+};
+
+// The frames of a triangle, for one decoder.
+class CornerFrames {
+public:
+    CornerFrames() = default;
+    CornerFrames(const TangentSpace& space, std::size_t triangle);
+
+    // At the point with these weights of the corners.
+    [[nodiscard]] Frame at(const std::array<double, 3>& weights) const;
+
+private:
+    std::array<Vector3, 3> normals_, tangents_, bitangents_;
+    std::array<double, 3> signs_{};
+    Decoder decoder_ = Decoder::gltf;
+};
+
+// n = normalize(x T' + y B' + z N'), or N' if that has no length.
+[[nodiscard]] Vector3 decode(const Frame& frame, Vector3 t);
+
+// The inverse: the t that decodes to n. Nothing if T', B' and N' lie in one plane.
+[[nodiscard]] std::optional<Vector3> encode(const Frame& frame, Vector3 n);
+
+}  // namespace tex

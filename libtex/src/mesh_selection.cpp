@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <tex/mesh_selection.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include <tex/tangents.h>
+
+#include "threads/guard.h"
+
+namespace tex {
+namespace {
+
+Error unfit(std::string reason) { return {ErrorCode::bad_option, {}, std::move(reason)}; }
+
+std::string quoted(const std::string& name) { return '"' + name + '"'; }
+
+// The first names of a list, for a message.
+std::string listed(const std::vector<std::string>& names) {
+    constexpr std::size_t kMost = 8;
+    std::string text;
+    for (std::size_t k = 0; k < std::min(kMost, names.size()); ++k) text += (k == 0 ? "" : ", ") + names[k];
+    if (names.size() > kMost) text += " and " + std::to_string(names.size() - kMost) + " more";
+    return text;
+}
+
+std::string material_name(const Mesh& mesh, int material) {
+    if (material < 0 || static_cast<std::size_t>(material) >= mesh.materials.size()) return "no material";
+    const std::string& name = mesh.materials[static_cast<std::size_t>(material)].name;
+    return name.empty() ? std::to_string(material) : quoted(name);
+}
+
+Result<int> material_called(const Mesh& mesh, const std::string& text) {
+    for (std::size_t k = 0; k < mesh.materials.size(); ++k) {
+        if (mesh.materials[k].name == text) return static_cast<int>(k);
+    }
+    std::size_t index = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+    if (error == std::errc() && end == text.data() + text.size() && index < mesh.materials.size())
+        return static_cast<int>(index);
+    std::vector<std::string> names;
+    for (std::size_t k = 0; k < mesh.materials.size(); ++k) names.push_back(material_name(mesh, static_cast<int>(k)));
+    return unfit("has no material " + quoted(text) + (names.empty() ? "" : "; it has " + listed(names)));
+}
+
+Result<const MeshNode*> node_called(const Mesh& mesh, const std::string& name) {
+    const MeshNode* found = nullptr;
+    std::vector<std::string> names;
+    for (const MeshNode& node : mesh.nodes) {
+        names.push_back(quoted(node.name));
+        if (node.name != name) continue;
+        if (found != nullptr) return unfit("has several nodes called " + quoted(name));
+        found = &node;
+    }
+    if (found == nullptr)
+        return unfit("has no node " + quoted(name) + " with a mesh" +
+                     (names.empty() ? "" : "; it has " + listed(names)));
+    return found;
+}
+
+// The parts that are chosen, and what they have in common.
+struct Choice {
+    std::vector<const MeshPart*> parts;
+    const MeshNode* node = nullptr;
+    int uv_set = 0;
+    TangentSource source = TangentSource::mikktspace;
+};
+
+Result<void> choose_parts(const Mesh& mesh, const MeshSelection& selection, Choice& choice) {
+    int material = -1;
+    if (!selection.material.empty()) {
+        const auto called = material_called(mesh, selection.material);
+        if (!called) return called.error();
+        material = *called;
+    }
+    if (!selection.node.empty()) {
+        const auto called = node_called(mesh, selection.node);
+        if (!called) return called.error();
+        choice.node = *called;
+    }
+    for (const MeshPart& part : mesh.parts) {
+        if (!selection.material.empty() && part.material != material) continue;
+        if (selection.primitive && part.primitive != *selection.primitive) continue;
+        if (choice.node != nullptr && part.mesh != choice.node->mesh) continue;
+        choice.parts.push_back(&part);
+    }
+    if (choice.parts.empty()) return unfit("has no part with this material, primitive and node");
+    std::vector<std::string> names;
+    for (const MeshPart* part : choice.parts) {
+        std::string name = material_name(mesh, part->material);
+        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
+    }
+    if (names.size() > 1) return unfit("has " + std::to_string(names.size()) + " materials: " + listed(names));
+    return {};
+}
+
+Result<void> choose_attributes(const Mesh& mesh, const MeshSelection& selection, Choice& choice) {
+    const int material = choice.parts.front()->material;
+    if (material >= 0 && static_cast<std::size_t>(material) < mesh.materials.size())
+        choice.uv_set = mesh.materials[static_cast<std::size_t>(material)].uv_set;
+    choice.uv_set = selection.uv_set.value_or(choice.uv_set);
+    bool all_have_tangents = true;
+    for (const MeshPart* part : choice.parts) {
+        const std::string name = part->name.empty() ? "" : quoted(part->name) + " ";
+        if (part->uvs.empty()) return unfit(name + "has no UVs, which say where the map is");
+        if (choice.uv_set < 0 || static_cast<std::size_t>(choice.uv_set) >= part->uvs.size()) {
+            return unfit(name + "has no UV set " + std::to_string(choice.uv_set) + "; the last one is " +
+                         std::to_string(part->uvs.size() - 1));
+        }
+        if (part->normals.empty()) return unfit(name + "has no normals, which tangent space needs");
+        if (part->tangents.empty()) {
+            all_have_tangents = false;
+            if (selection.tangents == TangentSource::file) return unfit(name + "has no tangents; make them");
+        }
+    }
+    const bool stored = all_have_tangents && !selection.uv_set;
+    choice.source = selection.tangents.value_or(stored ? TangentSource::file : TangentSource::mikktspace);
+    return {};
+}
+
+Result<std::vector<Float4>> tangents_of(const MeshPart& part, const Choice& choice, const Execution& execution) {
+    if (choice.source == TangentSource::file) return stored_tangents(part);
+    const bool is_meshopt = choice.source == TangentSource::meshopt;
+    return make_tangents(part, is_meshopt ? TangentMethod::meshopt : TangentMethod::mikktspace, choice.uv_set,
+                         execution);
+}
+
+// The part as the node places it. A node may mirror a part, so each corner becomes a vertex with its own tangent.
+Result<MeshPart> placed(const MeshPart& part, std::vector<Float4> tangents, const MeshNode& node) {
+    MeshPart corners;
+    corners.v_axis = part.v_axis;
+    corners.uvs.resize(part.uvs.size());
+    for (const std::uint32_t v : part.indices) {
+        corners.indices.push_back(static_cast<std::uint32_t>(corners.positions.size()));
+        corners.positions.push_back(part.positions[v]);
+        corners.normals.push_back(part.normals[v]);
+        for (std::size_t k = 0; k < part.uvs.size(); ++k) corners.uvs[k].push_back(part.uvs[k][v]);
+    }
+    corners.tangents = std::move(tangents);
+    return in_scene(std::move(corners), node);
+}
+
+template <class T>
+void append(std::vector<T>& to, const std::vector<T>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+}
+
+void join(SelectedPart& joined, const MeshPart& part, int uv_set, const std::vector<Float4>& tangents) {
+    const auto first = static_cast<std::uint32_t>(joined.part.positions.size());
+    append(joined.part.positions, part.positions);
+    append(joined.part.normals, part.normals);
+    append(joined.part.uvs.front(), part.uvs[static_cast<std::size_t>(uv_set)]);
+    for (const std::uint32_t v : part.indices) joined.part.indices.push_back(first + v);
+    append(joined.tangents, tangents);
+}
+
+Result<SelectedPart> joined_parts(const Choice& choice, const Execution& execution) {
+    std::size_t triangles = 0, vertices = 0;
+    for (const MeshPart* part : choice.parts) {
+        triangles += part->triangles();
+        vertices += part->positions.size();
+    }
+    if (triangles > kMaxTriangles || vertices > UINT32_MAX)
+        return Error{ErrorCode::unsupported, {}, "has more than 2^28 triangles with this material"};
+    SelectedPart joined;
+    joined.source = choice.source;
+    joined.part.v_axis = choice.parts.front()->v_axis;
+    joined.part.uvs.resize(1);
+    for (const MeshPart* part : choice.parts) {
+        auto tangents = tangents_of(*part, choice, execution);
+        if (!tangents) return tangents.error();
+        if (choice.node == nullptr) {
+            join(joined, *part, choice.uv_set, *tangents);
+            continue;
+        }
+        const auto in_place = placed(*part, std::move(*tangents), *choice.node);
+        if (!in_place) return in_place.error();
+        const auto turned = stored_tangents(*in_place);
+        if (!turned) return turned.error();
+        join(joined, *in_place, choice.uv_set, *turned);
+    }
+    return joined;
+}
+
+}  // namespace
+
+Result<SelectedPart> select_part(const Mesh& mesh, const MeshSelection& selection, const Execution& execution) {
+    return guarded([&]() -> Result<SelectedPart> {
+        Choice choice;
+        if (const auto chosen = choose_parts(mesh, selection, choice); !chosen) return chosen.error();
+        if (const auto chosen = choose_attributes(mesh, selection, choice); !chosen) return chosen.error();
+        return joined_parts(choice, execution);
+    });
+}
+
+}  // namespace tex

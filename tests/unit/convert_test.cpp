@@ -1,0 +1,429 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <tex/convert.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <tex/pack.h>
+#include <tex/tangents.h>
+#include <tex/unpack.h>
+
+#include "unit/meshes.h"
+#include "unit/solids.h"
+
+namespace tex {
+namespace {
+
+Float3 vector_at(const NormalMap& map, int i, int j) { return {map.x.at(i, j), map.y.at(i, j), map.z.at(i, j)}; }
+
+NormalMap constant_map(Extent extent, Float3 n) {
+    NormalMap map;
+    map.x = Plane<float>(extent, n.x);
+    map.y = Plane<float>(extent, n.y);
+    map.z = Plane<float>(extent, n.z);
+    return map;
+}
+
+NormalMap bumpy_map(Extent extent) {
+    NormalMap map(extent);
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) {
+            const Float3 n = unit_vector({0.6f * std::sin(0.3f * static_cast<float>(i)),
+                                          0.5f * std::cos(0.2f * static_cast<float>(j + i)), 1.0f});
+            map.x.at(i, j) = n.x;
+            map.y.at(i, j) = n.y;
+            map.z.at(i, j) = n.z;
+        }
+    }
+    return map;
+}
+
+double degrees_between(Float3 a, Float3 b) {
+    const double dx = static_cast<double>(a.x) - static_cast<double>(b.x),
+                 dy = static_cast<double>(a.y) - static_cast<double>(b.y),
+                 dz = static_cast<double>(a.z) - static_cast<double>(b.z);
+    return 2.0 * std::asin(std::min(1.0, std::sqrt(dx * dx + dy * dy + dz * dz) / 2.0)) * 57.29577951308232;
+}
+
+struct Angles {
+    double mean = 0.0, max = 0.0;
+    int texels = 0;
+};
+
+// Over the texels that triangles cover.
+Angles angles_between(const NormalMap& a, const NormalMap& b, const Plane<Coverage>& coverage) {
+    Angles angles;
+    for (int j = 0; j < a.extent().height; ++j) {
+        for (int i = 0; i < a.extent().width; ++i) {
+            if (coverage.at(i, j) != Coverage::triangle) continue;
+            const double angle = degrees_between(vector_at(a, i, j), vector_at(b, i, j));
+            ++angles.texels;
+            angles.mean += angle;
+            angles.max = std::max(angles.max, angle);
+        }
+    }
+    angles.mean /= std::max(1, angles.texels);
+    return angles;
+}
+
+int count(const ConvertedMap& converted, Coverage wanted) {
+    int texels = 0;
+    for (int j = 0; j < converted.map.extent().height; ++j) {
+        const Coverage* const row = converted.coverage.row(j);
+        texels += static_cast<int>(std::count(row, row + converted.map.extent().width, wanted));
+    }
+    return texels;
+}
+
+// A square in the middle of the map, with `triangles` copies of each of its two triangles.
+MeshPart square(float low, float high, int copies = 1) {
+    MeshPart part;
+    part.uvs.resize(1);
+    for (const auto& [x, y] : {std::pair{low, low}, {high, low}, {high, high}, {low, high}}) {
+        part.positions.push_back({x, y, 0.0f});
+        part.normals.push_back({0.0f, 0.0f, 1.0f});
+        part.uvs[0].push_back({x, y});
+    }
+    for (int k = 0; k < copies; ++k) {
+        for (const std::uint32_t v : {0u, 1u, 2u, 0u, 2u, 3u}) part.indices.push_back(v);
+    }
+    return part;
+}
+
+TEST(Convert, ReturnsToTheMapForEveryDecoder) {
+    std::vector<MeshPart> parts = {wavy_part(20, true), wavy_part(3)};
+    for (const Solid& solid : {sphere(), torus(), smooth_cube()}) parts.push_back(solid.part);
+    const NormalMap map = bumpy_map({192, 128});
+    for (const MeshPart& part : parts) {
+        const auto tangents = make_tangents(part);
+        ASSERT_TRUE(tangents);
+        for (const auto& decoder : kDecoderNames) {
+            const TangentSpace space{part, *tangents, 0, decoder.value};
+            const auto object = to_object_space(map, space);
+            ASSERT_TRUE(object);
+            const auto back = to_tangent_space(object->map, space);
+            ASSERT_TRUE(back);
+            EXPECT_EQ(back->backward, 0);
+            EXPECT_EQ(back->singular, 0);
+            const Angles angles = angles_between(map, back->map, object->coverage);
+            EXPECT_LT(angles.max, 1e-4) << decoder.name;
+            EXPECT_GT(angles.texels, 5000);
+            EXPECT_EQ(angles.texels, object->covered);
+        }
+    }
+}
+
+// A square of many triangles without overlaps or cracks: every texel belongs to exactly one triangle.
+TEST(Convert, CoversEveryTexelOnce) {
+    MeshPart part = wavy_part(13);
+    for (Float2& uv : part.uvs[0]) uv.y -= 0.125f * uv.x;  // the sheet's UVs are a whole square again
+    const auto tangents = make_tangents(part);
+    ASSERT_TRUE(tangents);
+    for (const float moved : {0.0f, 0.3f, -7.77f}) {  // the map repeats
+        for (Float2& uv : part.uvs[0]) uv = {uv.x + moved, uv.y - moved};
+        for (const Extent extent : {Extent{1, 1}, Extent{13, 13}, Extent{64, 64}, Extent{100, 37}}) {
+            const auto converted = to_object_space(bumpy_map(extent), {part, *tangents});
+            ASSERT_TRUE(converted);
+            EXPECT_LE(converted->overlaps, moved == 0.0f ? 0 : extent.height);
+            EXPECT_GE(converted->covered, extent.texels() - (moved == 0.0f ? 0 : extent.height));
+        }
+    }
+}
+
+// Inside the square, many triangles of random shapes meet in each vertex. No texel between them is missed or counted
+// twice.
+TEST(Convert, LeavesNoCracksBetweenOddTriangles) {
+    MeshPart part = wavy_part(24);
+    for (std::size_t k = 0; k < part.uvs[0].size(); ++k) {
+        Float2& uv = part.uvs[0][k];
+        uv.y -= 0.125f * uv.x;
+        const bool border = uv.x < 0.01f || uv.x > 0.99f || uv.y < 0.01f || uv.y > 0.99f;
+        const float shift = 0.012f * static_cast<float>(static_cast<int>(k * 2654435761u % 1000u) - 500) / 500.0f;
+        if (!border) uv = {uv.x + shift, uv.y + 0.7f * shift};
+    }
+    const auto tangents = make_tangents(part);
+    ASSERT_TRUE(tangents);
+    const auto converted = to_object_space(bumpy_map({257, 311}), {part, *tangents});
+    ASSERT_TRUE(converted);
+    EXPECT_EQ(converted->overlaps, 0);
+    EXPECT_EQ(converted->covered, 257 * 311);
+}
+
+// What a map shows that was made for one decoder and is read by another: mean and largest angle in degrees, on surfaces
+// that are flat. The table of convert-normals(1).
+struct Mismatch {
+    const char* solid;
+    Decoder made_for, read_by;
+    double mean, max;
+};
+constexpr Decoder kPerVertex = Decoder::unity_builtin, kPerFragment = Decoder::unreal, kThree = Decoder::three;
+constexpr Mismatch kMismatches[] = {
+    {"cube", kPerVertex, kPerFragment, 5.48, 11.28},    {"cube", kPerVertex, kThree, 4.22, 6.87},
+    {"cube", kPerFragment, kPerVertex, 6.18, 11.85},    {"cube", kPerFragment, kThree, 5.88, 12.90},
+    {"cube", kThree, kPerVertex, 4.77, 8.53},           {"cube", kThree, kPerFragment, 6.49, 16.01},
+    {"torus", kPerVertex, kPerFragment, 0.010, 0.060},  {"torus", kPerVertex, kThree, 0.051, 0.304},
+    {"torus", kPerFragment, kPerVertex, 0.010, 0.062},  {"torus", kPerFragment, kThree, 0.048, 0.304},
+    {"torus", kThree, kPerVertex, 0.054, 0.328},        {"torus", kThree, kPerFragment, 0.051, 0.328},
+    {"sphere", kPerVertex, kPerFragment, 0.005, 0.023}, {"sphere", kPerVertex, kThree, 0.003, 0.022},
+    {"sphere", kPerFragment, kPerVertex, 0.005, 0.023}, {"sphere", kPerFragment, kThree, 0.005, 0.020},
+    {"sphere", kThree, kPerVertex, 0.003, 0.023},       {"sphere", kThree, kPerFragment, 0.005, 0.020},
+};
+
+TEST(Convert, ShowsFlatSurfacesFlatUnderTheMatchingDecoderAlone) {
+    for (const Solid& solid : {sphere(), torus(), smooth_cube()}) {
+        const NormalMap truth = surface_map(solid, {384, 256});
+        const auto tangents = make_tangents(solid.part);
+        ASSERT_TRUE(tangents);
+        const auto angles = [&](Decoder made_for, Decoder read_by) {
+            const auto tangent = to_tangent_space(truth, {solid.part, *tangents, 0, made_for});
+            EXPECT_TRUE(tangent);
+            EXPECT_EQ(tangent->backward, 0);
+            const auto seen = to_object_space(tangent->map, {solid.part, *tangents, 0, read_by});
+            EXPECT_TRUE(seen);
+            return angles_between(truth, seen->map, seen->coverage);
+        };
+        for (const auto& decoder : kDecoderNames) EXPECT_LT(angles(decoder.value, decoder.value).max, 1e-4);
+        for (const Mismatch& row : kMismatches) {
+            if (row.solid != solid.name) continue;
+            const Angles seen = angles(row.made_for, row.read_by);
+            EXPECT_NEAR(seen.mean, row.mean, 0.001 + 0.002 * row.mean) << row.solid;
+            EXPECT_NEAR(seen.max, row.max, 0.001 + 0.002 * row.max) << row.solid;
+        }
+    }
+}
+
+TEST(Convert, KeepsFlatSurfacesFlatAtEightBits) {
+    for (const Solid& solid : {sphere(), torus(), smooth_cube()}) {
+        const NormalMap truth = surface_map(solid, {192, 128});
+        const auto tangents = make_tangents(solid.part);
+        ASSERT_TRUE(tangents);
+        for (const auto& decoder : kDecoderNames) {
+            const TangentSpace space{solid.part, *tangents, 0, decoder.value};
+            auto tangent = to_tangent_space(truth, space);
+            ASSERT_TRUE(tangent);
+            MipChain chain;
+            chain.levels.push_back(std::move(tangent->map));
+            PackOptions rgb8;
+            rgb8.encoding = Encoding::rgb8;
+            const auto packed = pack(chain, rgb8);
+            ASSERT_TRUE(packed);
+            const auto unpacked = unpack(*packed);
+            ASSERT_TRUE(unpacked);
+            const auto seen = to_object_space(unpacked->levels.front(), space);
+            ASSERT_TRUE(seen);
+            const Angles angles = angles_between(truth, seen->map, seen->coverage);
+            EXPECT_LT(angles.mean, 0.25) << solid.name << " " << decoder.name;
+            EXPECT_LT(angles.max, 0.6) << solid.name << " " << decoder.name;
+        }
+    }
+}
+
+// The right half of the map shows the sheet again, mirrored.
+TEST(Convert, TurnsMirroredChartsTheRightWay) {
+    MeshPart part = wavy_part(8);
+    const std::size_t vertices = part.positions.size(), corners = part.indices.size();
+    for (std::size_t v = 0; v < vertices; ++v) {
+        part.uvs[0][v] = {0.45f * part.uvs[0][v].x, 0.9f * part.uvs[0][v].y - 0.1f};
+        part.positions.push_back(part.positions[v]);
+        part.normals.push_back(part.normals[v]);
+        part.uvs[0].push_back({1.0f - part.uvs[0][v].x, part.uvs[0][v].y});
+    }
+    for (std::size_t k = 0; k < corners; ++k)
+        part.indices.push_back(part.indices[k] + static_cast<std::uint32_t>(vertices));
+    const auto tangents = make_tangents(part);
+    ASSERT_TRUE(tangents);
+    const Extent extent{100, 50};
+    const auto right = to_object_space(constant_map(extent, {0.6f, 0.0f, 0.8f}), {part, *tangents});
+    const auto up = to_object_space(constant_map(extent, {0.0f, 0.6f, 0.8f}), {part, *tangents});
+    ASSERT_TRUE(right && up);
+    EXPECT_EQ(right->overlaps, 0);
+    EXPECT_GT(right->covered, 2000);
+    for (int j = 0; j < 50; ++j) {
+        for (int i = 0; i < 45; ++i) {
+            const int mirror = 99 - i;
+            if (right->coverage.at(i, j) != Coverage::triangle) continue;
+            if (right->coverage.at(mirror, j) != Coverage::triangle) continue;
+            EXPECT_LT(right->map.x.at(mirror, j), right->map.x.at(i, j) - 0.5f);
+            EXPECT_LT(degrees_between(vector_at(up->map, i, j), vector_at(up->map, mirror, j)), 0.5);
+        }
+    }
+}
+
+TEST(Convert, LetsTheFirstOfSeveralTrianglesDecide) {
+    MeshPart part = square(0.25f, 0.75f, 3);
+    std::vector<Float4> tangents(6, {1.0f, 0.0f, 0.0f, 1.0f});
+    tangents.resize(part.indices.size(), {0.0f, 1.0f, 0.0f, 1.0f});
+    const auto converted = to_object_space(constant_map({16, 16}, {0.6f, 0.0f, 0.8f}), {part, tangents});
+    ASSERT_TRUE(converted);
+    EXPECT_EQ(converted->covered, 64);
+    EXPECT_EQ(converted->overlaps, 128);
+    EXPECT_FLOAT_EQ(converted->map.x.at(8, 8), 0.6f);
+    EXPECT_FLOAT_EQ(converted->map.y.at(8, 8), 0.0f);
+}
+
+TEST(Convert, MakesTexelsWithoutTangentSpaceFlat) {
+    const MeshPart part = square(0.25f, 0.75f);
+    for (const Float4& tangent : {Float4{0.0f, 0.0f, 1.0f, 1.0f}, Float4{0.0f, 0.0f, 0.0f, 1.0f}}) {
+        const std::vector<Float4> tangents(6, tangent);
+        for (const auto& decoder : kDecoderNames) {
+            const TangentSpace space{part, tangents, 0, decoder.value};
+            const auto flat = to_tangent_space(constant_map({16, 16}, {0.6f, 0.0f, 0.8f}), space);
+            ASSERT_TRUE(flat);
+            EXPECT_EQ(flat->singular, 64);
+            EXPECT_EQ(flat->map.z.at(8, 8), 1.0f);
+            const auto object = to_object_space(constant_map({16, 16}, {0.0f, 1.0f, 0.0f}), space);
+            ASSERT_TRUE(object);
+            EXPECT_EQ(object->map.z.at(8, 8), 1.0f);  // the normal of the mesh
+        }
+    }
+}
+
+TEST(Convert, CountsNormalsThatPointIntoTheSurface) {
+    const MeshPart part = square(0.25f, 0.75f);
+    const auto tangents = make_tangents(part);
+    ASSERT_TRUE(tangents);
+    const auto converted = to_tangent_space(constant_map({16, 16}, {0.6f, 0.0f, -0.8f}), {part, *tangents});
+    ASSERT_TRUE(converted);
+    EXPECT_EQ(converted->backward, 64);
+    EXPECT_FLOAT_EQ(converted->map.z.at(8, 8), -0.8f);
+}
+
+TEST(Convert, PadsAsFarAsItIsAsked) {
+    const MeshPart part = square(0.25f, 0.75f);
+    const auto tangents = make_tangents(part);
+    ASSERT_TRUE(tangents);
+    const NormalMap map = constant_map({32, 32}, {0.6f, 0.0f, 0.8f});
+    const auto grown = [](int by) { return (16 + 2 * by) * (16 + 2 * by); };
+    for (const int padding : {0, 1, 2, 3, kPadAll}) {
+        const auto object = to_object_space(map, {part, *tangents}, {padding});
+        const auto tangent = to_tangent_space(map, {part, *tangents}, {padding});
+        ASSERT_TRUE(object && tangent);
+        EXPECT_EQ(count(*object, Coverage::triangle), 256);
+        EXPECT_EQ(count(*object, Coverage::none) == 0, padding == kPadAll);
+        EXPECT_EQ(count(*tangent, Coverage::none), padding == kPadAll ? 0 : count(*tangent, Coverage::none));
+        EXPECT_EQ(count(*tangent, Coverage::gutter), 0);
+        const int filled = 1024 - count(*object, Coverage::none);
+        if (padding <= 3) {
+            EXPECT_LE(filled, grown(padding)) << padding;
+            EXPECT_GE(filled, grown(padding) - 4 * padding * padding) << padding;  // corners are round
+        }
+        EXPECT_EQ(object->map.x.at(0, 0), padding == kPadAll ? object->map.x.at(8, 8) : 0.0f);
+        EXPECT_EQ(object->map.z.at(0, 0), padding == kPadAll ? object->map.z.at(8, 8) : 1.0f);
+    }
+}
+
+// Beyond its edge, a curved sheet goes on bending for two texels, and then stays as it is.
+TEST(Convert, ContinuesTrianglesInTheGutter) {
+    MeshPart part = wavy_part(2);
+    for (Float2& uv : part.uvs[0]) uv = {0.25f + 0.5f * uv.x, 0.25f + 0.5f * uv.y};
+    const auto tangents = make_tangents(part);
+    ASSERT_TRUE(tangents);
+    const auto object = to_object_space(constant_map({64, 64}, {0.0f, 0.0f, 1.0f}), {part, *tangents});
+    ASSERT_TRUE(object);
+    const int j = 30;
+    int left = 0;
+    while (object->coverage.at(left, j) != Coverage::triangle) ++left;
+    ASSERT_EQ(object->coverage.at(left - 1, j), Coverage::gutter);
+    ASSERT_EQ(object->coverage.at(left - 2, j), Coverage::gutter);
+    ASSERT_EQ(object->coverage.at(left - 3, j), Coverage::padding);
+    const auto x = [&](int i) { return object->map.x.at(left + i, j); };
+    EXPECT_NEAR(x(-1) - x(0), x(0) - x(1), 3e-3f);
+    EXPECT_NEAR(x(-2) - x(-1), x(0) - x(1), 3e-3f);
+    EXPECT_LT(std::abs(x(-3) - x(-2)), 0.5f * std::abs(x(0) - x(1)));
+}
+
+TEST(Convert, MakesUnitVectorsOfTrianglesThatNobodyWouldModel) {
+    for (unsigned seed = 1; seed <= 60; ++seed) {
+        MeshPart part = random_part(seed);
+        for (Float2& uv : part.uvs[0]) uv = {0.1f * uv.x, 0.1f * uv.y};  // at most 16 repeats
+        const auto tangents = make_tangents(part);
+        ASSERT_TRUE(tangents);
+        for (const auto& decoder : kDecoderNames) {
+            for (const auto verb : {to_object_space, to_tangent_space}) {
+                const auto converted = verb(bumpy_map({40, 30}), {part, *tangents, 0, decoder.value}, {}, {2, {}});
+                if (!converted) {
+                    EXPECT_EQ(converted.error().reason, "its triangles cover no texel of the map");
+                    continue;
+                }
+                for (int j = 0; j < 30; ++j) {
+                    for (int i = 0; i < 40; ++i) {
+                        const Float3 n = vector_at(converted->map, i, j);
+                        EXPECT_NEAR(n.x * n.x + n.y * n.y + n.z * n.z, 1.0f, 1e-5f) << seed;
+                    }
+                }
+            }
+        }
+    }
+}
+
+// The mesh stays, the tangents change: what the engine shows does not.
+TEST(Convert, RefitsMapsToOtherTangentsAndDecoders) {
+    const Solid solid = torus();
+    const auto before = make_tangents(solid.part, TangentMethod::mikktspace);
+    const auto after = make_tangents(solid.part, TangentMethod::meshopt);
+    ASSERT_TRUE(before && after);
+    const NormalMap map = bumpy_map({192, 128});
+    const TangentSpace from{solid.part, *before, 0, Decoder::unreal}, to{solid.part, *after, 0, Decoder::godot};
+    const auto fitted = refit(map, from, to);
+    ASSERT_TRUE(fitted);
+    EXPECT_EQ(fitted->unmatched, 0);
+    const auto wanted = to_object_space(map, from), got = to_object_space(fitted->map, to);
+    const auto unfit = to_object_space(map, to);
+    ASSERT_TRUE(wanted && got && unfit);
+    EXPECT_LT(angles_between(wanted->map, got->map, got->coverage).max, 1e-4);
+    EXPECT_GT(angles_between(wanted->map, unfit->map, got->coverage).max, 0.5);
+
+    MeshPart moved = solid.part;  // to a smaller chart, and a larger one
+    for (Float2& uv : moved.uvs[0]) uv = {0.5f * uv.x, 0.5f * uv.y};
+    const TangentSpace small{moved, *before};
+    const auto smaller = refit(map, from, small), larger = refit(map, small, from);
+    ASSERT_TRUE(smaller && larger);
+    EXPECT_EQ(smaller->unmatched, 0);
+    EXPECT_EQ(larger->unmatched, larger->covered - smaller->covered);
+}
+
+TEST(Convert, GivesTheSameBytesForEveryNumberOfThreads) {
+    const Solid solid = smooth_cube();
+    const auto tangents = make_tangents(solid.part);
+    ASSERT_TRUE(tangents);
+    const NormalMap map = bumpy_map({300, 200});
+    const auto one = to_object_space(map, {solid.part, *tangents}, {}, {1, {}});
+    const auto two = to_object_space(map, {solid.part, *tangents}, {}, {2, {}});
+    ASSERT_TRUE(one && two);
+    for (int j = 0; j < 200; ++j) {
+        EXPECT_TRUE(std::equal(one->map.x.row(j), one->map.x.row(j) + 300, two->map.x.row(j)));
+        EXPECT_TRUE(std::equal(one->map.z.row(j), one->map.z.row(j) + 300, two->map.z.row(j)));
+    }
+}
+
+TEST(Convert, RefusesWhatDoesNotFit) {
+    MeshPart part = wavy_part(2);
+    const std::vector<Float4> none;
+    const auto tangents = make_tangents(part);
+    const NormalMap map = bumpy_map({8, 8});
+    EXPECT_EQ(to_object_space(map, {part, *tangents, 1}).error().code, ErrorCode::bad_option);
+    EXPECT_EQ(to_object_space(map, {part, none, 0}).error().code, ErrorCode::bad_option);
+    EXPECT_EQ(to_object_space(map, {part, none, 0, Decoder::gltf, "m.obj"}).error().file, "m.obj");
+    MeshPart bare = part;
+    bare.normals.clear();
+    EXPECT_EQ(to_object_space(map, {bare, *tangents}).error().reason, "the mesh has no normals");
+    MeshPart point = part;
+    for (Float2& uv : point.uvs[0]) uv = {0.5f, 0.5f};
+    EXPECT_EQ(to_object_space(map, {point, *tangents}).error().reason, "its triangles cover no texel of the map");
+    for (Float2& uv : part.uvs[0]) uv.x *= 100.0f;
+    EXPECT_EQ(to_object_space(map, {part, *tangents}).error().code, ErrorCode::unsupported);
+    for (Float2& uv : part.uvs[0]) uv = {1e30f, 1e30f};
+    EXPECT_EQ(to_object_space(map, {part, *tangents}).error().code, ErrorCode::unsupported);
+    const MeshPart heap = square(0.0f, 1.0f, 2000);
+    const std::vector<Float4> many(heap.indices.size(), {1.0f, 0.0f, 0.0f, 1.0f});
+    EXPECT_EQ(to_object_space(bumpy_map({1024, 1024}), {heap, many}).error().reason,
+              "its triangles cover the map more than a thousand times");
+}
+
+}  // namespace
+}  // namespace tex

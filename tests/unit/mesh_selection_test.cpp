@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <tex/mesh_selection.h>
+
+#include <string>
+
+#include <gtest/gtest.h>
+#include <tex/tangents.h>
+
+#include "unit/meshes.h"
+
+namespace tex {
+namespace {
+
+// Two meshes: the first has a primitive of each material, the second has one more of the first material.
+Mesh two_meshes() {
+    Mesh mesh;
+    mesh.materials = {{"stone", "stone_n.png", 0}, {"wood", "", 0}, {"", "", 1}};
+    for (int k = 0; k < 3; ++k) {
+        MeshPart part = wavy_part(2 + k);
+        part.name = k < 2 ? "wall" : "floor";
+        part.mesh = k < 2 ? 0 : 1;
+        part.primitive = k % 2;
+        part.material = k % 2;
+        mesh.parts.push_back(part);
+    }
+    mesh.nodes = {{"north", 0, {1, 0, 0, 5, 0, 1, 0, 0, 0, 0, 1, 0}},
+                  {"south", 0, {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}},
+                  {"twin", 1, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}},
+                  {"twin", 1, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}}};
+    return mesh;
+}
+
+MeshSelection of(const std::string& material, const std::string& node = {}) {
+    MeshSelection selection;
+    selection.material = material;
+    selection.node = node;
+    return selection;
+}
+
+std::string refusal(const Mesh& mesh, const MeshSelection& selection) {
+    const auto selected = select_part(mesh, selection);
+    EXPECT_FALSE(selected);
+    if (selected) return {};
+    EXPECT_EQ(selected.error().code, ErrorCode::bad_option);
+    return selected.error().reason;
+}
+
+TEST(MeshSelection, JoinsThePartsOfAMaterial) {
+    const Mesh mesh = two_meshes();
+    const auto stone = select_part(mesh, of("stone"));
+    ASSERT_TRUE(stone);
+    EXPECT_TRUE(check_part(stone->part));
+    EXPECT_EQ(stone->part.triangles(), 8u + 32u);
+    EXPECT_EQ(stone->tangents.size(), stone->part.indices.size());
+    EXPECT_EQ(stone->source, TangentSource::mikktspace);
+    const auto wood = select_part(mesh, of("1"));
+    ASSERT_TRUE(wood);
+    EXPECT_EQ(wood->part.triangles(), 18u);
+    const auto floor = make_tangents(mesh.parts[2]);
+    ASSERT_TRUE(floor);
+    const Float4 &last = stone->tangents.back(), &same = floor->back();
+    EXPECT_EQ(last.x, same.x);
+    EXPECT_EQ(last.w, same.w);
+}
+
+TEST(MeshSelection, ChoosesByPrimitiveNodeAndUvSet) {
+    Mesh mesh = two_meshes();
+    MeshSelection selection;
+    selection.primitive = 1;
+    const auto second = select_part(mesh, selection);
+    ASSERT_TRUE(second);
+    EXPECT_EQ(second->part.triangles(), 18u);
+    const auto north = select_part(mesh, of("stone", "north"));
+    ASSERT_TRUE(north);
+    EXPECT_EQ(north->part.triangles(), 8u);
+    EXPECT_FLOAT_EQ(north->part.positions[0].x, 5.0f + mesh.parts[0].positions[0].x);
+    mesh.parts[1].uvs.push_back(mesh.parts[1].uvs[0]);
+    for (Float2& uv : mesh.parts[1].uvs[1]) uv = {uv.y, uv.x};
+    mesh.parts[1].material = 2;  // whose map uses set 1
+    const auto other = select_part(mesh, of("2"));
+    ASSERT_TRUE(other);
+    EXPECT_EQ(other->part.uvs[0][1].y, mesh.parts[1].uvs[0][1].x);
+    selection = of("2");
+    selection.uv_set = 0;
+    const auto first = select_part(mesh, selection);
+    ASSERT_TRUE(first);
+    EXPECT_EQ(first->part.uvs[0][1].y, mesh.parts[1].uvs[0][1].y);
+}
+
+// The tangents are those of the mesh itself, mirrored by the node.
+TEST(MeshSelection, MirrorsTangentsWithTheNode) {
+    const Mesh mesh = two_meshes();
+    const auto plain = select_part(mesh, of("stone", "north")), mirrored = select_part(mesh, of("stone", "south"));
+    ASSERT_TRUE(plain && mirrored);
+    ASSERT_EQ(plain->tangents.size(), mirrored->tangents.size());
+    for (std::size_t t = 0; t < plain->tangents.size(); t += 3) {
+        const Float4 &a = plain->tangents[t + 1], &b = mirrored->tangents[t + 2];
+        EXPECT_FLOAT_EQ(a.x, -b.x);
+        EXPECT_FLOAT_EQ(a.y, b.y);
+        EXPECT_EQ(a.w, -b.w);
+    }
+}
+
+TEST(MeshSelection, TakesTangentsOfTheFileIfAllPartsHaveThem) {
+    Mesh mesh = two_meshes();
+    mesh.parts[0].tangents.assign(mesh.parts[0].positions.size(), {0.0f, 1.0f, 0.0f, -1.0f});
+    MeshSelection selection = of("stone");
+    EXPECT_EQ(select_part(mesh, selection)->source, TangentSource::mikktspace);
+    selection.tangents = TangentSource::file;
+    EXPECT_EQ(refusal(mesh, selection), "\"floor\" has no tangents; make them");
+    mesh.parts[2].tangents.assign(mesh.parts[2].positions.size(), {0.0f, 1.0f, 0.0f, -1.0f});
+    selection.tangents.reset();
+    const auto stored = select_part(mesh, selection);
+    ASSERT_TRUE(stored);
+    EXPECT_EQ(stored->source, TangentSource::file);
+    EXPECT_EQ(stored->tangents[7].y, 1.0f);
+    selection.tangents = TangentSource::meshopt;
+    EXPECT_NE(select_part(mesh, selection)->tangents[7].y, 1.0f);
+    selection.tangents.reset();
+    selection.uv_set = 0;  // the file does not say which set its tangents belong to
+    EXPECT_EQ(select_part(mesh, selection)->source, TangentSource::mikktspace);
+}
+
+TEST(MeshSelection, ExplainsWhatIsMissing) {
+    Mesh mesh = two_meshes();
+    EXPECT_EQ(refusal(mesh, {}), "has 2 materials: \"stone\", \"wood\"");
+    EXPECT_EQ(refusal(mesh, of("glass")), "has no material \"glass\"; it has \"stone\", \"wood\", 2");
+    EXPECT_EQ(refusal(mesh, of("3")), "has no material \"3\"; it has \"stone\", \"wood\", 2");
+    EXPECT_EQ(refusal(mesh, of("2")), "has no part with this material, primitive and node");
+    EXPECT_EQ(refusal(mesh, of("stone", "west")),
+              "has no node \"west\" with a mesh; it has \"north\", \"south\", \"twin\", \"twin\"");
+    EXPECT_EQ(refusal(mesh, of("stone", "twin")), "has several nodes called \"twin\"");
+    MeshSelection selection = of("stone");
+    selection.uv_set = 1;
+    EXPECT_EQ(refusal(mesh, selection), "\"wall\" has no UV set 1; the last one is 0");
+    mesh.parts[0].normals.clear();
+    EXPECT_EQ(refusal(mesh, of("stone")), "\"wall\" has no normals, which tangent space needs");
+    mesh.parts[0].uvs.clear();
+    EXPECT_EQ(refusal(mesh, of("stone")), "\"wall\" has no UVs, which say where the map is");
+    MeshNode flat{"flat", 1, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0}};
+    mesh.nodes.push_back(flat);
+    EXPECT_EQ(select_part(mesh, of("stone", "flat")).error().code, ErrorCode::bad_data);
+}
+
+}  // namespace
+}  // namespace tex

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// convert-normals: converts normal maps between tangent space and object space, and makes them fit another mesh.
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+#include <tex/tex.h>
+
+#include "batch/repack.h"
+#include "cli/usage_error.h"
+#include "options/conversion.h"
+#include "options/mips.h"
+
+namespace {
+
+using namespace tex;
+using cli::Space;
+
+bool holds_z(const Swizzle& swizzle) {
+    return std::find(swizzle.begin(), swizzle.end(), Component::z) != swizzle.end();
+}
+
+class ConvertNormals : public cli::NormalsConverter {
+public:
+    explicit ConvertNormals(const cli::ProgramRow& row);
+
+private:
+    [[nodiscard]] cli::OutputRules rules() const override {
+        return {{}, Container::dds, false, conversion_.spaces.files()};
+    }
+    [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
+    [[nodiscard]] Result<void> process(cli::Job& job) override;
+    [[nodiscard]] PackOptions packing(const SourceInfo& input, const cli::Task& task) const;
+
+    cli::ConversionOptions conversion_;
+    cli::MipChainOptions mips_;
+};
+
+ConvertNormals::ConvertNormals(const cli::ProgramRow& row) : NormalsConverter(row) {
+    command.usage("NORMALS... -o FILE --mesh MESH");
+    command.usage("NORMALS... --out-dir DIR --mesh MESH");
+    command.input("NORMALS...", "normal maps; - is standard input");
+    files.add(command);
+    conversion_.add(command);
+    normals.add(command, false);
+    output.add(command, cli::default_encodings() + "; rgb8 in dds and ktx2 for object space",
+               "as in the input; up if the space changes");
+    mips_.add(command, false, "all in dds and ktx2, else none");
+    running.add(command);
+    command.example("convert-normals obj_n.exr -o rock_n.dds --mesh rock.glb --from object --decoder unreal --y down",
+                    "A baked object-space map for Unreal.");
+    command.example("convert-normals rock_n.png -o rock_obj.exr --mesh rock.glb --to object",
+                    "What the map means on the mesh.");
+    command.example("convert-normals rock_n.png -o rock_new.png --mesh rock_v1.glb --to-mesh rock_v2.glb",
+                    "The tangents changed: makes the map fit again.");
+    command.example(
+        "convert-normals rock_n.png -o rock_ue.png --mesh rock.glb --decoder-in unity-builtin --decoder unreal",
+        "From one engine to another.");
+    command.check([this] {
+        if (!conversion_.makes_object()) return;
+        if (mips_.mip.fade || mips_.mip.domain == MipDomain::slope)
+            throw cli::UsageError("--fade and --mip-domain slope need tangent space");
+        if (output.format && !holds_z(encoding_info(*output.format).swizzle)) {
+            throw cli::UsageError(
+                fmt::format("--format {} stores no z, which object space needs; rgb8, rgba8, rgb16, "
+                            "half and float do",
+                            name_of(kEncodingNames, *output.format)));
+        }
+    });
+}
+
+Result<void> ConvertNormals::check(const std::vector<cli::Task>& tasks) {
+    mips_.check(tasks);
+    return {};
+}
+
+// Object space has no direction of green by itself, so y stays up if the space changes.
+PackOptions ConvertNormals::packing(const SourceInfo& input, const cli::Task& task) const {
+    const bool as_rgb = conversion_.makes_object() && can_hold_blocks(task.container);
+    const Encoding encoding = output.format.value_or(as_rgb ? Encoding::rgb8 : default_encoding(task.container));
+    if (conversion_.spaces.from == conversion_.spaces.to)
+        return output.pack_options(encoding, input.y_axis, input.y_known);
+    return output.pack_options(encoding, YAxis::up, !conversion_.makes_object());
+}
+
+Result<void> ConvertNormals::process(cli::Job& job) {
+    // In tangent space, a wrong y gives a wrong result, whichever way green points in the output.
+    const bool doubt_y = conversion_.spaces.from == Space::tangent;
+    auto source = normals.read(job, job.task.input, job.until(0.2), {true, false, {}, false, doubt_y});
+    if (!source) return source.error();
+    cli::report_input(job, source->info);
+    if (conversion_.spaces.from == Space::object && !holds_z(source->info.swizzle))
+        return Error{ErrorCode::bad_option, job.task.input, "stores no z, which object space needs"};
+    auto converted = conversion_.convert(job, source->chain.levels.front(), 0.8);
+    if (!converted) return converted.error();
+    source->chain.levels.clear();
+    MipOptions mip = mips_.options(mips_.levels_for(job.task), {});
+    mip.any_z = conversion_.makes_object();
+    const auto chain = build_mip_chain(std::move(converted->map), mip, job.until(0.85));
+    if (!chain) return chain.error();
+    const PackOptions pack_with = packing(source->info, job.task);
+    auto texture = pack(*chain, pack_with, job.until(0.95));
+    if (!texture) return texture.error();
+    const Extent extent = texture->extent();
+    const auto written = cli::write_levels(job, std::move(*texture), output.write_options(job));
+    if (!written) return written.error();
+    cli::report_texture(job, extent, written->levels, pack_with, written->bytes);
+    return {};
+}
+
+const cli::Registered<ConvertNormals> kRegistered(
+    "convert-normals",
+    "Converts normal maps between tangent space and object space, and makes them fit other tangents of a mesh.");
+
+}  // namespace

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "options/conversion.h"
+
+#include <fmt/format.h>
+
+#include "cli/value.h"
+
+namespace tex::cli {
+
+void ConversionOptions::add(Command& command) {
+    spaces.add(command);
+    command.group("Conversion");
+    Row& padding = command.option("--padding", "N", "texels to fill around each chart: a number, or the word",
+                                  [this](const std::string& text) {
+                                      convert_.padding = text == "all" ? kPadAll : parse_int(text, 0, kMaxExtent);
+                                  });
+    padding.words = {{"all", "the whole map"}};
+    padding.completes = Completes::words;
+    padding.preset = "all";
+    command.choice(overlap_, "--overlap", "O", kOverlapNames, "what happens if triangles share texels");
+}
+
+Result<ConvertedMap> ConversionOptions::convert(Job& job, const NormalMap& map, double until) const {
+    const auto from = spaces.input({job.threads(), {}});
+    if (!from) return from.error();
+    const auto to = spaces.output({job.threads(), {}});
+    if (!to) return to.error();
+    const Execution execution = job.until(until);
+    const bool both = spaces.from == Space::tangent && !makes_object();
+    auto converted = both             ? refit(map, from->space(), to->space(), convert_, execution)
+                     : makes_object() ? to_object_space(map, from->space(), convert_, execution)
+                                      : to_tangent_space(map, to->space(), convert_, execution);
+    if (!converted) return converted;
+    job.report["tangents"] = name_of(kTangentSourceNames, (makes_object() ? from : to)->source());
+    if (const auto judged = judge(job, *converted, to->file()); !judged) return judged.error();
+    return converted;
+}
+
+// Reports what was converted, and what could not be converted well.
+Result<void> ConversionOptions::judge(Job& job, const ConvertedMap& converted, const std::string& mesh) const {
+    job.report["covered"] = converted.covered;
+    job.report["overlaps"] = converted.overlaps;
+    job.report["backward"] = converted.backward;
+    const std::string overlaps = fmt::format("several triangles cover the same texel in {} places", converted.overlaps);
+    if (converted.overlaps > 0 && overlap_ == Overlap::error) return Error{ErrorCode::bad_option, mesh, overlaps};
+    if (converted.overlaps > 0) job.warn(overlaps + "; the first one decides", mesh);
+    if (converted.unmatched > 0) {
+        job.warn(fmt::format("covers {} texels that the mesh of the input does not cover: their UVs differ",
+                             converted.unmatched),
+                 mesh);
+    }
+    if (converted.singular > 0) {
+        job.warn(fmt::format("{} texels have no tangent space, because tangents are missing or parallel to normals; "
+                             "they become flat",
+                             converted.singular),
+                 mesh);
+    }
+    if (converted.backward > 0) {
+        job.warn(fmt::format("{} texels point into the surface: z is negative, which shaders that rebuild z lose",
+                             converted.backward));
+    }
+    return {};
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "options/tangent_space.h"
+
+#include <cstdint>
+#include <limits>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <tex/mesh_io.h>
+
+#include "cli/usage_error.h"
+#include "cli/value.h"
+
+namespace tex::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The option that avoids an error of select_part().
+Error with_option(const Error& error) {
+    if (error.code != ErrorCode::bad_option) return error;
+    std::string reason = error.reason;
+    if (reason.find(" materials: ") != std::string::npos) reason += "; --material chooses one";
+    if (reason.find("has no tangents") != std::string::npos) reason += " with --tangents mikktspace";
+    return {error.code, error.file, reason};
+}
+
+}  // namespace
+
+void TangentSpaceOptions::add(Command& command) {
+    command.group("Mesh");
+    command.text(mesh_, "--mesh", "FILE", "the mesh that the map is on: glTF, GLB or OBJ; required").completes =
+        Completes::files;
+    command.text(to_mesh_, "--to-mesh", "FILE", "another version of the mesh, with the same UVs, which the output fits")
+        .completes = Completes::files;
+    add_parts(command);
+    command.group("Spaces");
+    command.choice(from, "--from", "SPACE", kSpaceNames, "the space of the input's vectors");
+    command.choice(to, "--to", "SPACE", kSpaceNames, "the space of the output's vectors");
+    command.choice(decoder_, "--decoder", "D", kDecoderNames, "the engine that decodes the tangent-space map");
+    command.choice(decoder_in_, "--decoder-in", "D", kDecoderNames, "the decoder that the input was made for").preset =
+        "as --decoder";
+    command.choice(tangents_, "--tangents", "T", kTangentSourceNames, "where the tangents of the mesh come from")
+        .preset = "file if it has any, else mikktspace";
+    command
+        .choice(tangents_in_, "--tangents-in", "T", kTangentSourceNames,
+                "where the tangents that the input was made for come from")
+        .preset = "as --tangents";
+    command.check([this, &command] { check(command); });
+}
+
+void TangentSpaceOptions::add_parts(Command& command) {
+    command.text(selection_.material, "--material", "NAME",
+                 "the material whose triangles the map is on, or its number from 0; required if there are several");
+    command
+        .option("--primitive", "N", "only the N-th primitive of each mesh, from 0",
+                [this](const std::string& text) {
+                    selection_.primitive = parse_int(text, 0, std::numeric_limits<int>::max());
+                })
+        .preset = "all";
+    command.text(selection_.node, "--node", "NAME",
+                 "only the mesh of this node; object space is then the space of the scene");
+    command
+        .option("--uv-set", "N", "the set of UVs, from 0",
+                [this](const std::string& text) {
+                    selection_.uv_set = parse_int(text, 0, std::numeric_limits<int>::max());
+                })
+        .preset = "that of the material, else 0";
+}
+
+void TangentSpaceOptions::check(const Command& command) const {
+    if (mesh_.empty()) throw UsageError("no mesh: give --mesh FILE");
+    for (const auto& [name, file] : {std::pair{"--mesh", &mesh_}, std::pair{"--to-mesh", &to_mesh_}}) {
+        if (*file == "-") throw UsageError(fmt::format("{}: a mesh cannot come from standard input", name));
+    }
+    if (from == Space::tangent && to == Space::tangent) {
+        const auto changes = command.given_of({"--to-mesh", "--decoder-in", "--tangents-in"});
+        if (changes.empty())
+            throw UsageError("nothing changes: give --from object, --to object, --to-mesh or --decoder-in");
+        return;
+    }
+    if (from == to) throw UsageError("nothing changes: both --from and --to are object");
+    if (!to_mesh_.empty()) throw UsageError("--to-mesh needs tangent space on both sides");
+    if (from == Space::tangent) return;
+    const auto idle = command.given_of({"--decoder-in", "--tangents-in"});
+    if (!idle.empty()) throw UsageError(fmt::format("{} needs --from tangent", idle.front()));
+}
+
+std::vector<std::string> TangentSpaceOptions::files() const {
+    std::vector<std::string> files = {mesh_};
+    if (!to_mesh_.empty()) files.push_back(to_mesh_);
+    return files;
+}
+
+Result<MeshSpace> TangentSpaceOptions::input(const Execution& execution) const {
+    return read(mesh_, tangents_in_ ? tangents_in_ : tangents_, decoder_in_.value_or(decoder_), execution);
+}
+
+Result<MeshSpace> TangentSpaceOptions::output(const Execution& execution) const {
+    return read(to_mesh_.empty() ? mesh_ : to_mesh_, tangents_, decoder_, execution);
+}
+
+Result<MeshSpace> TangentSpaceOptions::read(const std::string& file, std::optional<TangentSource> tangents,
+                                            Decoder decoder, const Execution& execution) const {
+    const std::lock_guard lock(mutex_);
+    std::error_code error;
+    const fs::file_time_type time = fs::last_write_time(file, error);
+    const std::uintmax_t size = fs::file_size(file, error);
+    Loaded& loaded = loaded_[{file, tangents}];
+    if (!loaded.part || loaded.time != time || loaded.size != size) {
+        const auto mesh = read_mesh(file);
+        if (!mesh) return mesh.error().of(file);
+        MeshSelection selection = selection_;
+        selection.tangents = tangents;
+        auto selected = select_part(*mesh, selection, execution);
+        if (!selected) return with_option(selected.error()).of(file);
+        loaded = {time, size, std::make_shared<const SelectedPart>(std::move(*selected))};
+    }
+    return MeshSpace(loaded.part, decoder, file);
+}
+
+}  // namespace tex::cli

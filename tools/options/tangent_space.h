@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// tangent_space.h: the option group of maps that belong to a mesh: which mesh, which of its parts, tangents, decoders.
+
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <tex/convert_options.h>
+#include <tex/execution.h>
+#include <tex/mesh_selection.h>
+
+#include "cli/command.h"
+
+namespace tex::cli {
+
+// The space of a normal map's vectors.
+enum class Space { tangent, object };
+
+inline constexpr Named<Space> kSpaceNames[] = {
+    {Space::tangent, "tangent", "tangent space"},
+    {Space::object, "object", "object space: x, y, z of the mesh in R, G, B"},
+};
+
+// The selected part of a mesh file, with the decoder of a map on it.
+class MeshSpace {
+public:
+    MeshSpace(std::shared_ptr<const SelectedPart> selected, Decoder decoder, std::string file)
+        : selected_(std::move(selected)), decoder_(decoder), file_(std::move(file)) {}
+
+    // Valid as long as this object.
+    [[nodiscard]] TangentSpace space() const { return {selected_->part, selected_->tangents, 0, decoder_, file_}; }
+    [[nodiscard]] TangentSource source() const { return selected_->source; }
+    [[nodiscard]] const std::string& file() const { return file_; }
+
+private:
+    std::shared_ptr<const SelectedPart> selected_;
+    Decoder decoder_;
+    std::string file_;
+};
+
+// --mesh, --to-mesh, --from, --to, --decoder, --decoder-in, --tangents, --tangents-in, --material, --primitive, --node,
+// --uv-set.
+class TangentSpaceOptions {
+public:
+    Space from = Space::tangent;
+    Space to = Space::tangent;
+
+    void add(Command& command);
+
+    // The mesh files.
+    [[nodiscard]] std::vector<std::string> files() const;
+
+    // Reads the mesh of the input or of the output. Jobs share a mesh; it is read again if the file has changed. Any
+    // thread may call this.
+    [[nodiscard]] Result<MeshSpace> input(const Execution& execution) const;
+    [[nodiscard]] Result<MeshSpace> output(const Execution& execution) const;
+
+private:
+    void check(const Command& command) const;
+    void add_parts(Command& command);
+    [[nodiscard]] Result<MeshSpace> read(const std::string& file, std::optional<TangentSource> tangents,
+                                         Decoder decoder, const Execution& execution) const;
+
+    // A mesh that was read, and the state of its file before.
+    struct Loaded {
+        std::filesystem::file_time_type time;
+        std::uintmax_t size = 0;
+        std::shared_ptr<const SelectedPart> part;
+    };
+
+    std::string mesh_, to_mesh_;
+    MeshSelection selection_;
+    Decoder decoder_ = Decoder::gltf;
+    std::optional<Decoder> decoder_in_;
+    std::optional<TangentSource> tangents_, tangents_in_;
+    mutable std::mutex mutex_;
+    mutable std::map<std::pair<std::string, std::optional<TangentSource>>, Loaded> loaded_;
+};
+
+}  // namespace tex::cli
