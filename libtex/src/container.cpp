@@ -66,7 +66,7 @@ std::optional<Container> container_of(std::string_view path) {
     return std::nullopt;
 }
 
-bool can_hold(Container container, Format format) { return codec_of(container).holds(format_info(format)); }
+bool can_hold(Container container, Format format) { return codec_of(container).holds(format); }
 
 bool can_hold(Container container, Encoding encoding) { return can_hold(container, encoding_info(encoding).format); }
 

@@ -21,8 +21,8 @@ struct FormatRow {
     FormatInfo info;
 };
 
-constexpr FormatRow blocks(Format format, SampleKind sample, int channels, std::size_t bytes) {
-    return {format, {sample, channels, 8, {kBlockEdge, kBlockEdge}, bytes}};
+constexpr FormatRow blocks(Format format, SampleKind sample, int channels, std::size_t bytes, int bits = 8) {
+    return {format, {sample, channels, bits, {kBlockEdge, kBlockEdge}, bytes}};
 }
 
 constexpr FormatRow texels(Format format, SampleKind sample, int bits, int channels) {
@@ -32,20 +32,22 @@ constexpr FormatRow texels(Format format, SampleKind sample, int bits, int chann
 
 // In the order of Format.
 constexpr FormatRow kFormats[] = {
-    blocks(Format::bc1_unorm, kUnorm, 4, 8),     blocks(Format::bc2_unorm, kUnorm, 4, 16),
-    blocks(Format::bc3_unorm, kUnorm, 4, 16),    blocks(Format::bc4_unorm, kUnorm, 1, 8),
-    blocks(Format::bc4_snorm, kSnorm, 1, 8),     blocks(Format::bc5_unorm, kUnorm, 2, 16),
-    blocks(Format::bc5_snorm, kSnorm, 2, 16),    texels(Format::r8_unorm, kUnorm, 8, 1),
-    texels(Format::rg8_unorm, kUnorm, 8, 2),     texels(Format::rgb8_unorm, kUnorm, 8, 3),
-    texels(Format::rgba8_unorm, kUnorm, 8, 4),   texels(Format::r8_snorm, kSnorm, 8, 1),
-    texels(Format::rg8_snorm, kSnorm, 8, 2),     texels(Format::rgba8_snorm, kSnorm, 8, 4),
-    texels(Format::r16_unorm, kUnorm, 16, 1),    texels(Format::rg16_unorm, kUnorm, 16, 2),
-    texels(Format::rgb16_unorm, kUnorm, 16, 3),  texels(Format::rgba16_unorm, kUnorm, 16, 4),
-    texels(Format::r16_snorm, kSnorm, 16, 1),    texels(Format::rg16_snorm, kSnorm, 16, 2),
-    texels(Format::rgba16_snorm, kSnorm, 16, 4), texels(Format::r16_float, kFloat, 16, 1),
-    texels(Format::rg16_float, kFloat, 16, 2),   texels(Format::rgb16_float, kFloat, 16, 3),
-    texels(Format::rgba16_float, kFloat, 16, 4), texels(Format::r32_float, kFloat, 32, 1),
-    texels(Format::rg32_float, kFloat, 32, 2),   texels(Format::rgb32_float, kFloat, 32, 3),
+    blocks(Format::bc1_unorm, kUnorm, 4, 8),           blocks(Format::bc2_unorm, kUnorm, 4, 16),
+    blocks(Format::bc3_unorm, kUnorm, 4, 16),          blocks(Format::bc4_unorm, kUnorm, 1, 8),
+    blocks(Format::bc4_snorm, kSnorm, 1, 8),           blocks(Format::bc5_unorm, kUnorm, 2, 16),
+    blocks(Format::bc5_snorm, kSnorm, 2, 16),          blocks(Format::eac_r11_unorm, kUnorm, 1, 8, 11),
+    blocks(Format::eac_r11_snorm, kSnorm, 1, 8, 11),   blocks(Format::eac_rg11_unorm, kUnorm, 2, 16, 11),
+    blocks(Format::eac_rg11_snorm, kSnorm, 2, 16, 11), texels(Format::r8_unorm, kUnorm, 8, 1),
+    texels(Format::rg8_unorm, kUnorm, 8, 2),           texels(Format::rgb8_unorm, kUnorm, 8, 3),
+    texels(Format::rgba8_unorm, kUnorm, 8, 4),         texels(Format::r8_snorm, kSnorm, 8, 1),
+    texels(Format::rg8_snorm, kSnorm, 8, 2),           texels(Format::rgba8_snorm, kSnorm, 8, 4),
+    texels(Format::r16_unorm, kUnorm, 16, 1),          texels(Format::rg16_unorm, kUnorm, 16, 2),
+    texels(Format::rgb16_unorm, kUnorm, 16, 3),        texels(Format::rgba16_unorm, kUnorm, 16, 4),
+    texels(Format::r16_snorm, kSnorm, 16, 1),          texels(Format::rg16_snorm, kSnorm, 16, 2),
+    texels(Format::rgba16_snorm, kSnorm, 16, 4),       texels(Format::r16_float, kFloat, 16, 1),
+    texels(Format::rg16_float, kFloat, 16, 2),         texels(Format::rgb16_float, kFloat, 16, 3),
+    texels(Format::rgba16_float, kFloat, 16, 4),       texels(Format::r32_float, kFloat, 32, 1),
+    texels(Format::rg32_float, kFloat, 32, 2),         texels(Format::rgb32_float, kFloat, 32, 3),
     texels(Format::rgba32_float, kFloat, 32, 4),
 };
 
@@ -58,11 +60,18 @@ struct EncodingRow {
 
 // In the order of Encoding.
 constexpr EncodingRow kEncodings[] = {
-    {Encoding::dxt5nm, {Format::bc3_unorm, kSwizzleDxt5nm}}, {Encoding::bc5, {Format::bc5_unorm, kSwizzleXy}},
-    {Encoding::bc5_snorm, {Format::bc5_snorm, kSwizzleXy}},  {Encoding::rgb8, {Format::rgb8_unorm, kXyz1}},
-    {Encoding::rgba8, {Format::rgba8_unorm, kXyz1}},         {Encoding::rgb16, {Format::rgb16_unorm, kXyz1}},
-    {Encoding::ag8, {Format::rgba8_unorm, kSwizzleDxt5nm}},  {Encoding::rg8, {Format::rg8_unorm, kSwizzleXy}},
-    {Encoding::rg16, {Format::rg16_unorm, kSwizzleXy}},      {Encoding::half, {Format::rgb16_float, kXyz1}},
+    {Encoding::dxt5nm, {Format::bc3_unorm, kSwizzleDxt5nm}},
+    {Encoding::bc5, {Format::bc5_unorm, kSwizzleXy}},
+    {Encoding::bc5_snorm, {Format::bc5_snorm, kSwizzleXy}},
+    {Encoding::eac_rg11, {Format::eac_rg11_unorm, kSwizzleXy}},
+    {Encoding::eac_rg11_snorm, {Format::eac_rg11_snorm, kSwizzleXy}},
+    {Encoding::rgb8, {Format::rgb8_unorm, kXyz1}},
+    {Encoding::rgba8, {Format::rgba8_unorm, kXyz1}},
+    {Encoding::rgb16, {Format::rgb16_unorm, kXyz1}},
+    {Encoding::ag8, {Format::rgba8_unorm, kSwizzleDxt5nm}},
+    {Encoding::rg8, {Format::rg8_unorm, kSwizzleXy}},
+    {Encoding::rg16, {Format::rg16_unorm, kSwizzleXy}},
+    {Encoding::half, {Format::rgb16_float, kXyz1}},
     {Encoding::float_, {Format::rgb32_float, kXyz1}},
 };
 
@@ -86,9 +95,8 @@ float steepest_slope(Encoding encoding) {
     const FormatInfo format = format_info(info.format);
     if (format.sample == SampleKind::floating) return std::numeric_limits<float>::infinity();
     const bool has_z = std::find(info.swizzle.begin(), info.swizzle.end(), Component::z) != info.swizzle.end();
-    const int bits = format.has_blocks() ? 8 : format.bits;
     // In codes: the range from 0 to 1.
-    const double half_range = 0.5 * (std::pow(2.0, bits) - (format.sample == SampleKind::snorm ? 2 : 1));
+    const double half_range = 0.5 * (std::pow(2.0, format.bits) - (format.sample == SampleKind::snorm ? 2 : 1));
     if (has_z) return static_cast<float>(half_range);
     const double x = 1.0 - 0.5 / half_range;
     return static_cast<float>(x / std::sqrt(1.0 - x * x));

@@ -126,8 +126,8 @@ Result<RoughnessChain> build_roughness_chain(const NormalMap& base, const Plane<
 }
 
 Result<Texture> pack_roughness(const RoughnessChain& chain, Format format, Effort effort, const Execution& execution) {
-    constexpr Format kFormats[] = {Format::bc4_unorm, Format::r8_unorm, Format::r16_unorm, Format::r16_float,
-                                   Format::r32_float};
+    constexpr Format kFormats[] = {Format::bc4_unorm, Format::eac_r11_unorm, Format::r8_unorm,
+                                   Format::r16_unorm, Format::r16_float,     Format::r32_float};
     assert(!chain.levels.empty());
     return guarded([&]() -> Result<Texture> {
         if (std::find(std::begin(kFormats), std::end(kFormats), format) == std::end(kFormats)) {

@@ -62,6 +62,39 @@ TEST_F(PackNormals, EveryEncodingComesBackWithinItsQuantisation) {
     }
 }
 
+// All commands read and write EAC, in KTX2 alone.
+TEST_F(PackNormals, EacGoesIntoKtx2) {
+    for (const std::string encoding : {"eac-rg11", "eac-rg11-snorm"}) {
+        for (const std::string effort : {"fast", "normal", "best"}) {
+            does("pack-normals", {"n.dds", "-o", "e.ktx2", "--format", encoding, "--effort", effort, "--y", "up"});
+            EXPECT_LE(distance("n.dds", "e.ktx2").max, 4.0) << encoding << " " << effort;
+        }
+        const auto report =
+            nlohmann::json::parse(go("pack-normals", {"e.ktx2", "-o", "again.ktx2", "--effort", "best", "--json"}).out);
+        EXPECT_EQ(report["format"], encoding);
+        EXPECT_LE(distance("e.ktx2", "again.ktx2").max, 0.01) << "blocks are found again";
+        EXPECT_EQ(go("check-normals", {"e.ktx2", "--require", "format=" + encoding}).code, 0);
+        EXPECT_EQ(go("check-normals", {"e.ktx2", "--require", "format=bc5"}).code, 1);
+        EXPECT_EQ(go("check-normals", {"e.ktx2", "--report", "report.html"}).code, 0);
+        EXPECT_EQ(go("compare-normals", {"n.dds", "e.ktx2", "--max-mean", "1"}).code, 0);
+        does("preview-normals", {"e.ktx2", "-o", "lit.png"});
+        does("unpack-normals", {"e.ktx2", "-o", "u.png", "--format", "rgb16"});
+        does("mip-normals", {"e.ktx2", "-o", "m.ktx2", "--format", encoding, "--supercompress", "zstd"});
+        does("scale-normals", {"e.ktx2", "-o", "s.ktx2", "--scale", "0.5", "--format", encoding});
+        does("blend-normals", {"e.ktx2", "--detail", "n.dds", "-o", "b.ktx2", "--format", encoding});
+        does("bake-normals", {"waves.png", "-o", "w.ktx2", "--format", encoding});
+        // Nothing but the order of BC5 is in doubt.
+        does("pack-normals", {"e.ktx2", "-o", "o.ktx2", "--bc5-order", "yx"});
+        EXPECT_LE(distance("e.ktx2", "o.ktx2").max, 1.0);
+        const Ran refused = go("pack-normals", {"n.dds", "-o", "e.dds", "--format", encoding});
+        EXPECT_EQ(refused.code, 2);
+        EXPECT_NE(refused.err.find("a dds file cannot hold " + encoding), std::string::npos) << refused.err;
+        EXPECT_NE(refused.err.find(encoding + " goes into .ktx2"), std::string::npos) << refused.err;
+        does("pack-normals", {"e.ktx2", "-o", "d.dds"});
+        EXPECT_EQ(read_texture(scratch_.path("d.dds"))->format, Format::bc3_unorm) << "the default of DDS";
+    }
+}
+
 TEST_F(PackNormals, LevelsAreKeptUnlessOthersAreAskedFor) {
     const auto levels = [&](std::vector<std::string> arguments) {
         arguments.push_back("--json");

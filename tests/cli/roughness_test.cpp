@@ -103,6 +103,10 @@ TEST_F(RoughnessOut, FollowsTheExtensionAndTheFormat) {
         EXPECT_EQ(texture(name).levels.size(), texture("n.dds").levels.size()) << name;
         EXPECT_FALSE(texture(name).swizzle_known) << name;
     }
+    does("mip-normals", {"n.png", "-o", "n.dds", "--roughness-in", "0.25", "--roughness-out", "e.ktx2",
+                         "--roughness-format", "eac-r11"});
+    EXPECT_EQ(texture("e.ktx2").format, Format::eac_r11_unorm);
+    EXPECT_NEAR(mean("e.ktx2", 0), 0.25, 0.5 / 2047);
     for (const auto& [word, format] : {std::pair{"r8", Format::r8_unorm},
                                        {"r16", Format::r16_unorm},
                                        {"half", Format::r16_float},
@@ -154,6 +158,7 @@ TEST_F(RoughnessOut, MisuseIsRefused) {
     refuses({"--roughness-out", "r.foo"}, 2, "r.foo: unsupported output format");
     refuses({"--roughness-out", "r.png"}, 2, "r.png: a png file holds one level");
     refuses({"--roughness-out", "r_{level}.png", "--roughness-format", "bc4"}, 2, "cannot hold roughness as bc4");
+    refuses({"--roughness-out", "r.dds", "--roughness-format", "eac-r11"}, 2, "cannot hold roughness as eac-r11");
     refuses({"--roughness-out", "r_{stm}.png"}, 2, "did you mean stem?");
     refuses({"--roughness-out", "x.dds"}, 2, "two outputs of n.png are one file, x.dds");
     refuses({"--roughness-out", "h.png", "--mips", "none", "--roughness-in", "h.png"}, 2,

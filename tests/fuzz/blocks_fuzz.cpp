@@ -14,6 +14,7 @@
 
 #include "blocks/bc1.h"
 #include "blocks/bc4.h"
+#include "blocks/eac.h"
 
 namespace {
 
@@ -45,6 +46,16 @@ Block decode_block(tex::Format format, const std::byte* bytes) {
         case tex::Format::bc5_snorm:
             tex::decode_bc4_snorm(bytes, r);
             tex::decode_bc4_snorm(bytes + 8, g);
+            break;
+        case tex::Format::eac_r11_unorm: tex::decode_eac_unorm(bytes, r); break;
+        case tex::Format::eac_r11_snorm: tex::decode_eac_snorm(bytes, r); break;
+        case tex::Format::eac_rg11_unorm:
+            tex::decode_eac_unorm(bytes, r);
+            tex::decode_eac_unorm(bytes + 8, g);
+            break;
+        case tex::Format::eac_rg11_snorm:
+            tex::decode_eac_snorm(bytes, r);
+            tex::decode_eac_snorm(bytes + 8, g);
             break;
         default: break;
     }

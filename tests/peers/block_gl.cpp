@@ -19,6 +19,10 @@ GLenum gl_format(tex::Format format) {
         case tex::Format::bc3_unorm: return GL_COMPRESSED_RGBA_S3TC_DXT5_EXT;
         case tex::Format::bc5_unorm: return GL_COMPRESSED_RG_RGTC2;
         case tex::Format::bc5_snorm: return GL_COMPRESSED_SIGNED_RG_RGTC2;
+        case tex::Format::eac_r11_unorm: return GL_COMPRESSED_R11_EAC;
+        case tex::Format::eac_r11_snorm: return GL_COMPRESSED_SIGNED_R11_EAC;
+        case tex::Format::eac_rg11_unorm: return GL_COMPRESSED_RG11_EAC;
+        case tex::Format::eac_rg11_snorm: return GL_COMPRESSED_SIGNED_RG11_EAC;
         default: return 0;
     }
 }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a GPU's driver makes of our files: Mesa's software OpenGL samples every level.
 
+#include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -78,6 +80,51 @@ TEST(Mesa, SamplesEveryLevelOfBc5AsWeDecodeIt) {
     for (const tex::Extent extent : peers::kExtents) {
         expect_same_texels(extent, tex::Encoding::bc5, tex::DdsHeader::dx10);
         expect_same_texels(extent, tex::Encoding::bc5_snorm, tex::DdsHeader::dx10);
+    }
+}
+
+// Mesa widens the 11 bits to 16 by repeating the highest ones (to 15 and a sign for snorm).
+int code_of(float value, tex::SampleKind sample) {
+    const int code =
+        static_cast<int>(std::lround(std::abs(value) * (sample == tex::SampleKind::snorm ? 32767 : 65535)));
+    return value < 0 ? -(code >> 5) : code >> 5;
+}
+
+// Random bytes: every table, every multiplier, clamped palettes, and the base -128.
+TEST(Mesa, SamplesEveryCodeOfEacAsWeDecodeIt) {
+    ASSERT_TRUE(peers::software_gl_works());
+    for (const tex::Format format : {tex::Format::eac_r11_unorm, tex::Format::eac_r11_snorm,
+                                     tex::Format::eac_rg11_unorm, tex::Format::eac_rg11_snorm}) {
+        const tex::FormatInfo info = tex::format_info(format);
+        tex::Texture texture;
+        texture.format = format;
+        std::mt19937 random(3);
+        for (int k = 0; k < 9; ++k) {
+            tex::Level level{tex::level_extent({300, 260}, k), {}};
+            level.bytes.resize(tex::level_bytes(format, level.extent));
+            for (std::byte& byte : level.bytes) byte = static_cast<std::byte>(random());
+            for (std::size_t b = 0; b + 8 <= level.bytes.size(); b += 72) level.bytes[b + 1] &= std::byte{0x0f};
+            for (std::size_t b = 0; b + 8 <= level.bytes.size(); b += 104) level.bytes[b] = std::byte{0x80};
+            texture.levels.push_back(std::move(level));
+        }
+        const auto sampled = peers::sample_levels(format, texture.levels);
+        ASSERT_EQ(sampled.size(), texture.levels.size()) << "OpenGL refused the texture";
+        const float one = info.sample == tex::SampleKind::snorm ? 1023.0f : 2047.0f;
+        for (std::size_t k = 0; k < sampled.size(); ++k) {
+            const auto ours = tex::decode(texture, static_cast<int>(k));
+            ASSERT_TRUE(ours);
+            const tex::Extent extent = texture.levels[k].extent;
+            for (int c = 0; c < info.channels; ++c) {
+                for (int j = 0; j < extent.height; ++j) {
+                    for (int i = 0; i < extent.width; ++i) {
+                        const auto at = static_cast<std::size_t>(4 * (j * extent.width + i) + c);
+                        const float value = ours->planes[static_cast<std::size_t>(c)].at(i, j);
+                        ASSERT_EQ(code_of(sampled[k][at], info.sample), std::lround(value * one))
+                            << tex::name_of(tex::kFormatNames, format) << " level " << k << " " << i << "," << j;
+                    }
+                }
+            }
+        }
     }
 }
 

@@ -61,6 +61,7 @@ std::string swizzle_after_code(const char (&code)[5]) {
 
 TEST(Dds, ReadsBackEveryFormatWithEitherHeader) {
     for (const auto& row : kFormatNames) {
+        if (!can_hold(Container::dds, row.value)) continue;
         for (const DdsHeader header : {DdsHeader::legacy, DdsHeader::dx10}) {
             const Texture texture = patterned_texture(row.value, {13, 7}, 4);
             const auto read = decode_bytes(encode(texture, with_header(header)));
@@ -285,6 +286,7 @@ TEST(Dds, RejectsMasksThatMakeNoSense) {
 
 TEST(Dds, IsMemorySafeAtEveryTruncation) {
     for (const auto& row : kFormatNames) {
+        if (!can_hold(Container::dds, row.value)) continue;
         const Bytes file = encode(patterned_texture(row.value, {9, 5}, 4), with_header(DdsHeader::dx10));
         for (std::size_t size = 0; size < file.size(); ++size) {
             const Bytes cut(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(size));

@@ -54,6 +54,7 @@ TEST(Format, EncodingsStoreXAndYAndFillTheRestAsPromised) {
     EXPECT_EQ(to_string(encoding_info(Encoding::dxt5nm).swizzle), "1y1x");
     EXPECT_EQ(to_string(encoding_info(Encoding::ag8).swizzle), "1y1x");
     EXPECT_EQ(to_string(encoding_info(Encoding::bc5).swizzle), "xy01");
+    EXPECT_EQ(to_string(encoding_info(Encoding::eac_rg11).swizzle), "xy01");
     EXPECT_EQ(to_string(encoding_info(Encoding::rgb8).swizzle), "xyz1");
     EXPECT_EQ(encoding_info(Encoding::dxt5nm).format, Format::bc3_unorm);
 }
@@ -62,6 +63,8 @@ TEST(SteepestSlope, IsTheLastOneThatAnEncodingStoresApart) {
     EXPECT_NEAR(steepest_slope(Encoding::dxt5nm), 11.26f, 0.01f);  // x = 1 - 1/255
     EXPECT_NEAR(steepest_slope(Encoding::bc5), 11.26f, 0.01f);
     EXPECT_NEAR(steepest_slope(Encoding::bc5_snorm), 11.24f, 0.01f);
+    EXPECT_NEAR(steepest_slope(Encoding::eac_rg11), 31.99f, 0.01f);  // x = 1 - 1/2047
+    EXPECT_NEAR(steepest_slope(Encoding::eac_rg11_snorm), 31.98f, 0.01f);
     EXPECT_NEAR(steepest_slope(Encoding::rg8), 11.26f, 0.01f);
     EXPECT_NEAR(steepest_slope(Encoding::rg16), 181.0f, 0.1f);
     EXPECT_EQ(steepest_slope(Encoding::rgba8), 127.5f);  // z = 1/127.5

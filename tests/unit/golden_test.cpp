@@ -56,6 +56,7 @@ TEST(Golden, EveryEncodingInKtx2) {
 
 TEST(Golden, EveryEncodingInLegacyDds) {
     for (const auto& row : kEncodingNames) {
+        if (!can_hold(Container::dds, row.value)) continue;
         expect_golden(std::string(row.name) + ".dds", row.value, Container::dds, {});
     }
 }
@@ -67,7 +68,7 @@ TEST(Golden, EveryEncodingInDx10Dds) {
     // for its alpha mode.
     for (const auto& row : kEncodingNames) {
         const std::string name(row.name);
-        if (name == "ag8") continue;
+        if (name == "ag8" || !can_hold(Container::dds, row.value)) continue;
         const bool only_one = name == "rgb8" || name == "rg8" || name == "rg16";
         expect_golden(name + (only_one ? ".dds" : "-dx10.dds"), row.value, Container::dds, options);
     }

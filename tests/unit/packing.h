@@ -14,6 +14,7 @@
 
 #include "blocks/bc1.h"
 #include "blocks/bc4.h"
+#include "blocks/eac.h"
 
 namespace packing {
 
@@ -57,7 +58,7 @@ inline std::vector<std::byte> pack_bytes(const MipChain& chain, const tex::PackO
     return bytes;
 }
 
-// The texels of one decoded BC3 or BC5 block, as codes of 8 bits, not rounded: first x, then y.
+// The texels of one decoded block of BC3, BC5 or EAC, as codes of 8 bits, not rounded: first x, then y.
 inline void decode_codes(const std::byte* block, Encoding encoding, float x[16], float y[16]) {
     float r[16], b[16], a[16];
     if (encoding == Encoding::dxt5nm) {
@@ -66,9 +67,13 @@ inline void decode_codes(const std::byte* block, Encoding encoding, float x[16],
     } else if (encoding == Encoding::bc5) {
         tex::decode_bc4_unorm(block, x);
         tex::decode_bc4_unorm(block + 8, y);
+    } else if (encoding == Encoding::eac_rg11) {
+        tex::decode_eac_unorm(block, x);
+        tex::decode_eac_unorm(block + 8, y);
     } else {
-        tex::decode_bc4_snorm(block, x);
-        tex::decode_bc4_snorm(block + 8, y);
+        const auto decode = encoding == Encoding::bc5_snorm ? tex::decode_bc4_snorm : tex::decode_eac_snorm;
+        decode(block, x);
+        decode(block + 8, y);
         for (int k = 0; k < 16; ++k) {
             x[k] = (x[k] + 1) / 2;
             y[k] = (y[k] + 1) / 2;

@@ -136,11 +136,9 @@ TEST_F(Pipeline, StreamsGiveTheBytesOfTheVerbs) {
         if (options_.heights.channel == HeightChannel::y) options_.heights.channel = HeightChannel::max;
         constexpr Container kContainers[] = {Container::dds, Container::ktx2, Container::png, Container::exr};
         const Container container = kContainers[random() % 4];
-        if (container == Container::png || container == Container::exr) {
+        if (container == Container::png || container == Container::exr)
             options_.mip.levels = container == Container::exr && one_in(2) ? 0 : 1;  // EXR holds the base level or all
-            while (!can_hold(container, options_.pack.encoding))
-                options_.pack.encoding = any_of(kEncodingNames, random);
-        }
+        while (!can_hold(container, options_.pack.encoding)) options_.pack.encoding = any_of(kEncodingNames, random);
         const std::string input = write("in.png", make_png(extent, kind, static_cast<unsigned>(random())));
         SlopeRange slopes;
         const Bytes expected = by_verbs(input, container, &slopes);

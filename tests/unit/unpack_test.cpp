@@ -11,6 +11,7 @@
 
 #include "blocks/bc1.h"
 #include "blocks/bc4.h"
+#include "blocks/eac.h"
 #include "kernels/decode.h"
 #include "unit/fields.h"
 #include "unit/textures.h"
@@ -91,7 +92,8 @@ TEST(Decode, NamesPlanesByChannelsAndTellsTheirKind) {
 // vectors.
 TEST(Decode, AgreesWithTheBlockDecodersToTheLastBit) {
     for (const Format format : {Format::bc1_unorm, Format::bc2_unorm, Format::bc3_unorm, Format::bc4_unorm,
-                                Format::bc4_snorm, Format::bc5_unorm, Format::bc5_snorm}) {
+                                Format::bc4_snorm, Format::bc5_unorm, Format::bc5_snorm, Format::eac_r11_unorm,
+                                Format::eac_r11_snorm, Format::eac_rg11_unorm, Format::eac_rg11_snorm}) {
         for (const Extent extent : {Extent{1, 1}, {2, 5}, {15, 4}, {16, 3}, {17, 9}, {33, 1}, {257, 66}}) {
             const Texture texture = patterned_texture(format, extent, 1);
             const auto image = decode(texture, 0);
@@ -111,9 +113,13 @@ TEST(Decode, AgreesWithTheBlockDecodersToTheLastBit) {
                         if (format == Format::bc2_unorm) decode_bc2_alpha(block, channel[3]);
                         if (format == Format::bc3_unorm) decode_bc4_unorm(block, channel[3]);
                     } else {
-                        const bool is_signed = format == Format::bc4_snorm || format == Format::bc5_snorm;
+                        const bool is_signed = format_info(format).sample == SampleKind::snorm;
+                        const bool is_eac = format_info(format).bits == 11;
                         for (std::size_t c = 0; c < block_bytes / 8; ++c) {
-                            (is_signed ? decode_bc4_snorm : decode_bc4_unorm)(block + 8 * c, channel[c]);
+                            if (is_eac)
+                                (is_signed ? decode_eac_snorm : decode_eac_unorm)(block + 8 * c, channel[c]);
+                            else
+                                (is_signed ? decode_bc4_snorm : decode_bc4_unorm)(block + 8 * c, channel[c]);
                         }
                     }
                     for (std::size_t c = 0; c < image->planes.size(); ++c) {

@@ -20,6 +20,7 @@ namespace tex::cli {
 // The formats that a roughness map may have, with the names that --roughness-format accepts.
 inline constexpr Named<Format> kRoughnessFormatNames[] = {
     {Format::bc4_unorm, "bc4", "BC4"},
+    {Format::eac_r11_unorm, "eac-r11", "EAC R11"},
     {Format::r8_unorm, "r8", "8 bits"},
     {Format::r16_unorm, "r16", "16 bits"},
     {Format::r16_float, "half", "16-bit floats"},

@@ -33,6 +33,8 @@ std::optional<Encoding> same_encoding(Format format, const Swizzle& swizzle) {
         case Format::bc3_unorm: return if_holds(ag, Encoding::dxt5nm);
         case Format::bc5_unorm: return if_holds(xy, Encoding::bc5);
         case Format::bc5_snorm: return if_holds(xy, Encoding::bc5_snorm);
+        case Format::eac_rg11_unorm: return if_holds(xy, Encoding::eac_rg11);
+        case Format::eac_rg11_snorm: return if_holds(xy, Encoding::eac_rg11_snorm);
         case Format::rg8_unorm: return if_holds(xy, Encoding::rg8);
         case Format::rg16_unorm: return if_holds(xy, Encoding::rg16);
         case Format::rgb8_unorm: return if_holds(xyz, Encoding::rgb8);
@@ -53,7 +55,7 @@ std::optional<Encoding> same_encoding(Format format, const Swizzle& swizzle) {
 Encoding encoding_of_heights(Format format) {
     const FormatInfo info = format_info(format);
     if (info.sample == SampleKind::floating) return info.bits == 16 ? Encoding::half : Encoding::float_;
-    return info.bits == 16 ? Encoding::rgb16 : Encoding::rgb8;
+    return info.bits > 8 ? Encoding::rgb16 : Encoding::rgb8;
 }
 
 // A container and an encoding that it can hold.
@@ -65,8 +67,8 @@ struct Target {
 // The file's own container if possible: JPEG would lose more, and some containers cannot be written or hold one level.
 std::optional<Target> target_for(const std::string& file, Encoding encoding, bool with_levels) {
     const std::optional<Container> own = container_of(file);
-    for (const std::optional<Container> container :
-         {own, std::optional(Container::png), std::optional(Container::exr), std::optional(Container::dds)}) {
+    for (const std::optional<Container> container : {own, std::optional(Container::png), std::optional(Container::exr),
+                                                     std::optional(Container::dds), std::optional(Container::ktx2)}) {
         if (!container || *container == Container::jpeg || (with_levels && !can_hold_levels(*container))) continue;
         if (can_hold(*container, encoding)) return Target{*container, encoding};
         // An alpha of 1 is no data; a container that always has alpha takes it.

@@ -28,9 +28,9 @@ inline constexpr Named<Container> kContainerNames[] = {
 // The file type that the extension of `path` names (case does not matter); nullopt for any other extension.
 [[nodiscard]] std::optional<Container> container_of(std::string_view path);
 
-// What a container can hold. dds and ktx2: every encoding, mip levels. exr: half, float; mip levels. png: rgb8, rgba8,
-// rgb16, ag8. tiff: rgb8, rgba8, rgb16, ag8, half, float. tga: rgb8, rgba8, ag8. bmp, jpeg: rgb8. (A picture holds one,
-// three or four channels, so only dds and ktx2 can hold rg8 and rg16.)
+// What a container can hold. ktx2: every encoding, mip levels. dds: the same without eac_rg11 and eac_rg11_snorm. exr:
+// half, float; mip levels. png: rgb8, rgba8, rgb16, ag8. tiff: rgb8, rgba8, rgb16, ag8, half, float. tga: rgb8, rgba8,
+// ag8. bmp, jpeg: rgb8. (A picture holds one, three or four channels, so only dds and ktx2 can hold rg8 and rg16.)
 [[nodiscard]] bool can_hold(Container container, Encoding encoding);
 [[nodiscard]] bool can_hold(Container container, Format format);
 [[nodiscard]] bool can_hold_levels(Container container);

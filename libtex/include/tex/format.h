@@ -16,11 +16,13 @@ namespace tex {
 
 // The layout of a level's bytes. Channels are in the order R, G, B, A, little-endian, rows from the top without
 // padding. Block formats store rows of blocks from the top; blocks at the edges are stored whole. Blocks of BC1 to BC5
-// have 4x4 texels.
+// and EAC have 4x4 texels.
 //
 //   bc1   8 bytes a block: RGB, 5:6:5 endpoints (DXT1)             bc4   8 bytes: R, one BC4 block
 //   bc2  16 bytes: 4-bit alpha, then a BC1 block (DXT3)            bc5  16 bytes: R and G, two BC4 blocks
 //   bc3  16 bytes: alpha as a BC4 block, then a BC1 block (DXT5)
+//
+//   eac_r11   8 bytes: R, one EAC block of 11 bits              eac_rg11  16 bytes: R and G, two EAC blocks
 enum class Format {
     bc1_unorm,
     bc2_unorm,
@@ -29,6 +31,10 @@ enum class Format {
     bc4_snorm,
     bc5_unorm,
     bc5_snorm,
+    eac_r11_unorm,
+    eac_r11_snorm,
+    eac_rg11_unorm,
+    eac_rg11_snorm,
     r8_unorm,
     rg8_unorm,
     rgb8_unorm,
@@ -61,6 +67,10 @@ inline constexpr Named<Format> kFormatNames[] = {
     {Format::bc4_snorm, "bc4-snorm", "BC4, signed"},
     {Format::bc5_unorm, "bc5-unorm", "BC5 (ATI2)"},
     {Format::bc5_snorm, "bc5-snorm", "BC5, signed"},
+    {Format::eac_r11_unorm, "eac-r11-unorm", "EAC R11"},
+    {Format::eac_r11_snorm, "eac-r11-snorm", "EAC R11, signed"},
+    {Format::eac_rg11_unorm, "eac-rg11-unorm", "EAC RG11"},
+    {Format::eac_rg11_snorm, "eac-rg11-snorm", "EAC RG11, signed"},
     {Format::r8_unorm, "r8-unorm", "8 bits"},
     {Format::rg8_unorm, "rg8-unorm", "2 x 8 bits"},
     {Format::rgb8_unorm, "rgb8-unorm", "3 x 8 bits"},
@@ -89,8 +99,8 @@ inline constexpr Named<Format> kFormatNames[] = {
 struct FormatInfo {
     SampleKind sample;        // unorm, snorm or floating
     int channels;             // 1 to 4, always the first of R, G, B, A
-    int bits;                 // of a decoded sample: 8, 16 or 32
-    Extent block;             // texels of a block: 4x4 in BC1 to BC5; 1x1 if the format has no blocks
+    int bits;                 // of a decoded sample: 8, 11 (EAC), 16 or 32
+    Extent block;             // texels of a block: 4x4 in BC1 to BC5 and EAC; 1x1 if the format has no blocks
     std::size_t block_bytes;  // bytes of a block (of a texel if the format has no blocks)
 
     [[nodiscard]] bool has_blocks() const { return block != Extent{1, 1}; }
@@ -138,12 +148,28 @@ inline constexpr Swizzle kSwizzleDxt5nm = {Component::one, Component::y, Compone
 //   unorm    code = floor((n + 1) / 2 * (2^k - 1) + 0.5), clamped     flat is (127.5, 127.5, 255) of 255: 128, 128, 255
 //   snorm    code = round(n (2^(k-1) - 1)), halves away from zero     the lowest code is never written
 //   float    n itself
-enum class Encoding { dxt5nm, bc5, bc5_snorm, rgb8, rgba8, rgb16, ag8, rg8, rg16, half, float_ };
+enum class Encoding {
+    dxt5nm,
+    bc5,
+    bc5_snorm,
+    eac_rg11,
+    eac_rg11_snorm,
+    rgb8,
+    rgba8,
+    rgb16,
+    ag8,
+    rg8,
+    rg16,
+    half,
+    float_
+};
 
 inline constexpr Named<Encoding> kEncodingNames[] = {
     {Encoding::dxt5nm, "dxt5nm", "BC3, R = 1, G = y, B = 1, A = x"},
     {Encoding::bc5, "bc5", "BC5, x and y"},
     {Encoding::bc5_snorm, "bc5-snorm", "signed BC5, x and y"},
+    {Encoding::eac_rg11, "eac-rg11", "EAC RG11, x and y with 11 bits each"},
+    {Encoding::eac_rg11_snorm, "eac-rg11-snorm", "signed EAC RG11, x and y"},
     {Encoding::rgb8, "rgb8", "x, y, z with 8 bits each"},
     {Encoding::rgba8, "rgba8", "x, y, z and A = 1 with 8 bits each"},
     {Encoding::rgb16, "rgb16", "x, y, z with 16 bits each"},
@@ -162,8 +188,8 @@ struct EncodingInfo {
 [[nodiscard]] EncodingInfo encoding_info(Encoding encoding);
 
 // The slope from which on all slopes are stored alike. Without z: the component rounds to 1, so that the surface
-// becomes vertical; 11.3 for 8 bits, 181 for 16 bits. With z: z rounds to its least positive code; 127 and 32767.
-// Infinite for half and float.
+// becomes vertical; 11.3 for 8 bits, 32 for the 11 bits of EAC, 181 for 16 bits. With z: z rounds to its least positive
+// code; 127 and 32767. Infinite for half and float.
 [[nodiscard]] float steepest_slope(Encoding encoding);
 
 }  // namespace tex

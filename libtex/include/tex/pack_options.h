@@ -10,7 +10,8 @@
 #pragma GCC visibility push(default)
 namespace tex {
 
-// How hard the block encoders search for the smallest error (dxt5nm, bc5 and bc5_snorm; the others are exact).
+// How hard the block encoders search for the smallest error (dxt5nm, bc5, bc5_snorm, eac_rg11 and eac_rg11_snorm; the
+// others are exact).
 //
 //   best     no block could have a smaller squared error. This is exact if all values are whole codes, as those of
 //            8-bit sources are in dxt5nm and bc5. Others are first rounded to 1/1024 of a code, so that the root mean
@@ -26,6 +27,9 @@ namespace tex {
 //            palette between the extremes, before rounding, by the effect of rounding: half a code (of 255) in BC4
 //            blocks, or one code if their range is smaller; 2.8 codes in dxt5nm's green (whose palette leaves 1/16 of
 //            the range at both ends); and 1/400 of the range
+//
+// EAC: values are rounded to 1/128 of a code of 11 bits; best is exact for these. normal scores palettes around the
+// middle of the block's range, with the multipliers that suit the range, of all tables.
 enum class Effort { fast, normal, best };
 
 inline constexpr Named<Effort> kEffortNames[] = {
@@ -34,7 +38,7 @@ inline constexpr Named<Effort> kEffortNames[] = {
     {Effort::best, "best", "the least squared error"},
 };
 
-// The error that Effort::best minimises; the other efforts ignore it.
+// The error that Effort::best minimises; the other efforts and EAC ignore it: component.
 enum class Metric { component, angle };
 
 // component: the squared error of each channel on its own; no block could have a smaller one.

@@ -12,34 +12,42 @@
 #include "formats/exr/exr_rows.h"
 #include "formats/ktx2/compress_ktx2.h"
 #include "formats/ktx2/ktx2.h"
+#include "formats/marks.h"
 #include "formats/png/png.h"
 #include "formats/reader/reader_rows.h"
 
 namespace tex {
 namespace {
 
-bool holds_all(const FormatInfo&) { return true; }
+bool holds_all(Format) { return true; }
 
-bool is_float(const FormatInfo& format) { return format.sample == SampleKind::floating; }
+// DDS has no number for EAC.
+bool has_dds_number(Format format) {
+    const FormatMarks& marks = marks_of(widened(format));
+    return marks.legacy.flags != 0 || marks.dxgi.exact != 0;
+}
+
+bool is_float(Format format) { return format_info(format).sample == SampleKind::floating; }
 
 // Grey, RGB or RGBA.
-bool is_unorm_picture(const FormatInfo& format) {
-    return format.sample == SampleKind::unorm && !format.has_blocks() && format.channels != 2;
+bool is_unorm_picture(Format format) {
+    const FormatInfo info = format_info(format);
+    return info.sample == SampleKind::unorm && !info.has_blocks() && info.channels != 2;
 }
 
-bool is_tiff(const FormatInfo& format) {
-    return is_unorm_picture(format) || (is_float(format) && format.channels != 2);
+bool is_tiff(Format format) {
+    return is_unorm_picture(format) || (is_float(format) && format_info(format).channels != 2);
 }
 
-bool is_unorm8_picture(const FormatInfo& format) { return is_unorm_picture(format) && format.bits == 8; }
+bool is_unorm8_picture(Format format) { return is_unorm_picture(format) && format_info(format).bits == 8; }
 
-bool is_unorm8_without_alpha(const FormatInfo& format) { return is_unorm8_picture(format) && format.channels != 4; }
+bool is_unorm8_without_alpha(Format format) { return is_unorm8_picture(format) && format_info(format).channels != 4; }
 
 // The codecs of the reader process come last.
 constexpr Codec kCodecs[] = {
     {.container = Container::dds,
      .magic = kDdsMagic,
-     .holds = holds_all,
+     .holds = has_dds_number,
      .has_levels = true,
      .default_encoding = Encoding::dxt5nm,
      .parse = parse_dds,
@@ -97,7 +105,7 @@ Result<void> check_holds(const Codec& codec, Format format, const WriteOptions& 
                      {},
                      std::string(name_of(kContainerNames, codec.container)) + " is not compressed with Zstandard"};
     }
-    if (codec.holds(format_info(format))) return {};
+    if (codec.holds(format)) return {};
     return Error{ErrorCode::unsupported,
                  {},
                  std::string(name_of(kContainerNames, codec.container)) + " does not hold " +

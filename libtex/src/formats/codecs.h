@@ -28,7 +28,7 @@ struct Codec {
         {};  // the first bytes of every such file; empty: the reader process recognises and decodes it
 
     // What the file type can hold.
-    bool (*holds)(const FormatInfo& format);
+    bool (*holds)(Format format);
     bool has_levels = false;
     Encoding default_encoding = Encoding::rgb8;
 

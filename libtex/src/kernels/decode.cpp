@@ -12,6 +12,7 @@
 
 #include "blocks/bc1.h"
 #include "blocks/bc4.h"
+#include "blocks/eac.h"
 #include "kernels/samples.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -103,6 +104,50 @@ HWY_INLINE void DecodeBc4(const std::byte* block, float* out, std::ptrdiff_t str
     LookUpTwoRows(palette, static_cast<std::uint32_t>(all >> 40), kShifts, 7, out + 2 * stride, stride);
 }
 
+// Four modifiers, then the other four. All palettes are rows of 8 floats.
+struct EacTables {
+    alignas(32) float rows[kEacTables][8];
+};
+constexpr EacTables kModifiers = [] {
+    EacTables tables{};
+    for (int t = 0; t < kEacTables; ++t) {
+        for (int k = 0; k < 8; ++k) tables.rows[t][k] = static_cast<float>(kEacModifiers[t][k]);
+    }
+    return tables;
+}();
+
+template <bool kSigned>
+HWY_INLINE void DecodeEac(const std::byte* block, float* out, std::ptrdiff_t stride) {
+    // Columns 0 and 1 in the upper 24 bits, 2 and 3 in the lower ones; two rows in eight lanes.
+    alignas(32) static constexpr std::uint32_t kShifts[8] = {21, 9, 21, 9, 18, 6, 18, 6};
+    alignas(32) static constexpr std::uint32_t kUpper[8] = {~0u, ~0u, 0, 0, ~0u, ~0u, 0, 0};
+    const D8 d;
+    const U8 du;
+    const int first = static_cast<int>(block[0]);
+    const int second = static_cast<int>(block[1]);
+    const int base = kSigned ? std::max<int>(static_cast<std::int8_t>(first), -127) : first;
+    const int multiplier = second >> 4;
+    const float scale = multiplier == 0 ? 1.0f : static_cast<float>(8 * multiplier);
+    const V8 middle = hn::Set(d, static_cast<float>(8 * base + (kSigned ? 0 : 4)));
+    const V8 codes = hn::Add(middle, hn::Mul(hn::Load(d, kModifiers.rows[second & 15]), hn::Set(d, scale)));
+    const V8 most = hn::Set(d, kSigned ? 1023.0f : 2047.0f);
+    const V8 least = hn::Set(d, kSigned ? -1023.0f : 0.0f);
+    const V8 palette = hn::Div(hn::Min(hn::Max(codes, least), most), most);
+    const auto byte = [&](int k) { return static_cast<std::uint32_t>(block[k]); };
+    const auto upper = hn::Set(du, byte(2) << 16 | byte(3) << 8 | byte(4));
+    const auto lower = hn::Set(du, byte(5) << 16 | byte(6) << 8 | byte(7));
+    const auto is_upper = hn::Load(du, kUpper);
+    const auto bits = hn::Or(hn::And(is_upper, upper), hn::AndNot(is_upper, lower));
+    const hn::CappedTag<float, 4> d4;
+    for (int pair = 0; pair < 2; ++pair) {
+        const auto shifts = hn::Sub(hn::Load(du, kShifts), hn::Set(du, static_cast<std::uint32_t>(6 * pair)));
+        const auto index = hn::And(hn::Shr(bits, shifts), hn::Set(du, 7u));
+        const V8 values = hn::TableLookupLanes(palette, hn::IndicesFromVec(d, index));
+        hn::StoreU(hn::LowerHalf(d4, values), d4, out + 2 * pair * stride);
+        hn::StoreU(hn::UpperHalf(d4, values), d4, out + (2 * pair + 1) * stride);
+    }
+}
+
 // The colours of a BC1 block. A null pointer marks a channel that is not needed.
 HWY_INLINE void DecodeBc1(const std::byte* block, Bc1Mode mode, const ChannelRows& rows, std::ptrdiff_t at,
                           std::ptrdiff_t stride) {
@@ -166,11 +211,29 @@ void DecodeBlocks(Format format, const std::byte* blocks, int count, const Chann
             }
             break;
         }
-        default: {
+        case Format::bc4_snorm:
+        case Format::bc5_snorm: {
             const std::ptrdiff_t step = format == Format::bc4_snorm ? 8 : 16;
             for (std::ptrdiff_t at = 0; at < end; at += 4, blocks += step) {
                 if (r != nullptr) DecodeBc4<true>(blocks, r + at, stride);
                 if (g != nullptr) DecodeBc4<true>(blocks + 8, g + at, stride);
+            }
+            break;
+        }
+        case Format::eac_r11_unorm:
+        case Format::eac_rg11_unorm: {
+            const std::ptrdiff_t step = format == Format::eac_r11_unorm ? 8 : 16;
+            for (std::ptrdiff_t at = 0; at < end; at += 4, blocks += step) {
+                if (r != nullptr) DecodeEac<false>(blocks, r + at, stride);
+                if (g != nullptr) DecodeEac<false>(blocks + 8, g + at, stride);
+            }
+            break;
+        }
+        default: {
+            const std::ptrdiff_t step = format == Format::eac_r11_snorm ? 8 : 16;
+            for (std::ptrdiff_t at = 0; at < end; at += 4, blocks += step) {
+                if (r != nullptr) DecodeEac<true>(blocks, r + at, stride);
+                if (g != nullptr) DecodeEac<true>(blocks + 8, g + at, stride);
             }
             break;
         }
@@ -200,7 +263,11 @@ void DecodeBlock(Format format, const std::byte* block, float channels[4][16]) {
         case Format::bc4_unorm: return decode_bc4_unorm(block, r);
         case Format::bc4_snorm: return decode_bc4_snorm(block, r);
         case Format::bc5_unorm: decode_bc4_unorm(block, r); return decode_bc4_unorm(block + 8, g);
-        default: decode_bc4_snorm(block, r); return decode_bc4_snorm(block + 8, g);
+        case Format::bc5_snorm: decode_bc4_snorm(block, r); return decode_bc4_snorm(block + 8, g);
+        case Format::eac_r11_unorm: return decode_eac_unorm(block, r);
+        case Format::eac_r11_snorm: return decode_eac_snorm(block, r);
+        case Format::eac_rg11_unorm: decode_eac_unorm(block, r); return decode_eac_unorm(block + 8, g);
+        default: decode_eac_snorm(block, r); return decode_eac_snorm(block + 8, g);
     }
 }
 

@@ -18,7 +18,7 @@ struct ChannelRows {
 void decode_texels(Format format, const std::byte* texels, int count, const ChannelRows& rows);
 
 // Decodes `count` blocks that lie side by side: four rows of 4 * count texels, with row k of a channel at
-// channel + k * stride. The values are those of blocks/bc1.h and blocks/bc4.h, to the last bit.
+// channel + k * stride. The values are those of blocks/bc1.h, bc4.h and eac.h, to the last bit.
 void decode_blocks(Format format, const std::byte* blocks, int count, const ChannelRows& rows, std::ptrdiff_t stride);
 
 }  // namespace tex

@@ -158,6 +158,8 @@ void encode_blocks(const BlockRow& row, const PackOptions& options, std::byte* b
         case Encoding::dxt5nm: encode_dxt5nm(row, options.effort, blocks); break;
         case Encoding::bc5: encode_bc5_unorm(row, options.effort, blocks); break;
         case Encoding::bc5_snorm: encode_bc5_snorm(row, options.effort, blocks); break;
+        case Encoding::eac_rg11: return encode_eac_unorm(row, options.effort, blocks);
+        case Encoding::eac_rg11_snorm: return encode_eac_snorm(row, options.effort, blocks);
         default: assert(false && "not an encoding in blocks"); return;
     }
     if (options.effort == Effort::best && options.metric == Metric::angle)

@@ -45,7 +45,11 @@ void encode_dxt5nm(const BlockRow& row, Effort effort, std::byte* blocks);
 void encode_bc5_unorm(const BlockRow& row, Effort effort, std::byte* blocks);
 void encode_bc5_snorm(const BlockRow& row, Effort effort, std::byte* blocks);
 
-// Uses all options that concern blocks: encoding (one in blocks), effort and metric.
+// The same for EAC RG11: see eac_search.h.
+void encode_eac_unorm(const BlockRow& row, Effort effort, std::byte* blocks);
+void encode_eac_snorm(const BlockRow& row, Effort effort, std::byte* blocks);
+
+// Uses all options that concern blocks: encoding (one in blocks), effort and, except in EAC, metric.
 void encode_blocks(const BlockRow& row, const PackOptions& options, std::byte* blocks);
 
 }  // namespace tex

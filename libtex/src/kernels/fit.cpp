@@ -203,41 +203,14 @@ HWY_INLINE BlockWords normal_green(const W* texels) {
     return green_words(group, best);
 }
 
-// Calls encode(rows of x, rows of y, blocks) for groups of lanes() blocks. The last blocks are copied first.
-template <class Encode>
-HWY_INLINE void for_each_group(const FitRows& x, const FitRows& y, int count, std::byte* blocks, Encode encode) {
-    std::ptrdiff_t first = 0;
-    for (; first + lanes() <= count; first += lanes()) {
-        const float* from[2][4];
-        for (int r = 0; r < 4; ++r) {
-            from[0][r] = x.rows[r] + 4 * first;
-            from[1][r] = y.rows[r] + 4 * first;
-        }
-        encode(from[0], from[1], blocks + 16 * first);
-    }
-    if (first == count) return;
-    float copies[2][4][4 * kLanes] = {};
-    std::byte last[16 * kLanes];
-    const float* from[2][4];
-    const auto rest = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(count - first, 0, kLanes));
-    for (int r = 0; r < 4; ++r) {
-        std::memcpy(copies[0][r], x.rows[r] + 4 * first, rest * 4 * sizeof(float));
-        std::memcpy(copies[1][r], y.rows[r] + 4 * first, rest * 4 * sizeof(float));
-        from[0][r] = copies[0][r];
-        from[1][r] = copies[1][r];
-    }
-    encode(from[0], from[1], last);
-    std::memcpy(blocks + 16 * first, last, 16 * rest);
-}
-
 bool fit_dxt5nm_blocks(const FitRows& x, const FitRows& y, int count, Effort effort, std::byte* blocks) {
     bool extremes = false;
     for_each_group(x, y, count, blocks, [&](const float* const* xs, const float* const* ys, std::byte* to) {
         W texels[16];
-        load_texels(xs, 255, x.negate, texels);
+        load_texels(xs, 255.0f, x.negate, texels);
         const BlockWords alpha =
             effort == Effort::fast ? fast_bc4(texels, kBc4Unorm) : normal_bc4(texels, kBc4Unorm, extremes);
-        load_texels(ys, 255, y.negate, texels);
+        load_texels(ys, 255.0f, y.negate, texels);
         const BlockWords green = effort == Effort::fast ? fast_green(texels) : normal_green(texels);
         store_blocks(alpha, green, to);
     });
@@ -250,7 +223,7 @@ bool fit_bc5_blocks(const FitRows& x, const FitRows& y, int count, Bc4Codes code
         BlockWords words[2];
         for (int k = 0; k < 2; ++k) {
             W texels[16];
-            load_texels(k == 0 ? xs : ys, codes.top, k == 0 ? x.negate : y.negate, texels);
+            load_texels(k == 0 ? xs : ys, static_cast<float>(codes.top), k == 0 ? x.negate : y.negate, texels);
             words[k] = effort == Effort::fast ? fast_bc4(texels, codes) : normal_bc4(texels, codes, extremes);
         }
         store_blocks(words[0], words[1], to);

@@ -17,6 +17,8 @@
 
 #include <hwy/highway.h>
 
+#include "kernels/fit.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace tex {
 namespace HWY_NAMESPACE {
@@ -110,8 +112,8 @@ struct Group {
 // cheaper than across the vector: with B blocks in a vector of floats, lane 8 p + 4 h + m holds block (2 m + h) B + p,
 // which suits BlockWriter.
 #if HWY_TARGET == HWY_SCALAR
-HWY_INLINE void load_texels(const float* const rows[4], int top, bool negate, W* v) {
-    const float half = 0.5f * kFine * static_cast<float>(top);
+HWY_INLINE void load_texels(const float* const rows[4], float top, bool negate, W* v) {
+    const float half = 0.5f * kFine * top;
     for (int k = 0; k < 16; ++k) {
         const float n = rows[k / 4][k % 4];
         const float value = std::max(n * (negate ? -half : half) + (8388608.0f + half), 8388608.0f) - 8388608.0f;
@@ -119,7 +121,7 @@ HWY_INLINE void load_texels(const float* const rows[4], int top, bool negate, W*
     }
 }
 #else
-HWY_INLINE void load_texels(const float* const rows[4], int top, bool negate, W* v) {
+HWY_INLINE void load_texels(const float* const rows[4], float top, bool negate, W* v) {
     const Words d;
     const Floats df;
     const hn::Rebind<std::int32_t, Floats> di;
@@ -128,7 +130,7 @@ HWY_INLINE void load_texels(const float* const rows[4], int top, bool negate, W*
     const hn::Repartition<std::uint64_t, Words> d64;
     // A number added to 2^23 is rounded to a whole number, which the lowest bits of the sum then hold.
     constexpr float kWhole = 8388608.0f;
-    const float half = 0.5f * kFine * static_cast<float>(top);
+    const float half = 0.5f * kFine * top;
     const F scale = constant(negate ? -half : half);
     const F middle = constant(kWhole + half);
     const auto most = hn::Set(ds, static_cast<std::int16_t>(2.0f * half));
@@ -261,6 +263,33 @@ HWY_INLINE void store_blocks(const BlockWords& first, const BlockWords& second, 
           hn::InterleaveUpper(d, second.w[0], second.w[1]), hn::InterleaveUpper(d, second.w[2], second.w[3]), 1);
 }
 #endif
+
+// Calls encode(rows of x, rows of y, blocks) for groups of lanes() blocks. The last blocks are copied first.
+template <class Encode>
+HWY_INLINE void for_each_group(const FitRows& x, const FitRows& y, int count, std::byte* blocks, Encode encode) {
+    std::ptrdiff_t first = 0;
+    for (; first + lanes() <= count; first += lanes()) {
+        const float* from[2][4];
+        for (int r = 0; r < 4; ++r) {
+            from[0][r] = x.rows[r] + 4 * first;
+            from[1][r] = y.rows[r] + 4 * first;
+        }
+        encode(from[0], from[1], blocks + 16 * first);
+    }
+    if (first == count) return;
+    float copies[2][4][4 * kLanes] = {};
+    std::byte last[16 * kLanes];
+    const float* from[2][4];
+    const auto rest = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(count - first, 0, kLanes));
+    for (int r = 0; r < 4; ++r) {
+        std::memcpy(copies[0][r], x.rows[r] + 4 * first, rest * 4 * sizeof(float));
+        std::memcpy(copies[1][r], y.rows[r] + 4 * first, rest * 4 * sizeof(float));
+        from[0][r] = copies[0][r];
+        from[1][r] = copies[1][r];
+    }
+    encode(from[0], from[1], last);
+    std::memcpy(blocks + 16 * first, last, 16 * rest);
+}
 
 }  // namespace HWY_NAMESPACE
 }  // namespace tex

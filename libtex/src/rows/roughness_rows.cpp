@@ -32,12 +32,14 @@ private:
     Plane<float> rows_;
 };
 
-// A BC4 block is the first half of a BC5 block.
-void pack_blocks(const Plane<float>& level, int height, Effort effort, int begin, int end, std::byte* out) {
-    constexpr std::size_t kBc4 = 8, kBc5 = 16;
+// A block of one channel is the first half of a block of two: BC4 of BC5, EAC R11 of RG11.
+template <class Encode>
+void pack_blocks(const Plane<float>& level, int height, Effort effort, int begin, int end, Encode encode,
+                 std::byte* out) {
+    constexpr std::size_t kOne = 8, kTwo = 16;
     const int width = level.extent().width;
     const auto count = static_cast<std::size_t>(blocks_across(width));
-    std::vector<std::byte> pairs(count * kBc5);
+    std::vector<std::byte> pairs(count * kTwo);
     Components components(level);
     for (int j = begin; j < end; j += kBlockEdge) {
         BlockRow row;
@@ -47,9 +49,9 @@ void pack_blocks(const Plane<float>& level, int height, Effort effort, int begin
             row.x[k] = k < row.height ? components.row(k, j + k) : row.x[k - 1];
             row.y[k] = row.x[k];
         }
-        encode_bc5_unorm(row, effort, pairs.data());
-        std::byte* block = out + static_cast<std::size_t>(j / kBlockEdge) * count * kBc4;
-        for (std::size_t k = 0; k < count; ++k) std::memcpy(block + k * kBc4, pairs.data() + k * kBc5, kBc4);
+        encode(row, effort, pairs.data());
+        std::byte* block = out + static_cast<std::size_t>(j / kBlockEdge) * count * kOne;
+        for (std::size_t k = 0; k < count; ++k) std::memcpy(block + k * kOne, pairs.data() + k * kTwo, kOne);
     }
 }
 
@@ -80,7 +82,8 @@ void pack_values(const Plane<float>& level, int begin, int end, std::byte* out) 
 void pack_roughness_rows(const Plane<float>& level, int height, Format format, Effort effort, int begin, int end,
                          std::byte* out) {
     switch (format) {
-        case Format::bc4_unorm: pack_blocks(level, height, effort, begin, end, out); break;
+        case Format::bc4_unorm: pack_blocks(level, height, effort, begin, end, encode_bc5_unorm, out); break;
+        case Format::eac_r11_unorm: pack_blocks(level, height, effort, begin, end, encode_eac_unorm, out); break;
         case Format::r8_unorm: pack_codes<std::uint8_t>(level, begin, end, out); break;
         case Format::r16_unorm: pack_codes<std::uint16_t>(level, begin, end, out); break;
         case Format::r16_float: pack_values<Imath::half>(level, begin, end, out); break;

@@ -7,7 +7,7 @@
 namespace tex {
 namespace {
 
-bool is_bc5(const FormatInfo& format) { return format.has_blocks() && format.channels == 2; }
+bool is_bc5(Format format) { return format == Format::bc5_unorm || format == Format::bc5_snorm; }
 
 bool leaves_a_choice(const Texture& head) { return !head.swizzle_known && format_info(head.format).channels == 4; }
 
@@ -15,7 +15,7 @@ bool leaves_a_choice(const Texture& head) { return !head.swizzle_known && format
 
 std::optional<Swizzle> known_swizzle(const Texture& head, const SourceOptions& options) {
     if (options.unpack.swizzle) return options.unpack.swizzle;
-    if (options.bc5_swizzle && is_bc5(format_info(head.format))) return options.bc5_swizzle;
+    if (options.bc5_swizzle && is_bc5(head.format)) return options.bc5_swizzle;
     if (leaves_a_choice(head)) return std::nullopt;
     if (options.r_or_a) return guessed_swizzle(head.swizzle, options);
     return head.swizzle;

@@ -41,6 +41,9 @@ std::vector<Sample> block_samples(const FormatInfo& info, std::uint32_t model) {
         case kKhrBc2:
         case kKhrBc3: return {block_sample(info, kChannelAlpha, 0), block_sample(info, kChannelColor, 64)};
         case kKhrBc5: return {block_sample(info, 0, 0), block_sample(info, 1, 64)};  // red, green
+        case kKhrEtc2:
+            if (info.channels == 2) return {block_sample(info, 0, 0), block_sample(info, 1, 64)};
+            return {block_sample(info, 0, 0)};
         default: return {block_sample(info, 0, 0)};
     }
 }
