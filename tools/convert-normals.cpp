@@ -58,13 +58,14 @@ ConvertNormals::ConvertNormals(const cli::ProgramRow& row) : NormalsConverter(ro
         "convert-normals rock_n.png -o rock_ue.png --mesh rock.glb --decoder-in unity-builtin --decoder unreal",
         "From one engine to another.");
     command.check([this] {
+        if (conversion_.spaces.from == Space::object && normals.measures_y)
+            throw cli::UsageError("--y-in measured needs --from tangent");
         if (!conversion_.makes_object()) return;
         if (mips_.mip.fade || mips_.mip.domain == MipDomain::slope)
             throw cli::UsageError("--fade and --mip-domain slope need tangent space");
         if (output.format && !holds_z(encoding_info(*output.format).swizzle)) {
             throw cli::UsageError(
-                fmt::format("--format {} stores no z, which object space needs; rgb8, rgba8, rgb16, "
-                            "half and float do",
+                fmt::format("--format {} stores no z, which object space needs; rgb8, rgba8, rgb16, half and float do",
                             name_of(kEncodingNames, *output.format)));
         }
     });

@@ -208,6 +208,7 @@ TEST_F(ConvertNormals, RefusesContradictions) {
     refuses(line({"--mesh", "sheet.obj", "--from", "object", "--to", "object"}), 2, "nothing changes");
     refuses(line({"--mesh", "sheet.obj", "--to", "object", "--to-mesh", "sheet.obj"}), 2, "--to-mesh needs tangent");
     refuses(line({"--mesh", "sheet.obj", "--from", "object", "--decoder-in", "godot"}), 2, "needs --from tangent");
+    refuses(line({"--mesh", "sheet.obj", "--from", "object", "--y-in", "measured"}), 2, "needs --from tangent");
     refuses(line({"--mesh", "sheet.obj", "--to", "object", "--fade", "1,2"}), 2, "need tangent space");
     refuses(line({"--mesh", "sheet.obj", "--decoder", "unrea"}), 2, "did you mean unreal?");
     refuses({"n.exr", "-o", "x.dds", "--mesh", "sheet.obj", "--to", "object", "--format", "bc5"}, 2, "stores no z");

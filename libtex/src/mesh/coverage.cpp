@@ -104,12 +104,16 @@ Result<void> CoverageMap::place(const MeshPart& part, const std::vector<Float2>&
     if (std::max(width * extent_.width, height * extent_.height) > kMaxTexels)
         return unfit(triangle, "covers more than 2^22 texels in one direction");
     const double margin_x = (gutter_ + 1.0) / extent_.width, margin_y = (gutter_ + 1.0) / extent_.height;
-    for (double j = std::floor(low.y - margin_y); j <= std::floor(high.y + margin_y); ++j) {
-        for (double i = std::floor(low.x - margin_x); i <= std::floor(high.x + margin_x); ++i) {
+    const auto repeat = [](double value) { return static_cast<std::int64_t>(std::floor(value)); };
+    for (std::int64_t j = repeat(low.y - margin_y); j <= repeat(high.y + margin_y); ++j) {
+        for (std::int64_t i = repeat(low.x - margin_x); i <= repeat(high.x + margin_x); ++i) {
+            const auto left = static_cast<double>(i), top = static_cast<double>(j);
             Placed placed{triangle, {}, {}};
             for (std::size_t k = 0; k < 3; ++k) {
-                placed.x[k] = static_cast<std::int64_t>(std::floor((corner[k].x - i) * extent_.width * kSteps + 0.5));
-                placed.y[k] = static_cast<std::int64_t>(std::floor((corner[k].y - j) * extent_.height * kSteps + 0.5));
+                placed.x[k] =
+                    static_cast<std::int64_t>(std::floor((corner[k].x - left) * extent_.width * kSteps + 0.5));
+                placed.y[k] =
+                    static_cast<std::int64_t>(std::floor((corner[k].y - top) * extent_.height * kSteps + 0.5));
             }
             if (!add(placed, part.triangles()))
                 return Error{ErrorCode::unsupported, {}, "its triangles cover the map more than a thousand times"};
