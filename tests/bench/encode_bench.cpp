@@ -22,7 +22,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <ctime>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -36,27 +35,15 @@
 #include <tex/tex.h>
 
 #include "bench/decode_rules.h"
+#include "bench/encode_maps.h"
 #include "blocks/bc1.h"
 #include "blocks/bc4.h"
 #include "kernels/encode.h"
 
 namespace {
 
+using namespace bench;
 namespace fs = std::filesystem;
-
-double processor_seconds() {
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-struct Map {
-    std::string name;
-    tex::NormalMap normals;
-    int width, height;                // whole blocks
-    std::vector<std::uint8_t> rgba8;  // for the other encoders
-    [[nodiscard]] int blocks() const { return width / 4 * (height / 4); }
-};
 
 struct Quality {
     double green = 0, alpha = 0;                 // mean squared errors, in codes squared
@@ -144,11 +131,6 @@ void add_least_errors(const Map& map, RuleErrors& sum) {
     });
 }
 
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    return values[values.size() / 2];
-}
-
 // Our encoders: rows of blocks, each several times in a row, so that its texels are in the cache.
 double encode_ours(const Map& map, tex::Effort effort, std::vector<std::byte>& blocks,
                    tex::Metric metric = tex::Metric::component) {
@@ -182,79 +164,6 @@ double encode_others(const Map& map, std::vector<std::byte>& blocks,
         seconds.push_back(processor_seconds() - start);
     }
     return median(seconds);
-}
-
-// Adds a map whose x and y are codes of 8 bits.
-void add_codes(Map map, std::vector<Map>& maps) {
-    for (int j = 0; j < map.height; ++j) {
-        for (int i = 0; i < map.width; ++i) {
-            const auto code = [](float n) { return static_cast<std::uint8_t>(n * 127.5f + 128.0f); };
-            map.rgba8.insert(map.rgba8.end(), {255, code(map.normals.y.at(i, j)), 0, code(map.normals.x.at(i, j))});
-        }
-    }
-    maps.push_back(std::move(map));
-}
-
-void add_map(const fs::path& path, std::vector<Map>& maps) {
-    const tex::Result<tex::Image> image = tex::read_image(path.string());
-    if (!image) {
-        std::fprintf(stderr, "encode_bench: %s\n", image.error().message().c_str());
-        return;
-    }
-    tex::Result<tex::NormalMap> normals = tex::unpack(*image, {});
-    if (!normals || normals->extent().width < 4 || normals->extent().height < 4) return;
-    Map map{path.filename().string(), std::move(*normals), 0, 0, {}};
-    map.width = map.normals.extent().width / 4 * 4;
-    map.height = map.normals.extent().height / 4 * 4;
-    if (!map.name.starts_with("normal"))
-        map.name = path.stem().string();
-    else
-        map.name = path.parent_path().filename().string() + "/" + path.stem().string();
-    // x and y as stored. They come from the picture because unpack() normalises.
-    for (int j = 0; j < map.height; ++j) {
-        for (int i = 0; i < map.width; ++i) {
-            map.normals.x.at(i, j) = 2.0f * image->planes[0].at(i, j) - 1.0f;
-            map.normals.y.at(i, j) = 2.0f * image->planes[1].at(i, j) - 1.0f;
-        }
-    }
-    add_codes(std::move(map), maps);
-}
-
-// Adds the normals of a height map, rounded to 8 bits as in the other maps.
-void add_heights(const std::string& path, std::vector<Map>& maps) {
-    const tex::Result<tex::Image> image = tex::read_image(path);
-    auto field = image ? tex::height_field(*image, {}) : tex::Result<tex::HeightField>(image.error());
-    if (!field) {
-        std::fprintf(stderr, "encode_bench: %s\n", field.error().message().c_str());
-        return;
-    }
-    field->bumpiness_x = field->bumpiness_y = 8.0f;
-    tex::Result<tex::NormalMap> normals = tex::bake(*field);
-    if (!normals) return;
-    Map map{fs::path(path).stem().string(), std::move(*normals), 0, 0, {}};
-    map.width = map.normals.extent().width / 4 * 4;
-    map.height = map.normals.extent().height / 4 * 4;
-    for (tex::Plane<float>* plane : {&map.normals.x, &map.normals.y}) {
-        for (int j = 0; j < map.height; ++j) {
-            for (int i = 0; i < map.width; ++i)
-                plane->at(i, j) = std::round(127.5f * plane->at(i, j) + 127.5f) / 127.5f - 1.0f;
-        }
-    }
-    add_codes(std::move(map), maps);
-}
-
-void add_directory(const fs::path& directory, std::vector<Map>& maps) {
-    std::vector<fs::path> paths;
-    for (const auto& entry : fs::recursive_directory_iterator(directory)) {
-        const fs::path& path = entry.path();
-        const bool pair = path.string().find("/pairs/") != std::string::npos;
-        const bool eight_bits = path.extension() != ".exr";
-        const bool copy = path.parent_path().filename() == "derived";
-        if (entry.is_regular_file() && eight_bits && !copy && (!pair || path.filename().string().starts_with("normal")))
-            paths.push_back(path);
-    }
-    std::sort(paths.begin(), paths.end());
-    for (const fs::path& path : paths) add_map(path, maps);
 }
 
 void print(const std::string& map, const Encoder& encoder, double speed, const Quality& q, const Quality& best) {
@@ -402,20 +311,8 @@ int main(int argc, char** argv) {
             add_map(path, maps);
         }
     }
-    if (maps.empty()) {
-        for (const char* folder : {"/../shared/data/normal", "/../shared/data/pairs"}) {
-            if (fs::is_directory(std::string(TEX_SOURCE_DIR) + folder))
-                add_directory(std::string(TEX_SOURCE_DIR) + folder, maps);
-        }
-    }
-    if (maps.empty()) {
-        std::fprintf(stderr,
-                     "encode_bench: no maps; bakes of the samples instead, which the figures of RESULTS.md "
-                     "do not contain\n");
-        for (const char* name : {"bricks", "hemisphere", "ramp", "waves"})
-            add_heights(TEX_SOURCE_DIR "/samples/" + std::string(name) + ".png", maps);
-        if (maps.empty()) return 3;
-    }
+    if (maps.empty()) add_usual_maps(maps);
+    if (maps.empty()) return 3;
     std::printf("%-28s %-22s %9s %8s %8s %8s %8s %8s\n", "map", "encoder", "Mtexel/s", "mean", "green", "alpha",
                 "p99.9", "largest");
     double texels = 0;

@@ -69,14 +69,14 @@ TEST_F(PackNormals, EacGoesIntoKtx2) {
             does("pack-normals", {"n.dds", "-o", "e.ktx2", "--format", encoding, "--effort", effort, "--y", "up"});
             EXPECT_LE(distance("n.dds", "e.ktx2").max, 4.0) << encoding << " " << effort;
         }
-        const auto report =
-            nlohmann::json::parse(go("pack-normals", {"e.ktx2", "-o", "again.ktx2", "--effort", "best", "--json"}).out);
+        const auto report = nlohmann::json::parse(
+            go("pack-normals", {"e.ktx2", "-o", "again.ktx2", "--format", encoding, "--effort", "best", "--json"}).out);
         EXPECT_EQ(report["format"], encoding);
         EXPECT_LE(distance("e.ktx2", "again.ktx2").max, 0.01) << "blocks are found again";
-        EXPECT_EQ(go("check-normals", {"e.ktx2", "--require", "format=" + encoding}).code, 0);
-        EXPECT_EQ(go("check-normals", {"e.ktx2", "--require", "format=bc5"}).code, 1);
-        EXPECT_EQ(go("check-normals", {"e.ktx2", "--report", "report.html"}).code, 0);
-        EXPECT_EQ(go("compare-normals", {"n.dds", "e.ktx2", "--max-mean", "1"}).code, 0);
+        EXPECT_EQ(run(scratch_, "check-normals", {"e.ktx2", "--require", "format=" + encoding}).code, 0);
+        EXPECT_EQ(run(scratch_, "check-normals", {"e.ktx2", "--require", "format=bc5"}).code, 1);
+        EXPECT_EQ(run(scratch_, "check-normals", {"e.ktx2", "--report", "report.html"}).code, 0);
+        EXPECT_EQ(run(scratch_, "compare-normals", {"n.dds", "e.ktx2", "--max-mean", "1"}).code, 0);
         does("preview-normals", {"e.ktx2", "-o", "lit.png"});
         does("unpack-normals", {"e.ktx2", "-o", "u.png", "--format", "rgb16"});
         does("mip-normals", {"e.ktx2", "-o", "m.ktx2", "--format", encoding, "--supercompress", "zstd"});
@@ -84,8 +84,8 @@ TEST_F(PackNormals, EacGoesIntoKtx2) {
         does("blend-normals", {"e.ktx2", "--detail", "n.dds", "-o", "b.ktx2", "--format", encoding});
         does("bake-normals", {"waves.png", "-o", "w.ktx2", "--format", encoding});
         // Nothing but the order of BC5 is in doubt.
-        does("pack-normals", {"e.ktx2", "-o", "o.ktx2", "--bc5-order", "yx"});
-        EXPECT_LE(distance("e.ktx2", "o.ktx2").max, 1.0);
+        does("pack-normals", {"e.ktx2", "-o", "o.ktx2", "--format", "rgb16", "--bc5-order", "yx"});
+        EXPECT_LE(distance("e.ktx2", "o.ktx2").max, 0.1);
         const Ran refused = go("pack-normals", {"n.dds", "-o", "e.dds", "--format", encoding});
         EXPECT_EQ(refused.code, 2);
         EXPECT_NE(refused.err.find("a dds file cannot hold " + encoding), std::string::npos) << refused.err;
