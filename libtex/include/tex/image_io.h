@@ -3,9 +3,9 @@
 //
 // The first bytes of a file, not its name, decide how it is read. PNG and EXR are decoded in this process, by libpng
 // and OpenEXR; DDS and KTX2 by libtex; everything else (TIFF, TGA, JPEG, BMP, HDR, PSD ...) by OpenImageIO in a
-// separate reader process for each file, under limits of memory and time. If such a decoder crashes or hangs, the result
-// is an Error. The second such file also starts a process that stays, idle, until this process ends: it has loaded
-// OpenImageIO, has never seen a file, and forks the readers of all later files.
+// separate reader process for each file, under limits of memory and time. If such a decoder crashes or hangs, the
+// result is an Error. The second such file also starts a process that stays, idle, until this process ends: it has
+// loaded OpenImageIO, has never seen a file, and forks the readers of all later files.
 
 #pragma once
 
