@@ -30,6 +30,7 @@ TEST(FileLayout, FollowsFromTheHeadAlone) {
     for (const auto& row : kEncodingNames) {
         const Texture texture = encoded_texture(row.value, {13, 7}, 4);
         for (const Container container : {Container::dds, Container::ktx2}) {
+            if (!can_hold(container, row.value)) continue;
             const FileLayout layout =
                 container == Container::dds ? dds_layout(head_of(texture), {}) : ktx2_layout(head_of(texture));
             const auto file = encode_file(texture, container);
