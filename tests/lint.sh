@@ -46,6 +46,15 @@ for name in $(printf '%s\n' "${files[@]}" | cut -d/ -f1 | sort -u); do
     case $top in *" $name "*) ;; *) complain "$name does not belong at the top level" ;; esac
 done
 
+# -- one type for each name ------------------------------------------------------------------------------------
+# Tests are linked with the library of the tools, in one namespace, so a linker would mix up types of one name.
+types() { grep -hoE '^(class|struct) [A-Z][A-Za-z0-9]+' -- "$@" | cut -d' ' -f2 | sort -u; }
+mapfile -t tool_headers < <(select_files '^tools/.*\.h$')
+mapfile -t cli_tests < <(select_files '^tests/cli/.*\.(cpp|h)$')
+for name in $(comm -12 <(types "${tool_headers[@]}") <(types "${cli_tests[@]}")); do
+    complain "$name is a type of tools and of tests/cli: one of them needs another name"
+done
+
 # -- one word, one stem, everywhere ---------------------------------------------------------------------------
 header_only=' execution mip_chain names normal_map result texture '
 for header in libtex/include/tex/*.h; do

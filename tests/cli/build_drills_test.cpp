@@ -14,11 +14,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "cli/build_tree.h"
+#include "cli/texture_tree.h"
 
 namespace tex::cli {
 
-class BuildDrills : public BuildTree {};
+class BuildDrills : public TextureTree {};
 
 TEST_F(BuildDrills, ACloneWithAWarmCacheMakesNothing) {
     ASSERT_EQ(build({"--cache", "cache"}).code, 0);

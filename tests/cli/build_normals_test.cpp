@@ -9,11 +9,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "cli/build_tree.h"
+#include "cli/texture_tree.h"
 
 namespace tex::cli {
 
-class BuildNormals : public BuildTree {};
+class BuildNormals : public TextureTree {};
 
 TEST_F(BuildNormals, MakesWhatTheCommandsMakeOneAfterTheOther) {
     ASSERT_EQ(build().code, 0);

@@ -7,11 +7,11 @@
 
 #include <gtest/gtest.h>
 
-#include "cli/build_tree.h"
+#include "cli/texture_tree.h"
 
 namespace tex::cli {
 
-class BuildPaths : public BuildTree {
+class BuildPaths : public TextureTree {
 protected:
     void write_manifest(const std::string& name) const {
         scratch_.write("normals.toml", "version = 1\n[[rule]]\nmatch = \"art/**/*.png\"\nname = \"" + name +

@@ -95,7 +95,7 @@ void enlarge_pages_of_heap() {
 
 // Whether this is the only thread, after those that are about to end. Without /proc there is no answer.
 bool is_alone() {
-    for (int tries = 0; tries < 20; ++tries) {
+    for (int tries = 0; tries < 100; ++tries) {
         std::error_code error;
         const std::filesystem::directory_iterator threads("/proc/self/task", error);
         if (!error && std::distance(begin(threads), end(threads)) == 1) return true;

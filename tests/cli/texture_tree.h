@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// build_tree.h: a folder with a manifest, for tests of build-normals.
+// texture_tree.h: a folder with a manifest, for tests of build-normals.
 
 #pragma once
 
@@ -32,9 +32,9 @@ steps = [ { bake = { bumpiness = 4 } }, { blend = { detail = "out/shared/grain.d
 outputs = [ {}, { format = "bc5", y = "down", name = "{dir}/{stem:-_h}_ue.ktx2" } ]
 )";
 
-class BuildTree : public testing::Test {
+class TextureTree : public testing::Test {
 protected:
-    BuildTree() {
+    TextureTree() {
         scratch_.write("normals.toml", kManifest);
         for (const char* name : {"art/wall_h.png", "art/sub/floor_h.PNG", "art/wip/new_h.png", "shared/grain.png"}) {
             fs::create_directories(fs::path(scratch_.path(name)).parent_path());
