@@ -63,7 +63,8 @@ std::vector<BlockTexels> special_blocks(int top, int trials) {
 // The blocks of real maps, in x and in y.
 void add_real_blocks(int top, int blocks_of_each, std::vector<BlockTexels>& blocks) {
     for (const reference::RealMap& real : reference::real_maps()) {
-        if (!real.path.starts_with("normal/") && !real.path.starts_with("pairs/")) continue;
+        const bool is_normal_map = real.path.starts_with("normal/") || real.path.starts_with("pairs/");
+        if (!is_normal_map || !real.path.ends_with(".png")) continue;  // others need the reader, which arm64 lacks
         const auto image = read_image((shared_data() / real.path).string());
         ASSERT_TRUE(image) << image.error().message();
         const Extent extent = image->extent();
