@@ -174,7 +174,7 @@ TEST_F(BuildDrills, AFailureAtAnyCallLosesNothing) {
             EXPECT_TRUE(contents == expected.at(name) || contents == "changed") << name;
         }
     }
-    EXPECT_GT(failed, 10);
+    EXPECT_GT(failed, 0);
     // What the cache took in between is right, and nothing else is left.
     fs::remove_all(scratch_.path("out"));
     ASSERT_EQ(build({"--cache", counts.path("cache")}).code, 0);
