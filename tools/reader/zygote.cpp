@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -84,12 +85,14 @@ void enlarge_pages_of_heap() {
     constexpr int kCollapse = 25;  // MADV_COLLAPSE, from Linux 6.1 on
     constexpr std::uintptr_t kLargePage = std::uintptr_t{1} << 21;
     malloc_trim(0);
-    const auto end = reinterpret_cast<std::uintptr_t>(sbrk(0)) / kLargePage * kLargePage;
+    auto* const top = static_cast<std::byte*>(sbrk(0));
+    const auto top_address = reinterpret_cast<std::uintptr_t>(top);
+    const std::uintptr_t end = top_address / kLargePage * kLargePage;
     std::ifstream maps("/proc/self/maps");
     for (std::string line; std::getline(maps, line);) {
         if (!line.ends_with("[heap]")) continue;
         const auto begin = (std::strtoull(line.c_str(), nullptr, 16) + kLargePage - 1) / kLargePage * kLargePage;
-        if (begin < end) madvise(reinterpret_cast<void*>(begin), end - begin, kCollapse);
+        if (begin < end) madvise(top - (top_address - begin), end - begin, kCollapse);
     }
 }
 
