@@ -239,7 +239,7 @@ Differences differences(const NormalMap& a, const NormalMap& b, const NormalMap&
     return result;
 }
 
-// Models that others made, each with a normal map of its own: nothing is lost but what 8 bits lose.
+// Real models with their normal maps: there and back, only rounding to 8 bits changes a normal.
 TEST_F(ConvertNormals, RealModelsGoToObjectSpaceAndBack) {
     if (!fs::exists(kMeshes)) GTEST_SKIP() << "no shared data";
     struct Model {

@@ -11,10 +11,10 @@
 
 namespace tex {
 
-// Starts the program with these descriptors as number kFirstDescriptor and those that follow, with /dev/null as its
-// standard streams and no other descriptor, with no environment and default signals, and as the leader of its own
-// process group. A Ctrl-C at the terminal therefore reaches only the caller, and any process that the reader has
-// started ends with the reader. Returns 0 or an errno.
+// Starts the program in a new process group, with default signals and without an environment. Its standard streams are
+// /dev/null. The descriptors get the numbers from kFirstDescriptor on, and the program has no others. Because of the
+// process group, Ctrl-C at the terminal reaches only the caller, and any process that the reader starts ends with the
+// reader. Returns 0 or an errno.
 int spawn_reader(const std::string& program, std::vector<std::string> arguments, std::span<const int> descriptors,
                  pid_t& child);
 
