@@ -10,13 +10,14 @@
 #include <pthread.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cstddef>
 #include <mutex>
 #include <vector>
 
-#include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 #include <tex/result.h>
 
 #if defined(__SANITIZE_THREAD__)
@@ -30,11 +31,16 @@ inline char fork_moment = 0;
 inline char join_moment = 0;
 inline void happens_before(char& moment) { __tsan_release(&moment); }
 inline void happens_after(char& moment) { __tsan_acquire(&moment); }
+// The threads of a group count down in it when they have finished, after their bodies.
+inline void happens_after(tbb::task_group& group) {
+    for (std::size_t k = 0; k < sizeof(group); k += 8) __tsan_acquire(reinterpret_cast<char*>(&group) + k);
+}
 #else
 inline constexpr char fork_moment = 0;
 inline constexpr char join_moment = 0;
 inline void happens_before(char) {}
 inline void happens_after(char) {}
+inline void happens_after(const tbb::task_group&) {}
 #endif
 
 // The Error if fork_join() throws std::runtime_error, which comes from TBB: threads that could be started a moment ago
@@ -70,9 +76,9 @@ inline bool threads_can_start(int count) {
     return started == threads.size();
 }
 
-// Calls body(k) for every k in [0, count), on up to `threads` threads, started approximately in order, and returns when
-// all calls have returned. If the system refuses threads, the calls run one after the other on this thread.
-// Precondition: 2 <= threads <= what tbb::global_control allows (TBB would print a warning to stderr).
+// Calls body(k) for every k in [0, count), on up to `threads` threads, started in order, and returns when all calls
+// have returned. If the system refuses threads, the calls run one after the other on this thread. Precondition: 2 <=
+// threads <= what tbb::global_control allows (TBB would print a warning to stderr).
 template <class Body>
 void fork_join(int threads, int count, const Body& body) {
     const auto allowed =
@@ -81,18 +87,20 @@ void fork_join(int threads, int count, const Body& body) {
         for (int k = 0; k < count; ++k) body(k);
         return;
     }
+    std::atomic<int> next{0};
+    const auto work = [&] {
+        happens_after(fork_moment);
+        for (int k = next.fetch_add(1); k < count; k = next.fetch_add(1)) body(k);
+        happens_before(join_moment);
+    };
+    tbb::task_group group;
     happens_before(fork_moment);
     tbb::task_arena(threads).execute([&] {
-        tbb::parallel_for(
-            tbb::blocked_range<int>(0, count, 1),
-            [&](const tbb::blocked_range<int>& range) {
-                happens_after(fork_moment);
-                for (int k = range.begin(); k < range.end(); ++k) body(k);
-                happens_before(join_moment);
-            },
-            tbb::simple_partitioner());
+        for (int k = 1; k < std::min(threads, count); ++k) group.run(work);
+        group.run_and_wait(work);
     });
     happens_after(join_moment);
+    happens_after(group);
 }
 
 }  // namespace tex
