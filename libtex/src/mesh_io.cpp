@@ -3,8 +3,9 @@
 #include <tex/mesh_io.h>
 
 #include <cstddef>
-#include <span>
+#include <filesystem>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -37,6 +38,12 @@ Result<std::vector<std::byte>> read_all(const std::string& path, const MeshReadO
     return file->read_rest(options.max_bytes);
 }
 
+// The path of a file that the mesh at `path` names.
+std::string beside(const std::string& path, const std::string& name) {
+    const std::size_t slash = path.rfind('/');
+    return slash == std::string::npos ? name : path.substr(0, slash + 1) + name;
+}
+
 }  // namespace
 
 Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options) {
@@ -45,12 +52,30 @@ Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options) 
         if (!bytes) return bytes.error();
         const LoadBeside load = [&](const std::string& name) -> Result<std::vector<std::byte>> {
             if (path == "-") return Error{ErrorCode::unsupported, path, "has buffers in other files: " + name};
-            const std::size_t slash = path.rfind('/');
-            return read_all(slash == std::string::npos ? name : path.substr(0, slash + 1) + name, options);
+            return read_all(beside(path, name), options);
         };
         auto mesh = parse(*bytes, load);
         if (!mesh) return mesh.error().of(path);
         return mesh;
+    });
+}
+
+Result<std::vector<std::string>> mesh_files(const std::string& path, const MeshReadOptions& options) {
+    return guarded([&]() -> Result<std::vector<std::string>> {
+        std::vector<std::string> files = {path};
+        std::error_code error;
+        if (path == "-" || (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)))
+            return files;
+        const auto bytes = read_all(path, options);
+        if (!bytes) return bytes.error();
+        if (!is_gltf(*bytes)) return files;
+        const auto names = gltf_buffer_files(*bytes);
+        if (!names) return names.error().of(path);
+        for (const std::string& name : *names) {
+            if (std::string file = beside(path, name); std::filesystem::exists(file, error))
+                files.push_back(std::move(file));
+        }
+        return files;
     });
 }
 

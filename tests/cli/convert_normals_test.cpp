@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <thread>
 
 #include <gtest/gtest.h>
 #include <tex/tex.h>
@@ -10,6 +12,7 @@
 
 #include "cli/meshes.h"
 #include "cli/program.h"
+#include "unit/gltf_files.h"
 
 namespace tex::cli {
 namespace {
@@ -136,6 +139,30 @@ TEST_F(ConvertNormals, WritesWhatPackNormalsWrites) {
     EXPECT_EQ(scratch_.read("d"), "zstd.ktx2: \\\n  n.exr \\\n  sheet.obj\n");
     const auto same = go("convert-normals", {"-", "-o", "-", "--container", "png", "--mesh", "sheet.obj"});
     EXPECT_EQ(same.code, 2);
+}
+
+TEST_F(ConvertNormals, UpdatesIfABufferBesideTheMeshHasChanged) {
+    const auto made = [this] {
+        const Ran ran = does("convert-normals", {"n.exr", "-o", "o.exr", "--mesh", "m.gltf", "--to", "object",
+                                                 "--update", "--depfile", "d", "--json"});
+        return nlohmann::json::parse(ran.out).value("status", std::string());
+    };
+    const auto write_mesh = [this](float tilt) {
+        GltfMaker maker;
+        maker.add(std::vector<float>{0, 0, 0, 1, 0, tilt, 0, 1, 0}, "VEC3", 5126);
+        maker.add(std::vector<float>{-tilt, 0, 1, -tilt, 0, 1, -tilt, 0, 1}, "VEC3", 5126);
+        maker.add(std::vector<float>{0, 1, 1, 1, 0, 0}, "VEC2", 5126);
+        maker.uri = R"("uri":"m.bin",)";
+        scratch_.write("m.bin", maker.binary);
+        return maker.json(R"({"attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2}})");
+    };
+    scratch_.write("m.gltf", write_mesh(0.0f));
+    EXPECT_EQ(made(), "made");
+    EXPECT_NE(scratch_.read("d").find("m.bin"), std::string::npos);
+    EXPECT_EQ(made(), "current");
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    write_mesh(0.5f);
+    EXPECT_EQ(made(), "made");
 }
 
 TEST_F(ConvertNormals, WarnsOfOverlapsOrRefusesThem) {

@@ -181,6 +181,24 @@ TEST_F(MeshIo, ReadsBuffersBesideTheFileAndInUris) {
     EXPECT_FALSE(decode_data_uri("data:;base64,A?=="));
 }
 
+TEST_F(MeshIo, NamesTheFilesThatAMeshConsistsOf) {
+    GltfMaker maker = square();
+    const std::string bin = write("sub dir/a.bin", maker.binary);
+    maker.uri = "\"uri\":\"sub%20dir/a.bin\",";
+    const std::string text = write("m.gltf", maker.json(kPrimitive));
+    const std::string glb = write("m.glb", GltfMaker::glb_of(maker.json(kPrimitive), ""));
+    for (const std::string& mesh : {text, glb}) {
+        const auto files = mesh_files(mesh);
+        ASSERT_TRUE(files) << files.error().reason;
+        EXPECT_EQ(*files, (std::vector<std::string>{mesh, bin}));
+    }
+    EXPECT_EQ(mesh_files(bin).value(), std::vector<std::string>{bin});
+    EXPECT_EQ(mesh_files("-").value(), std::vector<std::string>{"-"});
+    fs::remove(bin);
+    EXPECT_EQ(mesh_files(text).value(), std::vector<std::string>{text});
+    EXPECT_EQ(mesh_files(bin).error().code, ErrorCode::io);
+}
+
 TEST_F(MeshIo, OpensNoFileOutsideOfItsFolder) {
     for (const std::string uri : {"../a.bin", "sub/../../a.bin", "/etc/passwd", "file:///etc/passwd", "%2e%2e/a.bin",
                                   "http://example.com/a", "a\\\\b", "%00", "", "."}) {

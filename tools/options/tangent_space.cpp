@@ -2,6 +2,7 @@
 
 #include "options/tangent_space.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <system_error>
@@ -16,6 +17,12 @@ namespace tex::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+// The files of a mesh. If it cannot be read, only the file itself: reading it will say why.
+std::vector<std::string> files_of(const std::string& mesh) {
+    auto files = mesh_files(mesh);
+    return files ? std::move(*files) : std::vector<std::string>{mesh};
+}
 
 // The option that avoids an error of select_part().
 Error with_option(const Error& error) {
@@ -88,9 +95,22 @@ void TangentSpaceOptions::check(const Command& command) const {
 }
 
 std::vector<std::string> TangentSpaceOptions::files() const {
-    std::vector<std::string> files = {mesh_};
-    if (!to_mesh_.empty()) files.push_back(to_mesh_);
+    std::vector<std::string> files = files_of(mesh_);
+    if (to_mesh_.empty()) return files;
+    for (std::string& file : files_of(to_mesh_)) {
+        if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(std::move(file));
+    }
     return files;
+}
+
+TangentSpaceOptions::FileState TangentSpaceOptions::FileState::of(const std::string& file) {
+    std::error_code error;
+    return {file, fs::last_write_time(file, error), fs::file_size(file, error)};
+}
+
+bool TangentSpaceOptions::Loaded::is_current() const {
+    return part && std::all_of(files.begin(), files.end(),
+                               [](const FileState& state) { return FileState::of(state.file) == state; });
 }
 
 Result<MeshSpace> TangentSpaceOptions::input(const Execution& execution) const {
@@ -104,18 +124,17 @@ Result<MeshSpace> TangentSpaceOptions::output(const Execution& execution) const 
 Result<MeshSpace> TangentSpaceOptions::read(const std::string& file, std::optional<TangentSource> tangents,
                                             Decoder decoder, const Execution& execution) const {
     const std::lock_guard lock(mutex_);
-    std::error_code error;
-    const fs::file_time_type time = fs::last_write_time(file, error);
-    const std::uintmax_t size = fs::file_size(file, error);
     Loaded& loaded = loaded_[{file, tangents}];
-    if (!loaded.part || loaded.time != time || loaded.size != size) {
+    if (!loaded.is_current()) {
+        std::vector<FileState> files;
+        for (const std::string& one : files_of(file)) files.push_back(FileState::of(one));
         const auto mesh = read_mesh(file);
         if (!mesh) return mesh.error().of(file);
         MeshSelection selection = selection_;
         selection.tangents = tangents;
         auto selected = select_part(*mesh, selection, execution);
         if (!selected) return with_option(selected.error()).of(file);
-        loaded = {time, size, std::make_shared<const SelectedPart>(std::move(*selected))};
+        loaded = {std::move(files), std::make_shared<const SelectedPart>(std::move(*selected))};
     }
     return MeshSpace(loaded.part, decoder, file);
 }

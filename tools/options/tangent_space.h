@@ -54,7 +54,7 @@ public:
 
     void add(Command& command);
 
-    // The mesh files.
+    // The mesh files, with those that hold buffers of them.
     [[nodiscard]] std::vector<std::string> files() const;
 
     // Reads the mesh of the input or of the output. Jobs share a mesh; it is read again if the file has changed. Any
@@ -68,11 +68,20 @@ private:
     [[nodiscard]] Result<MeshSpace> read(const std::string& file, std::optional<TangentSource> tangents,
                                          Decoder decoder, const Execution& execution) const;
 
-    // A mesh that was read, and the state of its file before.
-    struct Loaded {
+    struct FileState {
+        std::string file;
         std::filesystem::file_time_type time;
         std::uintmax_t size = 0;
+
+        [[nodiscard]] static FileState of(const std::string& file);
+        friend bool operator==(const FileState&, const FileState&) = default;
+    };
+    // A mesh that was read, and the states of its files before.
+    struct Loaded {
+        std::vector<FileState> files;
         std::shared_ptr<const SelectedPart> part;
+
+        [[nodiscard]] bool is_current() const;
     };
 
     std::string mesh_, to_mesh_;

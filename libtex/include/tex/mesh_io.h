@@ -17,6 +17,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include <tex/mesh.h>
 #include <tex/result.h>
@@ -43,6 +44,13 @@ struct MeshReadOptions {
 // No file content makes this function crash or hang. The memory that it uses stays in proportion to the bytes that the
 // files hold, not to what they claim.
 [[nodiscard]] Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options = {});
+
+// The files that read_mesh() may read for this path: `path` itself, then the existing files that hold buffers of a glTF
+// file, each once. A mesh is the same as long as these files are. Only `path` if it is "-" or not a regular file, which
+// can be read only once.
+//
+// Errors: those of read_mesh(), as far as the glTF file without its buffers causes them.
+[[nodiscard]] Result<std::vector<std::string>> mesh_files(const std::string& path, const MeshReadOptions& options = {});
 
 }  // namespace tex
 #pragma GCC visibility pop

@@ -292,6 +292,23 @@ bool is_gltf(std::span<const std::byte> head) {
     return text.starts_with("glTF") || (first != std::string_view::npos && text[first] == '{');
 }
 
+Result<std::vector<std::string>> gltf_buffer_files(std::span<const std::byte> bytes) {
+    const auto chunks = split(bytes);
+    if (!chunks) return chunks.error();
+    const auto document = JsonDocument::parse(chunks->json);
+    if (!document) return document.error();
+    const JsonValue buffers = document->root()["buffers"];
+    std::vector<std::string> files;
+    for (std::size_t k = 0; k < buffers.size(); ++k) {
+        const std::optional<std::string> uri = buffers[k]["uri"].text();
+        if (!uri || uri->starts_with("data:")) continue;
+        auto path = path_of_uri(*uri);
+        if (!path) return path.error();
+        if (std::find(files.begin(), files.end(), *path) == files.end()) files.push_back(std::move(*path));
+    }
+    return files;
+}
+
 Result<Mesh> parse_gltf(std::span<const std::byte> bytes, const LoadBeside& load) {
     const auto chunks = split(bytes);
     if (!chunks) return chunks.error();
