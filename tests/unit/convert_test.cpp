@@ -13,87 +13,10 @@
 #include <tex/tangents.h>
 #include <tex/unpack.h>
 
-#include "unit/meshes.h"
-#include "unit/solids.h"
+#include "unit/convert_maps.h"
 
 namespace tex {
 namespace {
-
-Float3 vector_at(const NormalMap& map, int i, int j) { return {map.x.at(i, j), map.y.at(i, j), map.z.at(i, j)}; }
-
-NormalMap constant_map(Extent extent, Float3 n) {
-    NormalMap map;
-    map.x = Plane<float>(extent, n.x);
-    map.y = Plane<float>(extent, n.y);
-    map.z = Plane<float>(extent, n.z);
-    return map;
-}
-
-NormalMap bumpy_map(Extent extent) {
-    NormalMap map(extent);
-    for (int j = 0; j < extent.height; ++j) {
-        for (int i = 0; i < extent.width; ++i) {
-            const Float3 n = unit_vector({0.6f * std::sin(0.3f * static_cast<float>(i)),
-                                          0.5f * std::cos(0.2f * static_cast<float>(j + i)), 1.0f});
-            map.x.at(i, j) = n.x;
-            map.y.at(i, j) = n.y;
-            map.z.at(i, j) = n.z;
-        }
-    }
-    return map;
-}
-
-double degrees_between(Float3 a, Float3 b) {
-    const double dx = static_cast<double>(a.x) - static_cast<double>(b.x),
-                 dy = static_cast<double>(a.y) - static_cast<double>(b.y),
-                 dz = static_cast<double>(a.z) - static_cast<double>(b.z);
-    return 2.0 * std::asin(std::min(1.0, std::sqrt(dx * dx + dy * dy + dz * dz) / 2.0)) * 57.29577951308232;
-}
-
-struct Angles {
-    double mean = 0.0, max = 0.0;
-    int texels = 0;
-};
-
-// Over the texels that triangles cover.
-Angles angles_between(const NormalMap& a, const NormalMap& b, const Plane<Coverage>& coverage) {
-    Angles angles;
-    for (int j = 0; j < a.extent().height; ++j) {
-        for (int i = 0; i < a.extent().width; ++i) {
-            if (coverage.at(i, j) != Coverage::triangle) continue;
-            const double angle = degrees_between(vector_at(a, i, j), vector_at(b, i, j));
-            ++angles.texels;
-            angles.mean += angle;
-            angles.max = std::max(angles.max, angle);
-        }
-    }
-    angles.mean /= std::max(1, angles.texels);
-    return angles;
-}
-
-int count(const ConvertedMap& converted, Coverage wanted) {
-    int texels = 0;
-    for (int j = 0; j < converted.map.extent().height; ++j) {
-        const Coverage* const row = converted.coverage.row(j);
-        texels += static_cast<int>(std::count(row, row + converted.map.extent().width, wanted));
-    }
-    return texels;
-}
-
-// A square in the middle of the map, with `triangles` copies of each of its two triangles.
-MeshPart square(float low, float high, int copies = 1) {
-    MeshPart part;
-    part.uvs.resize(1);
-    for (const auto& [x, y] : {std::pair{low, low}, {high, low}, {high, high}, {low, high}}) {
-        part.positions.push_back({x, y, 0.0f});
-        part.normals.push_back({0.0f, 0.0f, 1.0f});
-        part.uvs[0].push_back({x, y});
-    }
-    for (int k = 0; k < copies; ++k) {
-        for (const std::uint32_t v : {0u, 1u, 2u, 0u, 2u, 3u}) part.indices.push_back(v);
-    }
-    return part;
-}
 
 TEST(Convert, ReturnsToTheMapForEveryDecoder) {
     std::vector<MeshPart> parts = {wavy_part(20, true), wavy_part(3)};
@@ -119,43 +42,6 @@ TEST(Convert, ReturnsToTheMapForEveryDecoder) {
 }
 
 // A square of many triangles without overlaps or cracks: every texel belongs to exactly one triangle.
-TEST(Convert, CoversEveryTexelOnce) {
-    MeshPart part = wavy_part(13);
-    for (Float2& uv : part.uvs[0]) uv.y -= 0.125f * uv.x;  // the sheet's UVs are a whole square again
-    const auto tangents = make_tangents(part);
-    ASSERT_TRUE(tangents);
-    for (const float moved : {0.0f, 0.3f, -7.77f}) {  // the map repeats
-        for (Float2& uv : part.uvs[0]) uv = {uv.x + moved, uv.y - moved};
-        for (const Extent extent : {Extent{1, 1}, Extent{13, 13}, Extent{64, 64}, Extent{100, 37}}) {
-            const auto converted = to_object_space(bumpy_map(extent), {part, *tangents});
-            ASSERT_TRUE(converted);
-            EXPECT_LE(converted->overlaps, moved == 0.0f ? 0 : extent.height);
-            EXPECT_GE(converted->covered, extent.texels() - (moved == 0.0f ? 0 : extent.height));
-        }
-    }
-}
-
-// Inside the square, many triangles of random shapes meet in each vertex. No texel between them is missed or counted
-// twice.
-TEST(Convert, LeavesNoCracksBetweenOddTriangles) {
-    MeshPart part = wavy_part(24);
-    for (std::size_t k = 0; k < part.uvs[0].size(); ++k) {
-        Float2& uv = part.uvs[0][k];
-        uv.y -= 0.125f * uv.x;
-        const bool border = uv.x < 0.01f || uv.x > 0.99f || uv.y < 0.01f || uv.y > 0.99f;
-        const float shift = 0.012f * static_cast<float>(static_cast<int>(k * 2654435761u % 1000u) - 500) / 500.0f;
-        if (!border) uv = {uv.x + shift, uv.y + 0.7f * shift};
-    }
-    const auto tangents = make_tangents(part);
-    ASSERT_TRUE(tangents);
-    const auto converted = to_object_space(bumpy_map({257, 311}), {part, *tangents});
-    ASSERT_TRUE(converted);
-    EXPECT_EQ(converted->overlaps, 0);
-    EXPECT_EQ(converted->covered, 257 * 311);
-}
-
-// What a map shows that was made for one decoder and is read by another: mean and largest angle in degrees, on surfaces
-// that are flat. The table of convert-normals(1).
 struct Mismatch {
     const char* solid;
     Decoder made_for, read_by;
@@ -254,18 +140,6 @@ TEST(Convert, TurnsMirroredChartsTheRightWay) {
     }
 }
 
-TEST(Convert, LetsTheFirstOfSeveralTrianglesDecide) {
-    MeshPart part = square(0.25f, 0.75f, 3);
-    std::vector<Float4> tangents(6, {1.0f, 0.0f, 0.0f, 1.0f});
-    tangents.resize(part.indices.size(), {0.0f, 1.0f, 0.0f, 1.0f});
-    const auto converted = to_object_space(constant_map({16, 16}, {0.6f, 0.0f, 0.8f}), {part, tangents});
-    ASSERT_TRUE(converted);
-    EXPECT_EQ(converted->covered, 64);
-    EXPECT_EQ(converted->overlaps, 128);
-    EXPECT_FLOAT_EQ(converted->map.x.at(8, 8), 0.6f);
-    EXPECT_FLOAT_EQ(converted->map.y.at(8, 8), 0.0f);
-}
-
 TEST(Convert, MakesTexelsWithoutTangentSpaceFlat) {
     const MeshPart part = square(0.25f, 0.75f);
     for (const Float4& tangent : {Float4{0.0f, 0.0f, 1.0f, 1.0f}, Float4{0.0f, 0.0f, 0.0f, 1.0f}}) {
@@ -291,50 +165,6 @@ TEST(Convert, CountsNormalsThatPointIntoTheSurface) {
     ASSERT_TRUE(converted);
     EXPECT_EQ(converted->backward, 64);
     EXPECT_FLOAT_EQ(converted->map.z.at(8, 8), -0.8f);
-}
-
-TEST(Convert, PadsAsFarAsItIsAsked) {
-    const MeshPart part = square(0.25f, 0.75f);
-    const auto tangents = make_tangents(part);
-    ASSERT_TRUE(tangents);
-    const NormalMap map = constant_map({32, 32}, {0.6f, 0.0f, 0.8f});
-    const auto grown = [](int by) { return (16 + 2 * by) * (16 + 2 * by); };
-    for (const int padding : {0, 1, 2, 3, kPadAll}) {
-        const auto object = to_object_space(map, {part, *tangents}, {padding});
-        const auto tangent = to_tangent_space(map, {part, *tangents}, {padding});
-        ASSERT_TRUE(object && tangent);
-        EXPECT_EQ(count(*object, Coverage::triangle), 256);
-        EXPECT_EQ(count(*object, Coverage::none) == 0, padding == kPadAll);
-        EXPECT_EQ(count(*tangent, Coverage::none), padding == kPadAll ? 0 : count(*tangent, Coverage::none));
-        EXPECT_EQ(count(*tangent, Coverage::gutter), 0);
-        const int filled = 1024 - count(*object, Coverage::none);
-        if (padding <= 3) {
-            EXPECT_LE(filled, grown(padding)) << padding;
-            EXPECT_GE(filled, grown(padding) - 4 * padding * padding) << padding;  // corners are round
-        }
-        EXPECT_EQ(object->map.x.at(0, 0), padding == kPadAll ? object->map.x.at(8, 8) : 0.0f);
-        EXPECT_EQ(object->map.z.at(0, 0), padding == kPadAll ? object->map.z.at(8, 8) : 1.0f);
-    }
-}
-
-// Beyond its edge, a curved sheet goes on bending for two texels, and then stays as it is.
-TEST(Convert, ContinuesTrianglesInTheGutter) {
-    MeshPart part = wavy_part(2);
-    for (Float2& uv : part.uvs[0]) uv = {0.25f + 0.5f * uv.x, 0.25f + 0.5f * uv.y};
-    const auto tangents = make_tangents(part);
-    ASSERT_TRUE(tangents);
-    const auto object = to_object_space(constant_map({64, 64}, {0.0f, 0.0f, 1.0f}), {part, *tangents});
-    ASSERT_TRUE(object);
-    const int j = 30;
-    int left = 0;
-    while (object->coverage.at(left, j) != Coverage::triangle) ++left;
-    ASSERT_EQ(object->coverage.at(left - 1, j), Coverage::gutter);
-    ASSERT_EQ(object->coverage.at(left - 2, j), Coverage::gutter);
-    ASSERT_EQ(object->coverage.at(left - 3, j), Coverage::padding);
-    const auto x = [&](int i) { return object->map.x.at(left + i, j); };
-    EXPECT_NEAR(x(-1) - x(0), x(0) - x(1), 3e-3f);
-    EXPECT_NEAR(x(-2) - x(-1), x(0) - x(1), 3e-3f);
-    EXPECT_LT(std::abs(x(-3) - x(-2)), 0.5f * std::abs(x(0) - x(1)));
 }
 
 TEST(Convert, MakesUnitVectorsOfTrianglesThatNobodyWouldModel) {

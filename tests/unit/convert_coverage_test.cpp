@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which triangle decides about a texel, and what the texels get that none covers.
+
+#include <functional>
+
+#include <gtest/gtest.h>
+#include <tex/tangents.h>
+
+#include "unit/convert_maps.h"
+
+namespace tex {
+namespace {
+
+TEST(ConvertCoverage, CoversEveryTexelOnce) {
+    MeshPart part = wavy_part(13);
+    for (Float2& uv : part.uvs[0]) uv.y -= 0.125f * uv.x;  // the sheet's UVs are a whole square again
+    const auto tangents = make_tangents(part);
+    ASSERT_TRUE(tangents);
+    for (const float moved : {0.0f, 0.3f, -7.77f}) {  // the map repeats
+        for (Float2& uv : part.uvs[0]) uv = {uv.x + moved, uv.y - moved};
+        for (const Extent extent : {Extent{1, 1}, Extent{13, 13}, Extent{64, 64}, Extent{100, 37}}) {
+            const auto converted = to_object_space(bumpy_map(extent), {part, *tangents});
+            ASSERT_TRUE(converted);
+            EXPECT_LE(converted->overlaps, moved == 0.0f ? 0 : extent.height);
+            EXPECT_GE(converted->covered, extent.texels() - (moved == 0.0f ? 0 : extent.height));
+        }
+    }
+}
+
+// Inside the square, many triangles of random shapes meet in each vertex. No texel between them is missed or counted
+// twice.
+TEST(ConvertCoverage, LeavesNoCracksBetweenOddTriangles) {
+    MeshPart part = wavy_part(24);
+    for (std::size_t k = 0; k < part.uvs[0].size(); ++k) {
+        Float2& uv = part.uvs[0][k];
+        uv.y -= 0.125f * uv.x;
+        const bool border = uv.x < 0.01f || uv.x > 0.99f || uv.y < 0.01f || uv.y > 0.99f;
+        const float shift = 0.012f * static_cast<float>(static_cast<int>(k * 2654435761u % 1000u) - 500) / 500.0f;
+        if (!border) uv = {uv.x + shift, uv.y + 0.7f * shift};
+    }
+    const auto tangents = make_tangents(part);
+    ASSERT_TRUE(tangents);
+    const auto converted = to_object_space(bumpy_map({257, 311}), {part, *tangents});
+    ASSERT_TRUE(converted);
+    EXPECT_EQ(converted->overlaps, 0);
+    EXPECT_EQ(converted->covered, 257 * 311);
+}
+
+// What a map shows that was made for one decoder and is read by another: mean and largest angle in degrees, on surfaces
+// that are flat. The table of convert-normals(1).
+TEST(ConvertCoverage, LetsTheFirstOfSeveralTrianglesDecide) {
+    MeshPart part = square(0.25f, 0.75f, 3);
+    std::vector<Float4> tangents(6, {1.0f, 0.0f, 0.0f, 1.0f});
+    tangents.resize(part.indices.size(), {0.0f, 1.0f, 0.0f, 1.0f});
+    const auto converted = to_object_space(constant_map({16, 16}, {0.6f, 0.0f, 0.8f}), {part, tangents});
+    ASSERT_TRUE(converted);
+    EXPECT_EQ(converted->covered, 64);
+    EXPECT_EQ(converted->overlaps, 128);
+    EXPECT_FLOAT_EQ(converted->map.x.at(8, 8), 0.6f);
+    EXPECT_FLOAT_EQ(converted->map.y.at(8, 8), 0.0f);
+}
+
+TEST(ConvertCoverage, PadsAsFarAsItIsAsked) {
+    const MeshPart part = square(0.25f, 0.75f);
+    const auto tangents = make_tangents(part);
+    ASSERT_TRUE(tangents);
+    const NormalMap map = constant_map({32, 32}, {0.6f, 0.0f, 0.8f});
+    const auto grown = [](int by) { return (16 + 2 * by) * (16 + 2 * by); };
+    for (const int padding : {0, 1, 2, 3, kPadAll}) {
+        const auto object = to_object_space(map, {part, *tangents}, {padding});
+        const auto tangent = to_tangent_space(map, {part, *tangents}, {padding});
+        ASSERT_TRUE(object && tangent);
+        EXPECT_EQ(count(*object, Coverage::triangle), 256);
+        EXPECT_EQ(count(*object, Coverage::none) == 0, padding == kPadAll);
+        EXPECT_EQ(count(*tangent, Coverage::none), padding == kPadAll ? 0 : count(*tangent, Coverage::none));
+        EXPECT_EQ(count(*tangent, Coverage::gutter), 0);
+        const int filled = 1024 - count(*object, Coverage::none);
+        if (padding <= 3) {
+            EXPECT_LE(filled, grown(padding)) << padding;
+            EXPECT_GE(filled, grown(padding) - 4 * padding * padding) << padding;  // corners are round
+        }
+        EXPECT_EQ(object->map.x.at(0, 0), padding == kPadAll ? object->map.x.at(8, 8) : 0.0f);
+        EXPECT_EQ(object->map.z.at(0, 0), padding == kPadAll ? object->map.z.at(8, 8) : 1.0f);
+    }
+}
+
+// Beyond its edge, a curved sheet goes on bending for two texels, and then stays as it is.
+TEST(ConvertCoverage, ContinuesTrianglesInTheGutter) {
+    MeshPart part = wavy_part(2);
+    for (Float2& uv : part.uvs[0]) uv = {0.25f + 0.5f * uv.x, 0.25f + 0.5f * uv.y};
+    const auto tangents = make_tangents(part);
+    ASSERT_TRUE(tangents);
+    const auto object = to_object_space(constant_map({64, 64}, {0.0f, 0.0f, 1.0f}), {part, *tangents});
+    ASSERT_TRUE(object);
+    const int j = 30;
+    int left = 0;
+    while (object->coverage.at(left, j) != Coverage::triangle) ++left;
+    ASSERT_EQ(object->coverage.at(left - 1, j), Coverage::gutter);
+    ASSERT_EQ(object->coverage.at(left - 2, j), Coverage::gutter);
+    ASSERT_EQ(object->coverage.at(left - 3, j), Coverage::padding);
+    const auto x = [&](int i) { return object->map.x.at(left + i, j); };
+    EXPECT_NEAR(x(-1) - x(0), x(0) - x(1), 3e-3f);
+    EXPECT_NEAR(x(-2) - x(-1), x(0) - x(1), 3e-3f);
+    EXPECT_LT(std::abs(x(-3) - x(-2)), 0.5f * std::abs(x(0) - x(1)));
+}
+
+}  // namespace
+}  // namespace tex
