@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // eac_bench: EAC RG11 beside BC5 and DXT5nm, at every effort: speed on one thread, and the angle to the map.
 //
-//     eac_bench
+//     eac_bench [ENCODER.so]
 //
-// The maps are those of encode_bench; angles are means over a map, and "pooled" is their mean over the maps. Times are
-// processor time on one thread, the median of several runs, without reading the maps. Errors are those of our decoder.
+// The maps are those of encode_bench; angles are means over a map. Times are processor time on one thread, the median
+// of several runs, without reading the maps. Errors are those of our decoder. ENCODER.so, another encoder of EAC RG11,
+// has the function that encode_bench describes.
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <string>
 #include <vector>
+
+#include <dlfcn.h>
 
 #include "bench/encode_maps.h"
 #include "kernels/encode.h"
@@ -18,9 +23,12 @@ namespace {
 
 using namespace bench;
 
+using EncodeFunction = void(const std::uint8_t* rgba, int width, int height, std::size_t pitch, std::uint8_t* blocks);
+
 struct Row {
     tex::Encoding encoding;
     tex::Effort effort;
+    EncodeFunction* other = nullptr;  // another encoder instead of ours
     double seconds = 0;
     double angle = 0, p999 = 0;  // sums over the maps
 };
@@ -30,7 +38,11 @@ double encode(const Map& map, const Row& row, std::vector<std::byte>& blocks) {
     std::vector<double> seconds;
     for (int run = 0; run < (row.effort == tex::Effort::best ? 1 : 3); ++run) {
         const double start = processor_seconds();
-        for (int j = 0; j < map.height; j += 4) {
+        for (int repeat = 0; row.other != nullptr && repeat < repeats; ++repeat) {
+            row.other(map.rgba8.data(), map.width, map.height, static_cast<std::size_t>(map.width) * 4,
+                      reinterpret_cast<std::uint8_t*>(blocks.data()));
+        }
+        for (int j = 0; row.other == nullptr && j < map.height; j += 4) {
             tex::BlockRow rows;
             for (int k = 0; k < 4; ++k) {
                 rows.x[k] = map.normals.x.row(j + k);
@@ -86,7 +98,7 @@ void add_angles(const Map& map, std::vector<std::byte> blocks, Row& row) {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
     std::vector<Map> maps;
     add_usual_maps(maps);
     if (maps.empty()) return 3;
@@ -94,6 +106,15 @@ int main() {
     for (const tex::Encoding encoding :
          {tex::Encoding::eac_rg11, tex::Encoding::eac_rg11_snorm, tex::Encoding::bc5, tex::Encoding::dxt5nm}) {
         for (const auto& effort : tex::kEffortNames) rows.push_back({encoding, effort.value});
+    }
+    if (argc > 1) {
+        void* const library = dlopen(argv[1], RTLD_NOW);
+        void* const symbol = library != nullptr ? dlsym(library, "encode") : nullptr;
+        if (symbol == nullptr) {
+            std::fprintf(stderr, "%s\n", dlerror());
+            return 2;
+        }
+        rows.push_back({tex::Encoding::eac_rg11, tex::Effort::fast, reinterpret_cast<EncodeFunction*>(symbol)});
     }
     double texels = 0;
     for (const Map& map : maps) {
@@ -115,8 +136,8 @@ int main() {
         const double speed = texels / row.seconds * 1e-6;
         std::printf("| %s | %s | %.*f | %.3f | %.2f |\n",
                     std::string(tex::name_of(tex::kEncodingNames, row.encoding)).c_str(),
-                    std::string(tex::name_of(tex::kEffortNames, row.effort)).c_str(), speed < 20 ? 1 : 0, speed,
-                    row.angle / count, row.p999 / count);
+                    row.other != nullptr ? argv[1] : std::string(tex::name_of(tex::kEffortNames, row.effort)).c_str(),
+                    speed < 20 ? 1 : 0, speed, row.angle / count, row.p999 / count);
     }
     return 0;
 }
