@@ -142,8 +142,9 @@ void expect_optimal(const std::vector<BlockTexels>& texels, EacCodes codes) {
     }
 }
 
+// With the real blocks below, more than 10,000 blocks.
 TEST(EacSearch, FindsTheOptimumOfEveryBlock) {
-    for (const EacCodes codes : {kEacUnorm, kEacSnorm}) expect_optimal(special_blocks(codes.top, 150), codes);
+    for (const EacCodes codes : {kEacUnorm, kEacSnorm}) expect_optimal(special_blocks(codes.top, 350), codes);
 }
 
 TEST(EacSearch, StoresEveryCodeOfABlockOfOneValue) {
@@ -163,7 +164,7 @@ TEST(EacSearch, FindsTheOptimumOfRealBlocks) {
     TEX_NEEDS_SHARED_DATA();
     for (const EacCodes codes : {kEacUnorm, kEacSnorm}) {
         std::vector<BlockTexels> blocks;
-        add_real_blocks(codes.top, 60, blocks);
+        add_real_blocks(codes.top, 100, blocks);
         expect_optimal(blocks, codes);
     }
 }
@@ -236,6 +237,21 @@ TEST(EacEncode, NoEffortIsWorseThanACheaperOne) {
         EXPECT_LT(normal, 1.15 * best);
         EXPECT_LT(fast, 2.0 * best);
     }
+}
+
+// Coarse maps: two or three values, 8 or 9 codes of 8 bits apart. Palettes in the middle of such a range miss them.
+TEST(EacEncode, FastFitsFewValuesFarApart) {
+    std::vector<float> values(4 * kWidth);
+    std::mt19937 random(9);
+    for (int block = 0; 4 * block < kWidth; ++block) {
+        const int first = 64 + static_cast<int>(random() % 128), step = 8 + static_cast<int>(random() % 2);
+        for (int k = 0; k < 16; ++k) {
+            const int i = std::min(4 * block + k % 4, kWidth - 1), code = first + step * static_cast<int>(random() % 3);
+            values[static_cast<std::size_t>(k / 4 * kWidth + i)] = static_cast<float>(code) / 127.5f - 1.0f;
+        }
+    }
+    const double fast = error_of(values, encode_rows(values, Encoding::eac_rg11, Effort::fast), Encoding::eac_rg11);
+    EXPECT_LT(std::sqrt(fast / (8.0 * kWidth)) * 127.5, 0.75);  // in codes of 8 bits
 }
 
 }  // namespace

@@ -26,7 +26,11 @@ struct Trial {
     int table;
     int width;
 };
-constexpr Trial kTrials[] = {{13, 5}, {9, 19}, {2, 24}, {15, 17}, {11, 19}, {0, 27}, {10, 19}, {4, 22}};
+constexpr Trial kTrials[] = {{13, 5}, {9, 19},  {2, 24}, {15, 17}, {11, 19},
+                             {0, 27}, {10, 19}, {4, 22}, {8, 19},  {1, 24}};
+
+// Twice the distance of upper entry `k` of a table from the middle of its palette, for a multiplier of 1.
+constexpr int odd(int table, int k) { return 2 * kEacModifiers[table][4 + k] + 1; }
 
 }  // namespace
 }  // namespace tex
@@ -73,22 +77,29 @@ public:
         const W middle = hn::AverageRound(greatest_, least_);
         const W base =
             hn::ShiftRight<7>(hn::SaturatedSub(hn::Add(hn::Add(middle, scale), word(64)), word(16 * codes_.middle)));
-        offer(trial.table, hn::Min(base, word(codes_.bases - 1)), multiplier, scale);
+        W odds[4];
+        for (int k = 0; k < 4; ++k) odds[k] = word(odd(trial.table, k));
+        offer(word(trial.table), odds, hn::Min(base, word(codes_.bases - 1)), multiplier, scale);
+    }
+
+    // Tries the bases beside the best one. Texels of 8 bits are further apart than bases, so that a palette that is not
+    // in the middle of the range may fit them better.
+    HWY_INLINE void try_bases() {
+        W odds[4];
+        best_odds(odds);
+        const EacChoice best = best_;
+        const W above = hn::Min(hn::Add(best.base, word(1)), word(codes_.bases - 1));
+        offer(best.table, odds, above, best.multiplier, best.scale);
+        offer(best.table, odds, hn::SaturatedSub(best.base, word(1)), best.multiplier, best.scale);
     }
 
     HWY_INLINE BlockWords encode() const {
         const Words d;
+        W odds[4];
+        best_odds(odds);
         // The middles between the distances of the entries from the centre.
         W middles[3];
-        for (int k = 0; k < 3; ++k) {
-            W factor = hn::Zero(d);
-            for (const Trial& trial : kTrials) {
-                const int* modifiers = kEacModifiers[trial.table] + 4;
-                factor = hn::IfThenElse(hn::Eq(best_.table, word(trial.table)),
-                                        word(modifiers[k] + modifiers[k + 1] + 1), factor);
-            }
-            middles[k] = hn::Mul(factor, best_.scale);
-        }
+        for (int k = 0; k < 3; ++k) middles[k] = hn::Mul(hn::ShiftRight<1>(hn::Add(odds[k], odds[k + 1])), best_.scale);
         BlockWords block;
         const W first = hn::And(hn::Sub(best_.base, word(codes_.bias)), word(0xFF));
         const W second = hn::Or(hn::ShiftLeft<4>(best_.multiplier), best_.table);
@@ -111,11 +122,20 @@ public:
     }
 
 private:
-    HWY_INLINE void offer(int table, W base, W multiplier, W scale) {
+    // odd() of the best table of each block.
+    HWY_INLINE void best_odds(W odds[4]) const {
+        for (int k = 0; k < 4; ++k) {
+            odds[k] = hn::Zero(Words());
+            for (const Trial& trial : kTrials)
+                odds[k] = hn::IfThenElse(hn::Eq(best_.table, word(trial.table)), word(odd(trial.table, k)), odds[k]);
+        }
+    }
+
+    HWY_INLINE void offer(W table, const W odds[4], W base, W multiplier, W scale) {
         const S centre =
             hn::Sub(as_signed(hn::Add(hn::ShiftLeft<7>(base), word(16 * codes_.middle))), as_signed(scale));
         S distances[4];
-        for (int k = 0; k < 4; ++k) distances[k] = as_signed(hn::Mul(scale, word(2 * kEacModifiers[table][4 + k] + 1)));
+        for (int k = 0; k < 4; ++k) distances[k] = as_signed(hn::Mul(scale, odds[k]));
         W error = hn::Zero(Words());
         for (int n = 0; n < 16; ++n) {
             const S u = hn::Abs(hn::Sub(as_signed(v_[n]), centre));
@@ -128,7 +148,7 @@ private:
         best_.base = hn::IfThenElse(better, base, best_.base);
         best_.multiplier = hn::IfThenElse(better, multiplier, best_.multiplier);
         best_.scale = hn::IfThenElse(better, scale, best_.scale);
-        best_.table = hn::IfThenElse(better, word(table), best_.table);
+        best_.table = hn::IfThenElse(better, table, best_.table);
         best_.centre = as_signed(hn::IfThenElse(better, as_words(centre), as_words(best_.centre)));
     }
 
@@ -143,6 +163,7 @@ HWY_INLINE BlockWords fit_channel(const float* const rows[4], bool negate, EacCo
     load_texels(rows, static_cast<float>(codes.top) * 0.125f, negate, texels);
     EacFitter fitter(texels, codes);
     for (const Trial& trial : kTrials) fitter.try_table(trial);
+    fitter.try_bases();
     return fitter.encode();
 }
 
