@@ -18,26 +18,11 @@
 
 namespace {
 
-using bench::copy_row;
 using bench::count_texels;
 using tex::BlendMode;
 using tex::NormalMap;
 
-void BlendCopy(benchmark::State& state) {
-    const int size = static_cast<int>(state.range(0));
-    const NormalMap from = tex::fields::noise_normals({size, size});
-    NormalMap to = tex::fields::noise_normals({size, size});
-    for (auto _ : state) {
-        for (int j = 0; j < size; ++j) {
-            copy_row(from.x, j, to.x, j);
-            copy_row(from.y, j, to.y, j);
-            copy_row(from.z, j, to.z, j);
-            copy_row(from.y, j, to.x, j);
-        }
-        benchmark::ClobberMemory();
-    }
-    count_texels(state, {size, size});
-}
+void BlendCopy(benchmark::State& state) { bench::copy_maps(state, 1); }
 BENCHMARK(BlendCopy)->ArgName("size")->Arg(512)->Arg(2048);
 
 // In place, on rows that stay in the cache.

@@ -15,24 +15,10 @@
 
 namespace {
 
-using bench::copy_row;
 using bench::count_texels;
 using tex::NormalMap;
 
-void UnpackCopy(benchmark::State& state) {
-    const int size = static_cast<int>(state.range(0));
-    const NormalMap from = tex::fields::noise_normals({size, size});
-    NormalMap to = tex::fields::noise_normals({size, size});
-    for (auto _ : state) {
-        for (int j = 0; j < size; ++j) {
-            copy_row(from.x, j, to.x, j);
-            copy_row(from.y, j, to.y, j);
-            copy_row(from.z, j, to.z, j);
-        }
-        benchmark::ClobberMemory();
-    }
-    count_texels(state, {size, size});
-}
+void UnpackCopy(benchmark::State& state) { bench::copy_maps(state, 0); }
 BENCHMARK(UnpackCopy)->ArgName("size")->Arg(512)->Arg(4096);
 
 void Unpack(benchmark::State& state) {

@@ -15,10 +15,11 @@
 #include <cstdarg>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
 
 #include <tex/container.h>
+
+#include "unit/file_text.h"
 
 namespace {
 
@@ -100,17 +101,6 @@ int renameat2(int from_folder, const char* from, int to_folder, const char* to, 
 
 namespace tex {
 namespace {
-
-std::vector<std::byte> bytes_of(const std::string& text) {
-    const auto* data = reinterpret_cast<const std::byte*>(text.data());
-    return {data, data + text.size()};
-}
-
-std::string content(const std::string& path) {
-    std::stringstream text;
-    text << std::ifstream(path, std::ios::binary).rdbuf();
-    return text.str();
-}
 
 const std::string kOld = "old";
 const std::string kNew(100'000, 'n');

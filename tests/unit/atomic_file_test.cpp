@@ -16,25 +16,15 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
-#include <sstream>
 #include <thread>
 #include <vector>
 
 #include <tex/container.h>
 
+#include "unit/file_text.h"
+
 namespace tex {
 namespace {
-
-std::vector<std::byte> bytes_of(const std::string& text) {
-    const auto* data = reinterpret_cast<const std::byte*>(text.data());
-    return {data, data + text.size()};
-}
-
-std::string content(const std::string& path) {
-    std::stringstream text;
-    text << std::ifstream(path, std::ios::binary).rdbuf();
-    return text.str();
-}
 
 class AtomicFile : public testing::Test {
 protected:

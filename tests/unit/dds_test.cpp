@@ -303,17 +303,7 @@ TEST(Dds, IsMemorySafeAtEveryTruncation) {
 TEST(Dds, IsMemorySafeForEveryByteOfItsHeaderChanged) {
     for (const Format format : {Format::bc3_unorm, Format::rgb8_unorm, Format::rg16_unorm}) {
         const Bytes file = encode(patterned_texture(format, {9, 5}, 4));
-        for (std::size_t at = 4; at < 148; ++at) {
-            for (unsigned value = 0; value < 256; ++value) {
-                Bytes changed = file;
-                changed[at] = static_cast<std::byte>(value);
-                const auto texture = decode_bytes(changed);
-                if (!texture) continue;
-                for (const Level& level : texture->levels) {
-                    ASSERT_EQ(level.bytes.size(), level_bytes(texture->format, level.extent));
-                }
-            }
-        }
+        expect_safe_with_any_byte(file, 4, 148, [](const Bytes& changed) { return decode_bytes(changed); });
     }
 }
 

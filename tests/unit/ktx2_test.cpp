@@ -183,17 +183,7 @@ TEST(Ktx2, RejectsEveryTruncation) {
 TEST(Ktx2, IsMemorySafeForEveryByteOfItsHeadChanged) {
     const Bytes file = encode(encoded_texture(Encoding::dxt5nm, {9, 5}, 4));
     const std::size_t head = ktx2_layout(head_of(encoded_texture(Encoding::dxt5nm, {9, 5}, 4))).head.size();
-    for (std::size_t at = 12; at < head; ++at) {
-        for (unsigned value = 0; value < 256; ++value) {
-            Bytes changed = file;
-            changed[at] = static_cast<std::byte>(value);
-            const auto texture = decode_bytes(changed);
-            if (!texture) continue;
-            for (const Level& level : texture->levels) {
-                ASSERT_EQ(level.bytes.size(), level_bytes(texture->format, level.extent));
-            }
-        }
-    }
+    expect_safe_with_any_byte(file, 12, head, [](const Bytes& changed) { return decode_bytes(changed); });
 }
 
 }  // namespace

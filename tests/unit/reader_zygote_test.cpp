@@ -27,6 +27,7 @@
 #include <gtest/gtest.h>
 
 #include "formats/reader/reader_process.h"
+#include "unit/child_text.h"
 
 namespace tex {
 namespace {
@@ -141,22 +142,10 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 // What body() returns in its own process, whose zygote is another one.
 std::string apart(const std::function<std::string()>& body) {
-    int ends[2];
-    if (pipe(ends) != 0) return "no pipe";
-    const pid_t child = fork();
-    if (child == 0) {
+    return child_text([&](int out) {
         const std::string text = body();
-        _exit(write(ends[1], text.data(), text.size()) == static_cast<ssize_t>(text.size()) ? 0 : 1);
-    }
-    close(ends[1]);
-    std::string text;
-    char buffer[1000];
-    for (ssize_t n = 0; (n = read(ends[0], buffer, sizeof buffer)) > 0;)
-        text.append(buffer, static_cast<std::size_t>(n));
-    close(ends[0]);
-    int status = 0;
-    waitpid(child, &status, 0);
-    return status == 0 ? text : text + "ended with status " + std::to_string(status);
+        return write(out, text.data(), text.size()) == static_cast<ssize_t>(text.size()) ? 0 : 1;
+    });
 }
 
 }  // namespace

@@ -29,6 +29,7 @@
 #include <gtest/gtest.h>
 
 #include "reader.h"
+#include "unit/child_text.h"
 
 namespace tex::reader {
 namespace {
@@ -49,33 +50,15 @@ bool queue_signal(pid_t process) {
 
 // The names of the attempts that succeed after `prepare`, in a separate process.
 std::string possible(const std::function<bool()>& prepare, const std::vector<Attempt>& attempts) {
-    int ends[2];
-    if (pipe(ends) != 0) return "no pipe";
-    constexpr int kOutOfTheWay = 64;  // above kInputDescriptor
-    for (int& end : ends) {
-        const int low = std::exchange(end, fcntl(end, F_DUPFD, kOutOfTheWay));
-        close(low);
-    }
-    const pid_t child = fork();
-    if (child == 0) {
-        if (!prepare()) _exit(7);
+    return child_text([&](int out) {
+        if (!prepare()) return 7;
         for (const Attempt& attempt : attempts) {
             if (!attempt.succeeds()) continue;
             const std::string line = std::string(attempt.name) + "\n";
-            if (write(ends[1], line.data(), line.size()) < 0) _exit(8);
+            if (write(out, line.data(), line.size()) < 0) return 8;
         }
-        _exit(0);
-    }
-    close(ends[1]);
-    std::string text;
-    char buffer[1000];
-    for (ssize_t n = 0; (n = read(ends[0], buffer, sizeof buffer)) > 0;)
-        text.append(buffer, static_cast<std::size_t>(n));
-    close(ends[0]);
-    int status = 0;
-    waitpid(child, &status, 0);
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) text += "ended with status " + std::to_string(status);
-    return text;
+        return 0;
+    });
 }
 
 class Sandbox : public testing::Test {

@@ -14,6 +14,7 @@
 
 #include <gtest/gtest.h>
 #include <tex/mip_chain.h>
+#include <tex/result.h>
 #include <tex/texture.h>
 
 namespace tex {
@@ -71,5 +72,22 @@ inline Texture encoded_texture(Encoding encoding, Extent extent, int levels) {
 // Skips a test if the shared data do not exist.
 #define TEX_NEEDS_SHARED_DATA() \
     if (!std::filesystem::exists(tex::shared_data())) GTEST_SKIP() << "../shared/data is not there"
+
+// Changes the bytes [from, to) of a file one at a time to all values: decode_bytes() refuses the file, or its levels
+// have the sizes that they must have.
+template <class Decode>
+void expect_safe_with_any_byte(const std::vector<std::byte>& file, std::size_t from, std::size_t to,
+                               const Decode& decode_bytes) {
+    for (std::size_t at = from; at < to; ++at) {
+        for (unsigned value = 0; value < 256; ++value) {
+            std::vector<std::byte> changed = file;
+            changed[at] = static_cast<std::byte>(value);
+            const Result<Texture> texture = decode_bytes(changed);
+            if (!texture) continue;
+            for (const Level& level : texture->levels)
+                ASSERT_EQ(level.bytes.size(), level_bytes(texture->format, level.extent));
+        }
+    }
+}
 
 }  // namespace tex
