@@ -53,6 +53,7 @@ BakeNormals::BakeNormals(const cli::ProgramRow& row) : Converter(row) {
     reader_.heights.add(command);
     reader_.color.add(command);
     output.add(command, cli::default_encodings(), "up");
+    output.add_engines(command);
     mips_.add(command, false, "all in dds and ktx2, else none");
     running.add(command);
     command.example("bake-normals bricks.png -o bricks.dds --bumpiness 8", "A DXT5nm texture with all its mip levels.");
@@ -100,8 +101,9 @@ BakeFileOptions BakeNormals::options(cli::Job& job) const {
     options.bake = bake_;
     options.mip = mips_.options(mips_.levels_for(job.task), wrap_);
     constexpr bool kKnown = true;
-    options.pack = output.pack_options(output.format.value_or(default_encoding(job.task.container)), YAxis::up, kKnown);
-    options.write = output.write_options(job);
+    const cli::OutputOptions own = output.of(job.task.engine);
+    options.pack = own.pack_options(own.format.value_or(default_encoding(job.task.container)), YAxis::up, kKnown);
+    options.write = own.write_options(job);
     options.level_names = cli::level_names(job.task.output);
     options.slopes = running.json;
     return options;

@@ -57,6 +57,7 @@ BlendNormals::BlendNormals(const cli::ProgramRow& row) : NormalsConverter(row) {
     layers_.add(command);
     normals.add(command);
     output.add(command, "as in the base if it fits, else " + cli::default_encodings(), "as in the base");
+    output.add_engines(command);
     mips_.add(command, false, "all in dds and ktx2, else none");
     wrap_.add(command, "what lies beyond the base's border; two words set x and y separately");
     running.add(command);
@@ -100,11 +101,11 @@ BlendFileOptions BlendNormals::options(cli::Job& job) const {
     options.blend.wrap_x = wrap_.x;
     options.blend.wrap_y = wrap_.y;
     options.mip = mips_.options(mips_.levels_for(job.task), wrap_);
-    options.pack = [this, &job](const SourceInfo& base) {
-        return output.pack_options(output.format ? *output.format : cli::encoding_of(base, job.task), base.y_axis,
-                                   base.y_known);
+    const cli::OutputOptions own = output.of(job.task.engine);
+    options.pack = [own, &job](const SourceInfo& base) {
+        return own.pack_options(own.format ? *own.format : cli::encoding_of(base, job.task), base.y_axis, base.y_known);
     };
-    options.write = output.write_options(job);
+    options.write = own.write_options(job);
     options.level_names = cli::level_names(job.task.output);
     return options;
 }

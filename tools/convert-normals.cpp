@@ -46,6 +46,7 @@ ConvertNormals::ConvertNormals(const cli::ProgramRow& row) : NormalsConverter(ro
     normals.add(command, false);
     output.add(command, cli::default_encodings() + "; rgb8 in dds and ktx2 for object space",
                "as in the input; up if the space changes");
+    output.add_engines(command);
     mips_.add(command, false, "all in dds and ktx2, else none");
     running.add(command);
     command.example("convert-normals obj_n.exr -o rock_n.dds --mesh rock.glb --from object --decoder unreal --y down",
@@ -63,10 +64,12 @@ ConvertNormals::ConvertNormals(const cli::ProgramRow& row) : NormalsConverter(ro
         if (!conversion_.makes_object()) return;
         if (mips_.mip.fade || mips_.mip.domain == MipDomain::slope)
             throw cli::UsageError("--fade and --mip-domain slope need tangent space");
-        if (output.format && !holds_z(encoding_info(*output.format).swizzle)) {
+        for (const cli::Engine* const engine : output.engines_or_none()) {
+            const auto format = output.of(engine).format;
+            if (!format || holds_z(encoding_info(*format).swizzle)) continue;
             throw cli::UsageError(
                 fmt::format("--format {} stores no z, which object space needs; rgb8, rgba8, rgb16, half and float do",
-                            name_of(kEncodingNames, *output.format)));
+                            name_of(kEncodingNames, *format)));
         }
     });
 }
@@ -79,10 +82,12 @@ Result<void> ConvertNormals::check(const std::vector<cli::Task>& tasks) {
 // Object space has no direction of green by itself, so y stays up if the space changes.
 PackOptions ConvertNormals::packing(const SourceInfo& input, const cli::Task& task) const {
     const bool as_rgb = conversion_.makes_object() && can_hold_blocks(task.container);
-    const Encoding encoding = output.format.value_or(as_rgb ? Encoding::rgb8 : default_encoding(task.container));
+    cli::OutputOptions own = output.of(task.engine);
+    if (conversion_.makes_object()) own.y = output.y;  // engines expect a direction of green in tangent space alone
+    const Encoding encoding = own.format.value_or(as_rgb ? Encoding::rgb8 : default_encoding(task.container));
     if (conversion_.spaces.from == conversion_.spaces.to)
-        return output.pack_options(encoding, input.y_axis, input.y_known);
-    return output.pack_options(encoding, YAxis::up, !conversion_.makes_object());
+        return own.pack_options(encoding, input.y_axis, input.y_known);
+    return own.pack_options(encoding, YAxis::up, !conversion_.makes_object());
 }
 
 Result<void> ConvertNormals::process(cli::Job& job) {
@@ -104,7 +109,7 @@ Result<void> ConvertNormals::process(cli::Job& job) {
     auto texture = pack(*chain, pack_with, job.until(0.95));
     if (!texture) return texture.error();
     const Extent extent = texture->extent();
-    const auto written = cli::write_levels(job, std::move(*texture), output.write_options(job));
+    const auto written = cli::write_levels(job, std::move(*texture), output.of(job.task.engine).write_options(job));
     if (!written) return written.error();
     cli::report_texture(job, extent, written->levels, pack_with, written->bytes);
     return {};

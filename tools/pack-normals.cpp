@@ -26,6 +26,7 @@ private:
 PackNormals::PackNormals(const cli::ProgramRow& row) : Repacker(row) {
     add_files("normal maps; - is standard input");
     output.add(command, cli::default_encodings(), "as in the input");
+    output.add_engines(command);
     mips_.add(command, true, "keep");
     wrap_.add(command, "what lies beyond the border of levels that are built; two words set x and y separately");
     running.add(command);
@@ -37,13 +38,14 @@ PackNormals::PackNormals(const cli::ProgramRow& row) : Repacker(row) {
 
 Result<void> PackNormals::check(const std::vector<cli::Task>& tasks) {
     mips_.check(tasks);
-    mips_.check_builds(command);
+    mips_.check_builds(command, tasks);
     return {};
 }
 
-PackFileOptions PackNormals::options(cli::Job&) const {
+PackFileOptions PackNormals::options(cli::Job& job) const {
     PackFileOptions options;
-    if (!mips_.keep && mips_.levels) options.mip = mips_.options(*mips_.levels, wrap_);
+    if (!mips_.keep && (mips_.levels || job.task.engine != nullptr))
+        options.mip = mips_.options(mips_.levels_for(job.task), wrap_);
     return options;
 }
 

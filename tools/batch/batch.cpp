@@ -201,9 +201,14 @@ ExitCode Batch::run_tasks(const std::vector<Task>& tasks, Console& console) {
     return code;
 }
 
+OutputOptions Converter::output_for_task() const {
+    if (output.engines.size() > 1) throw UsageError("--for: an output is for one engine");
+    return output.of(output.engines_or_none().front());
+}
+
 Task Converter::task_for(const std::string& input, const std::string& output_name) const {
     std::call_once(rules_are_known_, [this] { known_rules_ = rules(); });
-    return task_of(input, output_name, output, known_rules_);
+    return task_of(input, output_name, output_for_task(), known_rules_);
 }
 
 Result<std::vector<Task>> Converter::plan() const {

@@ -68,6 +68,8 @@ public:
     // The task that makes `output` from `input`. Throws UsageError if the name does not show the file type, or if the
     // file type cannot hold the format.
     [[nodiscard]] Task task_for(const std::string& input, const std::string& output) const;
+    // The output options of such a task. Throws UsageError if --for names several engines.
+    [[nodiscard]] OutputOptions output_for_task() const;
     // As check(), for such a task.
     [[nodiscard]] Result<void> check_task(const Task& task) { return check({task}); }
     // As process(), for a job of such a task.

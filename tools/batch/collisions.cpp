@@ -17,6 +17,7 @@
 #include "batch/task.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "options/engines.h"
 #include "options/files.h"
 
 namespace tex::cli {
@@ -102,6 +103,12 @@ void check_collisions(const std::vector<Task>& tasks, const std::string& depfile
             if (other == &task) {
                 throw UsageError(
                     fmt::format("two outputs of {} are one file, {}", printable(task.input), printable(path)));
+            }
+            if (other != nullptr && other->engine != task.engine && other->input == task.input) {
+                throw UsageError(
+                    fmt::format("{} for {} and for {} have the same output {}; {{engine}} in --name separates "
+                                "them",
+                                printable(task.input), other->engine->name, task.engine->name, printable(path)));
             }
             if (other != nullptr) {
                 throw UsageError(fmt::format("{} and {} have the same output {}", printable(other->input),

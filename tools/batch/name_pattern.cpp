@@ -14,7 +14,7 @@ namespace tex::cli {
 namespace {
 
 const std::vector<std::string>& known_fields() {
-    static const std::vector<std::string> fields = {"dir", "stem", "ext", "level", "format"};
+    static const std::vector<std::string> fields = {"dir", "stem", "ext", "level", "format", "engine", "type"};
     return fields;
 }
 
@@ -33,6 +33,11 @@ std::string suffix_to_drop(std::string& field) {
 
 std::string without_suffix(const std::string& stem, const std::string& suffix) {
     return stem.size() > suffix.size() && stem.ends_with(suffix) ? stem.substr(0, stem.size() - suffix.size()) : stem;
+}
+
+const std::string& known(const std::string& value, const char* reason) {
+    if (value.empty()) throw UsageError(reason);
+    return value;
 }
 
 }  // namespace
@@ -104,6 +109,10 @@ std::string NamePattern::expand(const NameFields& fields) const {
             name += fields.ext;
         else if (piece.text == "format")
             name += fields.format;
+        else if (piece.text == "engine")
+            name += known(fields.engine, "{engine} needs --for");
+        else if (piece.text == "type")
+            name += known(fields.type, "{type} needs --for or --container");
         else
             name += kLevelMark;
     }

@@ -17,6 +17,8 @@ struct NameFields {
     std::string stem;
     std::string ext;
     std::string format;
+    std::string engine = {};  // of --for
+    std::string type = {};    // the extension of the output without its dot, if --for or --container sets it
 };
 
 // The dir, stem and ext of a path. The stem of "-" is "stdin".
@@ -33,7 +35,7 @@ public:
     // Throws UsageError for unknown fields and unbalanced braces. "{{" and "}}" are literal braces.
     explicit NamePattern(std::string_view text);
 
-    // {level} becomes kLevelMark.
+    // {level} becomes kLevelMark. Throws UsageError for {engine} and {type} if nothing sets them.
     [[nodiscard]] std::string expand(const NameFields& fields) const;
     [[nodiscard]] bool uses(std::string_view field) const;
 

@@ -2,6 +2,7 @@
 
 #include "batch/plan.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -23,32 +24,49 @@ bool is_block_encoding(Encoding encoding) { return format_info(encoding_info(enc
 
 // The name pattern for --out-dir if the user gives none.
 std::string default_pattern(const FileOptions& files, const OutputOptions& output, const OutputRules& rules) {
-    std::optional<Container> container = output.container;
+    std::optional<Container> container = output.made_container();
     if (!container && output.format) {
         if (is_block_encoding(*output.format)) container = Container::dds;
     } else if (!container) {
         container = rules.batch;
     }
-    return (files.root.empty() ? "{stem}" : "{dir}/{stem}") + (container ? extension_of(*container) : "{ext}");
+    std::string pattern = output.engines.size() > 1 ? "{engine}/" : "";
+    if (!files.root.empty()) pattern += "{dir}/";
+    const std::string suffix(output.engine != nullptr ? output.engine->suffix : "");
+    pattern += suffix.empty() ? "{stem}" : fmt::format("{{stem:-{}}}{}", suffix, suffix);
+    return pattern + (container ? extension_of(*container) : "{ext}");
 }
 
 std::string output_name(const std::string& input, const FileOptions& files, const OutputOptions& output,
                         const OutputRules& rules) {
     NameFields fields = files.fields_of(input);
     const std::string pattern = files.name.empty() ? default_pattern(files, output, rules) : files.name;
-    if (output.format) {
-        fields.format = name_of(kEncodingNames, *output.format);
-    } else if (const NamePattern parsed(pattern); parsed.uses("format")) {
+    output.fill(fields);
+    if (const NamePattern parsed(pattern); !output.format && parsed.uses("format")) {
         const Container container = output.container_for(parsed.expand(fields), rules.standard_output);
         fields.format = name_of(kEncodingNames, default_encoding(container));
     }
     return files.place(pattern, fields);
 }
 
+// Throws UsageError if the outputs for several engines cannot be made in one run.
+void check_engines(const std::vector<Task>& tasks, const FileOptions& files, std::size_t engines) {
+    if (engines < 2) return;
+    if (!files.output.empty())
+        throw UsageError(fmt::format("-o takes one engine of --for, {} are given; --out-dir takes many", engines));
+    for (const Task& task : tasks) {
+        std::vector<std::string> read = task.prerequisites();
+        read.push_back(task.input);
+        if (std::find(read.begin(), read.end(), "-") != read.end())
+            throw UsageError("standard input can only be read once, so --for takes one engine");
+    }
+}
+
 }  // namespace
 
 Task task_of(const std::string& input, const std::string& name, const OutputOptions& output, const OutputRules& rules) {
     Task task{input, name};
+    task.engine = output.engine;
     task.shared = rules.shared;
     task.container = output.container_for(with_level(name, 0), rules.standard_output);
     if (output.format) OutputOptions::check_holds(with_level(name, 0), task.container, *output.format);
@@ -70,11 +88,15 @@ std::vector<Task> plan_outputs(std::vector<std::string> inputs, const FileOption
         throw UsageError(fmt::format("no input for -o: {} names none", printable(files.files_from)));
     std::vector<Task> tasks;
     for (const std::string& input : inputs) {
-        const std::string name = files.output.empty() ? output_name(input, files, output, rules) : files.output;
-        Task task = task_of(input, name, output, rules);
-        task.joined = joined;
-        tasks.push_back(std::move(task));
+        for (const Engine* const engine : output.engines_or_none()) {
+            const OutputOptions own = output.of(engine);
+            const std::string name = files.output.empty() ? output_name(input, files, own, rules) : files.output;
+            Task task = task_of(input, name, own, rules);
+            task.joined = joined;
+            tasks.push_back(std::move(task));
+        }
     }
+    check_engines(tasks, files, output.engines.size());
     if (!files.depfile.empty()) check_depfile_names(tasks);
     check_collisions(tasks, files.depfile, files.files_from);
     return tasks;

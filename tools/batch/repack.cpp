@@ -32,12 +32,12 @@ Encoding Repacker::encoding(const SourceInfo&, const Task& task) const { return 
 PackFileOptions Repacker::all_options(Job& job) const {
     PackFileOptions with = options(job);
     with.source = normals.options(job);
-    with.source.doubt_y = output.y.has_value();  // otherwise y stays as it is, and the output does not state it
-    with.pack = [this, &job](const SourceInfo& info) {
-        return output.pack_options(output.format ? *output.format : encoding(info, job.task), info.y_axis,
-                                   info.y_known);
+    const OutputOptions own = output.of(job.task.engine);
+    with.source.doubt_y = own.y.has_value();  // otherwise y stays as it is, and the output does not state it
+    with.pack = [this, own, &job](const SourceInfo& info) {
+        return own.pack_options(own.format ? *own.format : encoding(info, job.task), info.y_axis, info.y_known);
     };
-    with.write = output.write_options(job);
+    with.write = own.write_options(job);
     with.level_names = level_names(job.task.output);
     return with;
 }

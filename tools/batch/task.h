@@ -10,6 +10,8 @@
 
 namespace tex::cli {
 
+struct Engine;
+
 // The names of outputs contain kLevelMark (name_pattern.h) if each level has its own file.
 struct Task {
     std::string input;
@@ -19,6 +21,7 @@ struct Task {
     std::vector<std::string> shared = {};        // files that options name and every output depends on
     std::vector<std::string> own = {};           // files that options name and only this output depends on
     std::vector<std::string> more_outputs = {};  // outputs besides the first one
+    const Engine* engine = nullptr;              // what the output is for, if --for says it
 
     // The inputs, without the files that options name.
     [[nodiscard]] std::vector<std::string> inputs() const {

@@ -149,6 +149,7 @@ ReadyCommand Recipe::ready(const StepSettings& step, const OutputSettings* outpu
         }
         return output != nullptr && message.starts_with(out) ? output->place : step.place;
     };
+    table.forbid_answers();
     try {
         std::ignore = table.parse(pointers, console);
         const Task task = command.converter->task_for(before_.empty() ? "input" : kBetween, out);
@@ -185,13 +186,17 @@ void Recipe::add_output(const OutputSettings& output, Console& console) {
     std::string out;
     try {
         name.emplace(output.name);
-        out = name->expand({".", "name", ".png", "format"});
+        if (name->uses("type")) throw UsageError("{type} cannot be used here: the extension says the file type");
+        out = name->expand({".", "name", ".png", "format", "engine"});
     } catch (const UsageError& error) {
         fail_at(manifest_.path, output.place, fmt::format("name: {}", error.what()));
     }
+    const bool names_engine = name->uses("engine");
     if (check_->is_given() && has_level(out))
         fail_at(manifest_.path, output.place, "check needs all levels in one file");
     RecipeOutput made{ready(rule_.steps.back(), &output, true, out, console), std::move(*name), {}, output.place};
+    if (names_engine && made.last.converter->output_for_task().engine == nullptr)
+        fail_at(manifest_.path, output.place, "name: {engine} needs the key for");
     const std::size_t last = rule_.steps.size() - 1;
     check_order(rule_.steps.back(), made.last, last, console);
     const auto settings_of = [&](const std::string& step, const ReadyCommand& command) {
@@ -220,9 +225,9 @@ void Recipe::add_output(const OutputSettings& output, Console& console) {
 std::string Recipe::output_name(const std::string& input, std::size_t index) const {
     const RecipeOutput& output = outputs_[index];
     NameFields fields = name_fields(input);
-    const std::optional<Encoding>& format = output.last.converter->output.format;
-    if (format) fields.format = name_of(kEncodingNames, *format);
-    if (!format && output.name.uses("format")) {
+    const OutputOptions options = output.last.converter->output_for_task();
+    options.fill(fields);
+    if (!options.format && output.name.uses("format")) {
         const Task task = output.last.converter->task_for(input, output.name.expand(fields));
         fields.format = name_of(kEncodingNames, default_encoding(task.container));
     }

@@ -188,6 +188,11 @@ Result<std::string> Command::sort(Arguments given) {
     return mistake;
 }
 
+void Command::answer(std::string text) {
+    if (!answers_) throw UsageError("only prints something and ends, which cannot be used here");
+    answer_ = std::move(text);
+}
+
 void Command::take_values() {
     for (const Row& row : rows_) {
         if (row.given.size() > 1 && !row.repeatable)
@@ -218,6 +223,7 @@ std::optional<ExitCode> Command::parse(Arguments arguments, Console& console) {
     if (list_options_) return console.print(option_list(*this));
     if (!completion_.empty()) return console.print(completion_script(*this, completion_));
     if (!sorted->empty()) throw UsageError(*sorted);
+    if (!answer_.empty()) return console.print(answer_);
     if (has_read_standard_input_ && std::find(inputs_.begin(), inputs_.end(), "-") != inputs_.end())
         throw UsageError("standard input can only be read once");
     for (const auto& check : checks_) check();

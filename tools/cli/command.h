@@ -114,6 +114,11 @@ public:
     // changes nothing.
     void check(std::function<void()> body) { checks_.push_back(std::move(body)); }
 
+    // What an option prints instead of the command's work: parse() prints it and ends. Options call this when their
+    // value is taken. Throws UsageError after forbid_answers().
+    void answer(std::string text);
+    void forbid_answers() { answers_ = false; }
+
     // Reads the command line. Call it once. Returns an exit code if nothing is left to do, because --help, --version or
     // a similar option has printed its text. Throws UsageError.
     [[nodiscard]] std::optional<ExitCode> parse(Arguments arguments, Console& console);
@@ -155,6 +160,8 @@ private:
     bool help_ = false;
     bool version_ = false;
     bool list_options_ = false;
+    bool answers_ = true;
+    std::string answer_;
     std::string completion_;
 };
 

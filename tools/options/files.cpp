@@ -73,7 +73,7 @@ void FileOptions::add(Command& command, bool joins) {
     command.text(out_dir, "--out-dir", "DIR", "the folder for the outputs of many inputs, created if missing")
         .completes = Completes::directories;
     command.text(name, "--name", "PATTERN",
-                 "names of outputs, made of {dir} {stem} {stem:-SUFFIX} {ext} {level} {format}");
+                 "names of outputs, made of {dir} {stem} {stem:-SUFFIX} {ext} {level} {format} {engine} {type}");
     command
         .text(root, "--root", "DIR",
               "{dir} is relative to this folder, which holds the inputs; the default of --name begins with {dir}/")
@@ -91,7 +91,7 @@ void FileOptions::check(const Command& command) const {
     if (!output.empty() && !out_dir.empty()) throw UsageError("--output and --out-dir contradict each other");
     if (!output.empty() && !name.empty()) throw UsageError("--output and --name contradict each other");
     if (!output.empty() && !root.empty()) throw UsageError("--output and --root contradict each other");
-    if (!root.empty() && !name.empty() && !names_folders())
+    if (!root.empty() && !name.empty() && !NamePattern(name).uses("dir"))
         throw UsageError("--root has no effect, because --name does not contain {dir}");
     check_inputs(command);
     if (output.empty() && out_dir.empty() && name.empty()) throw UsageError("no output: give -o FILE or --out-dir DIR");
@@ -158,6 +158,8 @@ std::string FileOptions::place(const std::string& pattern, const NameFields& fie
     std::string file = parsed.expand(fields);
     if (file == "-") throw UsageError("a name made of a pattern is -, which is standard output; -o - writes there");
     if (parsed.uses("dir") && file.starts_with("./")) file.erase(0, 2);
+    if (const std::size_t here = file.find("/./"); parsed.uses("engine") && here != std::string::npos)
+        file.erase(here, 2);
     if (out_dir.empty()) return file;
     const fs::path dir = fs::path(fields.dir).lexically_normal();
     if (parsed.uses("dir") && (dir.is_absolute() || *dir.begin() == "..")) {

@@ -53,7 +53,9 @@ struct FileOptions {
     // the input is not in that folder.
     [[nodiscard]] NameFields fields_of(const std::string& input) const;
     // Whether folders are made for outputs without --out-dir.
-    [[nodiscard]] bool names_folders() const { return !name.empty() && NamePattern(name).uses("dir"); }
+    [[nodiscard]] bool names_folders() const {
+        return !name.empty() && (NamePattern(name).uses("dir") || NamePattern(name).uses("engine"));
+    }
 
     // The output name that `pattern` gives, below --out-dir if that option is given.
     [[nodiscard]] std::string place(const std::string& pattern, const NameFields& fields) const;

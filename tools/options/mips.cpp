@@ -2,6 +2,7 @@
 
 #include "options/mips.h"
 
+#include <algorithm>
 #include <limits>
 #include <tuple>
 
@@ -10,6 +11,7 @@
 #include "batch/name_pattern.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "options/engines.h"
 
 namespace tex::cli {
 
@@ -65,8 +67,9 @@ void MipChainOptions::add(Command& command, bool with_keep, std::string levels_d
                    });
 }
 
-void MipChainOptions::check_builds(const Command& command) const {
-    if (levels && !keep) return;
+void MipChainOptions::check_builds(const Command& command, const std::vector<Task>& tasks) const {
+    const auto has_engine = [](const Task& task) { return task.engine != nullptr; };
+    if (!keep && (levels || std::any_of(tasks.begin(), tasks.end(), has_engine))) return;
     const std::vector<std::string> idle = command.given_of({"--mip-filter", "--mip-domain", "--fade", "--wrap"});
     if (idle.empty()) return;
     throw UsageError(fmt::format("{} does nothing if levels are kept; --mips all builds them", idle.front()));
@@ -84,6 +87,8 @@ void MipChainOptions::check(const std::vector<Task>& tasks) const {
 
 int MipChainOptions::levels_for(const Task& task) const {
     if (levels) return *levels;
+    if (task.engine != nullptr && !has_level(task.output))
+        return task.engine->has_mips && can_hold_levels(task.container) ? 0 : 1;
     return can_hold_blocks(task.container) || has_level(task.output) ? 0 : 1;
 }
 

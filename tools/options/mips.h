@@ -41,10 +41,11 @@ struct MipChainOptions {
 
     // For commands that keep levels by default. Throws UsageError if an option says how to build levels although no
     // levels are built.
-    void check_builds(const Command& command) const;
+    void check_builds(const Command& command, const std::vector<Task>& tasks) const;
 
-    // The number of levels of a task's output: the number that the user requests; else all levels in dds, in ktx2 and
-    // if every level has its own file, and one level in pictures.
+    // The number of levels of a task's output: the number that the user requests; else all levels if every level has
+    // its own file; else those that the task's engine needs; else all levels in dds and ktx2, and one level in
+    // pictures.
     [[nodiscard]] int levels_for(const Task& task) const;
 
     // How `count` levels are built.

@@ -93,6 +93,41 @@ void OutputOptions::add(Command& command, std::string format_default, std::strin
                    [this](const std::string& text) { zstd = parse_zstd(text); });
 }
 
+void OutputOptions::add_engines(Command& command) {
+    Row& row = command.option("--for", "ENGINE[,ENGINE]", "file type, format, y and levels as the engine imports them",
+                              [this, &command](const std::string& text) {
+                                  if (text == "list")
+                                      command.answer(engine_table());
+                                  else
+                                      engines = parse_engines(text);
+                              });
+    row.words = engine_words();
+    row.completes = Completes::words;
+}
+
+OutputOptions OutputOptions::of(const Engine* its_engine) const {
+    OutputOptions options = *this;
+    options.engine = its_engine;
+    if (its_engine == nullptr) return options;
+    if (!format) options.format = its_engine->format;
+    if (!y) options.y = its_engine->y;
+    return options;
+}
+
+std::vector<const Engine*> OutputOptions::engines_or_none() const {
+    return engines.empty() ? std::vector<const Engine*>{nullptr} : engines;
+}
+
+std::optional<Container> OutputOptions::made_container() const {
+    return container || engine == nullptr ? container : engine->container;
+}
+
+void OutputOptions::fill(NameFields& fields) const {
+    if (format) fields.format = name_of(kEncodingNames, *format);
+    if (engine != nullptr) fields.engine = engine->name;
+    if (const auto made = made_container()) fields.type = extension_of(*made).substr(1);
+}
+
 Container OutputOptions::container_for(const std::string& output, Container standard_output) const {
     const Container chosen = container_of_output(output, standard_output);
     if (zstd == 0 || can_compress(chosen)) return chosen;
@@ -109,7 +144,7 @@ Container OutputOptions::container_of_output(const std::string& output, Containe
         return *container;
     }
     if (named) return *named;
-    if (output == "-") return standard_output;
+    if (output == "-") return made_container().value_or(standard_output);
     const std::string extension = std::filesystem::path(output).extension().string();
     throw UsageError(fmt::format("{}: {}; it must be one of {}, or give --container", printable(output),
                                  extension.empty()
@@ -140,6 +175,7 @@ void report_texture(Job& job, Extent extent, int levels, const PackOptions& pack
     job.report["y"] = nullptr;
     if (pack.y_known) job.report["y"] = name_of(kYAxisNames, pack.y_axis);
     job.report["bytes"] = bytes;
+    if (job.task.engine != nullptr) job.report["for"] = job.task.engine->name;
 }
 
 }  // namespace tex::cli

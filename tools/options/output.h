@@ -5,11 +5,14 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <tex/container.h>
 #include <tex/pack.h>
 
+#include "batch/name_pattern.h"
 #include "cli/command.h"
+#include "options/engines.h"
 
 namespace tex::cli {
 
@@ -24,10 +27,24 @@ struct OutputOptions {
     DdsHeader dds_header = WriteOptions{}.dds_header;
     bool dds_mark = WriteOptions{}.dds_mark;
     int zstd = WriteOptions{}.zstd;
+    std::vector<const Engine*> engines;  // of --for; each input gives an output for each
+    const Engine* engine = nullptr;      // the engine of these options, which of() has set
 
     // `format_default` and `y_default` appear in the help.
     void add(Command& command, std::string format_default, std::string y_default,
              Container standard_output = Container::dds);
+    // Adds --for, for commands that also have MipChainOptions.
+    void add_engines(Command& command);
+
+    // The options for one engine (null: for none): what the user has not set comes from the engine's preset.
+    [[nodiscard]] OutputOptions of(const Engine* its_engine) const;
+    // What of() takes: the engines of --for, or null alone.
+    [[nodiscard]] std::vector<const Engine*> engines_or_none() const;
+
+    // The container of names that the command makes itself, if the options set it.
+    [[nodiscard]] std::optional<Container> made_container() const;
+    // Sets the fields that these options know.
+    void fill(NameFields& fields) const;
 
     // The container of `output`; for "-" it is `standard_output`. Throws UsageError if the name does not show the
     // container, or if the container cannot be compressed as the user asks.

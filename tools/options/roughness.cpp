@@ -12,6 +12,7 @@
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "cli/value.h"
+#include "options/engines.h"
 
 namespace tex::cli {
 namespace {
@@ -73,6 +74,7 @@ ChannelFile RoughnessOptions::input_of(const Task& task) const {
 
 std::string RoughnessOptions::output_of(const Task& task) const {
     NameFields fields = name_fields(task.input);
+    if (task.engine != nullptr) fields.engine = task.engine->name;
     if (NamePattern(output_).uses("format"))
         fields.format = name_of(kRoughnessFormatNames, format_in(container_for(NamePattern(output_).expand(fields))));
     return files_->place(output_, fields);

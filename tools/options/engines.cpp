@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "options/engines.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "cli/text.h"
+#include "cli/usage_error.h"
+#include "options/output.h"
+
+namespace tex::cli {
+namespace {
+
+// Engines that compress textures themselves get a picture that is not compressed: a second lossy step would add its
+// error to the first one's, and the engine would read x and y from the wrong channels of DXT5nm and BC5.
+constexpr Engine kEngines[] = {
+    // docs.unity3d.com/Manual/texture-type-normal-map.html: the importer, with Flip Green Channel for other
+    // conventions;
+    // unity.huh.how/textures/normal-map-format.html: "Unity uses Y+ normal maps, known as OpenGL format".
+    {"unity", Container::png, Encoding::rgb8, YAxis::up, false, "",
+     "The importer compresses for each platform and builds the levels. It expects x, y and z in R, G and B and green "
+     "up."},
+    // Texture editor: Compression Settings, Normalmap (BC5), and Flip Green Channel for maps with green up.
+    {"unreal", Container::png, Encoding::rgb8, YAxis::down, false, "",
+     "The importer compresses to BC5 and builds the levels. It expects green down, as in DirectX."},
+    // docs.godotengine.org, Importing images: PNG has 8 bits after import; StandardMaterial3D: X+, Y+ and Z+.
+    {"godot", Container::png, Encoding::rgb8, YAxis::up, false, "",
+     "The importer compresses, builds the levels and keeps 8 bits of a PNG file. It expects green up, as in OpenGL."},
+    // glTF 2.0 specification, 3.8.3: images are PNG or JPEG; 3.9.3: normalTexture is RGB, +Y is up.
+    {"gltf", Container::png, Encoding::rgb8, YAxis::up, false, "",
+     "The core specification allows PNG and JPEG, of which only PNG is lossless; it requires x, y and z in R, G and B "
+     "and green up."},
+    // normal_fragment_maps.glsl.js reads xyz; RG and BC5 need a release of 2026 (three.js pull request 32448).
+    {"three", Container::png, Encoding::rgb8, YAxis::up, false, "",
+     "TextureLoader reads PNG, and the renderer builds the levels. Releases before 2026 read z from B, so textures of "
+     "two channels do not work in them."},
+    // Blender's manual, Normal Map node: OpenGL convention by default, Non-Color images.
+    {"blender", Container::png, Encoding::rgb16, YAxis::up, false, "",
+     "Blender renders from the texels of the file, so 16 bits avoid steps in reflections. It expects green up."},
+    // bevy_pbr: pbr_material.rs sets TWO_COMPONENT_NORMAL_MAP for Bc5RgUnorm; flip_normal_map_y is for DirectX maps.
+    {"bevy", Container::ktx2, Encoding::bc5, YAxis::up, true, "",
+     "Bevy loads GPU formats as they are and builds no levels. StandardMaterial rebuilds z for BC5 (not for DXT5nm or "
+     "signed BC5) and expects green up. BC5 is for desktop GPUs."},
+    // ImageBuilder.settings maps _normal to the preset Normals (BC5 signed, box filter, R and G swapped on the way).
+    // No documentation states y; pull request 18082 turned on Flip Y for Sponza's OpenGL maps.
+    {"o3de", Container::png, Encoding::rgb8, YAxis::down, false, "_normal",
+     "The asset processor chooses the preset Normals by the suffix, compresses and builds the levels. Its own OpenGL "
+     "maps need Flip Y, so green points down."},
+    // OpenGL ES 3.0 and Vulkan's textureCompressionETC2; the direction is OpenGL's.
+    {"android", Container::ktx2, Encoding::eac_rg11, YAxis::up, true, "",
+     "Every GPU with OpenGL ES 3.0 reads EAC RG11, which stores x and y in 8 bits a texel; the shader rebuilds z. "
+     "Green "
+     "points up, as in OpenGL."},
+    // Metal: MTLPixelFormatEAC_RG11Unorm from A7 on. ASTC, which Apple prefers, is not written yet.
+    {"ios", Container::ktx2, Encoding::eac_rg11, YAxis::up, true, "",
+     "Every Apple GPU since A7 reads EAC RG11, which stores x and y in 8 bits a texel; the shader rebuilds z. ASTC "
+     "would "
+     "need fewer bytes, but is not written yet."},
+};
+
+std::vector<std::string> engine_names() {
+    std::vector<std::string> names;
+    for (const Engine& engine : kEngines) names.emplace_back(engine.name);
+    return names;
+}
+
+}  // namespace
+
+std::span<const Engine> engines() { return kEngines; }
+
+std::vector<const Engine*> parse_engines(const std::string& text) {
+    std::vector<const Engine*> chosen;
+    for (const std::string& word : split(text, ',')) {
+        const std::string name = known_word(word, engine_names());
+        const Engine* const engine =
+            std::find_if(std::begin(kEngines), std::end(kEngines), [&](const Engine& row) { return row.name == name; });
+        if (std::find(chosen.begin(), chosen.end(), engine) != chosen.end())
+            throw UsageError(fmt::format("{} is named twice", name));
+        chosen.push_back(engine);
+    }
+    return chosen;
+}
+
+std::vector<Word> engine_words() {
+    std::vector<Word> words;
+    for (const Engine& engine : kEngines) words.push_back({std::string(engine.name), ""});
+    words.push_back({"list", "print what each engine gets, and why, and exit"});
+    return words;
+}
+
+std::string engine_table() {
+    constexpr std::size_t kWidth = 80, kIndent = 9;
+    std::string table =
+        fmt::format("{:<9}{:<7}{:<10}{:<7}{:<8}{}\n", "ENGINE", "FILE", "FORMAT", "GREEN", "LEVELS", "NAME");
+    for (const Engine& engine : kEngines) {
+        table += fmt::format("{:<9}{:<7}{:<10}{:<7}{:<8}{{stem}}{}\n", engine.name, extension_of(engine.container),
+                             name_of(kEncodingNames, engine.format), name_of(kYAxisNames, engine.y),
+                             engine.has_mips ? "all" : "base", engine.suffix);
+        for (const std::string& line : wrapped(std::string(engine.reason), kWidth - kIndent))
+            table += std::string(kIndent, ' ') + line + "\n";
+    }
+    return table;
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// engines.h: what engines and programs import: the presets of --for. normal-maps-engines(7) explains them to users.
+
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tex/container.h>
+
+#include "cli/command.h"
+
+namespace tex::cli {
+
+// One row of the table.
+struct Engine {
+    std::string_view name;  // "unity"
+    Container container;    // of names that the command makes, and of standard output
+    Encoding format;
+    YAxis y;
+    bool has_mips;            // whether the file holds all levels; otherwise the engine builds them
+    std::string_view suffix;  // of names that the command makes: the engine recognises normal maps by it
+    std::string_view reason;  // sentences
+};
+
+[[nodiscard]] std::span<const Engine> engines();
+
+// The engines of "unity,unreal", in this order. Throws UsageError.
+[[nodiscard]] std::vector<const Engine*> parse_engines(const std::string& text);
+
+// The words of --for: the engines and "list".
+[[nodiscard]] std::vector<Word> engine_words();
+
+// What --for list prints: each engine with its settings and the reason for them.
+[[nodiscard]] std::string engine_table();
+
+}  // namespace tex::cli
