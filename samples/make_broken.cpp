@@ -126,6 +126,7 @@ void Maker::files() {
     bytes[128] = std::byte{29};  // DXGI_FORMAT_R8G8B8A8_UNORM_SRGB
     write("N111-srgb-format.dds", bytes);
     write("N112-wrong-declared-y.ktx2", encoded(packed(part(16, 16), Encoding::rgba8, YAxis::down), Container::ktx2));
+    dds("N113-unfit-for-engine", packed(part(128, 128), Encoding::bc5));
 }
 
 void Maker::values() {

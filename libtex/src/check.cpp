@@ -203,7 +203,7 @@ Result<CheckReport> check(const std::string& file, const Texture& texture, const
     assert(!texture.levels.empty());
     return guarded([&]() -> Result<CheckReport> {
         if (auto valid = validate(options); !valid) return valid.error();
-        Subject subject{.texture = texture, .options = options, .execution = execution};
+        Subject subject{.texture = texture, .options = options, .execution = execution, .file = file};
         if (auto done = measure(subject); !done) return done.error();
         Findings findings(options);
         check_file_rules(subject, findings);

@@ -196,6 +196,38 @@ TEST_F(Engines, ManifestsTakeOneEngineForEachOutput) {
     }
 }
 
+TEST_F(Engines, CheckNormalsAcceptsWhatForMakesAndNamesWhatDoesNotFit) {
+    does("bake-normals rock.png --out-dir out --bumpiness 8 --for " + all_engines());
+    for (const WantedFile& wanted : kWanted) {
+        const std::string file = std::string("out/") + wanted.engine + "/" + wanted.file;
+        const Ran ran = shell(scratch_, std::string("check-normals --for ") + wanted.engine + " " + file);
+        EXPECT_EQ(ran.code, 0) << wanted.engine << ran.out << ran.err;
+        // The mark is wrong, and so are the texels.
+        const std::string flipped = file + (file.ends_with("png") ? ".png" : ".ktx2");
+        does("pack-normals " + file + " -o " + flipped + " --y " + (std::string(wanted.y) == "up" ? "down" : "up") +
+             " --format " + wanted.format);
+        const Ran wrong = shell(scratch_, std::string("check-normals --for ") + wanted.engine + " " + flipped);
+        EXPECT_EQ(wrong.code, 1) << wanted.engine;
+        EXPECT_NE(wrong.out.find("N401"), std::string::npos) << wrong.out;
+    }
+    const auto says = [&](const std::string& engine, const std::string& file, const std::string& reason) {
+        const Ran ran = shell(scratch_, "check-normals --for " + engine + " " + file);
+        EXPECT_EQ(ran.code, 1) << ran.out;
+        EXPECT_NE(ran.out.find("N113"), std::string::npos) << ran.out;
+        EXPECT_NE(ran.out.find(reason), std::string::npos) << ran.out;
+    };
+    says("gltf", "out/bevy/rock.ktx2", "gltf does not read ktx2 but png, jpeg");
+    says("gltf", "out/bevy/rock.ktx2", "it does not read normals from bc5-unorm, rg but from rgb8, rgba8, rgb16");
+    says("bevy", "out/godot/rock.png", "bevy needs all 10 levels, and the file has 1");
+    does("bake-normals rock.png -o one.dds --mips none");
+    says("unity", "one.dds", "unity needs all 10 levels, and the file has 1");
+    does("bake-normals rock.png -o unity.dds");
+    EXPECT_EQ(shell(scratch_, "check-normals --for unity unity.dds").code, 0);
+    EXPECT_EQ(shell(scratch_, "check-normals --for gltf unity.dds --disable N113").code, 0);
+    fails("check-normals rock.png --for unity,bevy #", "a file is checked for one engine");
+    fails("check-normals rock.png --for list #", "must be one of unity");
+}
+
 // Every command of the page runs, in the order of the page; the checks have no finding.
 TEST(EnginesPage, EveryCommandOfTheRecipesRuns) {
     const Scratch scratch;

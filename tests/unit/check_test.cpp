@@ -165,6 +165,28 @@ TEST(Check, LevelsThatFadedToFlatAreRelated) {
     }
 }
 
+TEST(Check, AnEngineNeedsItsFileTypeFormatAndLevels) {
+    const Texture texture = map_texture();
+    const auto message = [&](const std::string& file, const EngineNeeds& needs) {
+        CheckOptions options;
+        options.require.engine = needs;
+        const auto report = check(file, texture, options);
+        EXPECT_TRUE(report);
+        if (report->findings.empty()) return std::string();
+        EXPECT_EQ(report->findings.size(), 1u);
+        EXPECT_EQ(report->findings.front().rule->id, "N113");
+        return report->findings.front().message;
+    };
+    const std::vector<Encoding> rgb = {Encoding::rgb16, Encoding::rgb8};
+    EXPECT_EQ(message("a.png", {"e", {Container::png}, rgb, false}), "");
+    EXPECT_EQ(message("-", {"e", {Container::png}, rgb, false}), "");
+    EXPECT_EQ(message("a.tga", {"e", {Container::png, Container::exr}, rgb, false}),
+              "e does not read tga but png, exr");
+    EXPECT_EQ(message("a.png", {"e", {Container::png}, {Encoding::bc5, Encoding::ag8}, false}),
+              "e does not read normals from rgb8-unorm, rgb but from bc5, ag8");
+    EXPECT_EQ(message("a.png", {"e", {Container::png}, rgb, true}), "e needs all 8 levels, and the file has 1");
+}
+
 TEST(Check, RequirementsAreWhatTheySay) {
     const Texture texture = map_texture();
     EXPECT_EQ(ids(texture, requiring({"y=down"})), Ids{"N401"});

@@ -13,51 +13,77 @@
 namespace tex::cli {
 namespace {
 
+using enum Container;
+using enum Encoding;
+
+// What importers take: pictures with z in B.
+constexpr Container kPictures[] = {png, tiff, tga, bmp, jpeg, exr};
+constexpr Encoding kRgb[] = {rgb8, rgba8, rgb16, half, float_};
+constexpr Encoding kRgbCodes[] = {rgb8, rgba8, rgb16};
+// Unity imports DDS as it is; its shaders multiply R by A, so they read x from DXT5nm and BC5.
+constexpr Container kUnityTypes[] = {png, tiff, tga, bmp, jpeg, exr, dds};
+constexpr Encoding kUnityEncodings[] = {rgb8, rgba8, rgb16, half, float_, dxt5nm, bc5};
+// Godot's materials rebuild z from R and G.
+constexpr Container kGodotTypes[] = {png, tga, bmp, jpeg, exr, dds, ktx2};
+constexpr Encoding kGodotEncodings[] = {rgb8, rgba8, rgb16, half, float_, bc5, rg8};
+constexpr Container kGltfTypes[] = {png, jpeg};
+constexpr Container kThreeTypes[] = {png, jpeg, tga, tiff, exr, ktx2};
+constexpr Container kBevyTypes[] = {ktx2, dds, png, tiff, tga, bmp, jpeg, exr};
+constexpr Encoding kBevyEncodings[] = {bc5, eac_rg11, rg8, rg16, rgb8, rgba8, rgb16, half, float_};
+constexpr Container kPhoneTypes[] = {ktx2};
+constexpr Encoding kPhoneEncodings[] = {eac_rg11, eac_rg11_snorm, rg8, rgb8, rgba8};
+
 // Engines that compress textures themselves get a picture that is not compressed: a second lossy step would add its
 // error to the first one's, and the engine would read x and y from the wrong channels of DXT5nm and BC5.
 constexpr Engine kEngines[] = {
-    // docs.unity3d.com/Manual/texture-type-normal-map.html: the importer, with Flip Green Channel for other
-    // conventions;
+    // docs.unity3d.com/Manual/texture-type-normal-map.html: Flip Green Channel is for other conventions than Unity's.
     // unity.huh.how/textures/normal-map-format.html: "Unity uses Y+ normal maps, known as OpenGL format".
-    {"unity", Container::png, Encoding::rgb8, YAxis::up, false, "",
+    {"unity", png, rgb8, YAxis::up, false, "",
      "The importer compresses for each platform and builds the levels. It expects x, y and z in R, G and B and green "
-     "up."},
+     "up.",
+     kUnityTypes, kUnityEncodings},
     // Texture editor: Compression Settings, Normalmap (BC5), and Flip Green Channel for maps with green up.
-    {"unreal", Container::png, Encoding::rgb8, YAxis::down, false, "",
-     "The importer compresses to BC5 and builds the levels. It expects green down, as in DirectX."},
+    {"unreal", png, rgb8, YAxis::down, false, "",
+     "The importer compresses to BC5 and builds the levels. It expects green down, as in DirectX.", kPictures, kRgb},
     // docs.godotengine.org, Importing images: PNG has 8 bits after import; StandardMaterial3D: X+, Y+ and Z+.
-    {"godot", Container::png, Encoding::rgb8, YAxis::up, false, "",
-     "The importer compresses, builds the levels and keeps 8 bits of a PNG file. It expects green up, as in OpenGL."},
+    {"godot", png, rgb8, YAxis::up, false, "",
+     "The importer compresses, builds the levels and keeps 8 bits of a PNG file. It expects green up, as in OpenGL.",
+     kGodotTypes, kGodotEncodings},
     // glTF 2.0 specification, 3.8.3: images are PNG or JPEG; 3.9.3: normalTexture is RGB, +Y is up.
-    {"gltf", Container::png, Encoding::rgb8, YAxis::up, false, "",
+    {"gltf", png, rgb8, YAxis::up, false, "",
      "The core specification allows PNG and JPEG, of which only PNG is lossless; it requires x, y and z in R, G and B "
-     "and green up."},
+     "and green up.",
+     kGltfTypes, kRgbCodes},
     // normal_fragment_maps.glsl.js reads xyz; RG and BC5 need a release of 2026 (three.js pull request 32448).
-    {"three", Container::png, Encoding::rgb8, YAxis::up, false, "",
+    {"three", png, rgb8, YAxis::up, false, "",
      "TextureLoader reads PNG, and the renderer builds the levels. Releases before 2026 read z from B, so textures of "
-     "two channels do not work in them."},
+     "two channels do not work in them.",
+     kThreeTypes, kRgb},
     // Blender's manual, Normal Map node: OpenGL convention by default, Non-Color images.
-    {"blender", Container::png, Encoding::rgb16, YAxis::up, false, "",
-     "Blender renders from the texels of the file, so 16 bits avoid steps in reflections. It expects green up."},
+    {"blender", png, rgb16, YAxis::up, false, "",
+     "Blender renders from the texels of the file, so 16 bits avoid steps in reflections. It expects green up.",
+     kPictures, kRgb},
     // bevy_pbr: pbr_material.rs sets TWO_COMPONENT_NORMAL_MAP for Bc5RgUnorm; flip_normal_map_y is for DirectX maps.
-    {"bevy", Container::ktx2, Encoding::bc5, YAxis::up, true, "",
+    {"bevy", ktx2, bc5, YAxis::up, true, "",
      "Bevy loads GPU formats as they are and builds no levels. StandardMaterial rebuilds z for BC5 (not for DXT5nm or "
-     "signed BC5) and expects green up. BC5 is for desktop GPUs."},
+     "signed BC5) and expects green up. BC5 is for desktop GPUs.",
+     kBevyTypes, kBevyEncodings},
     // ImageBuilder.settings maps _normal to the preset Normals (BC5 signed, box filter, R and G swapped on the way).
     // No documentation states y; pull request 18082 turned on Flip Y for Sponza's OpenGL maps.
-    {"o3de", Container::png, Encoding::rgb8, YAxis::down, false, "_normal",
+    {"o3de", png, rgb8, YAxis::down, false, "_normal",
      "The asset processor chooses the preset Normals by the suffix, compresses and builds the levels. Its own OpenGL "
-     "maps need Flip Y, so green points down."},
+     "maps need Flip Y, so green points down.",
+     kPictures, kRgb},
     // OpenGL ES 3.0 and Vulkan's textureCompressionETC2; the direction is OpenGL's.
-    {"android", Container::ktx2, Encoding::eac_rg11, YAxis::up, true, "",
+    {"android", ktx2, eac_rg11, YAxis::up, true, "",
      "Every GPU with OpenGL ES 3.0 reads EAC RG11, which stores x and y in 8 bits a texel; the shader rebuilds z. "
-     "Green "
-     "points up, as in OpenGL."},
+     "Green points up, as in OpenGL.",
+     kPhoneTypes, kPhoneEncodings},
     // Metal: MTLPixelFormatEAC_RG11Unorm from A7 on. ASTC, which Apple prefers, is not written yet.
-    {"ios", Container::ktx2, Encoding::eac_rg11, YAxis::up, true, "",
-     "Every Apple GPU since A7 reads EAC RG11, which stores x and y in 8 bits a texel; the shader rebuilds z. ASTC "
-     "would "
-     "need fewer bytes, but is not written yet."},
+    {"ios", ktx2, eac_rg11, YAxis::up, true, "",
+     "Every Apple GPU since A7 reads EAC RG11, which stores x and y in 8 bits a texel; the shader rebuilds z. "
+     "ASTC would need fewer bytes, but is not written yet.",
+     kPhoneTypes, kPhoneEncodings},
 };
 
 std::vector<std::string> engine_names() {
@@ -81,6 +107,13 @@ std::vector<const Engine*> parse_engines(const std::string& text) {
         chosen.push_back(engine);
     }
     return chosen;
+}
+
+EngineNeeds needs_of(const Engine& engine) {
+    return {std::string(engine.name),
+            {engine.types.begin(), engine.types.end()},
+            {engine.encodings.begin(), engine.encodings.end()},
+            engine.has_mips};
 }
 
 std::vector<Word> engine_words() {

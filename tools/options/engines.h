@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include <tex/check.h>
 #include <tex/container.h>
 
 #include "cli/command.h"
@@ -23,12 +24,18 @@ struct Engine {
     bool has_mips;            // whether the file holds all levels; otherwise the engine builds them
     std::string_view suffix;  // of names that the command makes: the engine recognises normal maps by it
     std::string_view reason;  // sentences
+    // What it reads besides, for check-normals.
+    std::span<const Container> types;
+    std::span<const Encoding> encodings;
 };
 
 [[nodiscard]] std::span<const Engine> engines();
 
 // The engines of "unity,unreal", in this order. Throws UsageError.
 [[nodiscard]] std::vector<const Engine*> parse_engines(const std::string& text);
+
+// What check-normals compares a file with.
+[[nodiscard]] EngineNeeds needs_of(const Engine& engine);
 
 // The words of --for: the engines and "list".
 [[nodiscard]] std::vector<Word> engine_words();

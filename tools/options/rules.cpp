@@ -43,6 +43,15 @@ void RuleOptions::add(Command& command) {
                     required_.push_back(text);
                 })
         .repeatable = true;
+    Row& row = command.option("--for", "ENGINE", "demand what an engine reads, and its direction of green",
+                              [this](const std::string& text) {
+                                  const auto chosen = parse_engines(text);
+                                  if (chosen.size() != 1) throw UsageError("a file is checked for one engine");
+                                  engine_ = chosen.front();
+                              });
+    row.words = engine_words();
+    row.words.pop_back();  // list
+    row.completes = Completes::words;
     const auto name_into = [](std::vector<std::string>& names) {
         return [&names](const std::string& text) {
             static_cast<void>(parse_rule(text));
@@ -78,6 +87,10 @@ Demands RuleOptions::merged(const CheckSettings& settings, const Command& comman
     Demands demands{settings.options, settings.fail_on.value_or(least_failing_)};
     CheckOptions& checks = demands.checks;
     for (const std::string& text : required_) require(checks.require, text);
+    if (engine_ != nullptr) {
+        checks.require.engine = needs_of(*engine_);
+        if (!checks.require.y) checks.require.y = engine_->y;
+    }
     append(checks.enable, given_.enable);
     append(checks.severity, given_.severity);
     // A rule may appear with its id in one place and with its name in the other.

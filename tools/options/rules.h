@@ -13,6 +13,7 @@
 #include "batch/task.h"
 #include "cli/command.h"
 #include "options/check_config.h"
+#include "options/engines.h"
 
 namespace tex::cli {
 
@@ -24,7 +25,7 @@ struct Demands {
     [[nodiscard]] bool fails(const Finding& finding) const { return finding.severity >= fail_on; }
 };
 
-// --require, --enable, --disable, --severity, --config, --fail-on, --height, --list, --explain.
+// --require, --for, --enable, --disable, --severity, --config, --fail-on, --height, --list, --explain.
 class RuleOptions {
 public:
     void add(Command& command);
@@ -50,6 +51,7 @@ private:
 
     CheckOptions given_;                        // from the command line, without `require`
     std::vector<std::string> required_;         // --require
+    const Engine* engine_ = nullptr;            // --for
     std::string config_, height_file_;          // paths, or empty
     Severity least_failing_ = Severity::error;  // --fail-on
     bool list_ = false;

@@ -2,7 +2,9 @@
 
 #include "checks/file_rules.h"
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include <tex/swizzle.h>
 
@@ -79,6 +81,38 @@ void check_extent(const Texture& texture, const Requirements& require, Findings&
     }
 }
 
+template <class E, std::size_t N>
+std::string names_of(const std::vector<E>& values, const Named<E> (&table)[N]) {
+    std::string names;
+    for (const E value : values) names += (names.empty() ? "" : ", ") + std::string(name_of(table, value));
+    return names;
+}
+
+void check_engine(const Subject& subject, const EngineNeeds& needs, Findings& findings) {
+    std::vector<std::string> reasons;
+    const auto type = container_of(subject.file);
+    if (type && std::find(needs.types.begin(), needs.types.end(), *type) == needs.types.end()) {
+        reasons.push_back("does not read " + std::string(name_of(kContainerNames, *type)) + " but " +
+                          names_of(needs.types, kContainerNames));
+    }
+    const Texture& texture = subject.texture;
+    const Swizzle& swizzle = subject.stored.swizzle;
+    const bool is_read = std::any_of(needs.encodings.begin(), needs.encodings.end(),
+                                     [&](Encoding encoding) { return holds_encoding(texture, swizzle, encoding); });
+    if (!is_read) {
+        reasons.push_back("does not read normals from " + format_text(texture, swizzle) + " but from " +
+                          names_of(needs.encodings, kEncodingNames));
+    }
+    const int levels = static_cast<int>(texture.levels.size()), complete = level_count(texture.extent());
+    const bool takes_levels = needs.levels || (is_read && format_info(texture.format).has_blocks());
+    if (takes_levels && levels < complete)
+        reasons.push_back("needs all " + std::to_string(complete) + " levels, and the file has " +
+                          std::to_string(levels));
+    std::string message;
+    for (const std::string& reason : reasons) message += (message.empty() ? needs.engine + " " : "; it ") + reason;
+    if (!message.empty()) findings.add("N113", message);
+}
+
 }  // namespace
 
 void check_file_rules(const Subject& subject, Findings& findings) {
@@ -91,6 +125,7 @@ void check_file_rules(const Subject& subject, Findings& findings) {
     check_levels(texture, require, findings);
     check_extent(texture, require, findings);
     if (texture.srgb) findings.add("N111", format_text(texture, subject.stored.swizzle) + ", as sRGB");
+    if (require.engine) check_engine(subject, *require.engine, findings);
     if (require.y && texture.y_known && texture.y_axis != *require.y) {
         findings.add("N112", "the file says " + direction(texture.y_axis) + " instead of " + direction(*require.y));
     }

@@ -21,6 +21,7 @@ struct Subject {
     const Texture& texture;
     const CheckOptions& options;
     const Execution& execution;
+    const std::string& file;  // its name
     Image base = {};
     Stored stored = {};
     bool has_vectors = false;

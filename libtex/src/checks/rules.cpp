@@ -46,6 +46,10 @@ constexpr Rule kRules[] = {
     {"N112", "wrong-declared-y", file, error, true, "The file declares another direction of green than required.",
      "KTX2 and EXR files of libtex say which way y points.",
      "pack-normals FILE --keep-length --y-in WANTED --y WANTED --format SAME -o FIXED", ""},
+    {"N113", "unfit-for-engine", file, error, true, "The file is not what the engine reads.",
+     "The engine named by --for does not read its file type, does not read normals from its format, or gets too few "
+     "levels. Engines do not build levels for block formats.",
+     "Make the file again with bake-normals or pack-normals and the same --for.", "N103"},
 
     // -- the vectors ------------------------------------------------------------------------------------------
     {"N201", "not-unit-length", values, note, true, "Vectors are not of unit length.",
