@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // make_broken: writes samples/broken, which has one file for each rule of check-normals. Only that rule reports the
-// file.
+// file. Rules about meshes also have a mesh, in samples/broken/meshes.
 //
 //     make_broken samples/waves.png FOLDER
 //
@@ -17,6 +17,7 @@
 
 #include <tex/tex.h>
 
+#include "broken_meshes.h"
 #include "reference/damage.h"
 
 namespace {
@@ -68,6 +69,8 @@ struct Maker {
     void damages();
     void conventions();
     void levels();
+    void mesh(const std::string& id, const MeshPart& part);
+    void tangents();
 };
 
 // Every `step`-th texel becomes (r, g, b).
@@ -240,6 +243,39 @@ void Maker::levels() {
     png("N602-height-inverted", codes_of(changed(base, [](int, int, double& p, double& q) { p = -p, q = -q; })));
 }
 
+void Maker::mesh(const std::string& id, const MeshPart& part) {
+    const std::string glb = glb_of_part(part);
+    std::vector<std::byte> bytes(glb.size());
+    std::memcpy(bytes.data(), glb.data(), glb.size());
+    write("meshes/" + id + ".glb", std::move(bytes));
+}
+
+void Maker::tangents() {
+    const auto put = [&](const char* id, const char* name, auto&& change) {
+        MeshPart sheet = broken_sheet();
+        change(sheet.tangents);
+        mesh(id, sheet);
+        png(std::string(id) + "-" + name, codes_of(part(64, 64)));
+    };
+    using Tangents = std::vector<Float4>;
+    put("N701", "tangents-missing", [](Tangents& all) { all.clear(); });
+    put("N702", "tangents-not-unit", [](Tangents& all) {
+        for (std::size_t k = 0; k < all.size(); k += 3)
+            all[k] = {0.5f * all[k].x, 0.5f * all[k].y, 0.5f * all[k].z, all[k].w};
+    });
+    put("N703", "tangent-sign-not-one", [](Tangents& all) { all[7].w = 0.5f; });
+    put("N704", "tangent-sign-mixed", [](Tangents& all) { all[12].w = -all[12].w; });
+    put("N705", "tangents-not-mikktspace", [](Tangents& all) {  // turned by 14 degrees about z
+        for (Float4& t : all) {
+            const Float3 turned = unit_vector({t.x - 0.25f * t.y, t.y + 0.25f * t.x, t.z});
+            t = {turned.x, turned.y, turned.z, t.w};
+        }
+    });
+    put("N706", "tangent-sign-opposite", [](Tangents& all) {
+        for (Float4& t : all) t.w = -t.w;
+    });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -263,5 +299,6 @@ int main(int argc, char** argv) {
     maker.damages();
     maker.conventions();
     maker.levels();
+    maker.tangents();
     return maker.failed ? 3 : 0;
 }

@@ -6,5 +6,6 @@ samples=$(cd "$(dirname "${BASH_SOURCE[0]}")/../samples" && pwd)
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
+mkdir "$scratch/meshes"
 "$1" "$samples/waves.png" "$scratch"
 diff -r -x options.txt "$scratch" "$samples/broken"

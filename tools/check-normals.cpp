@@ -10,6 +10,7 @@
 #include "batch/batch.h"
 #include "cli/usage_error.h"
 #include "options/rules.h"
+#include "options/tangent_space.h"
 #include "reports/check_documents.h"
 #include "reports/findings.h"
 #include "reports/github.h"
@@ -27,9 +28,11 @@ private:
     [[nodiscard]] bool reads_nothing() const { return rules_.list() || rules_.explain() != nullptr; }
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] Result<void> process(cli::Job& job) override;
+    [[nodiscard]] Result<CheckReport> check_one(const cli::Job& job, CheckOptions checks, const Execution& execution);
     [[nodiscard]] cli::ExitCode finish(cli::Console& console) override;
 
     cli::RuleOptions rules_;
+    cli::TangentSpaceOptions mesh_;
     cli::CheckDocuments documents_;
     std::mutex mutex_;
     cli::CheckTotals totals_;
@@ -41,6 +44,7 @@ CheckNormals::CheckNormals(const cli::ProgramRow& row) : Batch(row) {
     command.input("FILE...", "textures and pictures of normals; - is standard input");
     command.finds_things();
     rules_.add(command);
+    mesh_.add_input(command);
     documents_.add(command);
     command.check([this] {
         if (running.json && documents_.is_for_github())
@@ -48,6 +52,7 @@ CheckNormals::CheckNormals(const cli::ProgramRow& row) : Batch(row) {
         if (!reads_nothing()) return;
         if (!command.inputs().empty()) throw cli::UsageError("--list and --explain take no files");
         if (documents_.has_page()) throw cli::UsageError("--list and --explain write no --report");
+        if (mesh_.has_mesh()) throw cli::UsageError("--list and --explain take no --mesh");
     });
     files.add_inputs(command, [this] { return reads_nothing(); });
     running.add(command);
@@ -61,6 +66,8 @@ CheckNormals::CheckNormals(const cli::ProgramRow& row) : Batch(row) {
                     "Accepts today's findings; --baseline known.json then reports only new ones.");
     command.example("check-normals bricks_n.png --height bricks_h.png",
                     "Whether a normal map was made from a height map.");
+    command.example("check-normals rock_n.dds --mesh rock.glb --decoder unreal",
+                    "Whether a map fits its mesh in an engine.");
 }
 
 cli::ExitCode CheckNormals::work(cli::Console& console) {
@@ -73,17 +80,30 @@ Result<void> CheckNormals::check(const std::vector<cli::Task>& tasks) {
     std::vector<std::string> inputs;
     inputs.reserve(tasks.size());
     for (const cli::Task& task : tasks) inputs.push_back(task.input);
-    documents_.check(
-        inputs,
-        {{"--config", rules_.config()}, {"--height", rules_.height_file()}, {"--files-from", files.files_from}});
+    documents_.check(inputs, {{"--config", rules_.config()},
+                              {"--height", rules_.height_file()},
+                              {"--files-from", files.files_from},
+                              {"--mesh", mesh_.files().front()}});
     if (auto read = documents_.read(); !read) return read;
+    if (mesh_.has_mesh()) {  // jobs share it; one error is enough
+        if (const auto space = mesh_.input({running.threads, {}}); !space) return space.error();
+    }
     return rules_.read(command, tasks, running.read);
+}
+
+Result<CheckReport> CheckNormals::check_one(const cli::Job& job, CheckOptions checks, const Execution& execution) {
+    if (!mesh_.has_mesh()) return check_file(job.task.input, checks, job.read_options, execution);
+    const auto space = mesh_.input({job.threads(), {}});
+    if (!space) return space.error();
+    const MeshToCheck mesh{space->selected(), space->decoder(), space->file()};
+    checks.mesh = &mesh;
+    return check_file(job.task.input, checks, job.read_options, execution);
 }
 
 Result<void> CheckNormals::process(cli::Job& job) {
     const Execution execution = job.until(documents_.has_page() ? 0.5 : 1.0);
     const cli::Demands& demands = rules_.demands_of(job.task.input);
-    auto report = check_file(job.task.input, demands.checks, job.read_options, execution);
+    auto report = check_one(job, demands.checks, execution);
     if (!report) return report.error();
     if (report->error && report->error->code == ErrorCode::cancelled) return *report->error;
     const int known = documents_.accept(*report);

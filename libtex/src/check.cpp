@@ -16,6 +16,7 @@
 #include "checks/damage_rules.h"
 #include "checks/file_rules.h"
 #include "checks/findings.h"
+#include "checks/mesh_rules.h"
 #include "checks/mip_rules.h"
 #include "checks/pair_rules.h"
 #include "checks/rules.h"
@@ -213,6 +214,11 @@ Result<CheckReport> check(const std::string& file, const Texture& texture, const
         if (auto done = check_mip_rules(subject, findings); !done) return done.error();
         CheckReport report;
         report.pair = check_pair_rules(subject, findings);
+        if (auto seams = check_mesh_rules(subject, findings)) {
+            report.seams = *seams;
+        } else {
+            return seams.error();
+        }
         report.file = file;
         report.findings = findings.take(report.explained);
         report.format = texture.format;

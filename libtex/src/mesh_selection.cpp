@@ -68,6 +68,7 @@ struct Choice {
     const MeshNode* node = nullptr;
     int uv_set = 0;
     TangentSource source = TangentSource::mikktspace;
+    bool has_normal_map = false, has_tangents = false;
 };
 
 Result<void> choose_parts(const Mesh& mesh, const MeshSelection& selection, Choice& choice) {
@@ -100,8 +101,10 @@ Result<void> choose_parts(const Mesh& mesh, const MeshSelection& selection, Choi
 
 Result<void> choose_attributes(const Mesh& mesh, const MeshSelection& selection, Choice& choice) {
     const int material = choice.parts.front()->material;
-    if (material >= 0 && static_cast<std::size_t>(material) < mesh.materials.size())
+    if (material >= 0 && static_cast<std::size_t>(material) < mesh.materials.size()) {
         choice.uv_set = mesh.materials[static_cast<std::size_t>(material)].uv_set;
+        choice.has_normal_map = mesh.materials[static_cast<std::size_t>(material)].has_normal_map;
+    }
     choice.uv_set = selection.uv_set.value_or(choice.uv_set);
     bool all_have_tangents = true;
     for (const MeshPart* part : choice.parts) {
@@ -117,6 +120,7 @@ Result<void> choose_attributes(const Mesh& mesh, const MeshSelection& selection,
             if (selection.tangents == TangentSource::file) return unfit(name + "has no tangents; make them");
         }
     }
+    choice.has_tangents = all_have_tangents;
     const bool stored = all_have_tangents && !selection.uv_set;
     choice.source = selection.tangents.value_or(stored ? TangentSource::file : TangentSource::mikktspace);
     return {};
@@ -168,6 +172,8 @@ Result<SelectedPart> joined_parts(const Choice& choice, const Execution& executi
         return Error{ErrorCode::unsupported, {}, "has more than 2^28 triangles with this material"};
     SelectedPart joined;
     joined.source = choice.source;
+    joined.has_normal_map = choice.has_normal_map;
+    joined.has_tangents = choice.has_tangents;
     joined.part.v_axis = choice.parts.front()->v_axis;
     joined.part.uvs.resize(1);
     for (const MeshPart* part : choice.parts) {

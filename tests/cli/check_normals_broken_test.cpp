@@ -27,7 +27,7 @@ protected:
             options_[line.substr(0, 4)] = line.substr(5);
         for (const auto& entry : std::filesystem::directory_iterator(scratch_.path("broken"))) {
             const std::string name = entry.path().filename().string();
-            if (name != "options.txt") names_.push_back(name);
+            if (name != "options.txt" && !entry.is_directory()) names_.push_back(name);
         }
     }
     // Checks a file with the options that its rule needs.

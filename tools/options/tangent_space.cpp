@@ -36,25 +36,44 @@ Error with_option(const Error& error) {
 }  // namespace
 
 void TangentSpaceOptions::add(Command& command) {
-    command.group("Mesh");
-    command.text(mesh_, "--mesh", "FILE", "the mesh that the map is on: glTF, GLB or OBJ; required").completes =
-        Completes::files;
+    add_mesh(command, "the mesh that the map is on: glTF, GLB or OBJ; required");
     command.text(to_mesh_, "--to-mesh", "FILE", "another version of the mesh, with the same UVs, which the output fits")
         .completes = Completes::files;
     add_parts(command);
     command.group("Spaces");
     command.choice(from, "--from", "SPACE", kSpaceNames, "the space of the input's vectors");
     command.choice(to, "--to", "SPACE", kSpaceNames, "the space of the output's vectors");
-    command.choice(decoder_, "--decoder", "D", kDecoderNames, "the engine that decodes the tangent-space map");
+    add_decoder(command, "the engine that decodes the tangent-space map");
     command.choice(decoder_in_, "--decoder-in", "D", kDecoderNames, "the decoder that the input was made for").preset =
         "as --decoder";
-    command.choice(tangents_, "--tangents", "T", kTangentSourceNames, "where the tangents of the mesh come from")
-        .preset = "file if it has any, else mikktspace";
+    add_tangents(command);
     command
         .choice(tangents_in_, "--tangents-in", "T", kTangentSourceNames,
                 "where the tangents that the input was made for come from")
         .preset = "as --tangents";
     command.check([this, &command] { check(command); });
+}
+
+void TangentSpaceOptions::add_input(Command& command) {
+    add_mesh(command, "the mesh that the inputs are on: glTF, GLB or OBJ");
+    add_parts(command);
+    add_decoder(command, "the engine that decodes the inputs");
+    add_tangents(command);
+    command.check([this, &command] { check_input(command); });
+}
+
+void TangentSpaceOptions::add_mesh(Command& command, const char* meaning) {
+    command.group("Mesh");
+    command.text(mesh_, "--mesh", "FILE", meaning).completes = Completes::files;
+}
+
+void TangentSpaceOptions::add_decoder(Command& command, const char* meaning) {
+    command.choice(decoder_, "--decoder", "D", kDecoderNames, meaning);
+}
+
+void TangentSpaceOptions::add_tangents(Command& command) {
+    command.choice(tangents_, "--tangents", "T", kTangentSourceNames, "where the tangents of the mesh come from")
+        .preset = "file if it has any, else mikktspace";
 }
 
 void TangentSpaceOptions::add_parts(Command& command) {
@@ -74,6 +93,13 @@ void TangentSpaceOptions::add_parts(Command& command) {
                     selection_.uv_set = parse_int(text, 0, std::numeric_limits<int>::max());
                 })
         .preset = "that of the material, else 0";
+}
+
+void TangentSpaceOptions::check_input(const Command& command) const {
+    if (mesh_ == "-") throw UsageError("--mesh: a mesh cannot come from standard input");
+    if (has_mesh()) return;
+    const auto idle = command.given_of({"--material", "--primitive", "--node", "--uv-set", "--decoder", "--tangents"});
+    if (!idle.empty()) throw UsageError(fmt::format("{} needs --mesh", idle.front()));
 }
 
 void TangentSpaceOptions::check(const Command& command) const {

@@ -36,6 +36,8 @@ public:
 
     // Valid as long as this object.
     [[nodiscard]] TangentSpace space() const { return {selected_->part, selected_->tangents, 0, decoder_, file_}; }
+    [[nodiscard]] const SelectedPart& selected() const { return *selected_; }
+    [[nodiscard]] Decoder decoder() const { return decoder_; }
     [[nodiscard]] TangentSource source() const { return selected_->source; }
     [[nodiscard]] const std::string& file() const { return file_; }
 
@@ -53,6 +55,10 @@ public:
     Space to = Space::tangent;
 
     void add(Command& command);
+    // Without those of an output: --mesh, which may be left out, --decoder, --tangents, and the choice of parts.
+    void add_input(Command& command);
+
+    [[nodiscard]] bool has_mesh() const { return !mesh_.empty(); }
 
     // The mesh files, with those that hold buffers of them.
     [[nodiscard]] std::vector<std::string> files() const;
@@ -64,7 +70,11 @@ public:
 
 private:
     void check(const Command& command) const;
+    void check_input(const Command& command) const;
+    void add_mesh(Command& command, const char* meaning);
     void add_parts(Command& command);
+    void add_decoder(Command& command, const char* meaning);
+    void add_tangents(Command& command);
     [[nodiscard]] Result<MeshSpace> read(const std::string& file, std::optional<TangentSource> tangents,
                                          Decoder decoder, const Execution& execution) const;
 

@@ -19,9 +19,11 @@
 #include <vector>
 
 #include <tex/container.h>
+#include <tex/convert_options.h>
 #include <tex/execution.h>
 #include <tex/format.h>
 #include <tex/height_field.h>
+#include <tex/mesh_selection.h>
 #include <tex/names.h>
 #include <tex/result.h>
 #include <tex/texture.h>
@@ -37,7 +39,7 @@ inline constexpr Named<Severity> kSeverityNames[] = {
     {Severity::error, "error", "is wrong"},
 };
 
-enum class RuleFamily { file, values, damage, convention, mips, pair };
+enum class RuleFamily { file, values, damage, convention, mips, pair, mesh };
 
 inline constexpr Named<RuleFamily> kRuleFamilyNames[] = {
     {RuleFamily::file, "file", "the file and its header"},
@@ -46,6 +48,7 @@ inline constexpr Named<RuleFamily> kRuleFamilyNames[] = {
     {RuleFamily::convention, "convention", "which way green points"},
     {RuleFamily::mips, "mips", "the smaller levels"},
     {RuleFamily::pair, "pair", "the map beside its height map"},
+    {RuleFamily::mesh, "mesh", "the map on its mesh"},
 };
 
 struct Rule {
@@ -106,12 +109,23 @@ inline constexpr Named<RequirementKey> kRequirementKeyNames[] = {
 // Errors: bad_option (the reason lists what is allowed).
 [[nodiscard]] Result<void> add_requirement(Requirements& requirements, std::string_view text);
 
+// The mesh that a map is on, for the rules of the family "mesh". Refers to the caller's objects.
+//
+// y of the map points as Requirements::y demands; else as the file states; else down for Decoder::unreal, which reads
+// maps that way, and up for all others.
+struct MeshToCheck {
+    const SelectedPart& selected;     // with at least one triangle
+    Decoder decoder = Decoder::gltf;  // the engine that decodes the map
+    std::string file = {};            // that errors name; may be empty
+};
+
 struct CheckOptions {
     Requirements require;
     std::vector<std::string> enable;                         // ids or names
     std::vector<std::string> disable;                        // takes precedence over enable
     std::vector<std::pair<std::string, Severity>> severity;  // by id or name; the last one applies
     const HeightField* height = nullptr;                     // the map's heights, for the rules of the pair; not owned
+    const MeshToCheck* mesh = nullptr;                       // the mesh that the map is on; not owned
 };
 
 // Texels [x, x + width) x [y, y + height) of a level; y counts rows from the top.
@@ -147,6 +161,15 @@ struct PairEvidence {
     int offset_x = 0, offset_y = 0;  // texels by which the normals are to the right of and below the heights
 };
 
+// How well the map fits the mesh: the angles in degrees between the decoded normals on both sides of UV seams. Each
+// seam edge counts by its length in object space.
+struct SeamEvidence {
+    std::int64_t edges = 0;  // that were measured
+    double mean = 0.0, p99 = 0.0;
+    double worst = 0.0;  // mean of the worst edge
+    Region worst_edge;   // the texels around one side of it
+};
+
 struct CheckReport {
     std::string file;
     std::vector<Finding> findings;  // by rule id, then level
@@ -161,6 +184,7 @@ struct CheckReport {
     bool more_data = false;  // a channel varies that holds no component of the normals: roughness, a mask
     YEvidence y;
     std::optional<PairEvidence> pair;
+    std::optional<SeamEvidence> seams;
 };
 
 // Checks that all rules in the options exist. Errors: bad_option.
@@ -168,8 +192,9 @@ struct CheckReport {
 
 // Checks a texture. `file` is its name in the report.
 //
-// Precondition (asserted): the texture has at least one level, each with level_bytes() bytes.
-// Errors: bad_option (see validate()), out_of_memory, cancelled.
+// Preconditions (asserted): the texture has at least one level, each with level_bytes() bytes; if there is a mesh,
+// check_part() succeeds.
+// Errors: bad_option (see validate()), out_of_memory, cancelled; with a mesh, also those of convert.h and tangents.h.
 // The same report for every number of threads, processor and compiler.
 [[nodiscard]] Result<CheckReport> check(const std::string& file, const Texture& texture,
                                         const CheckOptions& options = {}, const Execution& execution = {});

@@ -59,8 +59,9 @@ struct MeshPart {
 
 struct MeshMaterial {
     std::string name;
-    std::string normal_map;  // the path of the normal map as the file states it; empty: none, or inside the file
-    int uv_set = 0;          // the set of UVs that the normal map uses
+    std::string normal_map;       // the path of the normal map as the file states it; empty: none, or inside the file
+    int uv_set = 0;               // the set of UVs that the normal map uses
+    bool has_normal_map = false;  // in a file or inside the mesh's file
 };
 
 // A place where a mesh stands in the scene.

@@ -39,6 +39,8 @@ struct SelectedPart {
     MeshPart part;
     std::vector<Float4> tangents;  // one for each element of part.indices
     TangentSource source = TangentSource::mikktspace;
+    bool has_normal_map = false;  // their material
+    bool has_tangents = false;    // every part has stored tangents, whether or not they were chosen
 };
 
 // Joins the parts that `selection` names. Tangents are made for each part, before a node transforms it.

@@ -175,6 +175,33 @@ constexpr Rule kRules[] = {
      "The normals follow from it with the opposite sign. Where they are right it is a depth map, and shaders want to "
      "be told; else bake them again.",
      "If this is a height map, bake the normals again from it. If it is a depth map, keep both.", ""},
+
+    // -- the mesh ---------------------------------------------------------------------------------------------
+    {"N701", "tangents-missing", mesh, note, true, "The mesh has a normal map, but no tangents.",
+     "Each engine then makes its own tangents, and not all by the same method. glTF asks for MikkTSpace's.",
+     "Export the mesh with tangents, or make sure that the engine makes those that the map was baked with.", ""},
+    {"N702", "tangents-not-unit", mesh, warning, true, "Tangents are not of unit length.",
+     "A tangent of length zero has no direction, so its triangles are lit wrongly. Other lengths make bumps steeper or "
+     "flatter in engines that do not normalise tangents. Triangles without area in the map cause this, and exporters "
+     "that scale.",
+     "Export the mesh again, with tangents that are made anew.", "N705"},
+    {"N703", "tangent-sign-not-one", mesh, warning, true, "w of tangents is neither 1 nor -1.",
+     "w is the side on which the bitangent lies. Engines multiply by it, so other values scale y, and 0 removes it.",
+     "Export the mesh again, with tangents of four components.", ""},
+    {"N704", "tangent-sign-mixed", mesh, warning, true, "w changes its sign within triangles.",
+     "Between such corners the bitangent vanishes and turns around. Vertices at the border of mirrored charts must be "
+     "split.",
+     "Export the mesh again, with tangents that are made anew.", ""},
+    {"N705", "tangents-not-mikktspace", mesh, note, true, "The tangents are not those of MikkTSpace.",
+     "Maps from most bakers fit MikkTSpace's tangents. With others, the shading is wrong by the angle between both, "
+     "unless the map was baked with these.",
+     "If the map was baked for MikkTSpace, convert it with convert-normals --tangents-in mikktspace --tangents file.",
+     ""},
+    {"N706", "tangent-sign-opposite", mesh, error, true, "w of tangents contradicts the UVs.",
+     "In these triangles, the bitangent points down in the map. Bumps are lit from the wrong side there. Exporters "
+     "that "
+     "turn v around but not w cause this, and tools that drop w.",
+     "Export the mesh again, with tangents that are made anew.", "N705"},
 };
 
 }  // namespace

@@ -30,4 +30,12 @@ inline constexpr double kLevelShort =
 // the largest value, 1.5.
 inline constexpr double kJpegRatio = 1.7;  // grid_ratio(8)
 
+// -- of meshes, set on Suzanne (Blender) and the materials of FlightHelmet (Babylon's exporter) ----------------------
+inline constexpr double kTangentLength = 0.01;  // from 1: at most 0.000001 there; 8-bit snorm rounds by up to 0.007
+inline constexpr double kTangentSign = 0.01;    // of |w| from 1: 0 there, and in 8-bit snorm
+inline constexpr double kOppositeSigns = 0.05;  // share of triangles: at most 0.0 there; 1 if all are flipped
+// p99 in degrees. Suzanne: 3.6, because Blender's MikkTSpace runs on quads. FlightHelmet, which SOURCES.md says is not
+// exact: 4.6 to 15.
+inline constexpr double kTangentAngle = 5.0;
+
 }  // namespace tex::thresholds

@@ -85,6 +85,7 @@ std::vector<MeshMaterial> materials_of(JsonValue root) {
         const JsonValue normal = list[k]["normalTexture"];
         const auto texture = normal["index"].count();
         if (!texture) continue;
+        materials[k].has_normal_map = true;
         materials[k].uv_set =
             static_cast<int>(std::min<std::int64_t>(normal["texCoord"].count().value_or(0), kMaxUvSets));
         const auto image = root["textures"][static_cast<std::size_t>(*texture)]["source"].count();

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "checks/mesh_rules.h"
+
+#include <cassert>
+
+#include "checks/tangent_rules.h"
+
+namespace tex {
+
+Result<std::optional<SeamEvidence>> check_mesh_rules(const Subject& subject, Findings& findings) {
+    const MeshToCheck* const mesh = subject.options.mesh;
+    if (mesh == nullptr) return std::optional<SeamEvidence>();
+    assert(check_part(mesh->selected.part) && mesh->selected.part.triangles() > 0);
+    if (const auto checked = check_tangent_rules(subject, findings); !checked) return checked.error().of(mesh->file);
+    return std::optional<SeamEvidence>();
+}
+
+}  // namespace tex

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// broken_meshes.h: the meshes of samples/broken, as GLB files. Only integers and + - * / sqrt make them.
+
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <tex/tex.h>
+
+#include "unit/gltf_files.h"
+#include "unit/meshes.h"
+
+namespace tex {
+
+// A sheet over the whole map, with the tangents of MikkTSpace.
+inline MeshPart broken_sheet() {
+    MeshPart part = wavy_part(4);
+    for (std::size_t k = 0; k < part.uvs[0].size(); ++k) part.uvs[0][k].y -= 0.125f * part.uvs[0][k].x;
+    const auto tangents = make_tangents(part);
+    part.tangents.resize(part.positions.size());
+    if (!tangents) return part;
+    for (std::size_t c = 0; c < part.indices.size(); ++c) part.tangents[part.indices[c]] = (*tangents)[c];
+    return part;
+}
+
+template <class T>
+std::vector<float> floats_of(const std::vector<T>& values) {
+    std::vector<float> list;
+    for (const T& value : values) {
+        list.push_back(value.x);
+        list.push_back(value.y);
+        if constexpr (requires { value.z; }) list.push_back(value.z);
+        if constexpr (requires { value.w; }) list.push_back(value.w);
+    }
+    return list;
+}
+
+// A GLB file of the part, whose material has a normal map.
+inline std::string glb_of_part(const MeshPart& part) {
+    GltfMaker maker;
+    std::array<float, 3> low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
+    for (const Float3& p : part.positions) {
+        const float xyz[3] = {p.x, p.y, p.z};
+        for (std::size_t k = 0; k < 3; ++k) {
+            low[k] = xyz[k] < low[k] ? xyz[k] : low[k];
+            high[k] = xyz[k] > high[k] ? xyz[k] : high[k];
+        }
+    }
+    const auto triple = [](const std::array<float, 3>& v) {
+        std::string text;
+        for (const float x : v) {
+            char number[32];
+            std::snprintf(number, sizeof number, "%.9g", static_cast<double>(x));
+            text += (text.empty() ? "[" : ",") + std::string(number);
+        }
+        return text + "]";
+    };
+    const auto attribute = [](const char* name, int accessor) {
+        return "\"" + std::string(name) + "\":" + std::to_string(accessor);
+    };
+    std::vector<Float2> uvs = part.uvs[0];
+    if (part.v_axis == YAxis::up) {
+        for (Float2& uv : uvs) uv.y = 1.0f - uv.y;
+    }
+    const std::string bounds = ",\"min\":" + triple(low) + ",\"max\":" + triple(high);
+    std::string attributes = attribute("POSITION", maker.add(floats_of(part.positions), "VEC3", 5126, bounds));
+    attributes += "," + attribute("NORMAL", maker.add(floats_of(part.normals), "VEC3", 5126));
+    attributes += "," + attribute("TEXCOORD_0", maker.add(floats_of(uvs), "VEC2", 5126));
+    if (!part.tangents.empty())
+        attributes += "," + attribute("TANGENT", maker.add(floats_of(part.tangents), "VEC4", 5126));
+    const int indices = maker.add(part.indices, "SCALAR", 5125);
+    return maker.glb("{\"attributes\":{" + attributes + "},\"indices\":" + std::to_string(indices) + ",\"material\":0}",
+                     R"(,"materials":[{"normalTexture":{"index":0}}],"textures":[{"source":0}],)"
+                     R"("images":[{"uri":"normals.png"}],"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],"scene":0)");
+}
+
+}  // namespace tex

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rules of the family "mesh" that need no map.
+
+#include <tex/check.h>
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <tex/pack.h>
+#include <tex/tangents.h>
+
+#include "unit/meshes.h"
+#include "unit/solids.h"
+
+namespace tex {
+namespace {
+
+Texture flat_texture() {
+    MipChain chain;
+    chain.levels.emplace_back(Extent{64, 64});
+    chain.levels[0].z = Plane<float>({64, 64}, 1.0f);
+    auto texture = pack(chain, {Encoding::rgb8, YAxis::up, Effort::fast});
+    EXPECT_TRUE(texture);
+    return std::move(*texture);
+}
+
+// The findings of the family "mesh".
+std::vector<Finding> findings_of(const SelectedPart& selected) {
+    const MeshToCheck mesh{selected, Decoder::gltf, "sheet.glb"};
+    CheckOptions options;
+    options.mesh = &mesh;
+    const auto report = check("map", flat_texture(), options);
+    EXPECT_TRUE(report);
+    std::vector<Finding> findings;
+    for (const Finding& finding : report->findings) {
+        if (finding.rule->family == RuleFamily::mesh) findings.push_back(finding);
+    }
+    return findings;
+}
+
+std::set<std::string> mesh_ids(const SelectedPart& selected) {
+    std::set<std::string> ids;
+    for (const Finding& finding : findings_of(selected)) ids.emplace(finding.rule->id);
+    return ids;
+}
+
+using MeshIds = std::set<std::string>;
+
+// A sheet whose file has stored MikkTSpace's tangents.
+SelectedPart stored_sheet(TangentMethod method = TangentMethod::mikktspace) {
+    SelectedPart selected;
+    selected.part = wavy_part(8);
+    for (Float2& uv : selected.part.uvs[0]) uv.y -= 0.125f * uv.x;
+    selected.tangents = *make_tangents(selected.part, method);
+    selected.source = TangentSource::file;
+    selected.has_normal_map = selected.has_tangents = true;
+    return selected;
+}
+
+TEST(CheckMesh, FindsNothingInTangentsOfMikktspace) { EXPECT_EQ(mesh_ids(stored_sheet()), MeshIds{}); }
+
+TEST(CheckMesh, NotesMissingTangentsIfThereIsANormalMap) {
+    SelectedPart selected = stored_sheet();
+    selected.has_tangents = false;
+    selected.source = TangentSource::mikktspace;
+    EXPECT_EQ(mesh_ids(selected), MeshIds{"N701"});
+    selected.has_normal_map = false;
+    EXPECT_EQ(mesh_ids(selected), MeshIds{});
+}
+
+TEST(CheckMesh, CountsTangentsWithoutUnitLength) {
+    SelectedPart selected = stored_sheet();
+    selected.tangents[0] = {0.0f, 0.0f, 0.0f, 1.0f};
+    for (std::size_t c = 3; c < 9; ++c) {
+        Float4& t = selected.tangents[c];
+        t = {1.25f * t.x, 1.25f * t.y, 1.25f * t.z, t.w};
+    }
+    const auto findings = findings_of(selected);
+    ASSERT_EQ(findings.size(), 1u);
+    EXPECT_EQ(findings[0].rule->id, "N702");
+    EXPECT_DOUBLE_EQ(findings[0].figure, 7.0 / static_cast<double>(selected.tangents.size()));
+    EXPECT_NE(findings[0].message.find("1 of 384 corners"), std::string::npos) << findings[0].message;
+    EXPECT_NE(findings[0].message.find("0.000 to 1.250"), std::string::npos) << findings[0].message;
+}
+
+TEST(CheckMesh, FindsSignsThatAreNotOne) {
+    SelectedPart selected = stored_sheet();
+    selected.tangents[5].w = 0.0f;
+    EXPECT_EQ(mesh_ids(selected), MeshIds{"N703"});
+}
+
+TEST(CheckMesh, FindsSignsThatChangeWithinATriangle) {
+    SelectedPart selected = stored_sheet();
+    selected.tangents[4].w *= -1.0f;
+    const auto findings = findings_of(selected);
+    ASSERT_EQ(findings.size(), 1u);
+    EXPECT_EQ(findings[0].rule->id, "N704");
+    EXPECT_DOUBLE_EQ(findings[0].figure, 1.0 / 128.0);
+}
+
+TEST(CheckMesh, FindsFlippedSigns) {
+    SelectedPart selected = stored_sheet();
+    for (Float4& t : selected.tangents) t.w = -t.w;
+    EXPECT_EQ(mesh_ids(selected), MeshIds{"N706"});
+    // w follows from the UVs whichever way v points.
+    selected.part.v_axis = YAxis::down;
+    EXPECT_EQ(mesh_ids(selected), MeshIds{});
+}
+
+TEST(CheckMesh, MeasuresTangentsAgainstMikktspaceAndNamesMeshopt) {
+    SelectedPart selected = stored_sheet();
+    // A fan of triangles of very different sizes, on which the methods disagree.
+    for (std::size_t k = 0; k < selected.part.positions.size(); k += 3) selected.part.positions[k].z += 0.2f;
+    selected.tangents = *make_tangents(selected.part, TangentMethod::meshopt);
+    const auto uneven = findings_of(selected);
+    ASSERT_EQ(uneven.size(), 1u);
+    EXPECT_EQ(uneven[0].rule->id, "N705");
+    EXPECT_EQ(uneven[0].severity, Severity::note);
+    EXPECT_GT(uneven[0].figure, 5.0);
+    EXPECT_NE(uneven[0].message.find("meshoptimizer's fit better: median 0.00, p99 0.00 degrees"), std::string::npos)
+        << uneven[0].message;
+    selected.tangents = *make_tangents(selected.part);
+    EXPECT_EQ(mesh_ids(selected), MeshIds{});
+}
+
+TEST(CheckMesh, LooksOnlyAtTangentsOfTheFile) {
+    SelectedPart selected = stored_sheet(TangentMethod::meshopt);
+    selected.source = TangentSource::meshopt;
+    for (Float4& t : selected.tangents) t.w = 0.5f;
+    EXPECT_EQ(mesh_ids(selected), MeshIds{});
+}
+
+}  // namespace
+}  // namespace tex
