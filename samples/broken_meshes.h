@@ -6,24 +6,31 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <tex/tex.h>
 
 #include "unit/gltf_files.h"
 #include "unit/meshes.h"
+#include "unit/solids.h"
 
 namespace tex {
 
-// A sheet over the whole map, with the tangents of MikkTSpace.
-inline MeshPart broken_sheet() {
-    MeshPart part = wavy_part(4);
-    for (std::size_t k = 0; k < part.uvs[0].size(); ++k) part.uvs[0][k].y -= 0.125f * part.uvs[0][k].x;
+// The part with the tangents of MikkTSpace, whose vertices need no splitting.
+inline MeshPart with_tangents(MeshPart part) {
     const auto tangents = make_tangents(part);
     part.tangents.resize(part.positions.size());
     if (!tangents) return part;
     for (std::size_t c = 0; c < part.indices.size(); ++c) part.tangents[part.indices[c]] = (*tangents)[c];
     return part;
+}
+
+// A sheet over the whole map, with the tangents of MikkTSpace.
+inline MeshPart broken_sheet() {
+    MeshPart part = wavy_part(4);
+    for (std::size_t k = 0; k < part.uvs[0].size(); ++k) part.uvs[0][k].y -= 0.125f * part.uvs[0][k].x;
+    return with_tangents(std::move(part));
 }
 
 template <class T>

@@ -71,6 +71,7 @@ struct Maker {
     void levels();
     void mesh(const std::string& id, const MeshPart& part);
     void tangents();
+    void seams();
 };
 
 // Every `step`-th texel becomes (r, g, b).
@@ -276,6 +277,31 @@ void Maker::tangents() {
     });
 }
 
+// A cube whose normals are smooth over its edges, with bumps that depend on the place in space alone. Green points the
+// wrong way.
+void Maker::seams() {
+    const Solid cube = smooth_cube();
+    const MeshPart part = with_tangents(cube.part);
+    mesh("N711", part);
+    const auto tangents = stored_tangents(part);
+    if (!tangents) return fail(tangents.error());
+    const TangentSpace space{part, *tangents};
+    NormalMap flat({128, 128});
+    flat.z = Plane<float>({128, 128}, 1.0f);
+    auto surface = to_object_space(flat, space);
+    if (!surface) return fail(surface.error());
+    NormalMap& normals = surface->map;
+    for (int k = 0; k < 128 * 128; ++k) {
+        float &x = normals.x.at(k % 128, k / 128), &y = normals.y.at(k % 128, k / 128),
+              &z = normals.z.at(k % 128, k / 128);
+        const Float3 n = unit_vector({x + 0.8f * y * z, y - 0.9f * z * x, z + 0.7f * x * y});
+        x = n.x, y = n.y, z = n.z;
+    }
+    const auto map = to_tangent_space(normals, space);
+    if (!map) return fail(map.error());
+    png("N711-other-tangent-space", flip_green(codes_of(map->map)));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -300,5 +326,6 @@ int main(int argc, char** argv) {
     maker.conventions();
     maker.levels();
     maker.tangents();
+    maker.seams();
     return maker.failed ? 3 : 0;
 }

@@ -115,8 +115,9 @@ Result<void> CheckNormals::process(cli::Job& job) {
                                    [&](const Finding& finding) { return demands.fails(finding); });
     if (fails && !documents_.writes_baseline()) job.raise(cli::ExitCode::findings);
     const Requirements& require = demands.checks.require;
-    job.say(documents_.is_for_github() ? cli::github_text(*report, require)
-                                       : cli::findings_text(*report, require) + cli::pair_text(*report));
+    job.say(documents_.is_for_github()
+                ? cli::github_text(*report, require)
+                : cli::findings_text(*report, require) + cli::pair_text(*report) + cli::seams_text(*report));
     job.report = cli::findings_json(*report, require);
     if (known > 0) job.report["known"] = known;
     if (auto added = documents_.add(job, *report, demands); !added) return added;

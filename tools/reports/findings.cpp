@@ -51,6 +51,13 @@ std::string pair_text(const CheckReport& report) {
                        pair.offset_y);
 }
 
+std::string seams_text(const CheckReport& report) {
+    if (!report.seams) return {};
+    const SeamEvidence& seams = *report.seams;
+    return fmt::format("{}: {} seam edges of the mesh, mean {:.2f}, p99 {:.2f}, worst edge {:.2f} degrees\n",
+                       printable(report.file), seams.edges, seams.mean, seams.p99, seams.worst);
+}
+
 Json findings_json(const CheckReport& report, const Requirements& require) {
     Json json;
     if (report.error) {
@@ -69,6 +76,13 @@ Json findings_json(const CheckReport& report, const Requirements& require) {
                         {"strength", static_cast<float>(report.pair->strength)},
                         {"y", name_of_y(report.pair->y)},
                         {"offset", {report.pair->offset_x, report.pair->offset_y}}};
+    }
+    if (report.seams) {
+        json["seams"] = {{"edges", report.seams->edges},
+                         {"mean", static_cast<float>(report.seams->mean)},
+                         {"p99", static_cast<float>(report.seams->p99)},
+                         {"worst", static_cast<float>(report.seams->worst)},
+                         {"worst_edge", region_json(report.seams->worst_edge)}};
     }
     json["findings"] = Json::array();
     for (const Finding& finding : report.findings) {

@@ -18,6 +18,9 @@ namespace tex::cli {
 // The result of the comparison with the height map, even if it is not a finding; empty if there is no height map.
 [[nodiscard]] std::string pair_text(const CheckReport& report);
 
+// How well the map fits its mesh, even if it is not a finding; empty if there is no mesh or no seam.
+[[nodiscard]] std::string seams_text(const CheckReport& report);
+
 // The report, as --json prints it.
 [[nodiscard]] Json findings_json(const CheckReport& report, const Requirements& require);
 

@@ -4,6 +4,7 @@
 
 #include <cassert>
 
+#include "checks/mesh_fit.h"
 #include "checks/tangent_rules.h"
 
 namespace tex {
@@ -13,7 +14,10 @@ Result<std::optional<SeamEvidence>> check_mesh_rules(const Subject& subject, Fin
     if (mesh == nullptr) return std::optional<SeamEvidence>();
     assert(check_part(mesh->selected.part) && mesh->selected.part.triangles() > 0);
     if (const auto checked = check_tangent_rules(subject, findings); !checked) return checked.error().of(mesh->file);
-    return std::optional<SeamEvidence>();
+    if (!subject.has_vectors) return std::optional<SeamEvidence>();
+    auto seams = check_mesh_fit(subject, findings);
+    if (!seams) return seams.error().of(mesh->file);
+    return seams;
 }
 
 }  // namespace tex

@@ -201,7 +201,15 @@ constexpr Rule kRules[] = {
      "In these triangles, the bitangent points down in the map. Bumps are lit from the wrong side there. Exporters "
      "that "
      "turn v around but not w cause this, and tools that drop w.",
-     "Export the mesh again, with tangents that are made anew.", "N705"},
+     "Export the mesh again, with tangents that are made anew.", "N705 N711"},
+    {"N711", "other-tangent-space", mesh, error, true, "The map was made for another tangent space.",
+     "The normals on both sides of UV seams are the same direction of the surface, so they must decode to the same "
+     "vector in object space. They do so with another decoder, with other tangents, or if green points the other way. "
+     "Seams and gradients show on the mesh. Reported only if the seams are clear enough to judge: the map was baked on "
+     "this mesh, and its charts are not too small.",
+     "Bake the map for this decoder and these tangents, or convert it with convert-normals --decoder-in, --tangents-in "
+     "or --y-in.",
+     ""},
 };
 
 }  // namespace

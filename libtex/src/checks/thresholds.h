@@ -37,5 +37,13 @@ inline constexpr double kOppositeSigns = 0.05;  // share of triangles: at most 0
 // p99 in degrees. Suzanne: 3.6, because Blender's MikkTSpace runs on quads. FlightHelmet, which SOURCES.md says is not
 // exact: 4.6 to 15.
 inline constexpr double kTangentAngle = 5.0;
+// Slopes of compare_gaps() (mesh_seams.h), for maps made from a field on the real meshes, at 1024 and 2048 texels, 8
+// bits. Green flipped: at least 0.998; green right: at most 0.002. The maps that came with the models: 0.24 to 0.69,
+// because bevels are one texel wide there (FlightHelmet), and because Suzanne's was never baked.
+inline constexpr double kSeamSlope = 0.1;  // from 0 or 1
+// The right decoder: at least 0.90. The others: at most 0.44.
+inline constexpr double kSeamFit = 0.65;
+// In degrees: the root mean square of what rounding to 8 bits adds to a gap, 0.2 for each side.
+inline constexpr double kSeamGap = 0.27;
 
 }  // namespace tex::thresholds

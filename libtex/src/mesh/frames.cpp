@@ -46,6 +46,8 @@ Vector3 mix(const std::array<Vector3, 3>& v, const std::array<double, 3>& weight
 
 }  // namespace
 
+bool same_vectors(Decoder a, Decoder b) { return kind_of(a) == kind_of(b); }
+
 CornerFrames::CornerFrames(const TangentSpace& space, std::size_t triangle) : decoder_(space.decoder) {
     for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t corner = 3 * triangle + k;

@@ -34,6 +34,9 @@ private:
     Decoder decoder_ = Decoder::gltf;
 };
 
+// Whether both decoders make the same vectors.
+[[nodiscard]] bool same_vectors(Decoder a, Decoder b);
+
 // n = normalize(x T' + y B' + z N'), or N' if that has no length.
 [[nodiscard]] Vector3 decode(const Frame& frame, Vector3 t);
 

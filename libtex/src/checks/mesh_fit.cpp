@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "checks/mesh_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <tex/tangents.h>
+
+#include "checks/mesh_seams.h"
+#include "checks/thresholds.h"
+
+namespace tex {
+namespace {
+
+constexpr double kDegrees = 57.295779513082320877;
+constexpr double kConfident = 0.99;
+
+// The side of a square around the worst edge, in texels.
+constexpr int kRegion = 16;
+
+double degrees_of(Vector3 gap) {
+    const double chord = std::sqrt(gap.x * gap.x + gap.y * gap.y + gap.z * gap.z);
+    return 2.0 * kDegrees * std::asin(std::min(1.0, chord / 2.0));
+}
+
+bool points_up(const Subject& subject) {
+    if (subject.options.require.y) return *subject.options.require.y == YAxis::up;
+    if (subject.texture.y_known) return subject.texture.y_axis == YAxis::up;
+    return subject.options.mesh->decoder != Decoder::unreal;
+}
+
+// The square of texels around a place of the map, inside of the map.
+Region region_around(const std::array<double, 2>& place, Extent extent) {
+    const auto first = [](double at, int size, int whole) {
+        const double wrapped = at - std::floor(at / whole) * whole;
+        return std::clamp(static_cast<int>(wrapped) - size / 2, 0, whole - size);
+    };
+    const int width = std::min(kRegion, extent.width), height = std::min(kRegion, extent.height);
+    return {0, first(place[0], width, extent.width), first(place[1], height, extent.height), width, height};
+}
+
+SeamEvidence evidence_of(const SeamSamples& samples, const std::vector<Vector3>& gaps, Extent extent) {
+    SeamEvidence evidence;
+    std::vector<std::pair<double, double>> angles;  // with their weights
+    double all = 0.0, of_edge = 0.0, count = 0.0;
+    const auto& places = samples.places();
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        const double angle = degrees_of(gaps[k]);
+        angles.emplace_back(angle, places[k].weight);
+        evidence.mean += places[k].weight * angle;
+        all += places[k].weight;
+        of_edge += angle;
+        count += 1.0;
+        if (k + 1 < places.size() && places[k + 1].edge == places[k].edge) continue;
+        ++evidence.edges;
+        if (of_edge / count >= evidence.worst) {
+            evidence.worst = of_edge / count;
+            evidence.worst_edge = region_around(places[k].at, extent);
+        }
+        of_edge = count = 0.0;
+    }
+    evidence.mean = all > 0.0 ? evidence.mean / all : 0.0;
+    std::sort(angles.begin(), angles.end());
+    double below = 0.0;
+    for (const auto& [angle, weight] : angles) {
+        evidence.p99 = angle;
+        below += weight;
+        if (below >= 0.99 * all) break;
+    }
+    return evidence;
+}
+
+// A way of decoding, and what the seams are like then.
+struct Candidate {
+    SeamSpace space;
+    TangentSource tangents = TangentSource::file;
+    std::vector<Vector3> gaps;
+};
+
+// The other ways with the same direction of green: each kind of decoder with each kind of tangents.
+class Candidates {
+public:
+    Candidates(const Subject& subject, const SeamSamples& samples) : subject_(subject), samples_(samples) {}
+
+    Result<void> make() {
+        for (const TangentMethod method : {TangentMethod::mikktspace, TangentMethod::meshopt}) {
+            auto tangents = make_tangents(selected().part, method, 0, subject_.execution);
+            if (!tangents) return tangents.error();
+            (method == TangentMethod::meshopt ? meshopt_ : mikktspace_) = std::move(*tangents);
+        }
+        return {};
+    }
+
+    [[nodiscard]] Candidate given(bool y_up) const {
+        return with(subject_.options.mesh->decoder, selected().tangents, selected().source, y_up);
+    }
+
+    // The one that fits surely better than all that were tried before, or `base`.
+    [[nodiscard]] Candidate best(Candidate base) const {
+        Candidate best = std::move(base);
+        const bool y_up = best.space.y_up;
+        const Decoder own = best.space.decoder;
+        const TangentSource source = selected().source;
+        for (const Decoder kind : {Decoder::gltf, Decoder::substance_vertex, Decoder::three}) {
+            const Decoder decoder = same_vectors(kind, own) ? own : kind;
+            try_one(best, with(decoder, selected().tangents, source, y_up));
+            if (source != TangentSource::mikktspace)
+                try_one(best, with(decoder, mikktspace_, TangentSource::mikktspace, y_up));
+            if (source != TangentSource::meshopt) try_one(best, with(decoder, meshopt_, TangentSource::meshopt, y_up));
+        }
+        return best;
+    }
+
+private:
+    [[nodiscard]] const SelectedPart& selected() const { return subject_.options.mesh->selected; }
+    [[nodiscard]] Candidate with(Decoder decoder, const std::vector<Float4>& tangents, TangentSource source,
+                                 bool y_up) const {
+        Candidate candidate{{decoder, &tangents, y_up}, source, {}};
+        candidate.gaps = samples_.gaps(candidate.space);
+        return candidate;
+    }
+    void try_one(Candidate& best, Candidate other) const {
+        if (compare_gaps(samples_, best.gaps, other.gaps).confidence >= kConfident) best = std::move(other);
+    }
+
+    const Subject& subject_;
+    const SeamSamples& samples_;
+    std::vector<Float4> mikktspace_, meshopt_;
+};
+
+// The engines that decode as `decoder` does: "godot, substance-vertex".
+std::string engines_like(Decoder decoder) {
+    std::string names;
+    for (const auto& row : kDecoderNames) {
+        if (same_vectors(row.value, decoder)) names.append(names.empty() ? "" : ", ").append(row.name);
+    }
+    return names;
+}
+
+// What the candidate is, as far as it differs from what is given.
+std::string difference_of(const Candidate& candidate, const Candidate& given) {
+    std::string text;
+    const auto add = [&](const std::string& part) { text += (text.empty() ? "" : "; ") + part; };
+    if (candidate.space.y_up != given.space.y_up) {
+        add("green points " + direction(candidate.space.y_up ? YAxis::up : YAxis::down) +
+            ", or w of the tangents is flipped");
+    }
+    if (!same_vectors(candidate.space.decoder, given.space.decoder))
+        add("the decoder is one of " + engines_like(candidate.space.decoder));
+    if (candidate.tangents != given.tangents)
+        add("the tangents are those of " + std::string(name_of(kTangentSourceNames, candidate.tangents)));
+    return text;
+}
+
+std::string figures(const SeamEvidence& evidence) {
+    return "mean " + decimal(evidence.mean, 2) + ", p99 " + decimal(evidence.p99, 2) + ", worst edge " +
+           decimal(evidence.worst, 2) + " degrees";
+}
+
+}  // namespace
+
+Result<std::optional<SeamEvidence>> check_mesh_fit(const Subject& subject, Findings& findings) {
+    const SelectedPart& selected = subject.options.mesh->selected;
+    const std::vector<SeamEdge> edges = find_seams(selected.part);
+    if (edges.empty()) return std::optional<SeamEvidence>();
+    const SeamSamples samples(selected.part, edges, subject.stored);
+    const Extent extent = subject.stored.extent();
+    Candidates candidates(subject, samples);
+    const bool y_up = points_up(subject);
+    const Candidate given = candidates.given(y_up);
+    const SeamEvidence evidence = evidence_of(samples, given.gaps, extent);
+    if (!findings.wants("N711")) return std::optional(evidence);
+
+    // Only a map whose y clearly meets at the seams can show what it was made for. Most maps do that one way or the
+    // other; too few texels on each side, or a map that was never baked on this mesh, do neither.
+    Candidate flipped = candidates.given(!y_up);
+    const SeamVerdict verdict_y = compare_gaps(samples, given.gaps, flipped.gaps);
+    const bool is_flipped = verdict_y.slope >= 1.0 - thresholds::kSeamSlope && verdict_y.confidence >= kConfident;
+    const bool is_right = verdict_y.slope <= thresholds::kSeamSlope && verdict_y.confidence <= 1.0 - kConfident;
+    if (verdict_y.saved < thresholds::kSeamGap || (!is_flipped && !is_right)) return std::optional(evidence);
+    if (const auto made = candidates.make(); !made) return made.error();
+    Candidate base = is_flipped ? std::move(flipped) : candidates.given(y_up);
+    Candidate best = candidates.best(std::move(base));
+    SeamVerdict verdict = compare_gaps(samples, given.gaps, best.gaps);
+    if (best.space.decoder == given.space.decoder && best.tangents == given.tangents && !is_flipped)
+        return std::optional(evidence);
+    if (is_right && (verdict.slope < thresholds::kSeamFit || verdict.saved < thresholds::kSeamGap))
+        return std::optional(evidence);
+    const SeamEvidence then = evidence_of(samples, best.gaps, extent);
+    Finding& finding = findings.add("N711", difference_of(best, given) + " (" + std::to_string(evidence.edges) +
+                                                " seam edges: " + figures(evidence) + "; then " + figures(then) +
+                                                "; confidence " + decimal(verdict.confidence, 3) + ")");
+    finding.figure = evidence.mean;
+    finding.unit = "degrees";
+    finding.confidence = std::max(0.5, verdict.confidence);
+    finding.regions = {evidence.worst_edge};
+    return std::optional(evidence);
+}
+
+}  // namespace tex

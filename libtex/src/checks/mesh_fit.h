@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// mesh_fit.h: whether a map fits its mesh, judged by its UV seams: N711.
+
+#pragma once
+
+#include "checks/findings.h"
+
+namespace tex {
+
+// Measures the seams as subject.options.mesh says that the map is decoded, and adds a finding if it was made for
+// another decoder, other tangents or the other direction of green. Returns nullopt if there are no seams.
+//
+// Precondition: subject.options.mesh is not null, subject.has_vectors. Errors: as make_tangents().
+Result<std::optional<SeamEvidence>> check_mesh_fit(const Subject& subject, Findings& findings);
+
+}  // namespace tex

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rule N711: whether a map fits its mesh.
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <tex/check.h>
+#include <tex/convert.h>
+#include <tex/image_io.h>
+#include <tex/mesh_io.h>
+#include <tex/pack.h>
+#include <tex/tangents.h>
+
+#include "checks/mesh_seams.h"
+#include "mesh/coverage.h"
+#include "unit/solids.h"
+
+namespace tex {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A map in object space of a surface with waves, which depend on the position in space alone.
+NormalMap wavy_surface(const MeshPart& part, Extent extent, double waves) {
+    NormalMap map(extent);
+    map.z = Plane<float>(extent, 1.0f);
+    const auto coverage = CoverageMap::make(part, 0, extent, 2);
+    EXPECT_TRUE(coverage);
+    Float3 low = part.positions.front(), high = low;
+    for (const Float3& p : part.positions) {
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    const float size = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+    const float k = static_cast<float>(6.28 * waves) / size;
+    std::vector<Covered> texels;
+    for (int strip = 0; strip < coverage->strips(); ++strip) {
+        coverage->cover(strip, texels);
+        for (std::size_t at = 0; at < texels.size(); ++at) {
+            if (texels[at].triangle == kNoTriangle) continue;
+            Float3 p, n;
+            for (std::size_t c = 0; c < 3; ++c) {
+                const std::uint32_t v = part.indices[3 * static_cast<std::size_t>(texels[at].triangle) + c];
+                const auto w = static_cast<float>(texels[at].weights[c]);
+                const Float3 &q = part.positions[v], &m = part.normals[v];
+                p = {p.x + w * q.x, p.y + w * q.y, p.z + w * q.z};
+                n = {n.x + w * m.x, n.y + w * m.y, n.z + w * m.z};
+            }
+            n = unit_vector({n.x + 0.4f * std::sin(k * (p.y + 0.5f * p.z)),
+                             n.y + 0.4f * std::sin(k * (p.z + 0.5f * p.x)),
+                             n.z + 0.4f * std::sin(k * (p.x + 0.5f * p.y))});
+            const int i = static_cast<int>(at) % extent.width,
+                      j = strip * coverage->strip_rows() + static_cast<int>(at) / extent.width;
+            map.x.at(i, j) = n.x;
+            map.y.at(i, j) = n.y;
+            map.z.at(i, j) = n.z;
+        }
+    }
+    return map;
+}
+
+// The map as a baker for this space makes it, in 8 bits.
+Texture baked(const NormalMap& surface, const TangentSpace& space, YAxis y = YAxis::up) {
+    auto map = to_tangent_space(surface, space);
+    EXPECT_TRUE(map);
+    MipChain chain;
+    chain.levels.push_back(std::move(map->map));
+    auto texture = pack(chain, {Encoding::rgb8, y, Effort::fast});
+    EXPECT_TRUE(texture);
+    texture->y_known = false;
+    return std::move(*texture);
+}
+
+struct Fit {
+    std::optional<Finding> finding;
+    std::optional<SeamEvidence> seams;
+};
+
+Fit fit_of(const Texture& texture, const SelectedPart& selected, Decoder decoder = Decoder::gltf) {
+    const MeshToCheck mesh{selected, decoder, "mesh.glb"};
+    CheckOptions options;
+    options.mesh = &mesh;
+    const auto report = check("map", texture, options);
+    EXPECT_TRUE(report);
+    Fit fit;
+    fit.seams = report->seams;
+    for (const Finding& finding : report->findings) {
+        if (finding.rule->id == "N711") fit.finding = finding;
+    }
+    return fit;
+}
+
+std::string message_of(const Fit& fit) { return fit.finding ? fit.finding->message : ""; }
+
+bool says(const Fit& fit, const std::string& words) { return message_of(fit).find(words) != std::string::npos; }
+
+SelectedPart selected_cube() {
+    SelectedPart selected;
+    selected.part = smooth_cube().part;
+    selected.tangents = *make_tangents(selected.part);
+    selected.source = TangentSource::mikktspace;
+    return selected;
+}
+
+// Finds every wrong space of a map on this mesh, and nothing in the right one.
+void expect_verdicts(const SelectedPart& selected, Extent extent, double waves, const std::string& name) {
+    const NormalMap surface = wavy_surface(selected.part, extent, waves);
+    const std::vector<Float4>& own = selected.tangents;
+    const Texture right = baked(surface, {selected.part, own});
+    EXPECT_EQ(message_of(fit_of(right, selected)), "") << name;
+    const Texture per_vertex = baked(surface, {selected.part, own, 0, Decoder::godot});
+    const Fit fit = fit_of(per_vertex, selected);
+    EXPECT_TRUE(says(fit, "the decoder is one of unity-builtin, godot, substance-vertex")) << name << message_of(fit);
+    EXPECT_FALSE(says(fit, "green")) << name;
+    EXPECT_EQ(message_of(fit_of(per_vertex, selected, Decoder::unity_builtin)), "") << name;
+    const Texture down = baked(surface, {selected.part, own}, YAxis::down);
+    EXPECT_TRUE(says(fit_of(down, selected), "green points down, or w")) << name;
+    EXPECT_FALSE(says(fit_of(down, selected), "decoder")) << name;
+    EXPECT_EQ(message_of(fit_of(down, selected, Decoder::unreal)), "") << name;  // which reads maps with y down
+    std::vector<Float4> flipped = own;
+    for (Float4& t : flipped) t.w = -t.w;
+    EXPECT_TRUE(says(fit_of(baked(surface, {selected.part, flipped}), selected), "w of the tangents is flipped"))
+        << name;
+}
+
+TEST(MeshFit, FindsWrongSpacesOnACube) {
+    const SelectedPart selected = selected_cube();
+    expect_verdicts(selected, {256, 256}, 1.0, "cube");
+    const NormalMap surface = wavy_surface(selected.part, {256, 256}, 1.0);
+    const Fit fit = fit_of(baked(surface, {selected.part, selected.tangents}), selected, Decoder::godot);
+    EXPECT_TRUE(says(fit, "the decoder is one of unity-urp, unity-hdrp, unreal, gltf")) << message_of(fit);
+}
+
+TEST(MeshFit, FindsWrongSpacesOnRealModels) {
+    const fs::path folder = TEX_SOURCE_DIR "/../shared/data/mesh";
+    if (!fs::exists(folder)) GTEST_SKIP() << "no shared data";
+    const struct {
+        const char *file, *material;
+        int extent;
+        double waves;
+    } models[] = {{"Suzanne/02_suzanne.gltf", "", 1024, 6.0},
+                  {"FlightHelmet/FlightHelmet.gltf", "RubberWoodMat", 2048, 3.0},
+                  {"FlightHelmet/FlightHelmet.gltf", "MetalPartsMat", 2048, 3.0}};
+    for (const auto& model : models) {
+        const auto mesh = read_mesh(folder / model.file);
+        ASSERT_TRUE(mesh);
+        MeshSelection selection;
+        selection.material = model.material;
+        const auto selected = select_part(*mesh, selection);
+        ASSERT_TRUE(selected);
+        expect_verdicts(*selected, {model.extent, model.extent}, model.waves, std::string(model.file) + model.material);
+    }
+}
+
+TEST(MeshFit, FindsNothingInTheMapsOfRealModels) {
+    const fs::path folder = TEX_SOURCE_DIR "/../shared/data/mesh";
+    if (!fs::exists(folder)) GTEST_SKIP() << "no shared data";
+    const auto expect_nothing = [&](const std::string& file, const std::string& material, const std::string& map) {
+        const auto mesh = read_mesh(folder / file);
+        const auto texture = read_texture(folder / map);
+        ASSERT_TRUE(mesh && texture) << map;
+        MeshSelection selection;
+        selection.material = material;
+        const auto selected = select_part(*mesh, selection);
+        ASSERT_TRUE(selected) << map;
+        const Fit fit = fit_of(*texture, *selected);
+        EXPECT_EQ(message_of(fit), "") << map;
+        ASSERT_TRUE(fit.seams) << map;
+        EXPECT_GT(fit.seams->edges, 0) << map;
+        EXPECT_LE(fit.seams->mean, fit.seams->p99) << map;
+    };
+    expect_nothing("Suzanne/02_suzanne.gltf", "", "Suzanne/02_suzanne_Normal.png");
+    for (const std::string name : {"RubberWood", "GlassPlastic", "MetalParts", "LeatherParts", "Lenses"}) {
+        expect_nothing("FlightHelmet/FlightHelmet.gltf", name + "Mat",
+                       "FlightHelmet/FlightHelmet_Materials_" + name + "Mat_Normal.png");
+    }
+}
+
+TEST(MeshFit, NamesTheTangentsThatTheMapWasMadeFor) {
+    SelectedPart selected = selected_cube();
+    const NormalMap surface = wavy_surface(selected.part, {256, 256}, 1.0);
+    const Texture texture = baked(surface, {selected.part, selected.tangents});
+    for (Float4& t : selected.tangents) {  // turned about the normal by up to 14 degrees
+        const Float3 turned = unit_vector({t.x - 0.25f * t.y, t.y + 0.25f * t.x, t.z});
+        t = {turned.x, turned.y, turned.z, t.w};
+    }
+    selected.source = TangentSource::file;
+    const Fit fit = fit_of(texture, selected);
+    EXPECT_TRUE(says(fit, "the tangents are those of mikktspace")) << message_of(fit);
+}
+
+TEST(MeshFit, MeasuresSeamsInDegrees) {
+    const SelectedPart selected = selected_cube();
+    const NormalMap surface = surface_map(smooth_cube(), {256, 256});
+    const Fit right = fit_of(baked(surface, {selected.part, selected.tangents}), selected);
+    ASSERT_TRUE(right.seams);
+    EXPECT_EQ(right.seams->edges, 12);
+    // The sides of the cube meet at right angles, and its map makes them flat.
+    EXPECT_NEAR(right.seams->mean, 90.0, 2.0);
+    EXPECT_NEAR(right.seams->worst, 90.0, 2.0);
+}
+
+TEST(MeshFit, SheetsWithoutSeamsHaveNoEvidence) {
+    SelectedPart selected;
+    selected.part = wavy_part(4);
+    selected.tangents = *make_tangents(selected.part);
+    NormalMap flat({64, 64});
+    flat.z = Plane<float>({64, 64}, 1.0f);
+    const Fit fit = fit_of(baked(flat, {selected.part, selected.tangents}), selected);
+    EXPECT_FALSE(fit.seams);
+    EXPECT_FALSE(fit.finding);
+}
+
+TEST(MeshSeams, AreEdgesWithOtherUvsButTheSamePlacesAndNormals) {
+    MeshPart part = smooth_cube().part;
+    EXPECT_EQ(find_seams(part).size(), 12u);
+    part.normals[0] = unit_vector({1.0f, 0.2f, 0.1f});  // a hard edge where the first face meets two others
+    EXPECT_EQ(find_seams(part).size(), 10u);
+    EXPECT_TRUE(find_seams(wavy_part(6)).empty());
+}
+
+}  // namespace
+}  // namespace tex
