@@ -33,6 +33,24 @@ inline MeshPart broken_sheet() {
     return with_tangents(std::move(part));
 }
 
+// Two sheets side by side, each in a half of the map: the second one mirrored, or both in the same half.
+inline MeshPart two_sheets(bool mirrored) {
+    MeshPart both = broken_sheet();
+    const MeshPart one = both;
+    const auto count = static_cast<std::uint32_t>(one.positions.size());
+    for (Float2& uv : both.uvs[0]) uv.x *= 0.5f;
+    for (std::size_t k = 0; k < one.positions.size(); ++k) {
+        const Float3& p = one.positions[k];
+        const Float2 uv = one.uvs[0][k];
+        both.positions.push_back({p.x + 2.0f, p.y, p.z});
+        both.normals.push_back(one.normals[k]);
+        both.uvs[0].push_back({mirrored ? 1.0f - 0.5f * uv.x : 0.5f * uv.x, uv.y});
+    }
+    for (const std::uint32_t v : one.indices) both.indices.push_back(count + v);
+    both.tangents.clear();
+    return with_tangents(std::move(both));
+}
+
 template <class T>
 std::vector<float> floats_of(const std::vector<T>& values) {
     std::vector<float> list;

@@ -300,6 +300,12 @@ void Maker::seams() {
     const auto map = to_tangent_space(normals, space);
     if (!map) return fail(map.error());
     png("N711-other-tangent-space", flip_green(codes_of(map->map)));
+    mesh("N721", part);
+    png("N721-object-space-on-mesh", codes_of(normals));
+    mesh("N722", two_sheets(true));
+    png("N722-charts-mirrored", codes_of(this->part(64, 64)));
+    mesh("N723", two_sheets(false));
+    png("N723-charts-overlap", codes_of(this->part(64, 64)));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rules of the family "mesh" that need no map.
+// The rules of the family "mesh", except N711.
 
 #include <tex/check.h>
 
@@ -109,7 +109,7 @@ TEST(CheckMesh, FindsFlippedSigns) {
     EXPECT_EQ(mesh_ids(selected), MeshIds{"N706"});
     // w follows from the UVs whichever way v points.
     selected.part.v_axis = YAxis::down;
-    EXPECT_EQ(mesh_ids(selected), MeshIds{});
+    EXPECT_EQ(mesh_ids(selected), MeshIds{"N722"});
 }
 
 TEST(CheckMesh, MeasuresTangentsAgainstMikktspaceAndNamesMeshopt) {
@@ -126,6 +126,37 @@ TEST(CheckMesh, MeasuresTangentsAgainstMikktspaceAndNamesMeshopt) {
         << uneven[0].message;
     selected.tangents = *make_tangents(selected.part);
     EXPECT_EQ(mesh_ids(selected), MeshIds{});
+}
+
+TEST(CheckMesh, CountsMirroredTrianglesAndSharedTexels) {
+    SelectedPart selected = stored_sheet();
+    for (Float2& uv : selected.part.uvs[0]) uv.x = 1.0f - uv.x;
+    selected.tangents = *make_tangents(selected.part);
+    auto findings = findings_of(selected);
+    ASSERT_EQ(findings.size(), 1u);
+    EXPECT_EQ(findings[0].rule->id, "N722");
+    EXPECT_DOUBLE_EQ(findings[0].figure, 1.0);
+
+    selected = stored_sheet();
+    const std::vector<std::uint32_t> once = selected.part.indices;
+    selected.part.indices.insert(selected.part.indices.end(), once.begin(), once.end());
+    selected.tangents = *make_tangents(selected.part);
+    findings = findings_of(selected);
+    ASSERT_EQ(findings.size(), 1u);
+    EXPECT_EQ(findings[0].rule->id, "N723");
+    EXPECT_DOUBLE_EQ(findings[0].figure, 64.0 * 64.0);
+}
+
+TEST(CheckMesh, FailsOnUvsThatAreTooFarAway) {
+    SelectedPart selected = stored_sheet();
+    for (Float2& uv : selected.part.uvs[0]) uv.x += 3e6f;
+    const MeshToCheck mesh{selected, Decoder::gltf, "sheet.glb"};
+    CheckOptions options;
+    options.mesh = &mesh;
+    const auto report = check("map", flat_texture(), options);
+    ASSERT_FALSE(report);
+    EXPECT_EQ(report.error().code, ErrorCode::unsupported);
+    EXPECT_EQ(report.error().file, "sheet.glb");
 }
 
 TEST(CheckMesh, LooksOnlyAtTangentsOfTheFile) {

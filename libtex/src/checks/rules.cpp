@@ -210,6 +210,18 @@ constexpr Rule kRules[] = {
      "Bake the map for this decoder and these tangents, or convert it with convert-normals --decoder-in, --tangents-in "
      "or --y-in.",
      ""},
+    {"N721", "object-space-on-mesh", mesh, error, true, "The map is in object space.",
+     "Its vectors follow the normals of the mesh instead of z. An engine that reads them in tangent space lights every "
+     "side wrongly.",
+     "Convert it with convert-normals --from object, or set the material to object space.", "N202 N207 N213 N402 N711"},
+    {"N722", "charts-mirrored", mesh, note, true, "Charts are mirrored.",
+     "Their corners are clockwise in the map, so w of their tangents is -1. That is fine if the engine uses w. Text "
+     "and other details that have a left and a right are mirrored, too.",
+     "", ""},
+    {"N723", "charts-overlap", mesh, note, true, "Triangles share texels.",
+     "Several places of the mesh show the same texels. That is fine for parts that are the same or mirrored. A map "
+     "cannot hold another bump for each of them, and convert-normals and bakers let one triangle decide.",
+     "", ""},
 };
 
 }  // namespace

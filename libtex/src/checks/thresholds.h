@@ -33,7 +33,7 @@ inline constexpr double kJpegRatio = 1.7;  // grid_ratio(8)
 // -- of meshes, set on Suzanne (Blender) and the materials of FlightHelmet (Babylon's exporter) ----------------------
 inline constexpr double kTangentLength = 0.01;  // from 1: at most 0.000001 there; 8-bit snorm rounds by up to 0.007
 inline constexpr double kTangentSign = 0.01;    // of |w| from 1: 0 there, and in 8-bit snorm
-inline constexpr double kOppositeSigns = 0.05;  // share of triangles: at most 0.0 there; 1 if all are flipped
+inline constexpr double kOppositeSigns = 0.05;  // share of triangles: TODO
 // p99 in degrees. Suzanne: 3.6, because Blender's MikkTSpace runs on quads. FlightHelmet, which SOURCES.md says is not
 // exact: 4.6 to 15.
 inline constexpr double kTangentAngle = 5.0;
@@ -45,5 +45,8 @@ inline constexpr double kSeamSlope = 0.1;  // from 0 or 1
 inline constexpr double kSeamFit = 0.65;
 // In degrees: the root mean square of what rounding to 8 bits adds to a gap, 0.2 for each side.
 inline constexpr double kSeamGap = 0.27;
+// Mean angle from the normals of the mesh, divided by that from z. The maps of the models: at least 9.7. One in object
+// space: 0.23.
+inline constexpr double kObjectSpace = 0.5;
 
 }  // namespace tex::thresholds

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "checks/chart_rules.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "checks/thresholds.h"
+#include "mesh/coverage.h"
+#include "threads/parallel.h"
+
+namespace tex {
+namespace {
+
+constexpr double kDegrees = 57.295779513082320877;
+
+// What a strip of the map shows. Sums of doubles depend on their order, so each strip has its own.
+struct StripSums {
+    std::int64_t overlaps = 0, texels = 0;
+    double from_normal = 0.0;  // degrees between the vector as stored and the mesh's normal, summed
+    double from_z = 0.0;       // and (0, 0, 1)
+};
+
+using Vector = std::array<double, 3>;
+
+double angle_between(const Vector& a, const Vector& b) {
+    const double product = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    const double lengths =
+        std::sqrt((a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) * (b[0] * b[0] + b[1] * b[1] + b[2] * b[2]));
+    return lengths > 1e-12 ? kDegrees * std::acos(std::clamp(product / lengths, -1.0, 1.0)) : 90.0;
+}
+
+Vector normal_at(const MeshPart& part, const Covered& texel) {
+    Vector normal{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Float3& n = part.normals[part.indices[3 * static_cast<std::size_t>(texel.triangle) + k]];
+        normal[0] += texel.weights[k] * static_cast<double>(n.x);
+        normal[1] += texel.weights[k] * static_cast<double>(n.y);
+        normal[2] += texel.weights[k] * static_cast<double>(n.z);
+    }
+    return normal;
+}
+
+StripSums sums_of(const CoverageMap& coverage, int strip, const Stored& stored, const MeshPart& part) {
+    StripSums sums;
+    std::vector<Covered> texels;
+    sums.overlaps = coverage.cover(strip, texels);
+    if (!stored.has_z()) return sums;  // object space needs it
+    const int x = stored.channel(Component::x), y = stored.channel(Component::y), z = stored.channel(Component::z);
+    const int width = stored.extent().width;
+    for (std::size_t k = 0; k < texels.size(); ++k) {
+        if (!texels[k].inside) continue;
+        const int i = static_cast<int>(k) % width, j = strip * coverage.strip_rows() + static_cast<int>(k) / width;
+        const auto component = [&](int channel) { return static_cast<double>(stored.component(channel, i, j)); };
+        const Vector n{component(x), component(y), component(z)};
+        if (!std::isfinite(n[0] + n[1] + n[2])) continue;
+        ++sums.texels;
+        sums.from_normal += angle_between(n, normal_at(part, texels[k]));
+        sums.from_z += angle_between(n, {0.0, 0.0, 1.0});
+    }
+    return sums;
+}
+
+void check_mirrored(const MeshPart& part, Findings& findings) {
+    std::size_t mirrored = 0, upright = 0;
+    for (std::size_t t = 0; t < part.triangles(); ++t) {
+        const auto uv = [&](std::size_t k) { return part.uvs.front()[part.indices[3 * t + k]]; };
+        const Float2 a = uv(0), b = uv(1), c = uv(2);
+        const double area = (static_cast<double>(b.x) - static_cast<double>(a.x)) *
+                                (static_cast<double>(c.y) - static_cast<double>(a.y)) -
+                            (static_cast<double>(b.y) - static_cast<double>(a.y)) *
+                                (static_cast<double>(c.x) - static_cast<double>(a.x));
+        if (area == 0.0) continue;
+        ++((area < 0.0) == (part.v_axis == YAxis::up) ? mirrored : upright);
+    }
+    if (mirrored == 0) return;
+    Finding& finding = findings.add(
+        "N722", std::to_string(mirrored) + " of " + std::to_string(mirrored + upright) + " triangles are mirrored");
+    finding.figure = static_cast<double>(mirrored) / static_cast<double>(mirrored + upright);
+    finding.unit = "share";
+}
+
+}  // namespace
+
+Result<void> check_chart_rules(const Subject& subject, Findings& findings) {
+    const MeshPart& part = subject.options.mesh->selected.part;
+    check_mirrored(part, findings);
+    const auto coverage = CoverageMap::make(part, 0, subject.stored.extent(), 0);
+    if (!coverage) return coverage.error();
+    std::vector<StripSums> strips(static_cast<std::size_t>(coverage->strips()));
+    const auto measure = [&](int begin, int end) {
+        for (int k = begin; k < end; ++k)
+            strips[static_cast<std::size_t>(k)] = sums_of(*coverage, k, subject.stored, part);
+    };
+    if (const auto done = parallel_for(subject.execution, coverage->strips(), 1, measure, {1.0, 1.0}); !done)
+        return done.error();
+    StripSums all;
+    for (const StripSums& strip : strips) {
+        all.overlaps += strip.overlaps;
+        all.texels += strip.texels;
+        all.from_normal += strip.from_normal;
+        all.from_z += strip.from_z;
+    }
+    if (all.overlaps > 0) {
+        Finding& finding = findings.add("N723", std::to_string(all.overlaps) + " times, a texel has one more triangle");
+        finding.figure = static_cast<double>(all.overlaps);
+        finding.unit = "texels";
+    }
+    if (all.texels == 0 || all.from_normal >= thresholds::kObjectSpace * all.from_z) return {};
+    const auto texels = static_cast<double>(all.texels);
+    Finding& finding = findings.add("N721", "its vectors are " + decimal(all.from_normal / texels, 1) +
+                                                " degrees from the normals of the mesh on average, and " +
+                                                decimal(all.from_z / texels, 1) + " degrees from z");
+    finding.figure = all.from_normal / all.from_z;
+    finding.unit = "ratio";
+    finding.confidence = 0.99;
+    return {};
+}
+
+}  // namespace tex

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// chart_rules.h: the rules about the charts of a mesh, and whether its map is in object space: N721 to N723.
+
+#pragma once
+
+#include "checks/findings.h"
+
+namespace tex {
+
+// Preconditions: subject.options.mesh is not null, subject.has_vectors. Errors: unsupported, as described in convert.h;
+// cancelled.
+Result<void> check_chart_rules(const Subject& subject, Findings& findings);
+
+}  // namespace tex
