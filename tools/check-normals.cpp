@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <mutex>
+#include <utility>
 
 #include <fmt/format.h>
 #include <tex/tex.h>
@@ -80,10 +81,12 @@ Result<void> CheckNormals::check(const std::vector<cli::Task>& tasks) {
     std::vector<std::string> inputs;
     inputs.reserve(tasks.size());
     for (const cli::Task& task : tasks) inputs.push_back(task.input);
-    documents_.check(inputs, {{"--config", rules_.config()},
-                              {"--height", rules_.height_file()},
-                              {"--files-from", files.files_from},
-                              {"--mesh", mesh_.files().front()}});
+    std::vector<cli::NamedFile> others = {
+        {"--config", rules_.config()}, {"--height", rules_.height_file()}, {"--files-from", files.files_from}};
+    if (mesh_.has_mesh()) {
+        for (const std::string& file : mesh_.files()) others.push_back({"--mesh", file});
+    }
+    documents_.check(inputs, std::move(others));
     if (auto read = documents_.read(); !read) return read;
     if (mesh_.has_mesh()) {  // jobs share it; one error is enough
         if (const auto space = mesh_.input({running.threads, {}}); !space) return space.error();

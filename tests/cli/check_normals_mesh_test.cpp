@@ -60,6 +60,15 @@ TEST_F(CheckNormalsMesh, NamesTheMeshThatCannotBeReadOnce) {
     EXPECT_NE(missing.err.find("none.glb: no such file"), std::string::npos) << missing.err;
 }
 
+TEST_F(CheckNormalsMesh, DocumentsNameTheMeshAndNeverReplaceIt) {
+    const std::string command = "check-normals --mesh meshes/N706.glb --tangents mikktspace N706*.png ";
+    EXPECT_EQ(shell(scratch_, command + "--report page.html --depfile page.d").code, 0);
+    EXPECT_NE(scratch_.read("page.d").find("meshes/N706.glb"), std::string::npos);
+    const std::string mesh = scratch_.read("meshes/N706.glb");
+    EXPECT_EQ(shell(scratch_, command + "--sarif meshes/N706.glb").code, 2);
+    EXPECT_EQ(scratch_.read("meshes/N706.glb"), mesh);
+}
+
 TEST_F(CheckNormalsMesh, RefusesMeshOptionsWithoutAMesh) {
     for (const char* option : {"--material 0", "--decoder unreal", "--tangents file", "--uv-set 0", "--node a"}) {
         const Ran ran = shell(scratch_, std::string("check-normals N701*.png ") + option);
