@@ -7,6 +7,28 @@
 #include <vector>
 
 namespace tex {
+namespace {
+
+Result<void> do_work(RowTarget& target) {
+    while (const std::shared_ptr<RowWork> work = target.take_work()) {
+        if (Result<void> run = work->run(); !run) return run;
+        if (Result<void> ended = target.end_work(work); !ended) return ended;
+    }
+    return {};
+}
+
+Result<void> put_level(RowTarget& target, int k, const Level& level) {
+    if (!target.has_work()) return target.put(k, level.bytes.data(), level.extent.height);
+    const std::size_t row_bytes = level.bytes.size() / static_cast<std::size_t>(level.extent.height);
+    for (int j = 0; j < level.extent.height; ++j) {
+        const std::byte* const row = level.bytes.data() + static_cast<std::size_t>(j) * row_bytes;
+        if (Result<void> put = target.put(k, row, 1); !put) return put;
+        if (Result<void> done = do_work(target); !done) return done;
+    }
+    return {};
+}
+
+}  // namespace
 
 Result<std::vector<std::byte>> encode_rows(OpenTarget open, const Texture& texture, bool all_levels) {
     if (texture.levels.empty()) return Error{ErrorCode::unsupported, {}, "a texture without levels"};
@@ -21,9 +43,8 @@ Result<std::vector<std::byte>> encode_rows(OpenTarget open, const Texture& textu
     if (!target) return target.error();
     const std::size_t levels = all_levels ? texture.levels.size() : 1;
     for (std::size_t k = 0; k < levels; ++k) {
-        const Level& level = texture.levels[k];
-        if (const Result<void> put = (*target)->put(static_cast<int>(k), level.bytes.data(), level.extent.height); !put)
-            return put.error();
+        const Result<void> put = put_level(**target, static_cast<int>(k), texture.levels[k]);
+        if (!put) return put.error();
     }
     if (const Result<void> done = (*target)->finish(); !done) return done.error();
     return file;

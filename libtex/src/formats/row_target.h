@@ -20,6 +20,18 @@ namespace tex {
 // Writes bytes to a file, each byte once, in any order. Errors: io, out_of_memory.
 using WriteBytes = std::function<Result<void>(std::uint64_t offset, std::span<const std::byte> bytes)>;
 
+// Rows that are encoded apart from all others.
+class RowWork {
+public:
+    RowWork() = default;
+    RowWork(const RowWork&) = delete;
+    RowWork& operator=(const RowWork&) = delete;
+    virtual ~RowWork() = default;
+
+    // Encodes the rows. Throws std::bad_alloc. Errors: unsupported, with the library's reason.
+    virtual Result<void> run() = 0;
+};
+
 class RowTarget {
 public:
     RowTarget() = default;
@@ -32,7 +44,18 @@ public:
     // WriteBytes.
     virtual Result<void> put(int level, const std::byte* rows, int count) = 0;
 
-    // Writes what is left to the file, after the last row. Errors: as put().
+    // Whether put() only collects rows, for work that is taken, run and ended. The run() of several may take place at
+    // once, on any threads; no two calls of other functions may.
+    [[nodiscard]] virtual bool has_work() const { return false; }
+
+    // Returns work whose rows have all been put, or null if there is none. Throws std::bad_alloc.
+    virtual std::shared_ptr<RowWork> take_work() { return nullptr; }
+
+    // Writes the result of work that has been run, and of all earlier work, as soon as that has ended, too. Throws
+    // std::bad_alloc. Errors: as put().
+    virtual Result<void> end_work(const std::shared_ptr<RowWork>& /*work*/) { return {}; }
+
+    // Writes what is left to the file, after the last row and the end of all work. Errors: as put().
     virtual Result<void> finish() = 0;
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <utility>
@@ -23,7 +24,7 @@
 namespace tex {
 namespace {
 
-// Writes pictures, whose rows are compressed one after the other. Strips that come too early are packed and wait.
+// Writes pictures, which take their rows one after the other. Strips that come too early are packed and wait.
 class PictureWriter final : public StripWriter {
 public:
     PictureWriter(std::string path, std::unique_ptr<OutputFile> file, StripPacking packing, int first)
@@ -39,7 +40,8 @@ public:
         target_ = std::move(*target);
         return {};
     }
-    [[nodiscard]] bool is_in_order(const Strip&) const override { return true; }
+    // If the target has work, several threads pack strips and do that work.
+    [[nodiscard]] bool is_in_order(const Strip&) const override { return !target_->has_work(); }
     Result<void> write(Strip& strip) override;
     Result<void> commit() override;
     [[nodiscard]] std::size_t file_bytes() const override { return size_; }
@@ -55,36 +57,55 @@ private:
     };
     Result<void> put(int level, const std::byte* rows, int count) {
         levels_[level].next += count;
-        const Result<void> put = target_->put(level, rows, count);
-        return put ? put : Result<void>(put.error().of(path_));
+        return target_->put(level, rows, count);
     }
+    Result<void> put_in_order(int level, const Strip& strip);
+    Result<void> work();
 
     const std::string path_;
     const std::unique_ptr<OutputFile> file_;
     const StripPacking packing_;
+    const int first_;   // the level with which the file begins
+    std::mutex mutex_;  // guards all members below, but not the run() of work
     std::size_t size_ = 0;
     std::unique_ptr<RowTarget> target_;  // writes into the file
-    const int first_;                    // the level with which the file begins
     std::map<int, Level> levels_;
 };
 
 Result<void> PictureWriter::write(Strip& strip) {
-    return guarded([&]() -> Result<void> {
+    const Result<void> done = guarded([&]() -> Result<void> {
         strip.bytes.resize(level_bytes(packing_.head.format, {strip.map.extent().width, strip.height}));
         packing_.pack(strip, strip.bytes.data());
-        const int index = strip.level - first_;
-        Level& level = levels_[index];
-        if (strip.first != level.next) {
-            level.waiting[strip.first] = {strip.height, strip.bytes};
-            return {};
-        }
-        Result<void> done = put(index, strip.bytes.data(), strip.height);
-        while (done && !level.waiting.empty() && level.waiting.begin()->first == level.next) {
-            const Packed packed = std::move(level.waiting.extract(level.waiting.begin()).mapped());
-            done = put(index, packed.bytes.data(), packed.rows);
-        }
-        return done;
+        if (Result<void> put = put_in_order(strip.level - first_, strip); !put) return put;
+        return work();
     });
+    return done ? done : Result<void>(done.error().of(path_));
+}
+
+Result<void> PictureWriter::put_in_order(int index, const Strip& strip) {
+    const std::lock_guard lock(mutex_);
+    Level& level = levels_[index];
+    if (strip.first != level.next) {
+        level.waiting[strip.first] = {strip.height, strip.bytes};
+        return {};
+    }
+    Result<void> done = put(index, strip.bytes.data(), strip.height);
+    while (done && !level.waiting.empty() && level.waiting.begin()->first == level.next) {
+        const Packed packed = std::move(level.waiting.extract(level.waiting.begin()).mapped());
+        done = put(index, packed.bytes.data(), packed.rows);
+    }
+    return done;
+}
+
+Result<void> PictureWriter::work() {
+    std::unique_lock lock(mutex_);
+    while (const std::shared_ptr<RowWork> work = target_->take_work()) {
+        lock.unlock();
+        if (Result<void> run = work->run(); !run) return run;
+        lock.lock();
+        if (Result<void> ended = target_->end_work(work); !ended) return ended;
+    }
+    return {};
 }
 
 Result<void> PictureWriter::commit() {

@@ -2,14 +2,13 @@
 
 #include "formats/png/apng.h"
 
-#include <zlib.h>
-
 #include <array>
 #include <cstdint>
 #include <cstring>
 #include <span>
 #include <string_view>
 
+#include "formats/png/png_chunk.h"
 #include "threads/guard.h"
 
 namespace tex {
@@ -20,10 +19,6 @@ using Bytes = std::vector<std::byte>;
 constexpr std::size_t kSignature = 8;
 constexpr std::size_t kFrame = 12;  // length, type and CRC of a chunk
 
-void put(Bytes& to, std::uint32_t value, int bytes) {
-    for (int shift = 8 * (bytes - 1); shift >= 0; shift -= 8) to.push_back(static_cast<std::byte>(value >> shift));
-}
-
 std::uint32_t get32(const std::byte* p) {
     std::uint32_t value = 0;
     for (int k = 0; k < 4; ++k) value = value << 8 | std::to_integer<std::uint32_t>(p[k]);
@@ -31,15 +26,12 @@ std::uint32_t get32(const std::byte* p) {
 }
 
 void put_chunk(Bytes& to, std::string_view type, std::span<const std::byte> content) {
-    put(to, static_cast<std::uint32_t>(content.size()), 4);
-    const std::size_t begin = to.size();
-    for (const char c : type) to.push_back(static_cast<std::byte>(c));
+    const std::size_t begun = begin_png_chunk(to, type);
     to.insert(to.end(), content.begin(), content.end());
-    const auto* counted = reinterpret_cast<const Bytef*>(to.data() + begin);
-    put(to, static_cast<std::uint32_t>(crc32_z(0, counted, to.size() - begin)), 4);
+    end_png_chunk(to, begun);
 }
 
-// A chunk of a file that libpng wrote.
+// A chunk of a file that encode_png() made.
 struct Chunk {
     std::string_view type;
     std::span<const std::byte> content;
@@ -58,13 +50,13 @@ std::vector<Chunk> chunks_of(const Bytes& file) {
 // fcTL: which part of the picture a frame replaces (all of it), and how long the frame is shown.
 Bytes frame_control(std::uint32_t sequence, std::span<const std::byte> header, int frames_per_second) {
     Bytes control;
-    put(control, sequence, 4);
+    put_png_number(control, sequence, 4);
     control.insert(control.end(), header.begin(), header.begin() + 8);  // width, height
-    put(control, 0, 4);                                                 // left
-    put(control, 0, 4);                                                 // top
-    put(control, 1, 2);
-    put(control, static_cast<std::uint32_t>(frames_per_second), 2);
-    put(control, 0, 2);  // no disposal, no blending
+    put_png_number(control, 0, 4);                                      // left
+    put_png_number(control, 0, 4);                                      // top
+    put_png_number(control, 1, 2);
+    put_png_number(control, static_cast<std::uint32_t>(frames_per_second), 2);
+    put_png_number(control, 0, 2);  // no disposal, no blending
     return control;
 }
 
@@ -78,8 +70,8 @@ Result<std::vector<std::byte>> join_png_frames(const std::vector<std::vector<std
         Bytes file(frames.front().begin(), frames.front().begin() + kSignature);
         put_chunk(file, "IHDR", header);
         Bytes animation;
-        put(animation, static_cast<std::uint32_t>(frames.size()), 4);
-        put(animation, 0, 4);  // repeat forever
+        put_png_number(animation, static_cast<std::uint32_t>(frames.size()), 4);
+        put_png_number(animation, 0, 4);  // repeat forever
         put_chunk(file, "acTL", animation);
         for (const Chunk& chunk : first) {  // sRGB and similar chunks, which all frames share
             if (chunk.type != "IHDR" && chunk.type != "IDAT" && chunk.type != "IEND")
@@ -101,7 +93,7 @@ Result<std::vector<std::byte>> join_png_frames(const std::vector<std::vector<std
                 }
                 Bytes data;
                 data.reserve(4 + chunk.content.size());
-                put(data, sequence++, 4);
+                put_png_number(data, sequence++, 4);
                 data.insert(data.end(), chunk.content.begin(), chunk.content.end());
                 put_chunk(file, "fdAT", data);
             }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// png.h: reads and writes PNG files with libpng.
+// png.h: reads and writes PNG files. libpng reads them and writes their headers; png_block.h compresses the rows.
 
 #pragma once
 
@@ -34,12 +34,12 @@ const char* png_version();
 // Errors: bad_data (with libpng's reason), unsupported (too large), io, out_of_memory.
 Result<std::unique_ptr<RowSource>> open_png(InputFile& file, const ReadOptions& options);
 
-// Writes the base level of a texture row by row, with the bytes of encode_png(). Errors: unsupported (another format),
-// out_of_memory.
+// Writes the base level of a texture row by row, with the bytes of encode_png(). The work of the target is to filter
+// and compress blocks of rows. Errors: unsupported (another format), out_of_memory.
 Result<std::unique_ptr<RowTarget>> open_png_target(const TextureHead& head, WriteBytes write);
 
 // Encodes the base level of a texture in an 8- or 16-bit unorm format: one channel as grey, three as RGB, four as RGBA.
-// Equal textures give equal bytes (with one version of zlib).
+// Equal textures give equal bytes (with one version of zlib), on any number of threads.
 //
 // Errors: unsupported (another format), out_of_memory.
 Result<std::vector<std::byte>> encode_png(const Texture& texture);

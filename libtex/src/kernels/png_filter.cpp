@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "kernels/png_filter.h"
+
+#include <array>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/png_filter.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace tex {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<std::uint8_t, 64>;
+using V = hn::Vec<D>;
+
+constexpr std::size_t kFilters = 5;  // none, sub, up, average, Paeth
+
+// The neighbours of a byte: to the left, above, and above that to the left.
+struct Bytes {
+    V left, above, corner;
+};
+
+HWY_INLINE V Distance(V a, V b) { return hn::Or(hn::SaturatedSub(a, b), hn::SaturatedSub(b, a)); }
+
+HWY_INLINE V Average(D d, const Bytes& n) {
+    const V rounded_down = hn::And(hn::Xor(n.left, n.above), hn::Set(d, std::uint8_t{1}));
+    return hn::Sub(hn::AverageRound(n.left, n.above), rounded_down);
+}
+
+// The neighbour that is nearest to left + above - corner. Its distance from the corner is the sum of the other two
+// distances if left and above lie on the same side of the corner (the sum may saturate: it is never the smallest
+// alone), and their difference otherwise.
+HWY_INLINE V Paeth(const Bytes& n) {
+    const V to_left = Distance(n.above, n.corner);
+    const V to_above = Distance(n.left, n.corner);
+    const auto apart = hn::Xor(hn::Gt(n.above, n.corner), hn::Gt(n.left, n.corner));
+    const V to_corner = hn::IfThenElse(apart, Distance(to_left, to_above), hn::SaturatedAdd(to_left, to_above));
+    const V nearer = hn::Min(to_above, to_corner);
+    const V other = hn::IfThenElse(hn::Eq(nearer, to_above), n.above, n.corner);
+    return hn::IfThenElse(hn::Eq(hn::Min(to_left, nearer), to_left), n.left, other);
+}
+
+template <std::size_t kFilter>
+HWY_INLINE V Predict(D d, const Bytes& n) {
+    if constexpr (kFilter == 0) return hn::Zero(d);
+    if constexpr (kFilter == 1) return n.left;
+    if constexpr (kFilter == 2) return n.above;
+    if constexpr (kFilter == 3) return Average(d, n);
+    if constexpr (kFilter == 4) return Paeth(n);
+}
+
+// One byte after the other, for the bytes that do not fill a vector.
+HWY_INLINE int PredictOne(std::size_t filter, int left, int above, int corner) {
+    const auto magnitude = [](int v) { return v < 0 ? -v : v; };
+    switch (filter) {
+        case 1: return left;
+        case 2: return above;
+        case 3: return (left + above) / 2;
+        case 4: {
+            const int to_left = magnitude(above - corner);
+            const int to_above = magnitude(left - corner);
+            const int to_corner = magnitude(left + above - 2 * corner);
+            if (to_left <= to_above && to_left <= to_corner) return left;
+            return to_above <= to_corner ? above : corner;
+        }
+        default: return 0;
+    }
+}
+
+HWY_INLINE std::uint8_t FilterOne(std::size_t filter, const std::uint8_t* row, const std::uint8_t* above,
+                                  std::size_t step) {
+    return static_cast<std::uint8_t>(*row - PredictOne(filter, *(row - step), *above, *(above - step)));
+}
+
+HWY_INLINE Bytes NeighboursAt(D d, const std::uint8_t* row, const std::uint8_t* above, std::size_t step) {
+    return {hn::LoadU(d, row - step), hn::LoadU(d, above), hn::LoadU(d, above - step)};
+}
+
+#if HWY_TARGET == HWY_SCALAR
+constexpr bool kHasSums = false;  // no SumsOf8
+#else
+constexpr bool kHasSums = true;
+
+using Sums = hn::Vec<hn::Repartition<std::uint64_t, D> >;
+
+template <std::size_t kFilter>
+HWY_INLINE Sums AddMagnitudes(D d, Sums sums, V bytes, const Bytes& n) {
+    const V difference = hn::Sub(bytes, Predict<kFilter>(d, n));
+    return hn::Add(sums, hn::SumsOf8(hn::Min(difference, hn::Sub(hn::Zero(d), difference))));
+}
+#endif
+
+std::array<std::uint64_t, kFilters> Magnitudes(const std::uint8_t* row, const std::uint8_t* above, std::size_t count,
+                                               std::size_t step) {
+    std::array<std::uint64_t, kFilters> totals{};
+    std::size_t i = 0;
+#if HWY_TARGET != HWY_SCALAR
+    const D d;
+    const hn::Repartition<std::uint64_t, D> d64;
+    Sums none = hn::Zero(d64), sub = none, up = none, average = none, paeth = none;
+    for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d)) {
+        const V bytes = hn::LoadU(d, row + i);
+        const Bytes n = NeighboursAt(d, row + i, above + i, step);
+        none = AddMagnitudes<0>(d, none, bytes, n);
+        sub = AddMagnitudes<1>(d, sub, bytes, n);
+        up = AddMagnitudes<2>(d, up, bytes, n);
+        average = AddMagnitudes<3>(d, average, bytes, n);
+        paeth = AddMagnitudes<4>(d, paeth, bytes, n);
+    }
+    const auto total = [&](Sums sums) { return hn::GetLane(hn::SumOfLanes(d64, sums)); };
+    totals = {total(none), total(sub), total(up), total(average), total(paeth)};
+#endif
+    for (; i < count; ++i) {
+        for (std::size_t k = 0; k < kFilters; ++k) {
+            const unsigned difference = FilterOne(k, row + i, above + i, step);
+            totals[k] += difference < 128 ? difference : 256 - difference;
+        }
+    }
+    return totals;
+}
+
+template <std::size_t kFilter>
+void Apply(const std::uint8_t* row, const std::uint8_t* above, std::size_t count, std::size_t step, std::uint8_t* out) {
+    const D d;
+    std::size_t i = 0;
+    for (; kHasSums && i + hn::Lanes(d) <= count; i += hn::Lanes(d)) {
+        const Bytes n = NeighboursAt(d, row + i, above + i, step);
+        hn::StoreU(hn::Sub(hn::LoadU(d, row + i), Predict<kFilter>(d, n)), d, out + i);
+    }
+    for (; i < count; ++i) out[i] = FilterOne(kFilter, row + i, above + i, step);
+}
+
+void FilterPngRow(const std::uint8_t* row, const std::uint8_t* above, std::size_t count, std::size_t step,
+                  std::uint8_t* out) {
+    const std::array<std::uint64_t, kFilters> totals = Magnitudes(row, above, count, step);
+    std::size_t best = 0;
+    for (std::size_t k = 1; k < kFilters; ++k) {
+        if (totals[k] < totals[best]) best = k;
+    }
+    *out++ = static_cast<std::uint8_t>(best);
+    switch (best) {
+        case 0: return Apply<0>(row, above, count, step, out);
+        case 1: return Apply<1>(row, above, count, step, out);
+        case 2: return Apply<2>(row, above, count, step, out);
+        case 3: return Apply<3>(row, above, count, step, out);
+        default: return Apply<4>(row, above, count, step, out);
+    }
+}
+
+void SwapSampleBytes(std::uint8_t* samples, std::size_t count) {
+    std::size_t i = 0;
+#if HWY_TARGET != HWY_SCALAR
+    const D d;
+    const hn::Repartition<std::uint16_t, D> d16;
+    for (; i + hn::Lanes(d16) <= count; i += hn::Lanes(d16)) {
+        const auto codes = hn::BitCast(d16, hn::LoadU(d, samples + 2 * i));
+        hn::StoreU(hn::BitCast(d, hn::Or(hn::ShiftLeft<8>(codes), hn::ShiftRight<8>(codes))), d, samples + 2 * i);
+    }
+#endif
+    for (; i < count; ++i) {
+        const std::uint8_t low = samples[2 * i];
+        samples[2 * i] = samples[2 * i + 1];
+        samples[2 * i + 1] = low;
+    }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tex
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tex {
+
+HWY_EXPORT(FilterPngRow);
+HWY_EXPORT(SwapSampleBytes);
+
+void filter_png_row(const std::uint8_t* row, const std::uint8_t* above, std::size_t count, std::size_t step,
+                    std::uint8_t* out) {
+    HWY_DYNAMIC_DISPATCH(FilterPngRow)(row, above, count, step, out);
+}
+
+void swap_sample_bytes(std::uint8_t* samples, std::size_t count) {
+    HWY_DYNAMIC_DISPATCH(SwapSampleBytes)(samples, count);
+}
+
+}  // namespace tex
+#endif
