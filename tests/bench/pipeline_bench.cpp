@@ -7,7 +7,8 @@
 // Prints tables in Markdown. Each row is the median of N (at least 7) pairs of runs. The runs of a pair are the command
 // and its baseline, in turn; ratios are those of the pairs. The commands are those in the folder of this program.
 // Height maps are written to FOLDER (default /tmp/pipeline_bench) and kept there. --large adds the memory of
-// 16384x16384 and 65536x4096 texels; --many prints only the rows of a thousand small files.
+// 16384x16384 and 65536x4096 texels; --many prints only the rows of a thousand small files. --before DIR prints only
+// rows of PNG outputs; their baseline is another build, whose bake-normals and libtex.so are in DIR.
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -33,6 +34,7 @@ struct Bench {
     int runs = 7;
     bool large = false;
     bool many = false;
+    std::string before;       // the folder of another build
     bool only_makes = false;  // only makes the files that rows need
     std::string folder = "/tmp/pipeline_bench";
 
@@ -139,6 +141,42 @@ void print_against_decoders(const Bench& b) {
         b.row("8-bit PNG, maketx --bumpslopes (EXR, no blocks)",
               {"maketx", "--bumpslopes", "--threads", "2", "-d", "half", png8, "-o", b.file("out.exr")}, drop8, 0.0);
     }
+}
+
+// PNG outputs against another build.
+void print_against_before(const Bench& b) {
+    const auto compare = [&](const std::string& work, Command ours) {
+        Command theirs = ours;
+        theirs[0] = b.before + "/bake-normals";
+        theirs.insert(theirs.begin(), {"env", "LD_LIBRARY_PATH=" + b.before});
+        b.row(work, ours, theirs, 0.0);
+    };
+    std::printf(
+        "PNG outputs; the baseline is the build in %s\n\n"
+        "| work | wall, s | user, s | system, s | peak, MB | baseline, s | its user and system, s | ratio | target "
+        "|\n|---|---|---|---|---|---|---|---|---|\n",
+        b.before.c_str());
+    const std::string out = b.file("out.png");
+    for (const int bits : {8, 16}) {
+        const std::string name = "4096_" + std::to_string(bits) + ".png";
+        const std::string input = b.need(name, [&](const std::string& p) { bench::write_png(p, 4096, 4096, bits); });
+        for (const std::string threads : {"1", "2"}) {
+            Command command = bake(input, out, {"--format", bits == 8 ? "rgb8" : "rgb16", "--no-sync"});
+            *(std::find(command.begin(), command.end(), "--threads") + 1) = threads;
+            compare(std::to_string(bits) + "-bit PNG to rgb" + std::to_string(bits) + " PNG, threads: " + threads,
+                    command);
+        }
+    }
+    const std::string folder = b.file("many_png");
+    std::filesystem::create_directories(b.file("many_8"));
+    std::filesystem::create_directories(folder);
+    Command many = {beside("bake-normals"), "--out-dir", folder,      "--name", "{stem}.png", "--format", "rgb8",
+                    "--bumpiness",          "12",        "--threads", "2",      "--no-sync",  "--quiet"};
+    for (int k = 0; k < 1000; ++k) {
+        many.push_back(b.need("many_8/" + std::to_string(k) + ".png",
+                              [&](const std::string& p) { bench::write_png(p, 256, 256, 8, k); }));
+    }
+    compare("1000 8-bit PNGs of 256x256 to rgb8 PNG", many);
 }
 
 void print_many(const Bench& b) {
@@ -292,6 +330,8 @@ int main(int argc, char** argv) {
             b.runs = std::max(7, std::atoi(argv[++k]));
         } else if (std::strcmp(argv[k], "--large") == 0) {
             b.large = true;
+        } else if (std::strcmp(argv[k], "--before") == 0 && k + 1 < argc) {
+            b.before = argv[++k];
         } else if (std::strcmp(argv[k], "--many") == 0) {
             b.many = true;
         } else {
@@ -300,6 +340,7 @@ int main(int argc, char** argv) {
     }
     std::filesystem::create_directories(b.folder);
     const auto print_all = [](const Bench& bench) {
+        if (!bench.before.empty()) return print_against_before(bench);
         if (!bench.many) print_against_decoders(bench);
         print_many(bench);
         print_many_kinds(bench);
