@@ -31,19 +31,19 @@ inline constexpr double kLevelShort =
 inline constexpr double kJpegRatio = 1.7;  // grid_ratio(8)
 
 // -- of meshes, set on Suzanne (Blender) and the materials of FlightHelmet (Babylon's exporter) ----------------------
-inline constexpr double kTangentLength = 0.01;  // from 1: at most 0.000001 there; 8-bit snorm rounds by up to 0.007
+inline constexpr double kTangentLength = 0.01;  // from 1: at most 0.0000002 there; 8-bit snorm: 0.007
 inline constexpr double kTangentSign = 0.01;    // of |w| from 1: 0 there, and in 8-bit snorm
 inline constexpr double kOppositeSigns = 0.05;  // share of triangles: at most 0.0001; 1 if all are flipped
-// p99 in degrees. Suzanne: 3.6, because Blender's MikkTSpace runs on quads. FlightHelmet, which SOURCES.md says is not
-// exact: 4.6 to 15.
+// p99 in degrees. Suzanne: 3.6, perhaps because Blender's MikkTSpace runs on quads. FlightHelmet, which is known not to
+// be exact: 4.6 to 15.
 inline constexpr double kTangentAngle = 5.0;
 // Slopes of compare_gaps() (mesh_seams.h), for maps made from a field on the real meshes, at 1024 and 2048 texels, 8
-// bits. Green flipped: at least 0.998; green right: at most 0.002. The maps that came with the models: 0.24 to 0.69,
-// because bevels are one texel wide there (FlightHelmet), and because Suzanne's has no seams that meet.
+// bits. Green flipped: at least 0.998; green right: at most 0.002. The maps that came with the models: 0.24 to 0.69, so
+// that nothing is said about them. Perhaps their bevels are too narrow for their texels.
 inline constexpr double kSeamSlope = 0.1;  // from 0 or 1
-// The right decoder: at least 0.90. The others: at most 0.44.
+// The right decoder of made maps: at least 0.90. The others: at most 0.44.
 inline constexpr double kSeamFit = 0.65;
-// In degrees: the root mean square of what rounding to 8 bits adds to a gap, 0.2 for each side.
+// In degrees: an estimate of what rounding to 8 bits adds to a gap (root mean square), 0.2 for each side.
 inline constexpr double kSeamGap = 0.27;
 // Mean angle from the normals of the mesh, divided by that from z. The maps of the models: at least 9.7. One in object
 // space: 0.23.
