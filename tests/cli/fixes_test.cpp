@@ -29,8 +29,8 @@ class Fixes : public testing::Test {
 protected:
     Fixes() {
         scratch_.add_sample("waves.png", "waves.png");
-        go("cp " TEX_SOURCE_DIR
-           "/samples/broken/N* .; bake-normals waves.png -o n.exr --format float --bumpiness 8 "
+        go("cp -r " TEX_SOURCE_DIR "/samples/broken/N* " TEX_SOURCE_DIR
+           "/samples/broken/meshes .; bake-normals waves.png -o n.exr --format float --bumpiness 8 "
            "--mips all --no-sync");
     }
     void go(const std::string& script) {

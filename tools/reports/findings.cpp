@@ -54,8 +54,9 @@ std::string pair_text(const CheckReport& report) {
 std::string seams_text(const CheckReport& report) {
     if (!report.seams) return {};
     const SeamEvidence& seams = *report.seams;
-    return fmt::format("{}: {} seam edges of the mesh, mean {:.2f}, p99 {:.2f}, worst edge {:.2f} degrees\n",
-                       printable(report.file), seams.edges, seams.mean, seams.p99, seams.worst);
+    return fmt::format(
+        "{}: {} seam edges of the mesh, mean {:.2f}, p99 {:.2f}, mean of the worst edge {:.2f} degrees\n",
+        printable(report.file), seams.edges, seams.mean, seams.p99, seams.worst);
 }
 
 Json findings_json(const CheckReport& report, const Requirements& require) {

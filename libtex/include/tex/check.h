@@ -164,10 +164,10 @@ struct PairEvidence {
 // How well the map fits the mesh: the angles in degrees between the decoded normals on both sides of UV seams. Each
 // seam edge counts by its length in object space.
 struct SeamEvidence {
-    std::int64_t edges = 0;  // that were measured
-    double mean = 0.0, p99 = 0.0;
-    double worst = 0.0;  // mean of the worst edge
-    Region worst_edge;   // the texels around one side of it
+    std::int64_t edges = 0;        // that were measured
+    double mean = 0.0, p99 = 0.0;  // of all points of all edges, in degrees
+    double worst = 0.0;            // the mean of the worst edge
+    Region worst_edge;             // the texels around one side of it
 };
 
 struct CheckReport {

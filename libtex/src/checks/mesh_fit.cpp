@@ -156,7 +156,7 @@ std::string difference_of(const Candidate& candidate, const Candidate& given) {
 }
 
 std::string figures(const SeamEvidence& evidence) {
-    return "mean " + decimal(evidence.mean, 2) + ", p99 " + decimal(evidence.p99, 2) + ", worst edge " +
+    return "mean " + decimal(evidence.mean, 2) + ", p99 " + decimal(evidence.p99, 2) + ", mean of the worst edge " +
            decimal(evidence.worst, 2) + " degrees";
 }
 
