@@ -93,10 +93,10 @@ void fork_join(int threads, int count, const Body& body) {
         for (int k = next.fetch_add(1); k < count; k = next.fetch_add(1)) body(k);
         happens_before(join_moment);
     };
-    happens_before(fork_moment);
     tbb::task_arena(threads).execute([&] {
         // Inside the arena: if run() throws, the group's destructor waits for tasks that only threads of the arena run.
         tbb::task_group group;
+        happens_before(fork_moment);
         for (int k = 1; k < std::min(threads, count); ++k) group.run(work);
         group.run_and_wait(work);
         happens_after(group);
