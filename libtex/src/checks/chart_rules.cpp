@@ -8,14 +8,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "checks/tangent_rules.h"
 #include "checks/thresholds.h"
 #include "mesh/coverage.h"
 #include "threads/parallel.h"
 
 namespace tex {
 namespace {
-
-constexpr double kDegrees = 57.295779513082320877;
 
 // What a strip of the map shows. Sums of doubles depend on their order, so each strip has its own.
 struct StripSums {
@@ -67,14 +66,9 @@ StripSums sums_of(const CoverageMap& coverage, int strip, const Stored& stored, 
 void check_mirrored(const MeshPart& part, Findings& findings) {
     std::size_t mirrored = 0, upright = 0;
     for (std::size_t t = 0; t < part.triangles(); ++t) {
-        const auto uv = [&](std::size_t k) { return part.uvs.front()[part.indices[3 * t + k]]; };
-        const Float2 a = uv(0), b = uv(1), c = uv(2);
-        const double area = (static_cast<double>(b.x) - static_cast<double>(a.x)) *
-                                (static_cast<double>(c.y) - static_cast<double>(a.y)) -
-                            (static_cast<double>(b.y) - static_cast<double>(a.y)) *
-                                (static_cast<double>(c.x) - static_cast<double>(a.x));
+        const double area = area_in_map(part, t);
         if (area == 0.0) continue;
-        ++((area < 0.0) == (part.v_axis == YAxis::up) ? mirrored : upright);
+        ++(area < 0.0 ? mirrored : upright);
     }
     if (mirrored == 0) return;
     Finding& finding = findings.add(

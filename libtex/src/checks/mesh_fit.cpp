@@ -10,12 +10,12 @@
 #include <tex/tangents.h>
 
 #include "checks/mesh_seams.h"
+#include "checks/tangent_rules.h"
 #include "checks/thresholds.h"
 
 namespace tex {
 namespace {
 
-constexpr double kDegrees = 57.295779513082320877;
 constexpr double kConfident = 0.99;
 
 // The side of a square around the worst edge, in texels.

@@ -8,15 +8,15 @@
 #include <limits>
 #include <tuple>
 
+#include "checks/tangent_rules.h"
 #include "mesh/vectors.h"
 
 namespace tex {
 namespace {
 
 constexpr std::size_t kMostEdges = 1 << 14;
-constexpr int kMostPlaces = 8;          // on an edge
-constexpr float kSameNormal = 0.9998f;  // the cosine of a degree
-constexpr double kDegrees = 57.295779513082320877;
+constexpr int kMostPlaces = 8;               // on an edge
+constexpr float kSameNormal = 0.9998f;       // the cosine of a degree
 constexpr double kQuantum = 0.3 / kDegrees;  // a gap that rounding to 8 bits explains
 
 Vector3 operator+(Vector3 a, Vector3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }

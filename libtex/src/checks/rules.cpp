@@ -199,8 +199,7 @@ constexpr Rule kRules[] = {
      ""},
     {"N706", "tangent-sign-opposite", mesh, error, true, "w of tangents contradicts the UVs.",
      "In these triangles, the bitangent points down in the map. Bumps are lit from the wrong side there. Exporters "
-     "that "
-     "turn v around but not w cause this, and tools that drop w.",
+     "that turn v around but not w cause this, and tools that drop w.",
      "Export the mesh again, with tangents that are made anew.", "N705 N711"},
     {"N711", "other-tangent-space", mesh, error, true, "The map was made for another tangent space.",
      "The normals on both sides of UV seams are the same direction of the surface, so they must decode to the same "

@@ -14,8 +14,6 @@
 namespace tex {
 namespace {
 
-constexpr double kDegrees = 57.295779513082320877;
-
 double length_of(const Float4& t) {
     const auto x = static_cast<double>(t.x), y = static_cast<double>(t.y), z = static_cast<double>(t.z);
     return std::sqrt(x * x + y * y + z * z);
@@ -28,19 +26,6 @@ double angle_between(const Float4& a, const Float4& b) {
     };
     const double x = part(a.x, b.x), y = part(a.y, b.y), z = part(a.z, b.z);
     return 2.0 * kDegrees * std::asin(std::min(1.0, std::sqrt(x * x + y * y + z * z) / 2.0));
-}
-
-// Twice the area of a triangle in the map, positive if its corners are counter-clockwise there. MikkTSpace takes w from
-// its sign.
-double area_in_map(const MeshPart& part, std::size_t triangle) {
-    std::array<double, 3> u{}, v{};
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Float2 uv = part.uvs.front()[part.indices[3 * triangle + k]];
-        u[k] = static_cast<double>(uv.x);
-        v[k] = static_cast<double>(uv.y);
-    }
-    const double area = (u[1] - u[0]) * (v[2] - v[0]) - (v[1] - v[0]) * (u[2] - u[0]);
-    return part.v_axis == YAxis::up ? area : -area;
 }
 
 // What the tangents of the file are like.
@@ -154,6 +139,17 @@ Result<void> compare_with_methods(const SelectedPart& selected, const Execution&
 }
 
 }  // namespace
+
+double area_in_map(const MeshPart& part, std::size_t triangle) {
+    std::array<double, 3> u{}, v{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Float2 uv = part.uvs.front()[part.indices[3 * triangle + k]];
+        u[k] = static_cast<double>(uv.x);
+        v[k] = static_cast<double>(uv.y);
+    }
+    const double area = (u[1] - u[0]) * (v[2] - v[0]) - (v[1] - v[0]) * (u[2] - u[0]);
+    return part.v_axis == YAxis::up ? area : -area;
+}
 
 Result<void> check_tangent_rules(const Subject& subject, Findings& findings) {
     const SelectedPart& selected = subject.options.mesh->selected;
