@@ -72,6 +72,7 @@ struct Maker {
     void mesh(const std::string& id, const MeshPart& part);
     void tangents();
     void seams();
+    void padding();
 };
 
 // Every `step`-th texel becomes (r, g, b).
@@ -306,6 +307,27 @@ void Maker::seams() {
     png("N722-charts-mirrored", codes_of(this->part(64, 64)));
     mesh("N723", two_sheets(false));
     png("N723-charts-overlap", codes_of(this->part(64, 64)));
+    padding();
+}
+
+// A chart on a background without padding. Its rows are the same, so that the picture is small.
+void Maker::padding() {
+    constexpr int kSize = 256, kBorder = 11;
+    MeshPart sheet = broken_sheet();
+    for (Float2& uv : sheet.uvs[0]) {
+        const auto place = [](float t) { return (kBorder + (kSize - 2 * kBorder) * t) / kSize; };
+        uv = {place(uv.x), place(uv.y)};
+    }
+    mesh("N724", sheet);
+    NormalMap map({kSize, kSize});
+    for (int k = 0; k < kSize * kSize; ++k) {
+        const int i = k % kSize, j = k / kSize;
+        const bool inside = std::min({i, j, kSize - 1 - i, kSize - 1 - j}) >= kBorder;
+        const float z = base.z.at(i % 128, 5), x = base.x.at(i % 128, 5);
+        const Float3 n = unit_vector(inside ? Float3{x, 0.0f, z} : Float3{0.5f, 0.3f, 0.8f});
+        map.x.at(i, j) = n.x, map.y.at(i, j) = n.y, map.z.at(i, j) = n.z;
+    }
+    png("N724-padding-too-small", codes_of(map));
 }
 
 }  // namespace

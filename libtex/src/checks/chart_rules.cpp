@@ -6,11 +6,16 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "checks/padding.h"
 #include "checks/tangent_rules.h"
 #include "checks/thresholds.h"
+#include "mesh/charts.h"
 #include "mesh/coverage.h"
+#include "threads/guard.h"
 #include "threads/parallel.h"
 
 namespace tex {
@@ -43,21 +48,30 @@ Vector normal_at(const MeshPart& part, const Covered& texel) {
     return normal;
 }
 
-StripSums sums_of(const CoverageMap& coverage, int strip, const Stored& stored, const MeshPart& part) {
+// The mesh on the map: what covers each texel.
+struct Covering {
+    const MeshPart& part;
+    CoverageMap coverage;
+    std::vector<std::int32_t> chart_of;  // for each triangle
+    Plane<std::int32_t> charts;          // for each texel, or kNoChart
+};
+
+StripSums sums_of(Covering& mesh, int strip, const Stored& stored) {
     StripSums sums;
     std::vector<Covered> texels;
-    sums.overlaps = coverage.cover(strip, texels);
-    if (!stored.has_z()) return sums;  // object space needs it
+    sums.overlaps = mesh.coverage.cover(strip, texels);
     const int x = stored.channel(Component::x), y = stored.channel(Component::y), z = stored.channel(Component::z);
     const int width = stored.extent().width;
     for (std::size_t k = 0; k < texels.size(); ++k) {
-        if (!texels[k].inside) continue;
-        const int i = static_cast<int>(k) % width, j = strip * coverage.strip_rows() + static_cast<int>(k) / width;
+        const int i = static_cast<int>(k) % width, j = strip * mesh.coverage.strip_rows() + static_cast<int>(k) / width;
+        const bool inside = texels[k].inside;
+        mesh.charts.at(i, j) = inside ? mesh.chart_of[static_cast<std::size_t>(texels[k].triangle)] : kNoChart;
+        if (!inside || !stored.has_z()) continue;  // object space needs z
         const auto component = [&](int channel) { return static_cast<double>(stored.component(channel, i, j)); };
         const Vector n{component(x), component(y), component(z)};
         if (!std::isfinite(n[0] + n[1] + n[2])) continue;
         ++sums.texels;
-        sums.from_normal += angle_between(n, normal_at(part, texels[k]));
+        sums.from_normal += angle_between(n, normal_at(mesh.part, texels[k]));
         sums.from_z += angle_between(n, {0.0, 0.0, 1.0});
     }
     return sums;
@@ -77,19 +91,12 @@ void check_mirrored(const MeshPart& part, Findings& findings) {
     finding.unit = "share";
 }
 
-}  // namespace
-
-Result<void> check_chart_rules(const Subject& subject, Findings& findings) {
-    const MeshPart& part = subject.options.mesh->selected.part;
-    check_mirrored(part, findings);
-    const auto coverage = CoverageMap::make(part, 0, subject.stored.extent(), 0);
-    if (!coverage) return coverage.error();
-    std::vector<StripSums> strips(static_cast<std::size_t>(coverage->strips()));
+Result<StripSums> sums_over(Covering& mesh, const Subject& subject) {
+    std::vector<StripSums> strips(static_cast<std::size_t>(mesh.coverage.strips()));
     const auto measure = [&](int begin, int end) {
-        for (int k = begin; k < end; ++k)
-            strips[static_cast<std::size_t>(k)] = sums_of(*coverage, k, subject.stored, part);
+        for (int k = begin; k < end; ++k) strips[static_cast<std::size_t>(k)] = sums_of(mesh, k, subject.stored);
     };
-    if (const auto done = parallel_for(subject.execution, coverage->strips(), 1, measure, {1.0, 1.0}); !done)
+    if (const auto done = parallel_for(subject.execution, mesh.coverage.strips(), 1, measure, {1.0, 1.0}); !done)
         return done.error();
     StripSums all;
     for (const StripSums& strip : strips) {
@@ -98,12 +105,11 @@ Result<void> check_chart_rules(const Subject& subject, Findings& findings) {
         all.from_normal += strip.from_normal;
         all.from_z += strip.from_z;
     }
-    if (all.overlaps > 0) {
-        Finding& finding = findings.add("N723", std::to_string(all.overlaps) + " times, a texel has one more triangle");
-        finding.figure = static_cast<double>(all.overlaps);
-        finding.unit = "texels";
-    }
-    if (all.texels == 0 || all.from_normal >= thresholds::kObjectSpace * all.from_z) return {};
+    return all;
+}
+
+void check_object_space(const StripSums& all, Findings& findings) {
+    if (all.texels == 0 || all.from_normal >= thresholds::kObjectSpace * all.from_z) return;
     const auto texels = static_cast<double>(all.texels);
     Finding& finding = findings.add("N721", "its vectors are " + decimal(all.from_normal / texels, 1) +
                                                 " degrees from the normals of the mesh on average, and " +
@@ -111,7 +117,44 @@ Result<void> check_chart_rules(const Subject& subject, Findings& findings) {
     finding.figure = all.from_normal / all.from_z;
     finding.unit = "ratio";
     finding.confidence = 0.99;
+}
+
+Result<void> check_padding(Covering& mesh, const Subject& subject, Findings& findings) {
+    if (!findings.wants("N724")) return {};
+    const auto measure = measure_padding(subject.stored, mesh.charts, subject.execution);
+    if (!measure) return measure.error();
+    if (measure->level == 0) return {};
+    const auto [width, height] = subject.stored.extent();
+    const Extent extent{std::max(1, width >> measure->level), std::max(1, height >> measure->level)};
+    Finding& finding =
+        findings.add("N724", "from level " + std::to_string(measure->level) + " (" + extent_text(extent) +
+                                 ") on, charts mix with " + (measure->background ? "the background" : "each other") +
+                                 " in " + percent(measure->share) + " of the texels on their borders");
+    finding.figure = measure->share;
+    finding.unit = "share";
     return {};
+}
+
+}  // namespace
+
+Result<void> check_chart_rules(const Subject& subject, Findings& findings) {
+    const MeshPart& part = subject.options.mesh->selected.part;
+    check_mirrored(part, findings);
+    return guarded([&]() -> Result<void> {
+        auto coverage = CoverageMap::make(part, 0, subject.stored.extent(), 0);
+        if (!coverage) return coverage.error();
+        Covering mesh{part, *std::move(coverage), charts_of(part, 0), Plane<std::int32_t>(subject.stored.extent())};
+        const auto all = sums_over(mesh, subject);
+        if (!all) return all.error();
+        if (all->overlaps > 0) {
+            Finding& finding =
+                findings.add("N723", std::to_string(all->overlaps) + " times, a texel has one more triangle");
+            finding.figure = static_cast<double>(all->overlaps);
+            finding.unit = "texels";
+        }
+        check_object_space(*all, findings);
+        return check_padding(mesh, subject, findings);
+    });
 }
 
 }  // namespace tex

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// chart_rules.h: the rules about the charts of a mesh, and whether its map is in object space: N721 to N723.
+// chart_rules.h: the rules about the charts of a mesh, and whether its map is in object space: N721 to N724.
 
 #pragma once
 

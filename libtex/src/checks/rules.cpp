@@ -221,6 +221,12 @@ constexpr Rule kRules[] = {
      "Several places of the mesh show the same texels. That is fine for parts that are the same or mirrored. A map "
      "cannot hold another bump for each of them, and convert-normals and bakers let one triangle decide.",
      "", ""},
+    {"N724", "padding-too-small", mesh, note, true, "The padding around charts is too small for mip levels.",
+     "A texel of level n is the mean of 2^n by 2^n texels. Where the background or another chart is closer than that, "
+     "it "
+     "bleeds into the chart, and seams show at a distance. Levels down to a side of 128 texels are examined: 8 texels "
+     "of padding suffice at 1024, 16 at 2048.",
+     "Bake the map with more padding, and leave at least twice as much space between charts.", ""},
 };
 
 }  // namespace

@@ -49,4 +49,10 @@ inline constexpr double kSeamGap = 0.27;
 // space: 0.23.
 inline constexpr double kObjectSpace = 0.5;
 
+// -- of padding, from custom: 16 texels at 2048, 8 at 1024, which keep the levels down to a side of 128 clean --------
+inline constexpr int kPaddedSide = 128;
+inline constexpr double kBackground = 0.1;  // share of one value among the texels outside of charts
+inline constexpr double kBleed = 0.17;      // the least difference in x and y that harms: about 10 degrees
+inline constexpr double kBleedShare = 0.1;  // of the texels on borders
+
 }  // namespace tex::thresholds

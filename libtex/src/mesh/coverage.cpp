@@ -74,11 +74,11 @@ Error unfit(std::int32_t triangle, const std::string& what) {
 
 }  // namespace
 
-Result<CoverageMap> CoverageMap::make(const MeshPart& part, int uv_set, Extent extent, int gutter) {
+Result<CoverageMap> CoverageMap::make(const MeshPart& part, int uv_set, Extent extent, int gutter, int rows) {
     CoverageMap map;
     map.extent_ = extent;
     map.gutter_ = gutter;
-    map.strip_rows_ = std::max(1, std::min(32, kStripTexels / extent.width));
+    map.strip_rows_ = rows * std::max(1, std::min(32, kStripTexels / extent.width) / rows);
     map.by_strip_.resize(static_cast<std::size_t>(map.strips()));
     for (std::size_t t = 0; t < part.triangles(); ++t) {
         const auto placed = map.place(part, part.uvs[static_cast<std::size_t>(uv_set)], static_cast<std::int32_t>(t));

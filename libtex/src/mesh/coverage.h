@@ -27,8 +27,9 @@ struct Covered {
 // The triangles of a part in texels, x to the right, y down, sorted by the strips of rows that they touch.
 class CoverageMap {
 public:
-    // `gutter` is its width in texels. Errors: unsupported, as described in convert.h.
-    static Result<CoverageMap> make(const MeshPart& part, int uv_set, Extent extent, int gutter);
+    // `gutter` is its width in texels. Strips have a multiple of `rows` rows, except the last one. Errors: unsupported,
+    // as described in convert.h.
+    static Result<CoverageMap> make(const MeshPart& part, int uv_set, Extent extent, int gutter, int rows = 1);
 
     [[nodiscard]] int strip_rows() const { return strip_rows_; }
     [[nodiscard]] int strips() const { return (extent_.height + strip_rows_ - 1) / strip_rows_; }
