@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cassert>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <string>
@@ -47,40 +48,36 @@ struct Counts {
     std::int64_t covered = 0, backward = 0, singular = 0;
 };
 
-// Converts strips of rows, without the padding.
+Vector3 sum(Vector3 a, Vector3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+
+// NaN if the length is 0.
+Vector3 normalised(Vector3 a) {
+    const double length = std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
+    return {a.x / length, a.y / length, a.z / length};
+}
+
+// Converts strips of rows, without the padding. The coverage is that of subsamples.
 class StripConverter {
 public:
     StripConverter(const NormalMap& map, const TangentSpace& space, const CoverageMap& coverage, Direction direction,
-                   ConvertedMap& result)
-        : map_(map), space_(space), coverage_(coverage), direction_(direction), result_(result) {}
+                   int subsamples, ConvertedMap& result)
+        : map_(map), space_(space), coverage_(coverage), direction_(direction), subsamples_(subsamples),
+          result_(result) {}
 
     // Threads may convert different strips at the same time.
     void run(int strip) {
-        std::vector<Covered> texels;
-        overlaps_ += coverage_.cover(strip, texels);
-        const int width = map_.extent().width;
-        std::int32_t triangle = kNoTriangle;  // whose frames these are
-        CornerFrames frames;
-        Counts counts;
-        for (std::size_t k = 0; k < texels.size(); ++k) {
-            const Covered& texel = texels[k];
-            const int i = static_cast<int>(k) % width, j = strip * coverage_.strip_rows() + static_cast<int>(k) / width;
-            result_.coverage.at(i, j) = texel.inside                    ? Coverage::triangle
-                                        : texel.triangle != kNoTriangle ? Coverage::gutter
-                                                                        : Coverage::none;
-            if (texel.triangle == kNoTriangle) {
-                result_.map.x.at(i, j) = kHole;
-                continue;
-            }
-            if (texel.triangle != triangle) {
-                triangle = texel.triangle;
-                frames = CornerFrames(space_, static_cast<std::size_t>(triangle));
-            }
-            convert(frames.at(texel.weights), texel.inside, i, j, counts);
+        std::vector<Covered> covered;
+        overlaps_ += coverage_.cover(strip, covered);
+        const Extent extent = map_.extent();
+        const int first = strip * coverage_.strip_rows() / subsamples_;
+        const int last = std::min(extent.height, first + coverage_.strip_rows() / subsamples_);
+        Strip work{covered, static_cast<std::size_t>(extent.width * subsamples_)};
+        for (int j = first; j < last; ++j) {
+            for (int i = 0; i < extent.width; ++i) convert(work, i, j, j - first);
         }
-        covered_ += counts.covered;
-        backward_ += counts.backward;
-        singular_ += counts.singular;
+        covered_ += work.counts.covered;
+        backward_ += work.counts.backward;
+        singular_ += work.counts.singular;
     }
     void finish() {
         result_.covered = covered_;
@@ -90,21 +87,69 @@ public:
     }
 
 private:
-    void convert(const Frame& frame, bool inside, int i, int j, Counts& counts) {
+    struct Strip {
+        const std::vector<Covered>& covered;  // of subsamples
+        std::size_t width;                    // in subsamples
+        std::int32_t triangle = kNoTriangle;  // whose frames these are
+        CornerFrames frames = {};
+        Counts counts = {};
+    };
+    // Subsamples of one texel, those inside of triangles if there are any.
+    struct Sum {
+        Vector3 normal{};
+        int count = 0, singular = 0;
+        bool inside = false;
+    };
+
+    void convert(Strip& strip, int i, int j, int row) {
         const Vector3 from{static_cast<double>(map_.x.at(i, j)), static_cast<double>(map_.y.at(i, j)),
                            static_cast<double>(map_.z.at(i, j))};
-        if (inside) ++counts.covered;
-        if (direction_ == Direction::to_object) return set(result_.map, i, j, decode(frame, from));
-        const std::optional<Vector3> t = encode(frame, from);
-        if (!t) ++counts.singular;
-        if (t && t->z < 0.0) ++counts.backward;
-        set(result_.map, i, j, t.value_or(Vector3{0.0, 0.0, 1.0}));
+        const auto n = static_cast<std::size_t>(subsamples_);
+        Sum all;
+        for (std::size_t k = 0; k < n * n; ++k) {
+            const Covered& sample = strip.covered[(static_cast<std::size_t>(row) * n + k / n) * strip.width +
+                                                  static_cast<std::size_t>(i) * n + k % n];
+            if (sample.triangle != kNoTriangle && (sample.inside || !all.inside)) add(strip, sample, from, all);
+        }
+        finish(strip.counts, all, i, j);
+    }
+
+    void add(Strip& strip, const Covered& sample, Vector3 from, Sum& all) {
+        if (sample.triangle != strip.triangle) {
+            strip.triangle = sample.triangle;
+            strip.frames = CornerFrames(space_, static_cast<std::size_t>(sample.triangle));
+        }
+        if (sample.inside && !all.inside) all = {{}, 0, 0, true};
+        const Frame frame = strip.frames.at(sample.weights);
+        const std::optional<Vector3> to =
+            direction_ == Direction::to_object ? decode(frame, from) : encode(frame, from);
+        if (!to) ++all.singular;
+        if (to) all.normal = all.count++ == 0 ? *to : sum(all.normal, *to);
+    }
+
+    void finish(Counts& counts, const Sum& all, int i, int j) {
+        Coverage& coverage = result_.coverage.at(i, j);
+        if (all.count + all.singular == 0) {
+            coverage = Coverage::none;
+            result_.map.x.at(i, j) = kHole;
+            return;
+        }
+        coverage = all.inside ? Coverage::triangle : Coverage::gutter;
+        if (all.inside) ++counts.covered;
+        const Vector3 n = all.count > 1 ? normalised(all.normal) : all.normal;
+        if (all.count == 0 || std::isnan(n.z)) {
+            ++counts.singular;
+            return set(result_.map, i, j, {0.0, 0.0, 1.0});
+        }
+        if (direction_ == Direction::to_tangent && n.z < 0.0) ++counts.backward;
+        set(result_.map, i, j, n);
     }
 
     const NormalMap& map_;
     const TangentSpace& space_;
     const CoverageMap& coverage_;
     const Direction direction_;
+    const int subsamples_;
     ConvertedMap& result_;
     std::atomic<std::int64_t> covered_{0}, overlaps_{0}, backward_{0}, singular_{0};
 };
@@ -121,16 +166,19 @@ Result<void> pad(ConvertedMap& result, std::int64_t width, const Execution& exec
     return visit_holes(map.x.view(), Wrap::repeat, Wrap::repeat, execution, span, fill);
 }
 
-Result<ConvertedMap> convert(const NormalMap& map, const TangentSpace& space, Direction direction, int padding,
-                             const Execution& execution) {
+Result<ConvertedMap> convert(const NormalMap& map, const TangentSpace& space, Direction direction,
+                             const ConvertOptions& options, const Execution& execution) {
+    const auto [padding, subsamples] = options;
     assert(check_part(space.part) && map.extent().texels() > 0 && padding >= 0);
+    assert(subsamples >= 1 && subsamples <= kMaxSubsamples);
     return guarded([&]() -> Result<ConvertedMap> {
         if (const auto checked = check_space(space); !checked) return checked.error().of(space.file);
         const int gutter = direction == Direction::to_object ? std::min(kGutter, padding) : 0;
-        const auto coverage = CoverageMap::make(space.part, space.uv_set, map.extent(), gutter);
+        const Extent extent{map.extent().width * subsamples, map.extent().height * subsamples};
+        const auto coverage = CoverageMap::make(space.part, space.uv_set, extent, gutter * subsamples, subsamples);
         if (!coverage) return coverage.error().of(space.file);
         ConvertedMap result{NormalMap(map.extent()), Plane<Coverage>(map.extent())};
-        StripConverter converter(map, space, *coverage, direction, result);
+        StripConverter converter(map, space, *coverage, direction, subsamples, result);
         const auto strips = [&](int begin, int end) {
             for (int strip = begin; strip < end; ++strip) converter.run(strip);
         };
@@ -149,18 +197,18 @@ Result<ConvertedMap> convert(const NormalMap& map, const TangentSpace& space, Di
 
 Result<ConvertedMap> to_object_space(const NormalMap& map, const TangentSpace& space, const ConvertOptions& options,
                                      const Execution& execution) {
-    return convert(map, space, Direction::to_object, options.padding, execution);
+    return convert(map, space, Direction::to_object, options, execution);
 }
 
 Result<ConvertedMap> to_tangent_space(const NormalMap& map, const TangentSpace& space, const ConvertOptions& options,
                                       const Execution& execution) {
-    return convert(map, space, Direction::to_tangent, options.padding, execution);
+    return convert(map, space, Direction::to_tangent, options, execution);
 }
 
 Result<ConvertedMap> refit(const NormalMap& map, const TangentSpace& from, const TangentSpace& to,
                            const ConvertOptions& options, const Execution& execution) {
     const Execution first = part_of(execution, 0.0, 0.5), second = part_of(execution, 0.5, 1.0);
-    const auto object = to_object_space(map, from, {}, first);
+    const auto object = to_object_space(map, from, {kPadAll, options.subsamples}, first);
     if (!object) return object.error();
     auto result = to_tangent_space(object->map, to, options, second);
     if (!result) return result;

@@ -3,7 +3,9 @@
 #include <tex/mesh_selection.h>
 
 #include <algorithm>
+#include <cassert>
 #include <charconv>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -200,6 +202,33 @@ Result<SelectedPart> select_part(const Mesh& mesh, const MeshSelection& selectio
         if (const auto chosen = choose_parts(mesh, selection, choice); !chosen) return chosen.error();
         if (const auto chosen = choose_attributes(mesh, selection, choice); !chosen) return chosen.error();
         return joined_parts(choice, execution);
+    });
+}
+
+Result<SelectedPart> in_tile(const SelectedPart& selected, int tile) {
+    assert(check_part(selected.part) && tile >= 1001);
+    return guarded([&]() -> Result<SelectedPart> {
+        SelectedPart cut = selected;
+        MeshPart& part = cut.part;
+        const double column = (tile - 1001) % 10, row = (tile - 1001) / 10;
+        std::size_t kept = 0;
+        for (std::size_t t = 0; t < part.triangles(); ++t) {
+            double u = 0.0, v = 0.0;
+            for (std::size_t c = 3 * t; c < 3 * t + 3; ++c) {
+                const Float2& uv = part.uvs.front()[part.indices[c]];
+                u += static_cast<double>(uv.x) / 3.0;
+                v += (part.v_axis == YAxis::up ? static_cast<double>(uv.y) : 1.0 - static_cast<double>(uv.y)) / 3.0;
+            }
+            if (std::floor(u) != column || std::floor(v) != row) continue;
+            for (std::size_t c = 3 * t; c < 3 * t + 3; ++c, ++kept) {
+                part.indices[kept] = part.indices[c];
+                cut.tangents[kept] = cut.tangents[c];
+            }
+        }
+        if (kept == 0) return unfit("has no triangle in UDIM tile " + std::to_string(tile));
+        part.indices.resize(kept);
+        cut.tangents.resize(kept);
+        return cut;
     });
 }
 

@@ -104,5 +104,47 @@ TEST(ConvertCoverage, ContinuesTrianglesInTheGutter) {
     EXPECT_LT(std::abs(x(-3) - x(-2)), 0.5f * std::abs(x(0) - x(1)));
 }
 
+// The mesh bends within the texels of the coarse map.
+TEST(ConvertSubsamples, AverageTheVectorsOfATexel) {
+    MeshPart part = wavy_part(3);
+    for (Float2& uv : part.uvs[0]) uv.y -= 0.125f * uv.x;
+    const auto tangents = make_tangents(part);
+    ASSERT_TRUE(tangents);
+    const TangentSpace space{part, *tangents};
+    const NormalMap coarse = constant_map({4, 4}, {0.6f, 0.0f, 0.8f});
+    const NormalMap fine = constant_map({16, 16}, {0.6f, 0.0f, 0.8f});
+    const auto averaged = to_object_space(coarse, space, {0, 4});
+    const auto single = to_object_space(fine, space, {0});
+    ASSERT_TRUE(averaged && single);
+    for (int j = 0; j < 4; ++j) {
+        for (int i = 0; i < 4; ++i) {
+            Float3 sum;
+            for (int k = 0; k < 16; ++k) {
+                const Float3 n = vector_at(single->map, 4 * i + k % 4, 4 * j + k / 4);
+                sum = {sum.x + n.x, sum.y + n.y, sum.z + n.z};
+            }
+            EXPECT_LT(degrees_between(unit_vector(sum), vector_at(averaged->map, i, j)), 1e-4) << i << ' ' << j;
+        }
+    }
+    EXPECT_EQ(averaged->covered, 16);
+}
+
+TEST(ConvertSubsamples, CoverTexelsThatATriangleTouches) {
+    MeshPart part = wavy_part(1);
+    for (Float2& uv : part.uvs[0]) uv = {0.315f * uv.x, 0.315f * (uv.y - 0.125f * uv.x)};  // 3.15 texels
+    const auto tangents = make_tangents(part);
+    ASSERT_TRUE(tangents);
+    const TangentSpace space{part, *tangents};
+    const NormalMap map = constant_map({10, 10}, {0.0f, 0.0f, 1.0f});
+    EXPECT_EQ(to_object_space(map, space, {0})->covered, 9);
+    EXPECT_EQ(to_object_space(map, space, {0, 8})->covered, 16);
+    for (const int threads : {2, 4}) {
+        const auto one = to_tangent_space(map, space, {2, 3}, {1, {}});
+        const auto more = to_tangent_space(map, space, {2, 3}, {threads, {}});
+        ASSERT_TRUE(one && more);
+        for (int k = 0; k < 100; ++k) EXPECT_EQ(one->map.x.at(k % 10, k / 10), more->map.x.at(k % 10, k / 10));
+    }
+}
+
 }  // namespace
 }  // namespace tex

@@ -143,5 +143,34 @@ TEST(MeshSelection, ExplainsWhatIsMissing) {
     EXPECT_EQ(select_part(mesh, of("stone", "flat")).error().code, ErrorCode::bad_data);
 }
 
+TEST(MeshSelection, CutsOutUdimTiles) {
+    Mesh mesh = two_meshes();
+    mesh.parts.resize(1);
+    for (std::size_t k = 0; k < mesh.parts[0].uvs[0].size(); ++k) {
+        Float2& uv = mesh.parts[0].uvs[0][k];
+        uv = {2.0f * uv.x + 3.0f, uv.y + 2.0f};  // over tiles 1024 and 1025, if v points up
+    }
+    const auto whole = select_part(mesh, {});
+    ASSERT_TRUE(whole);
+    for (const YAxis v_axis : {YAxis::up, YAxis::down}) {
+        SelectedPart selected = *whole;
+        selected.part.v_axis = v_axis;
+        if (v_axis == YAxis::down) {
+            for (Float2& uv : selected.part.uvs[0]) uv.y = 1.0f - uv.y;
+        }
+        const auto tile = in_tile(selected, 1025);
+        ASSERT_TRUE(tile);
+        EXPECT_TRUE(check_part(tile->part));
+        ASSERT_EQ(tile->part.triangles(), 4u);
+        ASSERT_EQ(tile->tangents.size(), 12u);
+        for (std::size_t c = 0; c < 12; ++c) EXPECT_GE(tile->part.uvs[0][tile->part.indices[c]].x, 4.0f);
+        EXPECT_TRUE(in_tile(selected, 1024));
+        const auto empty = in_tile(selected, 1001);
+        ASSERT_FALSE(empty);
+        EXPECT_EQ(empty.error().code, ErrorCode::bad_option);
+        EXPECT_EQ(empty.error().reason, "has no triangle in UDIM tile 1001");
+    }
+}
+
 }  // namespace
 }  // namespace tex

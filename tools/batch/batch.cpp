@@ -158,7 +158,10 @@ Result<std::vector<Task>> Batch::plan() const {
     const auto inputs = files.list_inputs(command);
     if (!inputs) return inputs.error();
     std::vector<Task> tasks;
-    for (const std::string& input : *inputs) tasks.push_back({input, ""});
+    for (const Input& input : *inputs) {
+        tasks.push_back({input.name, ""});
+        tasks.back().tile = input.tile;
+    }
     return tasks;
 }
 

@@ -49,6 +49,16 @@ std::string output_name(const std::string& input, const FileOptions& files, cons
     return files.place(pattern, fields);
 }
 
+// Throws UsageError if -o names tiles that an input does not have.
+void check_tiles(const std::vector<Input>& inputs, const FileOptions& files) {
+    if (!has_tile(files.output)) return;
+    for (const Input& input : inputs) {
+        if (input.tile == 0)
+            throw UsageError(fmt::format("-o {} needs <UDIM> in the input, {} has none", printable(files.output),
+                                         printable(input.name)));
+    }
+}
+
 // Throws UsageError if the outputs for several engines cannot be made in one run.
 void check_engines(const std::vector<Task>& tasks, const FileOptions& files, std::size_t engines) {
     if (engines < 2) return;
@@ -74,25 +84,28 @@ Task task_of(const std::string& input, const std::string& name, const OutputOpti
     return task;
 }
 
-std::vector<Task> plan_outputs(std::vector<std::string> inputs, const FileOptions& files, const OutputOptions& output,
+std::vector<Task> plan_outputs(std::vector<Input> inputs, const FileOptions& files, const OutputOptions& output,
                                const OutputRules& rules) {
     std::vector<std::string> joined;
     if (rules.joins && !files.output.empty() && !inputs.empty()) {
-        joined.assign(inputs.begin() + 1, inputs.end());
+        for (auto input = inputs.begin() + 1; input != inputs.end(); ++input) joined.push_back(input->name);
         inputs.resize(1);
     }
-    if (!files.output.empty() && inputs.size() > 1) {
+    check_tiles(inputs, files);
+    if (!files.output.empty() && inputs.size() > 1 && !has_tile(files.output)) {
         throw UsageError(fmt::format("-o takes one input, {} are given; --out-dir takes many", inputs.size()));
     }
     if (!files.output.empty() && inputs.empty())
         throw UsageError(fmt::format("no input for -o: {} names none", printable(files.files_from)));
     std::vector<Task> tasks;
-    for (const std::string& input : inputs) {
+    for (const Input& input : inputs) {
         for (const Engine* const engine : output.engines_or_none()) {
             const OutputOptions own = output.of(engine);
-            const std::string name = files.output.empty() ? output_name(input, files, own, rules) : files.output;
-            Task task = task_of(input, name, own, rules);
+            const std::string name =
+                files.output.empty() ? output_name(input.name, files, own, rules) : with_tile(files.output, input.tile);
+            Task task = task_of(input.name, name, own, rules);
             task.joined = joined;
+            task.tile = input.tile;
             tasks.push_back(std::move(task));
         }
     }

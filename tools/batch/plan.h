@@ -11,6 +11,7 @@
 #include <tex/container.h>
 
 #include "batch/task.h"
+#include "batch/udim.h"
 #include "options/files.h"
 #include "options/output.h"
 
@@ -31,8 +32,9 @@ struct OutputRules {
                            const OutputRules& rules);
 
 // Pairs every input with its output. Throws UsageError if two inputs have the same output, if an output is an input
-// (links are followed), or if a name does not show its file type. Creates nothing.
-[[nodiscard]] std::vector<Task> plan_outputs(std::vector<std::string> inputs, const FileOptions& files,
+// (links are followed), or if a name does not show its file type. <UDIM> in the name of -o becomes the input's tile.
+// Creates nothing.
+[[nodiscard]] std::vector<Task> plan_outputs(std::vector<Input> inputs, const FileOptions& files,
                                              const OutputOptions& output, const OutputRules& rules);
 
 // Creates --out-dir (but not its parents) and, below it or without it, the folders that {dir} requires.

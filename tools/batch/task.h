@@ -22,6 +22,7 @@ struct Task {
     std::vector<std::string> own = {};           // files that options name and only this output depends on
     std::vector<std::string> more_outputs = {};  // outputs besides the first one
     const Engine* engine = nullptr;              // what the output is for, if --for says it
+    int tile = 0;                                // the UDIM tile of the input (udim.h), or 0
 
     // The inputs, without the files that options name.
     [[nodiscard]] std::vector<std::string> inputs() const {

@@ -18,13 +18,17 @@ void ConversionOptions::add(Command& command) {
     padding.words = {{"all", "the whole map"}};
     padding.completes = Completes::words;
     padding.preset = "all";
+    command
+        .option("--subsamples", "N", "divide each texel into N by N squares and average their vectors",
+                [this](const std::string& text) { convert_.subsamples = parse_int(text, 1, kMaxSubsamples); })
+        .preset = "1";
     command.choice(overlap_, "--overlap", "O", kOverlapNames, "what happens if triangles share texels");
 }
 
 Result<ConvertedMap> ConversionOptions::convert(Job& job, const NormalMap& map, double until) const {
-    const auto from = spaces.input({job.threads(), {}});
+    const auto from = spaces.input(job.task.tile, {job.threads(), {}});
     if (!from) return from.error();
-    const auto to = spaces.output({job.threads(), {}});
+    const auto to = spaces.output(job.task.tile, {job.threads(), {}});
     if (!to) return to.error();
     const Execution execution = job.until(until);
     const bool both = spaces.from == Space::tangent && !makes_object();

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -129,13 +131,17 @@ void FileOptions::check_inputs(const Command& command) const {
     if (dashes > 1) throw UsageError("standard input can only be read once");
 }
 
-Result<std::vector<std::string>> FileOptions::list_inputs(const Command& command) const {
-    std::vector<std::string> inputs = command.inputs();
+Result<std::vector<Input>> FileOptions::list_inputs(const Command& command) const {
+    std::vector<Input> inputs;
+    for (const std::string& input : command.inputs()) {
+        auto files = inputs_of(input);
+        if (!files) return files.error();
+        std::move(files->begin(), files->end(), std::back_inserter(inputs));
+    }
     if (!files_from.empty()) {
         const auto list = read_text_file(files_from);
         if (!list) return list.error();
-        const std::vector<std::string> listed = list_of(*list);
-        inputs.insert(inputs.end(), listed.begin(), listed.end());
+        for (std::string& input : list_of(*list)) inputs.push_back({std::move(input)});
         if (inputs.empty() && !allow_empty) {
             throw UsageError(
                 fmt::format("--files-from: {} names no input; --allow-empty accepts that", printable(files_from)));

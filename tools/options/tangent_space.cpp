@@ -139,30 +139,40 @@ bool TangentSpaceOptions::Loaded::is_current() const {
                                [](const FileState& state) { return FileState::of(state.file) == state; });
 }
 
-Result<MeshSpace> TangentSpaceOptions::input(const Execution& execution) const {
-    return read(mesh_, tangents_in_ ? tangents_in_ : tangents_, decoder_in_.value_or(decoder_), execution);
+Result<MeshSpace> TangentSpaceOptions::input(int tile, const Execution& execution) const {
+    return read(mesh_, tangents_in_ ? tangents_in_ : tangents_, decoder_in_.value_or(decoder_), tile, execution);
 }
 
-Result<MeshSpace> TangentSpaceOptions::output(const Execution& execution) const {
-    return read(to_mesh_.empty() ? mesh_ : to_mesh_, tangents_, decoder_, execution);
+Result<MeshSpace> TangentSpaceOptions::output(int tile, const Execution& execution) const {
+    return read(to_mesh_.empty() ? mesh_ : to_mesh_, tangents_, decoder_, tile, execution);
 }
 
 Result<MeshSpace> TangentSpaceOptions::read(const std::string& file, std::optional<TangentSource> tangents,
-                                            Decoder decoder, const Execution& execution) const {
+                                            Decoder decoder, int tile, const Execution& execution) const {
+    const auto whole = load(file, tangents, execution);
+    if (!whole) return whole.error();
+    if (tile == 0) return MeshSpace(*whole, decoder, file);
+    auto part = in_tile(**whole, tile);
+    if (!part) return part.error().of(file);
+    return MeshSpace(std::make_shared<const SelectedPart>(std::move(*part)), decoder, file);
+}
+
+Result<std::shared_ptr<const SelectedPart>> TangentSpaceOptions::load(const std::string& file,
+                                                                      std::optional<TangentSource> tangents,
+                                                                      const Execution& execution) const {
     const std::lock_guard lock(mutex_);
     Loaded& loaded = loaded_[{file, tangents}];
-    if (!loaded.is_current()) {
-        std::vector<FileState> files;
-        for (const std::string& one : files_of(file)) files.push_back(FileState::of(one));
-        const auto mesh = read_mesh(file);
-        if (!mesh) return mesh.error().of(file);
-        MeshSelection selection = selection_;
-        selection.tangents = tangents;
-        auto selected = select_part(*mesh, selection, execution);
-        if (!selected) return with_option(selected.error()).of(file);
-        loaded = {std::move(files), std::make_shared<const SelectedPart>(std::move(*selected))};
-    }
-    return MeshSpace(loaded.part, decoder, file);
+    if (loaded.is_current()) return loaded.part;
+    std::vector<FileState> files;
+    for (const std::string& one : files_of(file)) files.push_back(FileState::of(one));
+    const auto mesh = read_mesh(file);
+    if (!mesh) return mesh.error().of(file);
+    MeshSelection selection = selection_;
+    selection.tangents = tangents;
+    auto selected = select_part(*mesh, selection, execution);
+    if (!selected) return with_option(selected.error()).of(file);
+    loaded = {std::move(files), std::make_shared<const SelectedPart>(std::move(*selected))};
+    return loaded.part;
 }
 
 }  // namespace tex::cli

@@ -65,8 +65,11 @@ public:
 
     // Reads the mesh of the input or of the output. Jobs share a mesh; it is read again if the file has changed. Any
     // thread may call this.
-    [[nodiscard]] Result<MeshSpace> input(const Execution& execution) const;
-    [[nodiscard]] Result<MeshSpace> output(const Execution& execution) const;
+    //
+    // `tile` is the UDIM tile that the map shows, or 0 if it shows all triangles. Errors: as read_mesh(), select_part()
+    // and in_tile().
+    [[nodiscard]] Result<MeshSpace> input(int tile, const Execution& execution) const;
+    [[nodiscard]] Result<MeshSpace> output(int tile, const Execution& execution) const;
 
 private:
     void check(const Command& command) const;
@@ -76,7 +79,10 @@ private:
     void add_decoder(Command& command, const char* meaning);
     void add_tangents(Command& command);
     [[nodiscard]] Result<MeshSpace> read(const std::string& file, std::optional<TangentSource> tangents,
-                                         Decoder decoder, const Execution& execution) const;
+                                         Decoder decoder, int tile, const Execution& execution) const;
+    [[nodiscard]] Result<std::shared_ptr<const SelectedPart>> load(const std::string& file,
+                                                                   std::optional<TangentSource> tangents,
+                                                                   const Execution& execution) const;
 
     struct FileState {
         std::string file;

@@ -40,7 +40,7 @@ struct ConvertedMap {
     NormalMap map;
     Plane<Coverage> coverage;
     std::int64_t covered = 0;    // texels that triangles cover
-    std::int64_t overlaps = 0;   // those that several triangles cover: the first triangle decides
+    std::int64_t overlaps = 0;   // those (subsamples, if there are any) that several triangles cover: the first decides
     std::int64_t backward = 0;   // those whose z is negative in tangent space, so that most encodings cannot hold them
     std::int64_t singular = 0;   // those where T', B' and N' lie in one plane: they are (0, 0, 1) in tangent space
     std::int64_t unmatched = 0;  // refit() only: those that no triangle of the first space covers
@@ -51,12 +51,17 @@ struct ConvertedMap {
 // A texel belongs to the triangle whose UVs contain its centre; of two triangles that share an edge, exactly one does.
 // The map repeats, so UVs may be outside of 0 to 1. Corners are rounded to 1/256 texel.
 //
+// With n subsamples, a texel is divided into n x n squares. Each belongs to a triangle as a texel does, and converts
+// the texel's normal with its own T', B' and N'. The texel becomes the normalised sum of those that triangles cover,
+// however few they are. Corners are then rounded to 1/256 square.
+//
 // The border of `padding` texels around the charts is filled afterwards. In object space, its first two texels (the
 // gutter) are decoded from the map, with the nearest triangle continued beyond its edge; no weight of a corner goes
 // beyond -1. All others are copies of the nearest texel. A map in object space often has no valid texels outside of its
 // charts, so to_tangent_space() reads none of them: its border consists of copies alone.
 //
-// Preconditions (asserted): check_part(space.part) succeeds; the map is not empty; padding >= 0.
+// Preconditions (asserted): check_part(space.part) succeeds; the map is not empty; padding >= 0; subsamples are 1 to
+// kMaxSubsamples.
 // Errors: bad_option   no normals, no such set of UVs, not as many tangents as corners; no triangle covers a texel
 //         unsupported  UVs beyond a million; a triangle covers more than 16 repeats of the map, or more than 2^22
 //                      texels, in one direction

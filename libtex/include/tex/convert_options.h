@@ -60,8 +60,12 @@ struct TangentSpace {
 // The padding that fills the whole map.
 inline constexpr int kPadAll = 1 << 30;
 
+// The most subsamples of a texel in each direction.
+inline constexpr int kMaxSubsamples = 8;
+
 struct ConvertOptions {
     int padding = kPadAll;  // the width in texels of the border around each chart, 0 or more
+    int subsamples = 1;     // of a texel, in each direction, 1 to kMaxSubsamples
 };
 
 }  // namespace tex

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// udim.h: UDIM tiles: "rock_n.<UDIM>.png" stands for rock_n.1001.png, rock_n.1002.png and so on.
+//
+// Tile 1001 + u + 10 v holds the UVs from (u, v) to (u + 1, v + 1), with u from 0 to 9 and v pointing up (Foundry,
+// Mari).
+
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tex/result.h>
+
+namespace tex::cli {
+
+inline constexpr std::string_view kTileMark = "<UDIM>";
+
+// A file of the command line or of a list.
+struct Input {
+    std::string name;
+    int tile = 0;  // 0: none
+};
+
+[[nodiscard]] bool has_tile(std::string_view name);
+
+// The name with the tile's number in the place of every mark.
+[[nodiscard]] std::string with_tile(const std::string& name, int tile);
+
+// The files that a name stands for: itself, or those that exist, in the order of their tiles. Errors: io (there is
+// none, or the folder cannot be read). Throws UsageError if the mark is in the name of a folder.
+[[nodiscard]] Result<std::vector<Input>> inputs_of(const std::string& name);
+
+}  // namespace tex::cli
