@@ -328,6 +328,14 @@ void Maker::padding() {
         map.x.at(i, j) = n.x, map.y.at(i, j) = n.y, map.z.at(i, j) = n.z;
     }
     png("N724-padding-too-small", codes_of(map));
+    const std::string twisted =
+        "v 0 0 0\nv 1 0 0.2\nv 1 1 0\nv 0 1 0.2\n"
+        "vn -0.3 -0.3 1\nvn 0.3 -0.3 1\nvn -0.3 -0.3 1\nvn -0.3 0.3 1\n"
+        "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1/1 2/2/2 3/3/3 4/4/4\n";
+    std::vector<std::byte> bytes(twisted.size());
+    std::memcpy(bytes.data(), twisted.data(), twisted.size());
+    write("meshes/N731.obj", std::move(bytes));
+    png("N731-quads-ambiguous", codes_of(part(64, 64)));
 }
 
 }  // namespace

@@ -84,6 +84,7 @@ Result<void> transform(MeshPart& part, const MeshNode& node) {
         t = {turned.x, turned.y, turned.z, static_cast<float>(sign) * t.w};
     }
     if (determinant < 0.0) {
+        part.quads.clear();
         for (std::size_t k = 0; k < part.indices.size(); k += 3) std::swap(part.indices[k + 1], part.indices[k + 2]);
     }
     return {};
@@ -111,6 +112,10 @@ Result<void> check_part(const MeshPart& part) {
                 return bad("index " + std::to_string(part.indices[k]) + " of triangle " + std::to_string(k / 3) +
                            " is out of range: there are " + std::to_string(vertices) + " vertices");
             }
+        }
+        for (std::size_t k = 0; k < part.quads.size(); ++k) {
+            if (part.quads[k] + std::size_t{1} >= part.triangles() || (k > 0 && part.quads[k] <= part.quads[k - 1]))
+                return bad("quad " + std::to_string(k) + " is not of two triangles after those before it");
         }
         return {};
     });

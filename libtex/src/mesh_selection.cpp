@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cassert>
 #include <charconv>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -146,6 +145,7 @@ Result<MeshPart> placed(const MeshPart& part, std::vector<Float4> tangents, cons
         corners.normals.push_back(part.normals[v]);
         for (std::size_t k = 0; k < part.uvs.size(); ++k) corners.uvs[k].push_back(part.uvs[k][v]);
     }
+    corners.quads = part.quads;
     corners.tangents = std::move(tangents);
     return in_scene(std::move(corners), node);
 }
@@ -160,7 +160,9 @@ void join(SelectedPart& joined, const MeshPart& part, int uv_set, const std::vec
     append(joined.part.positions, part.positions);
     append(joined.part.normals, part.normals);
     append(joined.part.uvs.front(), part.uvs[static_cast<std::size_t>(uv_set)]);
+    const auto triangle = static_cast<std::uint32_t>(joined.part.triangles());
     for (const std::uint32_t v : part.indices) joined.part.indices.push_back(first + v);
+    for (const std::uint32_t t : part.quads) joined.part.quads.push_back(triangle + t);
     append(joined.tangents, tangents);
 }
 
@@ -194,6 +196,18 @@ Result<SelectedPart> joined_parts(const Choice& choice, const Execution& executi
     return joined;
 }
 
+// The UDIM tile of the centre of a triangle's UVs, or 0.
+int tile_of(const MeshPart& part, std::size_t triangle) {
+    double u = 0.0, v = 0.0;
+    for (std::size_t c = 3 * triangle; c < 3 * triangle + 3; ++c) {
+        const Float2& uv = part.uvs.front()[part.indices[c]];
+        u += static_cast<double>(uv.x) / 3.0;
+        v += (part.v_axis == YAxis::up ? static_cast<double>(uv.y) : 1.0 - static_cast<double>(uv.y)) / 3.0;
+    }
+    if (!(u >= 0.0 && u < 10.0 && v >= 0.0 && v < 900.0)) return 0;
+    return 1001 + static_cast<int>(u) + 10 * static_cast<int>(v);
+}
+
 }  // namespace
 
 Result<SelectedPart> select_part(const Mesh& mesh, const MeshSelection& selection, const Execution& execution) {
@@ -210,24 +224,22 @@ Result<SelectedPart> in_tile(const SelectedPart& selected, int tile) {
     return guarded([&]() -> Result<SelectedPart> {
         SelectedPart cut = selected;
         MeshPart& part = cut.part;
-        const double column = (tile - 1001) % 10, row = (tile - 1001) / 10;
-        std::size_t kept = 0;
-        for (std::size_t t = 0; t < part.triangles(); ++t) {
-            double u = 0.0, v = 0.0;
-            for (std::size_t c = 3 * t; c < 3 * t + 3; ++c) {
-                const Float2& uv = part.uvs.front()[part.indices[c]];
-                u += static_cast<double>(uv.x) / 3.0;
-                v += (part.v_axis == YAxis::up ? static_cast<double>(uv.y) : 1.0 - static_cast<double>(uv.y)) / 3.0;
-            }
-            if (std::floor(u) != column || std::floor(v) != row) continue;
-            for (std::size_t c = 3 * t; c < 3 * t + 3; ++c, ++kept) {
-                part.indices[kept] = part.indices[c];
-                cut.tangents[kept] = cut.tangents[c];
-            }
+        std::vector<std::uint32_t> kept;  // triangles
+        for (std::size_t t = 0; t < selected.part.triangles(); ++t) {
+            if (tile_of(selected.part, t) != tile) continue;
+            std::copy_n(&selected.part.indices[3 * t], 3, &part.indices[3 * kept.size()]);
+            std::copy_n(&selected.tangents[3 * t], 3, &cut.tangents[3 * kept.size()]);
+            kept.push_back(static_cast<std::uint32_t>(t));
         }
-        if (kept == 0) return unfit("has no triangle in UDIM tile " + std::to_string(tile));
-        part.indices.resize(kept);
-        cut.tangents.resize(kept);
+        if (kept.empty()) return unfit("has no triangle in UDIM tile " + std::to_string(tile));
+        part.indices.resize(3 * kept.size());
+        cut.tangents.resize(3 * kept.size());
+        part.quads.clear();
+        for (std::size_t k = 0; k + 1 < kept.size(); ++k) {
+            const std::vector<std::uint32_t>& quads = selected.part.quads;
+            if (kept[k + 1] == kept[k] + 1 && std::binary_search(quads.begin(), quads.end(), kept[k]))
+                part.quads.push_back(static_cast<std::uint32_t>(k));
+        }
         return cut;
     });
 }

@@ -146,6 +146,7 @@ TEST(MeshSelection, ExplainsWhatIsMissing) {
 TEST(MeshSelection, CutsOutUdimTiles) {
     Mesh mesh = two_meshes();
     mesh.parts.resize(1);
+    mesh.parts[0].quads = {0, 2, 4, 6};
     for (std::size_t k = 0; k < mesh.parts[0].uvs[0].size(); ++k) {
         Float2& uv = mesh.parts[0].uvs[0][k];
         uv = {2.0f * uv.x + 3.0f, uv.y + 2.0f};  // over tiles 1024 and 1025, if v points up
@@ -163,6 +164,7 @@ TEST(MeshSelection, CutsOutUdimTiles) {
         EXPECT_TRUE(check_part(tile->part));
         ASSERT_EQ(tile->part.triangles(), 4u);
         ASSERT_EQ(tile->tangents.size(), 12u);
+        EXPECT_EQ(tile->part.quads, (std::vector<std::uint32_t>{0, 2}));
         for (std::size_t c = 0; c < 12; ++c) EXPECT_GE(tile->part.uvs[0][tile->part.indices[c]].x, 4.0f);
         EXPECT_TRUE(in_tile(selected, 1024));
         const auto empty = in_tile(selected, 1001);

@@ -25,6 +25,7 @@ TEST(Obj, TriangulatesPolygonsAsFans) {
     ASSERT_EQ(mesh->parts.size(), 1u);
     const MeshPart& part = mesh->parts[0];
     EXPECT_EQ(part.indices, (std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3}));
+    EXPECT_EQ(part.quads, std::vector<std::uint32_t>{0});
     EXPECT_EQ(part.positions[2].x, 1.0f);
     EXPECT_EQ(part.positions[3].z, 0.0f);
     EXPECT_EQ(part.uvs[0][3].y, 1.0f);

@@ -53,6 +53,9 @@ struct MeshPart {
     std::vector<Float4> tangents;
     std::vector<std::vector<Float2>> uvs;
     std::vector<std::uint32_t> indices;  // three vertices for each triangle
+    // Triangles that, each with the next one, were a quad in the file (OBJ): its corners 0, 1, 2 and 0, 2, 3.
+    // Ascending.
+    std::vector<std::uint32_t> quads;
 
     [[nodiscard]] std::size_t triangles() const { return indices.size() / 3; }
 };
@@ -83,8 +86,8 @@ struct Mesh {
 inline constexpr std::size_t kMaxTriangles = std::size_t{1} << 28;
 
 // Checks what all functions that take a part require: at least one triangle and at most kMaxTriangles; attributes for
-// every vertex or none; indices of existing vertices; finite numbers. read_mesh() returns such parts only. (Tangents of
-// files may be of any length, and their w may be any number.)
+// every vertex or none; indices of existing vertices; quads of existing triangles; finite numbers. read_mesh() returns
+// such parts only. (Tangents of files may be of any length, and their w may be any number.)
 //
 // Errors: bad_data, with the first violation ("index 8 of triangle 3 is out of range: there are 8 vertices").
 [[nodiscard]] Result<void> check_part(const MeshPart& part);
@@ -92,7 +95,7 @@ inline constexpr std::size_t kMaxTriangles = std::size_t{1} << 28;
 // The part as it stands in the scene. Positions are multiplied by the matrix; normals by its inverse transpose, then
 // normalised; tangents by the matrix, then normalised. If the determinant is negative, the node mirrors the part: each
 // triangle's second and third corner change places, so that corners stay counter-clockwise, and w changes its sign
-// (glTF 2.0, 3.7.4; Unity's odd negative scale).
+// (glTF 2.0, 3.7.4; Unity's odd negative scale). The quads of mirrored parts are forgotten.
 //
 // Preconditions (asserted): check_part(part) succeeds.
 // Errors: bad_data (the matrix is not invertible or not finite, or coordinates become infinite), out_of_memory.

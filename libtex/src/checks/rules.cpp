@@ -227,6 +227,11 @@ constexpr Rule kRules[] = {
      "bleeds into the chart, and seams show at a distance. Levels down to a side of 128 texels are examined: 8 texels "
      "of padding suffice at 1024, 16 at 2048.",
      "Bake the map with more padding, and leave at least twice as much space between charts.", ""},
+    {"N731", "quads-ambiguous", mesh, note, true, "Quads can be split in two ways that shade differently.",
+     "A quad is drawn as two triangles, and normals are interpolated within each. If the baker splits it along the "
+     "other "
+     "diagonal than the engine, the map makes up for normals that the engine does not have: an X shows on the surface.",
+     "Split the quads before baking, and export the same triangles to the engine.", ""},
 };
 
 }  // namespace

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <tex/tangents.h>
@@ -138,6 +141,35 @@ Result<void> compare_with_methods(const SelectedPart& selected, const Execution&
     return {};
 }
 
+Float4 sum(const Float3& a, const Float3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z, 0.0f}; }
+
+// Half-way between two unit normals, however long they are stored.
+Float4 between(const Float3& a, const Float3& b) {
+    const auto unit = [](const Float3& n) {
+        const auto length = static_cast<float>(length_of({n.x, n.y, n.z, 0.0f}));
+        return length > 0.0f ? Float3{n.x / length, n.y / length, n.z / length} : n;
+    };
+    return sum(unit(a), unit(b));
+}
+
+void check_quads(const MeshPart& part, Findings& findings) {
+    std::size_t ambiguous = 0;
+    double largest = 0.0;
+    for (const std::uint32_t t : part.quads) {
+        const auto normal = [&](std::size_t c) { return part.normals[part.indices[3 * std::size_t{t} + c]]; };
+        const Float4 one = between(normal(0), normal(2)), other = between(normal(1), normal(5));
+        if (length_of(one) < 1e-6 || length_of(other) < 1e-6) continue;
+        const double angle = angle_between(one, other);
+        largest = std::max(largest, angle);
+        ambiguous += angle > thresholds::kQuadAngle ? 1 : 0;
+    }
+    if (ambiguous == 0) return;
+    add(findings, "N731",
+        of_all(ambiguous, part.quads.size(), "quads: the normals at their centres differ by up to ") +
+            decimal(largest, 1) + " degrees",
+        largest, "degrees");
+}
+
 }  // namespace
 
 double area_in_map(const MeshPart& part, std::size_t triangle) {
@@ -153,6 +185,7 @@ double area_in_map(const MeshPart& part, std::size_t triangle) {
 
 Result<void> check_tangent_rules(const Subject& subject, Findings& findings) {
     const SelectedPart& selected = subject.options.mesh->selected;
+    check_quads(selected.part, findings);
     if (selected.has_normal_map && !selected.has_tangents) {
         findings.add("N701", std::string("they come from ") +
                                  std::string(name_of(kTangentSourceNames, selected.source)) + " here");

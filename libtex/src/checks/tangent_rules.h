@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tangent_rules.h: the rules about the tangents of a mesh, without the map: N701 to N706.
+// tangent_rules.h: the rules about a mesh without its map: N701 to N706, N731.
 
 #pragma once
 

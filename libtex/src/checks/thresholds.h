@@ -49,6 +49,9 @@ inline constexpr double kSeamGap = 0.27;
 // space: 0.23.
 inline constexpr double kObjectSpace = 0.5;
 
+// In degrees, between the normals at the centre of a quad. Flat and evenly bent quads have 0.
+inline constexpr double kQuadAngle = 1.0;
+
 // -- of padding, from custom: 16 texels at 2048, 8 at 1024, which keep the levels down to a side of 128 clean --------
 inline constexpr int kPaddedSide = 128;
 inline constexpr double kBackground = 0.1;  // share of one value among the texels outside of charts

@@ -67,7 +67,7 @@ struct ObjPart {
     int material = -1;
     std::vector<ObjCorner> vertices;
     std::unordered_map<ObjCorner, std::uint32_t, ObjCornerHash> known;
-    std::vector<std::uint32_t> indices;
+    std::vector<std::uint32_t> indices, quads;
     bool has_uvs = true, has_normals = true;
 };
 
@@ -180,6 +180,7 @@ Result<void> ObjReader::read_face(std::string_view line) {
         polygon_.push_back(place->second);
     }
     if (polygon_.size() < 3) return at_line("a face needs at least 3 corners");
+    if (polygon_.size() == 4) to.quads.push_back(static_cast<std::uint32_t>(to.indices.size() / 3));
     for (std::size_t k = 2; k < polygon_.size(); ++k)
         to.indices.insert(to.indices.end(), {polygon_[0], polygon_[k - 1], polygon_[k]});
     return {};
@@ -219,6 +220,7 @@ MeshPart ObjReader::finished(const ObjPart& from) const {
     to.mesh = from.mesh;
     to.material = from.material;
     to.indices = from.indices;
+    to.quads = from.quads;
     to.positions.reserve(from.vertices.size());
     if (from.has_uvs) to.uvs.resize(1);
     for (const ObjCorner& c : from.vertices) {
