@@ -89,14 +89,14 @@ Result<void> CheckNormals::check(const std::vector<cli::Task>& tasks) {
     documents_.check(inputs, std::move(others));
     if (auto read = documents_.read(); !read) return read;
     if (mesh_.has_mesh()) {  // jobs share it; one error is enough
-        if (const auto space = mesh_.input(0, {running.threads, {}}); !space) return space.error();
+        if (const auto space = mesh_.input(0, running.read, {running.threads, {}}); !space) return space.error();
     }
     return rules_.read(command, tasks, running.read);
 }
 
 Result<CheckReport> CheckNormals::check_one(const cli::Job& job, CheckOptions checks, const Execution& execution) {
     if (!mesh_.has_mesh()) return check_file(job.task.input, checks, job.read_options, execution);
-    const auto space = mesh_.input(job.task.tile, {job.threads(), {}});
+    const auto space = mesh_.input(job.task.tile, job.read_options, {job.threads(), {}});
     if (!space) return space.error();
     const MeshToCheck mesh{space->selected(), space->decoder(), space->file()};
     checks.mesh = &mesh;

@@ -21,13 +21,21 @@ bool holds_z(const Swizzle& swizzle) {
     return std::find(swizzle.begin(), swizzle.end(), Component::z) != swizzle.end();
 }
 
+// Without --format: block encodings store no z.
+Encoding object_encoding(Container container) {
+    return can_hold_blocks(container) ? Encoding::rgb8 : default_encoding(container);
+}
+
 class ConvertNormals : public cli::NormalsConverter {
 public:
     explicit ConvertNormals(const cli::ProgramRow& row);
 
 private:
     [[nodiscard]] cli::OutputRules rules() const override {
-        return {{}, Container::dds, false, conversion_.spaces.files()};
+        return {{}, Container::dds, false, conversion_.spaces.files(), {}, usual_encoding()};
+    }
+    [[nodiscard]] Encoding (*usual_encoding() const)(Container) {
+        return conversion_.makes_object() ? &object_encoding : &default_encoding;
     }
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] Result<void> process(cli::Job& job) override;
@@ -81,10 +89,9 @@ Result<void> ConvertNormals::check(const std::vector<cli::Task>& tasks) {
 
 // Object space has no direction of green by itself, so y stays up if the space changes.
 PackOptions ConvertNormals::packing(const SourceInfo& input, const cli::Task& task) const {
-    const bool as_rgb = conversion_.makes_object() && can_hold_blocks(task.container);
     cli::OutputOptions own = output.of(task.engine);
     if (conversion_.makes_object()) own.y = output.y;  // engines expect a direction of green in tangent space alone
-    const Encoding encoding = own.format.value_or(as_rgb ? Encoding::rgb8 : default_encoding(task.container));
+    const Encoding encoding = own.format.value_or(usual_encoding()(task.container));
     if (conversion_.spaces.from == conversion_.spaces.to)
         return own.pack_options(encoding, input.y_axis, input.y_known);
     return own.pack_options(encoding, YAxis::up, !conversion_.makes_object());

@@ -91,7 +91,7 @@ Result<std::vector<std::byte>> encode_file(const Texture& texture, Container con
             return bytes;
         }
         if (codec.open_target != nullptr) return encode_rows(codec.open_target, texture, codec.has_levels);
-        return encode_with_reader(texture, container, options.reader);
+        return encode_with_reader(texture, container, options);
     });
 }
 

@@ -71,7 +71,7 @@ public:
         const Extent extent = map_.extent();
         const int first = strip * coverage_.strip_rows() / subsamples_;
         const int last = std::min(extent.height, first + coverage_.strip_rows() / subsamples_);
-        Strip work{covered, static_cast<std::size_t>(extent.width * subsamples_)};
+        Strip work{covered, static_cast<std::size_t>(extent.width) * static_cast<std::size_t>(subsamples_)};
         for (int j = first; j < last; ++j) {
             for (int i = 0; i < extent.width; ++i) convert(work, i, j, j - first);
         }
@@ -168,7 +168,7 @@ Result<void> pad(ConvertedMap& result, std::int64_t width, const Execution& exec
 
 Result<ConvertedMap> convert(const NormalMap& map, const TangentSpace& space, Direction direction,
                              const ConvertOptions& options, const Execution& execution) {
-    const auto [padding, subsamples] = options;
+    const int padding = options.padding, subsamples = options.subsamples;
     assert(check_part(space.part) && map.extent().texels() > 0 && padding >= 0);
     assert(subsamples >= 1 && subsamples <= kMaxSubsamples);
     return guarded([&]() -> Result<ConvertedMap> {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "files/input_file.h"
+#include "formats/reader/reader_mesh.h"
 #include "mesh/gltf.h"
 #include "mesh/obj.h"
 #include "threads/guard.h"
@@ -17,11 +18,23 @@
 namespace tex {
 namespace {
 
-Result<Mesh> parse(const std::vector<std::byte>& bytes, const LoadBeside& load) {
+Result<Mesh> parse_other(const std::string& path, const std::vector<std::byte>& bytes, const ReadOptions& options) {
+    const auto glb = read_with_mesh_reader(path, bytes, options);
+    if (!glb) return glb.error();
+    const LoadBeside nothing = [](const std::string&) -> Result<std::vector<std::byte>> {
+        return Error{ErrorCode::bad_data, {}, "the mesh reader handed over nonsense"};
+    };
+    auto mesh = parse_gltf(*glb, nothing);
+    if (!mesh) return mesh;
+    for (MeshPart& part : mesh->parts) part.v_axis = YAxis::up;
+    return mesh;
+}
+
+Result<Mesh> parse(const std::string& path, const std::vector<std::byte>& bytes, const LoadBeside& load,
+                   const MeshReadOptions& options) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     if (is_gltf(bytes)) return parse_gltf(bytes, load);
-    if (!is_obj(text))
-        return Error{ErrorCode::unsupported, {}, "is not a mesh that libtex reads: glTF 2.0 (.gltf, .glb) or OBJ"};
+    if (!is_obj(text)) return parse_other(path, bytes, options.reader);
     auto mesh = parse_obj(text);
     if (!mesh) return mesh;
     for (const MeshPart& part : mesh->parts) {
@@ -54,7 +67,7 @@ Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options) 
             if (path == "-") return Error{ErrorCode::unsupported, path, "has buffers in other files: " + name};
             return read_all(beside(path, name), options);
         };
-        auto mesh = parse(*bytes, load);
+        auto mesh = parse(path, *bytes, load, options);
         if (!mesh) return mesh.error().of(path);
         return mesh;
     });

@@ -190,7 +190,7 @@ package)
     check_bake "$scratch/bricks.dds"
     # Hardened as by Debian's hardening=+all: position-independent, read-only relocations, bound at start, no code on
     # the stack, with stack protector and fortified calls.
-    for program in "$scratch"/root/usr/bin/* "$scratch/root/usr/libexec/libtex/tex-reader" \
+    for program in "$scratch"/root/usr/bin/* "$scratch"/root/usr/libexec/libtex/* \
         "$(find "$scratch/root" -name 'libtex.so.0')"; do
         readelf --dyn-syms -W "$program" >"$scratch/symbols.txt"
         readelf -hW "$program" | grep -q 'Type: *DYN' || fail "$program is not position-independent"

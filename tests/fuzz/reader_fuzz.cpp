@@ -177,7 +177,9 @@ void check_encoding(const tex::ReadOptions& options) {
     tex::Texture texture;
     texture.format = tex::Format::rgba8_unorm;
     texture.levels.push_back({{2, 2}, std::vector<std::byte>(16)});
-    const auto bytes = tex::encode_with_reader(texture, tex::Container::tiff, options);
+    tex::WriteOptions write;
+    write.reader = options;
+    const auto bytes = tex::encode_with_reader(texture, tex::Container::tiff, write);
     if (!bytes)
         check_error(bytes.error());
     else if (bytes->size() > 1 << 20)

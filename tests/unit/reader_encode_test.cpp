@@ -16,9 +16,9 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 
-ReadOptions quick() {
-    ReadOptions options;
-    options.reader_timeout = 20;
+WriteOptions quick() {
+    WriteOptions options;
+    options.reader.reader_timeout = 20;
     return options;
 }
 
@@ -29,7 +29,7 @@ void put(Bytes& bytes, std::uint32_t value, int count) {
 Result<Image> read(const Bytes& bytes) {
     Result<InputFile> file = InputFile::from_memory("test", bytes);
     if (!file) return file.error();
-    return read_all(open_reader_rows(*file, quick()));
+    return read_all(open_reader_rows(*file, quick().reader));
 }
 
 Texture texture_of(Format format, Extent extent) {

@@ -44,7 +44,7 @@ std::string output_name(const std::string& input, const FileOptions& files, cons
     output.fill(fields);
     if (const NamePattern parsed(pattern); !output.format && parsed.uses("format")) {
         const Container container = output.container_for(parsed.expand(fields), rules.standard_output);
-        fields.format = name_of(kEncodingNames, default_encoding(container));
+        fields.format = name_of(kEncodingNames, rules.encoding(container));
     }
     return files.place(pattern, fields);
 }

@@ -24,6 +24,7 @@ struct OutputRules {
     bool joins = false;                          // -o takes many inputs and makes one output from them
     std::vector<std::string> shared = {};        // Task::shared
     std::function<void(Task& task)> amend = {};  // adds the files that options name for this task; may be empty
+    Encoding (*encoding)(Container container) = &default_encoding;  // without --format
 };
 
 // The task that makes `name`, which may contain kLevelMark, from `input`. Throws UsageError if the name does not show

@@ -26,9 +26,9 @@ void ConversionOptions::add(Command& command) {
 }
 
 Result<ConvertedMap> ConversionOptions::convert(Job& job, const NormalMap& map, double until) const {
-    const auto from = spaces.input(job.task.tile, {job.threads(), {}});
+    const auto from = spaces.input(job.task.tile, job.read_options, {job.threads(), {}});
     if (!from) return from.error();
-    const auto to = spaces.output(job.task.tile, {job.threads(), {}});
+    const auto to = spaces.output(job.task.tile, job.read_options, {job.threads(), {}});
     if (!to) return to.error();
     const Execution execution = job.until(until);
     const bool both = spaces.from == Space::tangent && !makes_object();

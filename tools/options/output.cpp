@@ -91,6 +91,10 @@ void OutputOptions::add(Command& command, std::string format_default, std::strin
     command.flag(dds_mark, "--dds-mark", "mark DDS files as normal maps, as NVIDIA's tools do");
     command.option("--supercompress", "zstd[:N]", "compress the levels of KTX2 files; N is from 1 (fast) to 22 (small)",
                    [this](const std::string& text) { zstd = parse_zstd(text); });
+    command
+        .option("--quality", "N", "the quality of JPEG files, from 1 (small) to 100",
+                [this](const std::string& text) { quality = parse_int(text, 1, 100); })
+        .preset = std::to_string(WriteOptions{}.jpeg_quality);
 }
 
 void OutputOptions::add_engines(Command& command) {
@@ -130,8 +134,11 @@ void OutputOptions::fill(NameFields& fields) const {
 
 Container OutputOptions::container_for(const std::string& output, Container standard_output) const {
     const Container chosen = container_of_output(output, standard_output);
-    if (zstd == 0 || can_compress(chosen)) return chosen;
-    throw UsageError(fmt::format("{}: --supercompress needs a KTX2 file", printable(output)));
+    if (zstd != 0 && !can_compress(chosen))
+        throw UsageError(fmt::format("{}: --supercompress needs a KTX2 file", printable(output)));
+    if (quality && chosen != Container::jpeg)
+        throw UsageError(fmt::format("{}: --quality needs a JPEG file", printable(output)));
+    return chosen;
 }
 
 Container OutputOptions::container_of_output(const std::string& output, Container standard_output) const {
@@ -165,6 +172,7 @@ WriteOptions OutputOptions::write_options(const Job& job) const {
     write.dds_header = dds_header;
     write.dds_mark = dds_mark;
     write.zstd = zstd;
+    write.jpeg_quality = quality.value_or(write.jpeg_quality);
     return write;
 }
 

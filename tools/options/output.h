@@ -27,6 +27,7 @@ struct OutputOptions {
     DdsHeader dds_header = WriteOptions{}.dds_header;
     bool dds_mark = WriteOptions{}.dds_mark;
     int zstd = WriteOptions{}.zstd;
+    std::optional<int> quality;
     std::vector<const Engine*> engines;  // of --for; each input gives an output for each
     const Engine* engine = nullptr;      // the engine of these options, which of() has set
 

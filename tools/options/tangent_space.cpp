@@ -36,7 +36,7 @@ Error with_option(const Error& error) {
 }  // namespace
 
 void TangentSpaceOptions::add(Command& command) {
-    add_mesh(command, "the mesh that the map is on: glTF, GLB or OBJ; required");
+    add_mesh(command, "the mesh that the map is on: glTF, GLB, OBJ, FBX, PLY ...; required");
     command.text(to_mesh_, "--to-mesh", "FILE", "another version of the mesh, with the same UVs, which the output fits")
         .completes = Completes::files;
     add_parts(command);
@@ -55,7 +55,7 @@ void TangentSpaceOptions::add(Command& command) {
 }
 
 void TangentSpaceOptions::add_input(Command& command) {
-    add_mesh(command, "the mesh that the inputs are on: glTF, GLB or OBJ");
+    add_mesh(command, "the mesh that the inputs are on: glTF, GLB, OBJ, FBX, PLY ...");
     add_parts(command);
     add_decoder(command, "the engine that decodes the inputs");
     add_tangents(command);
@@ -139,17 +139,19 @@ bool TangentSpaceOptions::Loaded::is_current() const {
                                [](const FileState& state) { return FileState::of(state.file) == state; });
 }
 
-Result<MeshSpace> TangentSpaceOptions::input(int tile, const Execution& execution) const {
-    return read(mesh_, tangents_in_ ? tangents_in_ : tangents_, decoder_in_.value_or(decoder_), tile, execution);
+Result<MeshSpace> TangentSpaceOptions::input(int tile, const ReadOptions& options, const Execution& execution) const {
+    return read(mesh_, tangents_in_ ? tangents_in_ : tangents_, decoder_in_.value_or(decoder_), tile, options,
+                execution);
 }
 
-Result<MeshSpace> TangentSpaceOptions::output(int tile, const Execution& execution) const {
-    return read(to_mesh_.empty() ? mesh_ : to_mesh_, tangents_, decoder_, tile, execution);
+Result<MeshSpace> TangentSpaceOptions::output(int tile, const ReadOptions& options, const Execution& execution) const {
+    return read(to_mesh_.empty() ? mesh_ : to_mesh_, tangents_, decoder_, tile, options, execution);
 }
 
 Result<MeshSpace> TangentSpaceOptions::read(const std::string& file, std::optional<TangentSource> tangents,
-                                            Decoder decoder, int tile, const Execution& execution) const {
-    const auto whole = load(file, tangents, execution);
+                                            Decoder decoder, int tile, const ReadOptions& options,
+                                            const Execution& execution) const {
+    const auto whole = load(file, tangents, options, execution);
     if (!whole) return whole.error();
     if (tile == 0) return MeshSpace(*whole, decoder, file);
     auto part = in_tile(**whole, tile);
@@ -159,13 +161,16 @@ Result<MeshSpace> TangentSpaceOptions::read(const std::string& file, std::option
 
 Result<std::shared_ptr<const SelectedPart>> TangentSpaceOptions::load(const std::string& file,
                                                                       std::optional<TangentSource> tangents,
+                                                                      const ReadOptions& options,
                                                                       const Execution& execution) const {
     const std::lock_guard lock(mutex_);
     Loaded& loaded = loaded_[{file, tangents}];
     if (loaded.is_current()) return loaded.part;
     std::vector<FileState> files;
     for (const std::string& one : files_of(file)) files.push_back(FileState::of(one));
-    const auto mesh = read_mesh(file);
+    MeshReadOptions how;
+    how.reader = options;
+    const auto mesh = read_mesh(file, how);
     if (!mesh) return mesh.error().of(file);
     MeshSelection selection = selection_;
     selection.tangents = tangents;

@@ -14,6 +14,7 @@
 
 #include <tex/convert_options.h>
 #include <tex/execution.h>
+#include <tex/image_io.h>
 #include <tex/mesh_selection.h>
 
 #include "cli/command.h"
@@ -68,8 +69,8 @@ public:
     //
     // `tile` is the UDIM tile that the map shows, or 0 if it shows all triangles. Errors: as read_mesh(), select_part()
     // and in_tile().
-    [[nodiscard]] Result<MeshSpace> input(int tile, const Execution& execution) const;
-    [[nodiscard]] Result<MeshSpace> output(int tile, const Execution& execution) const;
+    [[nodiscard]] Result<MeshSpace> input(int tile, const ReadOptions& read, const Execution& execution) const;
+    [[nodiscard]] Result<MeshSpace> output(int tile, const ReadOptions& read, const Execution& execution) const;
 
 private:
     void check(const Command& command) const;
@@ -79,9 +80,11 @@ private:
     void add_decoder(Command& command, const char* meaning);
     void add_tangents(Command& command);
     [[nodiscard]] Result<MeshSpace> read(const std::string& file, std::optional<TangentSource> tangents,
-                                         Decoder decoder, int tile, const Execution& execution) const;
+                                         Decoder decoder, int tile, const ReadOptions& options,
+                                         const Execution& execution) const;
     [[nodiscard]] Result<std::shared_ptr<const SelectedPart>> load(const std::string& file,
                                                                    std::optional<TangentSource> tangents,
+                                                                   const ReadOptions& options,
                                                                    const Execution& execution) const;
 
     struct FileState {

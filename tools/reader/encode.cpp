@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "reader.h"
@@ -57,7 +58,8 @@ bool encode(const Task& task, ReaderHeader& header) {
 
     OIIO::Filesystem::IOVecOutput bytes;
     OIIO::ImageSpec spec = spec_of(picture);
-    spec.attribute("compression", task.format == "jpeg" ? "jpeg:95" : task.format == "tiff" ? "zip" : "none");
+    const std::string jpeg = "jpeg:" + std::to_string(picture.quality);
+    spec.attribute("compression", task.format == "jpeg" ? jpeg : task.format == "tiff" ? "zip" : "none");
     if (!output->set_ioproxy(&bytes) || !output->open("picture." + task.format, spec)) {
         return refuse(header, ErrorCode::unsupported, output->geterror());
     }

@@ -3,8 +3,6 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
@@ -33,6 +31,15 @@ bool write_result(std::uint64_t offset, const void* data, std::uint64_t count) {
 }
 
 }  // namespace
+
+bool parse_task(int argc, char** argv, Task& task) {
+    if (argc != 7 || !parse_number(argv[3], task.max_texels) || !parse_number(argv[4], task.memory) ||
+        !parse_number(argv[5], task.seconds) || !parse_number(argv[6], task.parent))
+        return false;
+    task.verb = argv[1];
+    task.format = argv[2];
+    return true;
+}
 
 void put_bytes(std::uint64_t offset, const void* data, std::uint64_t count) {
     if (!write_result(offset, data, count)) throw std::bad_alloc();
@@ -80,28 +87,17 @@ bool has_room_for_a_thread() {
 
 }  // namespace
 
-void calm_openimageio() {
-    OIIO::attribute("threads", 1);
-    OIIO::attribute("plugin_searchpath", "");
-    OIIO::attribute("tiff:half", 1);
-    OIIO::attribute("limits:channels", kMaxReaderChannels);
-}
-
-int run(const Task& task) {
+int run(const Task& task, const Work& work) {
     ReaderHeader header;
     try {
         static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));  // a result that is too large is then an error of pwrite()
         limit_process(task);
-        calm_openimageio();
+        work.prepare();
         header.landlock = static_cast<std::uint32_t>(landlock_version());
         if (restrict_files()) header.sandboxed |= kFilesRestricted;
         if (filter_calls()) header.sandboxed |= kCallsFiltered;
         put_header(header);  // from here on, an error concerns the file
-        if (task.verb == "describe") {
-            std::strncpy(header.reason, OIIO_VERSION_STRING, sizeof header.reason - 1);
-        } else if (!(task.verb == "decode" ? decode(task, header) : encode(task, header))) {
-            return 0;
-        }
+        if (!work.run(task, header)) return 0;
         header.state = ReaderState::done;
         put_header(header);
     } catch (const std::bad_alloc&) {

@@ -8,23 +8,13 @@
 
 #include <OpenImageIO/imageio.h>
 
-#include <charconv>
 #include <cstdio>
-#include <cstring>
 #include <string_view>
-#include <system_error>
 
 #include "reader.h"
 
 namespace tex::reader {
 namespace {
-
-template <class T>
-bool parse(const char* text, T& value) {
-    const char* end = text + std::strlen(text);
-    const auto [last, error] = std::from_chars(text, end, value);
-    return error == std::errc() && last == end;
-}
 
 int version() {
     const bool restricted = restrict_files();
@@ -44,14 +34,11 @@ int main(int argc, char** argv) {
     // and the sandbox makes no allowance for them.
     if (argc == 2 && verb == "--version") _exit(version());
     int parent = 0;
-    if (argc == 3 && verb == "zygote" && parse(argv[2], parent)) _exit(serve(parent));
+    if (argc == 3 && verb == "zygote" && parse_number(argv[2], parent)) _exit(serve(parent));
     Task task;
-    if (argc != 7 || (verb != "decode" && verb != "encode" && verb != "describe") || !parse(argv[3], task.max_texels) ||
-        !parse(argv[4], task.memory) || !parse(argv[5], task.seconds) || !parse(argv[6], task.parent)) {
+    if (!parse_task(argc, argv, task) || (verb != "decode" && verb != "encode" && verb != "describe")) {
         static_cast<void>(std::fputs("tex-reader: started by libtex, not by hand\n", stderr));
         return 2;
     }
-    task.verb = verb;
-    task.format = argv[2];
-    _exit(run(task));
+    _exit(run(task, kPictures));
 }

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// reader.h: the parts of tex-reader, the one program that links OpenImageIO.
+// reader.h: the parts of tex-reader, the one program that links OpenImageIO. tex-mesh-reader uses those that do not
+// know OpenImageIO: job.cpp, landlock.cpp and sandbox.cpp.
 //
 // reader_protocol.h describes requests and answers. tex-reader decodes one file, or encodes one picture, and ends. Or
 // it is the zygote, which forks a process for each file; that process does the same.
 
 #pragma once
 
+#include <charconv>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <system_error>
 
 #include <tex/result.h>
 
@@ -17,16 +21,34 @@
 namespace tex::reader {
 
 struct Task {
-    std::string verb;             // "decode", "encode" or "describe"
-    std::string format;           // OpenImageIO's name of the format
+    std::string verb;             // "decode", "encode", "describe" or "mesh"
+    std::string format;           // OpenImageIO's name of the format; the extension of a mesh
     std::int64_t max_texels = 0;  // a picture with more texels is refused
     std::int64_t memory = 0;      // bytes of address space and of the result, together
     int seconds = 1;              // of processor time
     int parent = 0;               // process id; tex-reader ends when its parent ends
 };
 
-// Does the task, under its limits. Returns the exit status; the answer is in kResultDescriptor.
-int run(const Task& task);
+// What a reader program does.
+struct Work {
+    void (*prepare)();                                    // before it is restricted
+    bool (*run)(const Task& task, ReaderHeader& header);  // false after a refusal
+};
+
+extern const Work kPictures;
+
+// Does the work, under the limits of the task. Returns the exit status; the answer is in kResultDescriptor.
+int run(const Task& task, const Work& work);
+
+// Reads a whole argument as a number.
+template <class T>
+bool parse_number(std::string_view text, T& value) {
+    const auto [last, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc() && last == text.data() + text.size();
+}
+
+// Reads a task from the arguments of the command line. False if they are not those of reader_protocol.h.
+bool parse_task(int argc, char** argv, Task& task);
 
 // Serves requests that arrive at kRequestsDescriptor, each in a process that it forks, until the socket is closed or
 // the parent has ended. Returns the exit status.

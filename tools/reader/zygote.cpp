@@ -174,7 +174,7 @@ void send_news(int socket, const ReaderNews& news) {
     task.memory = request.memory;
     task.seconds = request.seconds;
     task.parent = zygote;
-    _exit(run(task));
+    _exit(run(task, kPictures));
 }
 
 class Zygote {

@@ -58,6 +58,7 @@ struct WriteOptions {
     DdsHeader dds_header = DdsHeader::legacy;
     bool dds_mark = false;    // DDPF_NORMAL, and the swizzle code 'A2D5' for dxt5nm, as NVIDIA's tools write them
     int zstd = 0;             // KTX2: 1 (fast) to 22 (small) compresses each level with Zstandard; 0 does not
+    int jpeg_quality = 95;    // JPEG: 1 (small) to 100 (exact), as libjpeg counts
     bool sync = true;         // fdatasync before the rename
     bool no_clobber = false;  // do not replace an existing file; report an error (io)
     ReadOptions reader;       // the reader process also encodes TIFF, TGA, BMP and JPEG
@@ -75,7 +76,7 @@ struct WriteOptions {
 // believes them.
 //
 // Errors: unsupported  the container cannot hold the format (the reason says what it can hold), or zstd
-//         bad_option   zstd is not from 0 to 22
+//         bad_option   zstd is not from 0 to 22, or jpeg_quality not from 1 to 100
 //         io           the reader process cannot be started
 //         bad_data     the reader process crashed or did not end in time
 //         out_of_memory

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// mesh_io.h: reads triangle meshes from glTF 2.0 (.gltf, .glb) and Wavefront OBJ files.
+// mesh_io.h: reads triangle meshes from glTF 2.0 (.gltf, .glb), Wavefront OBJ, FBX, PLY and other files.
 //
-// The first bytes of a file, not its name, decide how it is read.
+// The first bytes of a file decide how it is read; for Assimp's types, its extension comes first.
 //
 // glTF   Buffers are inside the file (GLB), in data URIs (base64), or in files beside it. Such a file must be named by
 //        a relative path that stays in the folder of the .gltf file or below it: "mesh.bin", "parts/mesh.bin". URIs
@@ -12,6 +12,10 @@
 //        Ignored: skins, morph targets, animations, cameras, extensions that the file does not require.
 // OBJ    v, vt, vn, f, o, usemtl. Polygons become fans around their first corner. Faces of the same object and material
 //        are one part. A part has UVs or normals if all of its corners have them. All else is ignored.
+// other  What Assimp reads from one file: FBX, PLY, Collada, STL and more. As Assimp has crashed on damaged files, it
+//        runs in a process of its own, tex-mesh-reader, under the limits of memory and time that ReadOptions states,
+//        and can open no other file. Polygons become triangles as Assimp divides them. Tangents count if the file has
+//        bitangents, too. Coordinates are in the units and axes of Assimp.
 
 #pragma once
 
@@ -19,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include <tex/image_io.h>
 #include <tex/mesh.h>
 #include <tex/result.h>
 
@@ -28,6 +33,8 @@ namespace tex {
 inline constexpr int kMaxUvSets = 8;
 
 struct MeshReadOptions {
+    // The reader program of other file types: tex-mesh-reader, beside the program that `reader` names if it is given.
+    ReadOptions reader;
     // The largest size in bytes of the file and of each file beside it.
     std::int64_t max_bytes = std::int64_t{4} << 30;
 };
@@ -35,14 +42,14 @@ struct MeshReadOptions {
 // Reads a mesh. `path` "-" reads standard input; glTF from there can have no buffers in other files. Every part of the
 // result passes check_part(); there is at least one part.
 //
-// Errors: io           the file or one beside it cannot be opened or read
+// Errors: io           the file or one beside it cannot be opened or read; the reader program cannot be started
 //         bad_data     empty, truncated, damaged; indices out of range; infinite or NaN coordinates; nodes that contain
 //                      themselves; accessors that leave their buffers; no triangles
-//         unsupported  valid, but of a type not handled (FBX, PLY, glTF 1.0, compressed geometry, a required extension
-//                      that is not listed above); more than max_bytes
+//         unsupported  valid, but of a type not handled (glTF 1.0, compressed geometry, a required extension that is
+//                      not listed above); more than max_bytes
 //         out_of_memory
-// No file content makes this function crash or hang. The memory that it uses stays in proportion to the bytes that the
-// files hold, not to what they claim.
+// No file content makes this function crash or hang beyond reader_timeout. The memory that it uses stays in proportion
+// to the bytes that the files hold, not to what they claim.
 [[nodiscard]] Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options = {});
 
 // The files that read_mesh() may read for this path: `path` itself, then the existing files that hold buffers of a glTF

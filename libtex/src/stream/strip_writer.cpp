@@ -219,7 +219,7 @@ Opening open_file(const std::string& path, Container container, const StripPacki
         return std::unique_ptr<StripWriter>(std::move(picture));
     }
     if (codec.layout == nullptr) {
-        Result<ReaderPicture> picture = ReaderPicture::open(container, head, options.reader);
+        Result<ReaderPicture> picture = ReaderPicture::open(container, head, options);
         if (!picture) return picture.error().of(path);
         return std::unique_ptr<StripWriter>(
             std::make_unique<EncodedWriter>(path, std::move(*file), packing, std::move(*picture)));

@@ -2,7 +2,6 @@
 
 #include "formats/reader/reader.h"
 
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -24,11 +23,6 @@
 
 namespace tex {
 namespace {
-
-std::int64_t bytes_in(int fd) {
-    struct stat status {};
-    return fstat(fd, &status) == 0 ? status.st_size : 0;
-}
 
 // -- what goes out -------------------------------------------------------------------------------------------
 
@@ -58,13 +52,16 @@ Result<ReaderInfo> reader_info(const ReadOptions& options) {
     });
 }
 
-Result<ReaderPicture> ReaderPicture::open(Container container, const TextureHead& head, const ReadOptions& options) {
+Result<ReaderPicture> ReaderPicture::open(Container container, const TextureHead& head, const WriteOptions& options) {
     const FormatInfo info = format_info(head.format);
     const Codec& codec = codec_of(container);
     if (Result<void> held = check_holds(codec, head.format, {}); !held) return held.error();
     if (codec.reader_name == nullptr)
         return Error{ErrorCode::unsupported, {}, "nothing that the reader process encodes"};
+    if (options.jpeg_quality < 1 || options.jpeg_quality > 100)
+        return Error{ErrorCode::bad_option, {}, "jpeg_quality must be from 1 to 100"};
     ReaderHeader header;
+    header.quality = static_cast<std::uint32_t>(options.jpeg_quality);
     header.width = head.extent.width;
     header.height = head.extent.height;
     header.channels = info.channels;
@@ -75,7 +72,7 @@ Result<ReaderPicture> ReaderPicture::open(Container container, const TextureHead
     if (!write_exactly(rows->get(), 0, std::as_bytes(std::span(&header, 1))))
         return system_error({}, errno, "a file in memory");
     ReaderPicture picture;
-    picture.options_ = options;
+    picture.options_ = options.reader;
     picture.format_ = codec.reader_name;
     picture.rows_ = std::move(*rows);
     picture.row_bytes_ = row_bytes(header);
@@ -93,15 +90,11 @@ Result<std::vector<std::byte>> ReaderPicture::encode() const {
     if (!result) return result.error();
     const Result<ReaderHeader> reply = run_reader({{}, "encode", format_, rows_.get(), result->get()}, options_);
     if (!reply) return reply.error();
-    const auto held = static_cast<std::uint64_t>(bytes_in(result->get()));
-    if (held < kReaderDataOffset || reply->bytes > held - kReaderDataOffset) return nonsense({});
-    std::vector<std::byte> bytes(reply->bytes);
-    if (!read_exactly(result->get(), kReaderDataOffset, bytes.data(), bytes.size())) return nonsense({});
-    return bytes;
+    return answered_bytes({}, result->get(), *reply);
 }
 
 Result<std::vector<std::byte>> encode_with_reader(const Texture& texture, Container container,
-                                                  const ReadOptions& options) {
+                                                  const WriteOptions& options) {
     return guarded([&]() -> Result<std::vector<std::byte>> {
         if (texture.levels.empty()) return Error{ErrorCode::unsupported, {}, "a texture without levels"};
         const Result<ReaderPicture> picture = ReaderPicture::open(container, head_of(texture), options);

@@ -23,8 +23,8 @@ namespace tex {
 // memory.
 class ReaderPicture {
 public:
-    // Errors: unsupported (the container cannot hold the format), io, out_of_memory.
-    static Result<ReaderPicture> open(Container container, const TextureHead& head, const ReadOptions& options);
+    // Errors: unsupported (the container cannot hold the format), bad_option (jpeg_quality), io, out_of_memory.
+    static Result<ReaderPicture> open(Container container, const TextureHead& head, const WriteOptions& options);
 
     // Takes rows of head.format, beginning with row `first`. Rows may come in any order, from several threads. Errors:
     // io, out_of_memory.
@@ -41,15 +41,18 @@ private:
 };
 
 // Encodes the base level of a texture as tiff, tga, bmp or jpeg: 8- and 16-bit unorm, half and float, as far as the
-// container can hold them (see can_hold()). The bytes contain no date, host or program name. JPEG: quality 95, no
-// chroma subsampling. TIFF: deflate. Errors: io, unsupported, out_of_memory.
+// container can hold them (see can_hold()). The bytes contain no date, host or program name. JPEG: no chroma
+// subsampling. TIFF: deflate. Errors: as ReaderPicture.
 Result<std::vector<std::byte>> encode_with_reader(const Texture& texture, Container container,
-                                                  const ReadOptions& options);
+                                                  const WriteOptions& options);
 
 // Finds the reader program: options.reader, or the first of these places, relative to the folder of libtex, in which
 // the installation or the build put it: ../libexec/libtex, ../../libexec/libtex (if libraries are in a folder for their
 // architecture), the same folder.
 // Errors: io.
 Result<std::string> find_reader(const ReadOptions& options);
+
+// Finds tex-mesh-reader: in the folder of options.reader, or in one of the same places. Errors: io.
+Result<std::string> find_mesh_reader(const ReadOptions& options);
 
 }  // namespace tex

@@ -21,7 +21,7 @@ using ReaderClock = std::chrono::steady_clock;
 // What a reader does, the descriptor that it works on, and where the result goes.
 struct ReaderJob {
     std::string path;  // for messages
-    std::string verb;  // "decode", "encode" or "describe"
+    std::string verb;  // "decode", "encode", "describe" or "mesh"
     std::string format;
     int input = -1;
     int result = -1;  // a memory_file()

@@ -8,6 +8,7 @@
 #include <sys/ioctl.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -143,6 +144,15 @@ bool read_exactly(int fd, std::uint64_t offset, std::byte* to, std::size_t count
     return true;
 }
 
+Result<std::vector<std::byte>> answered_bytes(const std::string& path, int result, const ReaderHeader& header) {
+    struct stat status {};
+    const auto held = fstat(result, &status) == 0 ? static_cast<std::uint64_t>(status.st_size) : 0;
+    if (held < kReaderDataOffset || header.bytes > held - kReaderDataOffset) return nonsense(path);
+    std::vector<std::byte> bytes(header.bytes);
+    if (!read_exactly(result, kReaderDataOffset, bytes.data(), bytes.size())) return nonsense(path);
+    return bytes;
+}
+
 bool write_exactly(int fd, std::uint64_t offset, std::span<const std::byte> bytes) {
     while (!bytes.empty()) {
         const ssize_t n = pwrite(fd, bytes.data(), bytes.size(), static_cast<off_t>(offset));
@@ -209,7 +219,8 @@ ReaderProcess::~ReaderProcess() = default;
 
 Result<ReaderProcess> ReaderProcess::start(const ReaderJob& job, const ReadOptions& options) {
     return guarded([&]() -> Result<ReaderProcess> {
-        const Result<std::string> program = find_reader(options);
+        const bool is_mesh = job.verb == "mesh";
+        const Result<std::string> program = is_mesh ? find_mesh_reader(options) : find_reader(options);
         if (!program) return program.error().of(job.path);
         auto state = std::make_unique<State>();
         state->job = job;
@@ -223,7 +234,7 @@ Result<ReaderProcess> ReaderProcess::start(const ReaderJob& job, const ReadOptio
         state->progress = Descriptor(ends[0]);
         const Descriptor childs_end(ends[1]);
         const ReaderLimits limits{options.max_texels, options.reader_memory, state->seconds, state->deadline};
-        if (options.reader.empty()) state->child = fork_reader(*program, job, childs_end.get(), limits);
+        if (options.reader.empty() && !is_mesh) state->child = fork_reader(*program, job, childs_end.get(), limits);
         if (!state->child) {
             if (const int failed = start_reader(*program, job, childs_end.get(), limits, state->child); failed != 0)
                 return system_error(job.path, failed,

@@ -8,6 +8,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <tex/image_io.h>
 #include <tex/result.h>
@@ -24,6 +25,9 @@ Result<Descriptor> memory_file(const std::string& path);
 // Read or write all the bytes at an offset; false if the file ends or the system refuses.
 bool read_exactly(int fd, std::uint64_t offset, std::byte* to, std::size_t count);
 bool write_exactly(int fd, std::uint64_t offset, std::span<const std::byte> bytes);
+
+// The bytes that a process has handed over at kReaderDataOffset. Errors: bad_data (they are not there).
+Result<std::vector<std::byte>> answered_bytes(const std::string& path, int result, const ReaderHeader& header);
 
 // The Error for a result that is impossible.
 Error nonsense(const std::string& path);

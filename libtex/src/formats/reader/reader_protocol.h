@@ -4,26 +4,28 @@
 // libtex starts
 //
 //     tex-reader decode|encode|describe FORMAT MAX_TEXELS MEMORY SECONDS PARENT
+//     tex-mesh-reader mesh EXTENSION MAX_TEXELS MEMORY SECONDS PARENT
 //
-// (FORMAT as OpenImageIO names it, MEMORY in bytes, PARENT the process id of the caller) with these descriptors and no
-// others:
+// (FORMAT as OpenImageIO names it, EXTENSION of the mesh's file or -, MEMORY in bytes, PARENT the process id of the
+// caller) with these descriptors and no others:
 //
 //     kResultDescriptor    a file in memory, empty: ReaderHeader at 0, the data at kReaderDataOffset
 //     kInputDescriptor     decode: the picture file
 //                          encode: a file in memory, ReaderHeader at 0 (extent, channels, type), the texels at
 //                          kReaderDataOffset
+//                          mesh: the file, in memory
 //                          describe: an empty file in memory; the answer is in `sandboxed`, `landlock` and, as the
 //                          version of OpenImageIO, `reason`
 //     kProgressDescriptor  a pipe: one byte for each strip of rows that is in place; the pipe ends when the process is
 //                          gone
 //
 // Texels are interleaved, in native byte order, with rows from the top without padding: row j is at kReaderDataOffset +
-// j * row_bytes(). rows_done in the header grows as rows arrive, so that a consumer may follow. An encoded file is
-// `bytes` long.
+// j * row_bytes(). rows_done in the header grows as rows arrive, so that a consumer may follow. An encoded file,
+// or the GLB file that stands for a mesh, is `bytes` long.
 //
-// The reader must ask for room for its data: it writes the extent (encode: `bytes`) to the header and a byte to the
-// pipe. libtex then raises the process's limit on the size of files, which was kReaderDataOffset, and lowers the limit
-// on its address space by the same amount, so that MEMORY limits both together (reader_memory.h).
+// The reader must ask for room for its data: it writes the extent (encode and mesh: `bytes`) to the header and a byte
+// to the pipe. libtex then raises the process's limit on the size of files, which was kReaderDataOffset, and lowers the
+// limit on its address space by the same amount, so that MEMORY limits both together (reader_memory.h).
 //
 // The process writes the header, with state `working`, when it is ready. A process that ends before that has not seen
 // its input. It ends with status kNoRoom if even the header cannot be written.
@@ -51,7 +53,7 @@ inline constexpr int kInputDescriptor = 4;
 inline constexpr int kProgressDescriptor = 5;
 inline constexpr int kRequestsDescriptor = 3;  // of the zygote
 
-inline constexpr std::uint32_t kReaderMagic = 0x33786574;  // "tex3": changes with the layout below
+inline constexpr std::uint32_t kReaderMagic = 0x34786574;  // "tex4": changes with the layout below
 inline constexpr int kMaxReaderChannels = 64;
 inline constexpr std::size_t kReaderDataOffset = 8192;
 
@@ -93,8 +95,8 @@ struct ReaderHeader {
     std::uint64_t rows_done = 0;
     std::uint64_t bytes = 0;  // of an encoded file
     std::uint32_t has_no_data = 0;
-    std::uint32_t unused = 0;
-    double no_data = 0;  // samples of this value hold no data, as the file says
+    std::uint32_t quality = 0;  // encode: of a JPEG, 1 to 100
+    double no_data = 0;         // samples of this value hold no data, as the file says
     char reason[1024] = {};
     char description[1024] = {};  // of the picture: text, cut off at this length
     char names[kMaxReaderChannels][64] = {};

@@ -36,6 +36,15 @@ std::string own_folder() {
     return folder.erase(folder.rfind('/'));
 }
 
+Result<std::string> find_program(const std::string& name) {
+    const std::string folder = own_folder();
+    for (const char* place : {"/../libexec/libtex/", "/../../libexec/libtex/", "/"}) {
+        const std::string program = folder + place + name;
+        if (!folder.empty() && access(program.c_str(), X_OK) == 0) return program;
+    }
+    return Error{ErrorCode::io, {}, "the reader program " + name + " was not found beside libtex"};
+}
+
 // Attributes and file actions for a spawned process, freed together.
 class SpawnPlan {
 public:
@@ -58,12 +67,12 @@ public:
 
 Result<std::string> find_reader(const ReadOptions& options) {
     if (!options.reader.empty()) return options.reader;
-    const std::string folder = own_folder();
-    for (const char* place : {"/../libexec/libtex/tex-reader", "/../../libexec/libtex/tex-reader", "/tex-reader"}) {
-        const std::string program = folder + place;
-        if (!folder.empty() && access(program.c_str(), X_OK) == 0) return program;
-    }
-    return Error{ErrorCode::io, {}, "the reader program tex-reader was not found beside libtex"};
+    return find_program("tex-reader");
+}
+
+Result<std::string> find_mesh_reader(const ReadOptions& options) {
+    if (options.reader.empty()) return find_program("tex-mesh-reader");
+    return options.reader.substr(0, options.reader.rfind('/') + 1) + "tex-mesh-reader";
 }
 
 int spawn_reader(const std::string& program, std::vector<std::string> arguments, std::span<const int> descriptors,

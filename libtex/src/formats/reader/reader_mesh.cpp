@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "formats/reader/reader_mesh.h"
+
+#include <algorithm>
+#include <cerrno>
+
+#include "files/input_file.h"
+#include "files/system_error.h"
+#include "formats/reader/reader_process.h"
+
+namespace tex {
+namespace {
+
+// The extension in lower-case letters, or "-" if the path has no plain one.
+std::string extension_hint(const std::string& path) {
+    const std::size_t dot = path.rfind('.');
+    if (dot == std::string::npos || path.find('/', dot) != std::string::npos) return "-";
+    std::string hint = path.substr(dot + 1);
+    for (char& c : hint) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    const bool is_plain = !hint.empty() && hint.size() <= 8 && std::all_of(hint.begin(), hint.end(), [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+    });
+    return is_plain ? hint : "-";
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> read_with_mesh_reader(const std::string& path, std::span<const std::byte> file,
+                                                     const ReadOptions& options) {
+    const Result<Descriptor> input = memory_file(path);
+    const Result<Descriptor> result = memory_file(path);
+    if (!input) return input.error();
+    if (!result) return result.error();
+    if (!write_exactly(input->get(), 0, file)) return system_error(path, errno, "a file in memory");
+    const Result<ReaderHeader> reply =
+        run_reader({path, "mesh", extension_hint(path), input->get(), result->get()}, options);
+    if (!reply) return reply.error();
+    return answered_bytes(path, result->get(), *reply);
+}
+
+}  // namespace tex
