@@ -39,7 +39,8 @@ std::string own_folder() {
 Result<std::string> find_program(const std::string& name) {
     const std::string folder = own_folder();
     for (const char* place : {"/../libexec/libtex/", "/../../libexec/libtex/", "/"}) {
-        const std::string program = folder + place + name;
+        std::string program = folder;
+        program.append(place).append(name);
         if (!folder.empty() && access(program.c_str(), X_OK) == 0) return program;
     }
     return Error{ErrorCode::io, {}, "the reader program " + name + " was not found beside libtex"};
