@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <malloc.h>
-#include <zlib.h>
 
 #include <cstring>
 #include <random>
@@ -19,41 +18,6 @@ namespace tex {
 namespace {
 
 using Bytes = std::vector<std::byte>;
-
-Bytes deflated(std::size_t size) {
-    const std::vector<unsigned char> zeros(size);
-    Bytes bytes(compressBound(size));
-    uLongf length = bytes.size();
-    compress(reinterpret_cast<Bytef*>(bytes.data()), &length, zeros.data(), size);
-    bytes.resize(length);
-    return bytes;
-}
-
-TEST(ExrChunk, ZipHoldsAllTexelsOrNone) {
-    Unzipper unzipper;
-    const Bytes chunk = deflated(100'000);
-    const std::span<const std::byte> bytes(chunk);
-    EXPECT_EQ(unzipper.texels(bytes, 100'000, 100'000).size(), 100'000u);
-    EXPECT_EQ(unzipper.texels(bytes, 99'999, 100'000).size(), 99'999u);
-    EXPECT_TRUE(unzipper.texels(bytes, 100'001, 200'000).empty());
-    EXPECT_TRUE(unzipper.texels(bytes, 99'999, 99'999).empty()) << "more than a chunk can hold";
-    EXPECT_TRUE(unzipper.texels(bytes.first(bytes.size() / 2), 100'000, 100'000).empty());
-    EXPECT_TRUE(unzipper.texels(bytes.subspan(1), 100'000, 100'000).empty());
-    EXPECT_TRUE(unzipper.texels({}, 100'000, 100'000).empty());
-}
-
-// Zeros, stored as differences from 128, fall by 128 at each byte: 0, 128, 0, ... in the even places, continued in the
-// odd ones.
-TEST(ExrChunk, ZipPredictsAndInterleaves) {
-    Unzipper unzipper;
-    const Bytes chunk = deflated(7'001);
-    const auto texels = unzipper.texels(chunk, 7'001, 7'001);
-    ASSERT_EQ(texels.size(), 7'001u);
-    for (std::size_t k = 0; k < texels.size(); ++k) {
-        const std::size_t stored = k % 2 == 0 ? k / 2 : 3'501 + k / 2;
-        ASSERT_EQ(texels[k], std::byte(stored % 2 == 0 ? 0 : 128)) << k;
-    }
-}
 
 TEST(ExrChunk, RunsAreCounted) {
     const Bytes bytes = {std::byte{9}, std::byte{1}, std::byte{0xfd},

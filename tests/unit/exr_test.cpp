@@ -8,7 +8,6 @@
 
 #include <cmath>
 #include <cstring>
-#include <random>
 
 #include <ImfChannelList.h>
 #include <ImfDeepFrameBuffer.h>
@@ -279,41 +278,6 @@ TEST(Exr, TexturesComeBackWithTheirLevels) {
                 EXPECT_EQ(back->levels[k].bytes, texture.levels[k].bytes) << k;
             }
             EXPECT_EQ(*encode_exr(texture), *bytes);
-        }
-    }
-}
-
-// Each level comes from the top down, but rows of different levels are interleaved.
-TEST(Exr, RowsOfAllLevelsMayComeInAnyOrder) {
-    std::minstd_rand random(4);
-    for (const Extent extent : {Extent{131, 200}, Extent{64, 128}, Extent{700, 3}}) {
-        const Texture texture = texture_of(Format::rgb16_float, extent, level_count(extent));
-        const Bytes expected = encode_exr(texture).value();
-        for (int round = 0; round < 6; ++round) {
-            Bytes file;
-            auto target = open_exr_target(
-                head_of(texture), [&file](std::uint64_t offset, std::span<const std::byte> bytes) -> Result<void> {
-                    file.resize(std::max(file.size(), static_cast<std::size_t>(offset) + bytes.size()));
-                    std::copy(bytes.begin(), bytes.end(), file.begin() + static_cast<std::ptrdiff_t>(offset));
-                    return {};
-                });
-            ASSERT_TRUE(target) << target.error().message();
-            std::vector<int> next(texture.levels.size(), 0);
-            for (std::size_t left = next.size(); left > 0;) {
-                const std::size_t k = random() % next.size();
-                const Level& level = texture.levels[k];
-                if (next[k] == level.extent.height) continue;
-                const int most = random() % 2 == 0 ? 200 : 9;
-                const int count = std::min(1 + static_cast<int>(random() % static_cast<unsigned>(most)),
-                                           level.extent.height - next[k]);
-                const std::size_t pitch = level.bytes.size() / static_cast<std::size_t>(level.extent.height);
-                ASSERT_TRUE((*target)->put(static_cast<int>(k),
-                                           level.bytes.data() + pitch * static_cast<std::size_t>(next[k]), count));
-                next[k] += count;
-                if (next[k] == level.extent.height) --left;
-            }
-            ASSERT_TRUE((*target)->finish());
-            EXPECT_TRUE(file == expected);
         }
     }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// exr.h: reads and writes OpenEXR files with the OpenEXR library.
+// exr.h: writes OpenEXR files. The OpenEXR library makes the header; libdeflate compresses the texels.
 
 #pragma once
 
@@ -19,7 +19,7 @@ inline constexpr std::string_view kExrMagic = "\x76\x2f\x31\x01";
 
 // The version of OpenEXR that libtex was built with.
 const char* exr_version();
-// The version of libdeflate, which inflates ZIP, that libtex was built with.
+// The version of libdeflate, which compresses and inflates ZIP, that libtex was built with.
 const char* inflater_version();
 
 // Writes a half or float texture row by row, with the bytes of encode_exr(). The compressed tiles of smaller levels

@@ -8,6 +8,7 @@
 #include <Iex.h>
 #include <ImfChannelList.h>
 
+#include "formats/exr/exr_chunk.h"
 #include "formats/exr/exr_dwa.h"
 
 namespace tex {

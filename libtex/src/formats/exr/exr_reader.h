@@ -16,8 +16,8 @@
 #include <ImfTiledInputPart.h>
 
 #include "files/input_file.h"
-#include "formats/exr/exr_chunk.h"
 #include "formats/exr/exr_part.h"
+#include "formats/exr/exr_zip.h"
 
 namespace tex {
 

@@ -8,6 +8,7 @@
 
 #include <ImfStringAttribute.h>
 
+#include "formats/exr/exr_chunk.h"
 #include "formats/exr/exr_part.h"
 #include "formats/exr/exr_reader.h"
 #include "formats/exr/exr_texture.h"

@@ -4,68 +4,49 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
+#include <cstdint>
+#include <deque>
 #include <exception>
-#include <optional>
+#include <map>
+#include <memory>
 #include <string>
 #include <utility>
 
+#include <Iex.h>
 #include <ImfChannelList.h>
-#include <ImfFrameBuffer.h>
-#include <ImfOutputFile.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
 #include <ImfStringAttribute.h>
-#include <ImfTiledOutputFile.h>
 #include <OpenEXRConfig.h>
 
 #include <tex/mip_chain.h>
 
+#include "formats/exr/exr_block.h"
 #include "formats/exr/exr_part.h"
 #include "formats/row_target.h"
 #include "threads/guard.h"
+#include "threads/pool.h"
 
 namespace tex {
 namespace {
 
-static_assert(std::endian::native == std::endian::little,
-              "levels hold little-endian values, OpenEXR wants native ones");
+static_assert(std::endian::native == std::endian::little, "files and levels hold little-endian values");
 
-constexpr int kTileSize = 64;
-constexpr int kNoThreads = 0;
-
-// A file that OpenEXR writes. OpenEXR writes everything once, from beginning to end, except the table of offsets, to
-// which it goes back. Bytes written before pixels() is called stay in memory until finish().
-class TargetStream final : public Imf::OStream {
+// Where OpenEXR writes the header.
+class HeaderStream final : public Imf::OStream {
 public:
-    explicit TargetStream(WriteBytes write) : Imf::OStream(""), write_(std::move(write)) {}
-
+    explicit HeaderStream(std::vector<std::byte>& bytes) : Imf::OStream(""), bytes_(bytes) {}
     void write(const char data[], int count) override {
-        const auto n = static_cast<std::size_t>(count);
-        const auto at = static_cast<std::size_t>(at_);
-        if (!pixels_) head_.resize(std::max(head_.size(), at + n));
-        if (at + n <= head_.size()) {
-            std::memcpy(head_.data() + at, data, n);
-        } else if (!failure_) {
-            const Result<void> written = write_(at_, std::as_bytes(std::span(data, n)));
-            if (!written) failure_ = written.error();
-        }
-        at_ += n;
+        const auto* from = reinterpret_cast<const std::byte*>(data);
+        bytes_.insert(bytes_.end(), from, from + count);
     }
-    std::uint64_t tellp() override { return at_; }
-    void seekp(std::uint64_t at) override { at_ = at; }
-
-    void pixels() { pixels_ = true; }
-    Result<void> finish() {
-        if (failure_) return *failure_;
-        return write_(0, head_);
+    std::uint64_t tellp() override { return bytes_.size(); }
+    void seekp(std::uint64_t at) override {
+        if (at != bytes_.size()) throw Iex::LogicExc("the header goes back");
     }
-    [[nodiscard]] const std::optional<Error>& failure() const { return failure_; }
 
 private:
-    const WriteBytes write_;
-    std::vector<std::byte> head_;
-    std::uint64_t at_ = 0;
-    bool pixels_ = false;
-    std::optional<Error> failure_;
+    std::vector<std::byte>& bytes_;
 };
 
 std::vector<std::string> channels_for(const FormatInfo& format) {
@@ -88,130 +69,140 @@ Imf::Header header_of(const TextureHead& texture) {
         if (texture.y_known)
             header.insert(kNormalYAxis, Imf::StringAttribute(std::string(name_of(kYAxisNames, texture.y_axis))));
     }
+    if (texture.levels > 1)
+        header.setTileDescription(Imf::TileDescription(kExrTile, kExrTile, Imf::MIPMAP_LEVELS, Imf::ROUND_DOWN));
     return header;
 }
 
-// Describes interleaved texels that begin with row `first`. OpenEXR's slices point to mutable bytes even if it only
-// reads them.
-Imf::FrameBuffer frame_buffer(const std::byte* texels, Extent extent, int first, const FormatInfo& format) {
-    Imf::FrameBuffer buffer;
-    const auto channel_bytes = static_cast<std::size_t>(format.bits / 8);
-    std::byte* channel = const_cast<std::byte*>(texels);
-    for (const std::string& name : channels_for(format)) {
-        buffer.insert(name.c_str(),
-                      Imf::Slice::Make(format.bits == 16 ? Imf::HALF : Imf::FLOAT, channel, Imath::V2i(0, first),
-                                       extent.width, extent.height, format.block_bytes,
-                                       format.block_bytes * static_cast<std::size_t>(extent.width)));
-        channel += channel_bytes;
-    }
-    return buffer;
+// What comes before the table of chunks.
+std::vector<std::byte> bytes_of(const Imf::Header& header) {
+    const bool has_tiles = header.hasTileDescription();
+    constexpr char kVersion = 2, kTiled = 2;  // the second byte holds flags
+    header.sanityCheck(has_tiles);
+    std::vector<std::byte> bytes;
+    HeaderStream stream(bytes);
+    stream.write(kExrMagic.data(), static_cast<int>(kExrMagic.size()));
+    const char version[] = {kVersion, has_tiles ? kTiled : char{0}, 0, 0};
+    stream.write(version, sizeof version);
+    header.writeTo(stream, has_tiles);
+    return bytes;
 }
 
-// The common part of scanline and tiled files. `File` is OpenEXR's class.
-template <class File>
-class ExrTargetOf : public RowTarget {
+// Collects rows in bands, and writes the blocks of these in the order of the table of chunks: level by level, from the
+// top. Blocks of smaller levels wait in memory until the larger levels are in the file. (If they were stored in the
+// order in which they arrive, the bytes would depend on the path that a texture takes.)
+class ExrTarget final : public RowTarget {
 public:
-    ExrTargetOf(const TextureHead& head, WriteBytes write)
-        : head_(head), format_(format_info(head.format)), stream_(std::move(write)) {}
-
-    Result<void> begin(const Imf::Header& header) {
-        return watched([&] {
-            file_.emplace(stream_, header, kNoThreads);
-            stream_.pixels();
-        });
-    }
-    Result<void> finish() override {
-        file_.reset();  // writes the table, and ignores errors
-        return stream_.finish();
-    }
-
-protected:
-    template <class Body>
-    Result<void> watched(const Body& body) {
-        try {
-            body();
-        } catch (const std::bad_alloc&) {
-            throw;
-        } catch (const std::exception& thrown) {
-            return Error{ErrorCode::unsupported, {}, std::string("EXR cannot be written: ") + thrown.what()};
-        }
-        if (stream_.failure()) return *stream_.failure();
-        return {};
-    }
-
-    const TextureHead head_;
-    const FormatInfo format_;
-    TargetStream stream_;
-    std::optional<File> file_;
-};
-
-class LinesTarget final : public ExrTargetOf<Imf::OutputFile> {
-public:
-    using ExrTargetOf::ExrTargetOf;
-    Result<void> put(int, const std::byte* rows, int count) override {
-        return watched([&] {
-            file_->setFrameBuffer(frame_buffer(rows, {head_.extent.width, count}, file_->currentScanLine(), format_));
-            file_->writePixels(count);
-        });
-    }
-};
-
-// Writes all levels. OpenEXR keeps the compressed tiles of the smaller levels until those of the larger ones are in the
-// file. The order of its tiles is therefore always the same, and a third of the tiles that it holds is in memory. (If
-// the tiles were stored in the order in which they arrive, the bytes would depend on the path that a texture takes.)
-class TilesTarget final : public ExrTargetOf<Imf::TiledOutputFile> {
-public:
-    TilesTarget(const TextureHead& head, WriteBytes write)
-        : ExrTargetOf(head, std::move(write)), levels_(static_cast<std::size_t>(head.levels)) {}
+    // `head` is what comes before the table.
+    ExrTarget(const TextureHead& texture, std::vector<std::byte> head, WriteBytes write);
 
     Result<void> put(int level, const std::byte* rows, int count) override;
+    [[nodiscard]] bool has_work() const override { return true; }
+    std::shared_ptr<RowWork> take_work() override;
+    Result<void> end_work(const std::shared_ptr<RowWork>& work) override;
+    Result<void> finish() override;
 
 private:
-    // Rows of a row of tiles that is not complete yet.
-    struct Open {
-        int next = 0;  // the next row of the level
-        std::vector<std::byte> rows;
+    struct Level {
+        ExrGrid grid;
+        int first_block;  // the number of its first block in the file
+        int next = 0;     // the band that takes rows
+        Pool<ExrBand> bands;
+        std::shared_ptr<ExrBand> open;  // that band, if it has any
     };
-    // Writes rows [first, first + count) of a level, whole rows of tiles.
-    void write(int level, int first, int count, const std::byte* rows) {
-        file_->setFrameBuffer(frame_buffer(rows, {level_extent(head_.extent, level).width, count}, first, format_));
-        file_->writeTiles(0, file_->numXTiles(level) - 1, first / kTileSize, (first + count - 1) / kTileSize, level);
-    }
+    void divide(Level& level);
+    Result<void> write(const ExrBlock& block);
 
-    std::vector<Open> levels_;
+    const WriteBytes write_;
+    std::vector<Level> levels_;
+    Pool<Zipper> zippers_;
+    std::deque<std::shared_ptr<ExrBlock>> blocks_;      // to be run
+    std::map<int, std::shared_ptr<ExrBlock>> waiting_;  // have been run; by number
+    int written_ = 0;                                   // blocks
+    std::vector<std::byte> head_;                       // and the table, as far as chunks have been written
+    std::size_t begin_ = 0;                             // of the chunks in the file
+    std::uint64_t at_ = 0;                              // the end of the chunks that have been written
 };
 
-Result<void> TilesTarget::put(int level, const std::byte* rows, int count) {
-    Open& open = levels_[static_cast<std::size_t>(level)];
-    const Extent extent = level_extent(head_.extent, level);
-    const std::size_t pitch = level_bytes(head_.format, {extent.width, 1});
-    return watched([&] {
-        while (count > 0) {
-            const int begin = open.next / kTileSize * kTileSize, end = std::min(begin + kTileSize, extent.height);
-            const int all =
-                open.next + count == extent.height ? count : count / kTileSize * kTileSize;  // whole rows of tiles
-            const bool whole = open.next == begin && all > 0;
-            const int taken = whole ? all : std::min(count, end - open.next);
-            if (whole) {
-                write(level, begin, taken, rows);
-            } else {
-                open.rows.insert(open.rows.end(), rows, rows + static_cast<std::size_t>(taken) * pitch);
-            }
-            open.next += taken;
-            rows += static_cast<std::size_t>(taken) * pitch;
-            count -= taken;
-            if (whole || open.next < end) continue;
-            write(level, begin, end - begin, open.rows.data());
-            open.rows.clear();
-        }
-    });
+int blocks_of_band(const ExrGrid& grid) {
+    return (grid.chunks_of_band() + grid.chunks_of_block() - 1) / grid.chunks_of_block();
 }
 
-template <class Target>
-Result<std::unique_ptr<RowTarget>> open_target(const TextureHead& head, const Imf::Header& header, WriteBytes write) {
-    auto target = std::make_unique<Target>(head, std::move(write));
-    if (const Result<void> begun = target->begin(header); !begun) return begun.error();
-    return std::unique_ptr<RowTarget>(std::move(target));
+ExrTarget::ExrTarget(const TextureHead& texture, std::vector<std::byte> head, WriteBytes write)
+    : write_(std::move(write)), head_(std::move(head)) {
+    const FormatInfo format = format_info(texture.format);
+    int blocks = 0;
+    std::size_t chunks = 0;
+    for (int k = 0; k < texture.levels; ++k) {
+        const ExrGrid grid{format.channels, static_cast<std::size_t>(format.bits / 8), level_extent(texture.extent, k),
+                           k, texture.levels > 1};
+        levels_.push_back({grid, blocks, 0, {}, nullptr});
+        blocks += grid.bands() * blocks_of_band(grid);
+        chunks += static_cast<std::size_t>(grid.bands()) * static_cast<std::size_t>(grid.chunks_of_band());
+    }
+    begin_ = head_.size() + chunks * sizeof(std::uint64_t);
+    head_.reserve(begin_);
+    at_ = begin_;
+}
+
+Result<void> ExrTarget::put(int index, const std::byte* rows, int count) {
+    Level& level = levels_[static_cast<std::size_t>(index)];
+    while (count > 0) {
+        if (!level.open) {
+            level.open = level.bands.take([] { return std::make_unique<ExrBand>(); });
+            level.open->begin(level.grid, level.next);
+        }
+        const int taken = level.open->add(level.grid, rows, count);
+        rows += level.grid.row_bytes() * static_cast<std::size_t>(taken);
+        count -= taken;
+        if (level.open->is_full()) divide(level);
+    }
+    return {};
+}
+
+// Makes blocks of a full band.
+void ExrTarget::divide(Level& level) {
+    const ExrGrid& grid = level.grid;
+    int number = level.first_block + level.next * blocks_of_band(grid);
+    for (int begin = 0; begin < grid.chunks_of_band(); begin += grid.chunks_of_block()) {
+        const int end = std::min(begin + grid.chunks_of_block(), grid.chunks_of_band());
+        blocks_.push_back(std::make_shared<ExrBlock>(grid, level.open, begin, end, number++, zippers_));
+    }
+    level.open = nullptr;
+    ++level.next;
+}
+
+std::shared_ptr<RowWork> ExrTarget::take_work() {
+    if (blocks_.empty()) return nullptr;
+    std::shared_ptr<ExrBlock> block = std::move(blocks_.front());
+    blocks_.pop_front();
+    return block;
+}
+
+Result<void> ExrTarget::end_work(const std::shared_ptr<RowWork>& work) {
+    const auto ended = std::static_pointer_cast<ExrBlock>(work);
+    waiting_[ended->number()] = ended;
+    while (!waiting_.empty() && waiting_.begin()->first == written_) {
+        const std::shared_ptr<ExrBlock> block = std::move(waiting_.extract(waiting_.begin()).mapped());
+        if (Result<void> done = write(*block); !done) return done;
+        ++written_;
+    }
+    return {};
+}
+
+Result<void> ExrTarget::write(const ExrBlock& block) {
+    std::uint64_t at = at_;
+    for (const std::size_t size : block.chunk_bytes()) {
+        const auto* entry = reinterpret_cast<const std::byte*>(&at);
+        head_.insert(head_.end(), entry, entry + sizeof at);
+        at += size;
+    }
+    return write_(std::exchange(at_, at), block.bytes());
+}
+
+Result<void> ExrTarget::finish() {
+    if (head_.size() == begin_) return write_(0, head_);
+    return Error{ErrorCode::unsupported, {}, "rows are missing: this is a bug"};
 }
 
 }  // namespace
@@ -232,10 +223,14 @@ Result<std::unique_ptr<RowTarget>> open_exr_target(const TextureHead& head, Writ
                          "EXR holds the base level or all " + std::to_string(complete) + " mip levels, not " +
                              std::to_string(head.levels)};
         }
-        Imf::Header header = header_of(head);
-        if (head.levels == 1) return open_target<LinesTarget>(head, header, std::move(write));
-        header.setTileDescription(Imf::TileDescription(kTileSize, kTileSize, Imf::MIPMAP_LEVELS, Imf::ROUND_DOWN));
-        return open_target<TilesTarget>(head, header, std::move(write));
+        try {
+            return std::unique_ptr<RowTarget>(
+                std::make_unique<ExrTarget>(head, bytes_of(header_of(head)), std::move(write)));
+        } catch (const std::bad_alloc&) {
+            throw;
+        } catch (const std::exception& thrown) {
+            return Error{ErrorCode::unsupported, {}, std::string("EXR cannot be written: ") + thrown.what()};
+        }
     });
 }
 
