@@ -162,6 +162,8 @@ TEST(Compare, GivesTheSameBytesForEveryNumberOfThreads) {
         ASSERT_TRUE(comparison);
         EXPECT_EQ(comparison->error.mean, expected->error.mean);
         EXPECT_EQ(comparison->error.rms, expected->error.rms);
+        EXPECT_EQ(comparison->error.p50, expected->error.p50);
+        EXPECT_EQ(comparison->error.p99, expected->error.p99);
         EXPECT_EQ(comparison->error.p999, expected->error.p999);
         for (int j = 0; j < extent.height; ++j) {
             ASSERT_EQ(std::memcmp(comparison->degrees.row(j), expected->degrees.row(j),
