@@ -139,7 +139,9 @@ Result<void> measure(Subject& subject) {
     const Extent extent = stored.extent();
     subject.sampled_ok = !subject.constant && extent.width >= kLeastSide && extent.height >= kLeastSide;
     if (!subject.sampled_ok) return {};
-    subject.curl = measure_curl(stored);
+    auto curl = measure_curl(stored, subject.execution);
+    if (!curl) return curl.error();
+    subject.curl = std::move(*curl);
     subject.y.correlation = subject.curl.correlation;
     subject.y.confidence = subject.curl.confidence;
     subject.y.y = clear_y(subject.curl);
@@ -209,7 +211,7 @@ Result<CheckReport> check(const std::string& file, const Texture& texture, const
         Findings findings(options);
         check_file_rules(subject, findings);
         check_value_rules(subject, findings);
-        check_damage_rules(subject, findings);
+        if (auto done = check_damage_rules(subject, findings); !done) return done.error();
         check_convention_rules(subject, findings);
         if (auto done = check_mip_rules(subject, findings); !done) return done.error();
         CheckReport report;

@@ -60,6 +60,25 @@ TEST(CurlOfSlopes, RegionsCoverTheMap) {
     EXPECT_EQ(curl_of({512, 512}, [](Texel t, int, int) { return t; }).regions.size(), 64u) << "64 texels each";
 }
 
+// A map of more than 2^20 texels, of which 16 windows are examined.
+TEST(CurlOfSlopes, IsTheSameForEveryNumberOfThreads) {
+    const StoredMap map({1300, 900}, normal_at);
+    const Curl expected = measure_curl(map.stored());
+    for (const int threads : {1, 2, 5}) {
+        const auto curl = measure_curl(map.stored(), Execution{threads, {}});
+        ASSERT_TRUE(curl);
+        ASSERT_EQ(curl->regions.size(), expected.regions.size());
+        for (std::size_t k = 0; k < curl->regions.size(); ++k) {
+            EXPECT_EQ(curl->regions[k].rect.x, expected.regions[k].rect.x);
+            EXPECT_EQ(curl->regions[k].scale[2].cross, expected.regions[k].scale[2].cross);
+        }
+        for (int k = 0; k < kCurlScales; ++k) EXPECT_EQ(curl->scale[k].cross, expected.scale[k].cross);
+        EXPECT_EQ(curl->correlation, expected.correlation);
+        EXPECT_EQ(curl->confidence, expected.confidence);
+        EXPECT_EQ(curl->usable, expected.usable);
+    }
+}
+
 // The sums of one region against their definition.
 TEST(CurlOfSlopes, SumsAreThoseOfCentralDifferences) {
     const StoredMap map({32, 32}, normal_at);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "rows/math.h"
+#include "threads/parallel.h"
 
 namespace tex {
 namespace {
@@ -79,6 +80,62 @@ double z_score(const std::vector<CurlRegion>& regions, int scale, bool exchanged
 // The logistic approximation of the normal distribution (error below 0.01).
 double confidence_of(double z) { return 1.0 / (1.0 + math::exp(-1.702 * std::abs(z))); }
 
+// What one window shows.
+struct CurlWindow {
+    std::vector<CurlRegion> regions;
+    double texels = 0.0, usable = 0.0;
+};
+
+CurlWindow sum_window(Extent extent, const Rect& window, Slopes slopes) {
+    CurlWindow part;
+    const int size = region_size(extent);
+    for (int y = 0; y < window.height; y += size) {
+        for (int x = 0; x < window.width; x += size) {
+            CurlRegion region;
+            region.rect = {window.x + x, window.y + y, std::min(size, window.width - x),
+                           std::min(size, window.height - y)};
+            part.regions.push_back(region);
+        }
+    }
+    part.texels = static_cast<double>(slopes.extent().texels());
+    part.usable = count_usable(slopes.p);
+    for (int k = 0; k < kCurlScales; ++k) {
+        for (CurlRegion& region : part.regions) {
+            const int x = (region.rect.x - window.x) >> k, y = (region.rect.y - window.y) >> k;
+            region.scale[k] = sum_region(slopes, x, y, x + (region.rect.width >> k), y + (region.rect.height >> k));
+        }
+        if (k + 1 < kCurlScales) slopes = halved(slopes);
+    }
+    return part;
+}
+
+Curl join(const std::vector<CurlWindow>& parts) {
+    Curl curl;
+    double all = 0.0, usable = 0.0;
+    for (const CurlWindow& part : parts) {
+        all += part.texels;
+        usable += part.usable;
+        for (const CurlRegion& region : part.regions) {
+            for (int k = 0; k < kCurlScales; ++k) curl.scale[k].add(region.scale[k]);
+            curl.regions.push_back(region);
+        }
+    }
+    int best = 0;
+    const auto strength = [&](int k) {
+        return std::max(std::abs(curl.scale[k].correlation()), std::abs(curl.scale[k].exchanged_correlation()));
+    };
+    for (int k = 1; k < kCurlScales; ++k) {
+        if (strength(k) > strength(best)) best = k;
+    }
+    curl.best_scale = best;
+    curl.correlation = curl.scale[best].correlation();
+    curl.exchanged = curl.scale[best].exchanged_correlation();
+    curl.confidence = confidence_of(z_score(curl.regions, best, false));
+    curl.exchanged_confidence = confidence_of(z_score(curl.regions, best, true));
+    curl.usable = all > 0.0 ? usable / all : 0.0;
+    return curl;
+}
+
 }  // namespace
 
 void CurlSums::add(const CurlSums& other) {
@@ -99,47 +156,21 @@ Curl measure_curl(const Stored& stored) {
 }
 
 Curl measure_curl(Extent extent, const std::vector<Rect>& windows, const std::function<Slopes(std::size_t)>& take) {
-    Curl curl;
-    const int size = region_size(extent);
-    double all = 0.0, usable = 0.0;
-    for (std::size_t w = 0; w < windows.size(); ++w) {
-        const Rect& window = windows[w];
-        const std::size_t first = curl.regions.size();
-        for (int y = 0; y < window.height; y += size) {
-            for (int x = 0; x < window.width; x += size) {
-                CurlRegion region;
-                region.rect = {window.x + x, window.y + y, std::min(size, window.width - x),
-                               std::min(size, window.height - y)};
-                curl.regions.push_back(region);
-            }
-        }
-        Slopes slopes = take(w);
-        all += static_cast<double>(slopes.extent().texels());
-        usable += count_usable(slopes.p);
-        for (int k = 0; k < kCurlScales; ++k) {
-            for (std::size_t r = first; r < curl.regions.size(); ++r) {
-                CurlRegion& region = curl.regions[r];
-                const int x = (region.rect.x - window.x) >> k, y = (region.rect.y - window.y) >> k;
-                region.scale[k] = sum_region(slopes, x, y, x + (region.rect.width >> k), y + (region.rect.height >> k));
-                curl.scale[k].add(region.scale[k]);
-            }
-            if (k + 1 < kCurlScales) slopes = halved(slopes);
-        }
-    }
-    int best = 0;
-    const auto strength = [&](int k) {
-        return std::max(std::abs(curl.scale[k].correlation()), std::abs(curl.scale[k].exchanged_correlation()));
+    std::vector<CurlWindow> parts;
+    for (std::size_t k = 0; k < windows.size(); ++k) parts.push_back(sum_window(extent, windows[k], take(k)));
+    return join(parts);
+}
+
+Result<Curl> measure_curl(const Stored& stored, const Execution& execution) {
+    const std::vector<Rect> windows = sample_windows(stored.extent());
+    std::vector<CurlWindow> parts(windows.size());
+    const auto body = [&](int begin, int end) {
+        for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k)
+            parts[k] = sum_window(stored.extent(), windows[k], slopes_of(stored, windows[k]));
     };
-    for (int k = 1; k < kCurlScales; ++k) {
-        if (strength(k) > strength(best)) best = k;
-    }
-    curl.best_scale = best;
-    curl.correlation = curl.scale[best].correlation();
-    curl.exchanged = curl.scale[best].exchanged_correlation();
-    curl.confidence = confidence_of(z_score(curl.regions, best, false));
-    curl.exchanged_confidence = confidence_of(z_score(curl.regions, best, true));
-    curl.usable = all > 0.0 ? usable / all : 0.0;
-    return curl;
+    const Execution silent{execution.threads, {}};
+    if (auto done = parallel_for(silent, static_cast<int>(windows.size()), 1, body); !done) return done.error();
+    return join(parts);
 }
 
 std::optional<YAxis> clear_y(const Curl& curl) {

@@ -11,7 +11,9 @@
 #include <optional>
 #include <vector>
 
+#include <tex/execution.h>
 #include <tex/normal_map.h>
+#include <tex/result.h>
 
 #include "checks/stored.h"
 
@@ -54,6 +56,9 @@ struct Curl {
 };
 
 Curl measure_curl(const Stored& stored);
+
+// The same on several threads. Reports no progress. Errors: out_of_memory.
+Result<Curl> measure_curl(const Stored& stored, const Execution& execution);
 
 // The same for parts of a map of this extent; `slopes` returns the slopes of a part, once for each.
 Curl measure_curl(Extent extent, const std::vector<Rect>& windows, const std::function<Slopes(std::size_t)>& slopes);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <iterator>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "checks/lattice.h"
 #include "checks/seam.h"
 #include "checks/thresholds.h"
+#include "threads/parallel.h"
 
 namespace tex {
 namespace {
@@ -56,9 +58,37 @@ double length_error(const Stored& stored, Restore&& restore) {
     return count > 0.0 ? sum / count : 0.0;
 }
 
-void check_curve(const Subject& subject, Findings& findings) {
+// What takes long to measure. A member has its default value if no rule asks for it.
+struct Traces {
+    Centre centre;
+    Seam seam;
+    double grid_ratio = 0.0;  // of the format's own blocks
+    JpegTrace jpeg;           // in a format without blocks
+    Lattice lattice;
+};
+
+// Measures all at once, on several threads. Each measure is the work of one of them.
+Result<void> measure_traces(const Subject& subject, bool wants_seam, Traces& traces) {
+    const Stored& stored = subject.stored;
+    std::vector<std::function<void()>> measures;
+    if (subject.sampled_ok) {
+        measures.emplace_back([&] {
+            if (const FormatInfo info = format_info(subject.texture.format); info.has_blocks())
+                traces.grid_ratio = grid_ratio(stored, info.block.width);
+            else
+                traces.jpeg = measure_jpeg(stored);
+        });
+        measures.emplace_back([&] { traces.lattice = measure_lattice(stored); });
+    }
+    if (!stored.is_signed) measures.emplace_back([&] { traces.centre = measure_centre(stored); });
+    if (wants_seam) measures.emplace_back([&] { traces.seam = measure_seam(stored); });
+    const Execution silent{subject.execution.threads, {}};
+    return parallel_for(silent, static_cast<int>(measures.size()), 1,
+                        [&](int k, int) { measures[static_cast<std::size_t>(k)](); });
+}
+
+void check_curve(const Subject& subject, const Centre& centre, Findings& findings) {
     if (subject.stored.is_signed) return;
-    const Centre centre = measure_centre(subject.stored);
     const bool dark = centre.distance(srgb_decoded(0.5)) < thresholds::kDarkCentre;
     const bool light = centre.distance(srgb_encoded(0.5)) < thresholds::kLightCentre;
     if (!dark && !light) return;
@@ -139,7 +169,7 @@ bool stands_out(const JpegTrace& trace, const Stored& stored) {
     });
 }
 
-void check_blocks(const Subject& subject, Findings& findings) {
+void check_blocks(const Subject& subject, const Traces& traces, Findings& findings) {
     const auto add = [&](std::string_view id, std::string message, double figure, std::string_view unit) {
         Finding& finding = findings.add(id, std::move(message));
         finding.figure = figure;
@@ -147,14 +177,14 @@ void check_blocks(const Subject& subject, Findings& findings) {
         finding.confidence = 0.95;
     };
     if (const FormatInfo info = format_info(subject.texture.format); info.has_blocks()) {
-        const double ratio = grid_ratio(subject.stored, info.block.width);
+        const double ratio = traces.grid_ratio;
         if (ratio > kBlockRatio && grid_excess(subject.stored, info.block.width) > kBlockExcess) {
             add("N306", "steps between 4x4 blocks are " + decimal(ratio, 2) + " times those inside", ratio, "ratio");
         }
         return;
     }
     // The first trace found counts, because blocks of 8x8 are also blocks of 4x4.
-    const JpegTrace jpeg = measure_jpeg(subject.stored);
+    const JpegTrace& jpeg = traces.jpeg;
     if (jpeg.weight() > thresholds::kJpegTrace && stands_out(jpeg, subject.stored)) {
         add("N304",
             "the transform of 8x8 blocks is quantised as by JPEG of quality " + decimal(jpeg.quality(), 0) +
@@ -172,8 +202,7 @@ void check_blocks(const Subject& subject, Findings& findings) {
         add("N304", "steps between 8x8 blocks are " + decimal(ratio, 2) + " times those inside", ratio, "ratio");
 }
 
-void check_banding(const Subject& subject, Findings& findings) {
-    const Lattice lattice = measure_lattice(subject.stored);
+void check_banding(const Lattice& lattice, Findings& findings) {
     if (lattice.strength < thresholds::kLatticeStrength || lattice.teeth < kLatticeTeeth) return;
     Finding& finding = findings.add("N305", "slopes are multiples of " + decimal(lattice.step, 4) + " (strength " +
                                                 decimal(std::min(1.0, lattice.strength), 2) + ")");
@@ -182,9 +211,7 @@ void check_banding(const Subject& subject, Findings& findings) {
     finding.confidence = 0.95;
 }
 
-void check_seam(const Subject& subject, Findings& findings) {
-    if (!findings.wants("N307")) return;
-    const Seam seam = measure_seam(subject.stored);
+void check_seam(const Subject& subject, const Seam& seam, Findings& findings) {
     if (seam.worst() < thresholds::kSeamRatio) return;
     const Extent extent = subject.stored.extent();
     const bool right = seam.ratio_x > seam.ratio_y;
@@ -200,15 +227,18 @@ void check_seam(const Subject& subject, Findings& findings) {
 
 }  // namespace
 
-void check_damage_rules(const Subject& subject, Findings& findings) {
-    if (!subject.has_vectors || subject.constant) return;
-    check_curve(subject, findings);
+Result<void> check_damage_rules(const Subject& subject, Findings& findings) {
+    if (!subject.has_vectors || subject.constant) return {};
+    Traces traces;
+    if (auto done = measure_traces(subject, findings.wants("N307"), traces); !done) return done;
+    check_curve(subject, traces.centre, findings);
     check_alpha(subject, findings);
-    check_seam(subject, findings);
-    if (!subject.sampled_ok) return;
+    check_seam(subject, traces.seam, findings);
+    if (!subject.sampled_ok) return {};
     check_exchanged(subject, findings);
-    check_blocks(subject, findings);
-    check_banding(subject, findings);
+    check_blocks(subject, traces, findings);
+    check_banding(traces.lattice, findings);
+    return {};
 }
 
 }  // namespace tex

@@ -7,6 +7,7 @@
 
 namespace tex {
 
-void check_damage_rules(const Subject& subject, Findings& findings);
+// Errors: out_of_memory.
+Result<void> check_damage_rules(const Subject& subject, Findings& findings);
 
 }  // namespace tex

@@ -9,6 +9,7 @@
 
 #include <tex/normal_map.h>
 
+#include "kernels/stored.h"
 #include "threads/parallel.h"
 
 namespace tex {
@@ -54,11 +55,7 @@ float covered(int n, int k, int from, int to) {
 void average_row(const LargerRows& larger, Extent to, int j, float* out) {
     const Extent from = larger.extent;
     if (from.width == 2 * to.width && from.height == 2 * to.height) {
-        const float *upper = larger.row(2 * j), *lower = larger.row(2 * j + 1);
-        for (int i = 0; i < to.width; ++i, upper += 2, lower += 2) {
-            out[i] = (upper[0] + upper[1] + lower[0] + lower[1]) * 0.25f;
-        }
-        return;
+        return average_pairs(larger.row(2 * j), larger.row(2 * j + 1), to.width, out);
     }
     const float area = static_cast<float>(from.width) * static_cast<float>(from.height);
     for (int i = 0; i < to.width; ++i) {
@@ -126,9 +123,9 @@ void add_gradients(Sums& sums, const Vector& s, const NormalMap& r, int i, int j
     }
 }
 
+// `unit` has the extent of the window; its values are overwritten.
 Result<void> add_window(const Stored& stored, const NormalMap& averages, Rect window, const Execution& execution,
-                        Sums& all) {
-    NormalMap unit(Extent{window.width, window.height});
+                        NormalMap& unit, Sums& all) {
     const auto normalise = [&](int begin, int end) {
         for (int j = begin; j < end; ++j) {
             for (int i = 0; i < window.width; ++i) {
@@ -192,22 +189,9 @@ void vectors_of_row(const Stored& stored, int j, float* x, float* y, float* z) {
         const int channel = stored.channel(component);
         return channel < 0 ? nullptr : stored.image->planes[static_cast<std::size_t>(channel)].row(j);
     };
-    const float *sx = row_of(Component::x), *sy = row_of(Component::y), *sz = row_of(Component::z);
-    const float scale = stored.is_signed ? 1.0f : 2.0f, offset = stored.is_signed ? 0.0f : -1.0f;
-    for (int i = 0; i < stored.extent().width; ++i) {
-        float nx = sx[i] * scale + offset, ny = sy[i] * scale + offset;
-        if (sz == nullptr) {
-            const float beyond =
-                std::max(1.0f, std::sqrt(nx * nx + ny * ny));  // shortened as in unpack() if outside the circle
-            nx = nx / beyond;
-            ny = ny / beyond;
-        }
-        const float nz = sz != nullptr ? sz[i] * scale + offset : reconstruct_z(nx, ny);
-        const bool usable = nx * nx + ny * ny + nz * nz <= 16.0f;  // false for NaN
-        x[i] = usable ? nx : 0.0f;
-        y[i] = usable ? ny : 0.0f;
-        z[i] = usable ? nz : 0.0f;
-    }
+    const StoredRow row{row_of(Component::x), row_of(Component::y), row_of(Component::z),
+                        stored.is_signed ? 1.0f : 2.0f, stored.is_signed ? 0.0f : -1.0f};
+    restore_stored_vectors(row, stored.extent().width, x, y, z);
 }
 
 NormalMap averages_of(const NormalMap& larger) {
@@ -225,14 +209,13 @@ Result<NormalMap> base_averages(const Stored& stored, const Execution& execution
     const Extent from = stored.extent(), to = level_extent(from, 1);
     NormalMap map(to);
     const auto body = [&](int begin, int end) {
-        // The rows of the base level that lie under rows `begin` to `end` of the smaller one.
-        const int first = first_covered(begin, from.height, to.height),
-                  last = last_covered(end - 1, from.height, to.height);
-        NormalMap rows(Extent{from.width, last - first});
-        for (int j = first; j < last; ++j) {
-            vectors_of_row(stored, j, rows.x.row(j - first), rows.y.row(j - first), rows.z.row(j - first));
-        }
+        // Only the rows under one row of the smaller level are in memory: they stay in the processor's cache.
+        constexpr int kMostCovered = 3;
+        NormalMap rows(Extent{from.width, std::min(from.height, kMostCovered)});
         for (int j = begin; j < end; ++j) {
+            const int first = first_covered(j, from.height, to.height), last = last_covered(j, from.height, to.height);
+            for (int k = first; k < last; ++k)
+                vectors_of_row(stored, k, rows.x.row(k - first), rows.y.row(k - first), rows.z.row(k - first));
             average_row({rows.x, from, first}, to, j, map.x.row(j));
             average_row({rows.y, from, first}, to, j, map.y.row(j));
             average_row({rows.z, from, first}, to, j, map.z.row(j));
@@ -245,8 +228,11 @@ Result<NormalMap> base_averages(const Stored& stored, const Execution& execution
 Result<void> measure_level(const Stored& stored, const NormalMap& averages, int level, const Execution& execution,
                            LevelMeasure& measure) {
     Sums all;
+    NormalMap unit;  // new memory for every window would take longer than the window
     for (const Rect& window : sample_windows(stored.extent())) {
-        if (auto done = add_window(stored, averages, window, execution, all); !done) return done;
+        const Extent extent{window.width, window.height};
+        if (unit.extent() != extent) unit = NormalMap(extent);
+        if (auto done = add_window(stored, averages, window, execution, unit, all); !done) return done;
     }
     measure = measure_of(all);
     measure.level = level;

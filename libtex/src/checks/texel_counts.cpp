@@ -7,8 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include <tex/normal_map.h>
-
+#include "kernels/stored.h"
 #include "threads/parallel.h"
 
 namespace tex {
@@ -54,56 +53,41 @@ struct RowView {
     float low_flat = 2.0f, high_flat = 2.0f;  // codes 127 and 128, if the format has them
 };
 
-// Counts by the components and their length. A separate function, so that its values stay in registers.
-template <bool kHasZ>
+// Where each VectorTrait is counted.
+constexpr Property kProperties[kVectorTraits] = {
+    Property::not_finite, Property::beyond_unit, Property::null_vector, Property::off_length,
+    Property::z_below,    Property::z_behind,    Property::flat_low,    Property::flat_high,
+};
+
+// Counts by the components and their length.
 void count_vectors(const RowView& view, int width, RowCounts& row) {
-    constexpr float kLong = (1.0f + kTwoCodes) * (1.0f + kTwoCodes), kShort = (1.0f - kTwoCodes) * (1.0f - kTwoCodes);
-    constexpr float kNull = kNullLength * kNullLength;
-    for (int i = 0; i < width; ++i) {
-        const float x = view.x[i] * view.scale + view.offset, y = view.y[i] * view.scale + view.offset;
-        const float flat = x * x + y * y;
-        const float z = kHasZ ? view.z[i] * view.scale + view.offset : reconstruct_z(x, y);
-        const float square = flat + z * z;
-        if (!(square < std::numeric_limits<float>::max())) {  // also if NaN
-            row.mark(Property::not_finite, true, i);
-            continue;
-        }
-        row.mark(Property::beyond_unit, flat > view.beyond, i);
-        if constexpr (kHasZ) {
-            row.mark(Property::null_vector, square < kNull, i);
-            row.mark(Property::off_length, square > kLong || square < kShort, i);
-            row.mark(Property::z_below, z < -kTwoCodes, i);
-            row.mark(Property::z_behind, z < kBehind, i);
-        }
-        const bool low = view.x[i] == view.low_flat && view.y[i] == view.low_flat;
-        const bool high = view.x[i] == view.high_flat && view.y[i] == view.high_flat;
-        row.mark(Property::flat_low, low, i);
-        row.mark(Property::flat_high, high, i);
-        const float length = std::sqrt(square);
-        ++row.finite;
-        row.x += x;
-        row.y += y;
-        row.z += z;
-        row.length += length;
-        row.min_length = std::min(row.min_length, length);
-        row.max_length = std::max(row.max_length, length);
+    constexpr float kLong = 1.0f + kTwoCodes, kShort = 1.0f - kTwoCodes;
+    const VectorLimits limits{
+        view.beyond,   kNullLength * kNullLength, kShort * kShort, kLong * kLong, -kTwoCodes, kBehind, view.low_flat,
+        view.high_flat};
+    VectorCounts counts;
+    count_stored_vectors({view.x, view.y, view.z, view.scale, view.offset}, limits, width, counts);
+    for (std::size_t k = 0; k < kVectorTraits; ++k) {
+        const auto property = static_cast<std::size_t>(kProperties[k]);
+        row.count[property] = counts.count[k];
+        row.first[property] = counts.first[k];
     }
+    row.finite = counts.finite;
+    row.x = counts.x;
+    row.y = counts.y;
+    row.z = counts.z;
+    row.length = counts.length;
+    row.min_length = counts.min_length;
+    row.max_length = counts.max_length;
 }
 
 void count_colors(const RowView& view, int width, RowCounts& row) {
-    for (std::size_t c = 0; c < static_cast<std::size_t>(view.channels); ++c) {
-        float low = row.low[c], high = row.high[c];
-        for (int i = 0; i < width; ++i) {
-            low = std::min(low, view.channel[c][i]);
-            high = std::max(high, view.channel[c][i]);
-        }
-        row.low[c] = low;
-        row.high[c] = high;
-    }
-    if (view.one_in_red) {
+    for (std::size_t c = 0; c < static_cast<std::size_t>(view.channels); ++c)
+        widen_range(view.channel[c], width, row.low[c], row.high[c]);
+    if (view.one_in_red && row.low[0] < 1.0f) {
         for (int i = 0; i < width; ++i) row.mark(Property::red_not_one, view.channel[0][i] < 1.0f, i);
     }
-    if (view.alpha_free) {
+    if (view.alpha_free && row.low[3] < 1.0f) {
         for (int i = 0; i < width; ++i) row.mark(Property::alpha_not_one, view.channel[3][i] < 1.0f, i);
     }
     if (view.channels >= 3 && view.z != nullptr) {
@@ -207,11 +191,7 @@ Result<TexelCounts> count_texels(const Stored& stored, const Execution& executio
         for (int j = begin; j < end; ++j) {
             const RowView view = view_of(stored, j);
             RowCounts& row = rows[static_cast<std::size_t>(j)];
-            if (view.z != nullptr) {
-                count_vectors<true>(view, extent.width, row);
-            } else {
-                count_vectors<false>(view, extent.width, row);
-            }
+            count_vectors(view, extent.width, row);
             count_colors(view, extent.width, row);
         }
     };
