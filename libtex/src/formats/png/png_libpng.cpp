@@ -50,7 +50,10 @@ bool LibpngReader::read_header() {
     png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_AS_DEFAULT, kTextChunk, 1);
     // libtex checks the limits itself, with its own reasons, after the header has been checked.
     png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
+    constexpr png_alloc_size_t kOwn = 1 << 20;  // libpng's own structures
+    most_bytes = static_cast<png_alloc_size_t>(*file_.size()) + kOwn;
     png_read_info(png, info);
+    most_bytes = std::numeric_limits<png_alloc_size_t>::max();
     png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, kTextChunk, 1);
     width_ = png_get_image_width(png, info);
     height_ = png_get_image_height(png, info);
