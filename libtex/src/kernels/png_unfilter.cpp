@@ -21,7 +21,7 @@ namespace tex {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Rows whose filters do not look to the left.
+// Whether a filter of these rows looks to the left.
 bool HasChain(int rows, const std::uint8_t* filters) {
     return std::any_of(filters, filters + rows, [](std::uint8_t filter) { return filter != 0 && filter != 2; });
 }
@@ -71,7 +71,7 @@ constexpr int kFewRows = 4;        // as slow together as one by one
 using D = hn::FixedTag<std::uint8_t, kLanes>;
 using V = hn::Vec<D>;
 
-// A quarter of this moves each byte's row and column by one bit.
+// A round interleaves the two halves of the rows; after four rounds, rows and columns have changed places.
 HWY_INLINE void Transpose(V (&v)[kLanes]) {
     const D d;
     for (int round = 0; round < 4; ++round) {
