@@ -6,7 +6,8 @@
 build_packages=(
     g++ cmake ninja-build pkg-config
     libpng-dev libopenexr-dev libopenimageio-dev libopencolorio-dev libseccomp-dev
-    libdeflate-dev libzstd-dev libtbb-dev libhwy-dev libfmt-dev nlohmann-json3-dev libtomlplusplus-dev libassimp-dev
+    libdeflate-dev libisal-dev libzstd-dev libtbb-dev libhwy-dev libfmt-dev nlohmann-json3-dev libtomlplusplus-dev
+    libassimp-dev
 )
 # shellcheck disable=SC2034
 test_packages=(

@@ -10,8 +10,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 root=$PWD/build/arm64-root
 packages=(
-    libc6-dev libstdc++-12-dev libpng-dev libopenexr-dev libopencolorio-dev libdeflate-dev libzstd-dev libtbb-dev
-    libhwy-dev libfmt-dev nlohmann-json3-dev libtomlplusplus-dev libgtest-dev libgmock-dev libsquish-dev
+    libc6-dev libstdc++-12-dev libpng-dev libopenexr-dev libopencolorio-dev libdeflate-dev libisal-dev libzstd-dev
+    libtbb-dev libhwy-dev libfmt-dev nlohmann-json3-dev libtomlplusplus-dev libgtest-dev libgmock-dev libsquish-dev
 )
 
 # Unpacks the packages for arm64 and what they depend on. Nothing is installed on this system.

@@ -167,12 +167,12 @@ ban '\bis_texture\b|case (tex::)?Container::' 'only the table of formats/ tells 
 mapfile -t outside_mesh < <(printf '%s\n' "${library[@]}" | grep -v '/mesh/' || true)
 ban '#include <nlohmann/' 'only mesh/ knows nlohmann-json' "${outside_mesh[@]}"
 ban '#include <OpenColorIO' 'only color knows OpenColorIO' "${outside_color[@]}"
-ban '#include <(png\.h|OpenEXR/|Imf)' 'only formats/ knows libpng and OpenEXR' "${outside_formats[@]}"
+ban '#include <(png\.h|isa-l|OpenEXR/|Imf)' 'only formats/ knows libpng, ISA-L and OpenEXR' "${outside_formats[@]}"
 ban '\+ 3\) / 4' 'blocks/extent.h counts blocks' "${library[@]}"
 ban '#include <OpenImageIO' 'only the reader knows OpenImageIO' "${outside_reader[@]}"
 mapfile -t outside_mesh_reader < <(select_files '^(libtex|tools)/.*\.(cpp|h)$' | grep -v '^tools/mesh-reader/' || true)
 ban '#include <assimp' 'only the mesh reader knows Assimp' "${outside_mesh_reader[@]}"
-ban '#include ("|<(hwy|png|OpenEXR|Imath|Imf|OpenColorIO|OpenImageIO|tbb|fmt))' \
+ban '#include ("|<(hwy|png|isa-l|OpenEXR|Imath|Imf|OpenColorIO|OpenImageIO|tbb|fmt))' \
     'a public header shows a private name' "${public[@]}"
 ban 'std::(cout|cerr|clog|exit|abort|getenv)|[^a-z_](fprintf|puts|perror|getenv|setlocale) ?\(' \
     'libtex is silent' "${library[@]}"

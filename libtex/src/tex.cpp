@@ -5,6 +5,7 @@
 #include "formats/exr/exr.h"
 #include "formats/ktx2/compress_ktx2.h"
 #include "formats/png/png.h"
+#include "formats/png/png_texels.h"
 #include "kernels/target.h"
 
 namespace tex {
@@ -15,6 +16,7 @@ Runtime runtime() {
     return {kernel_target_name(),
             {{"highway", highway_version()},
              {"libdeflate", inflater_version()},
+             {"libisal", png_inflater_version()},
              {"libpng", png_version()},
              {"libzstd", zstd_version()},
              {"opencolorio", opencolorio_version()},

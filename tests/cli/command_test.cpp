@@ -51,7 +51,7 @@ TEST_P(EveryCommand, VersionIsOneLineOrJson) {
     EXPECT_EQ(json["program"], GetParam());
     EXPECT_EQ(json["version"], TEX_VERSION);
     EXPECT_EQ(json["libtex"], TEX_VERSION);
-    for (const char* name : {"fmt", "highway", "libdeflate", "libpng", "libzstd", "nlohmann-json", "onetbb",
+    for (const char* name : {"fmt", "highway", "libdeflate", "libisal", "libpng", "libzstd", "nlohmann-json", "onetbb",
                              "opencolorio", "openexr", "openimageio"}) {
         EXPECT_TRUE(json["dependencies"].contains(name) &&
                     std::isdigit(static_cast<unsigned char>(json["dependencies"][name].get<std::string>().at(0))) != 0)

@@ -19,6 +19,7 @@
 
 #include "cli/meshes.h"
 #include "cli/program.h"
+#include "reference/png_file.h"
 
 extern char** environ;
 
@@ -136,6 +137,18 @@ INSTANTIATE_TEST_SUITE_P(Commands, HostileFiles, testing::ValuesIn(tested_comman
     std::replace(name.begin(), name.end(), '-', '_');
     return name;
 });
+
+// A chunk of text that claims 2 GB, in a file of 100 bytes.
+TEST(HostilePng, TextThatIsNotThereTakesNoMemory) {
+    const Scratch scratch;
+    const std::string file = reference::write_png({reference::png_header({})}) + reference::big_endian(0x7ffffff0) +
+                             "tEXtlibtex.normal" + std::string(50, '\0');
+    scratch.write("a.png", file);
+    const Ran ran = run(scratch, "bake-normals", {"a.png", "-o", "out.dds"});
+    EXPECT_EQ(ran.code, 4);
+    EXPECT_EQ(ran.err, "bake-normals: error: a.png: damaged PNG: the file ends too early\n");
+    EXPECT_LT(ran.peak_bytes, std::int64_t{1} << 30);
+}
 
 }  // namespace
 }  // namespace tex::cli

@@ -16,6 +16,6 @@ TEST(Tex, RuntimeNamesTheInstructionSetAndTheLibraries) {
         names.push_back(name);
         EXPECT_TRUE(version.find('.') != std::string::npos) << name;
     }
-    EXPECT_EQ(names,
-              (std::vector<std::string>{"highway", "libdeflate", "libpng", "libzstd", "opencolorio", "openexr"}));
+    EXPECT_EQ(names, (std::vector<std::string>{"highway", "libdeflate", "libisal", "libpng", "libzstd", "opencolorio",
+                                               "openexr"}));
 }

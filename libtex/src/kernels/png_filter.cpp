@@ -9,6 +9,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/png_predict-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace tex {
 namespace HWY_NAMESPACE {
@@ -19,61 +21,20 @@ using V = hn::Vec<D>;
 
 constexpr std::size_t kFilters = 5;  // none, sub, up, average, Paeth
 
-// The neighbours of a byte: to the left, above, and above that to the left.
-struct Bytes {
-    V left, above, corner;
-};
-
-HWY_INLINE V Distance(V a, V b) { return hn::Or(hn::SaturatedSub(a, b), hn::SaturatedSub(b, a)); }
-
-HWY_INLINE V Average(D d, const Bytes& n) {
-    const V rounded_down = hn::And(hn::Xor(n.left, n.above), hn::Set(d, std::uint8_t{1}));
-    return hn::Sub(hn::AverageRound(n.left, n.above), rounded_down);
-}
-
-// The neighbour that is nearest to left + above - corner. Its distance from the corner is the sum of the other two
-// distances if left and above lie on the same side of the corner (the sum may saturate: it is never the smallest
-// alone), and their difference otherwise.
-HWY_INLINE V Paeth(const Bytes& n) {
-    const V to_left = Distance(n.above, n.corner);
-    const V to_above = Distance(n.left, n.corner);
-    const auto apart = hn::Xor(hn::Gt(n.above, n.corner), hn::Gt(n.left, n.corner));
-    const V to_corner = hn::IfThenElse(apart, Distance(to_left, to_above), hn::SaturatedAdd(to_left, to_above));
-    const V nearer = hn::Min(to_above, to_corner);
-    const V other = hn::IfThenElse(hn::Eq(nearer, to_above), n.above, n.corner);
-    return hn::IfThenElse(hn::Eq(hn::Min(to_left, nearer), to_left), n.left, other);
-}
+using Bytes = PngNeighbours<D>;
 
 template <std::size_t kFilter>
 HWY_INLINE V Predict(D d, const Bytes& n) {
     if constexpr (kFilter == 0) return hn::Zero(d);
     if constexpr (kFilter == 1) return n.left;
     if constexpr (kFilter == 2) return n.above;
-    if constexpr (kFilter == 3) return Average(d, n);
-    if constexpr (kFilter == 4) return Paeth(n);
-}
-
-// One byte after the other, for the bytes that do not fill a vector.
-HWY_INLINE int PredictOne(std::size_t filter, int left, int above, int corner) {
-    const auto magnitude = [](int v) { return v < 0 ? -v : v; };
-    switch (filter) {
-        case 1: return left;
-        case 2: return above;
-        case 3: return (left + above) / 2;
-        case 4: {
-            const int to_left = magnitude(above - corner);
-            const int to_above = magnitude(left - corner);
-            const int to_corner = magnitude(left + above - 2 * corner);
-            if (to_left <= to_above && to_left <= to_corner) return left;
-            return to_above <= to_corner ? above : corner;
-        }
-        default: return 0;
-    }
+    if constexpr (kFilter == 3) return PngAverage(d, n);
+    if constexpr (kFilter == 4) return PngPaeth(d, n);
 }
 
 HWY_INLINE std::uint8_t FilterOne(std::size_t filter, const std::uint8_t* row, const std::uint8_t* above,
                                   std::size_t step) {
-    return static_cast<std::uint8_t>(*row - PredictOne(filter, *(row - step), *above, *(above - step)));
+    return static_cast<std::uint8_t>(*row - PngPredictOne(filter, *(row - step), *above, *(above - step)));
 }
 
 HWY_INLINE Bytes NeighboursAt(D d, const std::uint8_t* row, const std::uint8_t* above, std::size_t step) {

@@ -1,8 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-//
-// libpng reports errors by longjmp, which must not skip the destructor of a C++ object. All objects that have a
-// destructor are therefore in the structs PngReader and, in png_write.cpp, PngWriter. The functions that call setjmp,
-// and the callbacks that call png_error, hold plain values only.
 
 #include "formats/png/png.h"
 
@@ -10,128 +6,21 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "formats/claims.h"
-#include "formats/normal_mark.h"
-#include "formats/png/png_state.h"
+#include "formats/png/png_libpng.h"
+#include "formats/png/png_rows.h"
 #include "threads/guard.h"
 
 namespace tex {
 namespace {
 
-// -- reading -----------------------------------------------------------------------------------------------
-
-struct PngReader : PngState {
-    explicit PngReader(InputFile& input) : file(input), buffer(std::size_t{1} << 16) {}
-    ~PngReader() { png_destroy_read_struct(&png, &info, nullptr); }
-    PngReader(const PngReader&) = delete;
-
-    // Puts the next `count` bytes at `to`; false if the file ends before them or cannot be read.
-    bool take(png_bytep to, std::size_t count);
-    [[nodiscard]] Error error() const;
-
-    InputFile& file;
-    std::vector<std::byte> buffer;  // libpng asks for a few bytes at a time
-    std::size_t begin = 0;
-    std::size_t end = 0;
-    std::optional<Error> io;
-
-    int color_type = 0;
-    int bit_depth = 0;    // in the file
-    int sample_bits = 0;  // as decoded: 8 or 16
-    int channels = 0;     // as decoded
-    int passes = 1;
-    std::int64_t width = 0;
-    std::int64_t height = 0;
-    std::int64_t file_row_bytes = 0;
-};
-
-bool PngReader::take(png_bytep to, std::size_t count) {
-    while (count > 0) {
-        if (begin == end) {
-            begin = 0;
-            end = 0;
-            const Result<std::size_t> got = guarded([&] { return file.read(buffer.data(), buffer.size()); });
-            if (!got) io = got.error();
-            if (!got || *got == 0) return false;
-            end = *got;
-        }
-        const std::size_t n = std::min(count, end - begin);
-        std::memcpy(to, buffer.data() + begin, n);
-        begin += n;
-        to += n;
-        count -= n;
-    }
-    return true;
-}
-
-Error PngReader::error() const {
-    if (out_of_memory) return out_of_memory_error();
-    if (io) return *io;
-    return {ErrorCode::bad_data, file.path(), std::string("damaged PNG: ") + reason};
-}
-
-void on_read(png_structp png, png_bytep data, std::size_t count) {
-    if (!static_cast<PngReader*>(png_get_io_ptr(png))->take(data, count)) png_error(png, "the file ends too early");
-}
-
-constexpr png_byte kTextChunk[] = "tEXt";
-
-bool read_header(PngReader& reader) {
-    reader.png =
-        png_create_read_struct_2(PNG_LIBPNG_VER_STRING, static_cast<PngState*>(&reader), on_png_error, on_png_warning,
-                                 static_cast<PngState*>(&reader), on_png_allocate, on_png_free);
-    if (reader.png == nullptr) reader.out_of_memory = true;
-    if (reader.png == nullptr || setjmp(png_jmpbuf(reader.png))) return false;
-    png_structp png = reader.png;
-    reader.info = png_create_info_struct(png);
-    if (reader.info == nullptr) png_error(png, "out of memory");
-    png_set_read_fn(png, &reader, on_read);
-    png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
-    // Only IHDR, PLTE, tRNS, IDAT, IEND and the text before the texels have an effect; other chunks are not parsed.
-    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
-    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_AS_DEFAULT, kTextChunk, 1);
-    // libtex checks the limits itself, with its own reasons, after the header has been checked.
-    png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
-    png_read_info(png, reader.info);
-    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, kTextChunk, 1);
-    reader.width = png_get_image_width(png, reader.info);
-    reader.height = png_get_image_height(png, reader.info);
-    reader.color_type = png_get_color_type(png, reader.info);
-    reader.bit_depth = png_get_bit_depth(png, reader.info);
-    reader.file_row_bytes = static_cast<std::int64_t>(png_get_rowbytes(png, reader.info));
-    return true;
-}
-
-// The mark of libtex in the text before the texels; empty if there is none.
-std::string mark_of(PngReader& reader) {
-    png_textp texts = nullptr;
-    const int count = png_get_text(reader.png, reader.info, &texts, nullptr);
-    for (int k = 0; k < count; ++k) {
-        if (texts[k].key == kNormalKey) return {texts[k].text, texts[k].text_length};
-    }
-    return {};
-}
-
-// Palettes become colours, tRNS becomes alpha, and grey of 1, 2 and 4 bits becomes 8 bits by multiplication (by 255, 85
-// or 17), so that code / 255 is still exactly v / (2^n - 1).
-bool start_rows(PngReader& reader) {
-    if (setjmp(png_jmpbuf(reader.png))) return false;
-    png_set_expand(reader.png);
-    reader.passes = png_set_interlace_handling(reader.png);
-    png_read_update_info(reader.png, reader.info);
-    reader.channels = png_get_channels(reader.png, reader.info);
-    reader.sample_bits = png_get_bit_depth(reader.png, reader.info);
-    return true;
-}
-
 // Converts rows of bytes to rows [first, end) of `image`.
-void store_rows8(const png_byte* rows, int first, int end, Image& image) {
+void store_rows8(const std::uint8_t* rows, int first, int end, Image& image) {
     static constexpr std::array<float, 256> kValues = [] {
         std::array<float, 256> values{};
         for (std::size_t v = 0; v < 256; ++v) values[v] = static_cast<float>(v) / 255.0f;
@@ -142,19 +31,19 @@ void store_rows8(const png_byte* rows, int first, int end, Image& image) {
     for (int j = first; j < end; ++j, rows += channels * width) {
         for (std::size_t c = 0; c < channels; ++c) {
             float* to = image.planes[c].row(j);
-            const png_byte* p = rows + c;
+            const std::uint8_t* p = rows + c;
             for (std::size_t i = 0; i < width; ++i, p += channels) to[i] = kValues[*p];
         }
     }
 }
 
-void store_rows16(const png_byte* rows, int first, int end, Image& image) {
+void store_rows16(const std::uint8_t* rows, int first, int end, Image& image) {
     const std::size_t channels = image.planes.size();
     const auto width = static_cast<std::size_t>(image.extent().width);
     for (int j = first; j < end; ++j, rows += 2 * channels * width) {
         for (std::size_t c = 0; c < channels; ++c) {
             float* to = image.planes[c].row(j);
-            const png_byte* p = rows + 2 * c;
+            const std::uint8_t* p = rows + 2 * c;
             for (std::size_t i = 0; i < width; ++i, p += 2 * channels) {
                 to[i] = static_cast<float>(p[0] << 8 | p[1]) / 65535.0f;
             }
@@ -162,80 +51,108 @@ void store_rows16(const png_byte* rows, int first, int end, Image& image) {
     }
 }
 
-bool decode_rows(PngReader& reader, int count, png_byte* rows, std::size_t row_bytes) {
-    if (setjmp(png_jmpbuf(reader.png))) return false;
-    const auto total = static_cast<std::size_t>(count);
-    for (std::size_t j = 0; j < total; ++j) png_read_row(reader.png, rows + j * row_bytes, nullptr);
-    return true;
-}
-
-// A file without its end chunk is damaged.
-bool decode_end(PngReader& reader) {
-    if (setjmp(png_jmpbuf(reader.png))) return false;
-    png_read_end(reader.png, nullptr);
-    return true;
-}
-
+// Rows come from PlainPngRows as long as the file is plain. Then libpng reads it again from the start, and decides.
 class PngRows final : public RowSource {
 public:
-    explicit PngRows(InputFile& file) : reader_(file) {}
+    PngRows(InputFile& file, bool only_libpng) : file_(file), only_libpng_(only_libpng) {}
 
     // Reads the header; decode() can then read the rows.
     Result<void> open(const ReadOptions& options);
 
-    [[nodiscard]] bool can_peek() const override { return is_interlaced(); }
+    [[nodiscard]] bool can_peek() const override { return is_interlaced_; }
     Result<void> decode(int first, int count, std::byte* rows) override;
-    Result<void> finish() override {
-        if (!decode_end(reader_)) return reader_.error();
-        return {};
-    }
+    Result<void> finish() override;
     void store(const std::byte* rows, int first, int end, Image& image) const override {
-        const auto* bytes = reinterpret_cast<const png_byte*>(rows);
-        reader_.sample_bits == 16 ? store_rows16(bytes, first, end, image) : store_rows8(bytes, first, end, image);
+        const auto* bytes = reinterpret_cast<const std::uint8_t*>(rows);
+        is_wide_ ? store_rows16(bytes, first, end, image) : store_rows8(bytes, first, end, image);
     }
 
 private:
-    [[nodiscard]] bool is_interlaced() const { return reader_.passes > 1; }
-    Result<void> decode_next(int count, std::byte* rows) {
-        if (!decode_rows(reader_, count, reinterpret_cast<png_byte*>(rows), row_bytes())) return reader_.error();
-        return {};
-    }
+    Result<void> ask_libpng(int next);
+    Result<void> decode_all();
 
-    PngReader reader_;
-    std::vector<std::byte> all_;  // all rows of an interlaced picture
+    InputFile& file_;
+    const bool only_libpng_;
+    ReadOptions options_;
+    bool is_interlaced_ = false;
+    bool is_wide_ = false;                  // 16 bits
+    std::unique_ptr<LibpngReader> libpng_;  // has read the header, or reads the rows if plain_ is null
+    std::unique_ptr<PlainPngRows> plain_;   // takes its bytes from the input of libpng_
+    std::vector<std::byte> all_;            // all rows of an interlaced picture
 };
 
 Result<void> PngRows::open(const ReadOptions& options) {
-    InputFile& file = reader_.file;
-    if (Result<void> settled = file.settle(largest_file(options)); !settled) return settled;
-    if (!read_header(reader_)) return reader_.error();
-    const double decoded = static_cast<double>(reader_.height) * static_cast<double>(reader_.file_row_bytes + 1);
-    const Extent claim{static_cast<int>(reader_.width), static_cast<int>(reader_.height)};
-    if (Result<void> ok = check_claim(file.path(), claim, decoded, *file.size(), kDeflateRatio); !ok) return ok;
-    const Result<Extent> extent = claimed_extent(file.path(), reader_.width, reader_.height, options);
-    if (!extent) return extent.error();
-    if (!start_rows(reader_)) return reader_.error();
-    describe(
-        *extent, channel_names(reader_.channels),
-        static_cast<std::size_t>(extent->width) * static_cast<std::size_t>(reader_.channels * reader_.sample_bits / 8));
-    describe_samples(SampleKind::unorm, reader_.color_type == PNG_COLOR_TYPE_PALETTE ? 8 : reader_.bit_depth);
-    describe_normals(mark_of(reader_));
+    options_ = options;
+    libpng_ = std::make_unique<LibpngReader>(file_);
+    if (Result<void> opened = libpng_->open(options); !opened) return opened;
+    const PngKind& kind = libpng_->kind();
+    const int channels = kind.expanded_channels(), bits = kind.expanded_bits();
+    const Extent extent = libpng_->extent();
+    is_interlaced_ = libpng_->is_interlaced();
+    is_wide_ = bits == 16;
+    describe(extent, channel_names(channels),
+             static_cast<std::size_t>(extent.width) * static_cast<std::size_t>(channels * bits / 8));
+    describe_samples(SampleKind::unorm, kind.is_palette ? 8 : kind.bit_depth);
+    describe_normals(libpng_->normal_mark());
+    if (is_interlaced_ || only_libpng_) return libpng_->start();
+    plain_ = std::make_unique<PlainPngRows>(libpng_->input(), libpng_->first_length(), extent, kind);
     return {};
 }
 
-// Every pass of an interlaced picture adds texels to all of its rows.
+// Starts again with libpng, up to row `next`.
+Result<void> PngRows::ask_libpng(int next) {
+    plain_.reset();
+    libpng_.reset();
+    if (Result<void> back = file_.rewind(); !back) return back;
+    libpng_ = std::make_unique<LibpngReader>(file_);
+    Result<void> read = libpng_->open(options_);
+    if (read) read = libpng_->start();
+    std::vector<std::byte> row(row_bytes());
+    for (int j = 0; read && j < next; ++j) read = libpng_->decode(1, row_bytes(), row.data());
+    return read;
+}
+
 Result<void> PngRows::decode(int first, int count, std::byte* rows) {
-    if (!is_interlaced()) return decode_next(count, rows);
+    if (plain_) {
+        const Result<bool> plain = plain_->decode(count, row_bytes(), reinterpret_cast<std::uint8_t*>(rows));
+        if (!plain) return plain.error();
+        if (*plain) return {};
+        if (Result<void> again = ask_libpng(first); !again) return again;
+    }
+    if (!is_interlaced_) return libpng_->decode(count, row_bytes(), rows);
     if (all_.empty()) {
-        std::vector<std::byte> all(row_bytes() * static_cast<std::size_t>(extent().height));
-        for (int pass = 0; pass < reader_.passes; ++pass) {
-            if (Result<void> decoded = decode_next(extent().height, all.data()); !decoded) return decoded;
-        }
-        all_ = std::move(all);
+        if (Result<void> decoded = decode_all(); !decoded) return decoded;
     }
     std::memcpy(rows, all_.data() + row_bytes() * static_cast<std::size_t>(first),
                 row_bytes() * static_cast<std::size_t>(count));
     return {};
+}
+
+Result<void> PngRows::decode_all() {
+    std::vector<std::byte> all(row_bytes() * static_cast<std::size_t>(extent().height));
+    for (int pass = 0; pass < libpng_->passes(); ++pass) {
+        if (Result<void> decoded = libpng_->decode(extent().height, row_bytes(), all.data()); !decoded) return decoded;
+    }
+    all_ = std::move(all);
+    return {};
+}
+
+Result<void> PngRows::finish() {
+    if (plain_) {
+        const Result<bool> plain = plain_->finish();
+        if (!plain) return plain.error();
+        if (*plain) return {};
+        if (Result<void> again = ask_libpng(extent().height); !again) return again;
+    }
+    return libpng_->finish();
+}
+
+Result<std::unique_ptr<RowSource>> open_decoder(InputFile& file, const ReadOptions& options, bool only_libpng) {
+    return guarded([&]() -> Result<std::unique_ptr<RowSource>> {
+        auto rows = std::make_unique<PngRows>(file, only_libpng);
+        if (const Result<void> opened = rows->open(options); !opened) return opened.error();
+        return std::unique_ptr<RowSource>(std::move(rows));
+    });
 }
 
 }  // namespace
@@ -243,11 +160,11 @@ Result<void> PngRows::decode(int first, int count, std::byte* rows) {
 const char* png_version() { return png_get_libpng_ver(nullptr); }
 
 Result<std::unique_ptr<RowSource>> open_png(InputFile& file, const ReadOptions& options) {
-    return guarded([&]() -> Result<std::unique_ptr<RowSource>> {
-        auto rows = std::make_unique<PngRows>(file);
-        if (const Result<void> opened = rows->open(options); !opened) return opened.error();
-        return std::unique_ptr<RowSource>(std::move(rows));
-    });
+    return open_decoder(file, options, false);
+}
+
+Result<std::unique_ptr<RowSource>> open_png_with_libpng(InputFile& file, const ReadOptions& options) {
+    return open_decoder(file, options, true);
 }
 
 }  // namespace tex

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// png.h: reads and writes PNG files. libpng reads them and writes their headers; png_block.h compresses the rows.
+// png.h: reads and writes PNG files. libpng reads and writes what comes before the texels. png_rows.h reads the rows of
+// almost all files, and libpng those of the others; png_block.h compresses rows.
 
 #pragma once
 
@@ -29,10 +30,14 @@ const char* png_version();
 
 // Opens a PNG to be read row by row as read_image() describes: grey as Y, colour and palette as R, G, B, alpha or tRNS
 // as A; values are code / (2^bits - 1); gAMA, sRGB, iCCP and sBIT change nothing. Damaged ancillary chunks also count
-// as damage. The rows of an interlaced PNG are held in memory, as they are decoded. `file` must outlive the rows.
+// as damage. The rows of an interlaced PNG are held in memory, as they are decoded. A damaged file is read twice:
+// libpng finds the reason. `file` must outlive the rows.
 //
 // Errors: bad_data (with libpng's reason), unsupported (too large), io, out_of_memory.
 Result<std::unique_ptr<RowSource>> open_png(InputFile& file, const ReadOptions& options);
+
+// As open_png(), through libpng alone: the same files are read, with the same texels. Tests compare the two.
+Result<std::unique_ptr<RowSource>> open_png_with_libpng(InputFile& file, const ReadOptions& options);
 
 // Writes the base level of a texture row by row, with the bytes of encode_png(). The work of the target is to filter
 // and compress blocks of rows. Errors: unsupported (another format), out_of_memory.

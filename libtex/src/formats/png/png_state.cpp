@@ -16,8 +16,10 @@ void on_png_error(png_structp png, png_const_charp message) {
 void on_png_warning(png_structp, png_const_charp) {}
 
 png_voidp on_png_allocate(png_structp png, png_alloc_size_t size) {
+    auto* state = static_cast<PngState*>(png_get_mem_ptr(png));
+    if (size > state->most_bytes) png_error(png, "the file ends too early");
     void* memory = std::malloc(size);
-    if (memory == nullptr) static_cast<PngState*>(png_get_mem_ptr(png))->out_of_memory = true;
+    if (memory == nullptr) state->out_of_memory = true;
     return memory;
 }
 

@@ -5,6 +5,8 @@
 
 #include <png.h>
 
+#include <limits>
+
 namespace tex {
 
 struct PngState {
@@ -12,6 +14,8 @@ struct PngState {
     png_infop info = nullptr;
     char reason[128] = {};  // why libpng stopped
     bool out_of_memory = false;
+    // The most bytes that libpng may ask for at once. It asks for as many as a chunk claims to have.
+    png_alloc_size_t most_bytes = std::numeric_limits<png_alloc_size_t>::max();
 };
 
 // Callbacks of libpng. The error and memory pointers are the PngState.
