@@ -177,6 +177,22 @@ TEST(MeshShows, UvLayoutRepeatsTrianglesThatLeaveTheMap) {
     EXPECT_EQ(pixel(picture, 32, 4), outside);
 }
 
+TEST(MeshShows, UvLayoutRefusesManyTrianglesThatRepeatTheMap) {
+    MeshWithTangents mesh = quad();
+    for (Float2& uv : mesh.part.uvs[0]) uv = {15.5f * uv.x, 15.5f * uv.y};
+    for (int k = 0; k < 12; ++k) {  // 2 triangles become 8192, of 256 repeats each
+        mesh.part.indices.insert(mesh.part.indices.end(), mesh.part.indices.begin(), mesh.part.indices.end());
+        mesh.tangents.insert(mesh.tangents.end(), mesh.tangents.begin(), mesh.tangents.end());
+    }
+    const TangentSpace space = mesh.space();
+    PreviewOptions options;
+    options.show = Show::uv;
+    options.size = {16, 16};
+    const auto picture = preview({.map = &flat(), .mesh = &space}, options);
+    ASSERT_FALSE(picture);
+    EXPECT_EQ(picture.error().reason, "triangles of the mesh cover more than 4 repeats of the map");
+}
+
 TEST(MeshShows, UvLayoutHasTheProportionsOfTheMap) {
     const MipChain map = constant({32, 16}, 0.0f, 0.0f, 1.0f);
     PreviewOptions options;

@@ -70,8 +70,8 @@ struct PreviewScene {
 // Errors: bad_option   the show is height but there is no height map; the albedo has neither R, G and B nor one plane;
 //                      an option is outside the range stated beside it; the show is tangents, uv or seams but there is
 //                      no mesh; the mesh has no normals, no such set of UVs, not as many tangents as corners
-//         unsupported  triangles of a mesh hide each other more than 1024 deep, on average; UVs of a triangle of `uv`
-//                      are beyond a million or more than 16 repeats of the map long
+//         unsupported  triangles of a mesh hide each other more than 1024 deep, on average; UVs of `uv` are beyond a
+//                      million, or triangles more than 16 repeats of the map long, or more than 4 on average
 //         out_of_memory, cancelled
 // Memory of a mesh: 16 bytes for each vertex and about 40 for each triangle (uv: 100, seams: 200).
 // The same bytes for every number of threads, processor and compiler.

@@ -24,6 +24,9 @@ constexpr double kFillShare = 0.12;
 constexpr double kFarthestUv = 1e6;
 constexpr double kLongestUv = 16.0;  // repeats of the map
 
+// Of a triangle, on average, beyond a million, so that memory stays in proportion to the mesh.
+constexpr std::size_t kMostCopies = 4, kFreeCopies = std::size_t{1} << 20;
+
 // The least and the greatest whole repeat of the map that values touch.
 struct Repeats {
     double first, last;
@@ -38,7 +41,8 @@ Repeats repeats_of(double a, double b, double c) {
 // Corners of all triangles on the picture: once for each repeat of the map that a triangle touches.
 class Layout {
 public:
-    explicit Layout(Extent size) : size_(size) {}
+    Layout(Extent size, std::size_t triangles)
+        : size_(size), most_vertices_(3 * (kFreeCopies + kMostCopies * triangles)) {}
 
     Result<void> add(const std::array<Vec2, 3>& uvs) {
         const Repeats across = repeats_of(uvs[0].x, uvs[1].x, uvs[2].x);
@@ -51,6 +55,8 @@ public:
         for (double y = up.first; y <= up.last; y += 1.0) {
             for (double x = across.first; x <= across.last; x += 1.0) put(uvs, {x, y});
         }
+        if (vertices_.size() > most_vertices_)
+            return Error{ErrorCode::unsupported, {}, "triangles of the mesh cover more than 4 repeats of the map"};
         return {};
     }
 
@@ -67,6 +73,7 @@ private:
     }
 
     Extent size_;
+    std::size_t most_vertices_;
     std::vector<RasterVertex> vertices_;
     std::vector<RasterTriangle> triangles_;
 };
@@ -125,7 +132,7 @@ private:
 
 Result<Texture> uv_layout(const MeshBody& mesh, const PreviewScene& scene, const PreviewOptions& options, Extent size,
                           const Execution& execution) {
-    Layout layout(size);
+    Layout layout(size, mesh.triangles());
     for (std::size_t t = 0; t < mesh.triangles(); ++t) {
         if (const auto added = layout.add(mesh.uvs(t)); !added) return added.error();
     }
