@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// preview-normals: draws normal maps under a light, and in false colours.
+// preview-normals: draws normal maps under a light, also on a mesh, and in false colours.
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <tex/tex.h>
 
@@ -8,6 +13,7 @@
 #include "cli/usage_error.h"
 #include "options/scene.h"
 #include "options/sheet.h"
+#include "options/tangent_space.h"
 
 namespace {
 
@@ -18,14 +24,16 @@ public:
     explicit PreviewNormals(const cli::ProgramRow& row);
 
 private:
-    [[nodiscard]] cli::OutputRules rules() const override {
-        return {Container::png, Container::png, true, scene_.files()};
-    }
+    [[nodiscard]] cli::OutputRules rules() const override { return {Container::png, Container::png, true, sources()}; }
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] Result<void> process(cli::Job& job) override;
 
+    // The files besides the maps.
+    [[nodiscard]] std::vector<std::string> sources() const;
+
     cli::SceneOptions scene_;
     cli::SheetOptions sheet_;
+    cli::TangentSpaceOptions mesh_;
 };
 
 PreviewNormals::PreviewNormals(const cli::ProgramRow& row) : NormalsConverter(row) {
@@ -40,6 +48,12 @@ PreviewNormals::PreviewNormals(const cli::ProgramRow& row) : NormalsConverter(ro
     sheet_.add(command, scene_);
     normals.add(command, false);
     scene_.add(command);
+    mesh_.add_input(command);
+    command.check([this] {
+        sheet_.check_mesh(mesh_.has_mesh());
+        const auto idle = command.given_of({"--shape", "--mirror"});
+        if (mesh_.has_mesh() && !idle.empty()) throw cli::UsageError(idle.front() + " has no meaning with --mesh");
+    });
     running.add(command);
     command.example("preview-normals bricks.dds -o bricks.png", "The map under a light from the upper left.");
     command.example("preview-normals bricks.dds -o sphere.png --shape sphere --detail grain.dds --detail-tiling 8",
@@ -48,6 +62,15 @@ PreviewNormals::PreviewNormals(const cli::ProgramRow& row) : NormalsConverter(ro
                     "A contact sheet, a row for each map.");
     command.example("preview-normals before.dds after.dds -o split.png --split --difference",
                     "Two maps in one picture, and the angles between them.");
+    command.example("preview-normals rock_n.dds -o look.png --mesh rock.glb --camera 30,20 --show lit,tangents,seams",
+                    "On its mesh, with its tangents and the error along its UV seams.");
+}
+
+std::vector<std::string> PreviewNormals::sources() const {
+    std::vector<std::string> names = scene_.files();
+    if (!mesh_.has_mesh()) return names;
+    for (std::string& name : mesh_.files()) names.push_back(std::move(name));
+    return names;
 }
 
 Result<void> PreviewNormals::check(const std::vector<cli::Task>& tasks) {
@@ -55,8 +78,12 @@ Result<void> PreviewNormals::check(const std::vector<cli::Task>& tasks) {
         cli::OutputOptions::check_holds(task.output, task.container, Encoding::rgb8);
         if (cli::has_level(task.output)) throw cli::UsageError("--name: {level} has no meaning for pictures");
         sheet_.check(task);
+        if (mesh_.has_mesh() && task.tile != 0 && !task.joined.empty())
+            throw cli::UsageError("the tiles of a mesh are pictures of their own: give --out-dir, not -o");
     }
-    return {};
+    if (!mesh_.has_mesh()) return {};
+    const auto mesh = mesh_.input(0, running.read, {running.threads, {}});  // jobs share it; one error is enough
+    return mesh ? Result<void>() : mesh.error();
 }
 
 Result<void> PreviewNormals::process(cli::Job& job) {
@@ -69,8 +96,17 @@ Result<void> PreviewNormals::process(cli::Job& job) {
         if (!map) return map.error();
         maps.push_back(std::move(*map));
     }
-    const auto with = scene_.read(job, normals, job.until(0.5));
+    auto with = scene_.read(job, normals, job.until(0.5));
     if (!with) return with.error();
+    std::optional<cli::MeshSpace> mesh;
+    if (mesh_.has_mesh()) {
+        auto read = mesh_.input(job.task.tile, job.read_options, {job.threads(), {}});
+        if (!read) return read.error();
+        mesh = std::move(*read);
+        job.report["tangents"] = name_of(kTangentSourceNames, mesh->source());
+    }
+    const auto space = mesh ? std::optional<TangentSpace>(mesh->space()) : std::nullopt;
+    with->mesh = space ? &*space : nullptr;
     const auto frames = sheet_.draw(names, maps, *with, job.until(0.95));
     if (!frames) return frames.error();
     const Texture& first = frames->front();

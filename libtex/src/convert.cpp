@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <string>
 #include <utility>
 
 #include "mesh/coverage.h"
@@ -27,15 +26,6 @@ constexpr int kGutter = 2;
 constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
 
 enum class Direction { to_object, to_tangent };
-
-Result<void> check_space(const TangentSpace& space) {
-    if (space.part.normals.empty()) return Error{ErrorCode::bad_option, {}, "the mesh has no normals"};
-    if (space.uv_set < 0 || static_cast<std::size_t>(space.uv_set) >= space.part.uvs.size())
-        return Error{ErrorCode::bad_option, {}, "the mesh has no UV set " + std::to_string(space.uv_set)};
-    if (space.tangents.size() != space.part.indices.size())
-        return Error{ErrorCode::bad_option, {}, "the mesh has not one tangent for each corner"};
-    return {};
-}
 
 void set(NormalMap& map, int i, int j, Vector3 n) {
     map.x.at(i, j) = static_cast<float>(n.x);

@@ -11,8 +11,11 @@
 
 #include <tex/sheet.h>
 
+#include "mesh/frames.h"
 #include "preview/canvas.h"
 #include "preview/measures.h"
+#include "preview/mesh_body.h"
+#include "preview/mesh_shows.h"
 #include "preview/progress.h"
 #include "preview/surfaces.h"
 #include "threads/guard.h"
@@ -232,6 +235,9 @@ Result<Texture> show(const Job& job) {
         case Show::channels: return show_channels(job);
         case Show::mips: return show_mips(job);
         case Show::height: return show_height(job);
+        case Show::tangents:
+        case Show::uv:
+        case Show::seams: return show_mesh(job.scene, job.options, job.stage, job.execution);
         default: return show_measure(job);
     }
 }
@@ -244,7 +250,21 @@ Result<Texture> preview(const PreviewScene& scene, const PreviewOptions& options
         if (const auto sound = check_light(options); !sound) return sound.error();
         if (const auto sound = check_geometry(options); !sound) return sound.error();
         const Extent map = scene.map->levels.front().extent();
-        return show({scene, options, execution, stage(options, map, size_of(options, map))});
+        if (scene.mesh == nullptr) {
+            if (is_of_mesh(options.show)) return bad("there is no mesh to show");
+            return show({scene, options, execution, stage(options, nullptr, map, size_of(options, map))});
+        }
+        assert(check_part(scene.mesh->part));
+        if (const auto sound = check_space(*scene.mesh); !sound) return sound.error().of(scene.mesh->file);
+        const MeshBody mesh(*scene.mesh);
+        PreviewOptions of_mesh = options;
+        of_mesh.shape = options.show == Show::uv ? Shape::plane : Shape::sphere;
+        of_mesh.tiles_x = of_mesh.tiles_y = 1;
+        const Extent size = size_of(of_mesh, map);
+        auto picture = show({scene, of_mesh, execution, stage(of_mesh, &mesh, map, size)});
+        if (!picture && picture.error().file.empty() && picture.error().code == ErrorCode::unsupported)
+            return picture.error().of(scene.mesh->file);
+        return picture;
     });
 }
 

@@ -109,29 +109,56 @@ GLuint upload_plane(const tex::Plane<float>& plane) {
     return texture;
 }
 
-std::vector<float> draw(GLuint program, tex::Extent extent, int vertices,
-                        const std::function<void(const Place&)>& set_uniforms) {
+namespace {
+
+// Draws with the shape of vertices `mode`, and a depth buffer if there are triangles.
+std::vector<float> draw_as(GLenum mode, GLuint program, tex::Extent extent, int vertices,
+                           const std::function<void(const Place&)>& set_uniforms) {
     const Gl& gl = software_gl();
+    const bool with_depth = mode == GL_TRIANGLES;
     gl.ActiveTexture(GL_TEXTURE2);  // 0 and 1 hold the maps
     const GLuint target = bind_new_texture();
     gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, extent.width, extent.height, 0, GL_RGBA, GL_FLOAT, nullptr);
-    GLuint framebuffer = 0;
+    GLuint framebuffer = 0, depth = 0;
     gl.GenFramebuffers(1, &framebuffer);
     gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target, 0);
+    if (with_depth) {
+        depth = bind_new_texture();
+        gl.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, extent.width, extent.height, 0, GL_DEPTH_COMPONENT,
+                      GL_FLOAT, nullptr);
+        gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth, 0);
+        constexpr float kFar = 1.0f;
+        gl.ClearBufferfv(GL_DEPTH, 0, &kFar);
+        for (const GLenum test : {GL_DEPTH_TEST, GL_CULL_FACE}) gl.Enable(test);
+    }
     gl.Viewport(0, 0, extent.width, extent.height);
     constexpr float kNothing[4] = {};
     gl.ClearBufferfv(GL_COLOR, 0, kNothing);
     gl.UseProgram(program);
     set_uniforms([&](const char* uniform) { return gl.GetUniformLocation(program, uniform); });
-    gl.DrawArrays(GL_TRIANGLE_STRIP, 0, vertices);
+    gl.DrawArrays(mode, 0, vertices);
     std::vector<float> rgba(static_cast<std::size_t>(extent.texels()) * 4);
     gl.ReadPixels(0, 0, extent.width, extent.height, GL_RGBA, GL_FLOAT, rgba.data());
+    for (const GLenum test : {GL_DEPTH_TEST, GL_CULL_FACE}) gl.Disable(test);
     gl.DeleteFramebuffers(1, &framebuffer);
     gl.DeleteTextures(1, &target);
+    if (with_depth) gl.DeleteTextures(1, &depth);
     gl.ActiveTexture(GL_TEXTURE0);
     if (gl.GetError() != GL_NO_ERROR) rgba.clear();
     return rgba;
+}
+
+}  // namespace
+
+std::vector<float> draw(GLuint program, tex::Extent extent, int vertices,
+                        const std::function<void(const Place&)>& set_uniforms) {
+    return draw_as(GL_TRIANGLE_STRIP, program, extent, vertices, set_uniforms);
+}
+
+std::vector<float> draw_triangles(GLuint program, tex::Extent extent, int vertices,
+                                  const std::function<void(const Place&)>& set_uniforms) {
+    return draw_as(GL_TRIANGLES, program, extent, vertices, set_uniforms);
 }
 
 std::vector<float> flipped(const std::vector<float>& rgba, tex::Extent extent) {

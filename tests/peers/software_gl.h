@@ -56,6 +56,8 @@ struct Gl {
     PEERS_GL(void, TexImage2D, GLenum, GLint, GLint, GLsizei, GLsizei, GLint, GLenum, GLenum, const void*);
     PEERS_GL(void, Viewport, GLint, GLint, GLsizei, GLsizei);
     PEERS_GL(void, DrawArrays, GLenum, GLint, GLsizei);
+    PEERS_GL(void, Enable, GLenum);
+    PEERS_GL(void, Disable, GLenum);
     PEERS_GL(void, ReadPixels, GLint, GLint, GLsizei, GLsizei, GLenum, GLenum, void*);
     PEERS_GL(GLenum, GetError, void);
 #undef PEERS_GL
@@ -87,6 +89,10 @@ GLuint upload_plane(const tex::Plane<float>& plane);
 using Place = std::function<GLint(const char* uniform)>;
 std::vector<float> draw(GLuint program, tex::Extent target, int vertices,
                         const std::function<void(const Place&)>& set_uniforms);
+
+// The same of separate triangles: nearer ones hide others, and those whose corners are clockwise are not drawn.
+std::vector<float> draw_triangles(GLuint program, tex::Extent target, int vertices,
+                                  const std::function<void(const Place&)>& set_uniforms);
 
 // Rows of RGBA, the last first.
 std::vector<float> flipped(const std::vector<float>& rgba, tex::Extent extent);

@@ -183,6 +183,7 @@ TEST(Preview, GivesTheSameBytesForAnyNumberOfThreads) {
     const MipChain map = random_map({40, 40}, 11);
     const Plane<float> height(Extent{40, 40}, 0.7f);
     for (const auto& row : kShowNames) {
+        if (row.value == Show::tangents || row.value == Show::uv || row.value == Show::seams) continue;  // of a mesh
         PreviewOptions options;
         options.show = row.value;
         options.shape = Shape::sphere;
@@ -243,6 +244,7 @@ TEST(Preview, ProgressNeverRunsBackwards) {
     const MipChain map = random_map({40, 40}, 11);
     const Plane<float> height(Extent{40, 40}, 0.7f);
     for (const auto& row : kShowNames) {
+        if (row.value == Show::tangents || row.value == Show::uv || row.value == Show::seams) continue;  // of a mesh
         PreviewOptions options;
         options.show = row.value;
         double last = 0.0;

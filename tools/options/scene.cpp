@@ -114,7 +114,7 @@ void SceneOptions::add_shape(Command& command) {
                         throw UsageError("FOV is 0 to 120 degrees");
                     preview.camera = camera;
                 })
-        .preset = "0,0,30; of a cube -35,25,30";
+        .preset = "0,0,30; of a cube -35,25,30; of a mesh 30,20,30";
 }
 
 void SceneOptions::add_light(Command& command) {
@@ -251,6 +251,7 @@ PreviewScene SceneFiles::with(const SampledMap& map) const {
     PreviewScene scene;
     scene.map = &map.chain;
     scene.map_without_z = map.without_z;
+    scene.mesh = mesh;
     if (detail) {
         scene.detail = &detail->chain;
         scene.detail_without_z = detail->without_z;

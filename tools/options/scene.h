@@ -31,6 +31,7 @@ struct SceneFiles {
     std::optional<SampledMap> detail;
     std::optional<Image> albedo, detail_albedo;
     Plane<float> height;
+    const TangentSpace* mesh = nullptr;  // or none; must outlive this
 
     [[nodiscard]] PreviewScene with(const SampledMap& map) const;
 };

@@ -48,7 +48,7 @@ void SheetOptions::add(Command& command, SceneOptions& scene) {
     command
         .option("--size", "N|WxH", "pixels of a picture's longer side, or both",
                 [&scene](const std::string& text) { scene.preview.size = parse_picture_size(text); })
-        .preset = fmt::format("the map's own, up to 1024; 512 for sphere and cube; {} on sheets", kPanelSize);
+        .preset = fmt::format("the map's own, up to 1024; 512 for sphere, cube and mesh; {} on sheets", kPanelSize);
     command.number(columns_, "--columns", "N", 0, 1000, "pictures in a row of a sheet").preset =
         "the number of --show, else as many as rows";
     command.flag(split_, "--split", "two maps: the left half of one picture and the right half of the other");
@@ -59,7 +59,7 @@ void SheetOptions::add(Command& command, SceneOptions& scene) {
         .preset = "";
     command
         .number(scene.preview.maximum, "--legend-max", "V", {0.0, 1e9},
-                "the legend's end for slope, tilt, length, z-error and curl")
+                "the legend's end for slope, tilt, length, z-error, curl and seams")
         .preset = "a round number that suits the map";
     command.flag(no_legend_, "--no-legend", "no legends");
     command.flag(no_captions_, "--no-captions", "no captions on sheets");
@@ -78,6 +78,13 @@ void SheetOptions::check(const Task& task) const {
     if ((split_ || difference_) && maps != 2) {
         throw UsageError(fmt::format("{} takes two maps and -o, {} given", split_ ? "--split" : "--difference",
                                      maps == 1 ? "one is" : fmt::format("{} are", maps)));
+    }
+}
+
+void SheetOptions::check_mesh(bool has_mesh) const {
+    for (const Show show : {Show::tangents, Show::uv, Show::seams}) {
+        if (!has_mesh && std::find(shows_.begin(), shows_.end(), show) != shows_.end())
+            throw UsageError(fmt::format("--show {} needs --mesh", name_of(kShowNames, show)));
     }
 }
 

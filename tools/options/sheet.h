@@ -27,6 +27,9 @@ public:
     [[nodiscard]] bool is_animated() const { return turntable_ > 0; }
     [[nodiscard]] bool is_difference() const { return difference_; }
 
+    // Throws UsageError if a picture needs a mesh, and there is none.
+    void check_mesh(bool has_mesh) const;
+
     // Draws the frames of the picture: one, unless it is animated. `maps` are the maps of the files `names`; `with`
     // holds the other files of the scene. Errors: those of the verbs.
     [[nodiscard]] Result<std::vector<Texture>> draw(const std::vector<std::string>& names,

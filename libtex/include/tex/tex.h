@@ -74,6 +74,7 @@
 #include <tex/pack.h>
 #include <tex/pack_options.h>
 #include <tex/preview.h>
+#include <tex/preview_options.h>
 #include <tex/roughness.h>
 #include <tex/roughness_options.h>
 #include <tex/scale.h>

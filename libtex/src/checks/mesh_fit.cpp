@@ -3,13 +3,13 @@
 #include "checks/mesh_fit.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 #include <vector>
 
 #include <tex/tangents.h>
 
 #include "checks/mesh_seams.h"
+#include "checks/seam_evidence.h"
 #include "checks/tangent_rules.h"
 #include "checks/thresholds.h"
 
@@ -18,59 +18,10 @@ namespace {
 
 constexpr double kConfident = 0.99;
 
-// The side of a square around the worst edge, in texels.
-constexpr int kRegion = 16;
-
-double degrees_of(Vector3 gap) {
-    const double chord = std::sqrt(gap.x * gap.x + gap.y * gap.y + gap.z * gap.z);
-    return 2.0 * kDegrees * std::asin(std::min(1.0, chord / 2.0));
-}
-
 bool points_up(const Subject& subject) {
     if (subject.options.require.y) return *subject.options.require.y == YAxis::up;
     if (subject.texture.y_known) return subject.texture.y_axis == YAxis::up;
     return subject.options.mesh->decoder != Decoder::unreal;
-}
-
-// The square of texels around a place of the map, inside of the map.
-Region region_around(const std::array<double, 2>& place, Extent extent) {
-    const auto first = [](double at, int size, int whole) {
-        const double wrapped = at - std::floor(at / whole) * whole;
-        return std::clamp(static_cast<int>(wrapped) - size / 2, 0, whole - size);
-    };
-    const int width = std::min(kRegion, extent.width), height = std::min(kRegion, extent.height);
-    return {0, first(place[0], width, extent.width), first(place[1], height, extent.height), width, height};
-}
-
-SeamEvidence evidence_of(const SeamSamples& samples, const std::vector<Vector3>& gaps, Extent extent) {
-    SeamEvidence evidence;
-    std::vector<std::pair<double, double>> angles;  // with their weights
-    double all = 0.0, of_edge = 0.0, count = 0.0;
-    const auto& places = samples.places();
-    for (std::size_t k = 0; k < places.size(); ++k) {
-        const double angle = degrees_of(gaps[k]);
-        angles.emplace_back(angle, places[k].weight);
-        evidence.mean += places[k].weight * angle;
-        all += places[k].weight;
-        of_edge += angle;
-        count += 1.0;
-        if (k + 1 < places.size() && places[k + 1].edge == places[k].edge) continue;
-        ++evidence.edges;
-        if (of_edge / count >= evidence.worst) {
-            evidence.worst = of_edge / count;
-            evidence.worst_edge = region_around(places[k].at, extent);
-        }
-        of_edge = count = 0.0;
-    }
-    evidence.mean = all > 0.0 ? evidence.mean / all : 0.0;
-    std::sort(angles.begin(), angles.end());
-    double below = 0.0;
-    for (const auto& [angle, weight] : angles) {
-        evidence.p99 = angle;
-        below += weight;
-        if (below >= 0.99 * all) break;
-    }
-    return evidence;
 }
 
 // A way of decoding, and what the seams are like then.
@@ -171,7 +122,7 @@ Result<std::optional<SeamEvidence>> check_mesh_fit(const Subject& subject, Findi
     Candidates candidates(subject, samples);
     const bool y_up = points_up(subject);
     const Candidate given = candidates.given(y_up);
-    const SeamEvidence evidence = evidence_of(samples, given.gaps, extent);
+    const SeamEvidence evidence = seam_evidence(samples, given.gaps, extent);
     if (!findings.wants("N711")) return std::optional(evidence);
 
     // Only a map whose y clearly meets at the seams can show what it was made for. Most maps do that one way or the
@@ -189,7 +140,7 @@ Result<std::optional<SeamEvidence>> check_mesh_fit(const Subject& subject, Findi
         return std::optional(evidence);
     if (is_right && (verdict.slope < thresholds::kSeamFit || verdict.saved < thresholds::kSeamGap))
         return std::optional(evidence);
-    const SeamEvidence then = evidence_of(samples, best.gaps, extent);
+    const SeamEvidence then = seam_evidence(samples, best.gaps, extent);
     Finding& finding = findings.add("N711", difference_of(best, given) + " (" + std::to_string(evidence.edges) +
                                                 " seam edges: " + figures(evidence) + "; then " + figures(then) +
                                                 "; confidence " + decimal(verdict.confidence, 3) + ")");

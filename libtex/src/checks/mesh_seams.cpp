@@ -149,9 +149,12 @@ std::array<double, 3> weights_at(const SeamSide& side, double way) {
 }  // namespace
 
 SeamSamples::SeamSamples(const MeshPart& part, const std::vector<SeamEdge>& edges, const Stored& stored)
+    : SeamSamples(part, edges, stored.extent(),
+                  [texels = Texels(stored)](double x, double y) { return texels.at(x, y); }) {}
+
+SeamSamples::SeamSamples(const MeshPart& part, const std::vector<SeamEdge>& edges, Extent extent,
+                         const TexelAt& texel_at)
     : part_(part), edges_(edges) {
-    const Texels texels(stored);
-    const Extent extent = stored.extent();
     // The place in the map, in texels.
     const auto corner = [&](const SeamSide& side, std::size_t end) -> std::array<double, 2> {
         const Float2 uv = part.uvs.front()[part.indices[3 * side.triangle + side.corner[end]]];
@@ -163,7 +166,8 @@ SeamSamples::SeamSamples(const MeshPart& part, const std::vector<SeamEdge>& edge
         double size = 0.0;
         for (const SeamSide* side : sides) {
             const auto p = corner(*side, 0), q = corner(*side, 1);
-            size = std::max(size, std::hypot(q[0] - p[0], q[1] - p[1]));
+            const double across = q[0] - p[0], down = q[1] - p[1];
+            size = std::max(size, std::sqrt(across * across + down * down));
         }
         const int count = static_cast<int>(std::clamp(size / 2.0, 1.0, static_cast<double>(kMostPlaces)));
         for (int k = 0; k < count; ++k) {
@@ -175,7 +179,7 @@ SeamSamples::SeamSamples(const MeshPart& part, const std::vector<SeamEdge>& edge
                 const auto p = corner(*sides[s], 0), q = corner(*sides[s], 1);
                 place.weights[s] = weights_at(*sides[s], way);
                 const std::array<double, 2> at = {p[0] + way * (q[0] - p[0]), p[1] + way * (q[1] - p[1])};
-                place.texel[s] = texels.at(at[0], at[1]);
+                place.texel[s] = texel_at(at[0], at[1]);
                 if (s == 0) place.at = at;
             }
             places_.push_back(place);

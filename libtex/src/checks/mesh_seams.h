@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include <tex/check.h>
@@ -37,9 +38,14 @@ struct SeamSpace {
     bool y_up = true;
 };
 
-// Places on seam edges, with the map's texels on both sides. The texels are those of a bilinear filter that repeats.
+// The vector of a map at (x, y), in texels from its upper left corner. May be outside of the map.
+using TexelAt = std::function<Vector3(double x, double y)>;
+
+// Places on seam edges, with the map's texels on both sides.
 class SeamSamples {
 public:
+    SeamSamples(const MeshPart& part, const std::vector<SeamEdge>& edges, Extent extent, const TexelAt& texel_at);
+    // With the texels of a bilinear filter that repeats.
     SeamSamples(const MeshPart& part, const std::vector<SeamEdge>& edges, const Stored& stored);
 
     struct Place {

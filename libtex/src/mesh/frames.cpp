@@ -3,6 +3,7 @@
 #include "mesh/frames.h"
 
 #include <cmath>
+#include <string>
 
 namespace tex {
 namespace {
@@ -45,6 +46,15 @@ Vector3 mix(const std::array<Vector3, 3>& v, const std::array<double, 3>& weight
 }
 
 }  // namespace
+
+Result<void> check_space(const TangentSpace& space) {
+    if (space.part.normals.empty()) return Error{ErrorCode::bad_option, {}, "the mesh has no normals"};
+    if (space.uv_set < 0 || static_cast<std::size_t>(space.uv_set) >= space.part.uvs.size())
+        return Error{ErrorCode::bad_option, {}, "the mesh has no UV set " + std::to_string(space.uv_set)};
+    if (space.tangents.size() != space.part.indices.size())
+        return Error{ErrorCode::bad_option, {}, "the mesh has not one tangent for each corner"};
+    return {};
+}
 
 bool same_vectors(Decoder a, Decoder b) { return kind_of(a) == kind_of(b); }
 

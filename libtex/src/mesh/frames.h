@@ -7,6 +7,7 @@
 #include <optional>
 
 #include <tex/convert_options.h>
+#include <tex/result.h>
 
 namespace tex {
 
@@ -33,6 +34,9 @@ private:
     std::array<double, 3> signs_{};
     Decoder decoder_ = Decoder::gltf;
 };
+
+// Errors: bad_option (no normals, no such set of UVs, not as many tangents as corners).
+[[nodiscard]] Result<void> check_space(const TangentSpace& space);
 
 // Whether both decoders make the same vectors.
 [[nodiscard]] bool same_vectors(Decoder a, Decoder b);

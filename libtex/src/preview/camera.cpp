@@ -41,6 +41,20 @@ Ray View::ray(double x, double y) const {
     return {eye_, point - eye_};
 }
 
+Projected View::project(Vec3 point, double lift) const {
+    // Every shape lies in front of the eye, whose distance is more than its radius.
+    constexpr double kLeastDepth = 1e-3;
+    double nearness = dot(point, toward_) + lift;
+    if (!parallel_) {
+        const Vec3 way = point - eye_;
+        const double depth = std::max(-dot(way, toward_), kLeastDepth);
+        nearness = 1.0 / std::max(depth - lift, kLeastDepth);
+        point = eye_ + way * (dot(eye_, toward_) / depth);  // in the picture plane
+    }
+    const Vec3 from_corner = point - corner_;
+    return {dot(from_corner, right_) / dot(right_, right_), -dot(from_corner, up_) / dot(up_, up_), nearness};
+}
+
 void View::turn(double sine, double cosine) {
     for (Vec3* v : {&eye_, &toward_, &right_, &up_, &corner_}) *v = turn_about_y(*v, sine, cosine);
 }

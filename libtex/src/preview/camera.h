@@ -7,6 +7,7 @@
 
 #include <tex/preview.h>
 
+#include "preview/raster.h"
 #include "preview/vector.h"
 
 namespace tex::render {
@@ -29,6 +30,9 @@ public:
 
     // The unnormalised direction from `point` to the viewer.
     [[nodiscard]] Vec3 towards_viewer(Vec3 point) const { return parallel_ ? toward_ : eye_ - point; }
+
+    // Where a point is seen. Its nearness is that of a point that is `lift` closer to the viewer.
+    [[nodiscard]] Projected project(Vec3 point, double lift = 0.0) const;
 
     // Rotates the whole picture about the vertical axis, which is the same as rotating the shape the other way.
     void turn(double sine, double cosine);

@@ -21,6 +21,8 @@ constexpr int kBarHeight = 10;
 constexpr int kTextTop = 21;
 constexpr int kLineRows = 12;  // of a line of the title below the values
 constexpr int kLeastWidth = 96;
+constexpr int kKeyRows = 18;
+constexpr int kKeyTop = 5;
 
 // Nobody can distinguish this many colours. Together with the colours of the letters, they fit into the palette of a
 // PNG.
@@ -97,6 +99,22 @@ Texture with_legend(Texture picture, const ColorScale& scale) {
     Canvas canvas({width, top + below.extent.height});
     canvas.draw(0, 0, level);
     canvas.draw(0, top, below);
+    return std::move(canvas).take();
+}
+
+Texture with_key(Texture picture, const std::vector<Keyword>& words) {
+    const Level& level = picture.levels.front();
+    const int width = std::max(level.extent.width, kLeastWidth), top = level.extent.height, unit = text_scale(width);
+    Canvas canvas({width, top + kKeyRows * unit});
+    canvas.draw(0, 0, level);
+    const int margin = kMargin * unit, count = static_cast<int>(words.size());
+    int x = margin;
+    for (int k = 0; k < count; ++k) {
+        const Keyword& key = words[static_cast<std::size_t>(k)];
+        const std::string word = fitted(key.word, unit, (width - margin - x) / (count - k) - margin);
+        canvas.text(x, top + kKeyTop * unit, unit, word, key.color);
+        x += text_width(word, unit) + 2 * margin;
+    }
     return std::move(canvas).take();
 }
 

@@ -4,9 +4,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <tex/texture.h>
 
+#include "preview/colormap.h"
 #include "preview/vector.h"
 
 namespace tex::render {
@@ -35,5 +37,12 @@ inline constexpr int kLegendRows = 36;
 
 // The picture with its legend below. A picture that is too narrow for a legend gets wider.
 [[nodiscard]] Texture with_legend(Texture picture, const ColorScale& scale);
+
+// The picture with a line of words below, each in its colour. Words that are too long lose letters in their middles.
+struct Keyword {
+    std::string word;
+    Code color;
+};
+[[nodiscard]] Texture with_key(Texture picture, const std::vector<Keyword>& words);
 
 }  // namespace tex::render

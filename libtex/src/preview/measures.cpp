@@ -127,12 +127,6 @@ double nice(double value) {
     return power * 10.0;
 }
 
-// The least of these angles that is not below `degrees`.
-double nice_angle(double degrees) {
-    constexpr double kAngles[] = {0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0, 45.0, 60.0, 90.0, 180.0};
-    return *std::lower_bound(std::begin(kAngles), std::end(kAngles) - 1, degrees);
-}
-
 // The value in |values| below which this many thousandths of them lie; 0 if none is finite.
 double quantile(const Plane<float>& values, std::size_t thousandths) {
     std::vector<float> sizes;
@@ -159,6 +153,11 @@ bool is_measure(Show show) {
 
 double round_maximum(const Plane<float>& values, double least) { return nice(std::max(quantile(values, 995), least)); }
 
+double round_angle(double degrees) {
+    constexpr double kAngles[] = {0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 20.0, 30.0, 45.0, 60.0, 90.0, 180.0};
+    return *std::lower_bound(std::begin(kAngles), std::end(kAngles) - 1, degrees);
+}
+
 Result<Measure> measure(Show show, const NormalMap& map, float maximum, const Execution& execution) {
     if (show == Show::curl) return measure_curl_of(map, maximum, execution);
     Measure result;
@@ -175,7 +174,7 @@ Result<Measure> measure(Show show, const NormalMap& map, float maximum, const Ex
             break;
         case Show::tilt:
             scale.title = "tilt, degrees";
-            if (choose) scale.greatest = nice_angle(quantile(result.values, 999));
+            if (choose) scale.greatest = round_angle(quantile(result.values, 999));
             break;
         case Show::length:
         case Show::z_error:

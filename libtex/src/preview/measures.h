@@ -27,4 +27,7 @@ struct Measure {
 // not below `least`.
 [[nodiscard]] double round_maximum(const Plane<float>& values, double least);
 
+// The least of 0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 20, 30, 45, 60, 90 and 180 degrees that is not below `degrees`.
+[[nodiscard]] double round_angle(double degrees);
+
 }  // namespace tex::render

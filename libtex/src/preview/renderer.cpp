@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "preview/canvas.h"
+#include "preview/mesh_renderer.h"
 #include "preview/shading.h"
 #include "threads/parallel.h"
 
@@ -14,9 +15,13 @@ namespace {
 constexpr int kRowsPerPiece = 8;
 constexpr int kRaysPerSide = 4;  // rays per side of a pixel on an outline
 
-Camera camera_of(const PreviewOptions& options) {
+Camera camera_of(const PreviewOptions& options, bool of_mesh) {
     if (options.camera) return *options.camera;
     Camera camera;
+    if (of_mesh) {
+        camera.yaw = 30.0f;
+        camera.pitch = 20.0f;
+    }
     if (options.shape == Shape::cube) {
         camera.yaw = -35.0f;
         camera.pitch = 25.0f;
@@ -67,10 +72,10 @@ private:
 
 }  // namespace
 
-Stage stage(const PreviewOptions& options, Extent map, Extent size) {
+Stage stage(const PreviewOptions& options, const MeshBody* mesh, Extent map, Extent size) {
     const Body body(options, map);
-    const View view(camera_of(options), size, [&](Vec3 direction) { return body.support(direction); });
-    Stage result{body, view, size, illumination(options).light};
+    const View view(camera_of(options, mesh != nullptr), size, [&](Vec3 direction) { return body.support(direction); });
+    Stage result{body, mesh, view, size, illumination(options).light};
     const double angle = radians(static_cast<double>(options.spin));
     const double sine = math::sin(angle), cosine = math::cos(angle);
     if (options.shape == Shape::plane) {
@@ -85,6 +90,7 @@ Stage stage(const PreviewOptions& options, Extent map, Extent size) {
 }
 
 Result<Texture> render(const Stage& stage, Space space, const Surface& surface, const Execution& execution) {
+    if (stage.mesh != nullptr) return render_mesh(stage, space, surface, {}, execution);
     Canvas canvas(stage.size);
     const Painter painter(stage, space, surface);
     const auto code = space == Space::linear ? srgb_code : display_code;

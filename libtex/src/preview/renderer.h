@@ -12,9 +12,12 @@
 
 namespace tex::render {
 
+class MeshBody;
+
 // Shape, camera and light in the space of the shape: `spin` rotates the viewer and the light the other way.
 struct Stage {
     Body body;
+    const MeshBody* mesh = nullptr;  // instead of the body, if there is one; the body is a sphere then
     View view;
     Extent size;
     Vec3 light;                                 // direction or position
@@ -24,13 +27,14 @@ struct Stage {
     [[nodiscard]] Vec3 to_world(Vec3 v) const { return turn_about_y(v, spin_sine, spin_cosine); }
 };
 
-[[nodiscard]] Stage stage(const PreviewOptions& options, Extent map, Extent size);
+// For a mesh, options.shape is sphere.
+[[nodiscard]] Stage stage(const PreviewOptions& options, const MeshBody* mesh, Extent map, Extent size);
 
 // The values of a pixel that shows the shape: linear light or display values.
 enum class Space { linear, display };
 using Surface = std::function<Vec3(const Hit& hit, const Footprint& footprint)>;
 
-// Renders the picture. Errors: out_of_memory, cancelled.
+// Renders the picture. Errors: unsupported (a mesh, as preview() says), out_of_memory, cancelled.
 [[nodiscard]] Result<Texture> render(const Stage& stage, Space space, const Surface& surface,
                                      const Execution& execution);
 

@@ -16,7 +16,8 @@ namespace tex::render {
 // (a u_per_length, b v_per_length).
 struct Hit {
     Vec3 point;
-    Vec3 tangent, binormal, normal;  // unit; tangent towards growing u, binormal towards growing v
+    // Towards growing u, towards growing v, outwards. Unit vectors or, of a mesh, T', B' and N' of its decoder.
+    Vec3 tangent, binormal, normal;
     Vec2 uv;
     double u_per_length = 0.0, v_per_length = 0.0;  // greater than 0
     int face = 0;                                   // from 1; differs across an edge of the surface

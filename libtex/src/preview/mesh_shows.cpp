@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "preview/mesh_shows.h"
+
+#include <utility>
+
+#include "preview/canvas.h"
+#include "preview/legend.h"
+#include "preview/mesh_renderer.h"
+#include "preview/seam_lines.h"
+#include "preview/shading.h"
+#include "preview/tangent_lines.h"
+#include "preview/uv_layout.h"
+
+namespace tex::render {
+namespace {
+
+// The mesh without the map, so that lines stand out.
+constexpr Vec3 kBareAlbedo{0.25, 0.25, 0.25};
+
+Result<Texture> draw_bare(const Stage& stage, const PreviewOptions& options, const MeshLines& lines,
+                          const Execution& execution) {
+    Illumination with = illumination(options);
+    with.light = stage.light;
+    with.specular = {};
+    with.ambient = {0.35, 0.35, 0.35};
+    return render_mesh(
+        stage, Space::linear,
+        [&](const Hit& hit, const Footprint&) {
+            const Vec3 view = normalize(stage.view.towards_viewer(hit.point));
+            return shade(with, hit.point, normalize(hit.normal), view, kBareAlbedo);
+        },
+        lines, execution);
+}
+
+Result<Texture> show_tangents(const PreviewOptions& options, const Stage& stage, const Execution& execution) {
+    const MeshLines lines = tangent_lines(*stage.mesh, stage.view, 1.5 * text_scale(stage.size.width));
+    auto picture = draw_bare(stage, options, lines, execution);
+    if (!picture || !options.legend) return picture;
+    return with_key(std::move(*picture),
+                    {{"tangent", kTangentColor}, {"binormal", kBinormalColor}, {"normal", kNormalColor}});
+}
+
+Result<Texture> show_seams(const PreviewScene& scene, const PreviewOptions& options, const Stage& stage,
+                           const Execution& execution) {
+    const SeamLines seams = seam_lines(*stage.mesh, scene, options, 2.5 * text_scale(stage.size.width));
+    auto picture = draw_bare(stage, options, seams.lines, execution);
+    if (!picture || !options.legend) return picture;
+    if (seams.lines.lines.empty()) return with_key(std::move(*picture), {{"no UV seams", kInk}});
+    return with_legend(std::move(*picture), seams.scale);
+}
+
+}  // namespace
+
+bool is_of_mesh(Show show) { return show == Show::tangents || show == Show::uv || show == Show::seams; }
+
+Result<Texture> show_mesh(const PreviewScene& scene, const PreviewOptions& options, const Stage& stage,
+                          const Execution& execution) {
+    switch (options.show) {
+        case Show::uv: return uv_layout(*stage.mesh, scene, options, stage.size, execution);
+        case Show::seams: return show_seams(scene, options, stage, execution);
+        default: return show_tangents(options, stage, execution);
+    }
+}
+
+}  // namespace tex::render

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// mesh_shows.h: the pictures that only a mesh has.
+
+#pragma once
+
+#include <tex/preview.h>
+
+#include "preview/renderer.h"
+
+namespace tex::render {
+
+// True for tangents, uv and seams.
+[[nodiscard]] bool is_of_mesh(Show show);
+
+// The picture options.show, with its legend. Preconditions: is_of_mesh(options.show), stage.mesh. Errors: as preview().
+[[nodiscard]] Result<Texture> show_mesh(const PreviewScene& scene, const PreviewOptions& options, const Stage& stage,
+                                        const Execution& execution);
+
+}  // namespace tex::render
