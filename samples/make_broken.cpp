@@ -288,6 +288,8 @@ void Maker::seams() {
     if (!tangents) return fail(tangents.error());
     const TangentSpace space{part, *tangents};
     NormalMap flat({128, 128});
+    flat.x = Plane<float>({128, 128}, 0.0f);
+    flat.y = Plane<float>({128, 128}, 0.0f);
     flat.z = Plane<float>({128, 128}, 1.0f);
     auto surface = to_object_space(flat, space);
     if (!surface) return fail(surface.error());

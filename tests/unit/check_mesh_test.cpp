@@ -23,6 +23,8 @@ namespace {
 Texture flat_texture() {
     MipChain chain;
     chain.levels.emplace_back(Extent{64, 64});
+    chain.levels[0].x = Plane<float>({64, 64}, 0.0f);
+    chain.levels[0].y = Plane<float>({64, 64}, 0.0f);
     chain.levels[0].z = Plane<float>({64, 64}, 1.0f);
     auto texture = pack(chain, {Encoding::rgb8, YAxis::up, Effort::fast});
     EXPECT_TRUE(texture);

@@ -29,6 +29,8 @@ namespace fs = std::filesystem;
 // A map in object space of a surface with waves, which depend on the position in space alone.
 NormalMap wavy_surface(const MeshPart& part, Extent extent, double waves) {
     NormalMap map(extent);
+    map.x = Plane<float>(extent, 0.0f);
+    map.y = Plane<float>(extent, 0.0f);
     map.z = Plane<float>(extent, 1.0f);
     const auto coverage = CoverageMap::make(part, 0, extent, 2);
     EXPECT_TRUE(coverage);
@@ -231,6 +233,8 @@ TEST(MeshFit, SheetsWithoutSeamsHaveNoEvidence) {
     selected.part = wavy_part(4);
     selected.tangents = *make_tangents(selected.part);
     NormalMap flat({64, 64});
+    flat.x = Plane<float>({64, 64}, 0.0f);
+    flat.y = Plane<float>({64, 64}, 0.0f);
     flat.z = Plane<float>({64, 64}, 1.0f);
     const Fit fit = fit_of(baked(flat, {selected.part, selected.tangents}), selected);
     EXPECT_FALSE(fit.seams);
