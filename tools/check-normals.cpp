@@ -30,6 +30,7 @@ private:
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] Result<void> process(cli::Job& job) override;
     [[nodiscard]] Result<CheckReport> check_one(const cli::Job& job, CheckOptions checks, const Execution& execution);
+    [[nodiscard]] Result<void> add_to_documents(cli::Job& job, const CheckReport& report, const cli::Demands& demands);
     [[nodiscard]] cli::ExitCode finish(cli::Console& console) override;
 
     cli::RuleOptions rules_;
@@ -123,10 +124,18 @@ Result<void> CheckNormals::process(cli::Job& job) {
                 : cli::findings_text(*report, require) + cli::pair_text(*report) + cli::seams_text(*report));
     job.report = cli::findings_json(*report, require);
     if (known > 0) job.report["known"] = known;
-    if (auto added = documents_.add(job, *report, demands); !added) return added;
+    if (auto added = add_to_documents(job, *report, demands); !added) return added;
     const std::lock_guard lock(mutex_);
     totals_.add(*report, known);
     return {};
+}
+
+Result<void> CheckNormals::add_to_documents(cli::Job& job, const CheckReport& report, const cli::Demands& demands) {
+    if (!mesh_.has_mesh() || !report.seams) return documents_.add(job, report, demands, nullptr);
+    const auto space = mesh_.input(job.task.tile, job.read_options, {job.threads(), {}});
+    if (!space) return space.error();
+    const cli::MapOnMesh on_mesh{space->space(), report.seams->y};
+    return documents_.add(job, report, demands, &on_mesh);
 }
 
 cli::ExitCode CheckNormals::finish(cli::Console& console) {

@@ -109,7 +109,8 @@ Result<void> CompareNormals::write_page(cli::Console& console, const std::vector
         const Execution shown = running_.step(console, 0.8 + 0.1 * k, 0.9 + 0.1 * k, name);
         const auto texture = pair_.read(name, k, running_.read, console, shown);
         if (!texture) return texture.error();
-        auto map = cli::draw_html_map(name, *texture, texture->swizzle, texture->y_axis, cli::html_sizes(1), shown);
+        auto map =
+            cli::draw_html_map(name, *texture, texture->swizzle, texture->y_axis, nullptr, cli::html_sizes(1), shown);
         if (!map) return map.error();
         maps.push_back(std::move(*map));
     }

@@ -48,6 +48,28 @@ TEST_F(Report, HasTheSameBytesForEveryNumberOfThreads) {
     EXPECT_FALSE(scratch_.read("one.html").empty());
 }
 
+TEST_F(Report, ShowsTheMeshAndItsSeamsWithGreenAsTheyWereChecked) {
+    const std::string broken = std::string(TEX_SOURCE_DIR) + "/samples/broken/";
+    const std::string map = broken + "N711-other-tangent-space.png", mesh = broken + "meshes/N711.glb";
+    check({map, "--mesh", mesh, "--report", "page.html"});
+    for (const char* text :
+         {"<figcaption>on the mesh</figcaption>", "<figcaption>seams</figcaption>", "<figcaption>UVs</figcaption>"})
+        EXPECT_TRUE(page_has(text)) << text;
+    check({map, "--report", "page.html"});
+    EXPECT_FALSE(page_has("seams"));
+    // The picture is that of preview-normals.
+    for (const char* y : {"up", "down"}) {
+        const std::string require = std::string("y=") + y;
+        check({map, "--mesh", mesh, "--require", require, "--report", "page.html"});
+        const Ran drawn =
+            run(scratch_, "preview-normals",
+                {map, "-o", "seams.png", "--mesh", mesh, "--y-in", y, "--show", "seams", "--size", "384", "--no-sync"});
+        EXPECT_EQ(drawn.code, 0) << drawn.err;
+        const std::string encoded = shell(scratch_, "base64 -w0 seams.png").out;
+        EXPECT_TRUE(page_has(encoded)) << y;
+    }
+}
+
 TEST_F(Report, HoldsTheLevelsThatWereCompared) {
     EXPECT_EQ(compare({"up.dds", "down.png", "--y-b", "down", "--level", "0", "--report", "page.html"}).code, 0);
     EXPECT_TRUE(page_has("data-other=\"1\""));

@@ -74,9 +74,9 @@ int CheckDocuments::accept(CheckReport& report) {
     return baseline_ ? baseline_->accept(report, content) : 0;
 }
 
-Result<void> CheckDocuments::add(Job& job, const CheckReport& report, const Demands& demands) {
+Result<void> CheckDocuments::add(Job& job, const CheckReport& report, const Demands& demands, const MapOnMesh* mesh) {
     if (has_page()) {
-        if (auto added = add_to_page(job, report, demands.checks.require); !added) return added;
+        if (auto added = add_to_page(job, report, demands.checks.require, mesh); !added) return added;
     }
     const std::lock_guard lock(mutex_);
     if (!sarif_.empty() || !junit_.empty()) {
@@ -85,13 +85,14 @@ Result<void> CheckDocuments::add(Job& job, const CheckReport& report, const Dema
     return {};
 }
 
-Result<void> CheckDocuments::add_to_page(Job& job, const CheckReport& report, const Requirements& require) {
+Result<void> CheckDocuments::add_to_page(Job& job, const CheckReport& report, const Requirements& require,
+                                         const MapOnMesh* mesh) {
     for (const Finding& finding : report.findings) page_.explain(*finding.rule);
     std::optional<HtmlMap> map;
     if (!report.error) {
         const auto texture = read_texture(job.task.input, job.read_options);
         if (!texture) return texture.error();
-        auto drawn = draw_html_map(job.task.input, *texture, report.swizzle, report.y.y.value_or(texture->y_axis),
+        auto drawn = draw_html_map(job.task.input, *texture, report.swizzle, report.y.y.value_or(texture->y_axis), mesh,
                                    sizes_, job.until(1.0));
         // A file that holds no normals has findings, and no pictures.
         if (drawn)

@@ -40,15 +40,17 @@ public:
     // Removes the findings that the baseline knows from the report. Returns their number. Any thread may call this.
     [[nodiscard]] int accept(CheckReport& report);
 
-    // Adds a file to the documents. Any thread may call this. Errors: those of reading the file again for its pictures.
-    [[nodiscard]] Result<void> add(Job& job, const CheckReport& report, const Demands& demands);
+    // Adds a file to the documents, with the mesh that it is on or null. Any thread may call this. Errors: those of
+    // reading the file again for its pictures.
+    [[nodiscard]] Result<void> add(Job& job, const CheckReport& report, const Demands& demands, const MapOnMesh* mesh);
 
     // Writes all of them. `summary` is the first sentence of the page.
     [[nodiscard]] ExitCode write(Console& console, const std::string& summary) const;
 
 private:
     [[nodiscard]] std::vector<std::string> written() const;
-    [[nodiscard]] Result<void> add_to_page(Job& job, const CheckReport& report, const Requirements& require);
+    [[nodiscard]] Result<void> add_to_page(Job& job, const CheckReport& report, const Requirements& require,
+                                           const MapOnMesh* mesh);
 
     std::string page_path_, sarif_, junit_, baseline_path_, baseline_written_, depfile_;  // or empty
     std::vector<std::string> sources_;  // what the documents are made from

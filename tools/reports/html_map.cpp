@@ -33,6 +33,7 @@ struct View {
     const char* caption;
     const char* alt;
     bool needs_z = false;
+    bool needs_mesh = false;
 };
 constexpr View kViews[] = {
     {Show::normals, "normals", "the colours of the map with green up: x, y and z as red, green and blue"},
@@ -43,12 +44,17 @@ constexpr View kViews[] = {
      "down"},
     {Show::length, "length", "length of the stored vectors minus 1, pale where it is right", true},
     {Show::z_error, "z error", "stored z minus the z that x and y imply, pale where it is right", true},
+    {Show::lit, "on the mesh", "the mesh with the map, lit from the upper left", false, true},
+    {Show::seams, "seams", "the mesh, with its UV seams coloured by the angle between both sides in degrees", false,
+     true},
+    {Show::uv, "UVs", "the outlines of the mesh's triangles over the map; mirrored ones in orange", false, true},
 };
 
-Result<HtmlPicture> draw(const HtmlMap& map, Show show, int size, const std::string& caption, const char* alt,
-                         const Execution& execution) {
+Result<HtmlPicture> draw(const HtmlMap& map, const TangentSpace* mesh, Show show, int size, const std::string& caption,
+                         const char* alt, const Execution& execution) {
     PreviewScene scene;
     scene.map = &map.chain;
+    scene.mesh = mesh;
     scene.map_without_z = map.without_z();
     PreviewOptions options;
     options.show = show;
@@ -58,25 +64,46 @@ Result<HtmlPicture> draw(const HtmlMap& map, Show show, int size, const std::str
     return html_picture(*picture, caption, alt);
 }
 
-Result<void> draw_pictures(HtmlMap& map, const HtmlSizes& sizes, const Execution& execution) {
+void flip_y(MipChain& chain) {
+    for (NormalMap& level : chain.levels) {
+        for (int j = 0; j < level.extent().height; ++j) {
+            float* const row = level.y.row(j);
+            for (int i = 0; i < level.extent().width; ++i) row[i] = -row[i];
+        }
+    }
+}
+
+// Adds a view. On the mesh, green points as there, whatever the map's own pictures show.
+Result<void> add_view(HtmlMap& map, const View& view, const MapOnMesh* mesh, const HtmlSizes& sizes,
+                      const Execution& execution) {
+    std::string caption = view.caption;
+    if (view.show == Show::curl && map.y == YAxis::down) caption += ", with green read as down";
+    const bool is_wide = view.show == Show::mips || view.show == Show::seams;
+    const bool flips = view.needs_mesh && mesh->y != map.y;
+    if (flips) flip_y(map.chain);
+    auto drawn = draw(map, view.needs_mesh ? &mesh->space : nullptr, view.show, (is_wide ? 2 : 1) * sizes.view, caption,
+                      view.alt, execution);
+    if (flips) flip_y(map.chain);
+    if (!drawn) return drawn.error();
+    map.views.push_back(std::move(*drawn));
+    return {};
+}
+
+Result<void> draw_pictures(HtmlMap& map, const MapOnMesh* mesh, const HtmlSizes& sizes, const Execution& execution) {
     constexpr const char* kLit = "lit from the upper left";
-    auto thumbnail = draw(map, Show::lit, sizes.thumbnail, kLit, kLit, execution);
+    auto thumbnail = draw(map, nullptr, Show::lit, sizes.thumbnail, kLit, kLit, execution);
     if (!thumbnail) return thumbnail.error();
     map.thumbnail = std::move(*thumbnail);
     if (sizes.lit == 0) return {};
-    auto lit = draw(map, Show::lit, sizes.lit, kLit, kLit, execution);
+    auto lit = draw(map, nullptr, Show::lit, sizes.lit, kLit, kLit, execution);
     if (!lit) return lit.error();
     map.lit = std::move(*lit);
     if (sizes.view == 0) return {};
     for (const View& view : kViews) {
         if (view.needs_z && map.without_z()) continue;
         if (view.show == Show::mips && map.stored_levels == 1) continue;
-        std::string caption = view.caption;
-        if (view.show == Show::curl && map.y == YAxis::down) caption += ", with green read as down";
-        auto drawn =
-            draw(map, view.show, view.show == Show::mips ? 2 * sizes.view : sizes.view, caption, view.alt, execution);
-        if (!drawn) return drawn.error();
-        map.views.push_back(std::move(*drawn));
+        if (view.needs_mesh && mesh == nullptr) continue;
+        if (auto added = add_view(map, view, mesh, sizes, execution); !added) return added;
     }
     return {};
 }
@@ -174,7 +201,7 @@ Result<HtmlPicture> html_picture(const Texture& picture, std::string caption, st
 }
 
 Result<HtmlMap> draw_html_map(const std::string& file, const Texture& texture, const Swizzle& swizzle, YAxis y,
-                              const HtmlSizes& sizes, const Execution& execution) {
+                              const MapOnMesh* mesh, const HtmlSizes& sizes, const Execution& execution) {
     HtmlMap map;
     map.file = file;
     map.format = texture.format;
@@ -195,7 +222,7 @@ Result<HtmlMap> draw_html_map(const std::string& file, const Texture& texture, c
         if (!built) return built.error();
         map.chain = std::move(*built);
     }
-    if (const auto drawn = draw_pictures(map, sizes, execution); !drawn) return drawn.error();
+    if (const auto drawn = draw_pictures(map, mesh, sizes, execution); !drawn) return drawn.error();
 
     if (is_packed(texture.format)) {
         for (const Level& level : texture.levels) map.packed.levels.push_back({level.extent, level.bytes});

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <tex/convert_options.h>
 #include <tex/execution.h>
 #include <tex/mip_chain.h>
 #include <tex/result.h>
@@ -81,9 +82,16 @@ struct HtmlMap {
 // Converts a picture for a page. Errors: out_of_memory.
 [[nodiscard]] Result<HtmlPicture> html_picture(const Texture& picture, std::string caption, std::string alt);
 
-// Draws a texture whose channels have the meaning that `swizzle` gives, with green as `y` says. Errors: those of the
-// verbs.
+// The mesh that a map is on, and where green of the map points there.
+struct MapOnMesh {
+    TangentSpace space;
+    YAxis y = YAxis::up;
+};
+
+// Draws a texture whose channels have the meaning that `swizzle` gives, with green as `y` says; also on its mesh,
+// unless that is null. Errors: those of the verbs.
 [[nodiscard]] Result<HtmlMap> draw_html_map(const std::string& file, const Texture& texture, const Swizzle& swizzle,
-                                            YAxis y, const HtmlSizes& sizes, const Execution& execution);
+                                            YAxis y, const MapOnMesh* mesh, const HtmlSizes& sizes,
+                                            const Execution& execution);
 
 }  // namespace tex::cli

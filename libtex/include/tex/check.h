@@ -168,6 +168,7 @@ struct SeamEvidence {
     double mean = 0.0, p99 = 0.0;  // of all points of all edges, in degrees
     double worst = 0.0;            // the mean of the worst edge
     Region worst_edge;             // the texels around one side of it
+    YAxis y = YAxis::up;           // where green of the map points, as MeshToCheck says
 };
 
 struct CheckReport {

@@ -122,7 +122,8 @@ Result<std::optional<SeamEvidence>> check_mesh_fit(const Subject& subject, Findi
     Candidates candidates(subject, samples);
     const bool y_up = points_up(subject);
     const Candidate given = candidates.given(y_up);
-    const SeamEvidence evidence = seam_evidence(samples, given.gaps, extent);
+    SeamEvidence evidence = seam_evidence(samples, given.gaps, extent);
+    evidence.y = y_up ? YAxis::up : YAxis::down;
     if (!findings.wants("N711")) return std::optional(evidence);
 
     // Only a map whose y clearly meets at the seams can show what it was made for. Most maps do that one way or the

@@ -50,7 +50,7 @@ inline constexpr double kSeamGap = 0.27;
 inline constexpr double kObjectSpace = 0.5;
 
 // In degrees, between the normals at the centre of a quad. Flat and evenly bent quads have 0.
-inline constexpr double kQuadAngle = 1.0;
+inline constexpr double kQuadAngle = 5.0;
 
 // -- of padding, from custom: 16 texels at 2048, 8 at 1024, which keep the levels down to a side of 128 clean --------
 inline constexpr int kPaddedSide = 128;
