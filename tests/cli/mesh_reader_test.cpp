@@ -67,7 +67,7 @@ TEST_F(MeshReader, RefusesDamagedFilesWithOneSentence) {
     std::vector<std::string> names = {"words.fbx", "words.txt", "empty.fbx", "waves.png"};
     for (const char* whole : {"sheet.fbx", "sheet.ply"}) {
         const std::string bytes = scratch_.read(whole);
-        for (const std::size_t part : {1, 3, 7, 15}) {
+        for (const std::size_t part : {1U, 3U, 7U, 15U}) {
             names.push_back(std::to_string(part) + "_" + whole);
             scratch_.write(names.back(), bytes.substr(0, bytes.size() * part / 16));
         }
