@@ -123,6 +123,7 @@ std::vector<float> draw_as(GLenum mode, GLuint program, tex::Extent extent, int 
     gl.GenFramebuffers(1, &framebuffer);
     gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target, 0);
+    constexpr GLenum kTests[] = {GL_DEPTH_TEST, GL_CULL_FACE};
     if (with_depth) {
         depth = bind_new_texture();
         gl.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, extent.width, extent.height, 0, GL_DEPTH_COMPONENT,
@@ -130,7 +131,7 @@ std::vector<float> draw_as(GLenum mode, GLuint program, tex::Extent extent, int 
         gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth, 0);
         constexpr float kFar = 1.0f;
         gl.ClearBufferfv(GL_DEPTH, 0, &kFar);
-        for (const GLenum test : {GL_DEPTH_TEST, GL_CULL_FACE}) gl.Enable(test);
+        for (const GLenum test : kTests) gl.Enable(test);
     }
     gl.Viewport(0, 0, extent.width, extent.height);
     constexpr float kNothing[4] = {};
@@ -140,7 +141,7 @@ std::vector<float> draw_as(GLenum mode, GLuint program, tex::Extent extent, int 
     gl.DrawArrays(mode, 0, vertices);
     std::vector<float> rgba(static_cast<std::size_t>(extent.texels()) * 4);
     gl.ReadPixels(0, 0, extent.width, extent.height, GL_RGBA, GL_FLOAT, rgba.data());
-    for (const GLenum test : {GL_DEPTH_TEST, GL_CULL_FACE}) gl.Disable(test);
+    for (const GLenum test : kTests) gl.Disable(test);
     gl.DeleteFramebuffers(1, &framebuffer);
     gl.DeleteTextures(1, &target);
     if (with_depth) gl.DeleteTextures(1, &depth);
