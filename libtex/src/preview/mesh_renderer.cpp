@@ -87,8 +87,9 @@ public:
             if (share == end) *share = {tag};
             count += share == end ? 1 : 0;
             ++share->count;
-            share->x += (k % Raster::kSide + 0.5) / Raster::kSide;
-            share->y += (k / Raster::kSide + 0.5) / Raster::kSide;
+            const int column = k % Raster::kSide, row = k / Raster::kSide;
+            share->x += (column + 0.5) / Raster::kSide;
+            share->y += (row + 0.5) / Raster::kSide;
         }
         Vec3 sum;
         for (int k = 0; k < count; ++k) {

@@ -83,7 +83,8 @@ std::array<std::uint32_t, Raster::kSamples> Raster::Band::pixel(int i, int j) co
     for (int b = 0; b < kSide; ++b) {
         const std::size_t row = static_cast<std::size_t>((j - first) * kSide + b) * static_cast<std::size_t>(stride);
         for (int a = 0; a < kSide; ++a) {
-            found[static_cast<std::size_t>(b * kSide + a)] = tags[row + static_cast<std::size_t>(i * kSide + a)];
+            const int sample = b * kSide + a, column = i * kSide + a;
+            found[static_cast<std::size_t>(sample)] = tags[row + static_cast<std::size_t>(column)];
         }
     }
     return found;

@@ -52,8 +52,9 @@ public:
         if (!near) return Error{ErrorCode::unsupported, {}, "UVs of the mesh are beyond a million"};
         if (across.last - across.first > kLongestUv || up.last - up.first > kLongestUv)
             return Error{ErrorCode::unsupported, {}, "a triangle of the mesh covers more than 16 repeats of the map"};
-        for (double y = up.first; y <= up.last; y += 1.0) {
-            for (double x = across.first; x <= across.last; x += 1.0) put(uvs, {x, y});
+        const auto rows = static_cast<int>(up.last - up.first), columns = static_cast<int>(across.last - across.first);
+        for (int j = 0; j <= rows; ++j) {
+            for (int i = 0; i <= columns; ++i) put(uvs, {across.first + i, up.first + j});
         }
         if (vertices_.size() > most_vertices_)
             return Error{ErrorCode::unsupported, {}, "triangles of the mesh cover more than 4 repeats of the map"};
@@ -96,7 +97,8 @@ public:
         Vec3 sum;
         const auto tags = band.pixel(i, j);
         for (int k = 0; k < Raster::kSamples; ++k) {
-            const Vec2 at{i + (k % Raster::kSide + 0.5) / Raster::kSide, j + (k / Raster::kSide + 0.5) / Raster::kSide};
+            const int column = k % Raster::kSide, row = k / Raster::kSide;
+            const Vec2 at{i + (column + 0.5) / Raster::kSide, j + (row + 0.5) / Raster::kSide};
             sum = sum + over(ground, tags[static_cast<std::size_t>(k)], at);
         }
         return sum * (1.0 / Raster::kSamples);
