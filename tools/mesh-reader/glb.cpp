@@ -118,7 +118,7 @@ private:
     }
 
     // Returns the node's number. Assimp's importers limit how deep nodes are nested by the memory that they may use;
-    // the stack here is that of a process of its own.
+    // a stack that overflows ends this process alone.
     int add_node(const aiNode& node) {
         Json json = {{"name", node.mName.C_Str()}};
         if (!node.mTransformation.IsIdentity()) {

@@ -13,7 +13,7 @@
 // OBJ    v, vt, vn, f, o, usemtl. Polygons become fans around their first corner. Faces of the same object and material
 //        are one part. A part has UVs or normals if all of its corners have them. All else is ignored.
 // other  What Assimp reads from one file: FBX, PLY, Collada, STL and more. As Assimp has crashed on damaged files, it
-//        runs in a process of its own, tex-mesh-reader, under the limits of memory and time that ReadOptions states,
+//        runs in a separate process, tex-mesh-reader, under the limits of memory and time that ReadOptions states,
 //        and can open no other file. Polygons become triangles as Assimp divides them. Tangents count if the file has
 //        bitangents, too. Coordinates are in the units and axes of Assimp.
 

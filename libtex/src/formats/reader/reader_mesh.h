@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// reader_mesh.h: meshes of file types that Assimp reads, in a process of its own: tex-mesh-reader.
+// reader_mesh.h: meshes of file types that Assimp reads, in a separate process: tex-mesh-reader.
 
 #pragma once
 
