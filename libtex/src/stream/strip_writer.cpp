@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -60,7 +61,7 @@ private:
         return target_->put(level, rows, count);
     }
     Result<void> put_in_order(int level, const Strip& strip);
-    Result<void> work();
+    Result<void> work(std::size_t left);
 
     const std::string path_;
     const std::unique_ptr<OutputFile> file_;
@@ -69,6 +70,7 @@ private:
     std::mutex mutex_;  // guards all members below, but not the run() of work
     std::size_t size_ = 0;
     std::unique_ptr<RowTarget> target_;  // writes into the file
+    std::deque<std::shared_ptr<RowWork>> ready_;
     std::map<int, Level> levels_;
 };
 
@@ -77,7 +79,8 @@ Result<void> PictureWriter::write(Strip& strip) {
         strip.bytes.resize(level_bytes(packing_.head.format, {strip.map.extent().width, strip.height}));
         packing_.pack(strip, strip.bytes.data());
         if (Result<void> put = put_in_order(strip.level - first_, strip); !put) return put;
-        return work();
+        constexpr std::size_t kForTheNext = 1;
+        return work(kForTheNext);
     });
     return done ? done : Result<void>(done.error().of(path_));
 }
@@ -97,19 +100,27 @@ Result<void> PictureWriter::put_in_order(int index, const Strip& strip) {
     return done;
 }
 
-Result<void> PictureWriter::work() {
+// Does one piece of the target's work, and more while more than `left` pieces are left. If one thread did all that its
+// strip has completed, its batch would stay on the conveyor, and the other threads would soon have to wait for it.
+Result<void> PictureWriter::work(std::size_t left) {
     std::unique_lock lock(mutex_);
-    while (const std::shared_ptr<RowWork> work = target_->take_work()) {
+    for (std::size_t allowed = 0;; allowed = left) {
+        while (std::shared_ptr<RowWork> found = target_->take_work()) ready_.push_back(std::move(found));
+        if (ready_.size() <= allowed) return {};
+        const std::shared_ptr<RowWork> work = std::move(ready_.front());
+        ready_.pop_front();
         lock.unlock();
         if (Result<void> run = work->run(); !run) return run;
         lock.lock();
         if (Result<void> ended = target_->end_work(work); !ended) return ended;
     }
-    return {};
 }
 
 Result<void> PictureWriter::commit() {
-    const Result<void> ended = guarded([&] { return target_->finish(); });
+    const Result<void> ended = guarded([&] {
+        Result<void> done = work(0);
+        return done ? target_->finish() : done;
+    });
     return ended ? file_->commit() : Result<void>(ended.error().of(path_));
 }
 
