@@ -6,14 +6,14 @@
 build_packages=(
     g++ cmake ninja-build pkg-config
     libpng-dev libopenexr-dev libopenimageio-dev libopencolorio-dev libseccomp-dev
-    libdeflate-dev libisal-dev libzstd-dev libtbb-dev libhwy-dev libfmt-dev nlohmann-json3-dev libtomlplusplus-dev
-    libassimp-dev
+    libdeflate-dev libisal-dev libzstd-dev libastcenc-dev libtbb-dev libhwy-dev libfmt-dev
+    nlohmann-json3-dev libtomlplusplus-dev libassimp-dev
 )
 # shellcheck disable=SC2034
 test_packages=(
     libgtest-dev libgmock-dev libsquish-dev libosmesa6-dev libgl-dev
-    imagemagick openimageio-tools python3-jsonschema python3-yaml libxml2-utils mandoc shellcheck dpkg-dev file git
-    strace zsh fish assimp-utils
+    astcenc imagemagick openimageio-tools python3-jsonschema python3-yaml libxml2-utils mandoc shellcheck dpkg-dev file
+    git strace zsh fish assimp-utils
 )
 # The browser takes 300 MB. Without it and GNU parallel, their tests report that they were skipped. The gate starts
 # a Slurm cluster and builds textures on it.

@@ -11,6 +11,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 root=$PWD/build/arm64-root
 packages=(
     libc6-dev libstdc++-12-dev libpng-dev libopenexr-dev libopencolorio-dev libdeflate-dev libisal-dev libzstd-dev
+    libastcenc-dev
     libtbb-dev libhwy-dev libfmt-dev nlohmann-json3-dev libtomlplusplus-dev libgtest-dev libgmock-dev libsquish-dev
 )
 

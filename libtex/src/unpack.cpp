@@ -12,6 +12,7 @@
 #include "formats/channels.h"
 #include "kernels/decode.h"
 #include "kernels/unpack.h"
+#include "rows/decode_rows.h"
 #include "rows/unpack_rows.h"
 #include "threads/guard.h"
 #include "threads/parallel.h"
@@ -20,22 +21,25 @@ namespace tex {
 namespace {
 
 constexpr const char* kChannelNames[] = {"R", "G", "B", "A"};
-constexpr int kStripRows = kBlockEdge;  // of a block format: one row of blocks
+constexpr int kMostStripRows = 12;  // the greatest height of a block
 
-int strips_of(Extent extent) { return blocks_across(extent.height, kStripRows); }
+// Rows of a strip: one row of blocks, if the format has blocks.
+int strip_rows_of(Format format) {
+    const FormatInfo info = format_info(format);
+    return info.has_blocks() ? info.block.height : kBlockEdge;
+}
 
-// Decodes the rows of strip `strip` into `rows`. The rows are `stride` apart and must have room for kStripRows rows of
-// the width, rounded up to whole blocks.
+// Decodes the rows of strip `strip` into `rows`. The rows are `stride` apart and must have room for all rows of a
+// strip, with the width rounded up to whole blocks.
 void decode_strip(Format format, const Level& level, int strip, const ChannelRows& rows, std::ptrdiff_t stride) {
     const int width = level.extent.width;
     const std::size_t pitch = level_bytes(format, {width, 1});  // of a row of blocks, for block formats
-    if (const FormatInfo info = format_info(format); info.has_blocks()) {
-        decode_blocks(format, level.bytes.data() + static_cast<std::size_t>(strip) * pitch,
-                      blocks_across(width, info.block.width), rows, stride);
+    if (format_info(format).has_blocks()) {
+        decode_row_of_blocks(format, level.bytes.data() + static_cast<std::size_t>(strip) * pitch, width, rows, stride);
         return;
     }
-    const int first = strip * kStripRows;
-    const int end = std::min(level.extent.height, first + kStripRows);
+    const int first = strip * kBlockEdge;
+    const int end = std::min(level.extent.height, first + kBlockEdge);
     for (int j = first; j < end; ++j) {
         ChannelRows row;
         for (int c = 0; c < 4; ++c) {
@@ -48,7 +52,7 @@ void decode_strip(Format format, const Level& level, int strip, const ChannelRow
 
 // The rows of one strip, for x, y and z, padded to whole vectors. The rows of z are null if there is no z.
 struct StripRows {
-    const float* component[3][kStripRows] = {};
+    const float* component[3][kMostStripRows] = {};
 };
 
 // Provides the rows of a texture's level, decoded to scratch memory.
@@ -58,6 +62,7 @@ struct LevelReader {
     Sources sources;
 
     [[nodiscard]] Extent extent() const { return level.extent; }
+    [[nodiscard]] int strip_rows() const { return strip_rows_of(format); }
 
     StripRows read(int strip, Plane<float>& scratch) const {
         const int channels[3] = {sources.x, sources.y, sources.z};
@@ -65,8 +70,8 @@ struct LevelReader {
         StripRows out;
         for (int k = 0; k < 3; ++k) {
             if (channels[k] < 0) continue;
-            rows.channel[channels[k]] = scratch.row(k * kStripRows);
-            for (int r = 0; r < kStripRows; ++r) out.component[k][r] = scratch.row(k * kStripRows + r);
+            rows.channel[channels[k]] = scratch.row(k * strip_rows());
+            for (int r = 0; r < strip_rows(); ++r) out.component[k][r] = scratch.row(k * strip_rows() + r);
         }
         decode_strip(format, level, strip, rows, scratch.stride());
         return out;
@@ -78,12 +83,13 @@ struct ImageReader {
     const Plane<float>* planes[3];  // z may be null
 
     [[nodiscard]] Extent extent() const { return planes[0]->extent(); }
+    [[nodiscard]] int strip_rows() const { return kBlockEdge; }
 
     StripRows read(int strip, Plane<float>&) const {
-        const int first = strip * kStripRows;
+        const int first = strip * strip_rows();
         StripRows out;
         for (int k = 0; k < 3; ++k) {
-            for (int r = 0; planes[k] != nullptr && r < kStripRows && first + r < extent().height; ++r) {
+            for (int r = 0; planes[k] != nullptr && r < strip_rows() && first + r < extent().height; ++r) {
                 out.component[k][r] = planes[k]->row(first + r);
             }
         }
@@ -91,10 +97,10 @@ struct ImageReader {
     }
 };
 
-Plane<float> make_scratch(Extent extent) { return Plane<float>({whole_blocks(extent.width), 3 * kStripRows}); }
+Plane<float> make_scratch(Extent extent, int rows) { return Plane<float>({whole_blocks(extent.width), rows}); }
 
 // The number of strips that one thread takes at once: enough texels to be worth it.
-int grain_of(Extent extent) { return std::max(1, (1 << 16) / (kStripRows * extent.width)); }
+int grain_of(Extent extent, int strip_rows) { return std::max(1, (1 << 16) / (strip_rows * extent.width)); }
 
 // Whether floats are (n + 1) / 2: see unpack().
 template <class Reader>
@@ -104,15 +110,16 @@ Result<bool> weigh_range(const Reader& reader, const Execution& execution) {
     std::atomic<bool> negative = false;  // one negative value decides
     Execution silent;
     silent.threads = execution.threads;
-    const auto weighed = parallel_for(silent, strips_of(extent), grain_of(extent), [&](int begin, int end) {
-        Plane<float> scratch = make_scratch(extent);
+    const int strip_rows = reader.strip_rows();
+    const int strips = blocks_across(extent.height, strip_rows);
+    const auto weighed = parallel_for(silent, strips, grain_of(extent, strip_rows), [&](int begin, int end) {
+        Plane<float> scratch = make_scratch(extent, 3 * strip_rows);
         for (int strip = begin; strip < end && !negative; ++strip) {
-            const StripRows strip_rows = reader.read(strip, scratch);
-            const int first = strip * kStripRows;
-            for (int r = 0; r < std::min(kStripRows, extent.height - first); ++r) {
+            const StripRows held = reader.read(strip, scratch);
+            const int first = strip * strip_rows;
+            for (int r = 0; r < std::min(strip_rows, extent.height - first); ++r) {
                 RangeEvidence& row = rows[static_cast<std::size_t>(first) + static_cast<std::size_t>(r)];
-                row = weigh_row(strip_rows.component[0][r], strip_rows.component[1][r], strip_rows.component[2][r],
-                                extent.width);
+                row = weigh_row(held.component[0][r], held.component[1][r], held.component[2][r], extent.width);
                 if (row.negative) negative = true;
             }
         }
@@ -135,14 +142,15 @@ Result<void> unpack_rows(const Reader& reader, const UnpackRule& rule, NormalMap
                          ProgressSpan span) {
     const Extent extent = reader.extent();
     map = NormalMap(extent);
+    const int strip_rows = reader.strip_rows();
     return parallel_for(
-        execution, strips_of(extent), grain_of(extent),
+        execution, blocks_across(extent.height, strip_rows), grain_of(extent, strip_rows),
         [&](int begin, int end) {
-            Plane<float> scratch = make_scratch(extent);
+            Plane<float> scratch = make_scratch(extent, 3 * strip_rows);
             for (int strip = begin; strip < end; ++strip) {
                 const StripRows rows = reader.read(strip, scratch);
-                for (int r = 0; r < kStripRows && strip * kStripRows + r < extent.height; ++r) {
-                    const int j = strip * kStripRows + r;
+                for (int r = 0; r < strip_rows && strip * strip_rows + r < extent.height; ++r) {
+                    const int j = strip * strip_rows + r;
                     unpack_row(rows.component[0][r], rows.component[1][r], rows.component[2][r], rule, extent.width,
                                map.x.row(j), map.y.row(j), map.z.row(j));
                 }
@@ -189,16 +197,18 @@ Result<Image> decode_level(const Texture& texture, const Level& level, const Exe
     image.names = channel_names(texture);
     for (int c = 0; c < info.channels; ++c) image.planes.emplace_back(level.extent);
     const Extent extent = level.extent;
-    const auto decoded = parallel_for(execution, strips_of(extent), grain_of(extent), [&](int begin, int end) {
-        Plane<float> scratch({whole_blocks(extent.width), 4 * kStripRows});
+    const int strip_rows = strip_rows_of(format);
+    const int strips = blocks_across(extent.height, strip_rows);
+    const auto decoded = parallel_for(execution, strips, grain_of(extent, strip_rows), [&](int begin, int end) {
+        Plane<float> scratch = make_scratch(extent, 4 * strip_rows);
         ChannelRows rows;
-        for (int c = 0; c < info.channels; ++c) rows.channel[c] = scratch.row(c * kStripRows);
+        for (int c = 0; c < info.channels; ++c) rows.channel[c] = scratch.row(c * strip_rows);
         for (int strip = begin; strip < end; ++strip) {
             decode_strip(format, level, strip, rows, scratch.stride());
             for (int c = 0; c < info.channels; ++c) {
-                for (int r = 0; r < kStripRows && strip * kStripRows + r < extent.height; ++r) {
-                    std::memcpy(image.planes[static_cast<std::size_t>(c)].row(strip * kStripRows + r),
-                                scratch.row(c * kStripRows + r),
+                for (int r = 0; r < strip_rows && strip * strip_rows + r < extent.height; ++r) {
+                    std::memcpy(image.planes[static_cast<std::size_t>(c)].row(strip * strip_rows + r),
+                                scratch.row(c * strip_rows + r),
                                 static_cast<std::size_t>(extent.width) * sizeof(float));
                 }
             }

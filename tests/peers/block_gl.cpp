@@ -23,6 +23,9 @@ GLenum gl_format(tex::Format format) {
         case tex::Format::eac_r11_snorm: return GL_COMPRESSED_SIGNED_R11_EAC;
         case tex::Format::eac_rg11_unorm: return GL_COMPRESSED_RG11_EAC;
         case tex::Format::eac_rg11_snorm: return GL_COMPRESSED_SIGNED_RG11_EAC;
+        case tex::Format::astc_4x4_unorm: return GL_COMPRESSED_RGBA_ASTC_4x4_KHR;
+        case tex::Format::astc_6x5_unorm: return GL_COMPRESSED_RGBA_ASTC_6x5_KHR;
+        case tex::Format::astc_8x8_unorm: return GL_COMPRESSED_RGBA_ASTC_8x8_KHR;
         default: return 0;
     }
 }

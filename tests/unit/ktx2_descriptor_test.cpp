@@ -49,6 +49,8 @@ TEST(Ktx2Descriptor, DescribesFormatsAsKhronosDoes) {
                       {{0x003f0000, 0, 0xffffffff}, {0x013f0040, 0, 0xffffffff}});
     expect_descriptor(Format::eac_rg11_snorm, 161, 0x303, 16,
                       {{0x403f0000, 0x80000000, 0x7fffffff}, {0x413f0040, 0x80000000, 0x7fffffff}});
+    expect_descriptor(Format::astc_4x4_unorm, 162, 0x303, 16, {{0x007f0000, 0, 0xffffffff}});
+    expect_descriptor(Format::astc_8x5_unorm, 162, 0x407, 16, {{0x007f0000, 0, 0xffffffff}});
     expect_descriptor(Format::rgb8_unorm, 1, 0, 3, {{0x00070000, 0, 255}, {0x01070008, 0, 255}, {0x02070010, 0, 255}});
     expect_descriptor(Format::rg16_unorm, 1, 0, 4, {{0x000f0000, 0, 65535}, {0x010f0010, 0, 65535}});
     expect_descriptor(Format::r8_snorm, 1, 0, 1, {{0x40070000, 0xffffff81, 127}});

@@ -135,6 +135,39 @@ TEST_F(Steps, SeveralFilesComeFromOneReading) {
     EXPECT_EQ(read_back->levels.size(), 1u);
 }
 
+// Strips have whole rows of the blocks of all files: 4, 5 and 6 texels high.
+TEST_F(Steps, FilesWithOtherBlocksComeFromOneReading) {
+    struct Other {
+        Encoding encoding;
+        Container container;
+        const char* extension;
+    };
+    const Other others[] = {{Encoding::astc_5x5, Container::ktx2, ".ktx2"},
+                            {Encoding::astc_8x6, Container::astc, ".astc"}};
+    const auto fast = [](Encoding encoding) {
+        return [encoding](const SourceInfo&) { return PackOptions{encoding, YAxis::up, Effort::fast}; };
+    };
+    std::vector<Step> steps = {bakes(Wrap::mirror), mips(Encoding::dxt5nm, YAxis::up)};
+    auto& last = std::get<PackFileOptions>(steps.back());
+    for (const auto& [encoding, container, extension] : others) {
+        last.pack = fast(encoding);
+        const std::string alone = path(std::string("alone") + extension);
+        ASSERT_TRUE(apply_steps(kSamples + "waves.png", steps, alone, container));
+    }
+    for (const auto& [encoding, container, extension] : others)
+        last.more.push_back({path(std::string("more") + extension), {}, container, 0, fast(encoding), {}});
+    last.pack = fast(Encoding::dxt5nm);
+    for (const int threads : {1, 3}) {
+        const auto done = apply_steps(kSamples + "waves.png", steps, path("x.dds"), Container::dds, {threads, {}});
+        ASSERT_TRUE(done) << done.error().message();
+        for (const char* extension : {".ktx2", ".astc"}) {
+            EXPECT_TRUE(bytes_of(path(std::string("more") + extension)) ==
+                        bytes_of(path(std::string("alone") + extension)))
+                << extension;
+        }
+    }
+}
+
 TEST_F(Steps, ErrorsNameTheFileAndLeaveNothing) {
     const auto missing =
         apply_steps(path("none.png"), {bakes(Wrap::clamp), scales(2.0f)}, path("a.dds"), Container::dds);

@@ -32,7 +32,7 @@ void set(Row& row, int i, int j, bool rgb) {
 // The layout that is found if the texels for which `is_rgb` holds are x, y, z and the others are DXT5nm.
 template <class IsRgb>
 std::string layout(Extent extent, int rows, IsRgb&& is_rgb) {
-    SwizzleEvidence evidence(extent, SampleKind::unorm);
+    SwizzleEvidence evidence(extent, Format::rgba8_unorm);
     for (int j = 0; j < rows; ++j) {
         Row row(static_cast<std::size_t>(extent.width));
         for (int i = 0; i < extent.width; ++i) set(row, i, j, is_rgb(i, j));

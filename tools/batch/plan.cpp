@@ -26,7 +26,8 @@ bool is_block_encoding(Encoding encoding) { return format_info(encoding_info(enc
 std::string default_pattern(const FileOptions& files, const OutputOptions& output, const OutputRules& rules) {
     std::optional<Container> container = output.made_container();
     if (!container && output.format) {
-        if (is_block_encoding(*output.format)) container = Container::dds;
+        if (is_block_encoding(*output.format))
+            container = can_hold(Container::dds, *output.format) ? Container::dds : Container::ktx2;
     } else if (!container) {
         container = rules.batch;
     }

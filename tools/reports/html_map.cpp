@@ -22,11 +22,8 @@ int longest(Extent extent) { return std::max(extent.width, extent.height); }
 
 std::size_t base64_size(std::size_t bytes) { return (bytes + 2) / 3 * 4; }
 
-// True for the block formats of normal maps that the page decodes. Maps in EAC are shown as pictures.
-bool is_packed(Format format) {
-    const FormatInfo info = format_info(format);
-    return info.has_blocks() && info.channels > 1 && info.bits == 8;
-}
+// True for the BC formats of normal maps, which the page decodes. Maps in EAC and ASTC are shown as pictures.
+bool is_packed(Format format) { return format <= Format::bc5_snorm && format_info(format).channels > 1; }
 
 struct View {
     Show show;

@@ -16,21 +16,22 @@
 #pragma GCC visibility push(default)
 namespace tex {
 
-// File types that libtex writes, by extension: .dds .ktx2 .png .exr .tif .tiff .tga .bmp .jpg .jpeg
-enum class Container { dds, ktx2, png, exr, tiff, tga, bmp, jpeg };
+// File types that libtex writes, by extension: .dds .ktx2 .astc .png .exr .tif .tiff .tga .bmp .jpg .jpeg
+enum class Container { dds, ktx2, astc, png, exr, tiff, tga, bmp, jpeg };
 
 inline constexpr Named<Container> kContainerNames[] = {
-    {Container::dds, "dds", ".dds"}, {Container::ktx2, "ktx2", ".ktx2"},       {Container::png, "png", ".png"},
-    {Container::exr, "exr", ".exr"}, {Container::tiff, "tiff", ".tif, .tiff"}, {Container::tga, "tga", ".tga"},
-    {Container::bmp, "bmp", ".bmp"}, {Container::jpeg, "jpeg", ".jpg, .jpeg"},
+    {Container::dds, "dds", ".dds"}, {Container::ktx2, "ktx2", ".ktx2"}, {Container::astc, "astc", ".astc"},
+    {Container::png, "png", ".png"}, {Container::exr, "exr", ".exr"},    {Container::tiff, "tiff", ".tif, .tiff"},
+    {Container::tga, "tga", ".tga"}, {Container::bmp, "bmp", ".bmp"},    {Container::jpeg, "jpeg", ".jpg, .jpeg"},
 };
 
 // The file type that the extension of `path` names (case does not matter); nullopt for any other extension.
 [[nodiscard]] std::optional<Container> container_of(std::string_view path);
 
-// What a container can hold. ktx2: every encoding, mip levels. dds: the same without eac_rg11 and eac_rg11_snorm. exr:
-// half, float; mip levels. png: rgb8, rgba8, rgb16, ag8. tiff: rgb8, rgba8, rgb16, ag8, half, float. tga: rgb8, rgba8,
-// ag8. bmp, jpeg: rgb8. (A picture holds one, three or four channels, so only dds and ktx2 can hold rg8 and rg16.)
+// What a container can hold. ktx2: every encoding, mip levels. dds: the same without EAC and ASTC. astc: ASTC, one
+// level. exr: half, float; mip levels. png: rgb8, rgba8, rgb16, ag8. tiff: rgb8, rgba8, rgb16, ag8, half, float. tga:
+// rgb8, rgba8, ag8. bmp, jpeg: rgb8. (A picture holds one, three or four channels, so only dds and ktx2 can hold rg8
+// and rg16.)
 [[nodiscard]] bool can_hold(Container container, Encoding encoding);
 [[nodiscard]] bool can_hold(Container container, Format format);
 [[nodiscard]] bool can_hold_levels(Container container);
@@ -38,11 +39,12 @@ inline constexpr Named<Container> kContainerNames[] = {
 // Whether WriteOptions::zstd compresses this container: ktx2.
 [[nodiscard]] bool can_compress(Container container);
 
-// Whether a container can hold block formats. dds and ktx2 can: they are files for a GPU and hold all mip levels by
-// default. The others are pictures.
+// Whether a container can hold BC formats. dds and ktx2 can: they are files for a GPU and hold all mip levels by
+// default. The others hold one level by default.
 [[nodiscard]] bool can_hold_blocks(Container container);
 
-// The encoding if the user names none: dxt5nm in dds and ktx2, rgb8 in png, tga, bmp, jpeg; rgb16 in tiff; half in exr.
+// The encoding if the user names none: dxt5nm in dds and ktx2, astc_4x4 in astc, rgb8 in png, tga, bmp, jpeg; rgb16 in
+// tiff; half in exr.
 [[nodiscard]] Encoding default_encoding(Container container);
 
 enum class DdsHeader { legacy, dx10 };

@@ -16,13 +16,14 @@ namespace tex {
 
 // The layout of a level's bytes. Channels are in the order R, G, B, A, little-endian, rows from the top without
 // padding. Block formats store rows of blocks from the top; blocks at the edges are stored whole. Blocks of BC1 to BC5
-// and EAC have 4x4 texels.
+// and EAC have 4x4 texels, those of ASTC as many as the name says.
 //
 //   bc1   8 bytes a block: RGB, 5:6:5 endpoints (DXT1)             bc4   8 bytes: R, one BC4 block
 //   bc2  16 bytes: 4-bit alpha, then a BC1 block (DXT3)            bc5  16 bytes: R and G, two BC4 blocks
 //   bc3  16 bytes: alpha as a BC4 block, then a BC1 block (DXT5)
 //
 //   eac_r11   8 bytes: R, one EAC block of 11 bits              eac_rg11  16 bytes: R and G, two EAC blocks
+//   astc     16 bytes: RGBA, low dynamic range (Khronos Data Format Specification, ASTC)
 enum class Format {
     bc1_unorm,
     bc2_unorm,
@@ -35,6 +36,20 @@ enum class Format {
     eac_r11_snorm,
     eac_rg11_unorm,
     eac_rg11_snorm,
+    astc_4x4_unorm,
+    astc_5x4_unorm,
+    astc_5x5_unorm,
+    astc_6x5_unorm,
+    astc_6x6_unorm,
+    astc_8x5_unorm,
+    astc_8x6_unorm,
+    astc_8x8_unorm,
+    astc_10x5_unorm,
+    astc_10x6_unorm,
+    astc_10x8_unorm,
+    astc_10x10_unorm,
+    astc_12x10_unorm,
+    astc_12x12_unorm,
     r8_unorm,
     rg8_unorm,
     rgb8_unorm,
@@ -71,6 +86,20 @@ inline constexpr Named<Format> kFormatNames[] = {
     {Format::eac_r11_snorm, "eac-r11-snorm", "EAC R11, signed"},
     {Format::eac_rg11_unorm, "eac-rg11-unorm", "EAC RG11"},
     {Format::eac_rg11_snorm, "eac-rg11-snorm", "EAC RG11, signed"},
+    {Format::astc_4x4_unorm, "astc-4x4-unorm", "ASTC, blocks of 4x4 texels"},
+    {Format::astc_5x4_unorm, "astc-5x4-unorm", "ASTC, blocks of 5x4 texels"},
+    {Format::astc_5x5_unorm, "astc-5x5-unorm", "ASTC, blocks of 5x5 texels"},
+    {Format::astc_6x5_unorm, "astc-6x5-unorm", "ASTC, blocks of 6x5 texels"},
+    {Format::astc_6x6_unorm, "astc-6x6-unorm", "ASTC, blocks of 6x6 texels"},
+    {Format::astc_8x5_unorm, "astc-8x5-unorm", "ASTC, blocks of 8x5 texels"},
+    {Format::astc_8x6_unorm, "astc-8x6-unorm", "ASTC, blocks of 8x6 texels"},
+    {Format::astc_8x8_unorm, "astc-8x8-unorm", "ASTC, blocks of 8x8 texels"},
+    {Format::astc_10x5_unorm, "astc-10x5-unorm", "ASTC, blocks of 10x5 texels"},
+    {Format::astc_10x6_unorm, "astc-10x6-unorm", "ASTC, blocks of 10x6 texels"},
+    {Format::astc_10x8_unorm, "astc-10x8-unorm", "ASTC, blocks of 10x8 texels"},
+    {Format::astc_10x10_unorm, "astc-10x10-unorm", "ASTC, blocks of 10x10 texels"},
+    {Format::astc_12x10_unorm, "astc-12x10-unorm", "ASTC, blocks of 12x10 texels"},
+    {Format::astc_12x12_unorm, "astc-12x12-unorm", "ASTC, blocks of 12x12 texels"},
     {Format::r8_unorm, "r8-unorm", "8 bits"},
     {Format::rg8_unorm, "rg8-unorm", "2 x 8 bits"},
     {Format::rgb8_unorm, "rgb8-unorm", "3 x 8 bits"},
@@ -100,7 +129,7 @@ struct FormatInfo {
     SampleKind sample;        // unorm, snorm or floating
     int channels;             // 1 to 4, always the first of R, G, B, A
     int bits;                 // of a decoded sample: 8, 11 (EAC), 16 or 32
-    Extent block;             // texels of a block: 4x4 in BC1 to BC5 and EAC; 1x1 if the format has no blocks
+    Extent block;             // texels of a block; 1x1 if the format has no blocks
     std::size_t block_bytes;  // bytes of a block (of a texel if the format has no blocks)
 
     [[nodiscard]] bool has_blocks() const { return block != Extent{1, 1}; }
@@ -139,6 +168,7 @@ inline constexpr Swizzle kSwizzleXy = {Component::x, Component::y, Component::ze
 inline constexpr Swizzle kSwizzleYx = {Component::y, Component::x, Component::zero, Component::one};
 inline constexpr Swizzle kSwizzleXyz = {Component::x, Component::y, Component::z, Component::other};
 inline constexpr Swizzle kSwizzleDxt5nm = {Component::one, Component::y, Component::one, Component::x};
+inline constexpr Swizzle kSwizzleXxxy = {Component::x, Component::x, Component::x, Component::y};
 
 // The names of the components (kComponentNames) in the order R, G, B, A, as four characters: "1y1x".
 [[nodiscard]] std::string to_string(const Swizzle& swizzle);
@@ -154,6 +184,14 @@ enum class Encoding {
     bc5_snorm,
     eac_rg11,
     eac_rg11_snorm,
+    astc_4x4,
+    astc_5x4,
+    astc_5x5,
+    astc_6x5,
+    astc_6x6,
+    astc_8x5,
+    astc_8x6,
+    astc_8x8,
     rgb8,
     rgba8,
     rgb16,
@@ -170,6 +208,14 @@ inline constexpr Named<Encoding> kEncodingNames[] = {
     {Encoding::bc5_snorm, "bc5-snorm", "signed BC5, x and y"},
     {Encoding::eac_rg11, "eac-rg11", "EAC RG11, x and y with 11 bits each"},
     {Encoding::eac_rg11_snorm, "eac-rg11-snorm", "signed EAC RG11, x and y"},
+    {Encoding::astc_4x4, "astc-4x4", "ASTC, 8 bits a texel, R = G = B = x, A = y"},
+    {Encoding::astc_5x4, "astc-5x4", "ASTC, 6.4 bits a texel, R = G = B = x, A = y"},
+    {Encoding::astc_5x5, "astc-5x5", "ASTC, 5.12 bits a texel, R = G = B = x, A = y"},
+    {Encoding::astc_6x5, "astc-6x5", "ASTC, 4.27 bits a texel, R = G = B = x, A = y"},
+    {Encoding::astc_6x6, "astc-6x6", "ASTC, 3.56 bits a texel, R = G = B = x, A = y"},
+    {Encoding::astc_8x5, "astc-8x5", "ASTC, 3.2 bits a texel, R = G = B = x, A = y"},
+    {Encoding::astc_8x6, "astc-8x6", "ASTC, 2.67 bits a texel, R = G = B = x, A = y"},
+    {Encoding::astc_8x8, "astc-8x8", "ASTC, 2 bits a texel, R = G = B = x, A = y"},
     {Encoding::rgb8, "rgb8", "x, y, z with 8 bits each"},
     {Encoding::rgba8, "rgba8", "x, y, z and A = 1 with 8 bits each"},
     {Encoding::rgb16, "rgb16", "x, y, z with 16 bits each"},

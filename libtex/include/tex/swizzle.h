@@ -20,6 +20,7 @@ inline constexpr Named<Swizzle> kSwizzleNames[] = {
     {kSwizzleXy, "rg", "x in R, y in G"},
     {kSwizzleYx, "gr", "y in R, x in G (3Dc, ATI2)"},
     {{Component::z, Component::y, Component::x, Component::other}, "bgr", "z, y, x in R, G, B"},
+    {kSwizzleXxxy, "ra", "x in R, G and B, y in A (ASTC)"},
 };
 
 // The name in kSwizzleNames of the layout with x, y and z in the same channels as in `swizzle`; if there is none, the
@@ -32,6 +33,7 @@ inline constexpr Named<Swizzle> kSwizzleNames[] = {
 //
 //   dxt5nm   R and B are constant (within 8/255), and A varies or R, G, B cannot be a unit vector (if they are floats:
 //            neither unchanged nor as (n + 1) / 2); or A varies and R, G and B are equal (y in all three)
+//   ra       in ASTC, A varies and R, G and B are equal (x in all three), as astcenc stores normals
 //   rxgb     R is constant, A is not, and A, G, B are nearer to unit vectors than R, G, B
 //   rgb      all others
 //

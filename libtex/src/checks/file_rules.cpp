@@ -8,6 +8,8 @@
 
 #include <tex/swizzle.h>
 
+#include "blocks/astc.h"
+
 namespace tex {
 namespace {
 
@@ -71,7 +73,7 @@ void check_extent(const Texture& texture, const Requirements& require, Findings&
     const Extent extent = texture.extent();
     const std::string text = extent_text(extent);
     if (!is_power_of_two(extent.width) || !is_power_of_two(extent.height)) findings.add("N105", text);
-    const Extent block = format_info(texture.format).block;
+    const Extent block = is_astc(texture.format) ? Extent{1, 1} : format_info(texture.format).block;
     if (extent.width % block.width != 0 || extent.height % block.height != 0) findings.add("N106", text);
     if (extent.width > require.max_extent || extent.height > require.max_extent) {
         findings.add("N107", text + "; the limit is " + std::to_string(require.max_extent));

@@ -8,6 +8,8 @@
 
 #include <tex/texture.h>
 
+#include "blocks/astc.h"
+
 namespace tex {
 
 // The swizzle of a texture whose only channel is alpha.
@@ -22,9 +24,11 @@ inline std::vector<std::string> channel_names(const Texture& head) {
     return {names, names + channels};
 }
 
-// The likeliest swizzle of normals in this format, for files that do not state one. BC3 is taken for DXT5nm.
+// The likeliest swizzle of normals in this format, for files that do not state one. BC3 is taken for DXT5nm,
+// ASTC for astcenc's form of normals.
 inline Swizzle likely_swizzle(Format format) {
     if (format == Format::bc3_unorm) return kSwizzleDxt5nm;
+    if (is_astc(format)) return kSwizzleXxxy;
     switch (format_info(format).channels) {
         case 1: return {Component::other, Component::zero, Component::zero, Component::one};
         case 2: return kSwizzleXy;

@@ -7,6 +7,8 @@
 #include <iterator>
 #include <string>
 
+#include "blocks/astc.h"
+#include "formats/astc/astc_file.h"
 #include "formats/dds/dds.h"
 #include "formats/exr/exr.h"
 #include "formats/exr/exr_rows.h"
@@ -60,6 +62,12 @@ constexpr Codec kCodecs[] = {
      .parse = parse_ktx2,
      .layout = [](const TextureHead& head, const WriteOptions&) { return ktx2_layout(head); },
      .compress = compress_ktx2},
+    {.container = Container::astc,
+     .magic = kAstcMagic,
+     .holds = is_astc,
+     .default_encoding = Encoding::astc_4x4,
+     .parse = parse_astc,
+     .layout = astc_layout},
     {.container = Container::png,
      .magic = kPngMagic,
      .holds = is_unorm_picture,

@@ -12,6 +12,7 @@
 #include "formats/claims.h"
 #include "formats/ktx2/level_inflater.h"
 #include "kernels/decode.h"
+#include "rows/decode_rows.h"
 
 namespace tex {
 namespace {
@@ -30,12 +31,14 @@ public:
           info_(format_info(texture_->head.format)) {
         const Extent extent = texture_->levels[k].extent;
         pitch_ = level_bytes(texture_->head.format, {extent.width, 1});
-        describe(extent, channel_names(texture_->head), pitch_ / static_cast<std::size_t>(info_.block.height));
+        const auto block = static_cast<std::size_t>(info_.block.height);
+        describe(extent, channel_names(texture_->head), (pitch_ + block - 1) / block);
         describe_samples(info_.sample, info_.bits);
         if (texture_->supercompression != Supercompression::none) open_inflater(texture_->levels[k]);
     }
 
     [[nodiscard]] int rows_together() const override { return info_.block.height; }
+    [[nodiscard]] int block_rows() const override { return info_.has_blocks() ? info_.block.height : kBlockEdge; }
     [[nodiscard]] bool is_random() const override { return inflater_ == nullptr; }
     void choose_planes(const std::vector<bool>& wanted) override { wanted_ = wanted; }
 
@@ -108,7 +111,7 @@ void LevelRows::store(const std::byte* rows, int first, int end, Image& image) c
             if (wanted_[c]) out.channel[c] = image.planes[c].row(j);
         }
         if (info_.has_blocks()) {
-            decode_blocks(format, rows, blocks_across(width, info_.block.width), out, image.planes.front().stride());
+            decode_row_of_blocks(format, rows, width, out, image.planes.front().stride());
         } else {
             decode_texels(format, rows, width, out);
         }

@@ -44,5 +44,6 @@ inline constexpr std::uint32_t kKhrBc3 = 130;
 inline constexpr std::uint32_t kKhrBc4 = 131;
 inline constexpr std::uint32_t kKhrBc5 = 132;
 inline constexpr std::uint32_t kKhrEtc2 = 161;  // including EAC
+inline constexpr std::uint32_t kKhrAstc = 162;
 
 }  // namespace tex

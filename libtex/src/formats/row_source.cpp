@@ -38,7 +38,7 @@ Result<Image> read_all(Result<std::unique_ptr<RowSource>> rows) {
 }
 
 Result<void> RowSource::visit(const std::string& name, const TakeRows& take) {
-    const int together = rows_together(), held = whole_blocks(together);
+    const int together = rows_together(), held = held_rows(together);
     Image image = make_image({extent().width, held}, names());
     std::vector<std::byte> rows(row_bytes() * static_cast<std::size_t>(held));
     for (int j = 0; j < extent().height; j += together) {

@@ -18,6 +18,7 @@
 #include <tex/image_io.h>
 #include <tex/result.h>
 
+#include "blocks/extent.h"
 #include "files/input_file.h"
 
 namespace tex {
@@ -48,8 +49,13 @@ public:
     // Limits reading to these planes; the contents of the other planes do not matter. Call this before rows are stored.
     virtual void choose_planes(const std::vector<bool>&) {}
 
-    // Decodes rows [first, first + count) into `rows`, row_bytes() each. `rows` has room for whole blocks
-    // (blocks/extent.h). Throws std::bad_alloc. Errors: bad_data, io, out_of_memory.
+    // decode() and store() may touch more rows than they make: up to the next multiple of this number.
+    [[nodiscard]] virtual int block_rows() const { return kBlockEdge; }
+    // The rows that memory must have room for if `count` rows are made.
+    [[nodiscard]] int held_rows(int count) const { return whole_blocks(count, block_rows()); }
+
+    // Decodes rows [first, first + count) into `rows`, row_bytes() each, which has room for held_rows(count). Throws
+    // std::bad_alloc. Errors: bad_data, io, out_of_memory.
     virtual Result<void> decode(int first, int count, std::byte* rows) = 0;
 
     // Whether peek() may read rows before decode() has reached them.
@@ -60,8 +66,8 @@ public:
     // Checks, after the last row, that the file ends as it should. Errors: as decode().
     virtual Result<void> finish() { return {}; }
 
-    // Converts decoded rows to rows [first, end) of `image`, which has a plane for each of names() and room for whole
-    // blocks. Any thread may call this, even while another thread is in decode().
+    // Converts decoded rows to rows [first, end) of `image`, which has a plane for each of names() and room for
+    // held_rows(end - first) rows. Any thread may call this, even while another thread is in decode().
     virtual void store(const std::byte* rows, int first, int end, Image& image) const = 0;
 
     // Reads the planes of the whole picture. Use it instead of decode() and finish(). Throws std::bad_alloc. Errors: as

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 #include <vector>
 
 #include <half.h>
 
+#include "blocks/astc.h"
 #include "kernels/encode.h"
 #include "kernels/pack.h"
 
@@ -83,6 +85,23 @@ void pack_values(const Rows& rows, int channels, int begin, int end, std::byte* 
     }
 }
 
+// Packs a row of blocks: at most as many rows as a block has, from row j.
+void pack_astc(const Rows& rows, Format format, Effort effort, int j, int count, std::byte* out) {
+    const int width = rows.extent().width;
+    std::vector<float> xy(2 * size(width) * size(count));
+    float* to = xy.data();
+    for (int k = j; k < j + count; ++k) {
+        PackChannel from[4];
+        rows.channels(k, from);
+        const auto& [x, y] = std::pair(from[0], from[3]);
+        for (int i = 0; i < width; ++i) {
+            *to++ = x.values[i];
+            *to++ = y.negate ? -y.values[i] : y.values[i];
+        }
+    }
+    encode_astc(format, effort, xy.data(), {width, count}, out);
+}
+
 }  // namespace
 
 void pack_rows(const NormalMap& map, int height, const PackOptions& options, int begin, int end, std::byte* out) {
@@ -91,8 +110,15 @@ void pack_rows(const NormalMap& map, int height, const PackOptions& options, int
     const Rows rows(map, height, swizzle, options.y_axis);
     if (info.has_blocks()) {
         const std::size_t pitch = level_bytes(format, {rows.extent().width, 1});
-        for (int j = begin; j < end; j += info.block.height)
-            encode_blocks(rows.blocks(j), options, out + size(j / info.block.height) * pitch);
+        const int block = info.block.height;
+        for (int j = begin; j < end; j += block) {
+            std::byte* const blocks = out + size(j / block) * pitch;
+            if (is_astc(format)) {
+                pack_astc(rows, format, options.effort, j, std::min(block, height - j), blocks);
+            } else {
+                encode_blocks(rows.blocks(j), options, blocks);
+            }
+        }
         return;
     }
     if (info.bits == 8) {

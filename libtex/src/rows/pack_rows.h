@@ -13,6 +13,7 @@ namespace tex {
 // Packs rows [begin, end) of a level, or of a strip of one, that is `height` rows high (at most the height of `map`).
 // `begin` is a multiple of the height of a block. If blocks are encoded, `end` is such a multiple too, or equals the
 // height; rows that the last block lacks repeat the last row. `out` is where row 0 goes.
+// Throws std::bad_alloc.
 void pack_rows(const NormalMap& map, int height, const PackOptions& options, int begin, int end, std::byte* out);
 
 }  // namespace tex

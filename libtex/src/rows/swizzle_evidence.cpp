@@ -7,6 +7,8 @@
 
 #include <tex/swizzle.h>
 
+#include "blocks/astc.h"
+
 namespace tex {
 namespace {
 
@@ -40,8 +42,9 @@ void SwizzleEvidence::Range::add(float value) {
 
 bool SwizzleEvidence::Range::is_constant() const { return !(greatest - least > kConstant); }
 
-SwizzleEvidence::SwizzleEvidence(Extent extent, SampleKind sample)
-    : extent_(extent), is_float_(sample == SampleKind::floating), step_(step_of(extent)) {}
+SwizzleEvidence::SwizzleEvidence(Extent extent, Format format)
+    : extent_(extent), is_float_(format_info(format).sample == SampleKind::floating), is_astc_(is_astc(format)),
+      step_(step_of(extent)) {}
 
 void SwizzleEvidence::add_row(int j, const float* const (&channels)[4]) {
     if (j % step_ != 0) return;
@@ -73,7 +76,7 @@ Swizzle SwizzleEvidence::layout() const {
     const bool is_unit = rgb_error <= kNotUnit || (is_float_ && signed_.rgb / count <= kNotUnit);
     if (r.is_constant() && b.is_constant() && (!a.is_constant() || !is_unit)) return named("dxt5nm");
     constexpr double kGrey = 4.0 / 255.0;  // the same grey in 5 and in 6 bits differs by this much
-    if (!a.is_constant() && off_grey_ / count <= kGrey) return named("dxt5nm");
+    if (!a.is_constant() && off_grey_ / count <= kGrey) return named(is_astc_ ? "ra" : "dxt5nm");
     if (r.is_constant() && !a.is_constant() && rxgb_error < rgb_error) return named("rxgb");
     return named("rgb");
 }

@@ -14,7 +14,7 @@ namespace {
 
 // The bytes of `count` rows and of the extra rows that a decoder may write with them.
 std::size_t room(const RowSource& rows, int count) {
-    return rows.row_bytes() * static_cast<std::size_t>(whole_blocks(count));
+    return rows.row_bytes() * static_cast<std::size_t>(rows.held_rows(count));
 }
 
 }  // namespace
@@ -27,6 +27,7 @@ JoinedRows::JoinedRows(Extent extent, std::vector<Member> members) : members_(st
         names.insert(names.end(), member.rows->names().begin(), member.rows->names().end());
         row_bytes += member.rows->row_bytes();
         together_ = std::lcm(together_, member.rows->rows_together());
+        block_rows_ = std::lcm(block_rows_, member.rows->block_rows());
         random_ = random_ && member.rows->is_random();
     }
     describe(extent, std::move(names), row_bytes);

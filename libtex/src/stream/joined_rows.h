@@ -21,6 +21,7 @@ public:
     JoinedRows(Extent extent, std::vector<Member> members);
 
     [[nodiscard]] int rows_together() const override { return together_; }
+    [[nodiscard]] int block_rows() const override { return block_rows_; }
     [[nodiscard]] bool is_random() const override { return random_; }
     [[nodiscard]] bool can_peek() const override { return false; }
     Result<void> decode(int first, int count, std::byte* rows) override;
@@ -30,6 +31,7 @@ public:
 private:
     const std::vector<Member> members_;
     int together_ = 1;
+    int block_rows_ = 1;
     bool random_ = false;
 };
 

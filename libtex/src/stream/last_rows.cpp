@@ -32,8 +32,8 @@ Result<Image> last_rows(InputFile& file, std::unique_ptr<RowSource>& rows, const
                         const Execution& execution) {
     const Extent extent = rows->extent();
     const int first = extent.height - count, together = rows->rows_together();
-    Image image = make_image({extent.width, whole_blocks(count)}, rows->names());
-    const int held = whole_blocks(together);
+    Image image = make_image({extent.width, rows->held_rows(count)}, rows->names());
+    const int held = rows->held_rows(together);
     std::vector<std::byte> decoded(rows->row_bytes() * static_cast<std::size_t>(held));
     for (int j = rows->can_peek() ? first / together * together : 0; j < extent.height; j += together) {
         if (execution.progress && !execution.progress(0.0)) return Error{ErrorCode::cancelled, {}, "cancelled"};

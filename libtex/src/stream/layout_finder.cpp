@@ -11,7 +11,7 @@ LayoutFinder::LayoutFinder(const TextureRows& texture, const SourceOptions& opti
     const Texture& head = texture.head;
     const FormatInfo info = format_info(head.format);
     if (!known_.swizzle) known_.swizzle = known_swizzle(head, options);
-    if (!known_.swizzle) evidence_.emplace(texture.levels.front()->extent(), info.sample);
+    if (!known_.swizzle) evidence_.emplace(texture.levels.front()->extent(), head.format);
     layout_.swizzle = known_.swizzle.value_or(guessed_swizzle(head.swizzle, options));
     if (!known_.is_unsigned)
         known_.is_unsigned = is_unsigned(info.sample, range_of(head.normal_encoding, options.unpack));

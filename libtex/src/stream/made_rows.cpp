@@ -23,7 +23,7 @@ MadeRows::MadeRows(RowSource& rows, const std::string& input, Extent extent, YAx
     : rows_(rows), input_(input), y_(y), convert_(std::move(convert)), row_(Extent{extent.width, 1}) {
     describe(extent, {"R", "G", "B"}, static_cast<std::size_t>(extent.width) * kTexelBytes);
     describe_samples(SampleKind::floating, 32, "signed");
-    const int held = whole_blocks(rows.rows_together());
+    const int held = rows.held_rows(rows.rows_together());
     image_ = make_image({rows.extent().width, held}, rows.names());
     decoded_.resize(rows.row_bytes() * static_cast<std::size_t>(held));
     stage_ = make(sink());

@@ -70,7 +70,8 @@ struct RowStream::Work {
         : rows(its_rows), input(its_input), writer(its_writer), execution(its_execution),
           alone(rows.extent().texels() < sizes.worth_threads),
           strip_texels(alone ? std::min(sizes.strip_texels, sizes.strip_texels_alone) : sizes.strip_texels),
-          strips(rows.extent(), level_total, strip_texels, first), batch_rows(rows_of_batch(rows, strips)) {}
+          strips(rows.extent(), level_total, strip_texels, writer.block_rows(), first),
+          batch_rows(rows_of_batch(rows, strips)) {}
 
     // The rows of one strip, rounded up to whole groups of rows that the file stores together.
     static int rows_of_batch(const RowSource& rows, const Strips& strips) {
@@ -111,7 +112,7 @@ Batch* RowStream::Work::read() {
     failure.watch([&]() -> Result<void> {
         if (next == height) return {};
         std::shared_ptr<Batch> taken = batches.take([this] {
-            const int held = whole_blocks(batch_rows);  // block decoders write all rows of a block
+            const int held = rows.held_rows(batch_rows);
             auto made = std::make_unique<Batch>();
             made->image = make_image({rows.extent().width, held}, rows.names());
             made->rows.resize(rows.row_bytes() * static_cast<std::size_t>(held));
@@ -194,7 +195,8 @@ RowStream::~RowStream() = default;
 Strips& RowStream::strips() { return work_->strips; }
 
 Strips& RowStream::roughness_strips(int levels) {
-    return work_->beside.emplace(work_->rows.extent(), levels, work_->strip_texels, 0, Content::roughness);
+    return work_->beside.emplace(work_->rows.extent(), levels, work_->strip_texels, work_->writer.block_rows(), 0,
+                                 Content::roughness);
 }
 
 void RowStream::convert(std::function<Result<void>(Image&, int)> change) { work_->change = std::move(change); }

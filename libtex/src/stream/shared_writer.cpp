@@ -3,6 +3,7 @@
 #include "stream/shared_writer.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace tex {
@@ -21,6 +22,11 @@ public:
         return std::any_of(members_.begin(), members_.end(), [&](const Member& member) {
             return strip.level < member.levels && member.writer->is_in_order(strip);
         });
+    }
+    [[nodiscard]] int block_rows() const override {
+        int rows = 1;
+        for (const Member& member : members_) rows = std::lcm(rows, member.writer->block_rows());
+        return rows;
     }
     Result<void> write(Strip& strip) override {
         for (Member& member : members_) {

@@ -7,6 +7,7 @@
 #include <deque>
 #include <map>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -164,6 +165,7 @@ public:
     [[nodiscard]] bool is_in_order(const Strip& strip) const override {
         return levels_[static_cast<std::size_t>(strip.level)]->is_in_order(strip);
     }
+    [[nodiscard]] int block_rows() const override { return levels_.front()->block_rows(); }
     Result<void> write(Strip& strip) override { return levels_[static_cast<std::size_t>(strip.level)]->write(strip); }
     // Commits the files one after the other and closes each before the next. If one fails, the files after it do not
     // appear.
@@ -189,6 +191,7 @@ public:
         : normals_(std::move(normals)), roughness_(std::move(roughness)) {}
 
     [[nodiscard]] bool is_in_order(const Strip& strip) const override { return of(strip).is_in_order(strip); }
+    [[nodiscard]] int block_rows() const override { return std::lcm(normals_->block_rows(), roughness_->block_rows()); }
     Result<void> write(Strip& strip) override { return of(strip).write(strip); }
     Result<void> commit() override {
         if (Result<void> done = normals_->commit(); !done) return done;

@@ -12,6 +12,7 @@
 #include <tex/pack.h>
 #include <tex/pipeline.h>
 
+#include "blocks/extent.h"
 #include "files/output_file.h"
 #include "formats/file_layout.h"
 #include "stream/strips.h"
@@ -53,6 +54,10 @@ public:
     // If true, strips with this content and level must come one at a time, preferably from the top. If false, they may
     // come in any order, from several threads at once.
     [[nodiscard]] virtual bool is_in_order(const Strip& strip) const = 0;
+
+    // Strips consist of rows of blocks with this many rows of texels. Only the last strip of a level may end within
+    // one.
+    [[nodiscard]] virtual int block_rows() const { return kBlockEdge; }
 
     // Packs a whole strip and writes it to its place. Errors: io, out_of_memory.
     virtual Result<void> write(Strip& strip) = 0;

@@ -7,17 +7,16 @@
 
 #include <tex/mip_chain.h>
 
-#include "blocks/extent.h"
-
 namespace tex {
-Strips::Strips(Extent base, int levels, int strip_texels, int first, Content content)
-    : first_(first), content_(content), levels_(static_cast<std::size_t>(levels)) {
+
+Strips::Strips(Extent base, int levels, int strip_texels, int block_rows, int first, Content content)
+    : block_rows_(block_rows), first_(first), content_(content), levels_(static_cast<std::size_t>(levels)) {
     for (int k = 0; k < levels; ++k) {
         Level& level = levels_[static_cast<std::size_t>(k)];
         level.extent = level_extent(base, k);
         missing_ += level.extent.height;
         // The number of rows that are made during one strip of the base level, but at least one row of blocks.
-        level.rows = std::max(kBlockEdge, ((strip_texels / base.width) >> k) / kBlockEdge * kBlockEdge);
+        level.rows = std::max(block_rows, ((strip_texels / base.width) >> k) / block_rows * block_rows);
     }
 }
 
@@ -25,7 +24,7 @@ Strips::Place Strips::place(int level_index, int j) {
     Level& level = levels_[static_cast<std::size_t>(level_index)];
     std::shared_ptr<Strip>& strip = level.open[j / level.rows];
     if (!strip) {
-        const Extent extent{level.extent.width, std::min(level.rows, whole_blocks(level.extent.height))};
+        const Extent extent{level.extent.width, std::min(level.rows, whole_blocks(level.extent.height, block_rows_))};
         strip = level.pool.take([extent, this] {
             auto made = std::make_unique<Strip>();
             made->content = content_;

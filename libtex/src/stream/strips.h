@@ -11,6 +11,7 @@
 
 #include <tex/normal_map.h>
 
+#include "blocks/extent.h"
 #include "kernels/bake.h"
 #include "threads/pool.h"
 
@@ -33,9 +34,10 @@ struct Strip {
 // The strips of all levels. Rows may come in any order, but from one thread only.
 class Strips {
 public:
-    // A strip of the base level has about `strip_texels` texels, and at least one row of blocks. The base level is
-    // level `first` of the file.
-    Strips(Extent base, int levels, int strip_texels, int first = 0, Content content = Content::normals);
+    // A strip of the base level has about `strip_texels` texels. It consists of whole rows of blocks, `block_rows` rows
+    // of texels each. The base level is level `first` of the file.
+    Strips(Extent base, int levels, int strip_texels, int block_rows = kBlockEdge, int first = 0,
+           Content content = Content::normals);
 
     // The place of row j of a level, and its owner. Roughness goes to x.
     struct Place {
@@ -61,6 +63,7 @@ private:
         std::map<int, std::shared_ptr<Strip>> open;
         Pool<Strip> pool;
     };
+    const int block_rows_;
     const int first_;
     const Content content_;
     std::vector<Level> levels_;

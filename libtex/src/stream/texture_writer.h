@@ -18,7 +18,7 @@
 
 namespace tex {
 
-// Writes containers in which the place of every level is known from the start: DDS, KTX2.
+// Writes containers in which the place of every level is known from the start: DDS, KTX2, ASTC.
 class TextureWriter final : public StripWriter {
 public:
     // `first` is the level with which the file begins.
@@ -38,6 +38,10 @@ public:
         return {};
     }
     [[nodiscard]] bool is_in_order(const Strip&) const override { return false; }
+    [[nodiscard]] int block_rows() const override {
+        const FormatInfo format = format_info(packing_.head.format);
+        return format.has_blocks() ? format.block.height : kBlockEdge;
+    }
     Result<void> write(Strip& strip) override;
     Result<void> commit() override;
     [[nodiscard]] std::size_t file_bytes() const override { return size_; }
