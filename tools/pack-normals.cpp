@@ -46,6 +46,7 @@ PackFileOptions PackNormals::options(cli::Job& job) const {
     PackFileOptions options;
     if (!mips_.keep && (mips_.levels || job.task.engine != nullptr))
         options.mip = mips_.options(mips_.levels_for(job.task), wrap_);
+    options.max_side = mips_.mip.max_side;
     return options;
 }
 

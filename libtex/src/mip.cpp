@@ -157,12 +157,14 @@ Result<void> make_levels(const std::vector<Step>& steps, const Execution& execut
 }  // namespace
 
 Result<MipChain> build_mip_chain(NormalMap base, const MipOptions& options, const Execution& execution) {
-    assert(!base.x.empty() && options.levels >= 0);
+    assert(!base.x.empty() && options.levels >= 0 && options.max_side >= 0);
     assert(!options.fade || (options.fade->first >= 0 && options.fade->first < options.fade->last));
     assert(!options.any_z || (options.domain == MipDomain::vector && !options.fade));
     return guarded([&]() -> Result<MipChain> {
         const Extent extent = base.extent();
-        const int count = levels_to_build(options, extent);
+        const int first = first_level(options, extent);
+        const int count = first + levels_to_build(options, extent);
+        const MipOptions all = counted_from_base(options, first);
         MipChain chain;
         chain.levels.push_back(std::move(base));
         for (int k = 1; k < count; ++k) chain.levels.emplace_back(level_extent(extent, k));
@@ -172,15 +174,16 @@ Result<MipChain> build_mip_chain(NormalMap base, const MipOptions& options, cons
             // Three quarters of the remaining progress, because each level has a quarter of the texels of the one
             // before.
             const double next = done + (1.0 - done) * 0.75;
-            const std::vector<Step> steps = next_steps(chain, k, options);
+            const std::vector<Step> steps = next_steps(chain, k, all);
             if (const auto made = make_levels(steps, execution, {done, next}); !made) return made.error();
             k += static_cast<int>(steps.size());
             done = next;
         }
         if (count > 1) {
-            const auto last = finish_level(chain.levels.back(), options, count - 1, execution, {done, 1.0});
+            const auto last = finish_level(chain.levels.back(), all, count - 1, execution, {done, 1.0});
             if (!last) return last.error();
         }
+        chain.levels.erase(chain.levels.begin(), chain.levels.begin() + first);
         return chain;
     });
 }

@@ -60,7 +60,8 @@ Result<void> fill_base(const Plane<float>& own, const MipOptions& options, const
 Result<RoughnessChain> build_chain(const NormalMap& base, const Plane<float>& roughness, RoughnessModel model,
                                    const MipOptions& options, const Execution& execution) {
     const Extent extent = base.extent();
-    const int count = levels_to_build(options, extent);
+    const int first = first_level(options, extent);
+    const int count = first + levels_to_build(options, extent);
     double done = count > 1 ? 0.1 : 1.0;
     RoughnessChain chain;
     Plane<float> alpha2(extent);
@@ -91,6 +92,7 @@ Result<RoughnessChain> build_chain(const NormalMap& base, const Plane<float>& ro
         from = views_of(held);
         done = next;
     }
+    chain.levels.erase(chain.levels.begin(), chain.levels.begin() + first);
     return chain;
 }
 
@@ -121,7 +123,7 @@ Result<Texture> pack_chain(const RoughnessChain& chain, Format format, Effort ef
 
 Result<RoughnessChain> build_roughness_chain(const NormalMap& base, const Plane<float>& roughness, RoughnessModel model,
                                              const MipOptions& options, const Execution& execution) {
-    assert(!base.x.empty() && !roughness.empty() && options.levels >= 0);
+    assert(!base.x.empty() && !roughness.empty() && options.levels >= 0 && options.max_side >= 0);
     return guarded([&] { return build_chain(base, roughness, model, options, execution); });
 }
 

@@ -106,6 +106,25 @@ TEST_F(MipNormals, EachLevelCanHaveAPicture) {
     }
 }
 
+TEST_F(MipNormals, LargeLevelsCanBeLeftOut) {
+    does("bake-normals", {"ramp.png", "--mips", "all", "--name", "all_{level}.exr"});
+    does("bake-normals", {"ramp.png", "-o", "small.exr", "--max-size", "16"});
+    EXPECT_EQ(go("compare-normals", {"all_2.exr", "small.exr", "--max", "0"}).code, 0);
+    does("bake-normals", {"ramp.png", "--name", "some_{level}.exr", "--max-size", "16"});
+    EXPECT_TRUE(scratch_.read("some_0.exr") == scratch_.read("all_2.exr"));
+    EXPECT_TRUE(scratch_.read("some_4.exr") == scratch_.read("all_6.exr"));
+    EXPECT_FALSE(scratch_.has("some_5.exr"));
+    does("bake-normals", {"ramp.png", "-o", "n.exr"});
+    does("mip-normals",
+         {"n.exr", "-o", "n.dds", "--max-size", "8", "--roughness-out", "r.dds", "--roughness-in", "0.4"});
+    EXPECT_EQ(read_texture(scratch_.path("n.dds"))->extent(), (Extent{8, 8}));
+    EXPECT_EQ(read_texture(scratch_.path("r.dds"))->extent(), (Extent{8, 8}));
+    EXPECT_EQ(read_texture(scratch_.path("r.dds"))->levels.size(), 4u);
+    does("blend-normals", {"n.exr", "--detail", "n.exr", "-o", "b.png", "--max-size", "32"});
+    EXPECT_EQ(read_image(scratch_.path("b.png"))->extent(), (Extent{32, 32}));
+    EXPECT_EQ(go("mip-normals", {"n.exr", "-o", "x.dds", "--max-size", "0"}).code, 2);
+}
+
 TEST_F(MipNormals, AFileForOneLevelIsRefused) {
     does("bake-normals", {"ramp.png", "-o", "n.png"});
     const Ran ran = go("mip-normals", {"n.png", "-o", "x.png"});

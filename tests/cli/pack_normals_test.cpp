@@ -106,6 +106,13 @@ TEST_F(PackNormals, LevelsAreKeptUnlessOthersAreAskedFor) {
     EXPECT_EQ(levels({"n.dds", "-o", "x.ktx2", "--mips", "3"}), 3);
     EXPECT_EQ(levels({"x.png", "-o", "y.dds"}), 1);
     EXPECT_EQ(levels({"x.png", "-o", "y.dds", "--mips", "all"}), 8);
+    EXPECT_EQ(levels({"n.dds", "-o", "small.ktx2", "--max-size", "20"}), 5);
+    EXPECT_EQ(read_texture(scratch_.path("small.ktx2"))->extent(), (Extent{16, 16}));
+    EXPECT_EQ(levels({"n.dds", "-o", "small.dds", "--max-size", "20", "--mips", "2"}), 2);
+    EXPECT_EQ(levels({"n.dds", "-o", "small.png", "--max-size", "20"}), 1);
+    EXPECT_EQ(read_image(scratch_.path("small.png"))->extent(), (Extent{16, 16}));
+    EXPECT_EQ(levels({"x.png", "-o", "built.dds", "--max-size", "20"}), 1) << "the picture has no level to keep";
+    EXPECT_EQ(read_texture(scratch_.path("built.dds"))->extent(), (Extent{16, 16}));
     // Kept levels are the file's own levels, not new ones.
     does("mip-normals", {"n.dds", "-o", "faded.dds", "--format", "float", "--fade", "0,1"});
     does("pack-normals", {"faded.dds", "-o", "faded.ktx2", "--format", "float", "--keep-length"});

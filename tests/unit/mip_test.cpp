@@ -100,6 +100,28 @@ TEST(Mip, AsManyLevelsAsWantedAndNoMoreThanThereAre) {
     EXPECT_TRUE(same_bytes(chain_of(base, options).levels[2], chain_of(base).levels[2]));
 }
 
+// Levels and fading count from the first level that is kept.
+TEST(Mip, LargeLevelsAreLeftOut) {
+    const NormalMap base = noise_normals({70, 33});
+    const MipChain whole = chain_of(base);
+    MipOptions options;
+    for (const auto& [most, first] : std::vector<std::pair<int, std::size_t>>{
+             {0, 0}, {200, 0}, {70, 0}, {69, 1}, {35, 1}, {34, 2}, {4, 4}, {2, 5}, {1, 6}}) {
+        options.max_side = most;
+        const MipChain chain = chain_of(base, options);
+        ASSERT_EQ(chain.levels.size(), whole.levels.size() - first) << most;
+        EXPECT_TRUE(same_bytes(chain.levels.front(), whole.levels[first])) << most;
+        EXPECT_TRUE(same_bytes(chain.levels.back(), whole.levels.back())) << most;
+    }
+    options.max_side = 35;
+    options.levels = 2;
+    EXPECT_EQ(chain_of(base, options).levels.size(), 2u);
+    options.fade = tex::Fade{0, 1};
+    const MipChain faded = chain_of(base, options);
+    EXPECT_TRUE(same_bytes(faded.levels[0], whole.levels[1]));
+    EXPECT_EQ(faded.levels[1].z.at(3, 3), 1.0f);
+}
+
 TEST(Mip, TheBaseLevelIsStoredAsGiven) {
     const NormalMap base = noise_normals({33, 20});
     for (const MipDomain domain : kDomains) {

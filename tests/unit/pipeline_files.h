@@ -140,8 +140,8 @@ protected:
         field.bumpiness_x = strength.x;
         field.bumpiness_y = strength.y;
         NormalMap normals = bake(field, options_.bake).value();
-        if (slopes != nullptr) *slopes = slope_range(normals);
         const MipChain chain = build_mip_chain(std::move(normals), options_.mip).value();
+        if (slopes != nullptr) *slopes = slope_range(chain.levels.front());
         return encode_file(pack(chain, options_.pack).value(), container, options_.write).value();
     }
 

@@ -299,4 +299,21 @@ TEST(Roughness, PacksIntoEveryFormatOfOneChannel) {
     EXPECT_EQ(tex::pack_roughness(chain, Format::rg8_unorm).error().code, tex::ErrorCode::bad_option);
 }
 
+TEST(Roughness, LargeLevelsAreLeftOut) {
+    const NormalMap base = noise_normals({40, 24});
+    const Plane<float> own = noise_roughness({40, 24});
+    const RoughnessChain whole = chain_of(base, own, RoughnessModel::vmf);
+    MipOptions options;
+    options.max_side = 20;
+    options.levels = 3;
+    const RoughnessChain some = chain_of(base, own, RoughnessModel::vmf, options);
+    ASSERT_EQ(some.levels.size(), 3u);
+    for (std::size_t k = 0; k < 3; ++k) {
+        for (int j = 0; j < some.levels[k].extent().height; ++j) {
+            for (int i = 0; i < some.levels[k].extent().width; ++i)
+                ASSERT_EQ(some.levels[k].at(i, j), whole.levels[k + 1].at(i, j)) << k;
+        }
+    }
+}
+
 }  // namespace

@@ -53,6 +53,8 @@ void MipChainOptions::add(Command& command, bool with_keep, std::string levels_d
     row.completes = Completes::words;
     row.preset = std::move(levels_default);
 
+    command.number(mip.max_side, "--max-size", "N", 1, kMaxExtent, "leave out levels with a side of more texels")
+        .preset = "no limit";
     command.choice(mip.filter, "--mip-filter", "F", kMipFilterNames, "the filter from level to level");
     command.choice(mip.domain, "--mip-domain", "D", kMipDomainNames, "what is averaged");
     command.option("--fade", "FIRST,LAST", "fade to flat from level FIRST on; from LAST on all is flat",

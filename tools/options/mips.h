@@ -27,7 +27,7 @@ struct WrapOptions {
     void add(Command& command, std::string help);
 };
 
-// --mips, --mip-filter, --mip-domain, --fade.
+// --mips, --max-size, --mip-filter, --mip-domain, --fade.
 struct MipChainOptions {
     std::optional<int> levels;  // 0: all; none: the container's default
     bool keep = false;          // copies the levels of the source

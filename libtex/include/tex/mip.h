@@ -17,9 +17,10 @@ namespace tex {
 //     normalize(lerp(normalize(average), (0, 0, 1), t))
 //
 // A z below 0 (from filters with negative lobes) becomes 0 first, unless any_z is set, and a vector shorter than 1e-6
-// becomes (0, 0, 1). The base level is stored as given: t is 0 there.
+// becomes (0, 0, 1). The base level is stored as given: t is 0 there. With
+// options.max_side, levels[0] may be a smaller level.
 //
-// Preconditions (asserted): `base` is not empty; fade as described; levels >= 0; with any_z, the domain
+// Preconditions (asserted): `base` is not empty; fade as described; levels, max_side >= 0; with any_z, the domain
 // is vector and there is no fade.
 // Errors: out_of_memory, cancelled.
 // The same bytes for every number of threads, processor and compiler.

@@ -59,6 +59,9 @@ struct MipOptions {
     std::optional<Fade> fade;
     Wrap wrap_x = Wrap::repeat;  // clamp repeats the border texel, mirror does not flip vectors
     Wrap wrap_y = Wrap::repeat;
+    // The longest side of levels[0] in texels; 0: no limit. Larger levels are made, as smaller ones come from them, and
+    // left out. `levels` and `fade` count from the first level that is kept.
+    int max_side = 0;
     bool any_z = false;  // z may be negative, as in object space; else a z below 0 becomes 0
 };
 

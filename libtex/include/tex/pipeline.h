@@ -110,6 +110,9 @@ struct PackFileOptions {
     std::optional<int> level;       // only this level of the source, as the base level; none: all levels
     std::optional<Scaling> scale;   // none: the slopes stay as they are
     std::optional<MipOptions> mip;  // levels are built from the base level; none: the source's own levels are kept
+    // As MipOptions::max_side, if `mip` is not set: larger levels of the source are left out. If it has none that is
+    // small enough, one is built from its base level, or from `level`.
+    int max_side = 0;
 
     // Returns how the output is packed, given the properties of the source. Empty: default_encoding() of the container,
     // with y as in the source. Must not throw. If the swizzle depends on the texels, it may be called more than once;

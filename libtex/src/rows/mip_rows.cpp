@@ -12,9 +12,23 @@
 
 namespace tex {
 
+int first_level(const MipOptions& options, Extent base) {
+    int level = 0;
+    for (; options.max_side > 0; ++level) {
+        const Extent extent = level_extent(base, level);
+        if (std::max(extent.width, extent.height) <= options.max_side) break;
+    }
+    return level;
+}
+
 int levels_to_build(const MipOptions& options, Extent base) {
-    const int complete = level_count(base);
+    const int complete = level_count(level_extent(base, first_level(options, base)));
     return options.levels > 0 ? std::min(options.levels, complete) : complete;
+}
+
+MipOptions counted_from_base(MipOptions options, int first) {
+    if (options.fade) options.fade = Fade{options.fade->first + first, options.fade->last + first};
+    return options;
 }
 
 float fade_at(const std::optional<Fade>& fade, int level) {

@@ -13,8 +13,14 @@
 
 namespace tex {
 
-// The number of levels that build_mip_chain() makes from a base level, including the base level.
+// The first level that build_mip_chain() keeps: 0, unless the base level is larger than options.max_side.
+int first_level(const MipOptions& options, Extent base);
+
+// The number of levels that it keeps.
 int levels_to_build(const MipOptions& options, Extent base);
+
+// The same options for levels that are counted from the base level, if level `first` is the first that is kept.
+MipOptions counted_from_base(MipOptions options, int first);
 
 // How far level `level` has faded to flat, from 0 to 1.
 float fade_at(const std::optional<Fade>& fade, int level);

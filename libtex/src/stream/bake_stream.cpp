@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include <tex/mip_chain.h>
+
 #include "rows/mip_rows.h"
 #include "stream/height_stage.h"
 #include "stream/level_stage.h"
@@ -28,15 +30,16 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
     const Execution onward = part_of(execution, filled, 1.0);
     const Extent extent = heights->rows->extent();
     BakeFileReport report;
-    report.extent = extent;
+    const int first = first_level(options.mip, extent);
+    report.extent = level_extent(extent, first);
     if (any_holds_levels(container, options.level_names, options.more))
         report.levels = levels_to_build(options.mip, extent);
     std::vector<FileTarget> targets = {{{output, options.level_names}, container, options.pack, options.write}};
     add_targets(options.more, {}, targets);
-    const Result<std::unique_ptr<StripWriter>> opened = open_targets(targets, extent, report.levels);
+    const Result<std::unique_ptr<StripWriter>> opened = open_targets(targets, report.extent, report.levels);
     if (!opened) return opened.error();
     StripWriter& writer = **opened;
-    RowStream stream(*heights->rows, file.path(), 0, report.levels, writer, onward, sizes);
+    RowStream stream(*heights->rows, file.path(), -first, first + report.levels, writer, onward, sizes);
     if (heights->linear) stream.convert([&](Image& rows, int count) { return heights->linear->convert(rows, count); });
     SlopeCollector slopes(steepest_slope(options.pack.encoding), options.slopes);
     stream.watch([&slopes](const Strip& strip) {
@@ -44,7 +47,8 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
     });
     HeightStage stage(extent, heights->source, heights->options, gradient, head_of(extent, options), stream.sink(),
                       std::move(heights->last));
-    LevelStage levels(extent, report.levels, stage.start(), options.mip, stream.strips());
+    LevelStage levels(extent, first + report.levels, stage.start(), counted_from_base(options.mip, first),
+                      stream.strips());
     if (const Result<void> done = stream.run(stage, levels); !done) return done.error();
     if (const Result<void> done = writer.commit(); !done) return done.error();
     report.bytes = writer.file_bytes();

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include <tex/mip_chain.h>
+
 #include "rows/mip_rows.h"
 #include "stream/blending.h"
 #include "stream/level_stage.h"
@@ -37,16 +39,18 @@ private:
     const BlendFileOptions& options_;
     const StreamSizes& sizes_;
     std::unique_ptr<StripWriter> writer_;
+    int first_ = 0;  // the first level that is kept
     BlendFileReport report_;
 };
 
 // Finds out what to write.
 void BlendRun::describe() {
-    report_.extent = blending_.extent();
+    first_ = first_level(options_.mip, blending_.extent());
+    report_.extent = level_extent(blending_.extent(), first_);
     report_.source = blending_.source();
     report_.details = blending_.details();
     const bool holds = any_holds_levels(container_, options_.level_names, options_.more);
-    report_.levels = holds ? levels_to_build(options_.mip, report_.extent) : 1;
+    report_.levels = holds ? levels_to_build(options_.mip, blending_.extent()) : 1;
     report_.pack = packing_for(options_.pack, container_, report_.source);
 }
 
@@ -60,10 +64,12 @@ Result<void> BlendRun::stream(const Execution& execution) {
     const Result<std::unique_ptr<Blending::Reading>> reading = blending_.read(execution);
     if (!reading) return reading.error();
     Blending::Reading& maps = **reading;
-    RowStream stream(*maps.rows, blending_.path(), 0, report_.levels, *writer_, execution, sizes_);
+    const int levels_made = first_ + report_.levels;
+    RowStream stream(*maps.rows, blending_.path(), -first_, levels_made, *writer_, execution, sizes_);
     BlendStage blended(maps.maps, maps.in_step, stream.sink());
     constexpr int kFromTheTop = 0;
-    LevelStage levels(report_.extent, report_.levels, kFromTheTop, options_.mip, stream.strips());
+    LevelStage levels(blending_.extent(), levels_made, kFromTheTop, counted_from_base(options_.mip, first_),
+                      stream.strips());
     return stream.run(blended, levels);
 }
 

@@ -36,7 +36,8 @@ public:
             const PackFileOptions& options, const Execution& execution, const StreamSizes& sizes,
             const KnownLayout& known, Kept& kept)
         : texture_(texture), input_(input), output_(output), container_(container), options_(options),
-          execution_(execution), sizes_(sizes), kept_(kept), finder_(texture, options.source, known) {}
+          execution_(execution), sizes_(sizes), kept_(kept), finder_(texture, options.source, known),
+          mip_(options.mip) {}
 
     // Returns an empty optional, and sets correction(), if the texels show that the assumption was wrong.
     Result<std::optional<PackFileReport>> run();
@@ -44,6 +45,7 @@ public:
 
 private:
     Result<void> prepare();
+    void choose_level();
     Result<void> look_at_base_level();
     [[nodiscard]] Result<std::optional<OwnRoughness>> own_roughness() const;
     Result<std::unique_ptr<StripWriter>> open_writer() const;
@@ -62,12 +64,14 @@ private:
     const StreamSizes& sizes_;
     Kept& kept_;
     LayoutFinder finder_;
+    std::optional<MipOptions> mip_;
     std::optional<KnownLayout> correction_;
     Sources sources_;
     UnpackRule rule_;
     std::optional<OwnRoughness> own_;
     std::size_t first_ = 0;  // the level that becomes the base level
     std::size_t end_ = 1;    // the end of the levels that are read
+    int left_out_ = 0;       // levels that are built and not written
     PackFileReport report_;
 };
 
@@ -89,13 +93,33 @@ Result<void> Attempt::prepare() {
         const std::string asked = std::to_string(*options_.level);
         return Error{ErrorCode::bad_option, input_, "has no level " + asked + ", only " + std::to_string(held)};
     }
+    if (!mip_) choose_level();
     const bool holds = any_holds_levels(container_, options_.level_names, options_.more);
-    end_ = options_.level || options_.mip || !holds ? first_ + 1 : held;
-    report_.extent = rows(first_).extent();
+    end_ = options_.level || mip_ || !holds ? first_ + 1 : held;
+    const Extent base = rows(first_).extent();
+    if (mip_) left_out_ = first_level(*mip_, base);
+    report_.extent = level_extent(base, left_out_);
     report_.pack = packing_for(options_.pack, container_, report_.source);
     report_.levels = static_cast<int>(end_ - first_);
-    if (options_.mip && holds) report_.levels = levels_to_build(*options_.mip, report_.extent);
+    if (mip_ && holds) report_.levels = levels_to_build(*mip_, base);
     return {};
+}
+
+// Finds the first level that is small enough. If the source has none, one is built.
+void Attempt::choose_level() {
+    const auto fits = [this](std::size_t k) {
+        const Extent extent = rows(k).extent();
+        return options_.max_side == 0 || std::max(extent.width, extent.height) <= options_.max_side;
+    };
+    std::size_t k = first_;
+    while (!options_.level && !fits(k) && k + 1 < texture_.levels.size()) ++k;
+    if (fits(k)) {
+        first_ = k;
+    } else {
+        mip_ = MipOptions();
+        mip_->levels = 1;
+        mip_->max_side = options_.max_side;
+    }
 }
 
 // To be called if the base level decides how another level is read.
@@ -118,14 +142,14 @@ Result<void> Attempt::look_at_base_level() {
 Result<std::optional<OwnRoughness>> Attempt::own_roughness() const {
     if (!options_.roughness) return std::optional<OwnRoughness>();
     const RoughnessFile& file = *options_.roughness;
-    if (!file.map) return std::optional(OwnRoughness(file.own, report_.extent.width));
+    if (!file.map) return std::optional(OwnRoughness(file.own, rows(first_).extent().width));
     if (!kept_.own) {
         Result<Plane<float>> map = file.map();
         if (!map) return map.error();
         kept_.own = std::move(*map);
     }
     const Execution silent{execution_.threads, {}};
-    Result<OwnRoughness> own = OwnRoughness::of(*kept_.own, report_.extent, *options_.mip, silent);
+    Result<OwnRoughness> own = OwnRoughness::of(*kept_.own, rows(first_).extent(), *mip_, silent);
     if (!own) return own.error();
     return std::optional(std::move(*own));
 }
@@ -148,7 +172,7 @@ Result<std::unique_ptr<StripWriter>> Attempt::open_writer() const {
 // Packs level k and the levels that are built from it.
 Result<void> Attempt::stream_level(std::size_t k, StripWriter& writer, const Execution& execution) {
     const Extent extent = rows(k).extent();
-    const int levels = options_.mip ? report_.levels : 1;
+    const int levels = mip_ ? left_out_ + report_.levels : 1;
     LayoutFinder* const finder = k == 0 && finder_.depends_on_texels() ? &finder_ : nullptr;
     if (finder == nullptr) {
         std::vector<bool> wanted(rows(k).names().size(), false);
@@ -157,18 +181,19 @@ Result<void> Attempt::stream_level(std::size_t k, StripWriter& writer, const Exe
         }
         rows(k).choose_planes(wanted);
     }
-    RowStream stream(rows(k), input_, static_cast<int>(k - first_), levels, writer, execution, sizes_);
+    RowStream stream(rows(k), input_, static_cast<int>(k - first_) - left_out_, levels, writer, execution, sizes_);
     std::optional<YWitness> witness;
     if (k == first_ && options_.source.doubt_y && !report_.source.y_known) witness.emplace(extent);
     UnpackStage normals(texture_, extent, sources_, rule_, options_.scale, finder, witness ? &*witness : nullptr,
                         stream.sink());
     constexpr int kFromTheTop = 0;
-    LevelStage mips(extent, levels, kFromTheTop, options_.mip.value_or(MipOptions()), stream.strips());
+    LevelStage mips(extent, levels, kFromTheTop, counted_from_base(mip_.value_or(MipOptions()), left_out_),
+                    stream.strips());
     std::optional<RoughnessStage> roughness;
     if (options_.roughness) {
         const RoughnessFile& file = *options_.roughness;
-        roughness.emplace(extent, roughness_levels(), *options_.mip, file.model, *own_,
-                          stream.roughness_strips(roughness_levels()));
+        const int rough_levels = left_out_ + roughness_levels();
+        roughness.emplace(extent, rough_levels, *mip_, file.model, *own_, stream.roughness_strips(rough_levels));
     }
     Result<void> done = stream.run(normals, mips, roughness ? &*roughness : nullptr);
     if (done && finder != nullptr) correction_ = finder->correction();

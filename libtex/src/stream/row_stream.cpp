@@ -67,7 +67,7 @@ private:
 struct RowStream::Work {
     Work(RowSource& its_rows, const std::string& its_input, int first, int level_total, StripWriter& its_writer,
          const Execution& its_execution, const StreamSizes& sizes)
-        : rows(its_rows), input(its_input), writer(its_writer), execution(its_execution),
+        : rows(its_rows), input(its_input), writer(its_writer), execution(its_execution), first_level(first),
           alone(rows.extent().texels() < sizes.worth_threads),
           strip_texels(alone ? std::min(sizes.strip_texels, sizes.strip_texels_alone) : sizes.strip_texels),
           strips(rows.extent(), level_total, strip_texels, writer.block_rows(), first),
@@ -90,6 +90,7 @@ struct RowStream::Work {
     const std::string& input;
     StripWriter& writer;
     const Execution& execution;
+    const int first_level;
     const bool alone;  // one thread is enough
     const int strip_texels;
     Strips strips;
@@ -170,6 +171,7 @@ void RowStream::Work::make(Batch& batch, NormalStage& stage) {
 // Writes the strips that must come in order, or the other ones.
 void RowStream::Work::write_strips(Batch& batch, bool in_order) {
     for (std::shared_ptr<Strip>& strip : batch.strips) {
+        if (strip && strip->level < 0) strip.reset();  // of a level that the file leaves out
         if (!strip || writer.is_in_order(*strip) != in_order) continue;
         failure.watch([&]() -> Result<void> {
             if (Result<void> written = writer.write(*strip); !written) return written;
@@ -195,8 +197,8 @@ RowStream::~RowStream() = default;
 Strips& RowStream::strips() { return work_->strips; }
 
 Strips& RowStream::roughness_strips(int levels) {
-    return work_->beside.emplace(work_->rows.extent(), levels, work_->strip_texels, work_->writer.block_rows(), 0,
-                                 Content::roughness);
+    return work_->beside.emplace(work_->rows.extent(), levels, work_->strip_texels, work_->writer.block_rows(),
+                                 work_->first_level, Content::roughness);
 }
 
 void RowStream::convert(std::function<Result<void>(Image&, int)> change) { work_->change = std::move(change); }
