@@ -109,7 +109,7 @@ TEST_F(MipNormals, EachLevelCanHaveAPicture) {
 TEST_F(MipNormals, LargeLevelsCanBeLeftOut) {
     does("bake-normals", {"ramp.png", "--mips", "all", "--name", "all_{level}.exr"});
     does("bake-normals", {"ramp.png", "-o", "small.exr", "--max-size", "16"});
-    EXPECT_EQ(go("compare-normals", {"all_2.exr", "small.exr", "--max", "0"}).code, 0);
+    EXPECT_TRUE(scratch_.read("small.exr") == scratch_.read("all_2.exr"));
     does("bake-normals", {"ramp.png", "--name", "some_{level}.exr", "--max-size", "16"});
     EXPECT_TRUE(scratch_.read("some_0.exr") == scratch_.read("all_2.exr"));
     EXPECT_TRUE(scratch_.read("some_4.exr") == scratch_.read("all_6.exr"));
