@@ -78,7 +78,7 @@ TEST_F(AstcFiles, AreSoundToTheCheckAndItsPage) {
     const Ran ran =
         shell(scratch_, "check-normals b.ktx2 --require format=astc-6x5 --require mips=full --report b.html");
     EXPECT_EQ(ran.code, 0) << ran.out << ran.err;
-    EXPECT_THAT(ran.out, testing::Not(HasSubstr("N106")));
+    EXPECT_THAT(ran.out, HasSubstr("0 errors, 0 warnings, 0 notes"));
     EXPECT_THAT(scratch_.read("b.html"), HasSubstr("data:image/png;base64,"));
     EXPECT_THAT(does("pack-normals b.ktx2 -o again.ktx2 --json"), HasSubstr("astc-6x5"));
 }

@@ -127,7 +127,7 @@ RowView view_of(const Stored& stored, int j) {
     }
     const bool alpha_is_x = stored.channel(Component::x) == 3;
     view.one_in_red = alpha_is_x && view.z == nullptr;
-    view.alpha_free = view.channels == 4 && !alpha_is_x;
+    view.alpha_free = view.channels == 4 && !alpha_is_x && stored.channel(Component::y) != 3;
     view.colors = view.alpha_free && view.z != nullptr && !stored.is_signed;
     if (image.sample == SampleKind::unorm && image.bits == 8) {
         view.low_flat = 127.0f / 255.0f;

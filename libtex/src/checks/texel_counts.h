@@ -39,7 +39,7 @@ enum class Property {
     z_behind,       // z below -0.1 (z stored)
     beyond_unit,    // x^2 + y^2 above (1 + kTwoCodes)^2; in texel blocks, whose texels share a palette, above 1.3^2
     red_not_one,    // R below 1, for the layout (R, y, _, x)
-    alpha_not_one,  // A below 1, if A is not x
+    alpha_not_one,  // A below 1, if A is neither x nor y
     above_alpha,    // R, G or B is above A by more than one and a half codes
     grey,           // R, G and B are equal within one and a half codes
     flat_low,       // x and y are code 127 of 255
