@@ -110,8 +110,9 @@ Result<void> PreviewNormals::process(cli::Job& job) {
     const auto frames = sheet_.draw(names, maps, *with, job.until(0.95));
     if (!frames) return frames.error();
     const Texture& first = frames->front();
-    const auto bytes =
-        sheet_.is_animated() ? encode_animation(*frames) : encode_file(first, job.task.container, job.write_options);
+    const auto bytes = sheet_.is_animated()
+                           ? encode_animation(*frames)
+                           : encode_file(first, job.task.container, job.write_options, {job.threads(), {}});
     if (!bytes) return bytes.error().of(job.task.output);
     if (auto written = write_file(job.task.output, *bytes, job.write_options); !written) return written.error();
     job.wrote(job.task.output);

@@ -78,7 +78,8 @@ bool can_compress(Container container) { return codec_of(container).compress != 
 
 Encoding default_encoding(Container container) { return codec_of(container).default_encoding; }
 
-Result<std::vector<std::byte>> encode_file(const Texture& texture, Container container, const WriteOptions& options) {
+Result<std::vector<std::byte>> encode_file(const Texture& texture, Container container, const WriteOptions& options,
+                                           const Execution& execution) {
     return guarded([&]() -> Result<std::vector<std::byte>> {
         const Codec& codec = codec_of(container);
         if (codec.layout != nullptr || options.zstd != 0) {
@@ -90,17 +91,18 @@ Result<std::vector<std::byte>> encode_file(const Texture& texture, Container con
             if (options.zstd > 0) return compressed(codec, layout, options.zstd, bytes);
             return bytes;
         }
-        if (codec.open_target != nullptr) return encode_rows(codec.open_target, texture, codec.has_levels);
+        if (codec.open_target != nullptr) return encode_rows(codec.open_target, texture, codec.has_levels, execution);
         return encode_with_reader(texture, container, options);
     });
 }
 
-Result<void> write_texture(const std::string& path, const Texture& texture, const WriteOptions& options) {
+Result<void> write_texture(const std::string& path, const Texture& texture, const WriteOptions& options,
+                           const Execution& execution) {
     const std::optional<Container> container = container_of(path);
     if (!container) {
         return Error{ErrorCode::bad_option, path, "the extension names no kind of file that can be written"};
     }
-    const Result<std::vector<std::byte>> bytes = encode_file(texture, *container, options);
+    const Result<std::vector<std::byte>> bytes = encode_file(texture, *container, options, execution);
     if (!bytes) return bytes.error().of(path);
     return write_file(path, *bytes, options);
 }

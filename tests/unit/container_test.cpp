@@ -83,6 +83,18 @@ TEST(Container, GivesEqualBytesForEqualTextures) {
     }
 }
 
+TEST(Container, GivesTheSameBytesForEveryNumberOfThreads) {
+    const Texture texture = encoded_texture(Encoding::half, {700, 900}, 10);
+    const Texture picture = encoded_texture(Encoding::rgb8, {900, 700}, 1);
+    const auto exr = encode_file(texture, Container::exr, {}, {1, {}});
+    const auto png = encode_file(picture, Container::png, {}, {1, {}});
+    ASSERT_TRUE(exr && png);
+    for (const int threads : {2, 3, 8}) {
+        EXPECT_TRUE(encode_file(texture, Container::exr, {}, {threads, {}}).value() == *exr) << threads;
+        EXPECT_TRUE(encode_file(picture, Container::png, {}, {threads, {}}).value() == *png) << threads;
+    }
+}
+
 TEST(Container, RefusesOtherFilesFromMemory) {
     const std::vector<std::byte> other(200, std::byte{'x'});
     const auto texture = decode_file(other.data(), other.size(), "other.dds");

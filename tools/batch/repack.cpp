@@ -72,7 +72,7 @@ Result<WrittenLevels> write_levels(Job& job, Texture texture, const WriteOptions
     for (int k = 0; k < (by_level ? written.levels : 1); ++k) {
         if (by_level) texture.levels = {std::move(levels[static_cast<std::size_t>(k)])};
         const std::string name = with_level(job.task.output, k);
-        const auto bytes = encode_file(texture, job.task.container, options);
+        const auto bytes = encode_file(texture, job.task.container, options, {job.threads(), {}});
         if (!bytes) return bytes.error().of(name);
         if (const auto done = write_file(name, *bytes, options); !done) return done.error();
         written.bytes += bytes->size();

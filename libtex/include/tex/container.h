@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include <tex/execution.h>
 #include <tex/image_io.h>
 #include <tex/result.h>
 #include <tex/texture.h>
@@ -81,14 +82,16 @@ struct WriteOptions {
 //         bad_option   zstd is not from 0 to 22, or jpeg_quality not from 1 to 100
 //         io           the reader process cannot be started
 //         bad_data     the reader process crashed or did not end in time
-//         out_of_memory
+//         out_of_memory, cancelled
+// PNG and EXR are compressed on all threads. The same bytes for every number of threads.
 [[nodiscard]] Result<std::vector<std::byte>> encode_file(const Texture& texture, Container container,
-                                                         const WriteOptions& options = {});
+                                                         const WriteOptions& options = {},
+                                                         const Execution& execution = {});
 
 // Calls encode_file() with the container that the extension of `path` names, then write_file(). Errors: bad_option (the
 // extension belongs to no container), and those of both functions.
 [[nodiscard]] Result<void> write_texture(const std::string& path, const Texture& texture,
-                                         const WriteOptions& options = {});
+                                         const WriteOptions& options = {}, const Execution& execution = {});
 
 // Writes `bytes` to `path`. Whatever happens during the call, the path holds either its complete old content or its
 // complete new content. The bytes go to a nameless temporary file (O_TMPFILE) in the same directory, followed by

@@ -6,31 +6,60 @@
 #include <utility>
 #include <vector>
 
+#include "threads/parallel.h"
+
 namespace tex {
 namespace {
 
-Result<void> do_work(RowTarget& target) {
-    while (const std::shared_ptr<RowWork> work = target.take_work()) {
-        if (Result<void> run = work->run(); !run) return run;
-        if (Result<void> ended = target.end_work(work); !ended) return ended;
-    }
-    return {};
-}
+// Encodes pieces of work on all threads, some for each at a time.
+class Workers {
+public:
+    Workers(RowTarget& target, const Execution& execution) : target_(target), execution_(execution) {}
 
-Result<void> put_level(RowTarget& target, int k, const Level& level) {
+    // Takes what the last rows have completed.
+    Result<void> take() {
+        while (std::shared_ptr<RowWork> work = target_.take_work()) waiting_.push_back(std::move(work));
+        const auto enough = static_cast<std::size_t>(4 * thread_count(execution_));
+        return waiting_.size() < enough ? Result<void>() : finish();
+    }
+    Result<void> finish() {
+        std::vector<Result<void>> runs(waiting_.size());
+        const auto run = [&](int begin, int) {
+            const auto k = static_cast<std::size_t>(begin);
+            runs[k] = waiting_[k]->run();
+        };
+        constexpr int kOne = 1;
+        if (Result<void> done = parallel_for(execution_, static_cast<int>(waiting_.size()), kOne, run); !done)
+            return done;
+        for (std::size_t k = 0; k < waiting_.size(); ++k) {
+            if (!runs[k]) return runs[k];
+            if (Result<void> ended = target_.end_work(waiting_[k]); !ended) return ended;
+        }
+        waiting_.clear();
+        return {};
+    }
+
+private:
+    RowTarget& target_;
+    const Execution execution_;
+    std::vector<std::shared_ptr<RowWork>> waiting_;
+};
+
+Result<void> put_level(RowTarget& target, int k, const Level& level, Workers& workers) {
     if (!target.has_work()) return target.put(k, level.bytes.data(), level.extent.height);
     const std::size_t row_bytes = level.bytes.size() / static_cast<std::size_t>(level.extent.height);
     for (int j = 0; j < level.extent.height; ++j) {
         const std::byte* const row = level.bytes.data() + static_cast<std::size_t>(j) * row_bytes;
         if (Result<void> put = target.put(k, row, 1); !put) return put;
-        if (Result<void> done = do_work(target); !done) return done;
+        if (Result<void> taken = workers.take(); !taken) return taken;
     }
     return {};
 }
 
 }  // namespace
 
-Result<std::vector<std::byte>> encode_rows(OpenTarget open, const Texture& texture, bool all_levels) {
+Result<std::vector<std::byte>> encode_rows(OpenTarget open, const Texture& texture, bool all_levels,
+                                           const Execution& execution) {
     if (texture.levels.empty()) return Error{ErrorCode::unsupported, {}, "a texture without levels"};
     std::vector<std::byte> file;
     const WriteBytes write = [&file](std::uint64_t offset, std::span<const std::byte> bytes) -> Result<void> {
@@ -42,10 +71,12 @@ Result<std::vector<std::byte>> encode_rows(OpenTarget open, const Texture& textu
     const Result<std::unique_ptr<RowTarget>> target = open(head_of(texture), write);
     if (!target) return target.error();
     const std::size_t levels = all_levels ? texture.levels.size() : 1;
+    Workers workers(**target, {execution.threads, {}});
     for (std::size_t k = 0; k < levels; ++k) {
-        const Result<void> put = put_level(**target, static_cast<int>(k), texture.levels[k]);
+        const Result<void> put = put_level(**target, static_cast<int>(k), texture.levels[k], workers);
         if (!put) return put.error();
     }
+    if (const Result<void> done = workers.finish(); !done) return done.error();
     if (const Result<void> done = (*target)->finish(); !done) return done.error();
     return file;
 }

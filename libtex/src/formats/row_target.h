@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include <tex/execution.h>
 #include <tex/result.h>
 #include <tex/texture.h>
 
@@ -62,7 +63,9 @@ public:
 // Opens a file for a texture. Errors: as encode_file().
 using OpenTarget = Result<std::unique_ptr<RowTarget>> (*)(const TextureHead& head, WriteBytes write);
 
-// Encodes all rows at once, of all levels or of the base level. Errors: those of `open` and of RowTarget.
-Result<std::vector<std::byte>> encode_rows(OpenTarget open, const Texture& texture, bool all_levels);
+// Encodes all rows at once, of all levels or of the base level. Errors: those of `open` and of RowTarget, out_of_memory,
+// cancelled.
+Result<std::vector<std::byte>> encode_rows(OpenTarget open, const Texture& texture, bool all_levels,
+                                           const Execution& execution = {1, {}});
 
 }  // namespace tex
