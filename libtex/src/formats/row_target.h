@@ -63,8 +63,8 @@ public:
 // Opens a file for a texture. Errors: as encode_file().
 using OpenTarget = Result<std::unique_ptr<RowTarget>> (*)(const TextureHead& head, WriteBytes write);
 
-// Encodes all rows at once, of all levels or of the base level. Errors: those of `open` and of RowTarget, out_of_memory,
-// cancelled.
+// Encodes all rows at once, of all levels or of the base level. Errors: those of `open` and of RowTarget,
+// out_of_memory, cancelled.
 Result<std::vector<std::byte>> encode_rows(OpenTarget open, const Texture& texture, bool all_levels,
                                            const Execution& execution = {1, {}});
 
