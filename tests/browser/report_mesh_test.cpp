@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+// The mesh in the page of --report, opened in Chromium: its light and camera against those of preview-normals.
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "browser/page.h"
+
+namespace tex::browser {
+namespace {
+
+// A wavy sphere. The UVs of its left half mirror those of the right half.
+std::string mirrored_sphere_obj() {
+    constexpr int kColumns = 24, kRows = 16;
+    std::string text, faces;
+    for (int j = 0; j <= kRows; ++j) {
+        for (int i = 0; i <= kColumns; ++i) {
+            const double around = 2.0 * std::numbers::pi * i / kColumns, up = std::numbers::pi * (0.5 - 1.0 * j / kRows);
+            const double radius = 1.0 + 0.1 * std::cos(3.0 * around) * std::cos(up);
+            const double x = std::cos(up) * std::sin(around), y = std::sin(up), z = std::cos(up) * std::cos(around);
+            text += fmt::format("v {:.6f} {:.6f} {:.6f}\n", radius * x, 0.8 * radius * y, radius * z);
+            text += fmt::format("vn {:.6f} {:.6f} {:.6f}\n", x, 1.2 * y, z);
+            const double u = 2.0 * std::min(i, kColumns - i) / kColumns;
+            text += fmt::format("vt {:.6f} {:.6f}\n", 0.05 + 0.9 * u, 0.05 + 0.9 * (1.0 - 1.0 * j / kRows));
+            if (i == kColumns || j == kRows) continue;
+            const int a = j * (kColumns + 1) + i + 1, b = a + kColumns + 1;
+            const auto triangle = [&](int p, int q, int r) {
+                faces += fmt::format("f {0}/{0}/{0} {1}/{1}/{1} {2}/{2}/{2}\n", p, q, r);
+            };
+            triangle(a, b, b + 1);
+            triangle(a, b + 1, a + 1);
+        }
+    }
+    return text + faces;
+}
+
+class ReportMesh : public PageTest {
+protected:
+    ReportMesh() { stage_ = ".stage.mesh"; }
+
+    void make_sphere() {
+        scratch_.write("sphere.obj", mirrored_sphere_obj());
+        shell("bake-normals waves.png -o map.png --bumpiness 6 --no-sync");
+    }
+    void open_report(const std::string& arguments) {
+        shell("check-normals " + arguments + " --report page.html");
+        open("page.html");
+        wait_for_light();
+    }
+    // Silhouettes are left out: the GPU has 4 samples for a pixel there, preview-normals 16.
+    void expect_picture_of_command(const std::string& what) {
+        const Agreement found = compare_with_command(what);
+        EXPECT_GE(found.inside, 0.99) << what << ": " << found.command;
+        EXPECT_GE(found.share, 0.98) << what << ": " << found.command;
+    }
+    // Turns and lights the mesh in three ways.
+    void expect_pictures(const std::string& what) {
+        expect_picture_of_command(what + ", first");
+        point_at(0.3, 0.6);
+        point_at(0.75, 0.35, true);
+        expect_picture_of_command(what + ", dragged");
+        point_at(0.2, 0.8);
+        set_control("yaw", "-130");
+        set_control("pitch", "-35");
+        expect_picture_of_command(what + ", from below");
+    }
+};
+
+TEST_F(ReportMesh, LightsAMirroredMeshAsPreviewNormalsDoes) {
+    make_sphere();
+    shell(
+        "pack-normals map.png -o bc5.dds --format bc5 --dds-header dx10 --y down; pack-normals map.png -o dxt5nm.dds;"
+        "pack-normals map.png -o one.dds --format bc5 --mips none");
+    for (const char* decoder : {"gltf", "unity-builtin", "three"}) {
+        open_report(std::string("map.png --mesh sphere.obj --require y=up --decoder ") + decoder);
+        EXPECT_NE(command().find(std::string("--decoder ") + decoder), std::string::npos) << command();
+        expect_pictures(decoder);
+    }
+    for (const char* map : {"bc5.dds", "dxt5nm.dds", "one.dds"}) {
+        open_report(std::string(map) + " --mesh sphere.obj --decoder unity-urp");
+        expect_pictures(map);
+    }
+    open_report("map.png --mesh sphere.obj --decoder unreal");
+    EXPECT_NE(command().find("--y-in down"), std::string::npos) << "as Unreal reads maps: " << command();
+    expect_pictures("unreal");
+}
+
+TEST_F(ReportMesh, BeginsWithTheStillPicture) {
+    make_sphere();
+    open_report("map.png --mesh sphere.obj");
+    const std::string line = command();
+    for (const char* part : {"--mesh sphere.obj", "--decoder gltf", "--camera 30,20 ", "--light -0.8,1,1.2 "})
+        EXPECT_NE(line.find(part), std::string::npos) << part << ": " << line;
+    EXPECT_TRUE(js(in_stage("img") + ".hidden").get<bool>());
+    EXPECT_EQ(js("document.querySelectorAll('.stage').length").get<int>(), 2);
+}
+
+TEST_F(ReportMesh, ObeysPointerKeysAndControls) {
+    make_sphere();
+    open_report("map.png --mesh sphere.obj --require y=up");
+    Extent extent;
+    const std::vector<int> before = canvas(extent);
+    js(in_stage("canvas") + ".focus({preventScroll: true})");
+    for (const char* key : {"d", "d", "w", "A", "+", "y", "l", "ArrowLeft", "PageUp"}) browser_->press_key(key);
+    settle();
+    const std::string line = command();
+    for (const char* part : {"--camera 35,25", "--light-kind point", "--bump-scale 1.1", "--y-in down"})
+        EXPECT_NE(line.find(part), std::string::npos) << part << ": " << line;
+    EXPECT_NE(text(".stage.mesh [role=status]").find("camera 35, 25"), std::string::npos);
+    expect_picture_of_command("after keys");
+    set_control("decoder", "godot");
+    EXPECT_NE(command().find("--decoder godot"), std::string::npos);
+    expect_picture_of_command("another decoder, a point light");
+    browser_->press_key("Home");
+    settle();
+    EXPECT_EQ(canvas(extent), before);
+    EXPECT_EQ(text(".stage.mesh .command").find("--light-kind"), std::string::npos);
+    // The plane beside it keeps its own light.
+    EXPECT_NE(text(".stage .command").find("--light -0.8,1,1.2"), std::string::npos);
+}
+
+TEST_F(ReportMesh, DrawsTheTilesAndPartsThatWereChecked) {
+    make_sphere();
+    shell(
+        "cp map.png 'a b.1001.png'; cp map.png 'a b.1002.png';"
+        "awk '/^vt/ { print \"vt\", $2 + 1, $3; next } { print }' sphere.obj > second.obj;"
+        "{ echo o one; echo usemtl first; cat sphere.obj; n=$(grep -c '^v ' sphere.obj); echo o two; echo usemtl first; "
+        "awk -v n=$n '/^f/ { out = \"f\"; for (k = 2; k <= 4; ++k) { split($k, p, \"/\"); out = out \" \" p[1] + n \"/\" "
+        "p[2] + n \"/\" p[3] + n }; print out; next } /^v / { print \"v\", $2 + 1.5, $3, $4; next } { print }' "
+        "second.obj; echo o three; echo usemtl other; echo v 0 0 0; echo v 1 0 0; echo v 0 1 0; echo vn 0 0 1;"
+        "echo vt 0.1 0.2; echo vt 0.4 0.2; echo vt 0.1 0.6; echo f -3/-3/-1 -2/-2/-1 -1/-1/-1; } > tiles.obj");
+    open_report("'a b.<UDIM>.png' --mesh tiles.obj --material first --tangents mikktspace");
+    const std::string line = command();
+    for (const char* part : {"'a b.<UDIM>.png' -o 'lit.<UDIM>.png' --mesh tiles.obj --material first",
+                             "--tangents mikktspace"})
+        EXPECT_NE(line.find(part), std::string::npos) << part << ": " << line;
+    shell(line + " --no-sync && mv lit.1001.png lit.png");
+    js(in_stage(".command") + ".textContent = 'true'");  // the picture is there
+    expect_picture_of_command("tile 1001");
+    EXPECT_EQ(js("document.querySelectorAll('[id^=mesh-]').length").get<int>(), 3) << "two tiles, and the keys";
+}
+
+TEST_F(ReportMesh, StaysAStillPictureWithoutWebGl) {
+    make_sphere();
+    open_report("map.png --mesh sphere.obj");
+    js("document.querySelector('.stage')");
+    js("(() => { for (const c of [HTMLCanvasElement.prototype]) { const own = c.getContext; c.getContext = "
+       "function(kind, ...rest) { return kind === 'webgl2' ? null : own.call(this, kind, ...rest); }; } })()");
+    browser_->call("Page.addScriptToEvaluateOnNewDocument",
+                   {{"source",
+                     "{ const own = HTMLCanvasElement.prototype.getContext; HTMLCanvasElement.prototype.getContext = "
+                     "function(kind, ...rest) { return kind === 'webgl2' ? null : own.call(this, kind, ...rest); }; }"}});
+    open("page.html");
+    EXPECT_EQ(js("document.querySelectorAll('canvas, .panel').length").get<int>(), 0);
+    EXPECT_FALSE(js(in_stage("img") + ".hidden").get<bool>());
+    EXPECT_NE(text("footer").find("cannot light the maps"), std::string::npos);
+}
+
+TEST_F(ReportMesh, ShowsTheStillPictureAgainWhenTheGpuIsLost) {
+    make_sphere();
+    browser_->call("Page.addScriptToEvaluateOnNewDocument",
+                   {{"source",
+                     "{ const own = HTMLCanvasElement.prototype.getContext; HTMLCanvasElement.prototype.getContext = "
+                     "function(kind, ...rest) { const made = own.call(this, kind, ...rest); if (kind === 'webgl2') "
+                     "window.gpu = made; return made; }; }"}});
+    open_report("map.png --mesh sphere.obj");
+    js("window.gpu.getExtension('WEBGL_lose_context').loseContext()");
+    EXPECT_TRUE(browser_->wait_for("[...document.querySelectorAll('.stage')].every(s => !s.querySelector('img').hidden "
+                                   "&& s.querySelector('.view').hidden)"));
+    EXPECT_NE(text(".stage.mesh .panel > .remark").find("reload the page"), std::string::npos);
+}
+
+TEST_F(ReportMesh, IsReadableWithoutJavaScript) {
+    make_sphere();
+    shell("check-normals map.png --mesh sphere.obj --report page.html");
+    browser_->call("Emulation.setScriptExecutionDisabled", {{"value", true}});
+    open("page.html");
+    EXPECT_EQ(js("document.querySelectorAll('.stage img').length").get<int>(), 2);
+    EXPECT_EQ(text(".stage.mesh figcaption"), "on the mesh");
+    EXPECT_EQ(js("document.querySelectorAll('canvas, button, input').length").get<int>(), 0);
+}
+
+// With TEX_SCREENSHOTS set to a folder, pictures of the pages are left there.
+TEST_F(ReportMesh, DrawsModelsOfOthers) {
+    const std::string data = TEX_SOURCE_DIR "/../shared/data/mesh/";
+    if (!std::filesystem::exists(data)) GTEST_SKIP() << "../shared/data is not here";
+    struct Model {
+        const char* name;
+        std::string arguments;
+    };
+    const std::string helmet = data + "FlightHelmet/FlightHelmet";
+    shell("convert-normals " + data + "Suzanne/02_suzanne_Normal.png -o suzanne.dds --format bc5 --mesh " + data +
+          "Suzanne/02_suzanne.gltf --decoder-in gltf --decoder unity-builtin --no-sync");
+    for (const Model& model :
+         {Model{"suzanne", data + "Suzanne/02_suzanne_Normal.png --mesh " + data + "Suzanne/02_suzanne.gltf"},
+          {"suzanne-unity",
+           "suzanne.dds --mesh " + data + "Suzanne/02_suzanne.gltf --tangents mikktspace --decoder unity-builtin"},
+          {"leather", helmet + "_Materials_LeatherPartsMat_Normal.png --mesh " + helmet +
+                          ".gltf --material LeatherPartsMat --decoder three"}}) {
+        for (const char* theme : {"light", "dark"}) {
+            browser_->call("Emulation.setEmulatedMedia",
+                           {{"features", {{{"name", "prefers-color-scheme"}, {"value", theme}}}}});
+            open_report(model.arguments);
+            const char* folder = std::getenv("TEX_SCREENSHOTS");
+            if (folder == nullptr) break;
+            point_at(0.3, 0.3);
+            std::filesystem::create_directories(folder);
+            scratch_.write("shot.png", browser_->screenshot());
+            std::filesystem::copy_file(scratch_.path("shot.png"),
+                                       std::filesystem::path(folder) / fmt::format("{}-{}.png", model.name, theme),
+                                       std::filesystem::copy_options::overwrite_existing);
+        }
+        expect_pictures(model.name);
+    }
+}
+
+}  // namespace
+}  // namespace tex::browser
