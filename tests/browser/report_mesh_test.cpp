@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The mesh in the page of --report, opened in Chromium: its light and camera against those of preview-normals.
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -21,7 +21,8 @@ std::string mirrored_sphere_obj() {
     std::string text, faces;
     for (int j = 0; j <= kRows; ++j) {
         for (int i = 0; i <= kColumns; ++i) {
-            const double around = 2.0 * std::numbers::pi * i / kColumns, up = std::numbers::pi * (0.5 - 1.0 * j / kRows);
+            const double around = 2.0 * std::numbers::pi * i / kColumns,
+                         up = std::numbers::pi * (0.5 - 1.0 * j / kRows);
             const double radius = 1.0 + 0.1 * std::cos(3.0 * around) * std::cos(up);
             const double x = std::cos(up) * std::sin(around), y = std::sin(up), z = std::cos(up) * std::cos(around);
             text += fmt::format("v {:.6f} {:.6f} {:.6f}\n", radius * x, 0.8 * radius * y, radius * z);
@@ -53,15 +54,13 @@ protected:
         open("page.html");
         wait_for_light();
     }
-    // Silhouettes are left out: the GPU has 4 samples for a pixel there, preview-normals 16.
+    // Of all pixels, outlines included. There the GPU has 4 samples for a pixel and preview-normals 16, so some differ.
     void expect_picture_of_command(const std::string& what) {
         const Agreement found = compare_with_command(what);
-        EXPECT_GE(found.inside, 0.99) << what << ": " << found.command;
-        EXPECT_GE(found.share, 0.98) << what << ": " << found.command;
+        EXPECT_GE(found.share, 0.99) << what << ": " << found.command;
     }
-    // Turns and lights the mesh in three ways.
+    // Turns and lights the mesh in two more ways.
     void expect_pictures(const std::string& what) {
-        expect_picture_of_command(what + ", first");
         point_at(0.3, 0.6);
         point_at(0.75, 0.35, true);
         expect_picture_of_command(what + ", dragged");
@@ -75,8 +74,9 @@ protected:
 TEST_F(ReportMesh, LightsAMirroredMeshAsPreviewNormalsDoes) {
     make_sphere();
     shell(
-        "pack-normals map.png -o bc5.dds --format bc5 --dds-header dx10 --y down; pack-normals map.png -o dxt5nm.dds;"
-        "pack-normals map.png -o one.dds --format bc5 --mips none");
+        "bake-normals waves.png -o bc5.dds --format bc5 --dds-header dx10 --y down --bumpiness 6;"
+        "bake-normals waves.png -o dxt5nm.dds --bumpiness 6; pack-normals map.png -o one.dds --format bc5 --mips none;"
+        "convert map.png -strip plain.png");
     for (const char* decoder : {"gltf", "unity-builtin", "three"}) {
         open_report(std::string("map.png --mesh sphere.obj --require y=up --decoder ") + decoder);
         EXPECT_NE(command().find(std::string("--decoder ") + decoder), std::string::npos) << command();
@@ -84,11 +84,12 @@ TEST_F(ReportMesh, LightsAMirroredMeshAsPreviewNormalsDoes) {
     }
     for (const char* map : {"bc5.dds", "dxt5nm.dds", "one.dds"}) {
         open_report(std::string(map) + " --mesh sphere.obj --decoder unity-urp");
-        expect_pictures(map);
+        expect_picture_of_command(map);
     }
-    open_report("map.png --mesh sphere.obj --decoder unreal");
+    EXPECT_NE(text(".stage.mesh .remark").find("with 8 bits per channel"), std::string::npos) << "a map of one level";
+    open_report("plain.png --mesh sphere.obj --decoder unreal");
     EXPECT_NE(command().find("--y-in down"), std::string::npos) << "as Unreal reads maps: " << command();
-    expect_pictures("unreal");
+    expect_picture_of_command("unreal");
 }
 
 TEST_F(ReportMesh, BeginsWithTheStillPicture) {
@@ -99,6 +100,25 @@ TEST_F(ReportMesh, BeginsWithTheStillPicture) {
         EXPECT_NE(line.find(part), std::string::npos) << part << ": " << line;
     EXPECT_TRUE(js(in_stage("img") + ".hidden").get<bool>());
     EXPECT_EQ(js("document.querySelectorAll('.stage').length").get<int>(), 2);
+    expect_picture_of_command("as it begins");
+}
+
+TEST_F(ReportMesh, FitsNarrowWindowsAndMovesNothingWhenItStarts) {
+    make_sphere();
+    shell("for k in 1 2 3 4; do cp map.png map$k.png; done");
+    for (const int width : {1160, 390}) {
+        browser_->set_viewport(width, 900);
+        shell("check-normals map?.png --mesh sphere.obj --report page.html");
+        open("page.html");
+        const double height = js("document.documentElement.scrollHeight").get<double>();
+        for (const char* file : {"4", "2"}) {
+            stage_ = std::string("#file-") + file + " .stage.mesh";
+            wait_for_light();
+        }
+        EXPECT_EQ(js("document.documentElement.scrollHeight").get<double>(), height) << width;
+        EXPECT_LE(js("document.documentElement.scrollWidth").get<int>(), width) << "nothing hangs over";
+    }
+    EXPECT_EQ(js("document.querySelectorAll('[id=mesh-0]').length").get<int>(), 1) << "four maps share it";
 }
 
 TEST_F(ReportMesh, ObeysPointerKeysAndControls) {
@@ -130,17 +150,19 @@ TEST_F(ReportMesh, DrawsTheTilesAndPartsThatWereChecked) {
     shell(
         "cp map.png 'a b.1001.png'; cp map.png 'a b.1002.png';"
         "awk '/^vt/ { print \"vt\", $2 + 1, $3; next } { print }' sphere.obj > second.obj;"
-        "{ echo o one; echo usemtl first; cat sphere.obj; n=$(grep -c '^v ' sphere.obj); echo o two; echo usemtl first; "
-        "awk -v n=$n '/^f/ { out = \"f\"; for (k = 2; k <= 4; ++k) { split($k, p, \"/\"); out = out \" \" p[1] + n \"/\" "
+        "{ echo o one; echo usemtl first; cat sphere.obj; n=$(grep -c '^v ' sphere.obj); echo o two; echo usemtl "
+        "first; "
+        "awk -v n=$n '/^f/ { out = \"f\"; for (k = 2; k <= 4; ++k) { split($k, p, \"/\"); out = out \" \" p[1] + n "
+        "\"/\" "
         "p[2] + n \"/\" p[3] + n }; print out; next } /^v / { print \"v\", $2 + 1.5, $3, $4; next } { print }' "
         "second.obj; echo o three; echo usemtl other; echo v 0 0 0; echo v 1 0 0; echo v 0 1 0; echo vn 0 0 1;"
         "echo vt 0.1 0.2; echo vt 0.4 0.2; echo vt 0.1 0.6; echo f -3/-3/-1 -2/-2/-1 -1/-1/-1; } > tiles.obj");
     open_report("'a b.<UDIM>.png' --mesh tiles.obj --material first --tangents mikktspace");
     const std::string line = command();
-    for (const char* part : {"'a b.<UDIM>.png' -o 'lit.<UDIM>.png' --mesh tiles.obj --material first",
-                             "--tangents mikktspace"})
+    for (const char* part :
+         {"'a b.<UDIM>.png' --name 'lit-{stem}.png' --mesh tiles.obj --material first", "--tangents mikktspace"})
         EXPECT_NE(line.find(part), std::string::npos) << part << ": " << line;
-    shell(line + " --no-sync && mv lit.1001.png lit.png");
+    shell(line + " --no-sync && mv 'lit-a b.1001.png' lit.png");
     js(in_stage(".command") + ".textContent = 'true'");  // the picture is there
     expect_picture_of_command("tile 1001");
     EXPECT_EQ(js("document.querySelectorAll('[id^=mesh-]').length").get<int>(), 3) << "two tiles, and the keys";
@@ -149,13 +171,11 @@ TEST_F(ReportMesh, DrawsTheTilesAndPartsThatWereChecked) {
 TEST_F(ReportMesh, StaysAStillPictureWithoutWebGl) {
     make_sphere();
     open_report("map.png --mesh sphere.obj");
-    js("document.querySelector('.stage')");
-    js("(() => { for (const c of [HTMLCanvasElement.prototype]) { const own = c.getContext; c.getContext = "
-       "function(kind, ...rest) { return kind === 'webgl2' ? null : own.call(this, kind, ...rest); }; } })()");
-    browser_->call("Page.addScriptToEvaluateOnNewDocument",
-                   {{"source",
-                     "{ const own = HTMLCanvasElement.prototype.getContext; HTMLCanvasElement.prototype.getContext = "
-                     "function(kind, ...rest) { return kind === 'webgl2' ? null : own.call(this, kind, ...rest); }; }"}});
+    browser_->call(
+        "Page.addScriptToEvaluateOnNewDocument",
+        {{"source",
+          "{ const own = HTMLCanvasElement.prototype.getContext; HTMLCanvasElement.prototype.getContext = "
+          "function(kind, ...rest) { return kind === 'webgl2' ? null : own.call(this, kind, ...rest); }; }"}});
     open("page.html");
     EXPECT_EQ(js("document.querySelectorAll('canvas, .panel').length").get<int>(), 0);
     EXPECT_FALSE(js(in_stage("img") + ".hidden").get<bool>());
@@ -171,8 +191,9 @@ TEST_F(ReportMesh, ShowsTheStillPictureAgainWhenTheGpuIsLost) {
                      "window.gpu = made; return made; }; }"}});
     open_report("map.png --mesh sphere.obj");
     js("window.gpu.getExtension('WEBGL_lose_context').loseContext()");
-    EXPECT_TRUE(browser_->wait_for("[...document.querySelectorAll('.stage')].every(s => !s.querySelector('img').hidden "
-                                   "&& s.querySelector('.view').hidden)"));
+    EXPECT_TRUE(
+        browser_->wait_for("[...document.querySelectorAll('.stage')].every(s => !s.querySelector('img').hidden "
+                           "&& s.querySelector('.view').hidden)"));
     EXPECT_NE(text(".stage.mesh .panel > .remark").find("reload the page"), std::string::npos);
 }
 

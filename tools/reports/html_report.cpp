@@ -51,10 +51,10 @@ std::string mesh_stage(const HtmlMap& map, std::size_t number, const HtmlReport:
     }
     html += ">\n" + figure(on_mesh.still, map.file);
     if (!is_live && !map.shown().levels.empty()) {
-        html += fmt::format(
-            "<p class=\"remark\">The light on this mesh cannot be moved, because {}.</p>\n",
-            on_mesh.mesh == nullptr ? fmt::format("its {} triangles would make this report too large", on_mesh.triangles)
-                                    : "the meshes before it fill the space that this report has for meshes");
+        html += fmt::format("<p class=\"remark\">The light on this mesh cannot be moved, because {}.</p>\n",
+                            on_mesh.mesh == nullptr
+                                ? fmt::format("its {} triangles would make this report too large", on_mesh.triangles)
+                                : "the meshes before it fill the space that this report has for meshes");
     }
     return html + "</div>\n";
 }
@@ -114,8 +114,7 @@ void HtmlReport::add(const std::string& key, HtmlEntry entry) {
 // Maps on the same mesh refer to one copy of it.
 void HtmlReport::share_mesh(std::shared_ptr<const HtmlMesh>& mesh) {
     if (mesh == nullptr) return;
-    const auto found =
-        std::find_if(meshes_.begin(), meshes_.end(), [&](const auto& kept) { return *kept == *mesh; });
+    const auto found = std::find_if(meshes_.begin(), meshes_.end(), [&](const auto& kept) { return *kept == *mesh; });
     if (found != meshes_.end()) {
         mesh = *found;
         return;
@@ -195,7 +194,8 @@ std::string HtmlReport::sections() const {
             "<section class=\"file\" id=\"file-{}\" data-words=\"{}\">\n<h2>{}</h2>\n<div class=\"columns\">\n",
             ++number, html_text(entry.words), html_text(entry.title));
         // The pictures of a single map are beside it; those of two maps are below them.
-        html += stages(entry, map_number, meshes) + "<div class=\"facts\">\n" + entry.body + figures(entry.extras, entry.title) +
+        html += stages(entry, map_number, meshes) + "<div class=\"facts\">\n" + entry.body +
+                figures(entry.extras, entry.title) +
                 (entry.maps.size() == 1 ? figures(entry.maps.front().views, entry.title) : "") + "</div>\n</div>\n";
         for (const HtmlMap& map : entry.maps) {
             if (entry.maps.size() > 1 && !map.views.empty())
@@ -226,7 +226,7 @@ std::string HtmlReport::mesh_data() const {
     Json json;
     json["decoders"] = Json::array();
     for (const auto& row : kDecoderNames)
-        json["decoders"].push_back({row.name, name_of(kDecoderKindNames, decoder_kind(row.value))});
+        json["decoders"].push_back({row.name, name_of(kDecoderKindNames, decoder_kind(row.value)), row.meaning});
     json["meshes"] = Json::array();
     std::string bytes;
     for (const HtmlMesh* mesh : meshes) {

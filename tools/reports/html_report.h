@@ -71,8 +71,8 @@ private:
     mutable std::mutex mutex_;
     std::map<std::string, HtmlEntry> entries_;
     std::map<std::string, const Rule*> rules_;
-    int side_ = kLargestHtmlLevel;  // the longest side of a level that still fits
-    std::size_t size_ = 0;          // of all pictures and levels, in characters
+    int side_ = kLargestHtmlLevel;                         // the longest side of a level that still fits
+    std::size_t size_ = 0;                                 // of all pictures and levels, in characters
     std::vector<std::shared_ptr<const HtmlMesh>> meshes_;  // each once
     std::size_t mesh_size_ = 0;                            // of all of them, in characters
 };

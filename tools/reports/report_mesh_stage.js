@@ -35,12 +35,12 @@ class MeshStage extends Stage {
   fillPanel() {
     this.controls = {height: this.range("height", 0.1, 3, 0.05), bump: this.range("bump", 0, 4, 0.05), yaw: this.range("yaw", -180, 180, 0.5), pitch: this.range("pitch", -89, 89, 0.5)};
     this.greenA = this.green("yA");
-    const decoders = this.page.decoders.map(([name]) => [name, name]);
+    const decoders = this.page.decoders.map(([name, , meaning]) => [name, `${name} (${meaning})`]);
     this.panel.replaceChildren(
-      labelled("decoder", select(decoders, this.decoder, this.change("decoder"), {name: "decoder"})), labelled("light", this.lightKind()),
-      labelled("light's height", this.controls.height), labelled("bump scale", this.controls.bump),
-      labelled("camera's turn", this.controls.yaw), labelled("camera's height", this.controls.pitch),
-      labelled("green points", this.greenA, "wide"), ...this.lastRows());
+      labelled("decoder", select(decoders, this.decoder, this.change("decoder"), {name: "decoder"}), "wide"),
+      labelled("green points", this.greenA), labelled("bump scale", this.controls.bump),
+      labelled("light", this.lightKind()), labelled("light's height", this.controls.height),
+      labelled("camera yaw", this.controls.yaw), labelled("camera pitch", this.controls.pitch), ...this.lastRows());
   }
 
   // Turns the camera by degrees: to the right and up.
@@ -78,15 +78,15 @@ class MeshStage extends Stage {
   }
 
   tell() {
-    this.caption.textContent = "Move the pointer over the picture to move the light; drag to turn the mesh.";
+    this.caption.textContent = "Point to move the light; drag to turn the mesh.";
     this.command.textContent = this.commandLine();
     this.tellGpu(`${this.mesh.triangles} triangles; `);
   }
 
-  // Quoted names come from the page's data, since they may have bytes that no text has.
+  // The page has names as a shell reads them. A name with <UDIM> stands for all tiles, each of which gets a picture.
   commandLine() {
-    const file = this.root.dataset.file, output = file.includes("<UDIM>") ? "'lit.<UDIM>.png'" : "lit.png";
-    const words = ["preview-normals", file, "-o", output, this.mesh.arguments, "--decoder", this.decoder, "--y-in", this.yA];
+    const file = this.root.dataset.file, output = file.includes("<UDIM>") ? "--name 'lit-{stem}.png'" : "-o lit.png";
+    const words = ["preview-normals", file, output, this.mesh.arguments, "--decoder", this.decoder, "--y-in", this.yA];
     words.push("--camera", `${this.yaw},${this.pitch}`, "--light", this.light.join(","));
     if (this.point) words.push("--light-kind", "point");
     if (this.bump !== 1) words.push("--bump-scale", this.bump);
