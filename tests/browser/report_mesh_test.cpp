@@ -218,10 +218,13 @@ TEST_F(ReportMesh, DrawsModelsOfOthers) {
     const std::string helmet = data + "FlightHelmet/FlightHelmet";
     shell("convert-normals " + data + "Suzanne/02_suzanne_Normal.png -o suzanne.dds --format bc5 --mesh " + data +
           "Suzanne/02_suzanne.gltf --decoder-in gltf --decoder unity-builtin --no-sync");
+    // The picture is inside of the mesh's file. It has no tangents, and some of MikkTSpace's have w = -1.
+    shell(fmt::format("tail -c +1584501 {0}NormalTangentTest.glb | head -c 336676 > spheres.png", data));
     for (const Model& model :
          {Model{"suzanne", data + "Suzanne/02_suzanne_Normal.png --mesh " + data + "Suzanne/02_suzanne.gltf"},
           {"suzanne-unity",
            "suzanne.dds --mesh " + data + "Suzanne/02_suzanne.gltf --tangents mikktspace --decoder unity-builtin"},
+          {"spheres", "spheres.png --mesh " + data + "NormalTangentTest.glb --decoder unity-hdrp"},
           {"leather", helmet + "_Materials_LeatherPartsMat_Normal.png --mesh " + helmet +
                           ".gltf --material LeatherPartsMat --decoder three"}}) {
         for (const char* theme : {"light", "dark"}) {
