@@ -9,6 +9,7 @@
 #include <tex/tex.h>
 
 #include "batch/batch.h"
+#include "cli/text.h"
 #include "cli/usage_error.h"
 #include "options/rules.h"
 #include "options/tangent_space.h"
@@ -131,10 +132,11 @@ Result<void> CheckNormals::process(cli::Job& job) {
 }
 
 Result<void> CheckNormals::add_to_documents(cli::Job& job, const CheckReport& report, const cli::Demands& demands) {
-    if (!mesh_.has_mesh() || !report.seams) return documents_.add(job, report, demands, nullptr);
+    if (!mesh_.has_mesh() || !report.y_on_mesh) return documents_.add(job, report, demands, nullptr);
     const auto space = mesh_.input(job.task.tile, job.read_options, {job.threads(), {}});
     if (!space) return space.error();
-    const cli::MapOnMesh on_mesh{space->space(), report.seams->y};
+    const cli::MapOnMesh on_mesh{space->space(), *report.y_on_mesh, report.seams.has_value(), mesh_.input_arguments(),
+                                 cli::shell_file(job.task.tile == 0 ? job.task.input : job.task.pattern)};
     return documents_.add(job, report, demands, &on_mesh);
 }
 

@@ -16,6 +16,7 @@
 #include "checks/damage_rules.h"
 #include "checks/file_rules.h"
 #include "checks/findings.h"
+#include "checks/mesh_fit.h"
 #include "checks/mesh_rules.h"
 #include "checks/mip_rules.h"
 #include "checks/pair_rules.h"
@@ -229,6 +230,7 @@ Result<CheckReport> check(const std::string& file, const Texture& texture, const
         report.levels = static_cast<int>(texture.levels.size());
         report.more_data = subject.has_vectors && has_more_data(subject.stored, subject.counts);
         report.y = subject.y;
+        if (options.mesh != nullptr && subject.has_vectors) report.y_on_mesh = y_on_mesh(subject);
         return report;
     });
 }

@@ -2,121 +2,26 @@
 // The page of --report, opened in Chromium: its light against that of preview-normals, its words, and what it does not
 // do.
 
-#include <algorithm>
-#include <array>
-#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
-#include <memory>
 
 #include <gtest/gtest.h>
 #include <tex/image_io.h>
 
-#include "browser/browser.h"
-#include "cli/program.h"
+#include "browser/page.h"
 
 namespace tex::browser {
 namespace {
 
-// Codes of 255 between the canvas and preview-normals, and the share of pixels that must keep to them. The GPU filters
-// 8-bit texels with weights of 8 bits and returns BC3 rounded to 8 bits, where preview-normals computes in double from
-// exact palettes.
-constexpr int kCodes = 3;
-constexpr double kShare = 0.999;
-
-class ReportPage : public testing::Test {
+class ReportPage : public PageTest {
 protected:
-    void SetUp() override {
-        if (Browser::program().empty()) GTEST_SKIP() << "no Chromium here";
-        std::filesystem::create_directory(scratch_.path("browser"));
-        browser_ = std::make_unique<Browser>(scratch_.path("browser"));
-        browser_->set_viewport(1280, 1000);
-    }
-    void TearDown() override {
-        if (!browser_) return;
-        for (const std::string& complaint : browser_->complaints()) ADD_FAILURE() << complaint;
-    }
-
-    int shell(const std::string& script) {
-        const cli::Ran ran = cli::shell(scratch_, "set -e; cp -n " TEX_SOURCE_DIR "/samples/*.png .; " + script);
-        if (ran.code > 1) ADD_FAILURE() << script << ": " << ran.err;
-        return ran.code;
-    }
-    double open(const std::string& page) { return browser_->open(scratch_.path(page)); }
-    Browser::Json js(const std::string& expression) { return browser_->evaluate(expression); }
-    std::string text(const std::string& selector) {
-        return js("document.querySelector('" + selector + "').textContent").get<std::string>();
-    }
-
-    // The first stage, in view and drawn.
-    void wait_for_light() {
-        js("document.querySelector('.stage').scrollIntoView({behavior: 'instant', block: 'start'})");
-        EXPECT_TRUE(browser_->wait_for(
-            "!!document.querySelector('.stage canvas') && !document.querySelector('.stage .view').hidden && "
-            "document.querySelector('.stage .command').textContent !== ''"));
-    }
-    // Waits until the canvas shows what the controls say: the command line is written after the picture.
-    void settle() {
-        js("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 30))))");
-    }
-
-    // The mouse to a place of the canvas, 0 to 1 from its upper left corner.
-    void point_at(double x, double y, bool held = false) {
-        const Browser::Json box =
-            js("(() => { const b = document.querySelector('.stage canvas').getBoundingClientRect(); return [b.x, b.y, "
-               "b.width, b.height]; })()");
-        browser_->move_mouse(box[0].get<double>() + x * box[2].get<double>(),
-                             box[1].get<double>() + y * box[3].get<double>(), held);
-        settle();
-    }
-
-    // The canvas's red channel, row by row, and its extent.
-    std::vector<int> canvas(Extent& extent) {
-        const Browser::Json got =
-            js("(() => { const c = document.querySelector('.stage canvas'), d = c.getContext('2d').getImageData(0, 0, "
-               "c.width, c.height).data;"
-               " let t = ''; for (let k = 0; k < d.length; k += 4) t += String.fromCharCode(97 + (d[k] >> 4), 97 + "
-               "(d[k] & 15));"
-               " return [c.width, c.height, t]; })()");
-        extent = {got[0].get<int>(), got[1].get<int>()};
-        const auto letters = got[2].get<std::string>();
-        std::vector<int> codes;
-        for (std::size_t k = 0; k + 1 < letters.size(); k += 2)
-            codes.push_back((letters[k] - 97) << 4 | (letters[k + 1] - 97));
-        return codes;
-    }
-
-    // Runs the command that the page shows and compares its picture with the canvas.
+    // The GPU filters 8-bit texels with weights of 8 bits and returns BC3 rounded to 8 bits, where preview-normals
+    // computes in double from exact palettes.
     void expect_picture_of_command(const std::string& what) {
-        const std::string command = text(".stage .command");
-        shell(command + " --no-sync");
-        const auto image = read_image(scratch_.path("lit.png"));
-        ASSERT_TRUE(image) << command;
-        Extent extent;
-        const std::vector<int> codes = canvas(extent);
-        ASSERT_EQ(image->extent(), extent) << command;
-        std::int64_t within = 0;
-        int most = 0;
-        double sum = 0.0;
-        for (int j = 0; j < extent.height; ++j) {
-            for (int i = 0; i < extent.width; ++i) {
-                const int code = codes[static_cast<std::size_t>(j) * static_cast<std::size_t>(extent.width) +
-                                       static_cast<std::size_t>(i)];
-                const int difference = std::abs(code - static_cast<int>(image->planes[0].at(i, j) * 255.0f + 0.5f));
-                within += difference <= kCodes ? 1 : 0;
-                most = std::max(most, difference);
-                sum += code;
-            }
-        }
-        const double share = static_cast<double>(within) / static_cast<double>(extent.texels());
-        std::cout << what << ": " << text(".stage .panel > .remark") << " within " << kCodes << " codes: " << share
-                  << ", most " << most << ", mean " << sum / static_cast<double>(extent.texels()) << "\n";
-        EXPECT_GE(share, kShare) << what << ": " << command;
+        const Agreement found = compare_with_command(what);
+        EXPECT_GE(found.share, 0.999) << what << ": " << found.command;
     }
-
-    cli::Scratch scratch_;
-    std::unique_ptr<Browser> browser_;
 };
 
 TEST_F(ReportPage, LightsMapsAsPreviewNormalsDoes) {

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "cli/meshes.h"
 #include "cli/program.h"
 
 namespace tex::cli {
@@ -68,6 +69,30 @@ TEST_F(Report, ShowsTheMeshAndItsSeamsWithGreenAsTheyWereChecked) {
         const std::string encoded = shell(scratch_, "base64 -w0 seams.png").out;
         EXPECT_TRUE(page_has(encoded)) << y;
     }
+}
+
+TEST_F(Report, HoldsTheMeshOnceAndTheCommandThatDrawsIt) {
+    const std::string mesh = "--mesh=</script><script>'a.obj";
+    scratch_.write("sheet.obj", kSheetObj);
+    EXPECT_EQ(shell(scratch_, "mkdir '<'; mv sheet.obj \"</script><script>'a.obj\"").code, 0);
+    const std::vector<std::string> files = {"up.dds", "down.png", mesh, "--decoder", "three", "--report"};
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), files.begin(), files.end());
+        const Ran ran = check(more);
+        EXPECT_LE(ran.code, 1) << ran.err;
+    };
+    with({"page.html", "--threads", "1"});
+    for (const char* text : {"id=\"mesh-0\"", "data-mesh=\"0\" data-y=\"up\" data-file=\"up.dds\"",
+                             "data-mesh=\"0\" data-y=\"down\" data-file=\"down.png\"", "\"decoder\":\"three\"",
+                             "--mesh '\\u003c/script>\\u003cscript>'", "<figcaption>on the mesh</figcaption>"})
+        EXPECT_TRUE(page_has(text)) << text;
+    EXPECT_FALSE(page_has("id=\"mesh-1\""));
+    EXPECT_FALSE(page_has("<script>'a.obj"));
+    EXPECT_FALSE(page_has("seams</figcaption>")) << "this mesh has none";
+    with({"many.html", "--threads", "4"});
+    EXPECT_EQ(scratch_.read("page.html"), scratch_.read("many.html"));
+    check({"up.dds", "--report", "page.html"});
+    for (const char* text : {"id=\"meshes\"", "id=\"mesh-0\"", "data-mesh"}) EXPECT_FALSE(page_has(text)) << text;
 }
 
 TEST_F(Report, HoldsTheLevelsThatWereCompared) {

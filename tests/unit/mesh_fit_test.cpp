@@ -228,17 +228,46 @@ TEST(MeshFit, MeasuresSeamsInDegrees) {
     EXPECT_NEAR(right.seams->worst, 90.0, 2.0);
 }
 
-TEST(MeshFit, SheetsWithoutSeamsHaveNoEvidence) {
+SelectedPart selected_sheet() {
     SelectedPart selected;
     selected.part = wavy_part(4);
     selected.tangents = *make_tangents(selected.part);
+    return selected;
+}
+
+Texture flat_on(const SelectedPart& selected) {
     NormalMap flat({64, 64});
     flat.x = Plane<float>({64, 64}, 0.0f);
     flat.y = Plane<float>({64, 64}, 0.0f);
     flat.z = Plane<float>({64, 64}, 1.0f);
-    const Fit fit = fit_of(baked(flat, {selected.part, selected.tangents}), selected);
+    return baked(flat, {selected.part, selected.tangents});
+}
+
+TEST(MeshFit, SheetsWithoutSeamsHaveNoEvidence) {
+    const SelectedPart selected = selected_sheet();
+    const Fit fit = fit_of(flat_on(selected), selected);
     EXPECT_FALSE(fit.seams);
     EXPECT_FALSE(fit.finding);
+}
+
+TEST(MeshFit, GreenPointsAsDemandedElseAsTheFileStatesElseAsTheEngineReadsIt) {
+    const SelectedPart selected = selected_sheet();
+    const auto y_of = [&](Decoder decoder, std::optional<YAxis> demanded, std::optional<YAxis> stated) {
+        const MeshToCheck mesh{selected, decoder};
+        CheckOptions options;
+        options.mesh = &mesh;
+        options.require.y = demanded;
+        Texture texture = flat_on(selected);
+        texture.y_known = stated.has_value();
+        texture.y_axis = stated.value_or(YAxis::up);
+        const auto report = check("map", texture, options);
+        return report ? report->y_on_mesh : std::nullopt;
+    };
+    EXPECT_EQ(y_of(Decoder::gltf, {}, {}), YAxis::up);
+    EXPECT_EQ(y_of(Decoder::unreal, {}, {}), YAxis::down);
+    EXPECT_EQ(y_of(Decoder::unreal, {}, YAxis::up), YAxis::up);
+    EXPECT_EQ(y_of(Decoder::gltf, YAxis::down, YAxis::up), YAxis::down);
+    EXPECT_FALSE(check("map", flat_on(selected))->y_on_mesh) << "no mesh";
 }
 
 TEST(MeshSeams, AreEdgesWithOtherUvsButTheSamePlacesAndNormals) {

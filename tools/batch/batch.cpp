@@ -161,6 +161,7 @@ Result<std::vector<Task>> Batch::plan() const {
     for (const Input& input : *inputs) {
         tasks.push_back({input.name, ""});
         tasks.back().tile = input.tile;
+        tasks.back().pattern = input.pattern;
     }
     return tasks;
 }

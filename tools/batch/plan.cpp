@@ -107,6 +107,7 @@ std::vector<Task> plan_outputs(std::vector<Input> inputs, const FileOptions& fil
             Task task = task_of(input.name, name, own, rules);
             task.joined = joined;
             task.tile = input.tile;
+            task.pattern = input.pattern;
             tasks.push_back(std::move(task));
         }
     }

@@ -23,6 +23,7 @@ struct Task {
     std::vector<std::string> more_outputs = {};  // outputs besides the first one
     const Engine* engine = nullptr;              // what the output is for, if --for says it
     int tile = 0;                                // the UDIM tile of the input (udim.h), or 0
+    std::string pattern = {};                    // the input's name with the mark, if there is a tile
 
     // The inputs, without the files that options name.
     [[nodiscard]] std::vector<std::string> inputs() const {

@@ -54,7 +54,7 @@ Result<std::vector<Input>> inputs_of(const std::string& name) {
     std::error_code error;
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
         const int tile = tile_of(path.filename().string(), entry->path().filename().string());
-        if (tile != 0) inputs.push_back({(path.parent_path() / entry->path().filename()).string(), tile});
+        if (tile != 0) inputs.push_back({(path.parent_path() / entry->path().filename()).string(), tile, name});
     }
     if (error) return Error{ErrorCode::io, folder.string(), "cannot be read: " + system_reason(error.value())};
     if (inputs.empty()) return Error{ErrorCode::io, name, "no file has this name with the number of a UDIM tile"};

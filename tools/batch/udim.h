@@ -19,7 +19,8 @@ inline constexpr std::string_view kTileMark = "<UDIM>";
 // A file of the command line or of a list.
 struct Input {
     std::string name;
-    int tile = 0;  // 0: none
+    int tile = 0;              // 0: none
+    std::string pattern = {};  // the name with the mark, if there is a tile
 };
 
 [[nodiscard]] bool has_tile(std::string_view name);

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <tex/mesh_io.h>
 
+#include "cli/text.h"
 #include "cli/usage_error.h"
 #include "cli/value.h"
 
@@ -118,6 +119,20 @@ void TangentSpaceOptions::check(const Command& command) const {
     if (from == Space::tangent) return;
     const auto idle = command.given_of({"--decoder-in", "--tangents-in"});
     if (!idle.empty()) throw UsageError(fmt::format("{} needs --from tangent", idle.front()));
+}
+
+std::string TangentSpaceOptions::input_arguments() const {
+    std::string text = "--mesh " + shell_file(mesh_);
+    const auto add = [&](const char* name, const std::string& value) {
+        text += fmt::format(" {} {}", name, shell_word(value));
+    };
+    if (!selection_.material.empty()) add("--material", selection_.material);
+    if (selection_.primitive) add("--primitive", std::to_string(*selection_.primitive));
+    if (!selection_.node.empty()) add("--node", selection_.node);
+    if (selection_.uv_set) add("--uv-set", std::to_string(*selection_.uv_set));
+    if (const auto tangents = tangents_in_ ? tangents_in_ : tangents_)
+        add("--tangents", std::string(name_of(kTangentSourceNames, *tangents)));
+    return text;
 }
 
 std::vector<std::string> TangentSpaceOptions::files() const {

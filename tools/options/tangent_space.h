@@ -61,6 +61,10 @@ public:
 
     [[nodiscard]] bool has_mesh() const { return !mesh_.empty(); }
 
+    // --mesh and the options that choose its parts and tangents, as they were given and as a shell reads them: with
+    // them, and with --decoder, another command decodes an input in the same way.
+    [[nodiscard]] std::string input_arguments() const;
+
     // The mesh files, with those that hold buffers of them.
     [[nodiscard]] std::vector<std::string> files() const;
 

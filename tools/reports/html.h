@@ -22,4 +22,7 @@ namespace tex::cli {
 // RFC 4648, with padding.
 [[nodiscard]] std::string base64(std::span<const std::byte> bytes);
 
+// The number of characters of so many bytes.
+[[nodiscard]] constexpr std::size_t base64_size(std::size_t bytes) { return (bytes + 2) / 3 * 4; }
+
 }  // namespace tex::cli

@@ -12,6 +12,8 @@
 #include <tex/sheet.h>
 #include <tex/unpack.h>
 
+#include "reports/html.h"
+
 namespace tex::cli {
 namespace {
 
@@ -19,8 +21,6 @@ namespace {
 constexpr int kSmallLevel = 64;
 
 int longest(Extent extent) { return std::max(extent.width, extent.height); }
-
-std::size_t base64_size(std::size_t bytes) { return (bytes + 2) / 3 * 4; }
 
 // True for the BC formats of normal maps, which the page decodes. Maps in EAC and ASTC are shown as pictures.
 bool is_packed(Format format) { return format <= Format::bc5_snorm && format_info(format).channels > 1; }
@@ -41,7 +41,6 @@ constexpr View kViews[] = {
      "down"},
     {Show::length, "length", "length of the stored vectors minus 1, pale where it is right", true},
     {Show::z_error, "z error", "stored z minus the z that x and y imply, pale where it is right", true},
-    {Show::lit, "on the mesh", "the mesh with the map, lit from the upper left", false, true},
     {Show::seams, "seams", "the mesh, with its UV seams coloured by the angle between both sides in degrees", false,
      true},
     {Show::uv, "UVs", "the outlines of the mesh's triangles over the map; mirrored ones in orange", false, true},
@@ -70,19 +69,34 @@ void flip_y(MipChain& chain) {
     }
 }
 
-// Adds a view. On the mesh, green points as there, whatever the map's own pictures show.
+// Draws a picture with the mesh, on which green points as there, whatever the map's own pictures show.
+Result<HtmlPicture> draw_on_mesh(HtmlMap& map, const MapOnMesh& mesh, Show show, int size, const char* caption,
+                                 const char* alt, const Execution& execution) {
+    if (mesh.y != map.y) flip_y(map.chain);
+    auto drawn = draw(map, &mesh.space, show, size, caption, alt, execution);
+    if (mesh.y != map.y) flip_y(map.chain);
+    return drawn;
+}
+
 Result<void> add_view(HtmlMap& map, const View& view, const MapOnMesh* mesh, const HtmlSizes& sizes,
                       const Execution& execution) {
     std::string caption = view.caption;
     if (view.show == Show::curl && map.y == YAxis::down) caption += ", with green read as down";
     const bool is_wide = view.show == Show::mips || view.show == Show::seams;
-    const bool flips = view.needs_mesh && mesh->y != map.y;
-    if (flips) flip_y(map.chain);
-    auto drawn = draw(map, view.needs_mesh ? &mesh->space : nullptr, view.show, (is_wide ? 2 : 1) * sizes.view, caption,
-                      view.alt, execution);
-    if (flips) flip_y(map.chain);
+    const int size = (is_wide ? 2 : 1) * sizes.view;
+    auto drawn = view.needs_mesh ? draw_on_mesh(map, *mesh, view.show, size, view.caption, view.alt, execution)
+                                 : draw(map, nullptr, view.show, size, caption, view.alt, execution);
     if (!drawn) return drawn.error();
     map.views.push_back(std::move(*drawn));
+    return {};
+}
+
+Result<void> add_mesh(HtmlMap& map, const MapOnMesh& mesh, const HtmlSizes& sizes, const Execution& execution) {
+    auto still = draw_on_mesh(map, mesh, Show::lit, sizes.lit, "on the mesh",
+                              "the mesh with the map, lit from the upper left", execution);
+    if (!still) return still.error();
+    map.on_mesh = HtmlOnMesh{std::move(*still), html_mesh(mesh.space, mesh.arguments), mesh.space.part.triangles(),
+                             mesh.y, mesh.map};
     return {};
 }
 
@@ -96,10 +110,14 @@ Result<void> draw_pictures(HtmlMap& map, const MapOnMesh* mesh, const HtmlSizes&
     if (!lit) return lit.error();
     map.lit = std::move(*lit);
     if (sizes.view == 0) return {};
+    if (mesh != nullptr) {
+        if (auto added = add_mesh(map, *mesh, sizes, execution); !added) return added;
+    }
     for (const View& view : kViews) {
         if (view.needs_z && map.without_z()) continue;
         if (view.show == Show::mips && map.stored_levels == 1) continue;
         if (view.needs_mesh && mesh == nullptr) continue;
+        if (view.show == Show::seams && !mesh->has_seams) continue;
         if (auto added = add_view(map, view, mesh, sizes, execution); !added) return added;
     }
     return {};
@@ -169,6 +187,7 @@ void HtmlMap::limit(int side) {
 std::size_t HtmlMap::picture_size() const {
     std::size_t sum = base64_size(thumbnail.png.size()) + base64_size(lit.png.size());
     for (const HtmlPicture& view : views) sum += base64_size(view.png.size());
+    if (on_mesh) sum += base64_size(on_mesh->still.png.size());
     return sum;
 }
 
@@ -221,11 +240,13 @@ Result<HtmlMap> draw_html_map(const std::string& file, const Texture& texture, c
     }
     if (const auto drawn = draw_pictures(map, mesh, sizes, execution); !drawn) return drawn.error();
 
-    if (is_packed(texture.format)) {
+    // A mesh needs smaller levels, and those of packed maps cannot be made in the page.
+    const bool needs_levels = mesh != nullptr && map.stored_levels == 1;
+    if (is_packed(texture.format) && !needs_levels) {
         for (const Level& level : texture.levels) map.packed.levels.push_back({level.extent, level.bytes});
         map.packed.limit(kLargestHtmlLevel);
     }
-    if (!is_packed(texture.format) || longest(texture.levels.back().extent) > kSmallLevel) {
+    if (!is_packed(texture.format) || needs_levels || longest(texture.levels.back().extent) > kSmallLevel) {
         auto levels = decoded_levels(map.chain, execution);
         if (!levels) return levels.error();
         map.decoded = std::move(*levels);

@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +14,7 @@
 #include <tex/result.h>
 #include <tex/texture.h>
 
+#include "reports/html_mesh.h"
 #include "reports/json.h"
 
 namespace tex::cli {
@@ -52,6 +55,15 @@ struct HtmlLevels {
     [[nodiscard]] std::size_t bytes() const;
 };
 
+// The mesh that a map is on.
+struct HtmlOnMesh {
+    HtmlPicture still;
+    std::shared_ptr<const HtmlMesh> mesh;  // for the reader's GPU; null if it is too large for a page
+    std::size_t triangles = 0;
+    YAxis y = YAxis::up;  // where green points there
+    std::string map;      // as preview-normals names it, for a shell
+};
+
 struct HtmlMap {
     std::string file;
     Format format = Format::rgba8_unorm;
@@ -63,6 +75,7 @@ struct HtmlMap {
 
     HtmlPicture thumbnail, lit;
     std::vector<HtmlPicture> views;
+    std::optional<HtmlOnMesh> on_mesh;
     HtmlLevels packed;   // for block formats
     HtmlLevels decoded;  // for other formats, and if the packed levels end before they are small
 
@@ -82,10 +95,14 @@ struct HtmlMap {
 // Converts a picture for a page. Errors: out_of_memory.
 [[nodiscard]] Result<HtmlPicture> html_picture(const Texture& picture, std::string caption, std::string alt);
 
-// The mesh that a map is on, and where green of the map points there.
+// The mesh that a map is on.
 struct MapOnMesh {
     TangentSpace space;
-    YAxis y = YAxis::up;
+    YAxis y = YAxis::up;     // where green of the map points there
+    bool has_seams = false;  // the UVs have seams
+    // For preview-normals, as a shell reads them: the options that name the mesh and its parts, and the map's name.
+    std::string arguments;
+    std::string map;
 };
 
 // Draws a texture whose channels have the meaning that `swizzle` gives, with green as `y` says; also on its mesh,

@@ -2,6 +2,7 @@
 
 #include "reports/html_report.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -38,19 +39,42 @@ std::string figures(const std::vector<HtmlPicture>& pictures, const std::string&
     return html + "</div>\n";
 }
 
-// The still picture that the script replaces with a canvas. `number` is the number of the first map in the page.
-std::string stage(const HtmlEntry& entry, std::size_t number) {
+// The stage of the map on its mesh. If the page lacks the mesh or the map's levels, it stays a still picture.
+std::string mesh_stage(const HtmlMap& map, std::size_t number, const HtmlReport::MeshNumbers& meshes) {
+    const HtmlOnMesh& on_mesh = *map.on_mesh;
+    const auto mesh = meshes.find(on_mesh.mesh.get());
+    const bool is_live = mesh != meshes.end() && !map.shown().levels.empty();
+    std::string html = "<div class=\"stage mesh\" style=\"--shape: 1 / 1\"";
+    if (is_live) {
+        html += fmt::format(" data-map=\"{}\" data-mesh=\"{}\" data-y=\"{}\" data-file=\"{}\"", number, mesh->second,
+                            name_of(kYAxisNames, on_mesh.y), html_text(on_mesh.map));
+    }
+    html += ">\n" + figure(on_mesh.still, map.file);
+    if (!is_live && !map.shown().levels.empty()) {
+        html += fmt::format("<p class=\"remark\">The light on this mesh cannot be moved, because {}.</p>\n",
+                            on_mesh.mesh == nullptr
+                                ? fmt::format("its {} triangles would make this report too large", on_mesh.triangles)
+                                : "the meshes before it fill the space that this report has for meshes");
+    }
+    return html + "</div>\n";
+}
+
+// The still pictures that the script replaces with canvases: of the map and, below it, of its mesh. `number` is the
+// number of the first map in the page.
+std::string stages(const HtmlEntry& entry, std::size_t number, const HtmlReport::MeshNumbers& meshes) {
     if (entry.maps.empty()) return {};
     const HtmlMap& map = entry.maps.front();
     const HtmlPicture& still = map.lit.png.empty() ? map.thumbnail : map.lit;
     const bool has_levels = !map.shown().levels.empty();
-    std::string html =
-        fmt::format("<div class=\"stage\" style=\"--shape: {} / {}\"", map.extent.width, map.extent.height);
+    std::string html = fmt::format("<div class=\"stages\">\n<div class=\"stage\" style=\"--shape: {} / {}\"",
+                                   map.extent.width, map.extent.height);
     if (has_levels) html += fmt::format(" data-map=\"{}\"", number);
     if (has_levels && entry.maps.size() > 1) html += fmt::format(" data-other=\"{}\"", number + 1);
     html += ">\n";
     html += figure(still, map.file);
     if (!has_levels) html += "<p class=\"remark\">This report has too many files for a light that you can move.</p>\n";
+    html += "</div>\n";
+    if (map.on_mesh) html += mesh_stage(map, number, meshes);
     return html + "</div>\n";
 }
 
@@ -79,18 +103,49 @@ void HtmlReport::add(const std::string& key, HtmlEntry entry) {
     for (HtmlMap& map : entry.maps) {
         map.chain = {};
         map.limit(side_);
+        if (map.on_mesh) share_mesh(map.on_mesh->mesh);
     }
     HtmlEntry& kept = entries_[key];
     size_ += size_of(entry) - size_of(kept);
     kept = std::move(entry);
-    if (size_ > kHtmlBudget) keep_to_budget();
+    if (!fits()) keep_to_budget();
+}
+
+// Maps on the same mesh refer to one copy of it.
+void HtmlReport::share_mesh(std::shared_ptr<const HtmlMesh>& mesh) {
+    if (mesh == nullptr) return;
+    const auto found = std::find_if(meshes_.begin(), meshes_.end(), [&](const auto& kept) { return *kept == *mesh; });
+    if (found != meshes_.end()) {
+        mesh = *found;
+        return;
+    }
+    meshes_.push_back(mesh);
+    mesh_size_ += mesh->size();
+}
+
+bool HtmlReport::fits() const { return size_ + std::min(mesh_size_, kHtmlMeshBudget) <= kHtmlBudget; }
+
+// The meshes that the page contains, in the order of its entries, as long as they fit.
+HtmlReport::MeshNumbers HtmlReport::mesh_numbers() const {
+    MeshNumbers numbers;
+    std::size_t size = 0;
+    for (const auto& [key, entry] : entries_) {
+        for (const HtmlMap& map : entry.maps) {
+            if (!map.on_mesh || map.on_mesh->mesh == nullptr || map.shown().levels.empty()) continue;
+            const HtmlMesh& mesh = *map.on_mesh->mesh;
+            if (numbers.count(&mesh) != 0 || size + mesh.size() > kHtmlMeshBudget) continue;
+            size += mesh.size();
+            numbers.emplace(&mesh, numbers.size());
+        }
+    }
+    return numbers;
 }
 
 // More entries can only make a page larger, so the final limit is that of the whole set, in whatever order entries
 // came.
 void HtmlReport::keep_to_budget() {
     for (const int side : kSides) {
-        if (side >= side_ || size_ <= kHtmlBudget) continue;
+        if (side >= side_ || fits()) continue;
         side_ = side;
         size_ = 0;
         for (auto& [key, entry] : entries_) {
@@ -130,6 +185,7 @@ std::string HtmlReport::table() const {
 }
 
 std::string HtmlReport::sections() const {
+    const MeshNumbers meshes = mesh_numbers();
     std::string html;
     int number = 0;
     std::size_t map_number = 0;
@@ -138,7 +194,8 @@ std::string HtmlReport::sections() const {
             "<section class=\"file\" id=\"file-{}\" data-words=\"{}\">\n<h2>{}</h2>\n<div class=\"columns\">\n",
             ++number, html_text(entry.words), html_text(entry.title));
         // The pictures of a single map are beside it; those of two maps are below them.
-        html += stage(entry, map_number) + "<div class=\"facts\">\n" + entry.body + figures(entry.extras, entry.title) +
+        html += stages(entry, map_number, meshes) + "<div class=\"facts\">\n" + entry.body +
+                figures(entry.extras, entry.title) +
                 (entry.maps.size() == 1 ? figures(entry.maps.front().views, entry.title) : "") + "</div>\n</div>\n";
         for (const HtmlMap& map : entry.maps) {
             if (entry.maps.size() > 1 && !map.views.empty())
@@ -158,6 +215,26 @@ std::string HtmlReport::rules_text() const {
                             html_text(rule->sentence), html_text(rule->explanation));
     }
     return html + "</dl>\n</section>\n";
+}
+
+// #mesh-n contains the bytes of mesh n. Nothing of this is there without a mesh.
+std::string HtmlReport::mesh_data() const {
+    const MeshNumbers numbers = mesh_numbers();
+    if (numbers.empty()) return {};
+    std::vector<const HtmlMesh*> meshes(numbers.size());
+    for (const auto& [mesh, number] : numbers) meshes[number] = mesh;
+    Json json;
+    json["decoders"] = Json::array();
+    for (const auto& row : kDecoderNames)
+        json["decoders"].push_back({row.name, name_of(kDecoderKindNames, decoder_kind(row.value)), row.meaning});
+    json["meshes"] = Json::array();
+    std::string bytes;
+    for (const HtmlMesh* mesh : meshes) {
+        bytes += fmt::format("<script type=\"text/plain\" id=\"mesh-{}\">{}</script>\n", json["meshes"].size(),
+                             base64(mesh->bytes));
+        json["meshes"].push_back(mesh->json());
+    }
+    return fmt::format("<script type=\"application/json\" id=\"meshes\">{}</script>\n", script_json(json)) + bytes;
 }
 
 // #map-n contains the bytes of the levels of map n, one level after the other.
@@ -181,7 +258,7 @@ std::string HtmlReport::page(const std::string& summary) const {
     std::string html(kReportHtml);
     // Fills the page from its end, so that no mark is searched for in inserted text.
     fill(html, "script", fmt::format("<script>\n{}</script>\n", kReportScript));
-    fill(html, "data", data());
+    fill(html, "data", data() + mesh_data());
     fill(html, "version", html_text(version()));
     fill(html, "rules", rules_text());
     fill(html, "sections", sections());

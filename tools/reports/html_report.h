@@ -10,6 +10,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -22,8 +23,8 @@
 
 namespace tex::cli {
 
-// The most characters that pictures and levels may take in a page. If there are more, levels are left out, the largest
-// first.
+// The most characters that pictures, levels and meshes may take in a page. If there are more, levels are left out, the
+// largest first. Meshes that exceed kHtmlMeshBudget together are left out, the last first.
 inline constexpr std::size_t kHtmlBudget = 18'000'000;
 
 // One row of the table and one section.
@@ -48,23 +49,32 @@ public:
     // Adds a rule that an entry names. Each such rule is explained once, at the end of the page.
     void explain(const Rule& rule);
 
+    // Of the meshes in the page.
+    using MeshNumbers = std::map<const HtmlMesh*, std::size_t>;
+
     // The page. `summary` is its first sentence.
     [[nodiscard]] std::string page(const std::string& summary) const;
 
 private:
+    void share_mesh(std::shared_ptr<const HtmlMesh>& mesh);
+    [[nodiscard]] bool fits() const;
     void keep_to_budget();
+    [[nodiscard]] MeshNumbers mesh_numbers() const;
     [[nodiscard]] std::string table() const;
     [[nodiscard]] std::string sections() const;
     [[nodiscard]] std::string rules_text() const;
     [[nodiscard]] std::string data() const;
+    [[nodiscard]] std::string mesh_data() const;
 
     std::string command_;
     std::vector<std::string> columns_;
     mutable std::mutex mutex_;
     std::map<std::string, HtmlEntry> entries_;
     std::map<std::string, const Rule*> rules_;
-    int side_ = kLargestHtmlLevel;  // the longest side of a level that still fits
-    std::size_t size_ = 0;          // of all pictures and levels, in characters
+    int side_ = kLargestHtmlLevel;                         // the longest side of a level that still fits
+    std::size_t size_ = 0;                                 // of all pictures and levels, in characters
+    std::vector<std::shared_ptr<const HtmlMesh>> meshes_;  // each once
+    std::size_t mesh_size_ = 0;                            // of all of them, in characters
 };
 
 // The columns and an entry of check-normals. `map` is null for a file that could not be decoded.

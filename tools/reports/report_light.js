@@ -1,21 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lights a normal map on the reader's GPU: the plane that preview-normals draws, with the same formulas
-// (tex/preview.h). One WebGL context draws for every canvas of the page.
+// (tex/preview.h). One WebGL context draws for every canvas of the page, also meshes (report_mesh.js).
 
-const kVertexShader = `#version 300 es
-void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0); }`;
-
-const kFragmentShader = `#version 300 es
+// What the shaders of the plane and of meshes share.
+const kShading = `#version 300 es
 precision highp float;
 struct Map { vec4 x, y, z; float scale, offset, sign; bool hasZ; };
-uniform sampler2D textureA, textureB;
-uniform Map a, b;
-uniform vec2 size, tiles;   // of the canvas in pixels; how often the map stands on the plane
-uniform float aspect, edge, bump;   // edge: where B begins, in pixels
-uniform vec3 light;
+uniform vec3 eye, light;
 uniform bool isPoint;
-uniform int show;
-out vec4 color;
 
 vec3 read(Map map, vec4 texel) {
   vec4 t = texel * map.scale + map.offset;
@@ -26,20 +18,38 @@ vec3 withZ(vec2 v) {
   float square = dot(v, v);
   return square <= 1.0 ? vec3(v, sqrt(1.0 - square)) : vec3(v * inversesqrt(square), 0.0);
 }
+vec3 normalOf(Map map, vec3 stored) { return map.hasZ ? unitOf(vec3(stored.xy, max(stored.z, 0.0))) : withZ(stored.xy); }
+vec3 scaled(vec3 n, float bump) { return unitOf(vec3(n.xy * bump, n.z)); }
 vec3 displayed(vec3 c) {
   c = clamp(c, 0.0, 1.0);
   return mix(1.055 * pow(max(c, 1e-9), vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308)));
 }
-vec3 lit(vec3 n, vec3 point) {
+vec3 linearLight(vec3 n, vec3 point) {
   const float albedo = 0.6, specular = 0.25, shininess = 20.0, ambient = 0.03;
-  vec3 view = normalize(vec3(0.0, 0.0, 3.7320508075688776) - point);
+  vec3 view = normalize(eye - point);
   vec3 way = isPoint ? light - point : light;
   float weakens = isPoint ? 1.0 / max(length(way), 1e-6) : 1.0;
   way = normalize(way);
   float facing = dot(n, way), cosine = dot(2.0 * facing * n - way, view);
   float shine = facing >= 0.0 && cosine > 0.0 ? pow(cosine, shininess) : 0.0;
-  return displayed(vec3(ambient * albedo + weakens * (albedo * max(0.0, facing) + specular * shine)));
+  return vec3(ambient * albedo + weakens * (albedo * max(0.0, facing) + specular * shine));
 }
+`;
+
+// A triangle that covers the whole picture.
+const kPictureShader = `#version 300 es
+void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0); }`;
+
+const kPlaneEye = [0, 0, 3.7320508075688776];
+
+const kPlaneShader = kShading + `
+uniform sampler2D textureA, textureB;
+uniform Map a, b;
+uniform vec2 size, tiles;   // of the canvas in pixels; how often the map stands on the plane
+uniform float aspect, edge, bump;   // edge: where B begins, in pixels
+uniform int show;
+out vec4 color;
+
 vec3 viridis(float t) {
   t = clamp(t, 0.0, 1.0);
   return clamp(vec3(0.27772733, 0.00540734, 0.33409981) + t * (vec3(0.10509304, 1.40461353, 1.38459016) + t * (vec3(-0.33086183, 0.21484756, 0.09509516)
@@ -55,14 +65,14 @@ vec3 diverging(float t) {
 }
 vec3 shown(Map map, vec4 texel, vec3 point) {
   vec3 stored = read(map, texel);
-  vec3 n = map.hasZ ? unitOf(vec3(stored.xy, max(stored.z, 0.0))) : withZ(stored.xy);
+  vec3 n = normalOf(map, stored);
   if (show == 4) return diverging((map.hasZ ? length(stored) - 1.0 : 0.0) / 0.1);
   if (show == 5) return diverging((map.hasZ ? stored.z - sqrt(1.0 - min(dot(stored.xy, stored.xy), 1.0)) : 0.0) / 0.1);
-  n = unitOf(vec3(n.xy * bump, n.z));
+  n = scaled(n, bump);
   if (show == 1) return (n + 1.0) / 2.0;
   if (show == 2) return viridis(length(n.xy) / max(n.z, 1.0 / 256.0) / 2.0);
   if (show == 3) return viridis(degrees(atan(length(n.xy), n.z)) / 90.0);
-  return lit(n, point);
+  return displayed(linearLight(n, point));
 }
 void main() {
   vec2 place = gl_FragCoord.xy / size;
@@ -72,16 +82,39 @@ void main() {
   color = vec4(gl_FragCoord.x < edge ? shown(a, texelA, point) : shown(b, texelB, point), 1.0);
 }`;
 
+// The bytes of an element: #map-n, #mesh-n.
+function bytesOf(id) {
+  const text = atob(document.getElementById(id).textContent), bytes = new Uint8Array(text.length);
+  for (let k = 0; k < bytes.length; ++k) bytes[k] = text.charCodeAt(k);
+  return bytes;
+}
+
 // The bytes of #map-n, split into levels.
 function levelsOf(maps, number) {
-  const text = atob(document.getElementById("map-" + number).textContent);
+  const bytes = bytesOf("map-" + number);
   let at = 0;
-  return maps[number].levels.map(([width, height, size]) => {
-    const bytes = new Uint8Array(size);
-    for (let k = 0; k < size; ++k) bytes[k] = text.charCodeAt(at + k);
-    at += size;
-    return {width, height, bytes};
-  });
+  return maps[number].levels.map(([width, height, size]) => ({width, height, bytes: bytes.subarray(at, at += size)}));
+}
+
+// A pair of shaders on the GPU.
+class Program {
+  constructor(gl, vertexShader, fragmentShader) {
+    Object.assign(this, {gl, id: gl.createProgram(), places: {}});
+    for (const [kind, source] of [[gl.VERTEX_SHADER, vertexShader], [gl.FRAGMENT_SHADER, fragmentShader]]) {
+      const shader = gl.createShader(kind);
+      gl.shaderSource(shader, source);
+      gl.compileShader(shader);
+      gl.attachShader(this.id, shader);
+    }
+    gl.linkProgram(this.id);
+    if (!gl.getProgramParameter(this.id, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(this.id) || "the shader was refused");
+  }
+
+  // The place of a uniform variable.
+  uniform(name) {
+    if (!(name in this.places)) this.places[name] = this.gl.getUniformLocation(this.id, name);
+    return this.places[name];
+  }
 }
 
 // Draws maps by number. Throws if there is no WebGL 2.
@@ -96,27 +129,7 @@ class Lighting {
     this.s3tc = gl.getExtension("WEBGL_compressed_texture_s3tc");
     this.rgtc = gl.getExtension("EXT_texture_compression_rgtc");
     this.textures = new Map();
-    this.program = this.link();
-    gl.useProgram(this.program);
-    this.places = {};
-  }
-
-  link() {
-    const gl = this.gl, program = gl.createProgram();
-    for (const [kind, source] of [[gl.VERTEX_SHADER, kVertexShader], [gl.FRAGMENT_SHADER, kFragmentShader]]) {
-      const shader = gl.createShader(kind);
-      gl.shaderSource(shader, source);
-      gl.compileShader(shader);
-      gl.attachShader(program, shader);
-    }
-    gl.linkProgram(program);
-    if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program) || "the shader was refused");
-    return program;
-  }
-
-  uniform(name) {
-    if (!(name in this.places)) this.places[name] = this.gl.getUniformLocation(this.program, name);
-    return this.places[name];
+    this.plane = new Program(gl, kPictureShader, kPlaneShader);
   }
 
   // WebGL's name for a format, if this GPU supports it and WebGL accepts the extent of every level.
@@ -166,40 +179,57 @@ class Lighting {
     return {id, packed: Boolean(packed), signed: Boolean(packed) && map.format === "bc5-snorm"};
   }
 
-  setMap(name, unit, number, texture, y) {
+  // Prepares a program, which is in use, to read map `number` as `name`: "a" or "b".
+  setMap(program, name, unit, number, texture, y) {
     const gl = this.gl, map = this.maps[number];
     gl.activeTexture(gl.TEXTURE0 + unit);
     gl.bindTexture(gl.TEXTURE_2D, texture.id);
-    gl.uniform1i(this.uniform("texture" + name.toUpperCase()), unit);
+    gl.uniform1i(program.uniform("texture" + name.toUpperCase()), unit);
     const channels = map.packed ? map.channels : [0, 1, map.channels[2] < 0 ? -1 : 2];
-    ["x", "y", "z"].forEach((c, k) => gl.uniform4fv(this.uniform(name + "." + c), [0, 1, 2, 3].map((n) => (n === channels[k] ? 1 : 0))));
-    gl.uniform1f(this.uniform(name + ".scale"), texture.signed ? 1 : 2);
-    gl.uniform1f(this.uniform(name + ".offset"), texture.signed ? 0 : -1);
+    ["x", "y", "z"].forEach((c, k) => gl.uniform4fv(program.uniform(name + "." + c), [0, 1, 2, 3].map((n) => (n === channels[k] ? 1 : 0))));
+    gl.uniform1f(program.uniform(name + ".scale"), texture.signed ? 1 : 2);
+    gl.uniform1f(program.uniform(name + ".offset"), texture.signed ? 0 : -1);
     // Decoded levels have y up if the file says so.
-    gl.uniform1f(this.uniform(name + ".sign"), (map.packed ? y === "up" : y === map.y) ? 1 : -1);
-    gl.uniform1i(this.uniform(name + ".hasZ"), channels[2] >= 0);
+    gl.uniform1f(program.uniform(name + ".sign"), (map.packed ? y === "up" : y === map.y) ? 1 : -1);
+    gl.uniform1i(program.uniform(name + ".hasZ"), channels[2] >= 0);
   }
 
-  // Draws `scene` and copies it to `canvas`: {a, b, yA, yB, split (0 to 1), tiles, bump, light: [x, y, z], point,
-  // show}. Returns what the GPU was given.
+  // Begins a picture with the size of `canvas`, with `program`. Throws if the browser has taken the GPU away.
+  begin(canvas, program) {
+    const gl = this.gl, {width, height} = canvas;
+    if (gl.isContextLost()) throw new Error("the GPU was reset; reload the page");
+    if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, {width, height});
+    gl.viewport(0, 0, width, height);
+    gl.useProgram(program.id);
+  }
+
+  setLight(program, light, point, eye) {
+    this.gl.uniform3fv(program.uniform("light"), light);
+    this.gl.uniform1i(program.uniform("isPoint"), point);
+    this.gl.uniform3fv(program.uniform("eye"), eye);
+  }
+
+  // Copies the picture to `canvas`.
+  end(canvas) { canvas.getContext("2d", {alpha: false}).drawImage(this.canvas, 0, 0); }
+
+  // Draws `scene` on a plane and copies it to `canvas`: {a, b, yA, yB, split (0 to 1), tiles, bump, light: [x, y, z],
+  // point, show}. Returns what the GPU was given.
   async draw(canvas, scene) {
     const textureA = await this.texture(scene.a);
     const textureB = scene.b === null ? textureA : await this.texture(scene.b);
-    const gl = this.gl, {width, height} = canvas, [w, h] = this.maps[scene.a].levels[0];
-    if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, {width, height});
-    gl.viewport(0, 0, width, height);
-    this.setMap("a", 0, scene.a, textureA, scene.yA);
-    this.setMap("b", 1, scene.b === null ? scene.a : scene.b, textureB, scene.b === null ? scene.yA : scene.yB);
-    gl.uniform2f(this.uniform("size"), width, height);
-    gl.uniform2f(this.uniform("tiles"), scene.tiles, scene.tiles);
-    gl.uniform1f(this.uniform("aspect"), w / h);
-    gl.uniform1f(this.uniform("edge"), scene.b === null ? width + 1 : scene.split * width);
-    gl.uniform1f(this.uniform("bump"), scene.bump);
-    gl.uniform3fv(this.uniform("light"), scene.light);
-    gl.uniform1i(this.uniform("isPoint"), scene.point);
-    gl.uniform1i(this.uniform("show"), scene.show);
+    const gl = this.gl, program = this.plane, {width, height} = canvas, [w, h] = this.maps[scene.a].levels[0];
+    this.begin(canvas, program);
+    this.setMap(program, "a", 0, scene.a, textureA, scene.yA);
+    this.setMap(program, "b", 1, scene.b === null ? scene.a : scene.b, textureB, scene.b === null ? scene.yA : scene.yB);
+    this.setLight(program, scene.light, scene.point, kPlaneEye);
+    gl.uniform2f(program.uniform("size"), width, height);
+    gl.uniform2f(program.uniform("tiles"), scene.tiles, scene.tiles);
+    gl.uniform1f(program.uniform("aspect"), w / h);
+    gl.uniform1f(program.uniform("edge"), scene.b === null ? width + 1 : scene.split * width);
+    gl.uniform1f(program.uniform("bump"), scene.bump);
+    gl.uniform1i(program.uniform("show"), scene.show);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
-    canvas.getContext("2d", {alpha: false}).drawImage(this.canvas, 0, 0);
+    this.end(canvas);
     return textureA;
   }
 }

@@ -168,7 +168,6 @@ struct SeamEvidence {
     double mean = 0.0, p99 = 0.0;  // of all points of all edges, in degrees
     double worst = 0.0;            // the mean of the worst edge
     Region worst_edge;             // the texels around one side of it
-    YAxis y = YAxis::up;           // where green of the map points, as MeshToCheck says
 };
 
 struct CheckReport {
@@ -185,7 +184,8 @@ struct CheckReport {
     bool more_data = false;  // a channel varies that holds no component of the normals: roughness, a mask
     YEvidence y;
     std::optional<PairEvidence> pair;
-    std::optional<SeamEvidence> seams;
+    std::optional<SeamEvidence> seams;  // nothing: there is no mesh, or it has no seams
+    std::optional<YAxis> y_on_mesh;     // where green of the map points on the mesh, as MeshToCheck says
 };
 
 // Checks that all rules in the options exist. Errors: bad_option.

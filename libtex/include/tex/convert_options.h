@@ -18,10 +18,18 @@ namespace tex {
 //
 //   per vertex     T' and N' are interpolated, B' is the interpolated w cross(N, T); nothing is normalised
 //   per fragment   T' and N' are interpolated, B' = w cross(N', T'); nothing is normalised
-//   three          as per vertex, but B is normalised at the corners, and T', B' and N' after interpolation
+//   normalized     as per vertex, but B is normalised at the corners, and T', B' and N' after interpolation
 //
 // Decoders of the same kind give the same vectors. Where engines differ in y, or in how exactly they store tangents,
 // the decoders here do not: Unreal reads maps with y down and stores tangents in 8 bits by default.
+enum class DecoderKind { per_vertex, per_fragment, normalized };
+
+inline constexpr Named<DecoderKind> kDecoderKindNames[] = {
+    {DecoderKind::per_vertex, "per-vertex", "B is made at the vertices; nothing is normalised"},
+    {DecoderKind::per_fragment, "per-fragment", "B is made at the fragment; nothing is normalised"},
+    {DecoderKind::normalized, "normalized", "B is made at the vertices; T, B and N are normalised"},
+};
+
 enum class Decoder {
     unity_builtin,
     unity_urp,
@@ -47,6 +55,22 @@ inline constexpr Named<Decoder> kDecoderNames[] = {
     {Decoder::substance_vertex, "substance-vertex", "Substance, binormal per vertex"},
     {Decoder::substance_fragment, "substance-fragment", "Substance, binormal per fragment"},
 };
+
+[[nodiscard]] constexpr DecoderKind decoder_kind(Decoder decoder) {
+    switch (decoder) {
+        case Decoder::unity_builtin:
+        case Decoder::godot:
+        case Decoder::substance_vertex: return DecoderKind::per_vertex;
+        case Decoder::three: return DecoderKind::normalized;
+        case Decoder::unity_urp:
+        case Decoder::unity_hdrp:
+        case Decoder::unreal:
+        case Decoder::gltf:
+        case Decoder::blender:
+        case Decoder::substance_fragment: break;
+    }
+    return DecoderKind::per_fragment;
+}
 
 // The tangent space of a map: a mesh with a tangent for each corner, and a decoder. Refers to the caller's objects.
 struct TangentSpace {

@@ -18,12 +18,6 @@ namespace {
 
 constexpr double kConfident = 0.99;
 
-bool points_up(const Subject& subject) {
-    if (subject.options.require.y) return *subject.options.require.y == YAxis::up;
-    if (subject.texture.y_known) return subject.texture.y_axis == YAxis::up;
-    return subject.options.mesh->decoder != Decoder::unreal;
-}
-
 // A way of decoding, and what the seams are like then.
 struct Candidate {
     SeamSpace space;
@@ -113,6 +107,12 @@ std::string figures(const SeamEvidence& evidence) {
 
 }  // namespace
 
+YAxis y_on_mesh(const Subject& subject) {
+    if (subject.options.require.y) return *subject.options.require.y;
+    if (subject.texture.y_known) return subject.texture.y_axis;
+    return subject.options.mesh->decoder == Decoder::unreal ? YAxis::down : YAxis::up;
+}
+
 Result<std::optional<SeamEvidence>> check_mesh_fit(const Subject& subject, Findings& findings) {
     const SelectedPart& selected = subject.options.mesh->selected;
     const std::vector<SeamEdge> edges = find_seams(selected.part);
@@ -120,10 +120,9 @@ Result<std::optional<SeamEvidence>> check_mesh_fit(const Subject& subject, Findi
     const SeamSamples samples(selected.part, edges, subject.stored);
     const Extent extent = subject.stored.extent();
     Candidates candidates(subject, samples);
-    const bool y_up = points_up(subject);
+    const bool y_up = y_on_mesh(subject) == YAxis::up;
     const Candidate given = candidates.given(y_up);
-    SeamEvidence evidence = seam_evidence(samples, given.gaps, extent);
-    evidence.y = y_up ? YAxis::up : YAxis::down;
+    const SeamEvidence evidence = seam_evidence(samples, given.gaps, extent);
     if (!findings.wants("N711")) return std::optional(evidence);
 
     // Only a map whose y clearly meets at the seams can show what it was made for. Most maps do that one way or the

@@ -7,6 +7,9 @@
 
 namespace tex {
 
+// Where green of the map points on the mesh of subject.options.mesh, which is not null: see MeshToCheck.
+[[nodiscard]] YAxis y_on_mesh(const Subject& subject);
+
 // Measures the seams as subject.options.mesh says that the map is decoded, and adds a finding if it was made for
 // another decoder, other tangents or the other direction of green. Returns nullopt if there are no seams.
 //

@@ -8,24 +8,6 @@
 namespace tex {
 namespace {
 
-enum class Kind { per_vertex, per_fragment, normalized };
-
-Kind kind_of(Decoder decoder) {
-    switch (decoder) {
-        case Decoder::unity_builtin:
-        case Decoder::godot:
-        case Decoder::substance_vertex: return Kind::per_vertex;
-        case Decoder::three: return Kind::normalized;
-        case Decoder::unity_urp:
-        case Decoder::unity_hdrp:
-        case Decoder::unreal:
-        case Decoder::gltf:
-        case Decoder::blender:
-        case Decoder::substance_fragment: break;
-    }
-    return Kind::per_fragment;
-}
-
 Vector3 operator+(Vector3 a, Vector3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 Vector3 operator*(double s, Vector3 a) { return {s * a.x, s * a.y, s * a.z}; }
 double dot(Vector3 a, Vector3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
@@ -56,7 +38,7 @@ Result<void> check_space(const TangentSpace& space) {
     return {};
 }
 
-bool same_vectors(Decoder a, Decoder b) { return kind_of(a) == kind_of(b); }
+bool same_vectors(Decoder a, Decoder b) { return decoder_kind(a) == decoder_kind(b); }
 
 CornerFrames::CornerFrames(const TangentSpace& space, std::size_t triangle) : decoder_(space.decoder) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -67,16 +49,16 @@ CornerFrames::CornerFrames(const TangentSpace& space, std::size_t triangle) : de
         tangents_[k] = normalized(vector_of(t.x, t.y, t.z));
         signs_[k] = t.w < 0.0f ? -1.0 : 1.0;
         bitangents_[k] = signs_[k] * cross(normals_[k], tangents_[k]);
-        if (kind_of(decoder_) == Kind::normalized) bitangents_[k] = normalized(bitangents_[k]);
+        if (decoder_kind(decoder_) == DecoderKind::normalized) bitangents_[k] = normalized(bitangents_[k]);
     }
 }
 
 Frame CornerFrames::at(const std::array<double, 3>& weights) const {
     const Vector3 t = mix(tangents_, weights), n = mix(normals_, weights);
-    switch (kind_of(decoder_)) {
-        case Kind::per_vertex: return {t, mix(bitangents_, weights), n};
-        case Kind::normalized: return {normalized(t), normalized(mix(bitangents_, weights)), normalized(n)};
-        case Kind::per_fragment: break;
+    switch (decoder_kind(decoder_)) {
+        case DecoderKind::per_vertex: return {t, mix(bitangents_, weights), n};
+        case DecoderKind::normalized: return {normalized(t), normalized(mix(bitangents_, weights)), normalized(n)};
+        case DecoderKind::per_fragment: break;
     }
     const double sign = weights[0] * signs_[0] + weights[1] * signs_[1] + weights[2] * signs_[2];
     return {t, (sign < 0.0 ? -1.0 : 1.0) * cross(n, t), n};

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// html_mesh.h: the triangles of a mesh for a page, as the reader's GPU draws them.
+
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <tex/convert_options.h>
+
+#include "reports/json.h"
+
+namespace tex::cli {
+
+// The most characters that the meshes of a page may take, each counted once: about 200,000 triangles with smooth
+// normals.
+inline constexpr std::size_t kHtmlMeshBudget = 8'000'000;
+
+// Vertices, then the triangles' indices: little-endian, and ready for WebGL. A vertex has kHtmlVertexSize bytes:
+//
+//   position   3 x int16   in the sphere of preview.h, whose radius is 32767: 1/60 of a pixel in a picture of 1024
+//   normal     3 x int16   unit, times 32767 (or 0): 0.002 degrees. 8 bits would be 0.3 degrees, which a light shows
+//   tangent    4 x int16   the same, and w
+//   uv         2 x float   v down. 16 bits would be too few: charts may repeat, and large maps have 8192 texels
+//
+// Corners with the same vertex share it. Indices are uint16 if there are at most 65535 vertices, else uint32.
+struct HtmlMesh {
+    std::string arguments;  // --mesh and the options that choose its parts, as a shell reads them
+    Decoder decoder = Decoder::gltf;
+    std::size_t vertices = 0;
+    std::size_t triangles = 0;
+    std::vector<std::byte> bytes;
+
+    // The number of characters that the bytes take in a page.
+    [[nodiscard]] std::size_t size() const;
+    // The data that the page's script needs besides the bytes.
+    [[nodiscard]] Json json() const;
+    friend bool operator==(const HtmlMesh&, const HtmlMesh&) = default;
+};
+
+inline constexpr std::size_t kHtmlVertexSize = 28;
+
+// The mesh for a page, or null if it alone would take more than kHtmlMeshBudget. Depends on the arguments alone.
+// Precondition: preview() accepts the space.
+[[nodiscard]] std::shared_ptr<const HtmlMesh> html_mesh(const TangentSpace& space, std::string arguments);
+
+}  // namespace tex::cli
