@@ -30,7 +30,8 @@ int strip_rows(int width, int overlap) { return std::max({1, kPieceTexels / widt
 Result<void> check(const Integrator::Count& count, Extent extent) {
     const std::int64_t texels = extent.texels();
     if (count.behind > texels / 16) {
-        return Error{ErrorCode::bad_data, {},
+        return Error{ErrorCode::bad_data,
+                     {},
                      "z is negative in " + std::to_string(count.behind) + " of " + std::to_string(texels) +
                          " texels, as in object-space maps, which hold no slopes"};
     }

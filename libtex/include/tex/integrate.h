@@ -17,12 +17,12 @@
 namespace tex {
 
 struct Integration {
-    HeightField field;          // with the bumpiness and the wraps of the options; its lowest height is 0
-    float highest = 0.0f;       // its highest height: the range
-    AngularError curl;          // what is left over: see below
-    Plane<float> degrees;       // the angle of each texel
+    HeightField field;               // with the bumpiness and the wraps of the options; its lowest height is 0
+    float highest = 0.0f;            // its highest height: the range
+    AngularError curl;               // what is left over: see below
+    Plane<float> degrees;            // the angle of each texel
     std::int64_t unused_texels = 0;  // whose z is below IntegrateOptions::least_z
-    int steps = 1;              // the number of times that the equation was solved
+    int steps = 1;                   // the number of times that the equation was solved
 };
 
 // The heights h whose slopes are nearest to those of the map in the mean square (Frankot, Chellappa: A Method for
@@ -34,22 +34,23 @@ struct Integration {
 // heights per texel. Integrating what bake() made gives its heights back, apart from what no normal shows:
 //
 //     the constant      The lowest height becomes 0.
-//     blind spots       A kernel does not see the frequencies at which its response is 0. The result has none of them,
-//                       which makes it the smoothest and smallest of all fields with the same normals. `forward` sees
-//                       every frequency. `central` and `scharr` miss alternating heights (+1 -1 +1 ...) along x, along
-//                       y and along both, if the axes repeat and their extent is even. `prewitt` misses these and the
-//                       period of three texels along both axes. `sobel` and `sobel5` miss everything that alternates
-//                       along an axis that repeats and is even. `gaussian` with a sigma above 1.3 misses fine detail,
-//                       as what it attenuates by more than 10000 counts as unseen.
+//     blind spots       A kernel does not see the frequencies at which its response is 0, and hardly sees those nearby.
+//                       The result has none with a response below options.least_response, relative to that of the
+//                       difference of neighbouring texels: of all fields with the same normals, it is the smoothest.
+//                       `forward` sees every frequency. `central`, `scharr` and `prewitt` miss heights that alternate
+//                       (+1 -1 +1 ...) along x, along y or along both, on axes that repeat and are even; `prewitt` also
+//                       misses the period of three texels along both. `sobel`, `sobel5` and `gaussian` miss whatever
+//                       alternates along one axis, and sobel5 and gaussian attenuate all fine detail: they give the
+//                       heights of smooth surfaces back, not those of noise.
 //     slopes of 1e15    bake() clamps them.
 //
-// On the maps of a height field rounding is all that is left: heights are within 1e-4 of their range in every wrap. On
-// other maps, the angle between the map and bake() of the result (`curl`, `degrees`) measures what no height field can
-// have: the rounding of 8 bits leaves 0.1 to 0.3 degrees; more shows painting, blending, resizing or damage.
+// Otherwise heights come back within 1e-4 of their range, for every kernel, wrap and extent. On other maps, the angle
+// between the map and bake() of the result (`curl`, `degrees`) is what no height field can have. Rounding to 8 bits
+// leaves a few tenths of a degree; more shows painting, blending, resizing, another kernel or damage.
 //
-// Texels with z below options.least_z have no usable slope. They count as unknown: the sum above is without them. That
-// takes several solutions, each of which starts from the slopes of the last one in these texels, as does Wrap::clamp
-// with kernels that are not differences of two texels (forward, central): up to options.most_steps.
+// Texels with z below options.least_z have no usable slope. They count as unknown: the sum above is without them. The
+// equation is then solved several times, up to options.most_steps, each time for what the slopes still lack. So it is
+// with Wrap::clamp and the kernels that smooth.
 //
 // With Wrap::clamp, border texels weigh less than others: a quarter (central), or half (forward).
 //

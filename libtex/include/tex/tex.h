@@ -68,6 +68,7 @@
 #include <tex/compare.h>
 #include <tex/convert.h>
 #include <tex/convert_options.h>
+#include <tex/curvature.h>
 #include <tex/heat_map.h>
 #include <tex/integrate.h>
 #include <tex/integrate_options.h>

@@ -193,7 +193,8 @@ void FourierOfCosine(const float* in, const float* turns, int count, float* out)
 }
 
 void DivideSpectrum(const SpectrumRow& row, int count, float* data) {
-    const V y_slope = hn::Set(kD, row.y_slope), y_smooth = hn::Set(kD, row.y_smooth), y_ideal = hn::Set(kD, row.y_ideal);
+    const V y_slope = hn::Set(kD, row.y_slope), y_smooth = hn::Set(kD, row.y_smooth),
+            y_ideal = hn::Set(kD, row.y_ideal);
     const V least = hn::Set(kD, row.least), scale = hn::Set(kD, row.scale);
     for (int i = 0; i < count; i += kLanes) {
         const V eigenvalue = hn::Add(hn::Mul(hn::LoadU(kD, row.x_slope + i), y_smooth),

@@ -15,8 +15,7 @@ AxisTransform::AxisTransform(int texels, bool is_mirrored)
     std::iota(order_.begin(), order_.end(), 0);
     if (!is_mirrored) return;
     // Even texels from the left, odd ones from the right (Makhoul 1980).
-    for (int i = 0; i < texels; ++i)
-        order_[static_cast<std::size_t>(i % 2 == 0 ? i / 2 : texels - 1 - i / 2)] = i;
+    for (int i = 0; i < texels; ++i) order_[static_cast<std::size_t>(i % 2 == 0 ? i / 2 : texels - 1 - i / 2)] = i;
     turns_.reserve(2 * static_cast<std::size_t>(texels));
     for (int k = 0; k < texels; ++k) {
         turns_.push_back(static_cast<float>(math::cos(frequency(k) / 2.0)));

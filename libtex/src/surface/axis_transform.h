@@ -2,9 +2,9 @@
 // axis_transform.h: the transforms along one axis in which differences of heights become products.
 //
 // An axis that repeats takes the discrete Hartley transform (Bracewell 1983); one that is mirrored takes the cosine
-// transform (DCT-II; Strang 1999: The discrete cosine transform), whose even symmetry is that of Wrap::mirror. Both turn
-// real values into as many real values, in place, and their squared differences are diagonal: coefficient k of an axis
-// of n texels belongs to the frequency 2 pi k / n (repeat) or pi k / n (mirror), in radians a texel.
+// transform (DCT-II; Strang 1999: The discrete cosine transform), whose even symmetry is that of Wrap::mirror. Both
+// turn real values into as many real values, in place, and their squared differences are diagonal: coefficient k of an
+// axis of n texels belongs to the frequency 2 pi k / n (repeat) or pi k / n (mirror), in radians a texel.
 
 #pragma once
 

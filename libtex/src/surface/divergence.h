@@ -51,8 +51,8 @@ private:
     int radius_, lead_;
     int next_ = 0;
     bool begun_ = false;
-    Plane<float> p_, q_;      // a window of rows, each with an apron
-    Plane<float> beside_;     // scratch: one row of p and of q
+    Plane<float> p_, q_;   // a window of rows, each with an apron
+    Plane<float> beside_;  // scratch: one row of p and of q
     std::vector<const float*> window_;
     std::vector<float> ramp_x_, ramp_y_;  // the slope of a mirrored ramp in the first texels from a border
 };

@@ -48,7 +48,7 @@ Integrator::Integrator(const NormalMap& map, const IntegrateOptions& options)
     : map_(map), options_(options), extent_(map.extent()), gradient_(gradient_of(options.bake)),
       x_(axis_of(options.wrap_x, options.bumpiness_x, larger_bumpiness(options), extent_.width)),
       y_(axis_of(options.wrap_y, options.bumpiness_y, larger_bumpiness(options), extent_.height)),
-      solver_(gradient_, operator_of(x_, extent_.width), operator_of(y_, extent_.height)) {
+      solver_(gradient_, operator_of(x_, extent_.width), operator_of(y_, extent_.height), options.least_response) {
     head_ = {x_.ratio, y_.ratio, options.wrap_x, options.wrap_y};
 }
 
@@ -123,9 +123,9 @@ Result<void> Integrator::excess(const Plane<float>& heights, Plane<float>& p, Pl
     return parallel_for(silent, extent_.height, strip_rows(extent_.width, 2 * gradient_.radius), body);
 }
 
-// Solves for what the slopes of `heights` lack, again and again. Each solution removes what the equation sees of it. Most
-// often the rest falls by a constant factor; kernels that blur much may see it wrongly at clamped borders, and then the
-// last good heights remain.
+// Solves for what the slopes of `heights` lack, again and again. Each solution removes what the equation sees of it.
+// Most often the rest falls by a constant factor; kernels that blur much may see it wrongly at clamped borders, and
+// then the last good heights remain.
 Result<void> Integrator::refine(Plane<float>& heights, const Execution& execution, ProgressSpan span,
                                 int& steps) const {
     constexpr float kEnough = 1e-5f, kLeast = 0.1f;

@@ -36,10 +36,12 @@ double smooth_response(const Gradient& gradient, double w) {
 
 }  // namespace
 
-PoissonSolver::PoissonSolver(const Gradient& gradient, const AxisOperator& x, const AxisOperator& y)
+PoissonSolver::PoissonSolver(const Gradient& gradient, const AxisOperator& x, const AxisOperator& y,
+                             float least_response)
     : x_(x.texels, x.is_mirrored), y_(y.texels, y.is_mirrored), x_responses_(responses_of(gradient, x, x_)),
       y_responses_(responses_of(gradient, y, y_)),
-      scale_(static_cast<float>(1.0 / (static_cast<double>(x.texels) * y.texels))) {}
+      scale_(static_cast<float>(1.0 / (static_cast<double>(x.texels) * y.texels))),
+      least_(least_response * least_response) {}
 
 PoissonSolver::Responses PoissonSolver::responses_of(const Gradient& gradient, const AxisOperator& axis,
                                                      const AxisTransform& transform) {
@@ -87,8 +89,12 @@ void PoissonSolver::solve_columns(Plane<float>& plane, int first) const {
     constexpr std::size_t kBytes = kGroup * sizeof(float);
     Groups data = groups_of(y_.buffer_length());
     Groups scratch = groups_of(y_.buffer_length());
-    for (int j = 0; j < height; ++j)
-        std::memcpy(data.row(j), plane.row(y_.order()[static_cast<std::size_t>(j)]) + first, kBytes);
+    // Columns beyond the last one count as 0. They share complex numbers with others, which they would round otherwise.
+    const auto texels = static_cast<std::size_t>(std::min(kGroup, plane.extent().width - first));
+    for (int j = 0; j < height; ++j) {
+        std::memcpy(data.row(j), plane.row(y_.order()[static_cast<std::size_t>(j)]) + first, texels * sizeof(float));
+        std::memset(data.row(j) + texels, 0, kBytes - texels * sizeof(float));
+    }
     y_.forward(data, scratch);
     for (int j = 0; j < height; ++j) {
         const auto at = static_cast<std::size_t>(j);
@@ -98,7 +104,7 @@ void PoissonSolver::solve_columns(Plane<float>& plane, int first) const {
                                  y_responses_.slope[at],
                                  y_responses_.smooth[at],
                                  y_responses_.ideal[at],
-                                 static_cast<float>(kLeastResponse * kLeastResponse),
+                                 least_,
                                  scale_};
         divide_spectrum(row, kGroup, data.row(j));
     }

@@ -25,14 +25,12 @@ struct AxisOperator {
 //     A = Dx^T Dx + Dy^T Dy,    Dx = ratio_x (derivative along x) (smoothing along y),    Dy likewise
 //
 // b must be Dx^T p + Dy^T q of some slopes, so that h is the field whose slopes are nearest to them in the mean square
-// (Frankot, Chellappa 1988). The kernel does not see frequencies at which its response is below kLeastResponse times
-// that of the derivative of neighbouring texels, 2 sin(w / 2). They are left out of the result, among them the
-// constant, so that of all fields with these slopes it is the one with the smallest mean square.
-inline constexpr double kLeastResponse = 1e-3;
-
+// (Frankot, Chellappa 1988). Frequencies w at which the response of the kernel is below `least_response` times that of
+// the difference of neighbouring texels, 2 sin(w / 2), are left out of the result. So is the constant: of all fields
+// with these slopes, h is the one with the smallest mean square.
 class PoissonSolver {
 public:
-    PoissonSolver(const Gradient& gradient, const AxisOperator& x, const AxisOperator& y);
+    PoissonSolver(const Gradient& gradient, const AxisOperator& x, const AxisOperator& y, float least_response);
 
     // Errors: out_of_memory, cancelled. The same bytes for every number of threads and every processor.
     [[nodiscard]] Result<void> solve(Plane<float>& b, const Execution& execution, ProgressSpan span) const;
@@ -50,6 +48,7 @@ private:
     AxisTransform x_, y_;
     Responses x_responses_, y_responses_;
     float scale_;
+    float least_;
 };
 
 }  // namespace tex
