@@ -199,6 +199,16 @@ TEST_F(IntegrateNormals, TheBytesDoNotDependOnThreads) {
     EXPECT_EQ(scratch_.read("c1.png"), scratch_.read("c3.png"));
 }
 
+TEST_F(IntegrateNormals, IsAStepOfAManifest) {
+    does("bake-normals", {"waves.png", "-o", "a_n.png", "--bumpiness", "4"});
+    scratch_.write("normals.toml",
+                   "version = 1\n[[rule]]\nmatch = \"*_n.png\"\nname = \"{stem:-_n}_built.png\"\n"
+                   "steps = [ { integrate = { bumpiness = 4, wrap = \"clamp\" } } ]\n");
+    EXPECT_EQ(run(scratch_, "build-normals", {"normals.toml"}).code, 0);
+    does("integrate-normals", {"a_n.png", "-o", "a.png", "--bumpiness", "4", "--wrap", "clamp"});
+    EXPECT_EQ(scratch_.read("a_built.png"), scratch_.read("a.png"));
+}
+
 TEST_F(IntegrateNormals, RealObjectSpaceMapsAreRefused) {
     const auto map = kShared / "normal/panels_OBJECTSPACE_512.png";
     if (!std::filesystem::exists(map)) GTEST_SKIP() << "no ../shared/data";

@@ -39,7 +39,7 @@ CurvatureRows::Neighbour CurvatureRows::neighbour(Wrap wrap, int i, int n) {
 }
 
 void CurvatureRows::make(int j, float* out) {
-    const auto [width, height] = map_.extent();
+    const int width = map_.extent().width, height = map_.extent().height;
     const int lead = aligned_count(1);
     float* const x = rows_.row(kX) + lead;
     float* const scratch = rows_.row(kScratch) + lead;
