@@ -2,6 +2,7 @@
 // integrate-normals: normal maps to height maps.
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -139,6 +140,10 @@ Result<std::vector<Integration>> IntegrateNormals::integrate_levels(cli::Job& jo
     std::vector<Integration> heights;
     for (std::size_t k = first; k < (all_levels_ ? levels.size() : first + 1); ++k) {
         const Strength strength = strength_.strength(levels[k].extent());
+        const float weaker = std::min(std::abs(strength.x), std::abs(strength.y));
+        const float stronger = std::max(std::abs(strength.x), std::abs(strength.y));
+        if (weaker < 1e-20f || stronger > 1e20f)
+            return Error{ErrorCode::bad_option, job.task.input, "the strength is too small or too large"};
         with.bumpiness_x = strength.x;
         with.bumpiness_y = strength.y;
         auto level = integrate(levels[k], with, job.until(k == first ? 0.8 : 0.85));

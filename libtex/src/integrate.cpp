@@ -88,8 +88,8 @@ Result<void> measure_curl(const NormalMap& map, const BakeOptions& bake, Integra
 
 Result<Integration> integrate(const NormalMap& map, const IntegrateOptions& options, const Execution& execution) {
     assert(!map.x.empty() && map.extent().width <= kMaxExtent && map.extent().height <= kMaxExtent);
-    assert(std::isfinite(options.bumpiness_x) && options.bumpiness_x != 0.0f);
-    assert(std::isfinite(options.bumpiness_y) && options.bumpiness_y != 0.0f);
+    assert(std::abs(options.bumpiness_x) >= 1e-20f && std::abs(options.bumpiness_x) <= 1e20f);
+    assert(std::abs(options.bumpiness_y) >= 1e-20f && std::abs(options.bumpiness_y) <= 1e20f);
     assert(options.least_z > 0.0f && options.least_z <= 1.0f);
     return guarded([&]() -> Result<Integration> {
         Integration result;

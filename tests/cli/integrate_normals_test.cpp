@@ -176,6 +176,7 @@ TEST_F(IntegrateNormals, CurvatureAndCurlAreMapsOfTheirOwn) {
 TEST_F(IntegrateNormals, BadInputIsRefusedWithItsReason) {
     does("bake-normals", {"waves.png", "-o", "n.png"});
     refuses({"n.png", "-o", "h.png", "--bumpiness", "0"}, 2, "a strength of 0");
+    refuses({"n.png", "-o", "h.png", "--uv-height", "1e-60"}, 4, "the strength is too small");
     refuses({"n.png", "-o", "h.png", "--heights", "1,0"}, 2, "LOW must be less than HIGH");
     refuses({"n.png", "-o", "h.png", "--heights", "nan,1"}, 2, "--heights");
     refuses({"n.png", "-o", "h.png", "--heights", "most"}, 2, "fit, raw or LOW,HIGH");

@@ -44,9 +44,10 @@ struct Integration {
 //                       heights of smooth surfaces back, not those of noise.
 //     slopes of 1e15    bake() clamps them.
 //
-// Otherwise heights come back within 1e-4 of their range, for every kernel, wrap and extent. On other maps, the angle
-// between the map and bake() of the result (`curl`, `degrees`) is what no height field can have. Rounding to 8 bits
-// leaves a few tenths of a degree; more shows painting, blending, resizing, another kernel or damage.
+// Otherwise heights come back within 1e-4 of their range, for every kernel and wrap, up to extents of 16384 (within
+// 5e-3 at 2^20, where the rounding of floats adds up). On other maps, the angle between the map and bake() of the
+// result (`curl`, `degrees`) is what no height field can have. Rounding to 8 bits leaves a few tenths of a degree; more
+// shows painting, blending, resizing, another kernel or damage.
 //
 // Texels with z below options.least_z have no usable slope. They count as unknown: the sum above is without them. The
 // equation is then solved several times, up to options.most_steps, each time for what the slopes still lack. So it is
@@ -60,8 +61,8 @@ struct Integration {
 // the map, 16 if several solutions are needed, and for each thread 128 bytes for each texel of the longer side (512 for
 // prime factors above 5).
 //
-// Preconditions (asserted): the map is not empty, of at most kMaxExtent; its components are finite; bumpiness is finite
-// and not 0, with the larger one at most 1e6 times the smaller one; gaussian_sigma in range; 0 < least_z <= 1.
+// Preconditions (asserted): the map is not empty, of at most kMaxExtent; its components are finite; bumpiness is
+// from 1e-20 to 1e20 or from -1e20 to -1e-20; gaussian_sigma in range; 0 < least_z <= 1.
 // Errors: bad_data  z is below 0 in more than one of sixteen texels, as in object space; no z is at least least_z
 //         out_of_memory, cancelled
 // The same bytes for every number of threads, processor and compiler.
