@@ -104,7 +104,7 @@ struct Radix5 {
 
 template <class Radix>
 HWY_INLINE void run_stage(const FourierStage& stage, const float* in, float* out) {
-    constexpr int kRadix = Radix::kRadix;
+    constexpr std::ptrdiff_t kRadix = Radix::kRadix;
     const std::ptrdiff_t m = stage.length / kRadix;
     const std::ptrdiff_t floats = static_cast<std::ptrdiff_t>(stage.stride) * kGroup;
     for (std::ptrdiff_t p = 0; p < m; ++p) {

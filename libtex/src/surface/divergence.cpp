@@ -116,10 +116,12 @@ void DivergenceRows::make(int j, float* out) {
     }
     // The smoothing is its own transpose; the derivative changes its sign.
     const int padded = lead_ + width + radius_;
-    for (int k = -radius_; k <= radius_; ++k) window_[static_cast<std::size_t>(k + radius_)] = row_of(p_, k) - lead_;
+    auto place = window_.begin();
+    for (int k = -radius_; k <= radius_; ++k) *place++ = row_of(p_, k) - lead_;
     smooth_column(window_.data(), gradient_.smoothing.data(), radius_, padded, beside_.row(0));
     derive_row(beside_.row(0) + lead_, gradient_.derivative.data(), radius_, width, beside_.row(2));
-    for (int k = -radius_; k <= radius_; ++k) window_[static_cast<std::size_t>(k + radius_)] = row_of(q_, k) - lead_;
+    place = window_.begin();
+    for (int k = -radius_; k <= radius_; ++k) *place++ = row_of(q_, k) - lead_;
     derive_column(window_.data(), gradient_.derivative.data(), radius_, padded, beside_.row(0));
     smooth_row(beside_.row(0) + lead_, gradient_.smoothing.data(), radius_, width, beside_.row(1));
     weighted_sum(beside_.row(2), -x_.ratio, beside_.row(1), -y_.ratio, width, out);

@@ -45,7 +45,8 @@ PoissonSolver::PoissonSolver(const Gradient& gradient, const AxisOperator& x, co
 
 PoissonSolver::Responses PoissonSolver::responses_of(const Gradient& gradient, const AxisOperator& axis,
                                                      const AxisTransform& transform) {
-    const auto padded = static_cast<std::size_t>((axis.texels + kGroup - 1) / kGroup * kGroup);
+    const int groups = (axis.texels + kGroup - 1) / kGroup;
+    const auto padded = static_cast<std::size_t>(groups) * kGroup;
     Responses responses{std::vector<float>(padded), std::vector<float>(padded), std::vector<float>(padded)};
     const auto ratio = static_cast<double>(axis.ratio);
     for (int k = 0; k < axis.texels; ++k) {
