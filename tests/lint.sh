@@ -56,7 +56,7 @@ for name in $(comm -12 <(types "${tool_headers[@]}") <(types "${cli_tests[@]}"))
 done
 
 # -- one word, one stem, everywhere ---------------------------------------------------------------------------
-header_only=' execution mip_chain names normal_map result texture '
+header_only=' angular_error execution mip_chain names normal_map result texture '
 for header in libtex/include/tex/*.h; do
     name=$(stem "$header")
     # Both compilers export the declarations of a header between these two pragmas. An attribute would not do: clang
@@ -152,14 +152,14 @@ mapfile -t library < <(select_files '^libtex/src/.*\.(cpp|h)$')
 mapfile -t public < <(select_files '^libtex/include/')
 mapfile -t outside_kernels < <(select_files '^(libtex|tools)/.*\.(cpp|h)$' | grep -v '/kernels/' || true)
 mapfile -t outside_formats_and_tools < <(select_files '^(libtex|tools)/.*\.(cpp|h)$' | grep -v '/formats/' || true)
-mapfile -t below_verbs < <(select_files '^libtex/src/(rows|kernels|blocks)/')
+mapfile -t below_verbs < <(select_files '^libtex/src/(rows|kernels|blocks|surface)/')
 mapfile -t outside_color < <(printf '%s\n' "${library[@]}" | grep -v '/color\.' || true)
 mapfile -t outside_formats < <(printf '%s\n' "${library[@]}" | grep -v '/formats/' || true)
 mapfile -t outside_reader < <(select_files '^(libtex|tools)/.*\.(cpp|h)$' | grep -v '^tools/reader/' || true)
 ban '#include [<"]hwy/|\bHWY_|\bhwy::' 'only kernels/ knows Highway' "${outside_kernels[@]}"
-verbs='bake|blend|check|color|compare|convert|heat_map|image_io|mesh_io|mesh_selection|mip|pack|pipeline|preview|probe'
-verbs+='|roughness|scale|sheet|source|tangents|unpack'
-ban "#include <tex/($verbs|tex)\.h>" 'rows/, kernels/ and blocks/ include no header of a verb' \
+verbs='bake|blend|check|color|compare|convert|curvature|heat_map|image_io|integrate|mesh_io|mesh_selection|mip|pack'
+verbs+='|pipeline|preview|probe|roughness|scale|sheet|source|tangents|unpack'
+ban "#include <tex/($verbs|tex)\.h>" 'rows/, kernels/, blocks/ and surface/ include no header of a verb' \
     "${below_verbs[@]}"
 ban '\b(?!is_|take_)[a-z]+_whole\b|\bcan_stream\b' 'files go one way, through streams' "${library[@]}"
 ban '\bis_texture\b|case (tex::)?Container::' 'only the table of formats/ tells file types apart' \

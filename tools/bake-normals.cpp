@@ -21,7 +21,6 @@ public:
     explicit BakeNormals(const cli::ProgramRow& row);
 
 private:
-    void add_kernel();
     static void warn_of_steep(cli::Job& job, std::int64_t steep_texels, Extent extent, Encoding encoding);
     [[nodiscard]] cli::OutputRules rules() const override;
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
@@ -37,7 +36,7 @@ private:
 
     cli::HeightReader reader_;
     cli::WrapOptions wrap_;
-    BakeOptions bake_;
+    cli::KernelOption kernel_;
     cli::MipChainOptions mips_;
 };
 
@@ -48,7 +47,7 @@ BakeNormals::BakeNormals(const cli::ProgramRow& row) : Converter(row) {
     files.add(command);
     reader_.strength.add(command);
     command.group("Heights and slopes");
-    add_kernel();
+    kernel_.add(command, "how slopes are measured");
     wrap_.add(command, "what lies beyond the border; two words set x and y separately");
     reader_.heights.add(command);
     reader_.color.add(command);
@@ -60,22 +59,6 @@ BakeNormals::BakeNormals(const cli::ProgramRow& row) : Converter(row) {
     command.example("bake-normals rock.exr -o rock.ktx2 --format bc5 --height-range 0.15 --size 2 --y down",
                     "A rock face 2 m wide with 15 cm of relief, as BC5 for a renderer with green down.");
     command.example("bake-normals maps/*.png --out-dir out --kernel scharr --json", "A folder at once, with a report.");
-}
-
-void BakeNormals::add_kernel() {
-    cli::Row& row = command.option("--kernel", "K", "how slopes are measured", [this](const std::string& text) {
-        const auto [name, sigma] = cli::cut(text, ':');
-        bake_.kernel = cli::parse_word(name, kGradientKernelNames);
-        if (text.find(':') == std::string::npos) return;
-        if (bake_.kernel != GradientKernel::gaussian) {
-            throw cli::UsageError(fmt::format("{} takes no sigma, only gaussian does", name));
-        }
-        bake_.gaussian_sigma = cli::parse_float(sigma, {0.0, kMaxGaussianSigma, false});
-    });
-    row.words = cli::words_of(kGradientKernelNames);
-    row.completes = cli::Completes::words;
-    row.preset = name_of(kGradientKernelNames, bake_.kernel);
-    row.help += fmt::format("; gaussian:SIGMA sets its width in texels (default {})", bake_.gaussian_sigma);
 }
 
 cli::OutputRules BakeNormals::rules() const {
@@ -98,7 +81,7 @@ BakeFileOptions BakeNormals::options(cli::Job& job) const {
     options.heights.wrap_y = wrap_.y;
     options.color = reader_.color.options();
     options.strength = [this](Extent extent) { return reader_.strength.strength(extent); };
-    options.bake = bake_;
+    options.bake = kernel_.bake;
     options.mip = mips_.options(mips_.levels_for(job.task), wrap_);
     constexpr bool kKnown = true;
     const cli::OutputOptions own = output.of(job.task.engine);

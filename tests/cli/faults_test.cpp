@@ -42,6 +42,7 @@ const Case kCases[] = {
     {"Report", "bake-normals", {"a.png", "b.png", "--out-dir", ".", "--name", "out_{stem}.ktx2", "--json"}, ""},
     {"Picture", "preview-normals", {"a.dds", "-o", "out.png", "--size", "32"}, "a.dds"},
     {"Exr", "mip-normals", {"a.exr", "-o", "out.exr", "--roughness-out", "rough.dds"}, "a.exr"},
+    {"Heights", "integrate-normals", {"a.dds", "-o", "out.png", "--curvature-out", "curvature.exr"}, "a.dds"},
     {"OtherReader", "bake-normals", {"a.tif", "-o", "out.dds"}, "a.tif", true},
     {"OtherWriter", "unpack-normals", {"a.dds", "-o", "out.tif"}, "a.dds", true},
 };

@@ -54,7 +54,7 @@ protected:
 
 TEST_F(Warnings, AreInTheJsonOfEveryCommandThatReadsNormals) {
     for (const char* command : {"mip-normals", "pack-normals", "unpack-normals", "scale-normals", "preview-normals",
-                                "blend-normals", "convert-normals"}) {
+                                "blend-normals", "convert-normals", "integrate-normals"}) {
         std::vector<std::string> arguments = {"srgb.dds", "plain.exr", "--out-dir", command, "--no-sync"};
         if (std::string_view(command) == "scale-normals") arguments.insert(arguments.end(), {"--scale", "2"});
         if (std::string_view(command) == "blend-normals") arguments.insert(arguments.end(), {"--detail", "plain.exr"});

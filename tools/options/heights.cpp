@@ -81,6 +81,22 @@ Strength StrengthOptions::strength(Extent extent) const {
     return {bumpiness, bumpiness};
 }
 
+void KernelOption::add(Command& command, std::string help) {
+    Row& row = command.option("--kernel", "K", std::move(help), [this](const std::string& text) {
+        const auto [name, sigma] = cut(text, ':');
+        bake.kernel = parse_word(name, kGradientKernelNames);
+        if (text.find(':') == std::string::npos) return;
+        if (bake.kernel != GradientKernel::gaussian) {
+            throw UsageError(fmt::format("{} takes no sigma, only gaussian does", name));
+        }
+        bake.gaussian_sigma = parse_float(sigma, {0.0, kMaxGaussianSigma, false});
+    });
+    row.words = words_of(kGradientKernelNames);
+    row.completes = Completes::words;
+    row.preset = name_of(kGradientKernelNames, bake.kernel);
+    row.help += fmt::format("; gaussian:SIGMA sets its width in texels (default {})", bake.gaussian_sigma);
+}
+
 void HeightGroup::add(Command& command) {
     command.choice(options.channel, "--channel", "C", kHeightChannelNames, "which channel holds the heights");
     command.flag(options.invert, "--invert", "white is low: h becomes 1 - h");

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <tex/bake_options.h>
 #include <tex/color.h>
 #include <tex/height_field.h>
 
@@ -43,6 +44,13 @@ struct StrengthOptions {
 
     void add(Command& command);
     [[nodiscard]] Strength strength(Extent extent) const;
+};
+
+// --kernel.
+struct KernelOption {
+    BakeOptions bake;
+
+    void add(Command& command, std::string help);
 };
 
 // --channel, --invert, --blur, --fill-invalid, --no-data.

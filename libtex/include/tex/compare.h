@@ -3,8 +3,7 @@
 
 #pragma once
 
-#include <cstdint>
-
+#include <tex/angular_error.h>
 #include <tex/execution.h>
 #include <tex/image.h>
 #include <tex/normal_map.h>
@@ -12,21 +11,6 @@
 
 #pragma GCC visibility push(default)
 namespace tex {
-
-// The distribution of the angle between the normals of two maps, in degrees (0 to 180).
-//
-// Percentiles are exact, by nearest rank: p99 is the smallest angle that at least 99 % of the texels do not exceed.
-struct AngularError {
-    std::int64_t texels = 0;
-    double mean = 0.0;
-    double rms = 0.0;  // square root of the mean square
-    double p50 = 0.0;  // the median
-    double p99 = 0.0;
-    double p999 = 0.0;  // 99.9 %
-    double max = 0.0;
-    int max_column = 0;  // the first texel, in rows from the top, that has the largest angle
-    int max_row = 0;
-};
 
 struct Comparison {
     AngularError error;

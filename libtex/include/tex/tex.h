@@ -48,6 +48,7 @@
 #include <utility>
 #include <vector>
 
+#include <tex/angular_error.h>
 #include <tex/execution.h>
 #include <tex/format.h>
 #include <tex/height_field.h>
@@ -67,7 +68,10 @@
 #include <tex/compare.h>
 #include <tex/convert.h>
 #include <tex/convert_options.h>
+#include <tex/curvature.h>
 #include <tex/heat_map.h>
+#include <tex/integrate.h>
+#include <tex/integrate_options.h>
 #include <tex/mesh_selection.h>
 #include <tex/mip.h>
 #include <tex/mip_options.h>

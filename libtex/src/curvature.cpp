@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Handles memory and threads; rows/curvature_rows.cpp computes.
+
+#include <tex/curvature.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "kernels/stored.h"
+#include "rows/curvature_rows.h"
+#include "threads/guard.h"
+#include "threads/parallel.h"
+
+namespace tex {
+namespace {
+
+constexpr int kPieceTexels = 1 << 15;
+
+struct RowRange {
+    float least = std::numeric_limits<float>::max();
+    float greatest = std::numeric_limits<float>::lowest();
+    double squares = 0.0;
+};
+
+Result<Curvature> measured(const NormalMap& map, const CurvatureOptions& options, const Execution& execution) {
+    const Extent extent = map.extent();
+    Curvature result;
+    result.values = Plane<float>(extent);
+    std::vector<RowRange> ranges(static_cast<std::size_t>(extent.height));
+    const auto body = [&](int begin, int end) {
+        CurvatureRows rows(map, options.kind == CurvatureKind::divergence, options.wrap_x, options.wrap_y);
+        for (int j = begin; j < end; ++j) {
+            float* const row = result.values.row(j);
+            RowRange& range = ranges[static_cast<std::size_t>(j)];
+            rows.make(j, row);
+            widen_range(row, extent.width, range.least, range.greatest);
+            range.squares = sum_of_squares(row, extent.width);
+        }
+    };
+    const int grain = std::max(1, kPieceTexels / extent.width);
+    if (auto done = parallel_for(execution, extent.height, grain, body); !done) return done.error();
+    RowRange all;
+    for (const RowRange& range : ranges) {
+        all.least = std::min(all.least, range.least);
+        all.greatest = std::max(all.greatest, range.greatest);
+        all.squares += range.squares;
+    }
+    result.least = all.least;
+    result.greatest = all.greatest;
+    result.rms = std::sqrt(all.squares / static_cast<double>(extent.texels()));
+    return result;
+}
+
+}  // namespace
+
+Result<Curvature> curvature(const NormalMap& map, const CurvatureOptions& options, const Execution& execution) {
+    assert(!map.x.empty() && map.extent().width <= kMaxExtent && map.extent().height <= kMaxExtent);
+    return guarded([&] { return measured(map, options, execution); });
+}
+
+}  // namespace tex

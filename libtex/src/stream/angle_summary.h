@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// angle_summary.h: sums of the angles between two maps, from rows to an AngularError.
+
+#pragma once
+
+#include <vector>
+
+#include <tex/angular_error.h>
+#include <tex/execution.h>
+#include <tex/image.h>
+#include <tex/result.h>
+
+namespace tex {
+
+// Of one row.
+struct AngleSums {
+    double sum = 0.0;
+    double squares = 0.0;
+    float max = -1.0f;
+    int max_column = 0;  // the first column with that angle
+};
+
+AngleSums sum_angles(const float* degrees, int count);
+
+// Of all rows of `degrees`, whose sums are `rows`. Angles are finite and not negative. Errors: out_of_memory.
+[[nodiscard]] Result<AngularError> summarise_angles(const Plane<float>& degrees, const std::vector<AngleSums>& rows,
+                                                    const Execution& execution);
+
+}  // namespace tex

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <tex/integrate.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <tex/bake.h>
+
+#include "kernels/slopes.h"
+#include "reference/bake.h"
+#include "reference/integrate.h"
+#include "unit/fields.h"
+#include "unit/targets.h"
+
+namespace {
+
+using namespace tex;
+using fields::field_of;
+using fields::noise;
+
+constexpr Wrap kWraps[] = {Wrap::repeat, Wrap::clamp, Wrap::mirror};
+
+IntegrateOptions options_for(const HeightField& field, const BakeOptions& bake) {
+    IntegrateOptions options;
+    options.bake = bake;
+    options.bumpiness_x = field.bumpiness_x;
+    options.bumpiness_y = field.bumpiness_y;
+    options.wrap_x = field.wrap_x;
+    options.wrap_y = field.wrap_y;
+    return options;
+}
+
+Integration integrated(const NormalMap& map, const IntegrateOptions& options, int threads = 1) {
+    return std::move(integrate(map, options, {threads, {}}).value());
+}
+
+// The largest difference between two fields after their means have been made equal, relative to the range of `truth`.
+double error_of(const Plane<float>& is, const Plane<float>& truth) {
+    const Extent extent = truth.extent();
+    double mean = 0.0;
+    float low = truth.at(0, 0), high = low;
+    const auto difference = [&](int i, int j) {
+        return static_cast<double>(is.at(i, j)) - static_cast<double>(truth.at(i, j));
+    };
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) {
+            mean += difference(i, j) / static_cast<double>(extent.texels());
+            low = std::min(low, truth.at(i, j));
+            high = std::max(high, truth.at(i, j));
+        }
+    }
+    double largest = 0.0;
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) largest = std::max(largest, std::abs(difference(i, j) - mean));
+    }
+    return largest / static_cast<double>(high - low);
+}
+
+double round_trip_error(const HeightField& field, const BakeOptions& with) {
+    const auto map = bake(field, with);
+    return error_of(integrated(*map, options_for(field, with)).field.height, field.height);
+}
+
+// A smooth surface that continues beyond each border as its wraps say; (i + 0.5) is the centre of a texel.
+HeightField smooth_field(Extent extent, Wrap wrap_x, Wrap wrap_y) {
+    constexpr double kTurn = 6.283185307179586477;
+    const auto along = [](Wrap wrap, double t, double phase) {
+        if (wrap == Wrap::repeat) return std::sin(kTurn * t + phase) + 0.4 * std::cos(2.0 * kTurn * t);
+        if (wrap == Wrap::mirror) return std::cos(0.5 * kTurn * t) + 0.3 * std::cos(1.5 * kTurn * t);
+        return 1.5 * t + 0.7 * std::sin(4.0 * t + phase);
+    };
+    HeightField field = field_of(extent, 3.0f, wrap_x, [&](int i, int j) {
+        const double x = along(wrap_x, (i + 0.5) / extent.width, 0.5);
+        const double y = along(wrap_y, (j + 0.5) / extent.height, 1.0);
+        return x + y + 0.5 * x * y;
+    });
+    field.wrap_y = wrap_y;
+    field.bumpiness_y = -2.0f;
+    return field;
+}
+
+TEST(Integrate, EveryKernelGivesSmoothHeightsBackInEveryWrap) {
+    for (const auto& kernel : kGradientKernelNames) {
+        for (const Wrap wrap_x : kWraps) {
+            for (const Wrap wrap_y : kWraps) {
+                for (const Extent extent : {Extent{64, 48}, Extent{61, 75}, Extent{30, 101}}) {
+                    const HeightField field = smooth_field(extent, wrap_x, wrap_y);
+                    EXPECT_LT(round_trip_error(field, {kernel.value, 1.0f}), 1e-3)
+                        << kernel.name << " " << name_of(kWrapNames, wrap_x) << " " << name_of(kWrapNames, wrap_y)
+                        << " " << extent.width;
+                }
+            }
+        }
+    }
+}
+
+TEST(Integrate, ForwardCentralAndScharrGiveNoiseBackOnOddExtents) {
+    for (const GradientKernel kernel : {GradientKernel::forward, GradientKernel::central, GradientKernel::scharr}) {
+        for (const Wrap wrap_x : kWraps) {
+            for (const Wrap wrap_y : kWraps) {
+                for (const Extent extent : {Extent{33, 45}, Extent{17, 3}, Extent{1, 9}, Extent{29, 1}}) {
+                    HeightField field = field_of(extent, 4.0f, wrap_x, [](int i, int j) { return noise(i, j); });
+                    field.wrap_y = wrap_y;
+                    EXPECT_LT(round_trip_error(field, {kernel, 1.0f}), 1e-4)
+                        << name_of(kGradientKernelNames, kernel) << " " << name_of(kWrapNames, wrap_x) << " "
+                        << name_of(kWrapNames, wrap_y) << " " << extent.width << "x" << extent.height;
+                }
+            }
+        }
+    }
+}
+
+TEST(Integrate, ARampKeepsItsSlopeUpToClampedBorders) {
+    const HeightField ramp = field_of({40, 24}, 2.0f, Wrap::clamp, [](int i, int j) { return 0.5 * i - 0.25 * j; });
+    for (const auto& kernel : kGradientKernelNames) EXPECT_LT(round_trip_error(ramp, {kernel.value, 1.0f}), 1e-3);
+}
+
+TEST(Integrate, CentralDifferencesDoNotSeeAlternatingHeights) {
+    const auto wave = [](int i) { return std::sin(0.785398163397448 * i); };
+    const HeightField smooth = field_of({16, 8}, 1.0f, Wrap::repeat, [&](int i, int) { return wave(i); });
+    const HeightField alternating =
+        field_of({16, 8}, 1.0f, Wrap::repeat, [&](int i, int j) { return wave(i) + ((i + j) % 2 == 0 ? 0.3 : -0.3); });
+    const Integration result = integrated(*bake(alternating), options_for(alternating, {}));
+    EXPECT_LT(error_of(result.field.height, smooth.height), 1e-6);
+    // Forward differences see them.
+    EXPECT_LT(round_trip_error(alternating, {GradientKernel::forward, 1.0f}), 1e-6);
+}
+
+TEST(Integrate, AgreesWithTheReferenceOnMapsThatAreNoBake) {
+    const NormalMap map = fields::noise_normals({15, 11}, 3);
+    for (const GradientKernel kernel : {GradientKernel::forward, GradientKernel::central, GradientKernel::scharr}) {
+        for (const Wrap wrap_x : {Wrap::repeat, Wrap::mirror}) {
+            for (const Wrap wrap_y : {Wrap::repeat, Wrap::mirror}) {
+                IntegrateOptions options;
+                options.bake.kernel = kernel;
+                options.bumpiness_x = 2.0f;
+                options.bumpiness_y = 0.75f;
+                options.wrap_x = wrap_x;
+                options.wrap_y = wrap_y;
+                const reference::Grid<double> truth = reference::integrate(reference::grid_of(map), options);
+                const Plane<float> plane = fields::plane_of(map.extent(), [&](int i, int j) { return truth.at(i, j); });
+                EXPECT_LT(error_of(integrated(map, options).field.height, plane), 2e-6)
+                    << name_of(kGradientKernelNames, kernel);
+            }
+        }
+    }
+}
+
+TEST(Integrate, TheLowestHeightIsZeroAndTheHighestIsReported) {
+    const HeightField field = smooth_field({32, 32}, Wrap::clamp, Wrap::repeat);
+    const Integration result = integrated(*bake(field), options_for(field, {}));
+    float low = 1e9f, high = -1e9f;
+    for (int j = 0; j < 32; ++j) {
+        for (int i = 0; i < 32; ++i) {
+            low = std::min(low, result.field.height.at(i, j));
+            high = std::max(high, result.field.height.at(i, j));
+        }
+    }
+    EXPECT_EQ(low, 0.0f);
+    EXPECT_FLOAT_EQ(high, result.highest);
+    EXPECT_EQ(result.steps, 1);
+}
+
+TEST(Integrate, CurlIsTheAngleToTheBakeOfTheResult) {
+    const NormalMap map = fields::noise_normals({24, 20}, 1);
+    const Integration result = integrated(map, {});
+    const reference::Grid<reference::Vector> made = reference::bake(result.field, {});
+    double mean = 0.0;
+    for (int j = 0; j < 20; ++j) {
+        for (int i = 0; i < 24; ++i) {
+            const auto x = static_cast<double>(map.x.at(i, j)), y = static_cast<double>(map.y.at(i, j));
+            const double angle = reference::angle_between({x, y, static_cast<double>(map.z.at(i, j))}, made.at(i, j));
+            EXPECT_NEAR(static_cast<double>(result.degrees.at(i, j)), angle, 1e-3);
+            mean += angle / 480.0;
+        }
+    }
+    EXPECT_NEAR(result.curl.mean, mean, 1e-3);
+    EXPECT_GT(result.curl.mean, 5.0);  // noise is no surface
+    EXPECT_EQ(result.curl.texels, 480);
+}
+
+// -- unknown texels ------------------------------------------------------------------------------------------
+
+TEST(Integrate, UnknownTexelsFollowFromTheOthers) {
+    for (const Wrap wrap : kWraps) {
+        const HeightField field = smooth_field({48, 40}, wrap, wrap);
+        NormalMap map = std::move(bake(field).value());
+        for (const auto& [i, j] : {std::pair{5, 5}, {6, 5}, {20, 30}, {47, 39}, {0, 12}}) {
+            map.x.at(i, j) = 1.0f;
+            map.y.at(i, j) = 0.0f;
+            map.z.at(i, j) = 0.0f;
+        }
+        const Integration result = integrated(map, options_for(field, {}));
+        EXPECT_EQ(result.unused_texels, 5);
+        EXPECT_GT(result.steps, 1);
+        EXPECT_LT(error_of(result.field.height, field.height), 1e-3);
+    }
+}
+
+TEST(Integrate, RefusesObjectSpaceAndMapsWithoutSlopes) {
+    NormalMap map(Extent{8, 8});
+    for (int j = 0; j < 8; ++j) {
+        for (int i = 0; i < 8; ++i) {
+            map.x.at(i, j) = 0.6f;
+            map.y.at(i, j) = 0.0f;
+            map.z.at(i, j) = j < 2 ? -0.8f : 0.8f;
+        }
+    }
+    const auto object = integrate(map);
+    ASSERT_FALSE(object);
+    EXPECT_EQ(object.error().code, ErrorCode::bad_data);
+    EXPECT_NE(object.error().reason.find("negative in 16 of 64 texels, as in object-space"), std::string::npos);
+    for (int j = 0; j < 8; ++j) std::fill_n(map.z.row(j), 8, 0.0f);
+    const auto vertical = integrate(map);
+    ASSERT_FALSE(vertical);
+    EXPECT_NE(vertical.error().reason.find("z is 0 everywhere"), std::string::npos);
+}
+
+TEST(Integrate, FlatMapsAndSingleTexelsAreFlat) {
+    for (const Extent extent : {Extent{1, 1}, Extent{1, 7}, Extent{9, 1}, Extent{2, 2}, Extent{13, 8}}) {
+        for (const Wrap wrap : kWraps) {
+            const HeightField field = field_of(extent, 5.0f, wrap, [](int, int) { return 0.25; });
+            const Integration result = integrated(*bake(field), options_for(field, {}));
+            EXPECT_EQ(result.highest, 0.0f);
+            EXPECT_EQ(result.field.height.at(0, 0), 0.0f);
+            EXPECT_EQ(result.curl.max, 0.0);
+        }
+    }
+}
+
+// -- bytes ---------------------------------------------------------------------------------------------------
+
+TEST(Integrate, SameBytesForEveryNumberOfThreadsAndEveryTarget) {
+    NormalMap map = fields::noise_normals({530, 391}, 7);
+    map.z.at(3, 3) = 0.0f;  // several solutions
+    IntegrateOptions options;
+    options.wrap_y = Wrap::clamp;
+    options.most_steps = 3;
+    const std::uint64_t hash = fields::hash_of(integrated(map, options).field.height);
+    for (const int threads : {2, 3, 8})
+        EXPECT_EQ(fields::hash_of(integrated(map, options, threads).field.height), hash);
+    on_every_target([&] { EXPECT_EQ(fields::hash_of(integrated(map, options).field.height), hash); });
+}
+
+TEST(Integrate, GoldenBytes) {
+    HeightField field = field_of({60, 37}, 6.0f, Wrap::mirror, [](int i, int j) { return noise(i, j); });
+    field.wrap_x = Wrap::repeat;
+    const Integration result = integrated(*bake(field), options_for(field, {}));
+    EXPECT_EQ(fields::hash_of(result.field.height), 18437198940337331163u);
+}
+
+TEST(Integrate, CancelStopsIt) {
+    const NormalMap map = fields::noise_normals({300, 300});
+    int calls = 0;
+    const auto stopped = integrate(map, {}, {2, [&](double) { return ++calls < 2; }});
+    ASSERT_FALSE(stopped);
+    EXPECT_EQ(stopped.error().code, ErrorCode::cancelled);
+}
+
+TEST(Integrate, StretchedHeightsRunFromZeroToOne) {
+    Plane<float> heights = fields::plane_of({3, 1}, [](int i, int) { return 2.0 + i; });
+    stretch_heights(heights, 2.0f, 4.0f);
+    EXPECT_EQ(heights.at(0, 0), 0.0f);
+    EXPECT_EQ(heights.at(1, 0), 0.5f);
+    EXPECT_EQ(heights.at(2, 0), 1.0f);
+    stretch_heights(heights, 0.5f, 0.5f);
+    EXPECT_EQ(heights.at(2, 0), 0.0f);
+}
+
+}  // namespace

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "options/maps.h"
+
+#include <tuple>
+#include <utility>
+
+#include <fmt/format.h>
+#include <tex/roughness.h>
+#include <tex/sheet.h>
+
+#include "batch/name_pattern.h"
+#include "cli/text.h"
+#include "cli/usage_error.h"
+
+namespace tex::cli {
+
+Format map_format(Container container) {
+    for (const Format format : {Format::r16_unorm, Format::r32_float}) {
+        if (can_hold(container, format)) return format;
+    }
+    return Format::r8_unorm;
+}
+
+void MapOutput::add(Command& command, const FileOptions& files, std::string name, std::string help) {
+    files_ = &files;
+    name_ = std::move(name);
+    command.text(pattern_, name_, "FILE", std::move(help)).completes = Completes::files;
+    command.check([this, &command] {
+        if (command.given(name_) && pattern_.empty()) throw UsageError(name_ + ": needs a value that is not empty");
+        if (pattern_ == "-") throw UsageError(name_ + ": needs a file, not standard output");
+        if (is_given() && (NamePattern(pattern_).uses("level") || NamePattern(pattern_).uses("format")))
+            throw UsageError(name_ + ": {level} and {format} have no meaning here");
+    });
+}
+
+std::string MapOutput::path_of(const Task& task) const { return files_->place(pattern_, name_fields(task.input)); }
+
+Container MapOutput::container_of_path(const std::string& path) const {
+    if (const auto container = container_of(path)) return *container;
+    throw UsageError(fmt::format("{}: {}: unsupported output format", name_, printable(path)));
+}
+
+void MapOutput::amend(Task& task) const {
+    if (!is_given()) return;
+    std::string path = path_of(task);
+    std::ignore = container_of_path(path);
+    task.more_outputs.push_back(std::move(path));
+}
+
+bool MapOutput::holds_floats(const Job& job) const {
+    return map_format(container_of_path(path_of(job.task))) == Format::r32_float;
+}
+
+Result<void> MapOutput::write(Job& job, const Texture& texture, Json& report) const {
+    const std::string path = path_of(job.task);
+    const auto bytes = encode_file(texture, container_of_path(path), job.write_options);
+    if (!bytes) return bytes.error().of(path);
+    if (auto written = write_file(path, *bytes, job.write_options); !written) return written;
+    job.wrote(path);
+    report["output"] = path;
+    return {};
+}
+
+Result<void> MapOutput::write(Job& job, Plane<float> values, Json& report) const {
+    RoughnessChain chain;
+    chain.levels.push_back(std::move(values));
+    const Format format = map_format(container_of_path(path_of(job.task)));
+    const auto texture = pack_roughness(chain, format, Effort::normal, {job.threads(), {}});
+    if (!texture) return texture.error();
+    return write(job, *texture, report);
+}
+
+Result<void> MapOutput::write(Job& job, const Image& colors, Json& report) const {
+    const auto texture = picture_of(colors);
+    if (!texture) return texture.error();
+    return write(job, *texture, report);
+}
+
+}  // namespace tex::cli

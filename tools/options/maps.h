@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// maps.h: the option group of maps that a command writes besides its output: a picture of one value for each texel.
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <tex/container.h>
+#include <tex/execution.h>
+#include <tex/image.h>
+
+#include "batch/job.h"
+#include "cli/command.h"
+#include "options/files.h"
+
+namespace tex::cli {
+
+// An option such as --curl-out FILE. Of many inputs it is a pattern, as --name.
+class MapOutput {
+public:
+    // `files` must outlive this. `name`: the option.
+    void add(Command& command, const FileOptions& files, std::string name, std::string help);
+
+    [[nodiscard]] bool is_given() const { return !pattern_.empty(); }
+
+    // Adds the file to the task. Throws UsageError if its name does not show its file type.
+    void amend(Task& task) const;
+
+    // Whether the file holds floats. Others hold pictures of 8 or 16 bits.
+    [[nodiscard]] bool holds_floats(const Job& job) const;
+
+    // Writes a picture of one channel as floats or with 16 bits (8 if the file type holds no more), or one with the
+    // planes R, G and B with 8 bits. Values of pictures are in [0, 1]. Adds the file to the outputs of the job, and its
+    // name to `report`.
+    [[nodiscard]] Result<void> write(Job& job, Plane<float> values, Json& report) const;
+    [[nodiscard]] Result<void> write(Job& job, const Image& colors, Json& report) const;
+
+private:
+    [[nodiscard]] std::string path_of(const Task& task) const;
+    [[nodiscard]] Container container_of_path(const std::string& path) const;
+    [[nodiscard]] Result<void> write(Job& job, const Texture& texture, Json& report) const;
+
+    const FileOptions* files_ = nullptr;
+    std::string name_, pattern_;
+};
+
+// The format of a map of one channel: r32_float in exr, r8_unorm in tga, bmp and jpeg, else r16_unorm.
+[[nodiscard]] Format map_format(Container container);
+
+}  // namespace tex::cli
