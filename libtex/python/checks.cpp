@@ -98,9 +98,11 @@ void add_findings(Module& module) {
         .property("y", "int", "The first row.", [](const Region& r) { return r.y; })
         .property("width", "int", "Columns.", [](const Region& r) { return r.width; })
         .property("height", "int", "Rows.", [](const Region& r) { return r.height; })
-        .method("__repr__", "(self) -> str", [](const Region& r) {
-            return fmt::format("<tex.Region level {}: {}, {}, {} x {}>", r.level, r.x, r.y, r.width, r.height);
-        });
+        .method("__repr__", "(self) -> str",
+                [](const Region& r) {
+                    return fmt::format("<tex.Region level {}: {}, {}, {} x {}>", r.level, r.x, r.y, r.width, r.height);
+                })
+        .finish();
     Class<Finding>(module, "Finding", "What is wrong, and where.")
         .property("id", "str", "The rule: 'N201'.", [](const Finding& f) { return std::string(f.rule->id); })
         .property("name", "str", "Its name: 'not-unit-length'.",
@@ -122,9 +124,12 @@ void add_findings(Module& module) {
                       if (!f.has_texel) return py::none();
                       return py::make_tuple(f.column, f.row);
                   })
-        .method("__repr__", "(self) -> str", [](const Finding& f) {
-            return fmt::format("<tex.Finding {} {}: {}>", f.rule->id, name_of(kSeverityNames, f.severity), f.message);
-        });
+        .method("__repr__", "(self) -> str",
+                [](const Finding& f) {
+                    return fmt::format("<tex.Finding {} {}: {}>", f.rule->id, name_of(kSeverityNames, f.severity),
+                                       f.message);
+                })
+        .finish();
 }
 
 py::object y_of(const YEvidence& y) {
@@ -168,9 +173,11 @@ void add_report(Module& module) {
         .method("__iter__", "(self) -> Iterator[Finding]",
                 [](const CheckReport& r) { return py::iter(py::cast(r.findings)); })
         .method("__len__", "(self) -> int", [](const CheckReport& r) { return r.findings.size(); })
-        .method("__repr__", "(self) -> str", [](const CheckReport& r) {
-            return fmt::format("<tex.CheckReport {}: {} findings>", r.file, r.findings.size());
-        });
+        .method("__repr__", "(self) -> str",
+                [](const CheckReport& r) {
+                    return fmt::format("<tex.CheckReport {}: {} findings>", r.file, r.findings.size());
+                })
+        .finish();
 }
 
 py::dict describe(const Rule& rule) {

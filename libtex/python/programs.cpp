@@ -50,6 +50,7 @@ bool has_option(const std::string& name, const std::string& option) {
 py::tuple run_command(const std::string& name, const std::vector<std::string>& arguments) {
     const cli::ProgramRow& program = program_of(name);
     std::vector<const char*> words;
+    words.reserve(arguments.size());
     for (const std::string& argument : arguments) words.push_back(argument.c_str());
     struct Ran {
         int code = 0;

@@ -92,12 +92,12 @@ double Running::wait(const std::function<void(const Execution&)>& work) const {
         try {
             if (PyErr_CheckSignals() != 0) throw py::error_already_set();
             tell();
-        } catch (py::error_already_set& error) {
-            raised.emplace(std::move(error));
+        } catch (const py::error_already_set& error) {
+            raised.emplace(error);
             news.stop();
         }
     }
-    if (raised) throw std::move(*raised);
+    if (raised) throw py::error_already_set(*raised);
     return told;
 }
 

@@ -44,11 +44,13 @@ void add_image(Module& module) {
         .property("no_data", "float | None", "The value of texels without data, if the file names one.",
                   [](const Image& image) { return image.no_data; })
         .method("__getitem__", "(self, channel: str) -> NDArray[np.float32]", channel_of)
-        .method("__repr__", "(self) -> str", [](const Image& image) {
-            std::string names;
-            for (const std::string& name : image.names) names += (names.empty() ? "" : " ") + name;
-            return fmt::format("<tex.Image {}x{} {}>", image.extent().width, image.extent().height, names);
-        });
+        .method("__repr__", "(self) -> str",
+                [](const Image& image) {
+                    std::string names;
+                    for (const std::string& name : image.names) names += (names.empty() ? "" : " ") + name;
+                    return fmt::format("<tex.Image {}x{} {}>", image.extent().width, image.extent().height, names);
+                })
+        .finish();
 }
 
 template <class T>
@@ -65,10 +67,12 @@ void add_height_field(Module& module) {
                   [](const HeightField& field) { return py::make_tuple(field.bumpiness_x, field.bumpiness_y); })
         .property("wrap", "tuple[str, str]", "What lies beyond the border, along x and y.",
                   [](const HeightField& field) { return py::make_tuple(word_of(field.wrap_x), word_of(field.wrap_y)); })
-        .method("__repr__", "(self) -> str", [](const HeightField& field) {
-            const Extent extent = field.height.extent();
-            return fmt::format("<tex.HeightField {}x{}>", extent.width, extent.height);
-        });
+        .method("__repr__", "(self) -> str",
+                [](const HeightField& field) {
+                    const Extent extent = field.height.extent();
+                    return fmt::format("<tex.HeightField {}x{}>", extent.width, extent.height);
+                })
+        .finish();
 }
 
 // A level's bytes. The texture never changes and is kept by the array, which is kept by the memoryview.
@@ -140,11 +144,13 @@ void add_texture(Module& module) {
                   [](const Texture& self) { return self.srgb; })
         .property("remarks", "list[str]", "Faults that the reader ignored, one sentence each.",
                   [](const Texture& self) { return self.remarks; })
-        .method("__repr__", "(self) -> str", [](const Texture& self) {
-            return fmt::format("<tex.Texture {}x{} {}, {} {}>", self.extent().width, self.extent().height,
-                               name_of(kFormatNames, self.format), self.levels.size(),
-                               self.levels.size() == 1 ? "level" : "levels");
-        });
+        .method("__repr__", "(self) -> str",
+                [](const Texture& self) {
+                    return fmt::format("<tex.Texture {}x{} {}, {} {}>", self.extent().width, self.extent().height,
+                                       name_of(kFormatNames, self.format), self.levels.size(),
+                                       self.levels.size() == 1 ? "level" : "levels");
+                })
+        .finish();
 }
 
 template <class T>

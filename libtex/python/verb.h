@@ -172,16 +172,13 @@ private:
     py::module_& module_;
 };
 
-// A class whose attributes are read-only, with its stub.
+// A class whose attributes are read-only, with its stub: call finish() last.
 template <class T>
 class Class {
 public:
     Class(Module& module, const char* name, const char* doc)
         : module_(module), class_(module.module(), name, doc),
           stub_(std::string("class ") + name + ":\n    \"\"\"" + doc + "\"\"\"\n") {}
-    ~Class() { module_.stub(stub_); }
-    Class(const Class&) = delete;
-    Class& operator=(const Class&) = delete;
 
     template <class Get>
     Class& property(const char* name, const char* type, const char* doc, Get get) {
@@ -204,6 +201,8 @@ public:
         stub_ += std::string("    def __init__") + signature + " -> None: ...\n";
         return *this;
     }
+    // Adds the stub, which is complete now.
+    void finish() { module_.stub(stub_); }
 
 private:
     Module& module_;
