@@ -10,14 +10,13 @@ bool is_finite(PlaneView<const float> plane) {
     constexpr std::uint32_t kInfinity = 0x7f800000U;
     for (int j = 0; j < plane.extent.height; ++j) {
         const float* const row = plane.row(j);
-        std::uint32_t largest = 0;  // of the bits without the sign, which order as the magnitudes do
+        std::uint32_t found = 0;  // all bits, once an exponent has all bits; every instruction set has this in vectors
         for (int i = 0; i < plane.extent.width; ++i) {
             std::uint32_t bits = 0;
             std::memcpy(&bits, row + i, sizeof bits);
-            bits &= 0x7fffffffU;
-            largest = bits > largest ? bits : largest;
+            found |= (bits & kInfinity) == kInfinity ? ~0U : 0U;
         }
-        if (largest >= kInfinity) return false;
+        if (found != 0) return false;
     }
     return true;
 }

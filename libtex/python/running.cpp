@@ -16,13 +16,15 @@ namespace {
 // What the two threads tell each other.
 class News {
 public:
+    explicit News(bool listens) : listens_(listens) {}  // whether anyone wants the fractions
+
     // On the thread of the verb. Returns false if it must stop.
     bool report(double fraction) {
-        {
+        if (listens_) {
             const std::lock_guard lock(mutex_);
             fraction_ = fraction;
+            changed_.notify_one();
         }
-        changed_.notify_one();
         return !stop_.load(std::memory_order_relaxed);
     }
     void end() {
@@ -33,10 +35,10 @@ public:
 
     // On the caller's thread, without the GIL. Waits for the end, a fraction above `told`, or a short time, after which
     // signals are due. Returns whether the verb has ended.
-    bool wait(double told, bool listens) {
+    bool wait(double told) {
         std::unique_lock lock(mutex_);
         changed_.wait_for(lock, std::chrono::milliseconds(20),
-                          [&] { return ended_ || (listens && fraction_ > told && !stop_); });
+                          [&] { return ended_ || (listens_ && fraction_ > told && !stop_); });
         return ended_;
     }
     [[nodiscard]] double fraction() {
@@ -47,6 +49,7 @@ public:
     [[nodiscard]] bool stopped() const { return stop_; }
 
 private:
+    const bool listens_;
     std::mutex mutex_;
     std::condition_variable changed_;
     double fraction_ = -1.0;
@@ -60,7 +63,7 @@ double Running::wait(const std::function<void(const Execution&)>& work) const {
     need(threads >= 0, "threads", "must be 0, one for each processor, or more");
     const bool listens = !progress.is_none();
     if (listens && PyCallable_Check(progress.ptr()) == 0) raise_type("progress", "a callable or None", progress);
-    News news;
+    News news(listens);
     const Execution execution{threads, [&news](double fraction) { return news.report(fraction); }};
     std::thread worker;
     try {
@@ -85,7 +88,7 @@ double Running::wait(const std::function<void(const Execution&)>& work) const {
     for (bool ended = false; !ended;) {
         {
             py::gil_scoped_release release;
-            ended = news.wait(told, listens);
+            ended = news.wait(told);
             if (ended) worker.join();
         }
         if (news.stopped()) continue;
