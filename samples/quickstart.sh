@@ -10,10 +10,11 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 need_packages "${build_packages[@]}"
 
-# An existing build folder keeps its setting for tests. A new one is made without tests, which is faster.
+# An existing build folder keeps its setting for tests. A new one is made without tests and the Python module, whose
+# packages are not in the list.
 tests=OFF
 if grep -qs '^BUILD_TESTING:BOOL=ON' build/release/CMakeCache.txt; then tests=ON; fi
-cmake --preset release -DBUILD_TESTING="$tests"
+cmake --preset release -DBUILD_TESTING="$tests" -DTEX_PYTHON="$tests"
 cmake --build --preset release
 
 out=build/quickstart
