@@ -170,6 +170,8 @@ ban '#include <OpenColorIO' 'only color knows OpenColorIO' "${outside_color[@]}"
 ban '#include <(png\.h|isa-l|OpenEXR/|Imf)' 'only formats/ knows libpng, ISA-L and OpenEXR' "${outside_formats[@]}"
 ban '\+ 3\) / 4' 'blocks/extent.h counts blocks' "${library[@]}"
 ban '#include <OpenImageIO' 'only the reader knows OpenImageIO' "${outside_reader[@]}"
+mapfile -t outside_python < <(select_files '^(libtex|tools)/.*\.(cpp|h)$' | grep -v '^libtex/python/' || true)
+ban '#include <(pybind11/|Python)' 'only the Python module knows Python' "${outside_python[@]}"
 mapfile -t outside_mesh_reader < <(select_files '^(libtex|tools)/.*\.(cpp|h)$' | grep -v '^tools/mesh-reader/' || true)
 ban '#include <assimp' 'only the mesh reader knows Assimp' "${outside_mesh_reader[@]}"
 ban '#include ("|<(hwy|png|isa-l|OpenEXR|Imath|Imf|OpenColorIO|OpenImageIO|tbb|fmt))' \

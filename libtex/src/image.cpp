@@ -15,11 +15,20 @@
 #endif
 
 namespace tex {
+namespace {
+
+void free_rows(void* rows) noexcept {
+    void* block = nullptr;
+    std::memcpy(&block, static_cast<char*>(rows) - sizeof block, sizeof block);
+    std::free(block);
+}
+
+}  // namespace
 
 // Not aligned_alloc(): if aligned blocks are allocated and freed often, the heap of glibc before 2.38 grows without end
 // (its bug 14581). The address of the block that contains the rows is stored before them. The address sanitizer watches
 // the end of the rows, so its blocks end there.
-void* allocate_rows(std::size_t bytes) {
+std::shared_ptr<void> allocate_rows(std::size_t bytes) {
 #ifdef TEX_ADDRESS_SANITIZER
     void* const block = std::aligned_alloc(kRowAlignment, bytes + kRowAlignment);
 #else
@@ -29,13 +38,7 @@ void* allocate_rows(std::size_t bytes) {
     char* const rows =
         static_cast<char*>(block) + (kRowAlignment - reinterpret_cast<std::uintptr_t>(block) % kRowAlignment);
     std::memcpy(rows - sizeof block, &block, sizeof block);
-    return rows;
-}
-
-void free_rows(void* rows) noexcept {
-    void* block = nullptr;
-    std::memcpy(&block, static_cast<char*>(rows) - sizeof block, sizeof block);
-    std::free(block);
+    return {static_cast<void*>(rows), free_rows};  // frees them, too, if its own memory cannot be had
 }
 
 }  // namespace tex

@@ -17,6 +17,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <tex/names.h>
@@ -52,61 +53,82 @@ struct PlaneView {
     operator PlaneView<const T>() const { return {data, extent, stride}; }
 };
 
-// allocate_rows() returns the memory of a Plane: `bytes` bytes that start at a multiple of kRowAlignment. free_rows()
-// releases it. Both are compiled in libtex, so that programs compiled with -fno-exceptions can use planes. If memory
-// runs out, std::bad_alloc is thrown, and such a program ends.
-[[nodiscard]] void* allocate_rows(std::size_t bytes);
-void free_rows(void* rows) noexcept;
+// allocate_rows() returns the memory of a Plane: `bytes` bytes that start at a multiple of kRowAlignment. It is
+// released with the last pointer to it. Compiled in libtex, so that programs compiled with -fno-exceptions can use
+// planes. If memory runs out, std::bad_alloc is thrown, and such a program ends.
+[[nodiscard]] std::shared_ptr<void> allocate_rows(std::size_t bytes);
 
-// Owns one plane. Movable, not copyable by accident: clone() copies. The constructor leaves the texels
-// unset and the padding zero, and throws std::bad_alloc like any container of the standard library.
+// The stride of a Plane of this width: rows are padded to whole multiples of kRowAlignment.
+template <class T>
+[[nodiscard]] constexpr std::ptrdiff_t padded_stride(int width) {
+    constexpr std::ptrdiff_t kStep = static_cast<std::ptrdiff_t>(kRowAlignment / sizeof(T));
+    return (width + kStep - 1) / kStep * kStep;
+}
+
+// Owns one plane, or shares its memory with others. Movable, not copyable by accident: clone() copies. The constructor
+// leaves the texels unset and the padding zero, and throws std::bad_alloc like any container of the standard library.
 template <class T>
 class Plane {
 public:
     Plane() = default;
-    explicit Plane(Extent extent) : extent_(extent), stride_(padded(extent.width)) {
-        const std::size_t count = static_cast<std::size_t>(stride_) * static_cast<std::size_t>(extent.height);
-        data_.reset(static_cast<T*>(allocate_rows(count * sizeof(T))));
-        for (int j = 0; j < extent.height; ++j) {
-            std::memset(row(j) + extent.width, 0, static_cast<std::size_t>(stride_ - extent.width) * sizeof(T));
-        }
+    explicit Plane(Extent extent)
+        : Plane(extent, padded_stride<T>(extent.width), allocate(extent, padded_stride<T>(extent.width))) {
+        clear_padding();
     }
     Plane(Extent extent, T value) : Plane(extent) {
         for (int j = 0; j < extent.height; ++j) {
             for (int i = 0; i < extent.width; ++i) row(j)[i] = value;
         }
     }
+    // A plane in memory that exists already. `rows` points to the first texel and keeps the memory; `stride` is in
+    // elements, at least extent.width. Every row, also the last one, must be followed by readable memory up to a
+    // multiple of kRowAlignment bytes after its start, but need not be aligned: a verb that takes the plane as const
+    // only reads it, and all give the same bytes.
+    Plane(Extent extent, std::ptrdiff_t stride, std::shared_ptr<T> rows)
+        : extent_(extent), stride_(stride), rows_(std::move(rows)) {}
+
+    Plane(Plane&&) noexcept = default;
+    Plane& operator=(Plane&&) noexcept = default;
+    Plane(const Plane&) = delete;
+    Plane& operator=(const Plane&) = delete;
+    ~Plane() = default;
 
     [[nodiscard]] Extent extent() const { return extent_; }
     [[nodiscard]] std::ptrdiff_t stride() const { return stride_; }  // in elements
-    [[nodiscard]] bool empty() const { return data_ == nullptr; }
-    [[nodiscard]] T* row(int j) { return data_.get() + j * stride_; }
-    [[nodiscard]] const T* row(int j) const { return data_.get() + j * stride_; }
+    [[nodiscard]] bool empty() const { return rows_ == nullptr; }
+    [[nodiscard]] T* row(int j) { return rows_.get() + j * stride_; }
+    [[nodiscard]] const T* row(int j) const { return rows_.get() + j * stride_; }
     [[nodiscard]] T& at(int i, int j) { return row(j)[i]; }
     [[nodiscard]] const T& at(int i, int j) const { return row(j)[i]; }
-    [[nodiscard]] PlaneView<T> view() { return {data_.get(), extent_, stride_}; }
-    [[nodiscard]] PlaneView<const T> view() const { return {data_.get(), extent_, stride_}; }
+    [[nodiscard]] PlaneView<T> view() { return {rows_.get(), extent_, stride_}; }
+    [[nodiscard]] PlaneView<const T> view() const { return {rows_.get(), extent_, stride_}; }
 
     [[nodiscard]] Plane clone() const {
         if (empty()) return {};
         Plane copy(extent_);
-        std::memcpy(copy.row(0), row(0),
-                    static_cast<std::size_t>(stride_) * static_cast<std::size_t>(extent_.height) * sizeof(T));
+        for (int j = 0; j < extent_.height; ++j)
+            std::memcpy(copy.row(j), row(j), static_cast<std::size_t>(extent_.width) * sizeof(T));
         return copy;
     }
 
+    // The padding becomes zero.
+    void clear_padding() {
+        for (int j = 0; j < extent_.height; ++j) {
+            std::memset(row(j) + extent_.width, 0, static_cast<std::size_t>(stride_ - extent_.width) * sizeof(T));
+        }
+    }
+
 private:
-    struct Free {
-        void operator()(T* rows) const noexcept { free_rows(rows); }
-    };
-    static std::ptrdiff_t padded(int width) {
-        constexpr std::ptrdiff_t kStep = static_cast<std::ptrdiff_t>(kRowAlignment / sizeof(T));
-        return (width + kStep - 1) / kStep * kStep;
+    static std::shared_ptr<T> allocate(Extent extent, std::ptrdiff_t stride) {
+        const std::size_t count = static_cast<std::size_t>(stride) * static_cast<std::size_t>(extent.height);
+        std::shared_ptr<void> memory = allocate_rows(count * sizeof(T));
+        T* const rows = static_cast<T*>(memory.get());
+        return {std::move(memory), rows};
     }
 
     Extent extent_;
     std::ptrdiff_t stride_ = 0;
-    std::unique_ptr<T, Free> data_;
+    std::shared_ptr<T> rows_;
 };
 
 // How a file stored the values before they were converted to float.

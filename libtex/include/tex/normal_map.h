@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <memory>
 
 #include <tex/image.h>
 #include <tex/names.h>
@@ -24,14 +26,28 @@ inline constexpr Named<YAxis> kYAxisNames[] = {
     {YAxis::down, "down", "-Y: DirectX, Unreal"},
 };
 
-// Three planes of one extent.
+// Three planes of one extent. The constructor takes them from one piece of memory, equally far apart, so that all three
+// can be seen as one array of rows, columns and components. Memory is released with the last plane.
 struct NormalMap {
     Plane<float> x;
     Plane<float> y;
     Plane<float> z;
 
     NormalMap() = default;
-    explicit NormalMap(Extent extent) : x(extent), y(extent), z(extent) {}
+    explicit NormalMap(Extent extent) {
+        // Between two planes are a few lines of the cache. Otherwise the same texel of all three would often compete
+        // for the same lines.
+        constexpr std::ptrdiff_t kGap = 4 * static_cast<std::ptrdiff_t>(kRowAlignment / sizeof(float));
+        const std::ptrdiff_t stride = padded_stride<float>(extent.width);
+        const std::ptrdiff_t step = stride * extent.height + kGap;
+        const std::shared_ptr<void> memory = allocate_rows(static_cast<std::size_t>(3 * step - kGap) * sizeof(float));
+        float* rows = static_cast<float*>(memory.get());
+        for (Plane<float>* plane : {&x, &y, &z}) {
+            *plane = Plane<float>(extent, stride, std::shared_ptr<float>(memory, rows));
+            plane->clear_padding();
+            rows += step;
+        }
+    }
     [[nodiscard]] Extent extent() const { return x.extent(); }
 };
 

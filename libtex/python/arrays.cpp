@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "arrays.h"
+
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "finite.h"
+
+namespace tex::python {
+namespace {
+
+constexpr const char* kOwner = "tex.planes";  // the name of capsules that keep planes
+constexpr py::ssize_t kFloat = static_cast<py::ssize_t>(sizeof(float));
+constexpr std::ptrdiff_t kRowFloats = static_cast<std::ptrdiff_t>(kRowAlignment) / kFloat;
+
+using Owner = std::shared_ptr<void>;
+
+// A capsule that keeps `owner`.
+py::capsule capsule_of(Owner owner) {
+    auto kept = std::make_unique<Owner>(std::move(owner));
+    py::capsule capsule(kept.get(), kOwner,
+                        [](PyObject* self) { delete static_cast<Owner*>(PyCapsule_GetPointer(self, kOwner)); });
+    static_cast<void>(kept.release());
+    return capsule;
+}
+
+// What keeps the memory of an array that array_of() has made, or of a view of one; null for other arrays.
+Owner owner_of(const py::array& array) {
+    py::object base = array.base();
+    while (base && py::isinstance<py::array>(base)) base = py::reinterpret_borrow<py::array>(base).base();
+    if (!base || PyCapsule_IsValid(base.ptr(), kOwner) == 0) return nullptr;
+    return *static_cast<Owner*>(PyCapsule_GetPointer(base.ptr(), kOwner));
+}
+
+std::string shape_of(const py::array& array) { return py::str(py::object(array.attr("shape"))); }
+
+// The sides of an array of two or three axes.
+Extent sides_of(const py::array& array, std::string_view name) {
+    for (const int axis : {0, 1}) {
+        if (array.shape(axis) < 1 || array.shape(axis) > kMaxExtent)
+            throw py::value_error(
+                fmt::format("{}: sides are 1 to {} texels, got {}", name, kMaxExtent, shape_of(array)));
+    }
+    return {static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0))};
+}
+
+Extent extent_of(const py::array& array, std::string_view name, py::ssize_t dimensions, std::string_view wanted) {
+    if (array.ndim() != dimensions || (dimensions == 3 && array.shape(2) != 3))
+        throw py::value_error(fmt::format("{}: expected an array of shape {}, got {}", name, wanted, shape_of(array)));
+    return sides_of(array, name);
+}
+
+// Floats in this machine's order, with strides of whole floats, at an address of a float.
+bool is_plain(const py::array& array) {
+    if (!py::isinstance<py::array_t<float>>(array)) return false;
+    if (reinterpret_cast<std::uintptr_t>(array.data()) % sizeof(float) != 0) return false;
+    for (py::ssize_t axis = 0; axis < array.ndim(); ++axis) {
+        if (array.strides(axis) % kFloat != 0) return false;
+    }
+    return true;
+}
+
+// The array as floats that is_plain() accepts: itself or a converted copy.
+py::array floats_of(const py::array& array, std::string_view name, bool is_map) {
+    if (is_plain(array)) return array;
+    const char kind = array.dtype().kind();
+    const py::ssize_t bytes = array.itemsize();
+    const bool integers = (kind == 'u' || kind == 'i') && bytes <= 2;
+    if (is_map && integers) {
+        throw py::type_error(fmt::format("{}: values of the type {} are stored colours; unpack() makes normals of them",
+                                         name, std::string(py::str(array.dtype()))));
+    }
+    if (!integers && !(kind == 'f' && bytes <= 8)) {
+        throw py::type_error(fmt::format("{}: cannot use values of the type {}; convert them to float32{}", name,
+                                         std::string(py::str(array.dtype())),
+                                         is_map ? "" : ", or to uint8 or uint16, which are divided by 255 or 65535"));
+    }
+    py::object floats = array.attr("astype")("float32");
+    if (integers) {
+        const auto bits = static_cast<int>(8 * bytes) - (kind == 'i' ? 1 : 0);
+        floats = floats.attr("__truediv__")(py::dtype("float32").attr("type")((1 << bits) - 1));
+    }
+    return floats;
+}
+
+py::array array_from(py::handle from, std::string_view name, bool is_map) {
+    if (from.is_none()) raise_type(name, "an array", from);
+    const py::array array = py::array::ensure(from);
+    if (!array) {
+        PyErr_Clear();
+        raise_type(name, "an array", from);
+    }
+    return floats_of(array, name, is_map);
+}
+
+// Plane `axis` of the last axis of an array of three axes, or the whole array of two.
+struct Strided {
+    const float* data;
+    std::ptrdiff_t row, column;  // in floats
+};
+
+Strided strided(const py::array& array, py::ssize_t plane) {
+    const auto* const data = static_cast<const float*>(array.data());
+    const std::ptrdiff_t offset = array.ndim() == 3 ? plane * (array.strides(2) / kFloat) : 0;
+    return {data + offset, array.strides(0) / kFloat, array.strides(1) / kFloat};
+}
+
+void copy_to(Plane<float>& plane, Strided from) {
+    const Extent extent = plane.extent();
+    for (int j = 0; j < extent.height; ++j) {
+        float* const to = plane.row(j);
+        const float* const row = from.data + j * from.row;
+        for (int i = 0; i < extent.width; ++i) to[i] = row[i * from.column];
+    }
+}
+
+void need_finite(bool finite, std::string_view name, const char* remedy = "") {
+    if (!finite) raise_value(name, std::string("some values are infinite or NaN") + remedy);
+}
+
+}  // namespace
+
+py::array view_of(PlaneView<float> plane, py::handle owner) {
+    const Extent extent = plane.extent;
+    return py::array(py::dtype::of<float>(), {py::ssize_t{extent.height}, py::ssize_t{extent.width}},
+                     {plane.stride * kFloat, kFloat}, plane.data, owner);
+}
+
+py::array array_of(Plane<float> plane) {
+    const auto kept = std::make_shared<Plane<float>>(std::move(plane));
+    return view_of(kept->view(), capsule_of(kept));
+}
+
+py::array array_of(NormalMap map) {
+    auto kept = std::make_shared<NormalMap>(std::move(map));
+    const auto address = [](Plane<float>& plane) { return reinterpret_cast<std::intptr_t>(plane.row(0)); };
+    const std::intptr_t step = address(kept->y) - address(kept->x);
+    const Extent extent = kept->extent();
+    if (address(kept->z) - address(kept->y) != step || kept->y.stride() != kept->x.stride() ||
+        kept->z.stride() != kept->x.stride()) {
+        const auto joined = std::make_shared<NormalMap>(extent);
+        copy_to(joined->x, {kept->x.row(0), kept->x.stride(), 1});
+        copy_to(joined->y, {kept->y.row(0), kept->y.stride(), 1});
+        copy_to(joined->z, {kept->z.row(0), kept->z.stride(), 1});
+        return array_of(std::move(*joined));
+    }
+    return py::array(py::dtype::of<float>(), {py::ssize_t{extent.height}, py::ssize_t{extent.width}, py::ssize_t{3}},
+                     {kept->x.stride() * kFloat, kFloat, static_cast<py::ssize_t>(step)}, kept->x.row(0),
+                     capsule_of(kept));
+}
+
+py::list arrays_of(MipChain chain) {
+    py::list levels;
+    for (NormalMap& level : chain.levels) levels.append(array_of(std::move(level)));
+    return levels;
+}
+
+Image image_from(py::handle from, std::string_view name) {
+    const py::array given = py::array::ensure(from);
+    const py::array array = array_from(from, name, false);
+    const py::ssize_t channels = array.ndim() == 3 ? array.shape(2) : 1;
+    if ((array.ndim() != 2 && array.ndim() != 3) || channels < 1 || channels > 4) {
+        throw py::value_error(
+            fmt::format("{}: expected an array of shape (height, width) or (height, width, 1 to 4), got {}", name,
+                        shape_of(array)));
+    }
+    Image image;
+    const char kind = given.dtype().kind();
+    image.sample = kind == 'u' ? SampleKind::unorm : kind == 'i' ? SampleKind::snorm : SampleKind::floating;
+    image.bits = kind == 'f' ? (given.itemsize() == 2 ? 16 : 32) : static_cast<int>(8 * given.itemsize());
+    const Extent extent = sides_of(array, name);
+    for (py::ssize_t c = 0; c < channels; ++c) {
+        image.planes.emplace_back(extent);
+        copy_to(image.planes.back(), strided(array, c));
+        image.names.emplace_back(channels == 1 ? "Y" : std::string(1, "RGBA"[c]));
+    }
+    return image;
+}
+
+Plane<float> plane_from(py::handle from, std::string_view name, bool finite) {
+    const py::array array = array_from(from, name, false);
+    const Extent extent = extent_of(array, name, 2, "(height, width)");
+    const Strided texels = strided(array, 0);
+    const bool shares =
+        from.ptr() == array.ptr() && texels.column == 1 && texels.row >= extent.width && extent.width % kRowFloats == 0;
+    py::gil_scoped_release release;
+    Plane<float> plane;
+    if (shares) {
+        // Kernels read whole vectors, which end with the row, and nothing writes.
+        plane = Plane<float>(extent, texels.row, std::shared_ptr<float>(Owner(), const_cast<float*>(texels.data)));
+    } else {
+        plane = Plane<float>(extent);
+        copy_to(plane, texels);
+    }
+    const bool sound = !finite || is_finite(plane.view());
+    py::gil_scoped_acquire acquire;
+    need_finite(sound, name, "; height_field() with fill_invalid=True replaces them in heights");
+    return plane;
+}
+
+NormalMap map_from(py::handle from, std::string_view name, Sharing sharing) {
+    const py::array array = array_from(from, name, true);
+    const Extent extent = extent_of(array, name, 3, "(height, width, 3)");
+    const Owner owner = sharing == Sharing::reads ? owner_of(array) : nullptr;
+    const auto address = reinterpret_cast<std::uintptr_t>(array.data());
+    const bool shares = owner != nullptr && array.strides(1) == kFloat && array.strides(0) >= extent.width * kFloat &&
+                        address % kRowAlignment == 0 &&
+                        array.strides(0) % static_cast<py::ssize_t>(kRowAlignment) == 0 &&
+                        array.strides(2) % static_cast<py::ssize_t>(kRowAlignment) == 0 && array.strides(2) != 0;
+    NormalMap map;
+    py::gil_scoped_release release;
+    if (!shares) map = NormalMap(extent);
+    bool finite = true;
+    Plane<float>* const planes[] = {&map.x, &map.y, &map.z};
+    for (const int c : {0, 1, 2}) {
+        Plane<float>& plane = *planes[c];
+        const Strided texels = strided(array, c);
+        if (shares) {
+            plane = Plane<float>(extent, texels.row, std::shared_ptr<float>(owner, const_cast<float*>(texels.data)));
+        } else {
+            copy_to(plane, texels);
+        }
+        finite = finite && is_finite(plane.view());
+    }
+    py::gil_scoped_acquire acquire;
+    need_finite(finite, name);
+    return map;
+}
+
+MipChain chain_from(py::handle from, std::string_view name, Sharing sharing) {
+    MipChain chain;
+    if (!py::isinstance<py::list>(from) && !py::isinstance<py::tuple>(from)) {
+        chain.levels.push_back(map_from(from, name, sharing));
+        return chain;
+    }
+    for (const py::handle level : from)
+        chain.levels.push_back(map_from(level, fmt::format("{}[{}]", name, chain.levels.size()), sharing));
+    need(!chain.levels.empty(), name, "there is no level");
+    const Extent base = chain.levels.front().extent();
+    need(static_cast<int>(chain.levels.size()) <= level_count(base), name, "there are more levels than a chain has");
+    for (std::size_t k = 1; k < chain.levels.size(); ++k) {
+        need_equal(chain.levels[k].extent(), level_extent(base, static_cast<int>(k)), fmt::format("{}[{}]", name, k));
+    }
+    return chain;
+}
+
+void need_equal(Extent a, Extent b, std::string_view name) {
+    if (a == b) return;
+    throw py::value_error(
+        fmt::format("{}: expected {} x {} texels, got {} x {}", name, b.width, b.height, a.width, a.height));
+}
+
+}  // namespace tex::python

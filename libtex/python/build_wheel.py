@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Makes a wheel of the module tex (PEP 517), with libtex and the reader programs inside.
+
+The libraries that libtex links (libpng, OpenEXR, oneTBB ...) are not inside: the wheel is for machines that have the
+same packages. TEX_BUILD=FOLDER packs what a build folder with TEX_PYTHON=ON holds already.
+"""
+
+import base64
+import hashlib
+import os
+import re
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tempfile
+import zipfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+MODE = 0o100755 << 16  # programs stay executable
+
+
+def build():
+    """The build folder, up to date."""
+    if "TEX_BUILD" in os.environ:
+        return Path(os.environ["TEX_BUILD"])
+    folder = ROOT / "build/wheel"
+    options = ["-DCMAKE_BUILD_TYPE=Release", "-DTEX_PYTHON=ON", f"-DPython_EXECUTABLE={sys.executable}"]
+    generator = ["-G", "Ninja"] if shutil.which("ninja") else []
+    subprocess.run(["cmake", "-S", ROOT, "-B", folder, *generator, *options], check=True)
+    programs = ["tex-reader", "tex-mesh-reader"]
+    subprocess.run(["cmake", "--build", folder, "--target", "tex_python", "tex_python_stubs", *programs], check=True)
+    return folder
+
+
+def collect(folder, stage):
+    """Installs the package into `stage`; returns its files and their names in the wheel."""
+    subprocess.run(["cmake", "--install", folder, "--component", "python", "--prefix", stage], check=True,
+                   stdout=sys.stderr)
+    package = next(stage.rglob("_tex.*.so")).parent
+    beside = [folder / "tex-reader", folder / "tex-mesh-reader", folder / "libtex.so.0"]
+    return {f"tex/{path.name}": path for path in sorted([*package.iterdir(), *filter(Path.exists, beside)])}
+
+
+def version():
+    return re.search(r"project\(libtex VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")).group(1)
+
+
+def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
+    python = f"cp{sys.version_info.major}{sys.version_info.minor}"
+    tag = f"{python}-{python}-{re.sub('[-.]', '_', sysconfig.get_platform())}"
+    facts = f"tex-{version()}.dist-info"
+    with tempfile.TemporaryDirectory() as stage:
+        files = {name: path.read_bytes() for name, path in collect(build(), Path(stage)).items()}
+    files[f"{facts}/METADATA"] = (
+        f"Metadata-Version: 2.1\nName: tex\nVersion: {version()}\n"
+        "Summary: Tangent-space normal maps: bake, mip, pack, check\nLicense: Apache-2.0\n"
+        "Requires-Python: >=3.11\nRequires-Dist: numpy>=1.24\n"
+    ).encode()
+    files[f"{facts}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: libtex\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()
+    record = f"{facts}/RECORD"
+    rows = []
+    name = f"tex-{version()}-{tag}.whl"
+    with zipfile.ZipFile(Path(wheel_directory) / name, "w", zipfile.ZIP_DEFLATED) as wheel:
+        for path, data in files.items():
+            entry = zipfile.ZipInfo(path)  # of 1980: equal builds give equal wheels
+            entry.external_attr = MODE
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            wheel.writestr(entry, data)
+            digest = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
+            rows.append(f"{path},sha256={digest},{len(data)}\n")
+        wheel.writestr(zipfile.ZipInfo(record), "".join(rows) + f"{record},,\n")
+    return name
+
+
+def build_sdist(sdist_directory, config_settings=None):
+    raise NotImplementedError("the module is built in a clone of libtex")

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is wrong with a texture: rules, findings, reports.
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include "modules.h"
+#include "running.h"
+#include "values.h"
+
+namespace tex::python {
+namespace {
+
+// The keywords of check() and check_file().
+struct Checking {
+    py::object require = py::none(), enable = py::none(), disable = py::none(), severity = py::none();
+    py::object height = py::none();
+};
+
+template <class F>
+void each_field(Checking& o, F& f) {
+    f("require", o.require, "dict[str, str | int | bool] | None");
+    f("enable", o.enable, "Sequence[str] | None");
+    f("disable", o.disable, "Sequence[str] | None");
+    f("severity", o.severity, "dict[str, str] | None");
+    f("height", o.height, "ArrayLike | HeightField | None");
+}
+
+struct ReadKeyword {
+    ReadOptions read;
+};
+
+template <class F>
+void each_field(ReadKeyword& o, F& f) {
+    f("read", o.read);
+}
+
+std::vector<std::string> rules_from(py::handle given, const char* name) {
+    std::vector<std::string> rules;
+    if (given.is_none()) return rules;
+    if (!py::isinstance<py::list>(given) && !py::isinstance<py::tuple>(given))
+        raise_type(name, "a list of rules", given);
+    for (const py::handle rule : given) rules.push_back(text_from(rule, name));
+    return rules;
+}
+
+const py::dict dict_from(py::handle given, const char* name) {
+    if (!py::isinstance<py::dict>(given)) raise_type(name, "a dict", given);
+    return py::reinterpret_borrow<py::dict>(given);
+}
+
+// CheckOptions with what they refer to.
+struct Checks {
+    CheckOptions options;
+    HeightField height;
+};
+
+void read_checks(const Checking& given, Checks& checks) {
+    CheckOptions& options = checks.options;
+    if (!given.require.is_none()) {
+        for (const auto& [key, value] : dict_from(given.require, "require")) {
+            std::string text = text_from(key, "require");
+            for (char& c : text) c = c == '_' ? '-' : c;
+            if (value.ptr() == Py_False) continue;
+            if (py::isinstance<py::tuple>(value)) {  // (width, height)
+                const auto extent = Convert<Extent>::from(value, "require");
+                text += fmt::format("={}x{}", extent.width, extent.height);
+            } else if (value.ptr() != Py_True) {
+                text += "=" + std::string(py::str(value));
+            }
+            value_of(add_requirement(options.require, text));
+        }
+    }
+    options.enable = rules_from(given.enable, "enable");
+    options.disable = rules_from(given.disable, "disable");
+    if (!given.severity.is_none()) {
+        for (const auto& [rule, word] : dict_from(given.severity, "severity"))
+            options.severity.emplace_back(text_from(rule, "severity"), Convert<Severity>::from(word, "severity"));
+    }
+    if (!given.height.is_none()) {
+        checks.height = field_from(given.height, "height");
+        options.height = &checks.height;
+    }
+}
+
+py::object checked_file(const py::object& path, Checking& given, ReadOptions& read, Running& running) {
+    Checks checks;
+    read_checks(given, checks);
+    const std::string file = path_from(path, "path");
+    return py::cast(std::make_shared<CheckReport>(
+        running.run([&](const Execution& e) { return check_file(file, checks.options, read, e); })));
+}
+
+void add_findings(Module& module) {
+    Class<Region>(module, "Region", "Texels of a level; y counts rows from the top.")
+        .property("level", "int", "The level.", [](const Region& r) { return r.level; })
+        .property("x", "int", "The first column.", [](const Region& r) { return r.x; })
+        .property("y", "int", "The first row.", [](const Region& r) { return r.y; })
+        .property("width", "int", "Columns.", [](const Region& r) { return r.width; })
+        .property("height", "int", "Rows.", [](const Region& r) { return r.height; })
+        .method("__repr__", "(self) -> str",
+                [](const Region& r) {
+                    return fmt::format("<tex.Region level {}: {}, {}, {} x {}>", r.level, r.x, r.y, r.width, r.height);
+                })
+        .finish();
+    Class<Finding>(module, "Finding", "What is wrong, and where.")
+        .property("id", "str", "The rule: 'N201'.", [](const Finding& f) { return std::string(f.rule->id); })
+        .property("name", "str", "Its name: 'not-unit-length'.",
+                  [](const Finding& f) { return std::string(f.rule->name); })
+        .property("severity", "str", "'note', 'warning' or 'error'.",
+                  [](const Finding& f) { return word_of(f.severity); })
+        .property("level", "int", "The level of the first region; 0 if the finding concerns the whole file.",
+                  [](const Finding& f) { return f.regions.empty() ? 0 : f.regions.front().level; })
+        .property("message", "str", "A sentence with its figures.", [](const Finding& f) { return f.message; })
+        .property("figure", "float", "What was measured, in `unit`.", [](const Finding& f) { return f.figure; })
+        .property("unit", "str", "'share', 'degrees', 'texels', 'ratio', ... or empty.",
+                  [](const Finding& f) { return std::string(f.unit); })
+        .property("confidence", "float", "0.5 to 1; 1 if texels were counted.",
+                  [](const Finding& f) { return f.confidence; })
+        .property("regions", "list[Region]", "Where; empty for the whole file.",
+                  [](const Finding& f) { return f.regions; })
+        .property("texel", "tuple[int, int] | None", "(column, row) of the first affected texel.",
+                  [](const Finding& f) -> py::object {
+                      if (!f.has_texel) return py::none();
+                      return py::make_tuple(f.column, f.row);
+                  })
+        .method("__repr__", "(self) -> str",
+                [](const Finding& f) {
+                    return fmt::format("<tex.Finding {} {}: {}>", f.rule->id, name_of(kSeverityNames, f.severity),
+                                       f.message);
+                })
+        .finish();
+}
+
+py::object y_of(const YEvidence& y) {
+    py::dict facts;
+    facts["correlation"] = y.correlation;
+    facts["confidence"] = y.confidence;
+    facts["y"] = y.y ? py::object(word_of(*y.y)) : py::none();
+    return facts;
+}
+
+py::object pair_of(const std::optional<PairEvidence>& pair) {
+    if (!pair) return py::none();
+    py::dict facts;
+    facts["correlation"] = pair->correlation;
+    facts["strength"] = pair->strength;
+    facts["y"] = word_of(pair->y);
+    facts["offset"] = py::make_tuple(pair->offset_x, pair->offset_y);
+    return facts;
+}
+
+void add_report(Module& module) {
+    Class<CheckReport>(module, "CheckReport", "The findings about a texture. Iterates over them.")
+        .property("file", "str", "The file's name.", [](const CheckReport& r) { return r.file; })
+        .property("findings", "list[Finding]", "By rule, then level.", [](const CheckReport& r) { return r.findings; })
+        .property("explained", "int", "Findings left out because another one explains them.",
+                  [](const CheckReport& r) { return r.explained; })
+        .property("error", "Error | None", "Why the file could not be read or checked.",
+                  [](const CheckReport& r) { return r.error ? exception_of(*r.error) : py::none(); })
+        .property("format", "str", "The format.", [](const CheckReport& r) { return word_of(r.format); })
+        .property("swizzle", "str", "The layout that the file states or the texels suggest.",
+                  [](const CheckReport& r) { return layout_name(r.swizzle); })
+        .property("extent", "tuple[int, int]", "(width, height) of the base level.",
+                  [](const CheckReport& r) { return tuple_of(r.extent); })
+        .property("levels", "int", "The number of levels.", [](const CheckReport& r) { return r.levels; })
+        .property("more_data", "bool", "A channel varies that holds no component of the normals.",
+                  [](const CheckReport& r) { return r.more_data; })
+        .property("y", "dict[str, Any]", "The direction of green: the fields of YEvidence.",
+                  [](const CheckReport& r) { return y_of(r.y); })
+        .property("pair", "dict[str, Any] | None", "How the normals follow from the height map.",
+                  [](const CheckReport& r) { return pair_of(r.pair); })
+        .method("__iter__", "(self) -> Iterator[Finding]",
+                [](const CheckReport& r) { return py::iter(py::cast(r.findings)); })
+        .method("__len__", "(self) -> int", [](const CheckReport& r) { return r.findings.size(); })
+        .method("__repr__", "(self) -> str",
+                [](const CheckReport& r) {
+                    return fmt::format("<tex.CheckReport {}: {} findings>", r.file, r.findings.size());
+                })
+        .finish();
+}
+
+py::dict describe(const Rule& rule) {
+    py::dict facts;
+    facts["id"] = std::string(rule.id);
+    facts["name"] = std::string(rule.name);
+    facts["family"] = word_of(rule.family);
+    facts["severity"] = word_of(rule.severity);
+    facts["on"] = rule.on;
+    facts["sentence"] = std::string(rule.sentence);
+    facts["explanation"] = std::string(rule.explanation);
+    facts["fix"] = std::string(rule.fix);
+    return facts;
+}
+
+}  // namespace
+
+void add_checks(Module& module) {
+    add_findings(module);
+    add_report(module);
+    module.verb<Checking, ReadKeyword, Running>(
+        "check", {{"what", "Texture | str | PathLike[str]"}, {"file", "str", "''"}}, "CheckReport",
+        "Checks a Texture, which reports call `file`, or a file: check_file(). `require` is a dict of requirements, "
+        "{'y': 'up', 'mips': 'full', 'pow2': True}; `enable` and `disable` list rules by id or name; `severity` is a "
+        "dict "
+        "of rules and severities; `height` is the map's height map. Raises BadOptionError if a rule or a requirement "
+        "does not exist.",
+        [](Call& call, Checking& given, ReadKeyword& keyword, Running& running) -> py::object {
+            if (!py::isinstance<Texture>(call["what"])) return checked_file(call["what"], given, keyword.read, running);
+            Checks checks;
+            read_checks(given, checks);
+            const Texture& texture = texture_from(call["what"], "what");
+            const std::string file = call.has("file") ? text_from(call["file"], "file") : "";
+            return py::cast(std::make_shared<CheckReport>(
+                running.run([&](const Execution& e) { return check(file, texture, checks.options, e); })));
+        });
+    module.verb<Checking, ReadKeyword, Running>(
+        "check_file", {{"path", "str | PathLike[str]"}}, "CheckReport", "The arguments are those of check().",
+        [](Call& call, Checking& given, ReadKeyword& keyword, Running& running) -> py::object {
+            return checked_file(call["path"], given, keyword.read, running);
+        });
+    module.verb<>("rules", {}, "list[dict[str, Any]]", "A list of dicts with the fields of Rule.",
+                  [](Call&) -> py::object {
+                      py::list all;
+                      for (const Rule& rule : rules()) all.append(describe(rule));
+                      return all;
+                  });
+    module.verb<>("find_rule", {{"id_or_name", "str"}}, "dict[str, Any] | None",
+                  "A dict with the fields of Rule, or None.", [](Call& call) -> py::object {
+                      const Rule* const rule = find_rule(text_from(call["id_or_name"], "id_or_name"));
+                      if (rule == nullptr) return py::none();
+                      return describe(*rule);
+                  });
+}
+
+}  // namespace tex::python

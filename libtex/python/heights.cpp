@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// Heights: pictures to height fields, height fields to normals.
+
+#include <pybind11/stl.h>
+
+#include "modules.h"
+#include "running.h"
+#include "values.h"
+
+namespace tex::python {
+namespace {
+
+void check(const HeightOptions& options) { need(options.blur_sigma >= 0.0f, "blur_sigma", "must be 0 or more"); }
+
+void add_strengths(Module& module) {
+    module.verb("strength_from_world",
+                {{"extent", "tuple[int, int]"}, {"range", "float"}, {"width", "float"}, {"height", "float", "0.0"}},
+                "tuple[float, float]", "The bumpiness (x, y) for bake(), from world units.",
+                [](Call& call) -> py::object {
+                    const auto number = [&](const char* name) {
+                        const double value = call.has(name) ? number_from(call[name], name) : 0.0;
+                        need(std::isfinite(value), name, "must be finite");
+                        return value;
+                    };
+                    const Extent extent = Convert<Extent>::from(call["extent"], "extent");
+                    const double width = number("width"), height = number("height");
+                    need(width > 0.0, "width", "must be above 0");
+                    need(height >= 0.0, "height", "must be 0 or more");
+                    const Strength strength = strength_from_world(extent, number("range"), width, height);
+                    return py::make_tuple(strength.x, strength.y);
+                });
+    module.verb("strength_from_uv", {{"extent", "tuple[int, int]"}, {"r", "float"}}, "tuple[float, float]",
+                "The bumpiness (x, y) for bake(), from texture widths.", [](Call& call) -> py::object {
+                    const double r = number_from(call["r"], "r");
+                    need(std::isfinite(r), "r", "must be finite");
+                    const Strength strength = strength_from_uv(Convert<Extent>::from(call["extent"], "extent"), r);
+                    return py::make_tuple(strength.x, strength.y);
+                });
+}
+
+}  // namespace
+
+void add_heights(Module& module) {
+    module.verb<HeightOptions, Running>(
+        "height_field", {{"image", "ArrayLike | Image"}}, "HeightField",
+        "The heights of a picture, or of an array (height, width) or (height, width, channels), of which HeightChannel "
+        "chooses one. The HeightReport is left out.",
+        [](Call& call, HeightOptions& options, Running& running) -> py::object {
+            check(options);
+            const Picture image(call["image"], "image");
+            HeightField field = running.run([&](const Execution& e) { return height_field(*image, options, e); });
+            field.wrap_x = options.wrap_x;
+            field.wrap_y = options.wrap_y;
+            return object_of(std::move(field));
+        });
+    module.verb<Relief, BakeOptions, Running>(
+        "bake", {{"height", kHeights}}, "NDArray[np.float32]",
+        "The normals of heights, an array (height, width, 3) of x, y and z. `height` is an array (height, width) or a "
+        "HeightField. bumpiness (1 for an array) and wrap ('repeat' for an array) are a value or a pair for x and y.",
+        [](Call& call, Relief& relief, BakeOptions& options, Running& running) -> py::object {
+            need(options.gaussian_sigma > 0.0f && options.gaussian_sigma <= kMaxGaussianSigma, "gaussian_sigma",
+                 "must be above 0 and at most 64");
+            const HeightField field = field_from(call["height"], "height", relief);
+            return array_of(running.run([&](const Execution& e) { return bake(field, options, e); }));
+        });
+    module.verb<Running>("slope_range", {{"n", "ArrayLike"}}, "dict[str, tuple[float, float]]",
+                         "The range of slopes in a normal map, {'x': (least, greatest), 'y': (least, greatest)}: rise "
+                         "per texel width to "
+                         "the right (x) and upwards (y).",
+                         [](Call& call, Running& running) -> py::object {
+                             const NormalMap map = map_from(call["n"], "n");
+                             const SlopeRange range = running.run(
+                                 [&](const Execution& e) -> Result<SlopeRange> { return slope_range(map, e); });
+                             py::dict slopes;
+                             slopes["x"] = py::make_tuple(range.min_x, range.max_x);
+                             slopes["y"] = py::make_tuple(range.min_y, range.max_y);
+                             return slopes;
+                         });
+    module.verb<ColorOptions>("to_linear", {{"image", "ArrayLike | Image"}}, "Image",
+                              "A new picture with linear values. Without `config`, `space` is 'sRGB' or 'linear'.",
+                              [](Call& call, ColorOptions& options) -> py::object {
+                                  const Picture given(call["image"], "image");
+                                  Image image;
+                                  image.names = (*given).names;
+                                  image.sample = (*given).sample;
+                                  image.bits = (*given).bits;
+                                  image.normal_encoding = (*given).normal_encoding;
+                                  image.normal_mark = (*given).normal_mark;
+                                  image.no_data = (*given).no_data;
+                                  for (const Plane<float>& plane : (*given).planes)
+                                      image.planes.push_back(plane.clone());
+                                  value_of(without_gil([&] { return to_linear(image, options); }));
+                                  return object_of(std::move(image));
+                              });
+    module.verb<ColorOptions>("color_files", {}, "list[str]", "The files on which to_linear() depends.",
+                              [](Call&, ColorOptions& options) -> py::object {
+                                  return py::cast(value_of(without_gil([&] { return color_files(options); })));
+                              });
+    add_strengths(module);
+}
+
+}  // namespace tex::python

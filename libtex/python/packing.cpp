@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// Normals to the bytes of textures, and back.
+
+#include <fmt/format.h>
+
+#include "modules.h"
+#include "running.h"
+#include "values.h"
+
+namespace tex::python {
+namespace {
+
+// PackOptions without the encoding, which is a positional argument.
+struct PackKeywords : PackOptions {};
+
+template <class F>
+void each_field(PackKeywords& o, F& f) {
+    f("y_axis", o.y_axis);
+    f("effort", o.effort);
+    f("metric", o.metric);
+    f("y_known", o.y_known);
+}
+
+// The fields that blocks depend on.
+struct BlockKeywords : PackOptions {};
+
+template <class F>
+void each_field(BlockKeywords& o, F& f) {
+    f("y_axis", o.y_axis);
+    f("effort", o.effort);
+    f("metric", o.metric);
+}
+
+py::object encoded(Call& call, PackOptions& options) {
+    if (call.has("encoding")) options.encoding = Convert<Encoding>::from(call["encoding"], "encoding");
+    need(format_info(encoding_info(options.encoding).format).has_blocks(), "encoding",
+         "must be one of 'dxt5nm', 'bc5', 'bc5-snorm', 'eac-rg11', 'eac-rg11-snorm'");
+    const NormalMap map = map_from(call["n"], "n");
+    const Extent extent = map.extent();
+    const EncodingInfo info = encoding_info(options.encoding);
+    const Extent block = format_info(info.format).block;
+    const auto across = static_cast<std::size_t>((extent.width + block.width - 1) / block.width);
+    const std::size_t pitch = across * format_info(info.format).block_bytes;
+    const auto size = static_cast<py::ssize_t>(level_bytes(info.format, extent));
+    auto bytes = py::reinterpret_steal<py::bytes>(PyBytes_FromStringAndSize(nullptr, size));
+    if (!bytes) throw py::error_already_set();
+    auto* const blocks = reinterpret_cast<std::byte*>(PyBytes_AsString(bytes.ptr()));
+    without_gil([&] { encode_blocks(map.x.view(), map.y.view(), options, blocks, pitch); });
+    return bytes;
+}
+
+py::object unpacked(Call& call, UnpackOptions& options, Running& running) {
+    const py::object from = call["source"];
+    if (py::isinstance<Texture>(from)) {
+        const Texture& texture = texture_from(from, "source");
+        return arrays_of(running.run([&](const Execution& e) { return unpack(texture, options, e); }));
+    }
+    const Picture image(from, "source");
+    return array_of(running.run([&](const Execution& e) { return unpack(*image, options, e); }));
+}
+
+}  // namespace
+
+void add_packing(Module& module) {
+    module.verb<PackKeywords, Running>(
+        "pack", {{"chain", "ArrayLike | Sequence[ArrayLike]"}, {"encoding", "str", "'dxt5nm'"}}, "Texture",
+        "`chain` is a list of levels, as build_mip_chain() returns it, or one array (height, width, 3).",
+        [](Call& call, PackKeywords& options, Running& running) -> py::object {
+            if (call.has("encoding")) options.encoding = Convert<Encoding>::from(call["encoding"], "encoding");
+            const MipChain chain = chain_from(call["chain"], "chain");
+            return object_of(running.run([&](const Execution& e) { return pack(chain, options, e); }));
+        });
+    module.verb<BlockKeywords>(
+        "encode_blocks", {{"n", "ArrayLike"}, {"encoding", "str", "'dxt5nm'"}}, "bytes",
+        "The blocks of one level, row by row from the top, as bytes for an engine's own container. `encoding` is "
+        "'dxt5nm', 'bc5', 'bc5-snorm', 'eac-rg11' or 'eac-rg11-snorm'. Runs on the caller's thread, without the GIL.",
+        [](Call& call, BlockKeywords& options) -> py::object { return encoded(call, options); });
+    module.verb<UnpackOptions, Running>(
+        "unpack", {{"source", "Texture | Image | ArrayLike"}}, "Any",
+        "Of a Texture: a list of arrays (height, width, 3), one for each level. Of an Image, or of an array (height, "
+        "width, channels) of stored colours: one array.",
+        unpacked);
+    module.verb<Running>(
+        "decode", {{"texture", "Texture"}, {"level", "int", "0"}}, "Image",
+        "The channels of one level as they are stored.", [](Call& call, Running& running) -> py::object {
+            const Texture& texture = texture_from(call["texture"], "texture");
+            const int level = call.has("level") ? Convert<int>::from(call["level"], "level") : 0;
+            const auto count = static_cast<int>(texture.levels.size());
+            need(level >= 0 && level < count, "level", fmt::format("must be from 0 to {}", count - 1));
+            return object_of(running.run([&](const Execution& e) { return decode(texture, level, e); }));
+        });
+    module.verb<Running>(
+        "guess_swizzle", {{"texture", "Texture"}}, "str", "The layout's name ('dxt5nm'), or its letters.",
+        [](Call& call, Running& running) -> py::object {
+            const Texture& texture = texture_from(call["texture"], "texture");
+            const Swizzle swizzle = running.run([&](const Execution& e) { return guess_swizzle(texture, e); });
+            return py::str(layout_name(swizzle));
+        });
+}
+
+}  // namespace tex::python

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+// From file to file, row by row.
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include "modules.h"
+#include "running.h"
+#include "values.h"
+
+namespace tex::python {
+namespace {
+
+constexpr const char* kPath = "str | PathLike[str]";
+
+// The file type of an output: the extension's, unless a word is given.
+struct Output {
+    std::string path;
+    Container container = Container::dds;
+};
+
+Output output_of(Call& call) {
+    Output output{path_from(call["output"], "output")};
+    if (call.has("container")) {
+        output.container = Convert<Container>::from(call["container"], "container");
+    } else if (const std::optional<Container> named = container_of(output.path)) {
+        output.container = *named;
+    } else {
+        raise(Error{ErrorCode::bad_option, output.path, "the extension names no file type; give it as container"});
+    }
+    return output;
+}
+
+std::vector<Parameter> files() { return {{"input", kPath}, {"output", kPath}, {"container", "str | None", "None"}}; }
+
+// How a file is packed, given what is known about its source.
+PackOptions pack_options(const PackFields& fields, Container container, YAxis y, bool y_known) {
+    PackOptions options;
+    options.encoding = fields.encoding.value_or(default_encoding(container));
+    options.y_axis = fields.y_axis.value_or(y);
+    options.y_known = fields.y_axis.has_value() || y_known;
+    options.effort = fields.effort;
+    options.metric = fields.metric;
+    return options;
+}
+
+std::function<PackOptions(const SourceInfo&)> pack_by(const PackFields& fields, Container container) {
+    return [=](const SourceInfo& info) { return pack_options(fields, container, info.y_axis, info.y_known); };
+}
+
+template <class Report>
+py::dict written(const Report& report) {
+    py::dict facts;
+    facts["extent"] = tuple_of(report.extent);
+    facts["levels"] = report.levels;
+    facts["bytes"] = report.bytes;
+    return facts;
+}
+
+void check(const MipOptions& options) {
+    need(options.levels >= 0, "mip", "levels must be 0, for all, or more");
+    need(!options.any_z || (options.domain == MipDomain::vector && !options.fade), "mip",
+         "any_z needs the domain 'vector' and no fade");
+}
+
+struct BakeFields {
+    float bumpiness_x = 1.0f, bumpiness_y = 1.0f;
+    BakeFileOptions file;
+    PackFields pack;
+};
+
+template <class F>
+void each_field(BakeFields& o, F& f) {
+    f("bumpiness", axes(o.bumpiness_x, o.bumpiness_y));
+    f("read", o.file.read);
+    f("color", o.file.color);
+    f("heights", o.file.heights);
+    f("bake", o.file.bake);
+    f("mip", o.file.mip);
+    f("pack", o.pack);
+    f("write", o.file.write);
+    f("slopes", o.file.slopes);
+}
+
+py::object baked(Call& call, BakeFields& fields, Running& running) {
+    BakeFileOptions& options = fields.file;
+    need(std::isfinite(fields.bumpiness_x) && std::isfinite(fields.bumpiness_y), "bumpiness", "must be finite");
+    need(options.bake.gaussian_sigma > 0.0f && options.bake.gaussian_sigma <= kMaxGaussianSigma, "bake",
+         "gaussian_sigma must be above 0 and at most 64");
+    check(options.mip);
+    const std::string input = path_from(call["input"], "input");
+    const Output output = output_of(call);
+    const Strength strength{fields.bumpiness_x, fields.bumpiness_y};
+    options.strength = [strength](Extent) { return strength; };
+    options.pack = pack_options(fields.pack, output.container, YAxis::up, true);
+    const BakeFileReport report =
+        running.run([&](const Execution& e) { return bake_file(input, output.path, output.container, options, e); });
+    py::dict facts = written(report);
+    facts["luma_texels"] = report.heights.luma_texels;
+    facts["invalid_texels"] = report.heights.invalid_texels;
+    facts["steep_texels"] = report.steep_texels;
+    if (options.slopes) {
+        py::dict slopes;
+        slopes["x"] = py::make_tuple(report.slopes.min_x, report.slopes.max_x);
+        slopes["y"] = py::make_tuple(report.slopes.min_y, report.slopes.max_y);
+        facts["slopes"] = slopes;
+    }
+    return facts;
+}
+
+struct RepackFields {
+    PackFileOptions file;
+    PackFields pack;
+};
+
+template <class F>
+void each_field(RepackFields& o, F& f) {
+    f("source", o.file.source);
+    f("level", o.file.level);
+    f("scale", o.file.scale);
+    f("mip", o.file.mip);
+    f("pack", o.pack);
+    f("write", o.file.write);
+}
+
+py::object repacked(Call& call, RepackFields& fields, Running& running) {
+    PackFileOptions& options = fields.file;
+    need(!options.level || *options.level >= 0, "level", "must be 0 or more");
+    need(!options.scale || std::abs(options.scale->scale) <= kMaxScale, "scale", "must be at most 1e6 in magnitude");
+    if (options.mip) check(*options.mip);
+    const std::string input = path_from(call["input"], "input");
+    const Output output = output_of(call);
+    options.pack = pack_by(fields.pack, output.container);
+    const PackFileReport report =
+        running.run([&](const Execution& e) { return pack_file(input, output.path, output.container, options, e); });
+    py::dict facts = written(report);
+    facts["encoding"] = word_of(report.pack.encoding);
+    facts["y_axis"] = word_of(report.pack.y_axis);
+    facts["source"] = describe(report.source);
+    return facts;
+}
+
+struct BlendFields {
+    BlendFileOptions file;
+    PackFields pack;
+};
+
+template <class F>
+void each_field(BlendFields& o, F& f) {
+    f("source", o.file.source);
+    f("blend", o.file.blend);
+    f("mip", o.file.mip);
+    f("pack", o.pack);
+    f("write", o.file.write);
+}
+
+LayerFile layer_from(py::handle given, const std::string& name) {
+    if (!py::isinstance<py::dict>(given)) raise_type(name, "a dict with 'input' and the fields of LayerFile", given);
+    const py::dict fields = py::reinterpret_steal<py::dict>(PyDict_Copy(given.ptr()));
+    need(fields.contains("input"), name, "needs 'input', a file");
+    LayerFile layer;
+    layer.input = path_from(fields.attr("pop")("input"), name + "['input']");
+    Reader reader(fields);
+    reader("source", layer.source);
+    each_placement(layer, reader);
+    reader.finish(name);
+    check_placement(layer);
+    return layer;
+}
+
+py::object blended(Call& call, BlendFields& fields, Running& running) {
+    BlendFileOptions& options = fields.file;
+    need(std::abs(options.blend.base_scale) <= kMaxScale, "blend", "base_scale must be at most 1e6 in magnitude");
+    need((options.blend.extent.width == 0) == (options.blend.extent.height == 0), "blend",
+         "both sides of extent or neither must be 0");
+    check(options.mip);
+    const py::object layers = call["layers"];
+    if (!py::isinstance<py::list>(layers) && !py::isinstance<py::tuple>(layers))
+        raise_type("layers", "a list of dicts", layers);
+    for (const py::handle layer : layers)
+        options.layers.push_back(layer_from(layer, fmt::format("layers[{}]", options.layers.size())));
+    const std::string input = path_from(call["input"], "input");
+    const Output output = output_of(call);
+    options.pack = pack_by(fields.pack, output.container);
+    const BlendFileReport report =
+        running.run([&](const Execution& e) { return blend_file(input, output.path, output.container, options, e); });
+    py::dict facts = written(report);
+    facts["encoding"] = word_of(report.pack.encoding);
+    facts["y_axis"] = word_of(report.pack.y_axis);
+    facts["source"] = describe(report.source);
+    py::list details;
+    for (const SourceInfo& info : report.details) details.append(describe(info));
+    facts["details"] = details;
+    return facts;
+}
+
+constexpr const char* kNotes =
+    "The extension of `output` decides the file type, unless `container` does. Structures are dicts with the names of "
+    "their fields: mip={'filter': 'kaiser'}. Without pack={'encoding': ...}, the file gets its default_encoding(). "
+    "Returns a dict of facts about the result. Several outputs, one file for each level, and roughness maps: use "
+    "run().";
+
+}  // namespace
+
+void add_pipeline(Module& module) {
+    module.verb<BakeFields, Running>("bake_file", files(), "dict[str, Any]", kNotes, baked);
+    module.verb<RepackFields, Running>("pack_file", files(), "dict[str, Any]", kNotes, repacked);
+    std::vector<Parameter> parameters = files();
+    parameters.insert(parameters.begin() + 1, {"layers", "Sequence[dict[str, Any]]"});
+    module.verb<BlendFields, Running>("blend_file", parameters, "dict[str, Any]", kNotes, blended);
+}
+
+}  // namespace tex::python

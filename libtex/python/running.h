@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// running.h: runs a verb without the GIL.
+//
+// The verb runs on a thread of its own, while the caller's thread waits. So the callback of the progress is called on
+// the caller's thread, never more than one call at a time, and Ctrl-C is noticed however long a verb takes to report.
+
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <utility>
+
+#include <pybind11/pybind11.h>
+#include <tex/execution.h>
+
+#include "errors.h"
+
+namespace tex::python {
+
+// The arguments `threads` and `progress`.
+struct Running {
+    int threads = 0;
+    py::object progress = py::none();
+
+    // The value of the Result that body(execution) returns. An exception of the callback, or KeyboardInterrupt, cancels
+    // the verb and is raised. The callback's last fraction is 1 if the verb has succeeded.
+    template <class Body>
+    auto run(const Body& body) {
+        std::optional<decltype(body(std::declval<const Execution&>()))> result;
+        const double told = wait([&](const Execution& execution) { result.emplace(body(execution)); });
+        if (*result && told < 1.0 && !progress.is_none()) progress(1.0);
+        return value_of(std::move(*result));
+    }
+
+    // Calls `work` on another thread and returns when it has ended. Returns the last fraction that the callback got.
+    double wait(const std::function<void(const Execution&)>& work) const;
+};
+
+template <class F>
+void each_field(Running& o, F& f) {
+    f("threads", o.threads);
+    f("progress", o.progress, "Callable[[float], object] | None");
+}
+
+// Verbs that take no Execution: the same without progress.
+template <class Body>
+auto without_gil(const Body& body) {
+    py::gil_scoped_release release;
+    return body();
+}
+
+}  // namespace tex::python

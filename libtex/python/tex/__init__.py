@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Tangent-space normal maps: the verbs of libtex, with numpy arrays.
+
+    import tex
+
+    field = tex.height_field(tex.read_image("rock.png"))
+    n = tex.bake(field, bumpiness=12)                       # (height, width, 3): x, y up, z
+    chain = tex.build_mip_chain(n)                          # a list of such arrays
+    tex.write_texture("rock.dds", tex.pack(chain, "dxt5nm", effort="best"))
+
+    data = tex.encode_blocks(n, "bc5")                      # bytes for an engine's own container
+    for finding in tex.check("rock.dds", require={"y": "up"}):
+        print(finding.id, finding.level, finding.message)
+    tex.run("bake-normals", ["*.png", "--out-dir", "out"])  # any command, in this process
+
+Arrays. Heights are (height, width), maps (height, width, 3): x to the right, y up, z out of the surface, each from -1 to
+1, rows from the top. Results are views of libtex's own memory, which is not copied; a map is stored as three planes
+(numpy.ascontiguousarray(n) has x, y, z side by side). Arguments are 32-bit floats. Maps that come from libtex are not
+copied, nor are heights whose rows are contiguous and a multiple of 16 texels long; other layouts are copied. Floats of
+16 and 64 bits are converted. Heights may be uint8 or uint16, too: 255 or 65535 is 1.0. Extents are (width, height).
+
+Options are given by name and are the fields of the headers' structures. What has a value for x and one for y is a value
+for both, or a pair: wrap="repeat", wrap=("repeat", "clamp"). Choices are the words of the commands.
+
+Every verb on whole images takes threads=0, the largest number of threads (0: one for each processor), and
+progress=callable. The callable gets the fraction done, on the caller's thread, and cancels if it returns False or
+raises. Ctrl-C cancels, too. Verbs run without the GIL. The bytes are the same for every number of threads.
+
+Errors are exceptions of the class Error, with code, file and reason. A wrong argument is a TypeError or ValueError.
+
+After fork() (multiprocessing's "fork"), a child must not call libtex if its parent has: use "spawn" or "forkserver".
+"""
+
+from tex._errors import (
+    BadDataError,
+    BadOptionError,
+    CancelledError,
+    Error,
+    IoError,
+    OutOfMemoryError,
+    UnsupportedError,
+)
+from tex import _tex
+from tex._run import Ran, commands, run
+
+_verbs = {name: value for name, value in vars(_tex).items() if not name.startswith("_")}
+globals().update(_verbs)
+
+__version__ = _tex.version()
+__all__ = sorted(
+    [*_verbs, "BadDataError", "BadOptionError", "CancelledError", "Error", "IoError", "OutOfMemoryError", "Ran"]
+    + ["UnsupportedError", "commands", "run"]
+)
+del _verbs

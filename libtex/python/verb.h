@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+// verb.h: registers functions with the signature, the docstring and the stub that follow from the option structures.
+//
+//     verb<BakeOptions, Running>("bake", {{"height", "Heights"}}, "Normals", "Notes for Python.",
+//                                [](Call& call, BakeOptions& options, Running& running) -> py::object { ... });
+//
+// makes bake(height, *, kernel='central', gaussian_sigma=1.0, threads=0, progress=None). Positional arguments may be
+// given by their names, too. The docstring is the signature, the notes and the comment in the header.
+
+#pragma once
+
+#include <concepts>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "arguments.h"
+#include "fields.h"
+
+namespace tex::python {
+
+// A parameter as the signature shows it.
+struct Parameter {
+    std::string name;
+    std::string type;         // as Python source
+    std::string preset = {};  // as Python source; empty: must be given
+};
+
+// Reads fields from keywords and takes those that it has read out of the dict.
+class Reader {
+public:
+    explicit Reader(py::dict keywords) : keywords_(std::move(keywords)) {}
+
+    template <class T>
+    void operator()(const char* name, T& field, const char* = nullptr) {
+        if (keywords_.contains(name)) read(name, take(name), field);
+    }
+    template <class T>
+    void operator()(const char* name, Axes<T> field, const char* = nullptr) {
+        if (!keywords_.contains(name)) return;
+        const py::object given = take(name);
+        if (py::isinstance<py::tuple>(given) || py::isinstance<py::list>(given)) {
+            const std::vector<py::object> items = items_from(given, name, 2, "a value or a pair (x, y)");
+            field.x = Convert<T>::from(items[0], name);
+            field.y = Convert<T>::from(items[1], name);
+        } else {
+            field.x = field.y = Convert<T>::from(given, name);
+        }
+    }
+
+    // Raises TypeError if keywords are left.
+    void finish(const std::string& function) const;
+
+private:
+    template <class T>
+    static void read(const char* name, const py::object& given, T& field);
+    py::object take(const char* name);
+
+    py::dict keywords_;
+};
+
+// A structure whose fields each_field() lists.
+template <class T>
+concept Fielded = requires(T& options, Reader& reader) {
+    each_field(options, reader);
+};
+
+template <class T>
+struct IsOptional : std::false_type {};
+template <class T>
+struct IsOptional<std::optional<T>> : std::bool_constant<Fielded<T>> {};
+
+template <Fielded T>
+T fields_from(py::handle given, const char* name) {
+    if (!py::isinstance<py::dict>(given)) raise_type(name, "a dict of its fields", given);
+    T options;
+    Reader reader(py::reinterpret_steal<py::dict>(PyDict_Copy(given.ptr())));
+    each_field(options, reader);
+    reader.finish(name);
+    return options;
+}
+
+template <class T>
+void Reader::read(const char* name, const py::object& given, T& field) {
+    if constexpr (Fielded<T>) {
+        field = fields_from<T>(given, name);
+    } else if constexpr (IsOptional<T>::value) {
+        field.reset();
+        if (!given.is_none()) field = fields_from<typename T::value_type>(given, name);
+    } else {
+        field = Convert<T>::from(given, name);
+    }
+}
+
+// Lists fields as parameters.
+class Lister {
+public:
+    template <class T>
+    void operator()(const char* name, T& field, const char* type = nullptr) {
+        if constexpr (Fielded<T>) {
+            list(name, type, "dict[str, Any]", "{}");
+        } else if constexpr (IsOptional<T>::value) {
+            list(name, type, "dict[str, Any] | None", "None");
+        } else {
+            list(name, type, Convert<T>::type(), Convert<T>::shown(field));
+        }
+    }
+    template <class T>
+    void operator()(const char* name, Axes<T> field, const char* type = nullptr) {
+        const std::string one = Convert<T>::type();
+        list(name, type, one + " | tuple[" + one + ", " + one + "]", Convert<T>::shown(field.x));
+    }
+
+    std::vector<Parameter> parameters;
+
+private:
+    void list(const char* name, const char* type, const std::string& usual, const std::string& preset) {
+        parameters.push_back({name, type != nullptr ? type : usual, preset});
+    }
+};
+
+// The positional arguments of one call.
+class Call {
+public:
+    Call(const char* function, const std::vector<Parameter>& parameters, const py::args& given,
+         const py::dict& keywords);
+
+    // The argument called `name`; None if it has a preset and was not given.
+    [[nodiscard]] py::object operator[](std::string_view name) const;
+    [[nodiscard]] bool has(std::string_view name) const { return !(*this)[name].is_none(); }
+
+private:
+    const std::vector<Parameter>& parameters_;
+    std::vector<py::object> values_;
+};
+
+// The module, its verbs and its stubs.
+class Module {
+public:
+    explicit Module(py::module_& module) : module_(module) {}
+
+    template <class... Options, class Body>
+    void verb(const char* name, std::vector<Parameter> positional, const char* returns, const char* notes, Body body) {
+        Lister lister;
+        [[maybe_unused]] const auto list = [&lister](auto options) { each_field(options, lister); };
+        (list(Options{}), ...);
+        const std::string doc = describe(name, positional, lister.parameters, returns, notes);
+        const auto invoke = [name, positional = std::move(positional), body = std::move(body)](
+                                const py::args& given, const py::kwargs& keywords) -> py::object {
+            const py::dict left = py::reinterpret_steal<py::dict>(PyDict_Copy(keywords.ptr()));
+            Call call(name, positional, given, left);
+            Reader reader(left);
+            std::tuple<Options...> options;
+            std::apply([&reader](auto&... each) { (each_field(each, reader), ...); }, options);
+            reader.finish(std::string(name) + "()");
+            return std::apply([&](auto&... each) -> py::object { return body(call, each...); }, options);
+        };
+        module_.def(name, invoke, doc.c_str());
+    }
+
+    // Adds `text`, a declaration, to the stubs.
+    void stub(const std::string& text);
+    [[nodiscard]] py::module_& module() { return module_; }
+
+private:
+    // Adds the function's stub. Returns its docstring, which begins with the signature for inspect.signature().
+    static std::string describe(const char* name, const std::vector<Parameter>& positional,
+                                const std::vector<Parameter>& keywords, const char* returns, const char* notes);
+
+    py::module_& module_;
+};
+
+// A class whose attributes are read-only, with its stub: call finish() last.
+template <class T>
+class Class {
+public:
+    Class(Module& module, const char* name, const char* doc)
+        : module_(module), class_(module.module(), name, doc),
+          stub_(std::string("class ") + name + ":\n    \"\"\"" + doc + "\"\"\"\n") {}
+
+    template <class Get>
+    Class& property(const char* name, const char* type, const char* doc, Get get) {
+        class_.def_property_readonly(name, std::move(get), doc);
+        stub_ += std::string("    @property\n    def ") + name + "(self) -> " + type + ":\n        \"\"\"" + doc +
+                 "\"\"\"\n";
+        return *this;
+    }
+    // A method; `signature` is what follows the name in the stub: "(self) -> int".
+    template <class Body, class... More>
+    Class& method(const char* name, const char* signature, Body body, More&&... more) {
+        class_.def(name, std::move(body), std::forward<More>(more)...);
+        stub_ += std::string("    def ") + name + signature + ": ...\n";
+        return *this;
+    }
+    // A constructor: py::init() and its arguments.
+    template <class Init, class... More>
+    Class& constructor(const char* signature, Init&& init, More&&... more) {
+        class_.def(std::forward<Init>(init), std::forward<More>(more)...);
+        stub_ += std::string("    def __init__") + signature + " -> None: ...\n";
+        return *this;
+    }
+    // Adds the stub, which is complete now.
+    void finish() { module_.stub(stub_); }
+
+private:
+    Module& module_;
+    py::class_<T, std::shared_ptr<T>> class_;
+    std::string stub_;
+};
+
+}  // namespace tex::python

@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The module beside the headers: every verb, its defaults, its words, its docstring and its stub."""
+
+import ast
+import inspect
+import re
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tex
+from conftest import SOURCE
+
+HEADERS = SOURCE / "libtex/include/tex"
+sys.path.insert(0, str(SOURCE / "libtex/python"))
+from docstrings import DECLARATION, comments  # noqa: E402
+
+MESHES = "meshes are not bound yet; run('convert-normals', ...) and the --mesh options of commands use them"
+NOT_BOUND = {
+    "check_part": MESHES,
+    "in_scene": MESHES,
+    "in_tile": MESHES,
+    "make_tangents": MESHES,
+    "mesh_files": MESHES,
+    "read_mesh": MESHES,
+    "refit": MESHES,
+    "select_part": MESHES,
+    "stored_tangents": MESHES,
+    "to_object_space": MESHES,
+    "to_tangent_space": MESHES,
+    "add_requirement": "the argument `require` of check()",
+    "allocate_rows": "memory of planes, which arrays keep",
+    "apply_steps": "run('build-normals', ...) runs steps without files in between",
+    "find_by_name": "words are the names",
+    "is_fillable": "BadDataError of height_field() without fill_invalid",
+    "name_of": "words are the names",
+    "padded_stride": "memory of planes, which arrays keep",
+    "reconstruct_z": "a formula for one texel, for numpy: sqrt(1 - clip(x * x + y * y, 0, 1))",
+    "reconstruct_z_approximate": "the same, for comparison",
+    "remove_unfinished_files": "for handlers of signals, which Python calls later",
+    "to_string": "layouts are words",
+    "validate": "check() validates its arguments",
+}
+
+
+def declared():
+    names = set()
+    for header in HEADERS.glob("*.h"):
+        for line in header.read_text(encoding="utf-8").splitlines():
+            found = DECLARATION.match(line)
+            if found:
+                names.add(found.group(1))
+    return names
+
+
+def test_every_function_of_the_headers_is_bound_or_listed():
+    names = declared()
+    assert len(names) > 60
+    bound = {name for name in names if hasattr(tex, name)}
+    assert names - bound == set(NOT_BOUND)
+    verbs = {name for name in tex.__all__ if inspect.isbuiltin(getattr(tex, name))}
+    assert verbs - names == set(), "bound, but in no header"
+
+
+def verbs():
+    return sorted(name for name in tex.__all__ if inspect.isbuiltin(getattr(tex, name)))
+
+
+@pytest.mark.parametrize("name", verbs())
+def test_docstrings_are_the_comments_of_the_headers(name):
+    doc = inspect.getdoc(getattr(tex, name))
+    assert doc
+    texts = [(header.name, text) for header in HEADERS.glob("*.h") for function, text in comments(header)
+             if function == name and text]
+    for header, text in texts:
+        if header == doc.partition("From tex/")[2].partition(":")[0]:
+            assert inspect.cleandoc(text) in doc
+    assert not texts or "From tex/" in doc
+
+
+def fields(header, structure):
+    """The defaults of a structure's fields, as the header writes them."""
+    text = (HEADERS / header).read_text(encoding="utf-8")
+    body = re.search(rf"^struct {structure} {{\n(.*?)^}};", text, re.DOTALL | re.MULTILINE).group(1)
+    found = {}
+    for line in body.splitlines():
+        for name, value in re.findall(r"(\w+) = ([^,;{}]+)[,;]", line.split("//")[0]):
+            found[name] = value
+    return found
+
+
+STRUCTURES = [
+    ("bake", "bake_options.h", "BakeOptions"),
+    ("height_field", "height_field.h", "HeightOptions"),
+    ("build_mip_chain", "mip_options.h", "MipOptions"),
+    ("pack", "pack_options.h", "PackOptions"),
+    ("unpack", "unpack_options.h", "UnpackOptions"),
+    ("blend", "blend_options.h", "BlendOptions"),
+    ("preview", "preview_options.h", "PreviewOptions"),
+    ("write_texture", "container.h", "WriteOptions"),
+    ("read_image", "image_io.h", "ReadOptions"),
+    ("bake", "execution.h", "Execution"),
+]
+
+
+def word(value):
+    """An enumerator as its word: GradientKernel::central is 'central'."""
+    return value.split("::")[1].strip("_").replace("_", "-")
+
+
+@pytest.mark.parametrize(("verb", "header", "structure"), STRUCTURES, ids=[row[2] for row in STRUCTURES])
+def test_defaults_are_those_of_the_headers(verb, header, structure):
+    parameters = inspect.signature(getattr(tex, verb)).parameters
+    found = fields(header, structure)
+    assert found
+    for name, value in found.items():
+        shown = parameters[re.sub("_[xy]$", "", name) if name not in parameters else name].default
+        if "::" in value:
+            assert shown == {"automatic": "auto"}.get(word(value), word(value)), name
+        elif value in ("true", "false"):
+            assert shown is (value == "true"), name
+        elif re.fullmatch(r"-?[\d.]+f?", value):
+            assert shown == float(value.rstrip("f")), name
+
+
+def test_words_are_those_of_the_name_tables():
+    with pytest.raises(ValueError) as caught:
+        tex.bake([[0.0]], kernel="nonsense")
+    table = re.search(r"kGradientKernelNames\[\] = {(.*?)};", (HEADERS / "bake_options.h").read_text(encoding="utf-8"),
+                      re.DOTALL).group(1)
+    words = re.findall(r'::\w+, "([^"]+)"', table)
+    assert len(words) == 7 and str(caught.value).endswith(", ".join(f"'{each}'" for each in words))
+
+
+def stub():
+    return ast.parse((Path(tex.__file__).parent / "__init__.pyi").read_text(encoding="utf-8"))
+
+
+def test_stubs_have_the_signatures_of_the_module():
+    functions = {node.name: node for node in stub().body if isinstance(node, ast.FunctionDef)}
+    assert sorted(functions) == verbs()
+    for name, node in functions.items():
+        signature = inspect.signature(getattr(tex, name))
+        positional = [p.name for p in signature.parameters.values() if p.kind is p.POSITIONAL_OR_KEYWORD]
+        keywords = [p.name for p in signature.parameters.values() if p.kind is p.KEYWORD_ONLY]
+        assert [a.arg for a in node.args.args] == positional
+        assert [a.arg for a in node.args.kwonlyargs] == keywords
+        presets = [ast.literal_eval(value) for value in node.args.kw_defaults]
+        assert presets == [signature.parameters[each].default for each in keywords], name
+        assert node.returns is not None and all(a.annotation for a in node.args.args + node.args.kwonlyargs)
+
+
+def test_stubs_have_the_attributes_of_the_classes():
+    classes = {node.name: node for node in stub().body if isinstance(node, ast.ClassDef)}
+    assert set(classes) == {n for n in tex.__all__ if inspect.isclass(getattr(tex, n)) and getattr(tex, n).__module__ == "tex._tex"}
+    for name, node in classes.items():
+        members = {each.name for each in node.body if isinstance(each, ast.FunctionDef)}
+        real = {n for n in vars(getattr(tex, name)) if not n.startswith("_")}
+        assert real <= members and all(hasattr(getattr(tex, name), each) for each in members)
+
+
+def test_stubs_use_known_names():
+    known = {"str", "int", "float", "bool", "bytes", "dict", "list", "tuple", "object", "memoryview", "bytearray",
+             "property", "self"}
+    tree = stub()
+    for node in tree.body:
+        if isinstance(node, (ast.Import, ast.ImportFrom)):
+            known |= {alias.asname or alias.name for alias in node.names}
+        elif isinstance(node, ast.ClassDef):
+            known.add(node.name)
+        elif isinstance(node, ast.Assign):
+            known |= {target.id for target in node.targets}
+    used = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+    assert used - known <= {"__version__"}
+
+
+FLAT = np.float32([[[0, 0, 1]]])
+
+
+def test_arguments_are_checked():
+    for call, text in (
+        (lambda: tex.bake(), "needs the argument 'height'"),
+        (lambda: tex.bake([[0.0]], 3), "takes 1 positional"),
+        (lambda: tex.bake([[0.0]], height=[[0.0]]), "two values for 'height'"),
+        (lambda: tex.bake([[0.0]], kernels="x"), "unexpected argument 'kernels'"),
+        (lambda: tex.bake([[0.0]], kernel=1), "kernel: expected one of the words"),
+        (lambda: tex.bake([[0.0]], gaussian_sigma="1"), "gaussian_sigma: expected a number"),
+        (lambda: tex.height_field([[0.0]], invert=1), "invert: expected bool"),
+        (lambda: tex.bake_file("a", "b.dds", mip=3), "mip: expected a dict"),
+        (lambda: tex.bake_file("a", "b.dds", mip={"filters": 1}), "mip got an unexpected argument 'filters'"),
+        (lambda: tex.read_image(3), "path: expected str or os.PathLike"),
+        (lambda: tex.preview(FLAT, ambient=3), "ambient: expected three numbers"),
+    ):
+        with pytest.raises(TypeError, match=re.escape(text)):
+            call()
+    for call, text in (
+        (lambda: tex.bake([[0.0]], gaussian_sigma=0), "gaussian_sigma: must be above 0"),
+        (lambda: tex.bake([[0.0]], bumpiness=float("nan")), "bumpiness: must be finite"),
+        (lambda: tex.bake([[0.0]], wrap=("repeat",)), "wrap: expected a value or a pair"),
+        (lambda: tex.bake([[0.0]], threads=1 << 40), "threads: 1099511627776 must be from"),
+        (lambda: tex.build_mip_chain(FLAT, fade=(3, 1)), "fade: first must be"),
+        (lambda: tex.build_mip_chain(FLAT, levels=-1), "levels: must be 0"),
+        (lambda: tex.unpack([[0.0]], swizzle="xyzq"), "swizzle: 'xyzq' must be one of"),
+        (lambda: tex.scale(FLAT, 1e9), "scale: must be at most 1e6"),
+        (lambda: tex.decode(tex.pack(FLAT), 1), "level: must be from 0 to 0"),
+        (lambda: tex.compare(FLAT, np.tile(FLAT, (1, 2, 1))), "b: expected 1 x 1 texels"),
+        (lambda: tex.encode_blocks(FLAT, "rgb8"), "encoding: must be one of"),
+        (lambda: tex.blend(FLAT, [{}]), "layers[0]: needs 'detail'"),
+        (lambda: tex.encode_picture(tex.pack(FLAT)), "picture: must be a picture"),
+        (lambda: tex.read_image("a\0b"), "embedded null byte"),
+        (lambda: tex.strength_from_world((0, 0), 1, 0), "width: must be above 0"),
+    ):
+        with pytest.raises(ValueError, match=re.escape(text)):
+            call()
