@@ -50,6 +50,7 @@ struct Words;
 TEX_PYTHON_WORDS(BlendMode);
 TEX_PYTHON_WORDS(Component);
 TEX_PYTHON_WORDS(Container);
+TEX_PYTHON_WORDS(CurvatureKind);
 TEX_PYTHON_WORDS(DdsHeader);
 TEX_PYTHON_WORDS(Decoder);
 TEX_PYTHON_WORDS(Effort);

@@ -47,7 +47,23 @@ void each_field(MipOptions& o, F& f) {
     f("domain", o.domain);
     f("fade", o.fade);
     f("wrap", axes(o.wrap_x, o.wrap_y));
+    f("max_side", o.max_side);
     f("any_z", o.any_z);
+}
+
+template <class F>
+void each_field(IntegrateOptions& o, F& f) {  // besides those of BakeOptions
+    f("bumpiness", axes(o.bumpiness_x, o.bumpiness_y));
+    f("wrap", axes(o.wrap_x, o.wrap_y));
+    f("least_z", o.least_z);
+    f("least_response", o.least_response);
+    f("most_steps", o.most_steps);
+}
+
+template <class F>
+void each_field(CurvatureOptions& o, F& f) {
+    f("kind", o.kind);
+    f("wrap", axes(o.wrap_x, o.wrap_y));
 }
 
 template <class F>

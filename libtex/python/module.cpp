@@ -15,6 +15,7 @@ PYBIND11_MODULE(_tex, extension) {
     tex::python::add_formats(module);
     tex::python::add_heights(module);
     tex::python::add_normals(module);
+    tex::python::add_surfaces(module);
     tex::python::add_packing(module);
     tex::python::add_files(module);
     tex::python::add_pipeline(module);

@@ -11,6 +11,7 @@ void add_values(Module& module);
 void add_formats(Module& module);
 void add_heights(Module& module);
 void add_normals(Module& module);
+void add_surfaces(Module& module);
 void add_packing(Module& module);
 void add_files(Module& module);
 void add_pipeline(Module& module);

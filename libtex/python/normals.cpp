@@ -18,6 +18,7 @@ constexpr const char* kMapOrChain = "ArrayLike | Sequence[ArrayLike]";
 
 void check(const MipOptions& options) {
     need(options.levels >= 0, "levels", "must be 0, for all, or more");
+    need(options.max_side >= 0, "max_side", "must be 0, for no limit, or more");
     need(!options.any_z || (options.domain == MipDomain::vector && !options.fade), "any_z",
          "needs the domain 'vector' and no fade");
 }
@@ -67,17 +68,7 @@ py::object compared(Call& call, Running& running) {
     const NormalMap a = map_from(call["a"], "a"), b = map_from(call["b"], "b");
     need_equal(b.extent(), a.extent(), "b");
     Comparison comparison = running.run([&](const Execution& e) { return compare(a, b, e); });
-    const AngularError& error = comparison.error;
-    py::dict result;
-    result["texels"] = error.texels;
-    result["mean"] = error.mean;
-    result["rms"] = error.rms;
-    result["p50"] = error.p50;
-    result["p99"] = error.p99;
-    result["p999"] = error.p999;
-    result["max"] = error.max;
-    result["max_column"] = error.max_column;
-    result["max_row"] = error.max_row;
+    py::dict result = dict_of(comparison.error);
     result["degrees"] = array_of(std::move(comparison.degrees));
     return result;
 }

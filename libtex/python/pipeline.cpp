@@ -61,6 +61,7 @@ py::dict written(const Report& report) {
 
 void check(const MipOptions& options) {
     need(options.levels >= 0, "mip", "levels must be 0, for all, or more");
+    need(options.max_side >= 0, "mip", "max_side must be 0, for no limit, or more");
     need(!options.any_z || (options.domain == MipDomain::vector && !options.fade), "mip",
          "any_z needs the domain 'vector' and no fade");
 }
@@ -121,6 +122,7 @@ void each_field(RepackFields& o, F& f) {
     f("level", o.file.level);
     f("scale", o.file.scale);
     f("mip", o.file.mip);
+    f("max_side", o.file.max_side);
     f("pack", o.pack);
     f("write", o.file.write);
 }
@@ -129,6 +131,7 @@ py::object repacked(Call& call, RepackFields& fields, Running& running) {
     PackFileOptions& options = fields.file;
     need(!options.level || *options.level >= 0, "level", "must be 0 or more");
     need(!options.scale || std::abs(options.scale->scale) <= kMaxScale, "scale", "must be at most 1e6 in magnitude");
+    need(options.max_side >= 0, "max_side", "must be 0, for no limit, or more");
     if (options.mip) check(*options.mip);
     const std::string input = path_from(call["input"], "input");
     const Output output = output_of(call);

@@ -219,4 +219,18 @@ void add_values(Module& module) {
     add_texture(module);
 }
 
+py::dict dict_of(const AngularError& error) {
+    py::dict result;
+    result["texels"] = error.texels;
+    result["mean"] = error.mean;
+    result["rms"] = error.rms;
+    result["p50"] = error.p50;
+    result["p99"] = error.p99;
+    result["p999"] = error.p999;
+    result["max"] = error.max;
+    result["max_column"] = error.max_column;
+    result["max_row"] = error.max_row;
+    return result;
+}
+
 }  // namespace tex::python

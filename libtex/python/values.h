@@ -29,6 +29,7 @@ private:
 [[nodiscard]] const Texture& texture_from(py::handle from, std::string_view name);
 
 // A new object of a class.
+[[nodiscard]] py::dict dict_of(const AngularError& error);
 [[nodiscard]] py::object object_of(Image image);
 [[nodiscard]] py::object object_of(HeightField field);
 [[nodiscard]] py::object object_of(Texture texture);

@@ -40,6 +40,7 @@ NOT_BOUND = {
     "reconstruct_z": "a formula for one texel, for numpy: sqrt(1 - clip(x * x + y * y, 0, 1))",
     "reconstruct_z_approximate": "the same, for comparison",
     "remove_unfinished_files": "for handlers of signals, which Python calls later",
+    "stretch_heights": "for numpy: (heights - low) / (high - low)",
     "to_string": "layouts are words",
     "validate": "check() validates its arguments",
 }
@@ -95,6 +96,8 @@ STRUCTURES = [
     ("bake", "bake_options.h", "BakeOptions"),
     ("height_field", "height_field.h", "HeightOptions"),
     ("build_mip_chain", "mip_options.h", "MipOptions"),
+    ("curvature", "curvature.h", "CurvatureOptions"),
+    ("integrate", "integrate_options.h", "IntegrateOptions"),
     ("pack", "pack_options.h", "PackOptions"),
     ("unpack", "unpack_options.h", "UnpackOptions"),
     ("blend", "blend_options.h", "BlendOptions"),

@@ -220,3 +220,32 @@ def test_facts():
     assert tex.runtime()["dependencies"]["libpng"] and tex.opencolorio_version().startswith("2.")
     assert tex.reader_info()["program"].endswith("tex-reader")
     assert tex.color_files() == []
+
+
+def test_integrate_gives_heights_back_and_the_pictures_of_the_command(commands, bricks, heights):
+    n = tex.bake(heights, bumpiness=12, wrap="mirror")
+    found = tex.integrate(n, bumpiness=12, wrap="mirror")
+    np.testing.assert_allclose(found["height"], heights - np.asarray(heights).min(), atol=1e-4)
+    assert found["curl"]["max"] < 0.1 and found["degrees"].shape == found["height"].shape
+    commands("bake-normals", bricks, "-o", "n.exr", "--format", "float", "--mips", "none", "--bumpiness", "12",
+             "--wrap", "mirror")
+    commands("integrate-normals", "n.exr", "-o", "h.exr", "--format", "float", "--bumpiness", "12", "--wrap", "mirror",
+             "--heights", "raw")
+    assert found["height"].tobytes() == tex.read_image("h.exr")["Y"].tobytes()
+    with pytest.raises(ValueError, match="bumpiness"):
+        tex.integrate(n, bumpiness=0)
+
+
+def test_curvature_of_a_dome_is_the_inverse_of_its_radius():
+    j, i = np.mgrid[-16:17, -16:17]
+    n = np.stack([i, -j, np.sqrt(100.0**2 - i**2 - j**2)], axis=-1) / 100
+    bend = tex.curvature(n.astype(np.float32), wrap="clamp")
+    np.testing.assert_allclose(bend["values"][2:-2, 2:-2], 0.01, rtol=0.01)
+    assert bend["least"] <= bend["rms"] <= bend["greatest"]
+
+
+def test_large_levels_are_left_out(bricks, heights):
+    chain = tex.build_mip_chain(tex.bake(heights), max_side=100)
+    assert [level.shape[0] for level in chain] == [64, 32, 16, 8, 4, 2, 1]
+    with pytest.raises(ValueError, match="max_side"):
+        tex.build_mip_chain(tex.bake(heights), max_side=-1)

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Normals to heights, and how surfaces bend.
+
+#include <cmath>
+
+#include "modules.h"
+#include "running.h"
+#include "values.h"
+
+namespace tex::python {
+namespace {
+
+void check(const IntegrateOptions& options) {
+    const auto is_strength = [](float b) { return std::abs(b) >= 1e-20f && std::abs(b) <= 1e20f; };
+    need(is_strength(options.bumpiness_x) && is_strength(options.bumpiness_y), "bumpiness",
+         "must be from 1e-20 to 1e20 in magnitude");
+    need(options.bake.gaussian_sigma > 0.0f && options.bake.gaussian_sigma <= kMaxGaussianSigma, "gaussian_sigma",
+         "must be above 0 and at most 64");
+    need(options.least_z > 0.0f && options.least_z <= 1.0f, "least_z", "must be above 0 and at most 1");
+    need(options.least_response >= 0.0f, "least_response", "must be 0 or more");
+    need(options.most_steps >= 1, "most_steps", "must be 1 or more");
+}
+
+py::object integrated(Call& call, BakeOptions& bake, IntegrateOptions& options, Running& running) {
+    options.bake = bake;
+    check(options);
+    const NormalMap map = map_from(call["n"], "n");
+    Integration found = running.run([&](const Execution& e) { return integrate(map, options, e); });
+    py::dict result;
+    result["height"] = array_of(std::move(found.field.height));
+    result["highest"] = found.highest;
+    result["curl"] = dict_of(found.curl);
+    result["degrees"] = array_of(std::move(found.degrees));
+    result["unused_texels"] = found.unused_texels;
+    result["steps"] = found.steps;
+    return result;
+}
+
+py::object bent(Call& call, CurvatureOptions& options, Running& running) {
+    const NormalMap map = map_from(call["n"], "n");
+    Curvature found = running.run([&](const Execution& e) { return curvature(map, options, e); });
+    py::dict result;
+    result["values"] = array_of(std::move(found.values));
+    result["least"] = found.least;
+    result["greatest"] = found.greatest;
+    result["rms"] = found.rms;
+    return result;
+}
+
+}  // namespace
+
+void add_surfaces(Module& module) {
+    module.verb<BakeOptions, IntegrateOptions, Running>(
+        "integrate", {{"n", "ArrayLike"}}, "dict[str, Any]",
+        "A dict of the fields of Integration: 'height' and 'degrees' are arrays (height, width), and 'curl' has the "
+        "fields of AngularError. bake(result['height'], bumpiness=..., wrap=...) gives the map back.",
+        integrated);
+    module.verb<CurvatureOptions, Running>("curvature", {{"n", "ArrayLike"}}, "dict[str, Any]",
+                                           "A dict of the fields of Curvature: 'values' is an array (height, width).",
+                                           bent);
+}
+
+}  // namespace tex::python
