@@ -191,7 +191,7 @@ void Maker::damages() {
     png("N302-srgb-encoded", srgb_encode(codes()));
     png("N303-premultiplied", with_alpha(codes(), true));
     png("N304-jpeg-blocks", jpeg(codes(), 30));
-    png("N305-banding", codes_of(from_heights(integrate(base), 64)));
+    png("N305-banding", codes_of(from_heights(tex::reference::integrate(base), 64)));
     const Codes whole = codes();
     Codes blocks = whole;  // four colours in each block of 4x4: those of its first row
     for (int j = 0; j < 128; ++j) {

@@ -133,7 +133,7 @@ std::vector<Planted> plant_all(const NormalMap& whole, std::optional<YAxis> y, b
     add("mips of another image", "N502", texture_of(chain_of(base, ChainFault::other_image)), chain);
 
     const NormalMap part = turned(power_of_two_part(map, kMostForHeights), y && *y == YAxis::down);
-    const Heights heights = integrate(part);
+    const Heights heights = reference::integrate(part);
     const auto baked = share(texture_of(codes_of(from_heights(heights, 0))));
     const auto shows = [&](int levels) { return heights.slope_step(levels) >= kVisibleStep; };
     add("banding of 8-bit heights", "N305", texture_of(codes_of(from_heights(heights, kGreyLevels))), baked).visible =
