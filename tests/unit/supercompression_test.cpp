@@ -83,7 +83,7 @@ std::vector<Bytes> all_levels(const Bytes& file, const std::function<Bytes(const
 }
 
 // The bytes of a level, decoded in rows.
-Result<Bytes> in_rows(RowSource& level) {
+Result<Bytes> in_rows(RowSource& level, Format format) {
     Bytes bytes;
     for (int j = 0; j < level.extent().height; j += level.rows_together()) {
         const int count = std::min(level.rows_together(), level.extent().height - j);
@@ -91,6 +91,7 @@ Result<Bytes> in_rows(RowSource& level) {
         const int rows = level.rows_together() == 1 ? count : level.rows_together();
         bytes.resize(before + level.row_bytes() * static_cast<std::size_t>(rows));
         if (const Result<void> done = level.decode(j, count, bytes.data() + before); !done) return done.error();
+        bytes.resize(before + level_bytes(format, {level.extent().width, rows}));  // row_bytes() is rounded up
     }
     return bytes;
 }
@@ -106,7 +107,7 @@ Result<Texture> read(const Bytes& bytes) {
         return rows.error();
     }
     for (std::size_t k = 0; k < rows->levels.size(); ++k) {
-        const Result<Bytes> level = in_rows(*rows->levels[k]);
+        const Result<Bytes> level = in_rows(*rows->levels[k], rows->head.format);
         EXPECT_EQ(bool(level), bool(texture));
         if (level && texture) {
             EXPECT_EQ(*level, texture->levels[k].bytes) << "level " << k;
