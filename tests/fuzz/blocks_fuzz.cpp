@@ -12,6 +12,7 @@
 #include <tex/pack.h>
 #include <tex/unpack.h>
 
+#include "blocks/astc.h"
 #include "blocks/bc1.h"
 #include "blocks/bc4.h"
 #include "blocks/eac.h"
@@ -100,7 +101,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     one.threads = 1;
     const auto image = tex::decode(texture, 0, one);
     if (!image || static_cast<int>(image->planes.size()) != tex::format_info(texture.format).channels) std::abort();
-    if (tex::format_info(texture.format).has_blocks()) compare_blocks(texture, *image);
+    // blocks/astc.h is all there is for ASTC.
+    if (tex::format_info(texture.format).has_blocks() && !tex::is_astc(texture.format)) compare_blocks(texture, *image);
 
     const auto chain = tex::unpack(texture, {}, one);
     if (!chain) return 0;  // one channel has no y

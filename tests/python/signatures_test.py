@@ -20,6 +20,7 @@ from docstrings import DECLARATION, comments  # noqa: E402
 MESHES = "meshes are not bound yet; run('convert-normals', ...) and the --mesh options of commands use them"
 NOT_BOUND = {
     "check_part": MESHES,
+    "decoder_kind": MESHES,
     "in_scene": MESHES,
     "in_tile": MESHES,
     "make_tangents": MESHES,
