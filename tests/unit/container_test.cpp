@@ -83,7 +83,7 @@ TEST(Container, GivesEqualBytesForEqualTextures) {
     }
 }
 
-TEST(Container, GivesTheSameBytesForEveryNumberOfThreads) {
+TEST(Container, IsCompressedAlikeByAnyNumberOfThreads) {
     const Texture texture = encoded_texture(Encoding::half, {700, 900}, 10);
     const Texture picture = encoded_texture(Encoding::rgb8, {900, 700}, 1);
     const auto exr = encode_file(texture, Container::exr, {}, {1, {}});
