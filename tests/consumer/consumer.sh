@@ -187,8 +187,7 @@ package)
     dpkg-deb --info "$package"
     depends=$(dpkg-deb --field "$package" Depends)
     for wanted in libc6 libpng16-16 libdeflate0 libisal2 libzstd1 libastcenc3d libopenexr libtbb12 libhwy \
-        libopencolorio \
-        libopenimageio libseccomp2; do
+        libopencolorio libopenimageio libseccomp2; do
         case $depends in *"$wanted"*) ;; *) fail "the package does not depend on $wanted: $depends" ;; esac
     done
     dpkg-deb --extract "$package" "$scratch/root"
