@@ -19,7 +19,7 @@ public:
     // Takes what the last rows have completed.
     Result<void> take() {
         while (std::shared_ptr<RowWork> work = target_.take_work()) waiting_.push_back(std::move(work));
-        const auto enough = static_cast<std::size_t>(4 * thread_count(execution_));
+        const std::size_t enough = 4 * static_cast<std::size_t>(thread_count(execution_));
         return waiting_.size() < enough ? Result<void>() : finish();
     }
     Result<void> finish() {
