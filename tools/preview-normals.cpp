@@ -79,7 +79,7 @@ Result<void> PreviewNormals::check(const std::vector<cli::Task>& tasks) {
         if (cli::has_level(task.output)) throw cli::UsageError("--name: {level} has no meaning for pictures");
         sheet_.check(task);
         if (mesh_.has_mesh() && task.tile != 0 && !task.joined.empty())
-            throw cli::UsageError("the tiles of a mesh are pictures of their own: give --out-dir, not -o");
+            throw cli::UsageError("each tile of a mesh becomes its own picture: give --out-dir, not -o");
     }
     if (!mesh_.has_mesh()) return {};
     const auto mesh = mesh_.input(0, running.read, {running.threads, {}});  // jobs share it; one error is enough

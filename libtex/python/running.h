@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // running.h: runs a verb without the GIL.
 //
-// The verb runs on a thread of its own, while the caller's thread waits. So the callback of the progress is called on
-// the caller's thread, never more than one call at a time, and Ctrl-C is noticed however long a verb takes to report.
+// The verb runs on a separate thread while the caller's thread waits. The progress callback is therefore called on the
+// caller's thread, one call at a time, and Ctrl-C works even if the verb reports no progress for a long time.
 
 #pragma once
 

@@ -15,16 +15,6 @@
 #include "threads/parallel.h"
 
 namespace tex {
-namespace {
-
-// The number of rows in a strip: enough texels to be worth a thread, and several times the number of rows that
-// neighbouring strips both compute.
-int strip_rows(int width, int overlap) {
-    constexpr int kTexels = 1 << 17;
-    return std::max({1, kTexels / width, 4 * overlap});
-}
-
-}  // namespace
 
 Result<NormalMap> bake(const HeightField& field, const BakeOptions& options, const Execution& execution) {
     const Extent extent = field.height.extent();

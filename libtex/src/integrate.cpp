@@ -23,10 +23,6 @@
 namespace tex {
 namespace {
 
-constexpr int kPieceTexels = 1 << 17;
-
-int strip_rows(int width, int overlap) { return std::max({1, kPieceTexels / width, 4 * overlap}); }
-
 Result<void> check(const Integrator::Count& count, Extent extent) {
     const std::int64_t texels = extent.texels();
     if (count.behind > texels / 16) {

@@ -184,6 +184,8 @@ TEST_F(IntegrateNormals, BadInputIsRefusedWithItsReason) {
     refuses({"n.png", "-o", "h.png", "--steepest", "0"}, 2, "--steepest");
     refuses({"n.png", "-o", "h.png", "--curl-out", "h.png"}, 2, "h.png");
     refuses({"n.png", "-o", "h.png", "--curl-out", "c"}, 2, "unsupported output format");
+    refuses({"n.png", "-o", "h.png", "--curvature-out", "c.astc"}, 2, "cannot hold such a map");
+    EXPECT_FALSE(scratch_.has("h.png"));
     refuses({"n.png", "-o", "h.png", "--curvature", "mean"}, 2, "does nothing without --curvature-out");
     refuses({"n.png", "--out-dir", "out", "--name", "{stem}_{format}.png"}, 2, "{format} has no meaning");
     refuses({"waves.png", "-o", "h.png"}, 4, "waves.png");  // a grey picture

@@ -148,7 +148,7 @@ TEST_P(EveryUsage, OutputsNeedAKnownKind) {
     refuses({"a.png", "-o", "a.foo"}, ".dds, .ktx2, .astc, .png, .exr, .tif, .tiff, .tga, .bmp, .jpg, .jpeg");
     refuses({"a.png", "-o", "noextension"}, "a name without an extension");
     refuses({"a.png", "-o", "a.dds", "--container", "ktx2"}, "a.dds says dds, --container says ktx2");
-    if (has_option("--format") && GetParam() != "integrate-normals")  // heights have formats of their own
+    if (has_option("--format") && GetParam() != "integrate-normals")  // heights have other formats
         refuses({"a.png", "-o", "n.png", "--format", "bc5"}, "bc5 goes into .dds, .ktx2");
 }
 

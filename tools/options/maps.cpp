@@ -37,8 +37,11 @@ void MapOutput::add(Command& command, const FileOptions& files, std::string name
 std::string MapOutput::path_of(const Task& task) const { return files_->place(pattern_, name_fields(task.input)); }
 
 Container MapOutput::container_of_path(const std::string& path) const {
-    if (const auto container = container_of(path)) return *container;
-    throw UsageError(fmt::format("{}: {}: unsupported output format", name_, printable(path)));
+    const auto container = container_of(path);
+    if (!container) throw UsageError(fmt::format("{}: {}: unsupported output format", name_, printable(path)));
+    if (can_hold(*container, map_format(*container))) return *container;
+    throw UsageError(fmt::format("{}: {}: a {} file cannot hold such a map", name_, printable(path),
+                                 name_of(kContainerNames, *container)));
 }
 
 void MapOutput::amend(Task& task) const {
@@ -54,7 +57,7 @@ bool MapOutput::holds_floats(const Job& job) const {
 
 Result<void> MapOutput::write(Job& job, const Texture& texture, Json& report) const {
     const std::string path = path_of(job.task);
-    const auto bytes = encode_file(texture, container_of_path(path), job.write_options);
+    const auto bytes = encode_file(texture, container_of_path(path), job.write_options, {job.threads(), {}});
     if (!bytes) return bytes.error().of(path);
     if (auto written = write_file(path, *bytes, job.write_options); !written) return written;
     job.wrote(path);

@@ -24,7 +24,7 @@ public:
 
     [[nodiscard]] bool is_given() const { return !pattern_.empty(); }
 
-    // Adds the file to the task. Throws UsageError if its name does not show its file type.
+    // Adds the file to the task. Throws UsageError if its name shows no file type, or one that cannot hold the map.
     void amend(Task& task) const;
 
     // Whether the file holds floats. Others hold pictures of 8 or 16 bits.

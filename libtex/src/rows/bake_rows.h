@@ -4,6 +4,7 @@
 
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include <tex/bake_options.h>
@@ -25,6 +26,13 @@ struct Gradient {
 };
 
 Gradient gradient_of(const BakeOptions& options);
+
+// The number of rows in a strip: enough texels to be worth a thread, and several times the number of rows that
+// neighbouring strips both compute.
+inline int strip_rows(int width, int overlap) {
+    constexpr int kTexels = 1 << 17;
+    return std::max({1, kTexels / width, 4 * overlap});
+}
 
 // The parameters of a height field, without its heights.
 struct HeightFieldHead {

@@ -14,10 +14,6 @@
 namespace tex {
 namespace {
 
-constexpr int kPieceTexels = 1 << 17;
-
-int strip_rows(int width, int overlap) { return std::max({1, kPieceTexels / width, 4 * overlap}); }
-
 float larger_bumpiness(const IntegrateOptions& options) {
     return std::max(std::abs(options.bumpiness_x), std::abs(options.bumpiness_y));
 }
