@@ -202,6 +202,11 @@ void Maker::damages() {
     png("N306-bc-blocks", blocks);
     png("N307-seam", codes_of(part(96, 96)));
     png("N308-channels-exchanged", exchange(codes(), 0, 2));
+    png("N309-turned", codes_of(turn_picture(base, 30.0)));
+    unsigned state = 1;
+    png("N310-no-surface", codes_of(changed(base, [&](int, int, double& p, double& q) {
+            for (double* slope : {&p, &q}) *slope = ((state = state * 1664525u + 1013904223u) >> 16) / 65536.0 - 0.5;
+        })));
 }
 
 void Maker::conventions() {
@@ -210,10 +215,10 @@ void Maker::conventions() {
     const Codes flipped = flip_green(half);
     for (int k = 0; k < 128 * 64; ++k) half.at(k % 128, k / 128, 1) = flipped.at(k % 128, k / 128, 1);
     png("N402-mixed-y", half);
-    unsigned state = 1;
-    png("N403-y-undecidable", codes_of(changed(base, [&](int, int, double& p, double& q) {
-            for (double* slope : {&p, &q}) *slope = ((state = state * 1664525u + 1013904223u) >> 16) / 65536.0 - 0.5;
-        })));
+    // Waves along x and waves along y: no slope changes across its own direction, whichever way green points.
+    const auto waves = [](int k) { return 0.2 * std::sin(k * 0.147262) + 0.15 * std::sin(k * 0.343612 + 1.0); };
+    png("N403-y-undecidable",
+        codes_of(changed(base, [&](int i, int j, double& p, double& q) { p = waves(i), q = waves(j); })));
     Texture texture = packed(part(128, 128), Encoding::bc5);
     texture.y_axis = YAxis::down;
     write("N404-y-contradicts-file.ktx2", encoded(texture, Container::ktx2));

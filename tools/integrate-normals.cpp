@@ -23,16 +23,6 @@ namespace {
 
 using namespace tex;
 
-// What suits the precision of the source: the least z with a slope that means anything, and the least response.
-IntegrateOptions defaults_for(const SourceInfo& info) {
-    IntegrateOptions options;
-    const FormatInfo format = format_info(info.format);
-    if (format.sample == SampleKind::floating) return options;
-    options.least_z = format.bits == 16 ? 0x1p-15f : 0x1p-7f;
-    if (format.bits != 16) options.least_response = 0.1f;
-    return options;
-}
-
 class IntegrateNormals : public cli::NormalsConverter {
 public:
     explicit IntegrateNormals(const cli::ProgramRow& row);
@@ -61,6 +51,7 @@ IntegrateNormals::IntegrateNormals(const cli::ProgramRow& row) : NormalsConverte
     command.input("NORMALS...", "normal maps; - is standard input");
     files.add(command);
     normals.add(command, false);
+    normals.unpack.keep_invalid = true;  // to tell unknown slopes from flat ones
     add_level();
     strength_.add(command);
     command.group("Slopes");
@@ -131,7 +122,7 @@ Result<std::vector<Integration>> IntegrateNormals::integrate_levels(cli::Job& jo
         return Error{ErrorCode::bad_option, job.task.input,
                      fmt::format("has no level {}, only {}", level_, levels.size())};
     }
-    IntegrateOptions with = defaults_for(source.info);
+    IntegrateOptions with = cli::integrate_options_for(source.info);
     with.bake = kernel_.bake;
     with.wrap_x = wrap_.x;
     with.wrap_y = wrap_.y;
@@ -190,7 +181,8 @@ Result<void> IntegrateNormals::process(cli::Job& job) {
     if (!levels) return levels.error();
     if (const std::int64_t unknown = levels->front().unused_texels; unknown > 0) {
         job.warn(
-            fmt::format("{} of {} texels are too steep to have a slope; theirs follow from the others (--steepest)",
+            fmt::format("{} of {} texels have no slope: they are too steep (--steepest) or not finite; theirs follow "
+                        "from the others",
                         unknown, levels->front().field.height.extent().texels()));
     }
     const std::size_t first = all_levels_ ? 0 : static_cast<std::size_t>(level_);

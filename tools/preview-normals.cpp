@@ -60,6 +60,9 @@ PreviewNormals::PreviewNormals(const cli::ProgramRow& row) : NormalsConverter(ro
                     "On a sphere, with detail blended in.");
     command.example("preview-normals *.dds -o sheet.png --show lit,normals,tilt,curl",
                     "A contact sheet, a row for each map.");
+    command.example(
+        "preview-normals rock_n.dds -o relief.png --show height,curvature,lit --parallax auto --parallax-steps 64",
+        "The heights that the normals show, the curvature, and the surface with parallax.");
     command.example("preview-normals before.dds after.dds -o split.png --split --difference",
                     "Two maps in one picture, and the angles between them.");
     command.example("preview-normals rock_n.dds -o look.png --mesh rock.glb --camera 30,20 --show lit,tangents,seams",
@@ -88,11 +91,14 @@ Result<void> PreviewNormals::check(const std::vector<cli::Task>& tasks) {
 
 Result<void> PreviewNormals::process(cli::Job& job) {
     const std::vector<std::string> names = job.task.inputs();
-    const cli::Reading reading = {false, false, {}, !sheet_.is_difference(), true};
+    const PreviewOptions& preview = scene_.preview;
+    const bool with_heights = scene_.needs_heights() || (scene_.height.empty() && sheet_.shows(Show::height));
+    const cli::Sampling sampling = {
+        {false, false, {}, !sheet_.is_difference(), true}, preview.wrap_x, preview.wrap_y, with_heights};
     std::vector<cli::SampledMap> maps;
     for (const std::string& name : names) {
         const double share = static_cast<double>(maps.size() + 1) / static_cast<double>(names.size());
-        auto map = cli::read_sampled_map(job, name, normals, reading, scene_.preview, job.until(0.4 * share));
+        auto map = cli::read_sampled_map(job, name, normals, sampling, job.until(0.4 * share));
         if (!map) return map.error();
         maps.push_back(std::move(*map));
     }

@@ -82,6 +82,7 @@ void each_field(UnpackOptions& o, F& f) {
     f("range", o.range);
     f("snap_flat", o.snap_flat);
     f("keep_length", o.keep_length);
+    f("keep_invalid", o.keep_invalid);
 }
 
 template <class F>

@@ -14,6 +14,7 @@
 
 #include "checks/convention_rules.h"
 #include "checks/damage_rules.h"
+#include "checks/field_rules.h"
 #include "checks/file_rules.h"
 #include "checks/findings.h"
 #include "checks/mesh_fit.h"
@@ -213,6 +214,7 @@ Result<CheckReport> check(const std::string& file, const Texture& texture, const
         check_file_rules(subject, findings);
         check_value_rules(subject, findings);
         if (auto done = check_damage_rules(subject, findings); !done) return done.error();
+        if (auto done = check_field_rules(subject, findings); !done) return done.error();
         check_convention_rules(subject, findings);
         if (auto done = check_mip_rules(subject, findings); !done) return done.error();
         CheckReport report;

@@ -32,7 +32,7 @@ Result<void> check(const Integrator::Count& count, Extent extent) {
                          " texels, as in object-space maps, which hold no slopes"};
     }
     if (count.unused == texels)
-        return Error{ErrorCode::bad_data, {}, "no texel has a slope that can be used: z is 0 everywhere"};
+        return Error{ErrorCode::bad_data, {}, "no texel has a slope that can be used: z is 0 or not finite everywhere"};
     return {};
 }
 
@@ -69,6 +69,7 @@ Result<void> measure_curl(const NormalMap& map, const BakeOptions& bake, Integra
             rows.bake(j, row);
             float* const degrees = result.degrees.row(j);
             angle_row({map.x.row(j), map.y.row(j), map.z.row(j)}, row, extent.width, degrees);
+            zero_not_finite(degrees, extent.width);
             sums[static_cast<std::size_t>(j)] = sum_angles(degrees, extent.width);
         }
     };

@@ -146,7 +146,7 @@ Result<Texture> show_plane(const Job& job, PlaneView<const float> values, const 
 }
 
 Result<Texture> show_measure(const Job& job) {
-    const auto found = measure(job.options.show, job.base(), job.options.maximum, part(job.execution, 0.0, 0.3));
+    const auto found = measure(job.options, job.base(), part(job.execution, 0.0, 0.3));
     if (!found) return found.error();
     return show_plane(job, found->values.view(), found->scale, part(job.execution, 0.3, 1.0));
 }

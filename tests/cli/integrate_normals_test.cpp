@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -86,6 +87,28 @@ TEST_F(IntegrateNormals, IsTheInverseOfBakeNormalsInEveryUnit) {
         does("bake-normals", bake);
         does("integrate-normals", integrate);
         EXPECT_LT(difference("h.exr", "waves.png"), 1e-3) << strength.front();
+    }
+}
+
+// Bakers leave NaN outside of charts.
+TEST_F(IntegrateNormals, TexelsThatAreNotFiniteFollowFromTheOthers) {
+    does("bake-normals", {"waves.png", "-o", "n.exr", "--format", "float", "--bumpiness", "8"});
+    Image map = image_of("n.exr");
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    for (int k = 0; k < 9; ++k) {
+        for (Plane<float>& plane : map.planes) plane.at(40 + k % 3, 60 + k / 3) = nan;
+    }
+    ASSERT_TRUE(write_image(scratch_.path("holes.exr"), map));
+    const auto sound = report_of({"n.exr", "-o", "sound.exr", "--bumpiness", "8"});
+    const auto holes =
+        report_of({"holes.exr", "-o", "h.exr", "--bumpiness", "8", "--curvature-out", "c.exr", "--curl-out", "d.exr"});
+    EXPECT_EQ(sound["unknown_texels"], 0);
+    EXPECT_EQ(holes["unknown_texels"], 9);
+    EXPECT_NE(holes["warnings"][0].get<std::string>().find("9 of 16384 texels have no slope"), std::string::npos);
+    EXPECT_LT(difference("h.exr", "sound.exr"), 0.01);
+    for (const char* name : {"c.exr", "d.exr"}) {
+        const Plane<float> plane = heights_of(name);
+        for (int k = 0; k < 128 * 128; ++k) ASSERT_TRUE(std::isfinite(plane.at(k % 128, k / 128))) << name;
     }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <tex/tex.h>
 #include <nlohmann/json.hpp>
@@ -235,13 +236,55 @@ TEST_F(PreviewNormals, TakesTheWholeMaterial) {
     EXPECT_EQ(extent_of("all.png"), (Extent{80, 60}));
 }
 
+// The heights of a bake's normals are those of its height map.
+TEST_F(PreviewNormals, TakesHeightsFromTheNormalsIfThereIsNoHeightMap) {
+    ASSERT_EQ(run(scratch_, "bake-normals",
+                  {"height.png", "-o", "n.exr", "--format", "float", "--bumpiness", "12", "--no-sync"})
+                  .code,
+              0);
+    const auto picture = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> arguments = {"n.exr", "-o", "x.png", "--size", "96", "--no-legend"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Ran ran = preview(arguments);
+        EXPECT_EQ(ran.code, 0) << ran.err;
+        return std::move(read_image(scratch_.path("x.png")).value());
+    };
+    const auto largest_difference = [](const Image& a, const Image& b) {
+        float largest = 0.0f;
+        for (int k = 0; k < 96 * 96; ++k)
+            largest = std::max(largest, std::abs(a.planes[0].at(k % 96, k / 96) - b.planes[0].at(k % 96, k / 96)));
+        return largest;
+    };
+    const std::vector<std::string> file = {"--height", "height.png"};
+    EXPECT_LT(largest_difference(picture({"--show", "height"}), picture({"--show", "height", file[0], file[1]})),
+              3.0f / 255.0f);
+    // White is 12 of 512 texels high; the bricks use all of the range from black to white but a little.
+    const std::vector<std::string> look = {"--camera", "40,30", "--parallax-steps", "32", "--parallax"};
+    const auto lit = [&](const std::string& amount, const std::vector<std::string>& more) {
+        std::vector<std::string> arguments = look;
+        arguments.push_back(amount);
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return picture(arguments);
+    };
+    const Image by_itself = lit("auto", {}), flat = lit("0", {}), told = lit(fmt::format("{}", 12.0 / 512.0), file);
+    EXPECT_GT(largest_difference(by_itself, flat), 0.2f);
+    EXPECT_LT(largest_difference(by_itself, told), 0.5f * largest_difference(by_itself, flat));
+    EXPECT_GT(largest_difference(lit("-0.02", {}), by_itself), 0.2f);
+}
+
+TEST_F(PreviewNormals, RefusesHeightsOfMapsWithoutSlopes) {
+    scratch_.add_sample("broken/N213-object-space.png", "object.png");
+    refuses({"object.png", "-o", "x.png", "--show", "height"}, "object.png: z is negative in", 4);
+    EXPECT_EQ(preview({"object.png", "-o", "x.png", "--show", "curvature"}).code, 0);
+}
+
 TEST_F(PreviewNormals, RefusesMisuse) {
     const auto with = [](std::vector<std::string> arguments) {
         arguments.insert(arguments.begin(), {"bricks.dds", "-o", "x.png"});
         return arguments;
     };
     refuses(with({"--show", "lti"}), "must be one of lit, plain");
-    refuses(with({"--show", "height"}), "--show height needs --height");
+    refuses(with({"--height", "height.png", "--parallax", "auto"}), "leave out --height");
     refuses(with({"--shape", "spere"}), "did you mean sphere?");
     refuses(with({"--shape", "tiled:0x2"}), "--shape: 0 is not at least 1");
     refuses(with({"--shape", "tiled"}), "not 'tiled'");
@@ -255,7 +298,7 @@ TEST_F(PreviewNormals, RefusesMisuse) {
     refuses(with({"--camera", "0,90"}), "the pitch is -89 to 89 degrees");
     refuses(with({"--camera", "0,0,150"}), "FOV is 0 to 120 degrees");
     refuses(with({"--shininess", "0"}), "--shininess");
-    refuses(with({"--parallax", "0.1"}), "--parallax needs --height");
+    refuses(with({"--parallax", "high"}), "--parallax");
     refuses(with({"--height", "height.png", "--parallax-steps", "4"}), "--parallax-steps needs --parallax");
     refuses(with({"--detail-scale", "2"}), "--detail-scale needs --detail");
     refuses(with({"--anisotropy", "17"}), "--anisotropy");

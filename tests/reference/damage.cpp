@@ -7,6 +7,7 @@
 #include <complex>
 #include <cstring>
 #include <iterator>
+#include <numbers>
 #include <utility>
 
 namespace tex::reference {
@@ -344,6 +345,30 @@ NormalMap crop(const NormalMap& map, int x, int y, Extent extent) {
             result.y.at(i, j) = map.y.at(x + i, y + j);
             result.z.at(i, j) = map.z.at(x + i, y + j);
         }
+    }
+    return result;
+}
+
+NormalMap turn_picture(const NormalMap& map, double degrees) {
+    const double angle = degrees * std::numbers::pi / 180.0, c = std::cos(angle), s = std::sin(angle);
+    const Extent from = map.extent();
+    const int side = static_cast<int>((std::min(from.width, from.height) - 2) / (std::abs(c) + std::abs(s)));
+    NormalMap result(Extent{side, side});
+    for (int k = 0; k < side * side; ++k) {
+        // To the right of the centre, and down.
+        const double x = k % side - (side - 1) / 2.0, y = k / side - (side - 1) / 2.0;
+        const double column = c * x - s * y + (from.width - 1) / 2.0, row = s * x + c * y + (from.height - 1) / 2.0;
+        const int i = static_cast<int>(column), j = static_cast<int>(row);
+        const double u = column - i, v = row - j;
+        const auto sampled = [&](const Plane<float>& plane) {
+            return (plane.at(i, j) * (1.0 - u) + plane.at(i + 1, j) * u) * (1.0 - v) +
+                   (plane.at(i, j + 1) * (1.0 - u) + plane.at(i + 1, j + 1) * u) * v;
+        };
+        const double nx = sampled(map.x), ny = sampled(map.y), nz = sampled(map.z);
+        const double length = std::max(1e-9, std::sqrt(nx * nx + ny * ny + nz * nz));
+        result.x.at(k % side, k / side) = static_cast<float>(nx / length);
+        result.y.at(k % side, k / side) = static_cast<float>(ny / length);
+        result.z.at(k % side, k / side) = static_cast<float>(nz / length);
     }
     return result;
 }

@@ -60,6 +60,11 @@ NormalMap from_heights(const Heights& heights, int levels);
 
 NormalMap crop(const NormalMap& map, int x, int y, Extent extent);
 
+// The picture turned counterclockwise about its centre, by an angle from -75 to 75 degrees, with bilinear samples.
+// Vectors stay as they are, which is the damage. The result is the largest square that needs no texel outside of the
+// map.
+NormalMap turn_picture(const NormalMap& map, double degrees);
+
 // Chains by the box filter. Each level averages the previous one.
 enum class ChainFault {
     none,

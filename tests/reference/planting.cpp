@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <utility>
 
 #include "reference/damage.h"
@@ -82,6 +84,19 @@ Codes half_flipped(const Codes& codes) {
     return result;
 }
 
+// The texels in another order: noise of the map's own normals.
+Codes shuffled(Codes codes) {
+    unsigned state = 1;
+    for (int k = static_cast<int>(codes.extent.texels()) - 1; k > 0; --k) {
+        state = state * 1664525u + 1013904223u;
+        const int other = static_cast<int>((std::uint64_t{state} * static_cast<unsigned>(k + 1)) >> 32);
+        for (int c = 0; c < codes.channels; ++c)
+            std::swap(codes.values[static_cast<std::size_t>(k * codes.channels + c)],
+                      codes.values[static_cast<std::size_t>(other * codes.channels + c)]);
+    }
+    return codes;
+}
+
 // Parts of the map that do not meet themselves: the first one that shows a seam, as SOURCES.md measures tiling.
 void plant_seam(const NormalMap& whole, std::vector<Planted>& all) {
     const Extent e = whole.extent();
@@ -122,6 +137,11 @@ std::vector<Planted> plant_all(const NormalMap& whole, std::optional<YAxis> y, b
     add("premultiplied", "N303", texture_of(with_alpha(codes, true)), share(texture_of(with_alpha(codes, false))));
     add("x and y exchanged", "N308", texture_of(exchange(codes, 0, 1)), plain);
     add("x and z exchanged", "N308", texture_of(exchange(codes, 0, 2)), plain);
+    for (const double angle : {30.0, -50.0}) {
+        add("turned by " + std::to_string(static_cast<int>(angle)) + " degrees", "N309",
+            texture_of(codes_of(turn_picture(map, angle))), plain);
+    }
+    add("texels shuffled", "N310", texture_of(shuffled(codes)), plain);
     if (!blocks) add("BC1 before", "N306", texture_of(bc1(codes)), plain);
     add("JPEG, quality 50", "N304", texture_of(jpeg(codes, 50)), plain);
 

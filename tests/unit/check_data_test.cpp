@@ -16,8 +16,12 @@
 
 #include <gtest/gtest.h>
 
+#include <tex/pack.h>
+#include <tex/scale.h>
 #include <tex/unpack.h>
 
+#include "checks/turn.h"
+#include "reference/damage.h"
 #include "reference/detection.h"
 #include "reference/real_maps.h"
 
@@ -102,6 +106,63 @@ TEST(CheckData, FindsNoDamageThatIsNotThere) {
     EXPECT_EQ(met, expected);
     std::printf("%zu findings of damage on %zu untouched maps, all of them true\n", met.size(),
                 reference::real_maps().size());
+}
+
+// Maps that were baked from a high-poly model are no height fields: they make up for the normals of the low-poly mesh.
+TEST(CheckData, IntactMapsOfModelsHaveCurlButNoFindingOfIt) {
+    SKIP_WITHOUT_DATA();
+    std::vector<std::string> paths = {"mesh/Suzanne/02_suzanne_Normal.png", "trial/materialx_chess_bishop_black.jpg",
+                                      "trial/WoodFloor043_normal_GL.jpg", "trial/Grass001_normal_DX.jpg"};
+    for (const char* part : {"GlassPlasticMat", "LeatherPartsMat", "LensesMat", "MetalPartsMat", "RubberWoodMat"})
+        paths.push_back("mesh/FlightHelmet/FlightHelmet_Materials_" + std::string(part) + "_Normal.png");
+    double most = 0.0;
+    for (const std::string& path : paths) {
+        const auto texture = read_texture(kData + path);
+        ASSERT_TRUE(texture) << texture.error().message();
+        const CheckReport report = checked(*texture, {});
+        EXPECT_FALSE(found(report, "N309 N310")) << path;
+        const Image image = decode(*texture, 0).value();
+        const auto turn = measure_turn({&image, kSwizzleXyz, false, false}, {});
+        ASSERT_TRUE(turn);
+        std::printf("%-66s correlation %+.2f", path.c_str(), report.y.correlation);
+        for (const TurnScale& scale : turn->scale)
+            std::printf("   curl %.2f, axis %+.0f (%.2f)", scale.curl_share(), scale.clearest().angle(),
+                        scale.clearest().strength());
+        std::printf("\n");
+        most = std::max(most, turn->scale[0].curl_share());
+    }
+    EXPECT_GT(most, 0.35);
+}
+
+// Faint and coarse copies of every intact map, in the formats of games.
+TEST(CheckData, CompressionOfFaintMapsIsNoTurn) {
+    SKIP_WITHOUT_DATA();
+    int copies = 0;
+    for (const auto& map : reference::real_maps()) {
+        if (!map.intact) continue;
+        auto texture = read_texture(kData + map.path);
+        ASSERT_TRUE(texture) << texture.error().message();
+        texture->levels.resize(1);
+        const auto chain = unpack(*texture);
+        ASSERT_TRUE(chain);
+        const Extent extent = chain->levels[0].extent();
+        const NormalMap part =
+            reference::crop(chain->levels[0], 0, 0, {std::min(extent.width, 256), std::min(extent.height, 256)});
+        for (const float strength : {1.0f, 0.3f, 0.1f}) {
+            auto scaled = scale(reference::crop(part, 0, 0, part.extent()), strength);
+            ASSERT_TRUE(scaled);
+            MipChain faint;
+            faint.levels.push_back(std::move(*scaled));
+            for (const Encoding encoding : {Encoding::rgb8, Encoding::bc5, Encoding::dxt5nm}) {
+                const auto packed = pack(faint, {encoding, YAxis::up, Effort::fast});
+                ASSERT_TRUE(packed);
+                EXPECT_FALSE(found(checked(*packed, {}), "N309 N310"))
+                    << map.path << " " << strength << " " << name_of(kEncodingNames, encoding);
+                ++copies;
+            }
+        }
+    }
+    std::printf("%d copies\n", copies);
 }
 
 // The mean length of the stored vectors of a level.

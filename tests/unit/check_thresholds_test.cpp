@@ -24,6 +24,7 @@
 #include "checks/levels.h"
 #include "checks/seam.h"
 #include "checks/texel_counts.h"
+#include "checks/turn.h"
 #include "reference/planting.h"
 #include "reference/real_maps.h"
 
@@ -64,6 +65,7 @@ struct Statistics {
     Statistic related{.name = "levels related", .high = false, .is_signed = true, .line = thresholds::kLevelRelated};
     Statistic shift{.name = "levels shifted", .line = thresholds::kLevelShift};
     Statistic short_by{.name = "levels short", .line = thresholds::kLevelShort};
+    Statistic turned{.name = "angle of a turn", .line = thresholds::kTurnAngle};
 };
 
 struct Decoded {
@@ -105,9 +107,22 @@ Chain measure_chain(const Texture& texture) {
     return chain;
 }
 
+// The angle of the clearest axis, if it is clear enough for N309.
+double turn_angle(const Stored& stored) {
+    const auto turn = measure_turn(stored, {});
+    const TurnScale* best = nullptr;
+    for (const TurnScale& scale : turn->scale) {
+        if (scale.rms() < 0.03 || scale.shared() > 0.5) continue;
+        if (best == nullptr || scale.clearest().strength() > best->clearest().strength()) best = &scale;
+    }
+    if (best == nullptr || best->clearest().strength() < thresholds::kTurnStrength) return 0.0;
+    return std::abs(best->clearest().angle());
+}
+
 void add_untouched(const reference::RealMap& map, const Texture& texture, int half, Statistics& all) {
     const Decoded base(texture);
     const Centre centre = measure_centre(base.stored);
+    all.turned.intact[half].push_back(turn_angle(base.stored));
     all.dark.intact[half].push_back(centre.distance(srgb_decoded(0.5)));
     all.light.intact[half].push_back(centre.distance(srgb_encoded(0.5)));
     // Baked from heights of few levels, as the test below shows.
@@ -150,6 +165,10 @@ void add_planted(const reference::Planted& planted, int half, Statistics& all) {
     };
     if (damage.starts_with("JPEG")) add(all.jpeg, [](const Stored& s) { return measure_jpeg(s).weight(); });
     if (damage.starts_with("banding")) add(all.lattice, [](const Stored& s) { return measure_lattice(s).strength; });
+    if (damage.starts_with("turned")) add(all.turned, turn_angle);
+    // Lossy compression turns no picture.
+    if (damage.starts_with("JPEG") || damage == "BC1 before")
+        all.turned.intact[half].push_back(turn_angle(damaged.stored));
     if (damage == "seam") add(all.seam, [](const Stored& s) { return measure_seam(s).worst(); });
     if (damage == "BC1 before") add(all.palette, [](const Stored& s) { return palette_share(s); });
     if (damage == "sRGB-decoded")
@@ -197,7 +216,7 @@ TEST(CheckThresholds, FollowFromTheHalfThatSetsThem) {
     std::printf("%-20s %8s %8s   %19s   %19s\n", "", "", "", "half that sets", "half held out");
     std::printf("%-20s %8s %8s   %9s %9s   %9s %9s\n", "", "line", "fit", "intact", "damaged", "intact", "damaged");
     for (const Statistic* s : {&all.jpeg, &all.lattice, &all.seam, &all.palette, &all.dark, &all.light, &all.related,
-                               &all.shift, &all.short_by}) {
+                               &all.shift, &all.short_by, &all.turned}) {
         std::printf("%-20s %8.3g %8.3g   %9.3g %9.3g   %9.3g %9.3g\n", s->name, s->line, s->fit(), s->worst_intact(0),
                     s->faintest_damaged(0), s->worst_intact(1), s->faintest_damaged(1));
         EXPECT_EQ(two_digits(s->line), two_digits(s->fit())) << s->name;

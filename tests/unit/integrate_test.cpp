@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -202,6 +203,27 @@ TEST(Integrate, UnknownTexelsFollowFromTheOthers) {
     }
 }
 
+TEST(Integrate, NormalsThatAreNotFiniteAreUnknown) {
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
+    for (const Wrap wrap : kWraps) {
+        const HeightField field = smooth_field({48, 40}, wrap, wrap);
+        NormalMap map = std::move(bake(field).value());
+        map.x.at(5, 5) = kNan;  // z is sound
+        map.y.at(6, 5) = kInfinity;
+        map.z.at(20, 30) = kNan;
+        for (Plane<float>* plane : {&map.x, &map.y, &map.z}) plane->at(0, 39) = kNan;
+        const Integration result = integrated(map, options_for(field, {}));
+        EXPECT_EQ(result.unused_texels, 4);
+        EXPECT_LT(error_of(result.field.height, field.height), 1e-3);
+        EXPECT_EQ(result.degrees.at(5, 5), 0.0f);
+        EXPECT_LT(result.curl.max, 1.0) << "no angle is NaN";
+        EXPECT_TRUE(std::isfinite(result.curl.mean));
+    }
+    NormalMap nothing(Extent{4, 4});
+    for (int j = 0; j < 4; ++j) std::fill_n(nothing.x.row(j), 4, kNan);
+    EXPECT_EQ(integrate(nothing).error().code, ErrorCode::bad_data);
+}
+
 TEST(Integrate, RefusesObjectSpaceAndMapsWithoutSlopes) {
     NormalMap map(Extent{8, 8});
     for (int j = 0; j < 8; ++j) {
@@ -218,7 +240,7 @@ TEST(Integrate, RefusesObjectSpaceAndMapsWithoutSlopes) {
     for (int j = 0; j < 8; ++j) std::fill_n(map.z.row(j), 8, 0.0f);
     const auto vertical = integrate(map);
     ASSERT_FALSE(vertical);
-    EXPECT_NE(vertical.error().reason.find("z is 0 everywhere"), std::string::npos);
+    EXPECT_NE(vertical.error().reason.find("z is 0 or not finite everywhere"), std::string::npos);
 }
 
 TEST(Integrate, FlatMapsAndSingleTexelsAreFlat) {

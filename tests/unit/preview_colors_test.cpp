@@ -70,21 +70,46 @@ TEST(PreviewColors, DivergingIsLightestAtZeroAndDarkensToBothSides) {
     EXPECT_EQ(diverging(std::nan("")).y, 0.0);
 }
 
+Measure measured(Show show, const NormalMap& map, float maximum = 0.0f) {
+    PreviewOptions options;
+    options.show = show;
+    options.maximum = maximum;
+    return std::move(measure(options, map, {}).value());
+}
+
+// A ball: 1 / radius everywhere on it.
+TEST(PreviewMeasures, CurvatureIsThatOfTheSurface) {
+    constexpr int kSide = 64;
+    NormalMap map(Extent{kSide, kSide});
+    for (int k = 0; k < kSide * kSide; ++k) {
+        const float x = (static_cast<float>(k % kSide) - 31.5f) / 80.0f,
+                    y = (31.5f - static_cast<float>(k / kSide)) / 80.0f;
+        map.x.at(k % kSide, k / kSide) = x;
+        map.y.at(k % kSide, k / kSide) = y;
+        map.z.at(k % kSide, k / kSide) = std::sqrt(1.0f - x * x - y * y);
+    }
+    const Measure ball = measured(Show::curvature, map);
+    EXPECT_NEAR(ball.values.at(20, 40), 1.0f / 80.0f, 1e-5f);
+    EXPECT_EQ(ball.scale.palette, Palette::diverging);
+    EXPECT_EQ(ball.scale.least, -ball.scale.greatest);
+    EXPECT_DOUBLE_EQ(measured(Show::curvature, map, 0.5f).scale.greatest, 0.5);
+}
+
 TEST(PreviewMeasures, AreWhatTheirNamesSay) {
     const NormalMap map = uniform_map({4, 4}, 0.6f, 0.0f, 0.9f);
-    const auto value = [&](Show show) { return measure(show, map, 0.0f, {})->values.at(1, 2); };
+    const auto value = [&](Show show) { return measured(show, map).values.at(1, 2); };
     EXPECT_NEAR(value(Show::slope), 0.6 / 0.9, 1e-6);
     EXPECT_NEAR(value(Show::tilt), std::atan2(0.6, 0.9) * 180.0 / 3.14159265358979, 1e-4);
     EXPECT_NEAR(value(Show::length), std::sqrt(0.36 + 0.81) - 1.0, 1e-6);
     EXPECT_NEAR(value(Show::z_error), 0.1, 1e-6);
     EXPECT_EQ(value(Show::curl), 0.0f);
-    EXPECT_DOUBLE_EQ(measure(Show::z_error, map, 0.0f, {})->scale.greatest, 0.1);
-    EXPECT_DOUBLE_EQ(measure(Show::slope, map, 3.0f, {})->scale.greatest, 3.0);
+    EXPECT_DOUBLE_EQ(measured(Show::z_error, map, 0.0f).scale.greatest, 0.1);
+    EXPECT_DOUBLE_EQ(measured(Show::slope, map, 3.0f).scale.greatest, 3.0);
 }
 
 TEST(PreviewMeasures, TiltEndsAtAnAngleThatSuitsTheMap) {
     const auto end = [](float x, float z) {
-        return measure(Show::tilt, uniform_map({40, 40}, x, 0.0f, z), 0.0f, {})->scale.greatest;
+        return measured(Show::tilt, uniform_map({40, 40}, x, 0.0f, z), 0.0f).scale.greatest;
     };
     EXPECT_DOUBLE_EQ(end(0.0f, 1.0f), 0.1);
     EXPECT_DOUBLE_EQ(end(0.2f, 0.98f), 15.0);  // 11.5 degrees
@@ -94,22 +119,22 @@ TEST(PreviewMeasures, TiltEndsAtAnAngleThatSuitsTheMap) {
     NormalMap map = uniform_map({40, 40}, 0.05f, 0.0f, 1.0f);
     map.x.at(3, 3) = 1.0f;  // a single texel
     map.z.at(3, 3) = 0.0f;
-    EXPECT_DOUBLE_EQ(measure(Show::tilt, map, 0.0f, {})->scale.greatest, 5.0);
-    EXPECT_DOUBLE_EQ(measure(Show::tilt, map, 60.0f, {})->scale.greatest, 60.0);
+    EXPECT_DOUBLE_EQ(measured(Show::tilt, map, 0.0f).scale.greatest, 5.0);
+    EXPECT_DOUBLE_EQ(measured(Show::tilt, map, 60.0f).scale.greatest, 60.0);
 }
 
 TEST(PreviewMeasures, CurlTellsGreenThatIsUpsideDown) {
-    const auto sound = measure(Show::curl, waves({96, 96}, false), 0.0f, {});
-    const auto wrong = measure(Show::curl, waves({96, 96}, true), 0.0f, {});
+    const auto sound = measured(Show::curl, waves({96, 96}, false), 0.0f);
+    const auto wrong = measured(Show::curl, waves({96, 96}, true), 0.0f);
     ASSERT_TRUE(sound);
     ASSERT_TRUE(wrong);
-    EXPECT_EQ(sound->scale.title.find("curl: y up, r="), 0u) << sound->scale.title;
-    EXPECT_EQ(wrong->scale.title.find("curl: y DOWN, r=-"), 0u) << wrong->scale.title;
+    EXPECT_EQ(sound.scale.title.find("curl: y up, r="), 0u) << sound.scale.title;
+    EXPECT_EQ(wrong.scale.title.find("curl: y DOWN, r=-"), 0u) << wrong.scale.title;
     double small = 0.0, large = 0.0;
     for (int j = 1; j < 95; ++j) {
         for (int i = 1; i < 95; ++i) {
-            small += std::abs(static_cast<double>(sound->values.at(i, j)));
-            large += std::abs(static_cast<double>(wrong->values.at(i, j)));
+            small += std::abs(static_cast<double>(sound.values.at(i, j)));
+            large += std::abs(static_cast<double>(wrong.values.at(i, j)));
         }
     }
     EXPECT_LT(small * 20.0, large);

@@ -85,7 +85,7 @@ TEST(PreviewParallax, OneStepIsTheWikibooksFormulaOnAStepHeightMap) {
             for (const double u : {0.2, 0.7}) {
                 const Vec3 view{0.6, -0.3, 0.5};
                 const Parallax parallax{static_cast<float>(amount), static_cast<float>(limit), 0};
-                const Vec2 offset = parallax_offset(parallax, height, {u, 0.4}, kPoint, view, 1);
+                const Vec2 offset = parallax_offset(parallax, {height, 1.0}, {u, 0.4}, kPoint, view, 1);
                 const double p = static_cast<float>(amount), l = static_cast<float>(limit), h = u < 0.5 ? 0.0 : 1.0;
                 EXPECT_DOUBLE_EQ(offset.x, reference::parallax_offset(p, h, view.x, view.z, l));
                 EXPECT_DOUBLE_EQ(offset.y, reference::parallax_offset(p, h, view.y, view.z, l));
@@ -100,24 +100,28 @@ TEST(PreviewParallax, MarchingFindsWhereTheRayMeetsTheStep) {
     const Vec3 view{-1.0, 0.0, 1.0};  // the viewer is to the left: the ray runs to the right as it sinks
     const Parallax parallax{0.4f, 1.0f, 400};
     // From u = 0.45 the ray is at 0.45 - 0.4 (t - 0.5): it enters the step's wall, at 0.5, at t = 0.375.
-    const Vec2 wall = parallax_offset(parallax, height, {0.45, 0.5}, kPoint, view, 1);
+    const Vec2 wall = parallax_offset(parallax, {height, 1.0}, {0.45, 0.5}, kPoint, view, 1);
     EXPECT_NEAR(0.45 + wall.x, 0.5, 0.005);
     // From u = 0.9 it lands on the step's top, t = 1; from u = 0.1 on the floor, t = 0.
-    EXPECT_NEAR(parallax_offset(parallax, height, {0.9, 0.5}, kPoint, view, 1).x, -0.2, 1e-6);
-    EXPECT_NEAR(parallax_offset(parallax, height, {0.1, 0.5}, kPoint, view, 1).x, 0.2, 1e-6);
+    EXPECT_NEAR(parallax_offset(parallax, {height, 1.0}, {0.9, 0.5}, kPoint, view, 1).x, -0.2, 1e-6);
+    EXPECT_NEAR(parallax_offset(parallax, {height, 1.0}, {0.1, 0.5}, kPoint, view, 1).x, 0.2, 1e-6);
 }
 
 TEST(PreviewParallax, MarchingAgreesWithOneStepOnALevelSurface) {
     const Plane<float> level(Extent{8, 8}, 0.75f);
     const Sampler height = single(level, Wrap::repeat);
     const Vec3 view{0.4, 0.2, 0.8};
-    const Vec2 one = parallax_offset({0.1f, 1.0f, 0}, height, {0.3, 0.3}, kPoint, view, 1);
+    const Vec2 one = parallax_offset({0.1f, 1.0f, 0}, {height, 1.0}, {0.3, 0.3}, kPoint, view, 1);
     for (const int steps : {1, 3, 64}) {
-        const Vec2 many = parallax_offset({0.1f, 1.0f, steps}, height, {0.3, 0.3}, kPoint, view, 1);
+        const Vec2 many = parallax_offset({0.1f, 1.0f, steps}, {height, 1.0}, {0.3, 0.3}, kPoint, view, 1);
         EXPECT_NEAR(many.x, one.x, 1e-12);
         EXPECT_NEAR(many.y, one.y, 1e-12);
     }
-    const Vec2 grazing = parallax_offset({0.1f, 0.02f, 0}, height, {0.3, 0.3}, kPoint, {1.0, -1.0, 0.0}, 1);
+    const Plane<float> texels(Extent{8, 8}, 3.75f);  // the same in another unit
+    const Vec2 same =
+        parallax_offset({0.1f, 1.0f, 0}, {single(texels, Wrap::repeat), 5.0}, {0.3, 0.3}, kPoint, view, 1);
+    EXPECT_DOUBLE_EQ(same.x, one.x);
+    const Vec2 grazing = parallax_offset({0.1f, 0.02f, 0}, {height, 1.0}, {0.3, 0.3}, kPoint, {1.0, -1.0, 0.0}, 1);
     EXPECT_FLOAT_EQ(static_cast<float>(grazing.x), 0.02f);
     EXPECT_FLOAT_EQ(static_cast<float>(grazing.y), -0.02f);
 }

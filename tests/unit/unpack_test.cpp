@@ -223,6 +223,10 @@ TEST(Unpack, MakesFlatWhatIsNotFinite) {
             const auto chain = unpack(texture, options);
             ASSERT_TRUE(chain);
             for (int i = 0; i < 3; ++i) expect_near(at(chain->levels[0], i, 0), {0, 0, 1}, 0);
+            options.keep_invalid = true;
+            const auto kept = unpack(texture, options);
+            ASSERT_TRUE(kept);
+            for (int i = 0; i < 3; ++i) EXPECT_TRUE(std::isnan(kept->levels[0].z.at(i, 0))) << i;
         }
     }
 }

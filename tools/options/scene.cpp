@@ -14,6 +14,7 @@
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "options/mips.h"
+#include "options/surface.h"
 
 namespace tex::cli {
 namespace {
@@ -172,13 +173,23 @@ void SceneOptions::add_detail(Command& command) {
 void SceneOptions::add_parallax(Command& command) {
     command.group("Parallax");
     Parallax& parallax = preview.parallax;
-    add_file(command, height, "--height", "the height map, white being high");
-    command.number(parallax.amount, "--parallax", "P", {}, "height of white over black in widths of the map");
+    add_file(command, height, "--height", "the height map, white being high; else heights come from the normals");
+    Row& row = command.option("--parallax", "P|auto", "height of white over black in widths of the map",
+                              [this, &parallax](const std::string& text) {
+                                  parallax_of_map = text == "auto";
+                                  parallax.amount = parallax_of_map ? 0.0f : parse_float(text, {});
+                              });
+    row.words = {{"auto", "as high as the normals show"}};
+    row.completes = Completes::words;
+    row.preset = fmt::format("{}", parallax.amount);
     command.number(parallax.limit, "--parallax-limit", "L", {0.0, 1e6}, "the greatest offset, in widths of the map");
     command.number(parallax.steps, "--parallax-steps", "N", 0, 1024,
                    "march along the view ray in N steps; 0 is one offset");
-    check_needs(command, "--height", {"--parallax"});
     check_needs(command, "--parallax", {"--parallax-limit", "--parallax-steps"});
+    command.check([this] {
+        if (parallax_of_map && !height.empty())
+            throw UsageError("--parallax auto is for the heights of the normals: leave out --height, or give a number");
+    });
 }
 
 void SceneOptions::add_sampling(Command& command) {
@@ -194,6 +205,15 @@ void SceneOptions::add_sampling(Command& command) {
                    "most samples along a texel's longer axis; 1 is trilinear");
 }
 
+bool SceneOptions::needs_heights() const {
+    return height.empty() && (parallax_of_map || preview.parallax.amount != 0.0f);
+}
+
+float SceneOptions::parallax_on(const SampledMap& map) const {
+    if (!parallax_of_map) return preview.parallax.amount;
+    return map.highest / static_cast<float>(map.chain.levels.front().extent().width);
+}
+
 std::vector<std::string> SceneOptions::files() const {
     std::vector<std::string> names;
     for (const std::string* name : {&albedo, &detail, &detail_albedo, &height}) {
@@ -202,18 +222,27 @@ std::vector<std::string> SceneOptions::files() const {
     return names;
 }
 
-Result<SampledMap> read_sampled_map(Job& job, const std::string& path, NormalsReader& normals, const Reading& reading,
-                                    const PreviewOptions& preview, const Execution& execution) {
-    auto read = normals.read(job, path, execution, reading);
+Result<SampledMap> read_sampled_map(Job& job, const std::string& path, NormalsReader& normals, const Sampling& sampling,
+                                    const Execution& execution) {
+    auto read = normals.read(job, path, execution, sampling.reading);
     if (!read) return read.error();
     SampledMap map;
     map.without_z =
         std::find(read->info.swizzle.begin(), read->info.swizzle.end(), Component::z) == read->info.swizzle.end();
     map.chain = std::move(read->chain);
+    if (sampling.with_heights) {
+        IntegrateOptions with = integrate_options_for(read->info);
+        with.wrap_x = sampling.wrap_x;
+        with.wrap_y = sampling.wrap_y;
+        auto found = integrate(map.chain.levels.front(), with, execution);
+        if (!found) return found.error().of(path);
+        map.heights = std::move(found->field.height);
+        map.highest = found->highest;
+    }
     if (map.chain.levels.size() == 1) {
         MipOptions mip;
-        mip.wrap_x = preview.wrap_x;
-        mip.wrap_y = preview.wrap_y;
+        mip.wrap_x = sampling.wrap_x;
+        mip.wrap_y = sampling.wrap_y;
         auto built = build_mip_chain(std::move(map.chain.levels.front()), mip, execution);
         if (!built) return built.error().of(path);
         map.chain = std::move(*built);
@@ -224,7 +253,8 @@ Result<SampledMap> read_sampled_map(Job& job, const std::string& path, NormalsRe
 Result<SceneFiles> SceneOptions::read(Job& job, NormalsReader& normals, const Execution& execution) const {
     SceneFiles files;
     if (!detail.empty()) {
-        auto map = read_sampled_map(job, detail, normals, {false, true, detail_y_in, false, true}, preview, execution);
+        const Sampling sampling = {{false, true, detail_y_in, false, true}, preview.wrap_x, preview.wrap_y, false};
+        auto map = read_sampled_map(job, detail, normals, sampling, execution);
         if (!map) return map.error();
         files.detail = std::move(*map);
     }
@@ -258,7 +288,12 @@ PreviewScene SceneFiles::with(const SampledMap& map) const {
     }
     if (albedo) scene.albedo = &*albedo;
     if (detail_albedo) scene.detail_albedo = &*detail_albedo;
-    if (!height.empty()) scene.height = &height;
+    if (!height.empty()) {
+        scene.height = &height;
+    } else if (!map.heights.empty()) {
+        scene.height = &map.heights;
+        if (map.highest > 0.0f) scene.white = map.highest;
+    }
     return scene;
 }
 

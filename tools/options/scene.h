@@ -19,12 +19,19 @@ namespace tex::cli {
 struct SampledMap {
     MipChain chain;
     bool without_z = false;
+    Plane<float> heights;  // those that the normals show, in texels, if a picture needs them
+    float highest = 0.0f;
 };
 
-// Use Reading::keep_length for pictures that show what is wrong with a map.
+// What a picture needs of a map, beyond its levels.
+struct Sampling {
+    Reading reading;  // keep_length is for pictures that show what is wrong with a map
+    Wrap wrap_x = Wrap::repeat, wrap_y = Wrap::repeat;
+    bool with_heights = false;
+};
+
 [[nodiscard]] Result<SampledMap> read_sampled_map(Job& job, const std::string& path, NormalsReader& normals,
-                                                  const Reading& reading, const PreviewOptions& preview,
-                                                  const Execution& execution);
+                                                  const Sampling& sampling, const Execution& execution);
 
 // The files of a scene besides its map.
 struct SceneFiles {
@@ -40,8 +47,13 @@ struct SceneOptions {
     PreviewOptions preview;
     std::string albedo, detail, detail_albedo, height;  // paths, or empty
     std::optional<YAxis> detail_y_in;
+    bool parallax_of_map = false;  // as high as the normals show, instead of preview.parallax.amount
 
     void add(Command& command);
+
+    // Whether parallax takes its heights from the normals, and how strong it is on this map.
+    [[nodiscard]] bool needs_heights() const;
+    [[nodiscard]] float parallax_on(const SampledMap& map) const;
 
     [[nodiscard]] std::vector<std::string> files() const;
     // The detail is read as `normals` specifies, except for its y.

@@ -59,16 +59,13 @@ void SheetOptions::add(Command& command, SceneOptions& scene) {
         .preset = "";
     command
         .number(scene.preview.maximum, "--legend-max", "V", {0.0, 1e9},
-                "the legend's end for slope, tilt, length, z-error, curl and seams")
+                "the legend's end for slope, tilt, length, z-error, curl, curvature and seams")
         .preset = "a round number that suits the map";
     command.flag(no_legend_, "--no-legend", "no legends");
     command.flag(no_captions_, "--no-captions", "no captions on sheets");
-    command.check([this] {
-        if (scene_->height.empty() && std::find(shows_.begin(), shows_.end(), Show::height) != shows_.end()) {
-            throw UsageError("--show height needs --height");
-        }
-    });
 }
+
+bool SheetOptions::shows(Show show) const { return std::find(shows_.begin(), shows_.end(), show) != shows_.end(); }
 
 void SheetOptions::check(const Task& task) const {
     if (turntable_ > 0 && task.container != Container::png) {
@@ -83,7 +80,7 @@ void SheetOptions::check(const Task& task) const {
 
 void SheetOptions::check_mesh(bool has_mesh) const {
     for (const Show show : {Show::tangents, Show::uv, Show::seams}) {
-        if (!has_mesh && std::find(shows_.begin(), shows_.end(), show) != shows_.end())
+        if (!has_mesh && shows(show))
             throw UsageError(fmt::format("--show {} needs --mesh", name_of(kShowNames, show)));
     }
 }
@@ -122,6 +119,7 @@ Result<Texture> SheetOptions::draw_frame(const std::vector<std::string>& names, 
     for (std::size_t k = 0; k < maps.size(); ++k) {
         for (const Show show : shows_) {
             options.show = show;
+            options.parallax.amount = scene_->parallax_on(maps[k]);
             auto picture =
                 preview(with.with(maps[k]), options, step(execution, panels.size(), maps.size() * shows_.size()));
             if (!picture) return picture.error().of(names[k]);

@@ -26,6 +26,7 @@ public:
 
     [[nodiscard]] bool is_animated() const { return turntable_ > 0; }
     [[nodiscard]] bool is_difference() const { return difference_; }
+    [[nodiscard]] bool shows(Show show) const;
 
     // Throws UsageError if a picture needs a mesh, and there is none.
     void check_mesh(bool has_mesh) const;

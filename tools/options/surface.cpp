@@ -19,6 +19,15 @@ bool holds_floats(Format format) { return format_info(format).sample == SampleKi
 
 }  // namespace
 
+IntegrateOptions integrate_options_for(const SourceInfo& info) {
+    IntegrateOptions options;
+    const FormatInfo format = format_info(info.format);
+    if (format.sample == SampleKind::floating) return options;
+    options.least_z = format.bits == 16 ? 0x1p-15f : 0x1p-7f;
+    if (format.bits != 16) options.least_response = 0.1f;
+    return options;
+}
+
 void StoredHeights::add(Command& command) {
     command.group("Heights");
     Row& row = command.option("--heights", "fit|raw|LOW,HIGH", "which heights become 0 and 1 in the file",

@@ -9,6 +9,7 @@
 
 #include <tex/curvature.h>
 #include <tex/integrate.h>
+#include <tex/source.h>
 
 #include "batch/job.h"
 #include "cli/command.h"
@@ -17,6 +18,9 @@
 #include "options/mips.h"
 
 namespace tex::cli {
+
+// What suits the precision of the source: the least z with a slope that means anything, and the least response.
+[[nodiscard]] IntegrateOptions integrate_options_for(const SourceInfo& info);
 
 // The formats of heights, with the names that --format accepts.
 inline constexpr Named<Format> kHeightFormatNames[] = {

@@ -45,9 +45,10 @@ struct Curvature {
 // Beyond the border of an axis, components repeat (repeat), continue their slope (clamp: one-sided differences of first
 // order), or are mirrored, with the component along the axis turned round (mirror). An axis of one texel does not bend.
 //
-// Texels with z below 1e-6 count as flat in `divergence`, which cannot have their slopes.
+// Texels with z below 1e-6 count as flat in `divergence`, which cannot have their slopes. Components that are NaN or
+// infinite count as 0.
 //
-// Preconditions (asserted): the map is not empty, of at most kMaxExtent; its components are finite.
+// Preconditions (asserted): the map is not empty, of at most kMaxExtent.
 // Errors: out_of_memory, cancelled.
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] Result<Curvature> curvature(const NormalMap& map, const CurvatureOptions& options = {},

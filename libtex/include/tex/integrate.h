@@ -20,8 +20,8 @@ struct Integration {
     HeightField field;               // with the bumpiness and the wraps of the options; its lowest height is 0
     float highest = 0.0f;            // its highest height: the range
     AngularError curl;               // what is left over: see below
-    Plane<float> degrees;            // the angle of each texel
-    std::int64_t unused_texels = 0;  // whose z is below IntegrateOptions::least_z
+    Plane<float> degrees;            // the angle of each texel; 0 if its normal is not finite
+    std::int64_t unused_texels = 0;  // without a usable slope
     int steps = 1;                   // the number of times that the equation was solved
 };
 
@@ -49,9 +49,9 @@ struct Integration {
 // result (`curl`, `degrees`) is what no height field can have. Rounding to 8 bits leaves a few tenths of a degree; more
 // shows painting, blending, resizing, another kernel or damage.
 //
-// Texels with z below options.least_z have no usable slope. They count as unknown: the sum above is without them. The
-// equation is then solved several times, up to options.most_steps, each time for what the slopes still lack. So it is
-// with Wrap::clamp and the kernels that smooth.
+// Texels with z below options.least_z have no usable slope, and neither have those with a component that is NaN or
+// infinite. They count as unknown: the sum above is without them. The equation is then solved several times, up to
+// options.most_steps, each time for what the slopes still lack. So it is with Wrap::clamp and the kernels that smooth.
 //
 // With Wrap::clamp, border texels weigh less than others: a quarter (central), or half (forward).
 //
@@ -61,9 +61,9 @@ struct Integration {
 // the map, 16 if several solutions are needed, and for each thread 128 bytes for each texel of the longer side (512 for
 // prime factors above 5).
 //
-// Preconditions (asserted): the map is not empty, of at most kMaxExtent; its components are finite; bumpiness is
+// Preconditions (asserted): the map is not empty, of at most kMaxExtent; bumpiness is
 // from 1e-20 to 1e20 or from -1e20 to -1e-20; gaussian_sigma in range; 0 < least_z <= 1.
-// Errors: bad_data  z is below 0 in more than one of sixteen texels, as in object space; no z is at least least_z
+// Errors: bad_data  z is below 0 in more than one of sixteen texels, as in object space; no texel has a usable slope
 //         out_of_memory, cancelled
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] Result<Integration> integrate(const NormalMap& map, const IntegrateOptions& options = {},

@@ -18,8 +18,8 @@ struct IntegrateOptions {
     Wrap wrap_x = Wrap::repeat;
     Wrap wrap_y = Wrap::repeat;
 
-    // Slopes of texels with a smaller z are unknown. 8 bits hold no smaller z than 1/255 besides 0, and no slope above
-    // 127 to any use.
+    // Slopes of texels with a smaller z are unknown, as are those of normals that are not finite. 8 bits hold no
+    // smaller z than 1/255 besides 0, and no slope above 127 to any use.
     float least_z = 1e-6f;
     // Frequencies at which the response of the kernel is below this fraction of a derivative's are left out: see
     // integrate.h. Rounding to 8 bits is amplified up to its inverse: 0.1 keeps that out of sight.

@@ -28,7 +28,8 @@ struct PreviewScene {
     const MipChain* detail = nullptr;  // or none
     const Image* albedo = nullptr;     // or none: R, G, B or one grey plane, linear values; mip-mapped by a box filter
     const Image* detail_albedo = nullptr;  // or none; the same, sampled at the place of the detail
-    const Plane<float>* height = nullptr;  // or none; mip-mapped by a box filter
+    const Plane<float>* height = nullptr;  // or none; mip-mapped by a box filter; integrate() finds those of a map
+    float white = 1.0f;                    // the height that counts as 1 in Parallax, above 0
 
     // None, or the mesh that carries the map, instead of PreviewOptions::shape. It must outlive the call.
     const TangentSpace* mesh = nullptr;

@@ -28,9 +28,11 @@ namespace tex {
 //   curl           dq/dx - dp/dy, differences of neighbours: 0 for the normals of    + and -
 //                  a height field, large if green is flipped. r in the legend is the
 //                  correlation that check() measures: 1 with y up, -1 with y down
+//   curvature      the mean curvature (curvature.h) in 1/texel: bumps and edges     + and -
+//                  brown, dents and grooves blue
 //   channels       x, y (+ and -) and z (0 to 1) side by side
 //   mips           all levels side by side, (n + 1) / 2
-//   height         the height map, from its lowest value (black) to its highest (white)
+//   height         the heights, from the lowest value (black) to the highest (white)
 //
 // Of a mesh only (see "Meshes" in preview.h):
 //
@@ -54,6 +56,7 @@ enum class Show {
     length,
     z_error,
     curl,
+    curvature,
     channels,
     mips,
     height,
@@ -72,9 +75,10 @@ inline constexpr Named<Show> kShowNames[] = {
     {Show::length, "length", "length of the stored vector minus 1"},
     {Show::z_error, "z-error", "stored z minus the z that x and y imply"},
     {Show::curl, "curl", "what no height field has; large where green is upside down"},
+    {Show::curvature, "curvature", "how much the surface bends: bumps and dents, 1/texel"},
     {Show::channels, "channels", "x, y and z beside each other"},
     {Show::mips, "mips", "all levels beside each other"},
-    {Show::height, "height", "the height map in grey"},
+    {Show::height, "height", "the height map, or the heights that the normals show, in grey"},
     {Show::tangents, "tangents", "of a mesh: tangents, binormals and normals as lines"},
     {Show::uv, "uv", "of a mesh: its triangles over the map"},
     {Show::seams, "seams", "of a mesh: the error along UV seams, degrees"},
@@ -148,7 +152,7 @@ struct Detail {
 };
 
 // Parallax mapping (Kaneko et al. 2001; Welsh 2004; wikibook, "Projection of Bumpy Surfaces"). V is the unnormalised
-// direction to the viewer in the tangent frame (T, B, N), h the height map at uv:
+// direction to the viewer in the tangent frame (T, B, N), h the height at uv, in units of PreviewScene::white:
 //
 //     offset = clamp(P (h - 0.5) V.xy / V.z, -L, L)          one step: steps = 0
 //
@@ -188,8 +192,9 @@ struct PreviewOptions {
     Wrap wrap_y = Wrap::repeat;
     int anisotropy = 8;  // maximum of samples along a texel's long axis, 1 to 16; 1 is only trilinear filtering
 
-    float maximum = 0.0f;  // the legend's upper end for slope, tilt, length, z_error, curl, seams; 0: automatic
-    bool legend = true;    // below false colours and mips; makes the picture higher
+    float maximum =
+        0.0f;  // the legend's upper end for slope, tilt, length, z_error, curl, curvature, seams; 0: automatic
+    bool legend = true;  // below false colours and mips; makes the picture higher
 };
 
 }  // namespace tex

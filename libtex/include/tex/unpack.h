@@ -24,7 +24,8 @@ namespace tex {
 // The normals of every level of a texture. unorm values become n = 2 c - 1; y is negated if it points down in the
 // texture. If the swizzle holds z, vectors are normalised (shorter than 1e-6: (0, 0, 1); z below 0: as stored). If it
 // holds only x and y, z = reconstruct_z(x, y); if x^2 + y^2 is above 1, x and y are divided by their length, so that
-// the vector has unit length. A vector that is not finite, or whose squared length is not, becomes (0, 0, 1). 32-bit
+// the vector has unit length. A vector that is not finite, or whose squared length is not, becomes (0, 0, 1), or
+// NaN with UnpackOptions::keep_invalid. 32-bit
 // floats whose vector already has unit length (x^2 + y^2 + z^2 within 2^-20 of 1) are unchanged, so that several
 // commands in a row give the same bytes as one.
 //

@@ -31,6 +31,7 @@ struct UnpackOptions {
     ValueRange range = ValueRange::automatic;  // for floats only
     bool snap_flat = false;                    // 8-bit unorm values from 127/255 to 128/255 are 0, not -+0.0039
     bool keep_length = false;                  // do not normalise vectors, to pack them again without loss
+    bool keep_invalid = false;                 // vectors that are not finite become NaN, not (0, 0, 1)
 };
 
 }  // namespace tex

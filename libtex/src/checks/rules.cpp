@@ -87,7 +87,8 @@ constexpr Rule kRules[] = {
     {"N210", "grey-picture", values, error, true, "The picture is grey.",
      "R, G and B are equal everywhere: this is a height or bump map, not a normal map.",
      "bake-normals FILE --bumpiness TEXELS --format SAME -o FIXED",
-     "N201 N202 N203 N205 N206 N207 N208 N209 N213 N214 N301 N302 N303 N304 N305 N306 N308 N401 N402 N403 N404 N501 "
+     "N201 N202 N203 N205 N206 N207 N208 N209 N213 N214 N301 N302 N303 N304 N305 N306 N308 N309 N310 N401 N402 N403 "
+     "N404 N501 "
      "N502 "
      "N503 N504"},
     {"N211", "dxt5nm-red", values, note, true, "R is not 255 in the layout of DXT5nm.",
@@ -101,26 +102,26 @@ constexpr Rule kRules[] = {
     {"N213", "object-space", values, error, true, "The normals are not in tangent space.",
      "z points away from the surface in many texels and the vectors face all directions: an object-space or "
      "world-space map.",
-     "", "N201 N202 N205 N207 N305 N401 N402 N403 N404 N501 N502 N504"},
+     "", "N201 N202 N205 N207 N305 N309 N310 N401 N402 N403 N404 N501 N502 N504"},
     {"N214", "not-a-normal-map", values, error, true, "The picture is no normal map.",
      "Nearly all texels are far from unit length and many point away from the surface: colours, not vectors.", "",
-     "N201 N202 N205 N207 N213 N304 N305 N306 N401 N402 N403 N404 N501 N502 N504"},
+     "N201 N202 N205 N207 N213 N304 N305 N306 N309 N310 N401 N402 N403 N404 N501 N502 N504"},
 
     // -- damage -----------------------------------------------------------------------------------------------
     {"N301", "srgb-decoded", damage, error, true, "The map went through the sRGB curve: it is too dark.",
      "x and y centre on 0.21 instead of 0.5: somebody read the file as colour and stored linear values.", "",
-     "N201 N202 N203 N205 N206 N207 N213 N214 N305 N307 N308 N401 N402 N403 N404 N501 N502 N504"},
+     "N201 N202 N203 N205 N206 N207 N213 N214 N305 N307 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504"},
     {"N302", "srgb-encoded", damage, error, true, "The map went through the sRGB curve: it is too light.",
      "x and y centre on 0.74 instead of 0.5: linear values were stored as if they were colour.", "",
-     "N201 N202 N203 N205 N206 N207 N214 N305 N307 N308 N401 N402 N403 N404 N501 N502 N504"},
+     "N201 N202 N203 N205 N206 N207 N214 N305 N307 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504"},
     {"N303", "premultiplied", damage, error, true, "R, G and B were multiplied by alpha.",
      "No channel exceeds alpha, and dividing by it makes the vectors longer and even. Image libraries do this on "
      "reading unless told otherwise (OpenImageIO: oiio:UnassociatedAlpha).",
-     "", "N201 N202 N205 N207 N212 N213 N214 N301 N305 N308 N401 N402 N403 N404 N501 N502 N504"},
+     "", "N201 N202 N205 N207 N212 N213 N214 N301 N305 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504"},
     {"N304", "jpeg-blocks", damage, warning, true, "The map shows the 8x8 blocks of lossy JPEG.",
      "The cosine transform of aligned blocks is quantised as JPEG of about quality 65 or less does it, or steps stand "
      "out at every eighth column and row. Chroma subsampling halves the resolution of x; go back to a lossless source.",
-     "", "N201 N202"},
+     "", "N201 N202 N310"},
     {"N305", "banding", damage, warning, true, "The slopes lie on a lattice.",
      "The map was baked from heights of few values, 8 bits say: slopes take few values too, which shows as terraces in "
      "reflections. Bake "
@@ -129,13 +130,24 @@ constexpr Rule kRules[] = {
     {"N306", "bc-blocks", damage, warning, true, "The map shows the 4x4 blocks of texture compression.",
      "Either an uncompressed file holds texels that were BC-compressed before, or the steps between the blocks of a "
      "compressed one are twice those inside. DXT1 and DXT5 with normals in R, G and B do this.",
-     "Compress it again from its uncompressed source, as BC5 or DXT5nm.", "N201 N202 N304"},
+     "Compress it again from its uncompressed source, as BC5 or DXT5nm.", "N201 N202 N304 N310"},
     {"N307", "seam", damage, error, false, "The map does not meet itself at its borders.",
      "The step across the border is larger than nearly all steps inside. Off unless tiles is required.", "", ""},
     {"N308", "channels-exchanged", damage, error, true, "Two channels are exchanged.",
      "Either another channel than the third holds z (blue, green, red order), or x and y changed places: the slopes "
      "have curl as they stand and none when exchanged (so also where the order of BC5's blocks was mistaken).",
      "", "N201 N202 N205 N207 N209 N213 N214 N401 N402 N403 N404"},
+    {"N309", "turned", damage, error, true, "The picture was turned, but its vectors were not.",
+     "Its normals lean by the angle of the turn: what is lit from above on one side is lit from the left on the other. "
+     "Image editors turn pictures so, and tools that pack atlases. Angles from 15 to 75 degrees are found in maps of "
+     "height fields; a quarter turn is N308.",
+     "Turn the picture back. To turn a map with its vectors, blend it over a flat one with blend-normals --rotate.",
+     "N308 N310 N401 N402 N403 N404"},
+    {"N310", "no-surface", damage, note, true, "The slopes are those of no surface.",
+     "They have as much curl as noise has: x and y do not belong together. Noise was painted or stored instead of "
+     "normals, x and y come from different maps, or compression left nothing of faint bumps. Less curl than that is no "
+     "finding: intact maps from high-poly models have up to 40 %.",
+     "Bake the map again, or compress it less.", "N403"},
 
     // -- convention -------------------------------------------------------------------------------------------
     {"N401", "wrong-y", convention, error, true, "Green points the other way than required.",
@@ -143,7 +155,7 @@ constexpr Rule kRules[] = {
      "Blender, glTF; y=down is DirectX, Unreal.",
      "pack-normals FILE --keep-length --y-in MEASURED --y WANTED --format SAME -o FIXED", "N112 N404"},
     {"N402", "mixed-y", convention, error, true, "Green points up in one part of the map and down in another.",
-     "Maps of both conventions were pasted together.", "", "N401 N403 N404"},
+     "Maps of both conventions were pasted together.", "", "N310 N401 N403 N404"},
     {"N403", "y-undecidable", convention, note, true, "Which way green points cannot be told.",
      "The map is flat, noise, or no height field. Reported where y is required.", "", ""},
     {"N404", "y-contradicts-file", convention, error, true, "Green points the other way than the file declares.",

@@ -67,6 +67,23 @@ void ExcessSlopes(const VectorRow& normals, const VectorRow& made, float least_z
     }
 }
 
+int CountWithoutSlope(const VectorRow& normals, float least_z, int count) {
+    std::size_t without = 0;
+    for (int i = 0; i < count; i += kLanes) {
+        const M inside = hn::FirstN(kD, static_cast<std::size_t>(count - i));
+        without += hn::CountTrue(kD, hn::AndNot(slopes_at(normals, least_z, i).valid, inside));
+    }
+    return static_cast<int>(without);
+}
+
+void ZeroNotFinite(float* values, int count) {
+    const V infinity = hn::Set(kD, std::numeric_limits<float>::infinity());
+    for (int i = 0; i < count; i += kLanes) {
+        const V value = hn::LoadU(kD, values + i);
+        hn::StoreU(hn::IfThenElseZero(hn::Lt(hn::Abs(value), infinity), value), kD, values + i);
+    }
+}
+
 void SumDifferences(const float* x_plus, const float* x_minus, float x_factor, const float* y_plus,
                     const float* y_minus, float y_factor, int count, float* out) {
     const V fx = hn::Set(kD, x_factor);
@@ -103,6 +120,8 @@ namespace tex {
 
 HWY_EXPORT(SlopesOfNormals);
 HWY_EXPORT(ExcessSlopes);
+HWY_EXPORT(CountWithoutSlope);
+HWY_EXPORT(ZeroNotFinite);
 HWY_EXPORT(SumDifferences);
 HWY_EXPORT(WeightedSum);
 HWY_EXPORT(ShiftAndScale);
@@ -114,6 +133,12 @@ int slopes_of_normals(const VectorRow& normals, float least_z, int count, float*
 void excess_slopes(const VectorRow& normals, const VectorRow& made, float least_z, int count, float* p, float* q) {
     HWY_DYNAMIC_DISPATCH(ExcessSlopes)(normals, made, least_z, count, p, q);
 }
+
+int count_without_slope(const VectorRow& normals, float least_z, int count) {
+    return HWY_DYNAMIC_DISPATCH(CountWithoutSlope)(normals, least_z, count);
+}
+
+void zero_not_finite(float* values, int count) { HWY_DYNAMIC_DISPATCH(ZeroNotFinite)(values, count); }
 
 void sum_differences(const float* x_plus, const float* x_minus, float x_factor, const float* y_plus,
                      const float* y_minus, float y_factor, int count, float* out) {

@@ -16,6 +16,12 @@ int slopes_of_normals(const VectorRow& normals, float least_z, int count, float*
 // The same minus the slopes of `made`, which bake() has made: p and q are 0 in those texels, too.
 void excess_slopes(const VectorRow& normals, const VectorRow& made, float least_z, int count, float* p, float* q);
 
+// The number of texels for which both make p and q 0.
+int count_without_slope(const VectorRow& normals, float least_z, int count);
+
+// values[i] = 0 where it is NaN or infinite.
+void zero_not_finite(float* values, int count);
+
 // out[i] = x_factor (x_plus[i] - x_minus[i]) + y_factor (y_plus[i] - y_minus[i]).
 void sum_differences(const float* x_plus, const float* x_minus, float x_factor, const float* y_plus,
                      const float* y_minus, float y_factor, int count, float* out);

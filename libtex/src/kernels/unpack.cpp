@@ -40,29 +40,35 @@ M IsUnit(D d, V squared_length) {
     return hn::Le(hn::Abs(hn::Sub(squared_length, hn::Set(d, 1.0f))), hn::Set(d, 0x1p-20f));
 }
 
+Vec3 Settled(D d, M finite, const UnpackRule& rule, Vec3 n) {
+    if (!rule.keep_invalid) return FlatUnless(d, finite, n);
+    const V nan = hn::Set(d, std::numeric_limits<float>::quiet_NaN());
+    return {hn::IfThenElse(finite, n.x, nan), hn::IfThenElse(finite, n.y, nan), hn::IfThenElse(finite, n.z, nan)};
+}
+
 Vec3 Reconstruct(D d, V x, V y, const UnpackRule& rule) {
     const V one = hn::Set(d, 1.0f);
     const V squared = hn::Add(hn::Mul(x, x), hn::Mul(y, y));
     const V z = hn::Sqrt(hn::Sub(one, hn::Min(squared, one)));
     const M finite = IsFinite(d, squared);
-    if (rule.keep_length) return FlatUnless(d, finite, {x, y, z});
+    if (rule.keep_length) return Settled(d, finite, rule, {x, y, z});
     // Division by 1 does not change a short vector.
     V length = hn::Max(one, hn::Sqrt(squared));
     if (rule.keep_unit) length = hn::IfThenElse(IsUnit(d, squared), one, length);
-    return FlatUnless(d, finite, {hn::Div(x, length), hn::Div(y, length), z});
+    return Settled(d, finite, rule, {hn::Div(x, length), hn::Div(y, length), z});
 }
 
 Vec3 Finish(D d, Vec3 n, const UnpackRule& rule) {
     const V squared = SquaredLength(n);
     const M finite = IsFinite(d, squared);
-    if (rule.keep_length) return FlatUnless(d, finite, n);
+    if (rule.keep_length) return Settled(d, finite, rule, n);
     Vec3 unit = Normalise(d, n);
     if (rule.keep_unit) {
         const M keep = IsUnit(d, squared);
         unit = {hn::IfThenElse(keep, n.x, unit.x), hn::IfThenElse(keep, n.y, unit.y),
                 hn::IfThenElse(keep, n.z, unit.z)};
     }
-    return FlatUnless(d, finite, unit);
+    return Settled(d, finite, rule, unit);
 }
 
 void UnpackRow(const float* x, const float* y, const float* z, const UnpackRule& rule, int count, float* out_x,

@@ -10,7 +10,8 @@ struct UnpackRule {
     bool snap_flat = false;   // unsigned values from 127/255 to 128/255 are 0
     bool flip_y = false;
     bool keep_length = false;
-    bool keep_unit = false;  // do not change vectors that are stored with unit length, apart from rounding
+    bool keep_invalid = false;  // vectors that are not finite become NaN, not (0, 0, 1)
+    bool keep_unit = false;     // do not change vectors that are stored with unit length, apart from rounding
 };
 
 // Normals of `count` texels from the values of their components. If z is null, it is reconstructed. The computation is

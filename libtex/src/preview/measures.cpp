@@ -13,6 +13,7 @@
 #include "checks/curl.h"
 #include "preview/progress.h"
 #include "preview/vector.h"
+#include "rows/curvature_rows.h"
 #include "threads/parallel.h"
 
 namespace tex::render {
@@ -144,11 +145,25 @@ double quantile(const Plane<float>& values, std::size_t thousandths) {
     return static_cast<double>(*place);
 }
 
+Result<Measure> measure_curvature(const PreviewOptions& options, const NormalMap& map, const Execution& execution) {
+    Measure result;
+    result.values = Plane<float>(map.extent());
+    const auto done = parallel_for(execution, map.extent().height, kRowsPerPiece, [&](int begin, int end) {
+        CurvatureRows rows(map, false, options.wrap_x, options.wrap_y);
+        for (int j = begin; j < end; ++j) rows.make(j, result.values.row(j));
+    });
+    if (!done) return done.error();
+    const auto maximum = static_cast<double>(options.maximum);
+    const double greatest = maximum > 0.0 ? maximum : round_maximum(result.values, 1e-4);
+    result.scale = {"curvature, 1/texel", -greatest, greatest, Palette::diverging};
+    return result;
+}
+
 }  // namespace
 
 bool is_measure(Show show) {
     return show == Show::slope || show == Show::tilt || show == Show::length || show == Show::z_error ||
-           show == Show::curl;
+           show == Show::curl || show == Show::curvature;
 }
 
 double round_maximum(const Plane<float>& values, double least) { return nice(std::max(quantile(values, 995), least)); }
@@ -158,8 +173,11 @@ double round_angle(double degrees) {
     return *std::lower_bound(std::begin(kAngles), std::end(kAngles) - 1, degrees);
 }
 
-Result<Measure> measure(Show show, const NormalMap& map, float maximum, const Execution& execution) {
+Result<Measure> measure(const PreviewOptions& options, const NormalMap& map, const Execution& execution) {
+    const Show show = options.show;
+    const float maximum = options.maximum;
     if (show == Show::curl) return measure_curl_of(map, maximum, execution);
+    if (show == Show::curvature) return measure_curvature(options, map, execution);
     Measure result;
     auto values = fill(map.extent(), execution, [&](int i, int j) { return value_at(show, map, i, j); });
     if (!values) return values.error();

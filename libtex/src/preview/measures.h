@@ -16,12 +16,12 @@ struct Measure {
     ColorScale scale;
 };
 
-// True for slope, tilt, length, z_error and curl.
+// True for slope, tilt, length, z_error, curl and curvature.
 [[nodiscard]] bool is_measure(Show show);
 
-// The measure `show` of preview.h, with a scale up to `maximum`, or up to a suitable value if `maximum` is 0. Errors:
-// cancelled, out_of_memory.
-[[nodiscard]] Result<Measure> measure(Show show, const NormalMap& map, float maximum, const Execution& execution);
+// The measure options.show of preview.h, with a scale up to options.maximum, or up to a suitable value if that is 0.
+// Errors: cancelled, out_of_memory.
+[[nodiscard]] Result<Measure> measure(const PreviewOptions& options, const NormalMap& map, const Execution& execution);
 
 // The least number of the form 1, 2 or 5 times a power of ten that is not below the 99.5th percentile of |values|, and
 // not below `least`.

@@ -6,7 +6,7 @@
 
 namespace tex::render {
 
-Vec2 parallax_offset(const Parallax& parallax, const Sampler& height, Vec2 uv, const Footprint& footprint, Vec3 view,
+Vec2 parallax_offset(const Parallax& parallax, const Relief& relief, Vec2 uv, const Footprint& footprint, Vec3 view,
                      int anisotropy) {
     const double amount = parallax.amount, limit = parallax.limit;
     // At a grazing angle the quotient overflows to infinity, which the clamp handles. Only 0 / 0 must be avoided.
@@ -15,7 +15,9 @@ Vec2 parallax_offset(const Parallax& parallax, const Sampler& height, Vec2 uv, c
         const double rise = amount * (t - 0.5);
         return Vec2{std::clamp(rise * view.x / z, -limit, limit), std::clamp(rise * view.y / z, -limit, limit)};
     };
-    const auto height_at = [&](Vec2 place) { return sample(height, place, footprint, anisotropy)[0]; };
+    const auto height_at = [&](Vec2 place) {
+        return sample(relief.heights, place, footprint, anisotropy)[0] / relief.white;
+    };
     if (parallax.steps <= 0) return offset_at(height_at(uv));
 
     double above = 1.0 - height_at(uv + offset_at(1.0));  // height of the ray above the map at the last step

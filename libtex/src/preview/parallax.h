@@ -9,8 +9,14 @@
 
 namespace tex::render {
 
+// Heights, of which `white` counts as 1.
+struct Relief {
+    const Sampler& heights;
+    double white = 1.0;
+};
+
 // The offset of Parallax (preview.h) for a view direction in the tangent frame, view.z > 0.
-[[nodiscard]] Vec2 parallax_offset(const Parallax& parallax, const Sampler& height, Vec2 uv, const Footprint& footprint,
+[[nodiscard]] Vec2 parallax_offset(const Parallax& parallax, const Relief& relief, Vec2 uv, const Footprint& footprint,
                                    Vec3 view, int anisotropy);
 
 }  // namespace tex::render

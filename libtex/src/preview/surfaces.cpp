@@ -88,8 +88,8 @@ Hit LitSurface::displaced(const Hit& hit, const Footprint& footprint) const {
     if (textures_.height.empty() || options_.parallax.amount == 0.0f) return seen;
     const Vec3 way = stage_.view.towards_viewer(hit.point);
     const Vec3 view{dot(way, hit.tangent), dot(way, hit.binormal), dot(way, hit.normal)};
-    seen.uv =
-        hit.uv + parallax_offset(options_.parallax, textures_.height, hit.uv, footprint, view, options_.anisotropy);
+    const Relief relief{textures_.height, static_cast<double>(scene_.white)};
+    seen.uv = hit.uv + parallax_offset(options_.parallax, relief, hit.uv, footprint, view, options_.anisotropy);
     return seen;
 }
 

@@ -31,6 +31,8 @@ void CurvatureRows::load(int j, float* x, float* y) const {
     }
     std::copy_n(map_.x.row(j), width, x);
     std::copy_n(map_.y.row(j), width, y);
+    zero_not_finite(x, width);
+    zero_not_finite(y, width);
 }
 
 CurvatureRows::Neighbour CurvatureRows::neighbour(Wrap wrap, int i, int n) {

@@ -58,6 +58,7 @@ UnpackRule rule_of(const UnpackOptions& options, SampleKind sample, int bits, YA
     rule.snap_flat = options.snap_flat && sample == SampleKind::unorm && bits == 8;
     rule.flip_y = y_axis == YAxis::down;
     rule.keep_length = options.keep_length;
+    rule.keep_invalid = options.keep_invalid;
     rule.keep_unit = sample == SampleKind::floating && bits == 32;
     return rule;
 }

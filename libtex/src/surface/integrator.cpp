@@ -54,7 +54,8 @@ Result<Integrator::Count> Integrator::count(const Execution& execution) const {
     const auto body = [&](int begin, int end) {
         Count& count = counts[static_cast<std::size_t>(begin / rows)];
         for (int j = begin; j < end; ++j) {
-            count.unused += count_below(map_.z.row(j), options_.least_z, extent_.width);
+            count.unused +=
+                count_without_slope({map_.x.row(j), map_.y.row(j), map_.z.row(j)}, options_.least_z, extent_.width);
             count.behind += count_below(map_.z.row(j), 0.0f, extent_.width);
         }
     };

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "checks/field_rules.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "checks/thresholds.h"
+#include "checks/turn.h"
+
+namespace tex {
+namespace {
+
+constexpr double kLeastUsable = 0.5;  // share of texels with a normal
+constexpr double kMostBehind = 0.05;  // share of texels that face away: more is object space
+constexpr double kLeastRms = 0.03;    // of changes over two texels: rounding to 8 bits gives 0.0045
+constexpr double kMostShared = 0.5;   // see TurnScale::shared()
+constexpr double kMostTurned = 75.0;  // a quarter turn is the same as exchanged channels: N308
+
+// The scale with the clearest axis, among those that show more than rounding.
+const TurnScale* clearest_scale(const Turn& turn) {
+    const TurnScale* best = nullptr;
+    for (const TurnScale& scale : turn.scale) {
+        if (scale.rms() < kLeastRms || scale.shared() > kMostShared) continue;
+        if (best == nullptr || scale.clearest().strength() > best->clearest().strength()) best = &scale;
+    }
+    return best;
+}
+
+void check_turned(const Turn& turn, Findings& findings) {
+    const TurnScale* const scale = clearest_scale(turn);
+    if (scale == nullptr || scale->clearest().strength() < thresholds::kTurnStrength) return;
+    const double angle = scale->clearest().angle();
+    if (std::abs(angle) < thresholds::kTurnAngle || std::abs(angle) > kMostTurned) return;
+    Finding& finding = findings.add("N309", "the curl is that of a picture turned by " + decimal(std::abs(angle), 0) +
+                                                " degrees " + (angle > 0.0 ? "counterclockwise" : "clockwise") +
+                                                " (strength " + decimal(scale->clearest().strength(), 2) + ")");
+    finding.figure = angle;
+    finding.unit = "degrees";
+    finding.confidence = 0.95;
+}
+
+void check_noise(const Subject& subject, const Turn& turn, Findings& findings) {
+    double share = 1.0, correlation = 0.0;
+    for (int k = 0; k < Turn::kScales; ++k) {
+        // Fine noise hides a surface that larger scales show; where these show nothing, they do not count.
+        if (turn.scale[k].rms() < kLeastRms && k > 0) continue;
+        if (turn.scale[k].rms() < kLeastRms) return;
+        share = std::min(share, turn.scale[k].curl_share());
+        correlation = std::max(correlation, std::abs(subject.curl.scale[k].correlation()));
+    }
+    if (share < thresholds::kNoiseCurl || correlation > thresholds::kNoiseCorrelation) return;
+    Finding& finding = findings.add("N310", percent(share) + " of the changes of slope are curl; noise has 50 %");
+    finding.figure = share;
+    finding.unit = "share";
+    finding.confidence = 0.95;
+}
+
+}  // namespace
+
+Result<void> check_field_rules(const Subject& subject, Findings& findings) {
+    if (!subject.sampled_ok || subject.curl.usable < kLeastUsable) return {};
+    if (subject.counts.share(Property::z_behind) > kMostBehind) return {};
+    if (!findings.wants("N309") && !findings.wants("N310")) return {};
+    const auto turn = measure_turn(subject.stored, subject.execution);
+    if (!turn) return turn.error();
+    check_turned(*turn, findings);
+    check_noise(subject, *turn, findings);
+    return {};
+}
+
+}  // namespace tex

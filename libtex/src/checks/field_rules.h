@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// field_rules.h: the rules about maps that are not those of a height field (N309 and N310).
+
+#pragma once
+
+#include <tex/result.h>
+
+#include "checks/findings.h"
+
+namespace tex {
+
+// Errors: cancelled, out_of_memory.
+Result<void> check_field_rules(const Subject& subject, Findings& findings);
+
+}  // namespace tex
