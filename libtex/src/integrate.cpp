@@ -69,7 +69,7 @@ Result<void> measure_curl(const NormalMap& map, const BakeOptions& bake, Integra
             rows.bake(j, row);
             float* const degrees = result.degrees.row(j);
             angle_row({map.x.row(j), map.y.row(j), map.z.row(j)}, row, extent.width, degrees);
-            zero_not_finite(degrees, extent.width);
+            zero_without_normal({map.x.row(j), map.y.row(j), map.z.row(j)}, extent.width, degrees);
             sums[static_cast<std::size_t>(j)] = sum_angles(degrees, extent.width);
         }
     };

@@ -56,10 +56,9 @@ TEST(TurnOfPictures, IsFoundInBothDirectionsOfGreen) {
             EXPECT_NEAR(scale.clearest().angle(), degrees, 0.6);
             EXPECT_GT(scale.clearest().strength(), 0.99) << degrees;
             EXPECT_LT(scale.shared(), 0.5) << degrees;
-            if (degrees == 0.0) EXPECT_LT(scale.curl_share(), 0.001);
             // sin^2 of the angle, if green points the way that has less curl
             const double sine = std::sin(degrees * std::numbers::pi / 180.0);
-            EXPECT_LT(scale.curl_share(), sine * sine + 0.01) << degrees;
+            EXPECT_LT(scale.curl_share(), sine * sine + 0.001) << degrees;
         }
     }
 }
@@ -84,9 +83,9 @@ TEST(TurnOfPictures, NoiseHasAsMuchCurlAsDivergenceAndNoAxis) {
         EXPECT_LT(scale.clearest().strength(), 0.05);
         EXPECT_LT(scale.shared(), 0.01);
     }
-    // Changes over two texels of noise that is uniform from -0.5 to 0.5: the square root of 2 / 12. Large ones weigh
-    // less.
-    EXPECT_NEAR(turn.scale[0].rms(), 0.39, 0.03);
+    // Each of the two changes has twice the variance of numbers from -0.5 to 0.5, 2 / 12. Large ones weigh less.
+    EXPECT_LT(turn.scale[0].rms(), std::sqrt(4.0 / 12.0));
+    EXPECT_GT(turn.scale[0].rms(), 0.5);
 }
 
 TEST(TurnOfPictures, NoiseInOneDirectionIsShared) {

@@ -45,8 +45,8 @@ struct Curvature {
 // Beyond the border of an axis, components repeat (repeat), continue their slope (clamp: one-sided differences of first
 // order), or are mirrored, with the component along the axis turned round (mirror). An axis of one texel does not bend.
 //
-// Texels with z below 1e-6 count as flat in `divergence`, which cannot have their slopes. Components that are NaN or
-// infinite count as 0.
+// Texels with z below 1e-6 count as flat in `divergence`, which cannot have their slopes; so do, in both, texels with a
+// component that is NaN or infinite.
 //
 // Preconditions (asserted): the map is not empty, of at most kMaxExtent.
 // Errors: out_of_memory, cancelled.

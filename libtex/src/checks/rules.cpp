@@ -102,10 +102,10 @@ constexpr Rule kRules[] = {
     {"N213", "object-space", values, error, true, "The normals are not in tangent space.",
      "z points away from the surface in many texels and the vectors face all directions: an object-space or "
      "world-space map.",
-     "", "N201 N202 N205 N207 N305 N309 N310 N401 N402 N403 N404 N501 N502 N504"},
+     "", "N201 N202 N205 N207 N305 N310 N401 N402 N403 N404 N501 N502 N504"},
     {"N214", "not-a-normal-map", values, error, true, "The picture is no normal map.",
      "Nearly all texels are far from unit length and many point away from the surface: colours, not vectors.", "",
-     "N201 N202 N205 N207 N213 N304 N305 N306 N309 N310 N401 N402 N403 N404 N501 N502 N504"},
+     "N201 N202 N205 N207 N213 N304 N305 N306 N310 N401 N402 N403 N404 N501 N502 N504"},
 
     // -- damage -----------------------------------------------------------------------------------------------
     {"N301", "srgb-decoded", damage, error, true, "The map went through the sRGB curve: it is too dark.",

@@ -44,7 +44,7 @@ struct TurnScale {
     // The direction of y in which the axis is clearest, and that in which the curl is least.
     [[nodiscard]] const TurnSums& clearest() const;
     [[nodiscard]] double curl_share() const;
-    // Root mean square of the changes over two texels along the axis or, if there is none, in all directions.
+    // Root mean square of the change of a slope over two texels, that along x and that along y together.
     [[nodiscard]] double rms() const;
     // How much the changes of p are those of q, from 0 to 1. At 1 all slopes have one direction: brushed metal, or
     // noise that R and G share because a JPEG stores their mean. Both have an axis without having been turned.

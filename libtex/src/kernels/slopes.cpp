@@ -76,11 +76,13 @@ int CountWithoutSlope(const VectorRow& normals, float least_z, int count) {
     return static_cast<int>(without);
 }
 
-void ZeroNotFinite(float* values, int count) {
+void ZeroWithoutNormal(const VectorRow& normals, int count, float* values) {
     const V infinity = hn::Set(kD, std::numeric_limits<float>::infinity());
     for (int i = 0; i < count; i += kLanes) {
-        const V value = hn::LoadU(kD, values + i);
-        hn::StoreU(hn::IfThenElseZero(hn::Lt(hn::Abs(value), infinity), value), kD, values + i);
+        const Vec3 n = LoadVec3(kD, normals.x + i, normals.y + i, normals.z + i);
+        const M finite = hn::And(hn::And(hn::Lt(hn::Abs(n.x), infinity), hn::Lt(hn::Abs(n.y), infinity)),
+                                 hn::Lt(hn::Abs(n.z), infinity));
+        hn::StoreU(hn::IfThenElseZero(finite, hn::LoadU(kD, values + i)), kD, values + i);
     }
 }
 
@@ -121,7 +123,7 @@ namespace tex {
 HWY_EXPORT(SlopesOfNormals);
 HWY_EXPORT(ExcessSlopes);
 HWY_EXPORT(CountWithoutSlope);
-HWY_EXPORT(ZeroNotFinite);
+HWY_EXPORT(ZeroWithoutNormal);
 HWY_EXPORT(SumDifferences);
 HWY_EXPORT(WeightedSum);
 HWY_EXPORT(ShiftAndScale);
@@ -138,7 +140,9 @@ int count_without_slope(const VectorRow& normals, float least_z, int count) {
     return HWY_DYNAMIC_DISPATCH(CountWithoutSlope)(normals, least_z, count);
 }
 
-void zero_not_finite(float* values, int count) { HWY_DYNAMIC_DISPATCH(ZeroNotFinite)(values, count); }
+void zero_without_normal(const VectorRow& normals, int count, float* values) {
+    HWY_DYNAMIC_DISPATCH(ZeroWithoutNormal)(normals, count, values);
+}
 
 void sum_differences(const float* x_plus, const float* x_minus, float x_factor, const float* y_plus,
                      const float* y_minus, float y_factor, int count, float* out) {

@@ -19,8 +19,8 @@ void excess_slopes(const VectorRow& normals, const VectorRow& made, float least_
 // The number of texels for which both make p and q 0.
 int count_without_slope(const VectorRow& normals, float least_z, int count);
 
-// values[i] = 0 where it is NaN or infinite.
-void zero_not_finite(float* values, int count);
+// values[i] = 0 where a component of the normal is NaN or infinite.
+void zero_without_normal(const VectorRow& normals, int count, float* values);
 
 // out[i] = x_factor (x_plus[i] - x_minus[i]) + y_factor (y_plus[i] - y_minus[i]).
 void sum_differences(const float* x_plus, const float* x_minus, float x_factor, const float* y_plus,

@@ -25,14 +25,15 @@ CurvatureRows::CurvatureRows(const NormalMap& map, bool of_slopes, Wrap wrap_x, 
 // The components x and y of row j, or the slopes.
 void CurvatureRows::load(int j, float* x, float* y) const {
     const int width = map_.extent().width;
+    const VectorRow normals = {map_.x.row(j), map_.y.row(j), map_.z.row(j)};
     if (of_slopes_) {
-        slopes_of_normals({map_.x.row(j), map_.y.row(j), map_.z.row(j)}, kLeastZ, width, x, y);
+        slopes_of_normals(normals, kLeastZ, width, x, y);
         return;
     }
     std::copy_n(map_.x.row(j), width, x);
     std::copy_n(map_.y.row(j), width, y);
-    zero_not_finite(x, width);
-    zero_not_finite(y, width);
+    zero_without_normal(normals, width, x);
+    zero_without_normal(normals, width, y);
 }
 
 CurvatureRows::Neighbour CurvatureRows::neighbour(Wrap wrap, int i, int n) {
