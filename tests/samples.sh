@@ -16,6 +16,10 @@ if [ $# -gt 1 ]; then
         --detail "$scratch/waves_normals.png" --detail-tiling 6 \
         --show height,normals,plain,lit --size 220 --light -1,1,0.9 --tint 0.6,0.28,0.18 --specular 0.12 --no-legend
     cmp "$scratch/strip.png" "$samples/strip.png"
+    # The README's picture of heights from normals.
+    "$3" "$scratch/bricks_normals.png" -o "$scratch/relief.png" --show normals,height,curvature --legend-max 0.15 \
+        --size 240 --no-legend
+    cmp "$scratch/relief.png" "$samples/relief.png"
     # The README's picture of +Y and -Y, both read as +Y. Its captions are the names of the files.
     "$2" "$samples/hemisphere.png" -o "$scratch/+Y.png" --bumpiness 112 --y up
     "$2" "$samples/hemisphere.png" -o "$scratch/-Y.png" --bumpiness 112 --y down

@@ -154,7 +154,8 @@ Result<Measure> measure_curvature(const PreviewOptions& options, const NormalMap
     });
     if (!done) return done.error();
     const auto maximum = static_cast<double>(options.maximum);
-    const double greatest = maximum > 0.0 ? maximum : round_maximum(result.values, 1e-4);
+    // A few edges bend far more than all the rest, which they would leave white.
+    const double greatest = maximum > 0.0 ? maximum : nice(std::max(quantile(result.values, 970), 1e-4));
     result.scale = {"curvature, 1/texel", -greatest, greatest, Palette::diverging};
     return result;
 }
