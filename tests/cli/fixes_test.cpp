@@ -220,6 +220,21 @@ TEST_F(Fixes, ThatWouldLoseDataAreSentences) {
     EXPECT_EQ(text.out.find("    fix: "), std::string::npos) << text.out;
 }
 
+// The advice of N309, which no command follows: turn the picture back, and let blend-normals turn the vectors, too.
+TEST_F(Fixes, TurnedPicturesAreTurnedBackAndTurnedRight) {
+    go("cp " TEX_SOURCE_DIR
+       "/samples/bricks.png . && bake-normals bricks.png -o b.png --bumpiness 12 --no-sync;"
+       "convert b.png -virtual-pixel tile -distort SRT 40 turned.png;"
+       "convert turned.png -distort SRT -40 -gravity center -crop 300x300+0+0 +repage back.png;"
+       "convert -size 512x512 'xc:#8080ff' flat.png; blend-normals flat.png b.png -o right.png --rotate -40 --no-sync");
+    const auto turned = finding(check("turned.png", ""), "N309");
+    EXPECT_NEAR(turned.value("figure", 0.0), -40.0, 2.0) << "ImageMagick turns clockwise";
+    EXPECT_NE(turned.value("message", "").find("degrees clockwise"), std::string::npos) << turned;
+    EXPECT_NE(turned.value("advice", "").find("blend-normals --rotate"), std::string::npos) << turned;
+    for (const char* name : {"b.png", "back.png", "right.png"})
+        EXPECT_EQ(ids(check(name, "")).count("N309"), 0u) << name;
+}
+
 // SARIF and the page print the same words as the text.
 TEST_F(Fixes, AreTheSameInEveryReport) {
     go("pack-normals n.exr -o m.dds --format rgba8 --no-sync");

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <filesystem>
 #include <limits>
 
@@ -92,19 +94,21 @@ TEST_F(IntegrateNormals, IsTheInverseOfBakeNormalsInEveryUnit) {
 
 // Bakers leave NaN outside of charts.
 TEST_F(IntegrateNormals, TexelsThatAreNotFiniteFollowFromTheOthers) {
-    does("bake-normals", {"waves.png", "-o", "n.exr", "--format", "float", "--bumpiness", "8"});
-    Image map = image_of("n.exr");
+    does("bake-normals", {"waves.png", "-o", "n.dds", "--format", "float", "--mips", "none", "--bumpiness", "8"});
+    std::string bytes = scratch_.read("n.dds");
+    const std::size_t texel = bytes.size() / (128 * 128);
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    for (int k = 0; k < 9; ++k) {
-        for (Plane<float>& plane : map.planes) plane.at(40 + k % 3, 60 + k / 3) = nan;
+    for (std::size_t k = 0; k < 9; ++k) {
+        const std::size_t before_end = 128 * 128 - ((60 + k / 3) * 128 + 40 + k % 3);
+        std::memcpy(bytes.data() + bytes.size() - before_end * texel, &nan, sizeof nan);
     }
-    ASSERT_TRUE(write_image(scratch_.path("holes.exr"), map));
-    const auto sound = report_of({"n.exr", "-o", "sound.exr", "--bumpiness", "8"});
+    scratch_.write("holes.dds", bytes);
+    const auto sound = report_of({"n.dds", "-o", "sound.exr", "--bumpiness", "8"});
     const auto holes =
-        report_of({"holes.exr", "-o", "h.exr", "--bumpiness", "8", "--curvature-out", "c.exr", "--curl-out", "d.exr"});
+        report_of({"holes.dds", "-o", "h.exr", "--bumpiness", "8", "--curvature-out", "c.exr", "--curl-out", "d.exr"});
     EXPECT_EQ(sound["unknown_texels"], 0);
     EXPECT_EQ(holes["unknown_texels"], 9);
-    EXPECT_NE(holes["warnings"][0].get<std::string>().find("9 of 16384 texels have no slope"), std::string::npos);
+    EXPECT_NE(holes["warnings"].dump().find("9 of 16384 texels have no slope"), std::string::npos);
     EXPECT_LT(difference("h.exr", "sound.exr"), 0.01);
     for (const char* name : {"c.exr", "d.exr"}) {
         const Plane<float> plane = heights_of(name);

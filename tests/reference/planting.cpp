@@ -20,6 +20,7 @@ constexpr int kGreyLevels = 256;
 constexpr int kFewestLevels = 8;
 constexpr double kVisibleStep = 5.0 / 255.0;  // of slopes
 constexpr double kVisibleSeam = 2.0;
+constexpr double kFewHoles = 0.005;
 constexpr double kVisibleShortness = 0.0125;  // of vectors: a code and a half of z
 
 // The largest part of the map, from its corner, whose sides are powers of two.
@@ -73,6 +74,15 @@ double border_ratio(const NormalMap& map) {
         worst = std::max({worst, right / e.height / inner, bottom / e.width / inner});
     }
     return worst;
+}
+
+// The share of texels without a normal that has a slope. The rules leave out the texels around them.
+double share_of_holes(const NormalMap& map) {
+    double holes = 0.0;
+    for (int j = 0; j < map.extent().height; ++j) {
+        for (int i = 0; i < map.extent().width; ++i) holes += map.z.at(i, j) < 0.05f ? 1.0 : 0.0;
+    }
+    return holes / static_cast<double>(map.extent().texels());
 }
 
 Codes half_flipped(const Codes& codes) {
@@ -141,7 +151,7 @@ std::vector<Planted> plant_all(const NormalMap& whole, std::optional<YAxis> y, b
         add("turned by " + std::to_string(static_cast<int>(angle)) + " degrees", "N309",
             texture_of(codes_of(turn_picture(map, angle))), plain);
     }
-    add("texels shuffled", "N310", texture_of(shuffled(codes)), plain);
+    add("texels shuffled", "N310", texture_of(shuffled(codes)), plain).visible = share_of_holes(map) < kFewHoles;
     if (!blocks) add("BC1 before", "N306", texture_of(bc1(codes)), plain);
     add("JPEG, quality 50", "N304", texture_of(jpeg(codes, 50)), plain);
 
