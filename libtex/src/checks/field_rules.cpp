@@ -13,6 +13,9 @@ namespace tex {
 namespace {
 
 constexpr double kLeastUsable = 0.5;  // share of texels with a normal
+// Of the changes of p and q across their own directions. After a turn by the angle a, bumps without a preferred
+// direction have cos(2 a) / (1 + 2 sin(a)^2) left: 0.76 after 15 degrees.
+constexpr double kSoundCorrelation = 0.9;
 constexpr double kMostBehind = 0.05;  // share of texels that face away: more is object space
 constexpr double kLeastRms = 0.03;    // of changes over two texels: rounding to 8 bits gives 0.0045
 constexpr double kMostShared = 0.5;   // see TurnScale::shared()
@@ -62,6 +65,7 @@ void check_noise(const Subject& subject, const Turn& turn, Findings& findings) {
 Result<void> check_field_rules(const Subject& subject, Findings& findings) {
     if (!subject.sampled_ok || subject.curl.usable < kLeastUsable) return {};
     if (subject.counts.share(Property::z_behind) > kMostBehind) return {};
+    if (std::abs(subject.curl.correlation) > kSoundCorrelation) return {};  // as in most maps: it saves time
     if (!findings.wants("N309") && !findings.wants("N310")) return {};
     const auto turn = measure_turn(subject.stored, subject.execution);
     if (!turn) return turn.error();
