@@ -14,6 +14,7 @@ namespace {
 // The maps of a PreviewScene besides the normal map.
 struct Scene {
     py::object detail = py::none(), albedo = py::none(), detail_albedo = py::none(), height_map = py::none();
+    float white = 1.0f;
     bool map_without_z = false, detail_without_z = false;
 };
 
@@ -23,6 +24,7 @@ void each_field(Scene& o, F& f) {
     f("albedo", o.albedo, "ArrayLike | Image | None");
     f("detail_albedo", o.detail_albedo, "ArrayLike | Image | None");
     f("height_map", o.height_map, "ArrayLike | None");
+    f("white", o.white);
     f("map_without_z", o.map_without_z);
     f("detail_without_z", o.detail_without_z);
 }
@@ -34,6 +36,7 @@ py::object previewed(Call& call, Scene& given, PreviewOptions& options, Running&
     std::optional<Picture> albedo, detail_albedo;
     PreviewScene scene;
     scene.map = &map;
+    scene.white = given.white;
     scene.map_without_z = given.map_without_z;
     scene.detail_without_z = given.detail_without_z;
     if (!given.detail.is_none()) {

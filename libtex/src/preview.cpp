@@ -249,6 +249,7 @@ Result<Texture> preview(const PreviewScene& scene, const PreviewOptions& options
     return guarded([&]() -> Result<Texture> {
         if (const auto sound = check_light(options); !sound) return sound.error();
         if (const auto sound = check_geometry(options); !sound) return sound.error();
+        if (!(scene.white > 0.0f) || !finite({scene.white})) return bad("the height of white must be above 0");
         const Extent map = scene.map->levels.front().extent();
         if (scene.mesh == nullptr) {
             if (is_of_mesh(options.show)) return bad("there is no mesh to show");

@@ -238,6 +238,8 @@ TEST(Preview, RefusesOptionsOutOfRange) {
     EXPECT_TRUE(refused([](PreviewOptions& o) { o.camera = Camera{0.0f, 90.0f, 30.0f}; }));
     EXPECT_TRUE(refused([](PreviewOptions& o) { o.camera = Camera{0.0f, 0.0f, 121.0f}; }));
     EXPECT_TRUE(refused([](PreviewOptions& o) { o.show = Show::height; })) << "no height map";
+    for (const float white : {0.0f, -1.0f, std::nanf("")})
+        EXPECT_EQ(preview({.map = &map, .white = white}, {}).error().code, ErrorCode::bad_option);
 }
 
 TEST(Preview, ProgressNeverRunsBackwards) {
