@@ -161,6 +161,7 @@ TEST_F(BakeNormals, OptionsChangeTheResult) {
                                                            {"--kernel", "gaussian:2"},
                                                            {"--wrap", "clamp"},
                                                            {"--invert"},
+                                                           {"--deband", "on"},
                                                            {"--blur", "2"},
                                                            {"--y", "down"},
                                                            {"--mip-filter", "kaiser"},
@@ -178,6 +179,34 @@ TEST_F(BakeNormals, OptionsChangeTheResult) {
         EXPECT_TRUE(bytes_of(change) != base) << name;
     }
     EXPECT_TRUE(bytes_of({"bricks.png", "--wrap", "repeat,repeat"}) == plain);
+}
+
+TEST_F(BakeNormals, DebandSaysWhatItFound) {
+    const Ran ran = bake({"bricks.png", "-o", "x.dds", "--deband", "on", "--json"});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    const auto report = nlohmann::json::parse(ran.out)["deband"];
+    EXPECT_EQ(report["applied"], true);
+    EXPECT_NEAR(report["step"], 1.0 / 255.0, 1e-6);
+    EXPECT_GT(report["codes"], 1);
+    EXPECT_GE(report["terrace_texels"], 0);
+    EXPECT_FALSE(nlohmann::json::parse(bake({"bricks.png", "-o", "x.dds", "--json"}).out).contains("deband"));
+}
+
+TEST_F(BakeNormals, DebandWarnsIfThereAreNoSteps) {
+    std::string text = "Pf\n100 90\n-1.0\n";
+    for (int k = 0; k < 9000; ++k) {
+        const float height = 0.5f + 0.4f * std::sin(0.01f * static_cast<float>(k));
+        text.append(reinterpret_cast<const char*>(&height), sizeof(height));
+    }
+    scratch_.write("fine.pfm", text);
+    const Ran warned = bake({"fine.pfm", "-o", "x.dds", "--deband", "on"});
+    EXPECT_EQ(warned.code, 0);
+    EXPECT_EQ(warned.err, "bake-normals: warning: fine.pfm: --deband on changes nothing: the heights lie on no common "
+                          "steps coarser than 12 bits\n");
+    const std::string bytes = scratch_.read("x.dds");
+    EXPECT_EQ(bake({"fine.pfm", "-o", "x.dds", "--deband", "auto"}).err, "");
+    EXPECT_TRUE(scratch_.read("x.dds") == bytes);
+    EXPECT_EQ(bake({"fine.pfm", "-o", "x.dds", "--deband", "maybe"}).code, 2);
 }
 
 // There is nothing to fill here, so holding all heights must give the same bytes as holding a few rows.

@@ -23,6 +23,7 @@ struct Heights {
     std::optional<LinearRows> linear;  // if the picture is in another colour space
     HeightOptions options;
     HeightCounts counts;        // found so far
+    DebandReport deband;
     std::optional<Image> last;  // the last rows, if they are needed first
 };
 
