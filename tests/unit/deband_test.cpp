@@ -225,7 +225,8 @@ TEST(Deband, KeepsHolesAndBendsThroughThem) {
     for (int j = 0; j < 150; ++j) {
         for (int i = 0; i < 160; ++i) {
             EXPECT_EQ(std::isnan(out.height.at(i, j)), hole(i, j));
-            if (!hole(i, j)) EXPECT_LE(std::abs(out.height.at(i, j) - in.height.at(i, j)), 0.5f / 255.0f);
+            if (hole(i, j)) continue;
+            EXPECT_LE(std::abs(out.height.at(i, j) - in.height.at(i, j)), 0.5f / 255.0f);
         }
     }
 }

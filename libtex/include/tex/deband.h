@@ -28,9 +28,9 @@ namespace tex {
 // that is, the field of least bending energy that rounds to the input, with a pull w >= 0 to the input. No height
 // leaves the range from 0 to 1 where the input ends at 0 or at 1. Where the ground is smooth, w is 0. Where it is
 // rough, rounding acts as white noise of variance 1/12, and the best estimate is that of a Wiener filter: w is 12 times
-// the variance of L h (Wiener 1949). It is estimated as the local mean of (L k)^2, less 20/12 for the noise; half as
-// many texels, averaged, must confirm it, less 0.6, so that the beat of a steady slope with the steps is not mistaken
-// for roughness.
+// the variance of L h (Wiener 1949). It is estimated as the local mean of (L k)^2, less 20/12 for the noise; the
+// means of 2x2 texels must confirm it, with 4 times their energy less 0.6, so that the beat of a steady slope with the
+// steps is not mistaken for roughness.
 //
 // Method: from coarse grids to fine ones; on each, a fixed number of projected gradient steps with momentum (Beck,
 // Teboulle 2009). On coarse grids, a texel lies between the bounds of those that it stands for, and is held where the

@@ -162,10 +162,10 @@ void LimitRow(const float* low, const float* high, float otherwise, int count, f
     }
 }
 
-void WeightsOfEnergy(float noise, int count, float* row) {
+void WeightsOfEnergy(float noise, float factor, int count, float* row) {
     for (int i = 0; i < count; i += kLanes) {
         const V excess = hn::Max(hn::Sub(load(row + i), set(noise)), hn::Zero(kD));
-        hn::StoreU(hn::Mul(set(12.0f), excess), kD, row + i);
+        hn::StoreU(hn::Mul(set(factor), excess), kD, row + i);
     }
 }
 
@@ -246,7 +246,9 @@ void limit_row(const float* low, const float* high, float otherwise, int count, 
     HWY_DYNAMIC_DISPATCH(LimitRow)(low, high, otherwise, count, row);
 }
 
-void weights_of_energy(float noise, int count, float* row) { HWY_DYNAMIC_DISPATCH(WeightsOfEnergy)(noise, count, row); }
+void weights_of_energy(float noise, float factor, int count, float* row) {
+    HWY_DYNAMIC_DISPATCH(WeightsOfEnergy)(noise, factor, count, row);
+}
 
 void least_of(const float* other, int count, float* row) { HWY_DYNAMIC_DISPATCH(LeastOf)(other, count, row); }
 

@@ -63,8 +63,8 @@ void repeat_texels(const float* row, int count, float* out);
 // In place: row[i], or `otherwise` if it is NaN, from low[i] to high[i].
 void limit_row(const float* low, const float* high, float otherwise, int count, float* row);
 
-// In place: energies become 12 max(0, energy - noise).
-void weights_of_energy(float noise, int count, float* row);
+// In place: energies become factor max(0, energy - noise).
+void weights_of_energy(float noise, float factor, int count, float* row);
 
 // row[i] = min(row[i], other[i]), and row[i] = max(row[i], factor other[i]).
 void least_of(const float* other, int count, float* row);

@@ -18,6 +18,10 @@ namespace {
 // is 1/12. The mean of 2x2 texels has a quarter of it, 0.42; 0.6 leaves room for chance.
 constexpr float kNoise = 20.0f / 12.0f;
 constexpr float kNoiseOfHalf = 0.6f;
+// The weight of an energy: the inverse of the variance of rounding.
+constexpr float kPull = 12.0f;
+// Grain that differs from texel to texel has a quarter of its energy left in the mean of 2x2 texels.
+constexpr float kGrain = 4.0f;
 // Energies are averaged over squares with this many neighbours to each side: of 10x10 texels, and 18x18.
 constexpr int kNear = 2;
 constexpr int kWide = 4;
@@ -90,7 +94,7 @@ Result<Plane<float>> own_weights(const BendingGrid& grid, const Execution& execu
     auto out = halved(*energies, execution);
     if (!out) return out.error();
     if (auto done = average(grid, kNear, *out, execution); !done) return done.error();
-    for (int j = 0; j < out->extent().height; ++j) weights_of_energy(kNoise, out->extent().width, out->row(j));
+    for (int j = 0; j < out->extent().height; ++j) weights_of_energy(kNoise, kPull, out->extent().width, out->row(j));
     return out;
 }
 
@@ -104,7 +108,7 @@ Result<Plane<float>> finest_weights(const BendingGrid& grid, const BendingGrid* 
     if (auto done = average(*half, kWide, *confirmed, execution); !done) return done.error();
     const Extent extent = out->extent();
     for (int j = 0; j < extent.height; ++j) {
-        weights_of_energy(kNoiseOfHalf, extent.width, confirmed->row(j));
+        weights_of_energy(kNoiseOfHalf, kPull * kGrain, extent.width, confirmed->row(j));
         least_of(confirmed->row(j), extent.width, out->row(j));
     }
     return out;
