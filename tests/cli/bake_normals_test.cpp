@@ -157,20 +157,13 @@ TEST_F(BakeNormals, LevelsGoOnlyWhereTheyFit) {
 
 TEST_F(BakeNormals, OptionsChangeTheResult) {
     const std::string plain = bytes_of({"bricks.png"});
-    const std::vector<std::vector<std::string>> changes = {{"--kernel", "scharr"},
-                                                           {"--kernel", "gaussian:2"},
-                                                           {"--wrap", "clamp"},
-                                                           {"--invert"},
-                                                           {"--deband", "on"},
-                                                           {"--blur", "2"},
-                                                           {"--y", "down"},
-                                                           {"--mip-filter", "kaiser"},
-                                                           {"--mip-domain", "slope"},
-                                                           {"--fade", "1,3"},
-                                                           {"--dds-header", "dx10"},
-                                                           {"--dds-mark"},
-                                                           {"--color-space", "sRGB"},
-                                                           {"--mips", "2"},
+    const std::vector<std::vector<std::string>> changes = {{"--kernel", "scharr"},    {"--kernel", "gaussian:2"},
+                                                           {"--wrap", "clamp"},       {"--invert"},
+                                                           {"--deband", "on"},        {"--blur", "2"},
+                                                           {"--y", "down"},           {"--mip-filter", "kaiser"},
+                                                           {"--mip-domain", "slope"}, {"--fade", "1,3"},
+                                                           {"--dds-header", "dx10"},  {"--dds-mark"},
+                                                           {"--color-space", "sRGB"}, {"--mips", "2"},
                                                            {"--format", "bc5"}};
     const std::string base = bytes_of({"bricks.png", "--bumpiness", "4"});
     for (std::vector<std::string> change : changes) {
@@ -201,8 +194,9 @@ TEST_F(BakeNormals, DebandWarnsIfThereAreNoSteps) {
     scratch_.write("fine.pfm", text);
     const Ran warned = bake({"fine.pfm", "-o", "x.dds", "--deband", "on"});
     EXPECT_EQ(warned.code, 0);
-    EXPECT_EQ(warned.err, "bake-normals: warning: fine.pfm: --deband on changes nothing: the heights lie on no common "
-                          "steps coarser than 12 bits\n");
+    EXPECT_EQ(warned.err,
+              "bake-normals: warning: fine.pfm: --deband on changes nothing: the heights lie on no common "
+              "steps coarser than 12 bits\n");
     const std::string bytes = scratch_.read("x.dds");
     EXPECT_EQ(bake({"fine.pfm", "-o", "x.dds", "--deband", "auto"}).err, "");
     EXPECT_TRUE(scratch_.read("x.dds") == bytes);
