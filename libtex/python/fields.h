@@ -36,6 +36,7 @@ void each_field(HeightOptions& o, F& f) {
     f("no_data", o.no_data);
     f("fill_invalid", o.fill_invalid);
     f("invert", o.invert);
+    f("deband", o.deband);
     f("blur_sigma", o.blur_sigma);
     f("wrap", axes(o.wrap_x, o.wrap_y));
 }

@@ -38,6 +38,21 @@ void add_strengths(Module& module) {
                 });
 }
 
+// The caller's array stays as it is.
+py::object debanded(Call& call, Relief& relief, Running& running) {
+    const Deband when = call.has("when") ? Convert<Deband>::from(call["when"], "when") : Deband::on;
+    HeightField given = field_from(call["height"], "height", relief);
+    HeightField field{given.height.clone(), given.bumpiness_x, given.bumpiness_y, given.wrap_x, given.wrap_y};
+    const DebandReport report = running.run([&](const Execution& e) { return deband(field, when, e); });
+    py::dict result;
+    result["field"] = object_of(std::move(field));
+    result["applied"] = report.applied;
+    result["step"] = report.step;
+    result["codes"] = report.codes;
+    result["terrace_texels"] = report.terrace_texels;
+    return result;
+}
+
 }  // namespace
 
 void add_heights(Module& module) {
@@ -53,6 +68,11 @@ void add_heights(Module& module) {
             field.wrap_y = options.wrap_y;
             return object_of(std::move(field));
         });
+    module.verb<Relief, Running>("deband", {{"height", kHeights}, {"when", "str", "'on'"}}, "dict[str, Any]",
+                                 "A dict of the fields of DebandReport, and 'field': a new HeightField with the "
+                                 "debanded heights. `height` is an "
+                                 "array (height, width) or a HeightField; bumpiness and wrap as in bake().",
+                                 debanded);
     module.verb<Relief, BakeOptions, Running>(
         "bake", {{"height", kHeights}}, "NDArray[np.float32]",
         "The normals of heights, an array (height, width, 3) of x, y and z. `height` is an array (height, width) or a "

@@ -15,6 +15,7 @@
 #include "rows/blur.h"
 #include "rows/height_source.h"
 #include "stream/nearest.h"
+#include "surface/debander.h"
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
@@ -83,9 +84,11 @@ Result<HeightField> height_field(const Image& image, const HeightOptions& option
         if (!with) return with.error();
         const Extent extent = image.extent();
         HeightField field{Plane<float>(extent), 1.0f, 1.0f, options.wrap_x, options.wrap_y};
-        // Progress: the steps before are fast compared with filling and blurring.
-        const double taken = options.fill_invalid || options.blur_sigma > 0.0f ? 0.2 : 1.0;
+        // Progress: the steps before are fast compared with debanding, filling and blurring.
+        const bool debands = options.deband != Deband::off;
+        const double taken = debands || options.fill_invalid || options.blur_sigma > 0.0f ? 0.2 : 1.0;
         const double filled = options.blur_sigma > 0.0f ? 0.5 : 1.0;
+        const double smoothed = !debands ? taken : options.fill_invalid ? 0.4 : filled;
 
         std::atomic<std::int64_t> luma_texels{0}, invalid_texels{0};
         const auto take = [&](int begin, int end) {
@@ -101,20 +104,23 @@ Result<HeightField> height_field(const Image& image, const HeightOptions& option
         if (auto done = parallel_for(execution, extent.height, strip_rows(extent), take, {0.0, taken}); !done)
             return done.error();
 
+        if (invalid_texels > 0 && (!options.fill_invalid || invalid_texels == extent.texels())) {
+            const auto [column, row] = first_invalid(field.height);
+            return invalid_heights(invalid_texels, column, row, extent, *with);
+        }
+        const auto deband =
+            deband_heights(field.height, options.wrap_x, options.wrap_y, options.deband, execution, {taken, smoothed});
+        if (!deband) return deband.error();
         if (invalid_texels > 0) {
-            if (!options.fill_invalid || invalid_texels == extent.texels()) {
-                const auto [column, row] = first_invalid(field.height);
-                return invalid_heights(invalid_texels, column, row, extent, *with);
-            }
             auto done =
-                fill_from_nearest(field.height.view(), options.wrap_x, options.wrap_y, execution, {taken, filled});
+                fill_from_nearest(field.height.view(), options.wrap_x, options.wrap_y, execution, {smoothed, filled});
             if (!done) return done.error();
         }
         if (options.blur_sigma > 0.0f) {
             auto done = blur(field, static_cast<double>(options.blur_sigma), execution, {filled, 1.0});
             if (!done) return done.error();
         }
-        if (report != nullptr) *report = {luma_texels, invalid_texels};
+        if (report != nullptr) *report = {luma_texels, invalid_texels, *deband};
         return field;
     });
 }

@@ -157,19 +157,13 @@ TEST_F(BakeNormals, LevelsGoOnlyWhereTheyFit) {
 
 TEST_F(BakeNormals, OptionsChangeTheResult) {
     const std::string plain = bytes_of({"bricks.png"});
-    const std::vector<std::vector<std::string>> changes = {{"--kernel", "scharr"},
-                                                           {"--kernel", "gaussian:2"},
-                                                           {"--wrap", "clamp"},
-                                                           {"--invert"},
-                                                           {"--blur", "2"},
-                                                           {"--y", "down"},
-                                                           {"--mip-filter", "kaiser"},
-                                                           {"--mip-domain", "slope"},
-                                                           {"--fade", "1,3"},
-                                                           {"--dds-header", "dx10"},
-                                                           {"--dds-mark"},
-                                                           {"--color-space", "sRGB"},
-                                                           {"--mips", "2"},
+    const std::vector<std::vector<std::string>> changes = {{"--kernel", "scharr"},    {"--kernel", "gaussian:2"},
+                                                           {"--wrap", "clamp"},       {"--invert"},
+                                                           {"--deband", "on"},        {"--blur", "2"},
+                                                           {"--y", "down"},           {"--mip-filter", "kaiser"},
+                                                           {"--mip-domain", "slope"}, {"--fade", "1,3"},
+                                                           {"--dds-header", "dx10"},  {"--dds-mark"},
+                                                           {"--color-space", "sRGB"}, {"--mips", "2"},
                                                            {"--format", "bc5"}};
     const std::string base = bytes_of({"bricks.png", "--bumpiness", "4"});
     for (std::vector<std::string> change : changes) {
@@ -178,6 +172,35 @@ TEST_F(BakeNormals, OptionsChangeTheResult) {
         EXPECT_TRUE(bytes_of(change) != base) << name;
     }
     EXPECT_TRUE(bytes_of({"bricks.png", "--wrap", "repeat,repeat"}) == plain);
+}
+
+TEST_F(BakeNormals, DebandSaysWhatItFound) {
+    const Ran ran = bake({"bricks.png", "-o", "x.dds", "--deband", "on", "--json"});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    const auto report = nlohmann::json::parse(ran.out)["deband"];
+    EXPECT_EQ(report["applied"], true);
+    EXPECT_NEAR(report["step"], 1.0 / 255.0, 1e-6);
+    EXPECT_GT(report["codes"], 1);
+    EXPECT_GE(report["terrace_texels"], 0);
+    EXPECT_FALSE(nlohmann::json::parse(bake({"bricks.png", "-o", "x.dds", "--json"}).out).contains("deband"));
+}
+
+TEST_F(BakeNormals, DebandWarnsIfThereAreNoSteps) {
+    std::string text = "Pf\n100 90\n-1.0\n";
+    for (int k = 0; k < 9000; ++k) {
+        const float height = 0.5f + 0.4f * std::sin(0.01f * static_cast<float>(k));
+        text.append(reinterpret_cast<const char*>(&height), sizeof(height));
+    }
+    scratch_.write("fine.pfm", text);
+    const Ran warned = bake({"fine.pfm", "-o", "x.dds", "--deband", "on"});
+    EXPECT_EQ(warned.code, 0);
+    EXPECT_EQ(warned.err,
+              "bake-normals: warning: fine.pfm: --deband on changes nothing: the heights lie on no common "
+              "steps coarser than 12 bits\n");
+    const std::string bytes = scratch_.read("x.dds");
+    EXPECT_EQ(bake({"fine.pfm", "-o", "x.dds", "--deband", "auto"}).err, "");
+    EXPECT_TRUE(scratch_.read("x.dds") == bytes);
+    EXPECT_EQ(bake({"fine.pfm", "-o", "x.dds", "--deband", "maybe"}).code, 2);
 }
 
 // There is nothing to fill here, so holding all heights must give the same bytes as holding a few rows.

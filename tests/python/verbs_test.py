@@ -17,6 +17,20 @@ def test_bake_gives_the_normals_of_the_command(commands, bricks, heights):
     assert n.tobytes() == commands.floats("n.exr").tobytes()
 
 
+def test_deband_keeps_the_codes_and_the_input():
+    j, i = np.mgrid[0:96, 0:128]
+    codes = np.round(60 + 40 * np.sin(i * 0.03) * np.cos(j * 0.02)).astype(np.float32)
+    heights = codes / np.float32(255)
+    before = heights.copy()
+    found = tex.deband(heights, wrap="clamp", threads=2)
+    assert (heights == before).all()
+    assert found["applied"] and abs(found["step"] * 255 - 1) < 1e-4 and found["terrace_texels"] > 0
+    assert (np.round(found["field"].height * 255) == codes).all()
+    assert (found["field"].height != before).any()
+    assert (tex.height_field(heights, deband="on", wrap="clamp").height == found["field"].height).all()
+    assert not tex.deband(heights, when="off")["applied"]
+
+
 def test_height_field_picks_inverts_and_blurs_as_the_command(commands):
     source = SAMPLES / "y_axis.png"
     commands("bake-normals", source, "-o", "n.exr", "--format", "float", "--mips", "none", "--bumpiness", "2",

@@ -90,6 +90,7 @@ TEST_F(Pipeline, StepsThatReachOverAllRowsGiveTheBytesOfTheVerbs) {
         options_.heights.wrap_y = any_of(kWrapNames, random);
         options_.heights.invert = random() % 3 == 0;
         options_.heights.blur_sigma = random() % 3 == 0 ? 1.5f : 0.0f;
+        options_.heights.deband = any_of(kDebandNames, random);
         options_.strength = [](Extent) { return Strength{6.0f, 4.0f}; };
         options_.color.space = random() % 2 == 0 ? "sRGB" : "";
         const Kind kind{1 + static_cast<int>(random() % 4), random() % 2 == 0 ? 8 : 16, random() % 2 == 0};
@@ -111,6 +112,8 @@ TEST_F(Pipeline, StepsThatReachOverAllRowsGiveTheBytesOfTheVerbs) {
         ASSERT_TRUE(height_field(linear(input), options_.heights, {}, &counted));
         EXPECT_EQ(report->heights.luma_texels, counted.luma_texels);
         EXPECT_EQ(report->heights.invalid_texels, counted.invalid_texels);
+        EXPECT_EQ(report->heights.deband.applied, counted.deband.applied);
+        EXPECT_EQ(report->heights.deband.terrace_texels, counted.deband.terrace_texels);
     }
 }
 

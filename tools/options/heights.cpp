@@ -100,6 +100,8 @@ void KernelOption::add(Command& command, std::string help) {
 void HeightGroup::add(Command& command) {
     command.choice(options.channel, "--channel", "C", kHeightChannelNames, "which channel holds the heights");
     command.flag(options.invert, "--invert", "white is low: h becomes 1 - h");
+    command.choice(options.deband, "--deband", "WHEN", kDebandNames,
+                   "regain the bits that rounding to 8 bits took away; see the manual page");
     command.number(options.blur_sigma, "--blur", "SIGMA", {0.0, 256.0},
                    "blur the heights first, by a Gaussian of SIGMA texels");
     command.flag(options.fill_invalid, "--fill-invalid",
@@ -145,9 +147,20 @@ std::string luma_text(std::int64_t texels) {
     return fmt::format("R, G and B differ in {} texels: their luma is the height; --channel chooses another", texels);
 }
 
+// What was found goes into the report. Who asked for it and does not get it is told why.
+void note_deband(Job& job, const DebandReport& report, Deband when) {
+    job.report["deband"] = {{"applied", report.applied},
+                            {"step", report.step},
+                            {"codes", report.codes},
+                            {"terrace_texels", report.terrace_texels}};
+    if (when == Deband::on && !report.applied)
+        job.warn("--deband on changes nothing: the heights lie on no common steps coarser than 12 bits");
+}
+
 }  // namespace
 
 void HeightReader::note(Job& job, const HeightReport& report) {
+    if (heights.options.deband != Deband::off) note_deband(job, report.deband, heights.options.deband);
     if (report.luma_texels == 0) return;
     job.remark(luma_text(report.luma_texels));
     const std::lock_guard lock(mutex_);

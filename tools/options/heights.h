@@ -53,7 +53,7 @@ struct KernelOption {
     void add(Command& command, std::string help);
 };
 
-// --channel, --invert, --blur, --fill-invalid, --no-data.
+// --channel, --invert, --deband, --blur, --fill-invalid, --no-data.
 struct HeightGroup {
     HeightOptions options;
 

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // height_field.h: heights, what lies beyond their border, and how steep they are.
 //
-// bake() reads a HeightField. height_field() makes one from an Image: it picks the channel, replaces invalid texels,
-// inverts and blurs, in that order.
+// bake() reads a HeightField. height_field() makes one from an Image: it picks the channel, inverts, smooths terraces,
+// replaces invalid texels and blurs, in that order.
 
 #pragma once
 
 #include <cstdint>
 #include <optional>
 
+#include <tex/deband_options.h>
 #include <tex/execution.h>
 #include <tex/image.h>
 #include <tex/names.h>
@@ -89,9 +90,10 @@ struct HeightOptions {
     // Texels of exactly this value (after rounding to float) are invalid. None: Image::no_data, if the file names it.
     // NaN: no value is.
     std::optional<float> no_data;
-    bool fill_invalid = false;  // invalid texels take the value of the nearest valid one
-    bool invert = false;        // h becomes 1 - h, for maps in which white is low
-    float blur_sigma = 0.0f;    // standard deviation of a Gaussian blur in texels; 0 is none; at most 256
+    bool fill_invalid = false;    // invalid texels take the value of the nearest valid one
+    bool invert = false;          // h becomes 1 - h, for maps in which white is low
+    Deband deband = Deband::off;  // heights regain the bits that rounding took away: see deband.h
+    float blur_sigma = 0.0f;      // standard deviation of a Gaussian blur in texels; 0 is none; at most 256
     Wrap wrap_x = Wrap::repeat;
     Wrap wrap_y = Wrap::repeat;
 };
@@ -100,6 +102,7 @@ struct HeightOptions {
 struct HeightReport {
     std::int64_t luma_texels = 0;     // texels for which `automatic` used luma because R, G, B differ
     std::int64_t invalid_texels = 0;  // NaN, infinite or no-data texels, all of which were filled
+    DebandReport deband = {};         // all zeros if HeightOptions::deband is off
 };
 
 // Makes a height field of strength 1 from a picture.
@@ -109,7 +112,7 @@ struct HeightReport {
 // are several, the plane named "Y", "height", "displacement", "Z" or "depth" (any case) does. If fill_invalid is set,
 // invalid texels (NaN, infinite, equal to no_data) take the value of the nearest valid texel (Euclidean distance, wrap
 // respected, ties by the smallest row, then column). Blur: a Gaussian of radius ceil(3 sigma), weights normalised to
-// 1, with the field's wrap.
+// 1, with the field's wrap. Invalid texels tell deband() nothing about the heights.
 //
 // Errors: bad_option  the picture lacks the channel (the reason lists its channels); blur_sigma out of range
 //         bad_data    invalid texels without fill_invalid (the reason names the column and row of the first texel, and

@@ -73,6 +73,7 @@ struct BakeFileReport {
 // Memory holds a few rows, and in addition the data of each step that needs all rows:
 //   an interlaced PNG   all rows, as they are decoded
 //   fill_invalid        all heights, and for each the row of its nearest valid neighbour: 8 bytes a texel
+//   deband              all heights, and what deband() needs besides: 13 bytes a texel
 //   TIFF, TGA ... out   all packed texels: the reader process encodes whole pictures
 //   EXR out             the compressed tiles of smaller levels, until the base level is done
 // PNG and EXR are written from the top. If the heights repeat from bottom to top, the last rows are therefore decoded

@@ -69,6 +69,8 @@
 #include <tex/convert.h>
 #include <tex/convert_options.h>
 #include <tex/curvature.h>
+#include <tex/deband.h>
+#include <tex/deband_options.h>
 #include <tex/heat_map.h>
 #include <tex/integrate.h>
 #include <tex/integrate_options.h>

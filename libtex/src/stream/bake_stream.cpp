@@ -21,8 +21,9 @@ namespace tex {
 Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, Container container,
                                    const BakeFileOptions& options, const Execution& execution,
                                    const StreamSizes& sizes) {
-    // Progress: filling comes before the rest of the work.
-    const double filled = options.heights.fill_invalid ? 0.5 : 0.0;
+    // Progress: debanding and filling come before the rest of the work.
+    const bool debands = options.heights.deband != Deband::off;
+    const double filled = debands ? 0.7 : options.heights.fill_invalid ? 0.5 : 0.0;
     const Gradient gradient = gradient_of(options.bake);
     const RowOrder order = all_take_any_order(container, options.more) ? RowOrder::any : RowOrder::from_the_top;
     Result<Heights> heights = open_heights(file, order, options, gradient, part_of(execution, 0.0, filled));
@@ -53,7 +54,7 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
     if (const Result<void> done = writer.commit(); !done) return done.error();
     report.bytes = writer.file_bytes();
     const HeightCounts& counts = stage.counts();
-    report.heights = {heights->counts.luma + counts.luma, heights->counts.invalid + counts.invalid};
+    report.heights = {heights->counts.luma + counts.luma, heights->counts.invalid + counts.invalid, heights->deband};
     report.slopes = slopes.range();
     report.steep_texels = slopes.steep_texels();
     return report;

@@ -2,10 +2,13 @@
 
 #include "stream/filled_heights.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <utility>
 
 #include "stream/nearest.h"
+#include "surface/debander.h"
 
 namespace tex {
 namespace {
@@ -33,31 +36,49 @@ private:
     const Plane<float> plane_;
 };
 
+// The column of the first NaN of a row. Precondition: there is one.
+int first_nan(const Plane<float>& heights, int j) {
+    const float* const row = heights.row(j);
+    const float* const end = row + heights.extent().width;
+    return static_cast<int>(std::find_if(row, end, [](float h) { return std::isnan(h); }) - row);
+}
+
 }  // namespace
 
 Result<std::unique_ptr<RowSource>> fill_heights(RowSource& rows, const std::string& input, const HeightSource& source,
                                                 const HeightOptions& options, const LinearRows* linear,
-                                                const Execution& execution, HeightCounts& counts) {
-    constexpr double kRead = 0.6;  // the part of the progress that reading takes
+                                                const Execution& execution, HeightCounts& counts,
+                                                DebandReport& deband) {
+    // Progress: reading takes this part, and debanding up to that one.
+    const double read_to = options.deband != Deband::off ? 0.2 : 0.6;
+    const double debanded_to = options.deband == Deband::off ? read_to : options.fill_invalid ? 0.8 : 1.0;
     const Extent extent = rows.extent();
     Plane<float> heights(extent);
+    std::pair<int, int> first_invalid{0, 0};  // column, row
     const auto take = [&](Image& image, int first, int count) -> Result<void> {
         if (linear != nullptr) {
             if (Result<void> converted = linear->convert(image, count); !converted) return converted;
         }
         for (int k = 0; k < count; ++k) {
             const HeightCounts met = take_heights(image, source, options, k, heights.row(first + k));
+            if (met.invalid > 0 && counts.invalid == 0) first_invalid = {first_nan(heights, first + k), first + k};
             counts.luma += met.luma;
             counts.invalid += met.invalid;
         }
-        const double done = kRead * (first + count) / extent.height;
+        const double done = read_to * (first + count) / extent.height;
         if (execution.progress && !execution.progress(done)) return Error{ErrorCode::cancelled, {}, "cancelled"};
         return {};
     };
     if (const Result<void> read = rows.visit(input, take); !read) return read.error();
-    if (counts.invalid == extent.texels()) return invalid_heights(counts.invalid, 0, 0, extent, options);
+    if (counts.invalid == extent.texels() || (counts.invalid > 0 && !options.fill_invalid))
+        return invalid_heights(counts.invalid, first_invalid.first, first_invalid.second, extent, options);
+    const auto smooth =
+        deband_heights(heights, options.wrap_x, options.wrap_y, options.deband, execution, {read_to, debanded_to});
+    if (!smooth) return smooth.error();
+    deband = *smooth;
     if (counts.invalid > 0) {
-        const auto filled = fill_from_nearest(heights.view(), options.wrap_x, options.wrap_y, execution, {kRead, 1.0});
+        const auto filled =
+            fill_from_nearest(heights.view(), options.wrap_x, options.wrap_y, execution, {debanded_to, 1.0});
         if (!filled) return filled.error();
     }
     return std::unique_ptr<RowSource>(std::make_unique<PlaneRows>(std::move(heights)));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// filled_heights.h: heights whose invalid texels take the value of the nearest valid one, which may be anywhere. This
-// stage needs all rows, so it reads the picture to its end and is itself a source of rows.
+// filled_heights.h: heights that depend on texels anywhere: invalid ones take the value of the nearest valid one, and
+// debanded ones bend with all others. This stage needs all rows, so it reads the picture to its end and is itself a
+// source of rows.
 
 #pragma once
 
@@ -16,11 +17,12 @@
 
 namespace tex {
 
-// Reads the one-channel heights of the picture `rows` as `source` and `options` say, and fills them. `linear` may be
-// null; messages name the picture `input`. Adds what it finds to `counts`. Precondition: no row has been decoded yet.
-// Errors: those of reading and of LinearRows; bad_data (no texel is valid); cancelled. May throw std::bad_alloc.
+// Reads the one-channel heights of the picture `rows` as `source` and `options` say, debands and fills them. `linear`
+// may be null; messages name the picture `input`. Adds what it finds to `counts` and `deband`. Precondition: no row has
+// been decoded yet. Errors: those of reading and of LinearRows; bad_data (no texel is valid, or one is not and
+// options.fill_invalid is not set); cancelled. May throw std::bad_alloc.
 Result<std::unique_ptr<RowSource>> fill_heights(RowSource& rows, const std::string& input, const HeightSource& source,
                                                 const HeightOptions& options, const LinearRows* linear,
-                                                const Execution& execution, HeightCounts& counts);
+                                                const Execution& execution, HeightCounts& counts, DebandReport& deband);
 
 }  // namespace tex

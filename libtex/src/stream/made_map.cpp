@@ -65,7 +65,7 @@ public:
         const Extent extent = heights_->rows->extent();
         const auto make = [&](NormalSink sink) {
             auto stage = std::make_unique<CountedStage>(
-                report_.heights, heights_->counts,
+                report_.heights, HeightReport{heights_->counts.luma, heights_->counts.invalid, heights_->deband},
                 std::make_unique<HeightStage>(extent, heights_->source, heights_->options, gradient,
                                               head_of(extent, options_), std::move(sink), std::move(heights_->last)));
             return stage;
@@ -83,17 +83,18 @@ private:
     // Reports what the stage has found.
     class CountedStage final : public NormalStage {
     public:
-        CountedStage(HeightReport& report, const HeightCounts& before, std::unique_ptr<HeightStage> stage)
+        CountedStage(HeightReport& report, const HeightReport& before, std::unique_ptr<HeightStage> stage)
             : report_(report), before_(before), stage_(std::move(stage)) {}
         void put(const Image& rows, int count) override { stage_->put(rows, count); }
         [[nodiscard]] Result<void> check() const override {
-            report_ = {before_.luma + stage_->counts().luma, before_.invalid + stage_->counts().invalid};
+            report_ = {before_.luma_texels + stage_->counts().luma, before_.invalid_texels + stage_->counts().invalid,
+                       before_.deband};
             return stage_->check();
         }
 
     private:
         HeightReport& report_;
-        const HeightCounts before_;
+        const HeightReport before_;
         const std::unique_ptr<HeightStage> stage_;
     };
 

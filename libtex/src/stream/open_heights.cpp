@@ -35,16 +35,20 @@ Result<void> prepare(const BakeFileOptions& options, Heights& heights) {
     return {};
 }
 
-// Fills invalid heights. This stage needs all rows at once.
+// Whether a stage needs all rows at once.
+bool needs_all_rows(const HeightOptions& options) { return options.fill_invalid || options.deband != Deband::off; }
+
+// Debands heights, and fills invalid ones.
 Result<void> fill(InputFile& file, const Execution& execution, Heights& heights) {
     Result<std::unique_ptr<RowSource>> filled =
         fill_heights(*heights.rows, file.path(), heights.source, heights.options,
-                     heights.linear ? &*heights.linear : nullptr, execution, heights.counts);
+                     heights.linear ? &*heights.linear : nullptr, execution, heights.counts, heights.deband);
     if (!filled) return filled.error();
     heights.rows = std::move(*filled);
     heights.source = {HeightChannel::automatic, 0};
     heights.linear.reset();
     heights.options.invert = false;
+    heights.options.deband = Deband::off;
     heights.options.no_data = std::numeric_limits<float>::quiet_NaN();
     return {};
 }
@@ -74,11 +78,11 @@ Result<Heights> open_heights(InputFile& file, RowOrder order, const BakeFileOpti
     heights.rows = std::move(*rows);
     if (const Result<void> fits = prepare(options, heights); !fits)
         return after_all_rows(*heights.rows, file.path(), fits.error());
-    if (options.heights.fill_invalid) {
+    if (needs_all_rows(options.heights)) {
         if (const Result<void> filled = fill(file, execution, heights); !filled) return filled.error();
     }
     if (order == RowOrder::from_the_top && options.heights.wrap_y == Wrap::repeat) {
-        const double done = options.heights.fill_invalid ? 1.0 : 0.0;
+        const double done = needs_all_rows(options.heights) ? 1.0 : 0.0;
         const Result<void> found = find_last_rows(file, options, gradient, part_of(execution, done, 1.0), heights);
         if (!found) return found.error();
     }

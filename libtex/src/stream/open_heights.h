@@ -22,7 +22,8 @@ struct Heights {
     HeightSource source;
     std::optional<LinearRows> linear;  // if the picture is in another colour space
     HeightOptions options;
-    HeightCounts counts;        // found so far
+    HeightCounts counts;  // found so far
+    DebandReport deband;
     std::optional<Image> last;  // the last rows, if they are needed first
 };
 

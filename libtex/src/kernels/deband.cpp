@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "kernels/deband.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/deband.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace tex {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using D = hn::CappedTag<float, 16>;
+using V = hn::Vec<D>;
+using M = hn::Mask<D>;
+constexpr D kD;
+constexpr int kLanes = static_cast<int>(hn::MaxLanes(kD));
+
+// How far a height may be from its code. What is missing to a half makes up for the rounding of floats.
+constexpr float kReach = 0.499f;
+// The greatest energy of a texel: beyond, the ground is a cliff, and a greater one would only spread farther.
+constexpr float kMostEnergy = 1e6f;
+// The largest eigenvalue of the squared Laplacian.
+constexpr float kStiffest = 64.0f;
+
+HWY_INLINE V set(float value) { return hn::Set(kD, value); }
+HWY_INLINE V load(const float* row) { return hn::LoadU(kD, row); }
+
+void CodesOfHeights(float lowest, float step, int count, float* row) {
+    for (int i = 0; i < count; i += kLanes) {
+        const V code = hn::Round(hn::Div(hn::Sub(load(row + i), set(lowest)), set(step)));
+        hn::StoreU(hn::IfThenElse(hn::IsNaN(load(row + i)), load(row + i), code), kD, row + i);
+    }
+}
+
+void HeightsOfCodes(const float* codes, float lowest, float step, int count, float* row) {
+    const V from = set(lowest), by = set(step);
+    for (int i = 0; i < count; i += kLanes) {
+        const V code = load(codes + i);
+        const V height = hn::Add(from, hn::Mul(by, load(row + i)));
+        const M same = hn::Eq(hn::Round(hn::Div(hn::Sub(height, from), by)), code);
+        const V kept = hn::Add(from, hn::Mul(by, code));  // NaN if the code is
+        hn::StoreU(hn::IfThenElse(same, height, kept), kD, row + i);
+    }
+}
+
+void BoundsOfCodes(const float* codes, float least, float greatest, int count, float* low, float* high) {
+    for (int i = 0; i < count; i += kLanes) {
+        const V code = load(codes + i);
+        const M unknown = hn::IsNaN(code);
+        const V l = hn::Max(hn::Sub(code, set(kReach)), set(least));
+        const V h = hn::Min(hn::Add(code, set(kReach)), set(greatest));
+        hn::StoreU(hn::IfThenElse(unknown, set(-kUnbounded), l), kD, low + i);
+        hn::StoreU(hn::IfThenElse(unknown, set(kUnbounded), h), kD, high + i);
+    }
+}
+
+void ExtrapolateRow(const float* a, const float* b, float factor, int count, float* out) {
+    for (int i = 0; i < count; i += kLanes) {
+        const V at = load(a + i);
+        hn::StoreU(hn::Add(at, hn::Mul(set(factor), hn::Sub(at, load(b + i)))), kD, out + i);
+    }
+}
+
+HWY_INLINE V laplacian(const float* above, const float* row, const float* below) {
+    const V around = hn::Add(hn::Add(load(above), load(below)), hn::Add(load(row - 1), load(row + 1)));
+    return hn::Sub(around, hn::Mul(set(4.0f), load(row)));
+}
+
+void LaplaceRow(const float* above, const float* row, const float* below, int count, float* out) {
+    for (int i = -1; i <= count; i += kLanes) hn::StoreU(laplacian(above + i, row + i, below + i), kD, out + i);
+}
+
+void SquareRow(int count, float* row) {
+    for (int i = 0; i < count; i += kLanes) {
+        const V value = load(row + i);
+        const V square = hn::Min(hn::Mul(value, value), set(kMostEnergy));
+        hn::StoreU(hn::IfThenZeroElse(hn::IsNaN(value), square), kD, row + i);
+    }
+}
+
+void RelaxRow(const BendingRow& in, int count, float* out) {
+    for (int i = 0; i < count; i += kLanes) {
+        const V height = load(in.heights + i);
+        const V code = load(in.codes + i);
+        const V weight = hn::IfThenZeroElse(hn::IsNaN(code), load(in.weights + i));
+        const V pull = hn::IfThenZeroElse(hn::IsNaN(code), hn::Mul(weight, hn::Sub(height, code)));
+        const V gradient = hn::Add(laplacian(in.above + i, in.at + i, in.below + i), pull);
+        const V moved = hn::Sub(height, hn::Div(gradient, hn::Add(set(kStiffest), weight)));
+        hn::StoreU(hn::Min(hn::Max(moved, load(in.low + i)), load(in.high + i)), kD, out + i);
+    }
+}
+
+// Both texels of each pair in `row`, from pair i on.
+struct Pairs {
+    V even, odd;
+};
+HWY_INLINE Pairs pairs_at(const float* row, int i) {
+    Pairs pairs;
+    hn::LoadInterleaved2(kD, row + 2 * i, pairs.even, pairs.odd);
+    return pairs;
+}
+
+HWY_INLINE void count_code(V code, V& sum, V& known) {
+    const M unknown = hn::IsNaN(code);
+    sum = hn::Add(sum, hn::IfThenZeroElse(unknown, code));
+    known = hn::Add(known, hn::IfThenZeroElse(unknown, set(1.0f)));
+}
+
+void HalveCodes(const float* upper, const float* lower, int count, float* out) {
+    for (int i = 0; i < count; i += kLanes) {
+        const Pairs a = pairs_at(upper, i), b = pairs_at(lower, i);
+        V sum = hn::Zero(kD), known = hn::Zero(kD);
+        count_code(a.even, sum, known);
+        count_code(a.odd, sum, known);
+        count_code(b.even, sum, known);
+        count_code(b.odd, sum, known);
+        const V mean = hn::Div(sum, hn::Max(known, set(1.0f)));
+        hn::StoreU(hn::IfThenElse(hn::Gt(known, hn::Zero(kD)), mean, hn::NaN(kD)), kD, out + i);
+    }
+}
+
+void HalveMeans(const float* upper, const float* lower, int count, float* out) {
+    for (int i = 0; i < count; i += kLanes) {
+        const Pairs a = pairs_at(upper, i), b = pairs_at(lower, i);
+        const V sum = hn::Add(hn::Add(a.even, a.odd), hn::Add(b.even, b.odd));
+        hn::StoreU(hn::Mul(set(0.25f), sum), kD, out + i);
+    }
+}
+
+void HalveBounds(BoundsRow upper, BoundsRow lower, int count, float* low, float* high) {
+    for (int i = 0; i < count; i += kLanes) {
+        const Pairs a = pairs_at(upper.low, i), b = pairs_at(lower.low, i);
+        const Pairs c = pairs_at(upper.high, i), d = pairs_at(lower.high, i);
+        const V l = hn::Max(hn::Max(a.even, a.odd), hn::Max(b.even, b.odd));
+        const V h = hn::Min(hn::Min(c.even, c.odd), hn::Min(d.even, d.odd));
+        hn::StoreU(hn::Min(l, h), kD, low + i);
+        hn::StoreU(hn::Max(l, h), kD, high + i);
+    }
+}
+
+void DoubleRow(const float* row, int count, float* out) {
+    const V near = set(0.75f), far = set(0.25f);
+    for (int i = 0; i < count; i += kLanes) {
+        const V at = hn::Mul(near, load(row + i));
+        const V even = hn::Add(at, hn::Mul(far, load(row + i - 1)));
+        const V odd = hn::Add(at, hn::Mul(far, load(row + i + 1)));
+        hn::StoreInterleaved2(even, odd, kD, out + 2 * i);
+    }
+}
+
+void RepeatTexels(const float* row, int count, float* out) {
+    for (int i = 0; i < count; i += kLanes) hn::StoreInterleaved2(load(row + i), load(row + i), kD, out + 2 * i);
+}
+
+void LimitRow(const float* low, const float* high, float otherwise, int count, float* row) {
+    for (int i = 0; i < count; i += kLanes) {
+        const V value = hn::IfThenElse(hn::IsNaN(load(row + i)), set(otherwise), load(row + i));
+        hn::StoreU(hn::Min(hn::Max(value, load(low + i)), load(high + i)), kD, row + i);
+    }
+}
+
+void WeightsOfEnergy(float noise, float factor, int count, float* row) {
+    for (int i = 0; i < count; i += kLanes) {
+        const V excess = hn::Max(hn::Sub(load(row + i), set(noise)), hn::Zero(kD));
+        hn::StoreU(hn::Mul(set(factor), excess), kD, row + i);
+    }
+}
+
+void LeastOf(const float* other, int count, float* row) {
+    for (int i = 0; i < count; i += kLanes) hn::StoreU(hn::Min(load(row + i), load(other + i)), kD, row + i);
+}
+
+void GreatestOf(const float* other, float factor, int count, float* row) {
+    for (int i = 0; i < count; i += kLanes)
+        hn::StoreU(hn::Max(load(row + i), hn::Mul(set(factor), load(other + i))), kD, row + i);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tex
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tex {
+
+HWY_EXPORT(CodesOfHeights);
+HWY_EXPORT(HeightsOfCodes);
+HWY_EXPORT(BoundsOfCodes);
+HWY_EXPORT(ExtrapolateRow);
+HWY_EXPORT(LaplaceRow);
+HWY_EXPORT(SquareRow);
+HWY_EXPORT(RelaxRow);
+HWY_EXPORT(HalveCodes);
+HWY_EXPORT(HalveMeans);
+HWY_EXPORT(HalveBounds);
+HWY_EXPORT(DoubleRow);
+HWY_EXPORT(RepeatTexels);
+HWY_EXPORT(LimitRow);
+HWY_EXPORT(WeightsOfEnergy);
+HWY_EXPORT(LeastOf);
+HWY_EXPORT(GreatestOf);
+
+void codes_of_heights(float lowest, float step, int count, float* row) {
+    HWY_DYNAMIC_DISPATCH(CodesOfHeights)(lowest, step, count, row);
+}
+
+void heights_of_codes(const float* codes, float lowest, float step, int count, float* row) {
+    HWY_DYNAMIC_DISPATCH(HeightsOfCodes)(codes, lowest, step, count, row);
+}
+
+void bounds_of_codes(const float* codes, float least, float greatest, int count, float* low, float* high) {
+    HWY_DYNAMIC_DISPATCH(BoundsOfCodes)(codes, least, greatest, count, low, high);
+}
+
+void extrapolate_row(const float* a, const float* b, float factor, int count, float* out) {
+    HWY_DYNAMIC_DISPATCH(ExtrapolateRow)(a, b, factor, count, out);
+}
+
+void laplace_row(const float* above, const float* row, const float* below, int count, float* out) {
+    HWY_DYNAMIC_DISPATCH(LaplaceRow)(above, row, below, count, out);
+}
+
+void square_row(int count, float* row) { HWY_DYNAMIC_DISPATCH(SquareRow)(count, row); }
+
+void relax_row(const BendingRow& in, int count, float* out) { HWY_DYNAMIC_DISPATCH(RelaxRow)(in, count, out); }
+
+void halve_codes(const float* upper, const float* lower, int count, float* out) {
+    HWY_DYNAMIC_DISPATCH(HalveCodes)(upper, lower, count, out);
+}
+
+void halve_means(const float* upper, const float* lower, int count, float* out) {
+    HWY_DYNAMIC_DISPATCH(HalveMeans)(upper, lower, count, out);
+}
+
+void halve_bounds(BoundsRow upper, BoundsRow lower, int count, float* low, float* high) {
+    HWY_DYNAMIC_DISPATCH(HalveBounds)(upper, lower, count, low, high);
+}
+
+void double_row(const float* row, int count, float* out) { HWY_DYNAMIC_DISPATCH(DoubleRow)(row, count, out); }
+
+void repeat_texels(const float* row, int count, float* out) { HWY_DYNAMIC_DISPATCH(RepeatTexels)(row, count, out); }
+
+void limit_row(const float* low, const float* high, float otherwise, int count, float* row) {
+    HWY_DYNAMIC_DISPATCH(LimitRow)(low, high, otherwise, count, row);
+}
+
+void weights_of_energy(float noise, float factor, int count, float* row) {
+    HWY_DYNAMIC_DISPATCH(WeightsOfEnergy)(noise, factor, count, row);
+}
+
+void least_of(const float* other, int count, float* row) { HWY_DYNAMIC_DISPATCH(LeastOf)(other, count, row); }
+
+void greatest_of(const float* other, float factor, int count, float* row) {
+    HWY_DYNAMIC_DISPATCH(GreatestOf)(other, factor, count, row);
+}
+
+}  // namespace tex
+#endif  // HWY_ONCE

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// height_steps.h: finds the steps that heights lie on.
+
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace tex {
+
+// The most steps from the lowest height to the highest. (Finer ones are no terraces: 12 bits are smooth.)
+inline constexpr int kMostCodes = 4096;
+
+// Collects the different heights of some rows, until there are more than kMostCodes.
+class DistinctHeights {
+public:
+    DistinctHeights();
+
+    void add(const float* row, int count);  // NaN does not count
+    void add(const DistinctHeights& other);
+    [[nodiscard]] bool too_many() const { return used_ > kMostCodes; }
+    [[nodiscard]] std::vector<float> sorted() const;
+
+private:
+    void insert(float height);
+
+    std::vector<float> slots_;  // an open hash table; NaN: free
+    int used_ = 0;
+};
+
+struct HeightSteps {
+    float lowest = 0.0f;
+    float step = 0.0f;
+    int codes = 0;
+};
+
+// The steps that all of `sorted` lie on, as deband.h describes them; nullopt if there are none.
+std::optional<HeightSteps> find_steps(const std::vector<float>& sorted);
+
+// Counts the texels of a row that have the height of both neighbours along x or y. `above` and `below` may be null.
+std::int64_t count_terraces(const float* above, const float* row, const float* below, int count);
+
+}  // namespace tex
