@@ -28,6 +28,7 @@ Result<Texture> pack_chain(const MipChain& chain, const PackOptions& options, co
     texture.y_axis = options.y_axis;
     texture.y_known = options.y_known;
 
+    const int band_rows = rdo_band_rows(options, chain.levels[0].extent().width);
     std::int64_t total = 0;
     for (const NormalMap& map : chain.levels) total += map.extent().texels();
     std::int64_t done = 0;
@@ -39,7 +40,8 @@ Result<Texture> pack_chain(const MipChain& chain, const PackOptions& options, co
         packed.extent = extent;
         packed.bytes.resize(level_bytes(texture.format, extent));
         const int block = format_info(texture.format).block.height;
-        const int grain = std::max(1, kPieceTexels / extent.width / block) * block;
+        const int together = is_optimised(options) ? band_rows : block;
+        const int grain = std::max(1, kPieceTexels / extent.width / together) * together;
         const auto fraction = [&] { return static_cast<double>(done) / static_cast<double>(total); };
         ProgressSpan span;
         span.from = fraction();
@@ -47,7 +49,10 @@ Result<Texture> pack_chain(const MipChain& chain, const PackOptions& options, co
         span.to = fraction();
         const Result<void> result = parallel_for(
             execution, extent.height, grain,
-            [&](int begin, int end) { pack_rows(map, extent.height, options, begin, end, packed.bytes.data()); }, span);
+            [&](int begin, int end) {
+                pack_rows(map, extent.height, options, begin, end, packed.bytes.data(), band_rows);
+            },
+            span);
         if (!result) return result.error();
         texture.levels.push_back(std::move(packed));
     }
