@@ -10,6 +10,7 @@
 
 #include "kernels/encode.h"
 #include "rows/pack_rows.h"
+#include "rows/rdo_rows.h"
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
@@ -19,7 +20,8 @@ namespace {
 // The number of texels in a piece of work: enough to be worth passing to a thread, few enough to stay in its cache.
 constexpr int kPieceTexels = 1 << 15;
 
-Result<Texture> pack_chain(const MipChain& chain, const PackOptions& options, const Execution& execution) {
+Result<Texture> pack_chain(const MipChain& chain, const PackOptions& options, const Execution& execution,
+                           RdoTally* tally) {
     const EncodingInfo encoding = encoding_info(options.encoding);
     Texture texture;
     texture.format = encoding.format;
@@ -50,7 +52,7 @@ Result<Texture> pack_chain(const MipChain& chain, const PackOptions& options, co
         const Result<void> result = parallel_for(
             execution, extent.height, grain,
             [&](int begin, int end) {
-                pack_rows(map, extent.height, options, begin, end, packed.bytes.data(), band_rows);
+                pack_rows(map, extent.height, options, begin, end, packed.bytes.data(), band_rows, tally);
             },
             span);
         if (!result) return result.error();
@@ -61,9 +63,14 @@ Result<Texture> pack_chain(const MipChain& chain, const PackOptions& options, co
 
 }  // namespace
 
-Result<Texture> pack(const MipChain& chain, const PackOptions& options, const Execution& execution) {
+Result<Texture> pack(const MipChain& chain, const PackOptions& options, const Execution& execution, RdoReport* rdo) {
     assert(!chain.levels.empty());
-    return guarded([&]() -> Result<Texture> { return pack_chain(chain, options, execution); });
+    return guarded([&]() -> Result<Texture> {
+        RdoTally tally;
+        Result<Texture> texture = pack_chain(chain, options, execution, &tally);
+        if (texture && rdo != nullptr && is_optimised(options)) *rdo = tally.report();
+        return texture;
+    });
 }
 
 void encode_blocks(PlaneView<const float> x, PlaneView<const float> y, const PackOptions& options, std::byte* blocks,

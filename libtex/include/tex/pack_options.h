@@ -74,10 +74,13 @@ inline constexpr Named<Metric> kMetricNames[] = {
 //   max      no texel's angle exceeds both `max` degrees and its own angle without optimisation
 //
 // A band that cannot keep the promise gets the blocks without optimisation.
+inline constexpr int kLeastRdoWindow = 64;
+inline constexpr int kMostRdoWindow = 1 << 20;
+
 struct RdoOptions {
     float mean = 0.0f;   // degrees, at least 0; 0: no optimisation
     float max = 180.0f;  // degrees, above 0
-    int window = 65536;  // bytes from a block back to what it may copy: 64 to 1048576; encoding time grows with it
+    int window = 65536;  // bytes from a block back to what it may copy, in these bounds; time grows with it
 };
 
 // What optimisation has done, in degrees, in all levels together.

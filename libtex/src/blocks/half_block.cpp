@@ -189,15 +189,37 @@ int literals_before(HalfKind kind, Copied copied) {
     return copied == Copied::indices ? all : copied == Copied::all_but_first ? all / 2 : 0;
 }
 
-int half_variants(HalfKind kind, const std::byte* source, Copied copied, float offset, float slope,
+HalfLine fit_line(HalfKind kind, const HalfShape& shape, Copied copied, const float values[16]) {
+    float w = 0.0f;
+    float ww = 0.0f;
+    float v = 0.0f;
+    float wv = 0.0f;
+    for (int k = 0; k < 16; ++k) {
+        w += shape.weights[k];
+        ww += shape.weights[k] * shape.weights[k];
+        v += values[k];
+        wv += shape.weights[k] * values[k];
+    }
+    constexpr float kLeast = 1e-3f;  // weights that differ less are all equal
+    if (copied == Copied::all_but_first && !keeps_slope(kind))
+        return {shape.offset, ww > kLeast ? std::max(0.0f, (wv - shape.offset * w) / ww) : 0.0f};
+    float slope = shape.slope;
+    if (copied == Copied::indices) {
+        const float variance = 16.0f * ww - w * w;
+        slope = variance > kLeast ? std::max(0.0f, (16.0f * wv - w * v) / variance) : 0.0f;
+    }
+    return {(v - slope * w) / 16.0f, slope};
+}
+
+int half_variants(HalfKind kind, const std::byte* source, Copied copied, HalfLine line,
                   std::byte variants[kMostVariants][kHalfBytes]) {
     Variants to{source, variants};
     switch (kind) {
-        case HalfKind::bc4_unorm: bc4_variants(to, copied, false, offset, slope); break;
-        case HalfKind::bc4_snorm: bc4_variants(to, copied, true, offset, slope); break;
-        case HalfKind::green: green_variants(to, copied, offset, slope); break;
-        case HalfKind::eac_unorm: eac_variants(to, copied, false, offset, slope); break;
-        case HalfKind::eac_snorm: eac_variants(to, copied, true, offset, slope); break;
+        case HalfKind::bc4_unorm: bc4_variants(to, copied, false, line.offset, line.slope); break;
+        case HalfKind::bc4_snorm: bc4_variants(to, copied, true, line.offset, line.slope); break;
+        case HalfKind::green: green_variants(to, copied, line.offset, line.slope); break;
+        case HalfKind::eac_unorm: eac_variants(to, copied, false, line.offset, line.slope); break;
+        case HalfKind::eac_snorm: eac_variants(to, copied, true, line.offset, line.slope); break;
     }
     return to.count;
 }

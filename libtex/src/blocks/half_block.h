@@ -46,10 +46,16 @@ int literals_before(HalfKind kind, Copied copied);
 // free.
 constexpr bool keeps_slope(HalfKind kind) { return kind == HalfKind::eac_unorm || kind == HalfKind::eac_snorm; }
 
-// The halves that copy from `source` and have values close to the line `offset`, `slope`: at most kMostVariants.
-// Returns their number.
+struct HalfLine {
+    float offset, slope;
+};
+// The line with the least sum of squares to 16 values, if the weights of `shape` and what follows from copying are
+// given. The slope is not negative, unless it is copied.
+HalfLine fit_line(HalfKind kind, const HalfShape& shape, Copied copied, const float values[16]);
+
+// The halves that copy from `source` and are close to a line: at most kMostVariants. Returns their number.
 inline constexpr int kMostVariants = 9;
-int half_variants(HalfKind kind, const std::byte* source, Copied copied, float offset, float slope,
+int half_variants(HalfKind kind, const std::byte* source, Copied copied, HalfLine line,
                   std::byte variants[kMostVariants][kHalfBytes]);
 
 }  // namespace tex

@@ -3,111 +3,20 @@
 #include "rows/rdo_pass.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <utility>
 
 #include "blocks/half_block.h"
 #include "kernels/copy_search.h"
-#include "rows/math.h"
+#include "rows/rdo_halves.h"
+#include "rows/rdo_rate.h"
 
 namespace tex {
 namespace {
 
 constexpr float kDegrees = 57.29577951308232f;
 constexpr float kForbidden = 1e30f;
-constexpr int kSlack = 16;  // of arrays that kernels read and write by whole vectors
-
-// Bits of a match, measured on the sequences that zstd -19 writes for such blocks: lengths and the class of the
-// distance take about kMatchBits, and distances have as many bits as they need.
-constexpr float kMatchBits = 4.0f;
-constexpr float kRepeatBits = 3.0f;   // at the last distance
-constexpr float kOlderRepeat = 0.7f;  // more for each distance before
-constexpr float kLongerBits = 0.3f;   // for a match that goes on
-constexpr float kUsualLiteral = 7.0f;
-
-float match_bits(int distance) {
-    return kMatchBits + static_cast<float>(std::bit_width(static_cast<unsigned>(distance) + 3u) - 1);
-}
-
-std::array<float, 256> literal_bits(const ByteCounts& counts) {
-    double total = 0.0;
-    for (const std::int64_t count : counts) total += static_cast<double>(count + 1);
-    std::array<float, 256> bits;
-    for (std::size_t k = 0; k < bits.size(); ++k) {
-        const double rarity = math::log(total / static_cast<double>(counts[k] + 1)) / math::log(2.0);
-        bits[k] = std::max(1.0f, static_cast<float>(rarity));
-    }
-    return bits;
-}
-
-// The halves of one channel so far, as a table for the kernels.
-class Halves {
-public:
-    Halves(HalfKind kind, std::size_t count) : kind_(kind) {
-        for (std::vector<float>& values : values_) values.resize(count + kSlack);
-    }
-    [[nodiscard]] HalfKind kind() const { return kind_; }
-
-    void add(const std::byte* half) {
-        const HalfShape shape = half_shape(kind_, half);
-        float sum = 0.0f;
-        float squares = 0.0f;
-        for (std::size_t k = 0; k < 16; ++k) {
-            values_[k][count_] = shape.weights[k];
-            sum += shape.weights[k];
-            squares += shape.weights[k] * shape.weights[k];
-        }
-        const float variance = 16.0f * squares - sum * sum;
-        values_[16][count_] = sum;
-        values_[17][count_] = squares;
-        values_[18][count_] = variance > 1e-3f ? 1.0f / variance : 0.0f;
-        values_[19][count_] = shape.offset;
-        values_[20][count_] = shape.slope;
-        // The errors of what is not a line must never look small.
-        if (!shape.is_line) {
-            values_[18][count_] = -1e6f;
-            values_[19][count_] = 1e6f;
-        }
-        ++count_;
-    }
-    [[nodiscard]] LineTable from(std::size_t first) const {
-        LineTable table{};
-        for (std::size_t k = 0; k < 16; ++k) table.weights[k] = values_[k].data() + first;
-        table.sum = values_[16].data() + first;
-        table.squares = values_[17].data() + first;
-        table.inverse = values_[18].data() + first;
-        table.offset = values_[19].data() + first;
-        table.slope = values_[20].data() + first;
-        return table;
-    }
-
-private:
-    const HalfKind kind_;
-    std::size_t count_ = 0;
-    std::vector<float> values_[21];
-};
-
-// The distances of the last matches, as zstd keeps them.
-struct Matches {
-    int last[3] = {1, 4, 8};
-    int open = 0;  // the distance of a match that ends where the next half begins
-
-    [[nodiscard]] float bits(int distance) const {
-        for (int k = 0; k < 3; ++k) {
-            if (last[k] == distance) return kRepeatBits + kOlderRepeat * static_cast<float>(k);
-        }
-        return match_bits(distance);
-    }
-    void use(int distance) {
-        open = distance;
-        if (distance == 0 || last[0] == distance) return;
-        if (last[1] != distance) last[2] = last[1];
-        last[1] = last[0];
-        last[0] = distance;
-    }
-};
 
 struct Choice {
     std::byte half[kHalfBytes];
@@ -134,11 +43,11 @@ private:
     void scan(int block);
     void find(int block);
     void find_pairs(float scale);
-    Choice choose(int half, const Choice& other, const Matches& matches, const std::vector<Source>& sources);
+    Choice choose(int half, const Choice& other, const RdoMatches& matches, const std::vector<Source>& sources);
     void consider(Choice& best, Choice& tried, int half, const Choice& other) const;
-    void try_copy(Choice& best, int half, const Choice& other, const Matches& matches, Source source);
+    void try_copy(Choice& best, int half, const Choice& other, const RdoMatches& matches, Source source);
     void choose_block(int block);
-    void add_near(int half, const Matches& matches, std::vector<Source>& sources) const;
+    void add_near(int half, const RdoMatches& matches, std::vector<Source>& sources) const;
     [[nodiscard]] Choice plain_choice(int half) const;
 
     [[nodiscard]] const std::byte* bytes(int half) const {
@@ -153,13 +62,13 @@ private:
     const float lambda_;
     const std::array<float, 256> literal_bits_;
     const int reach_;  // blocks
-    std::vector<Halves> halves_;
+    std::vector<RdoHalves> halves_;
     std::vector<float> prices_;           // of matches in the window, the farthest first
     std::vector<float> errors_[2][2][3];  // of x and y; copied from x or y; by what is copied
     int first_ = 0, count_ = 0;           // the blocks in the window
     std::vector<Source> sources_[2];
     std::vector<Source> pairs_;  // of x; y copies the same from the same distance
-    Matches matches_;
+    RdoMatches matches_;
     // The x that the choice of y may copy, before it is decided.
     int pending_ = -1;
     const std::byte* pending_half_ = nullptr;
@@ -171,11 +80,11 @@ Pass::Pass(const RdoBand& band, float lambda, const ByteCounts& literals)
     const std::size_t count = band.blocks.size();
     for (int h = 0; h < 2; ++h) halves_.emplace_back(half_kind(band.encoding, h), count);
     const auto most = static_cast<std::size_t>(std::min(reach_, static_cast<int>(count)));
-    prices_.resize(most + kSlack);
+    prices_.resize(most + kVectorSlack);
     for (std::size_t k = 0; k < most; ++k) prices_[k] = lambda * match_bits(static_cast<int>(16 * (most - k)));
     for (auto& of_target : errors_)
         for (auto& of_source : of_target)
-            for (std::vector<float>& errors : of_source) errors.resize(most + kSlack);
+            for (std::vector<float>& errors : of_source) errors.resize(most + kVectorSlack);
     result_.blocks.resize(band.plain.size());
 }
 
@@ -214,7 +123,7 @@ void Pass::find(int block) {
     }
     // The mean of 16 lengths is about 0.9 of the root of their mean square.
     const float scale = 0.9f * 4.0f * kDegrees * steepness / 16.0f;
-    const float* const prices = prices_.data() + (static_cast<int>(prices_.size()) - kSlack - count_);
+    const float* const prices = prices_.data() + (static_cast<int>(prices_.size()) - kVectorSlack - count_);
     for (int to = 0; to < 2; ++to) {
         const int half = 2 * block + to;
         const HalfKind kind = halves_[static_cast<std::size_t>(to)].kind();
@@ -238,7 +147,7 @@ void Pass::find(int block) {
 }
 
 void Pass::find_pairs(float scale) {
-    const float* const prices = prices_.data() + (static_cast<int>(prices_.size()) - kSlack - count_);
+    const float* const prices = prices_.data() + (static_cast<int>(prices_.size()) - kVectorSlack - count_);
     CheapCopies cheapest;
     for (int copied = 0; copied < 3; ++copied) {
         const int literals =
@@ -281,46 +190,24 @@ void Pass::consider(Choice& best, Choice& tried, int half, const Choice& other) 
     if (tried.cost < best.cost) best = tried;
 }
 
-// The line through the target with the weights of the source: offset and slope, of which one may be given.
-std::pair<float, float> fit_line(const HalfShape& shape, Copied copied, bool slope_kept, const float* target) {
-    float w = 0.0f;
-    float ww = 0.0f;
-    float v = 0.0f;
-    float wv = 0.0f;
-    for (int k = 0; k < 16; ++k) {
-        w += shape.weights[k];
-        ww += shape.weights[k] * shape.weights[k];
-        v += target[k];
-        wv += shape.weights[k] * target[k];
-    }
-    float slope = shape.slope;
-    if (copied == Copied::indices) {
-        const float variance = 16.0f * ww - w * w;
-        slope = variance > 1e-3f ? std::max(0.0f, (16.0f * wv - w * v) / variance) : 0.0f;
-    } else if (!slope_kept) {
-        return {shape.offset, ww > 1e-3f ? (wv - shape.offset * w) / ww : 0.0f};
-    }
-    return {(v - slope * w) / 16.0f, slope};
-}
-
-void Pass::try_copy(Choice& best, int half, const Choice& other, const Matches& matches, Source source) {
+void Pass::try_copy(Choice& best, int half, const Choice& other, const RdoMatches& matches, Source source) {
     const HalfKind kind = halves_[static_cast<std::size_t>(half % 2)].kind();
     const std::byte* const from = bytes(source.at);
     Choice tried;
     tried.distance = kHalfBytes * (half - source.at);
     tried.literals = literals_before(kind, source.copied);
-    const float match = matches.bits(tried.distance);
+    const float match = matches.bits(tried.distance, source.copied == Copied::all);
     if (source.copied == Copied::all) {
         std::memcpy(tried.half, from, kHalfBytes);
-        tried.bits = matches.open == tried.distance ? kLongerBits : match;
+        tried.bits = match;
         consider(best, tried, half, other);
         return;
     }
     const HalfShape shape = half_shape(kind, from);
     if (!shape.is_line) return;
-    const auto [offset, slope] = fit_line(shape, source.copied, keeps_slope(kind), target(half));
+    const HalfLine line = fit_line(kind, shape, source.copied, target(half));
     std::byte variants[kMostVariants][kHalfBytes];
-    const int count = half_variants(kind, from, source.copied, offset, slope, variants);
+    const int count = half_variants(kind, from, source.copied, line, variants);
     for (int k = 0; k < count; ++k) {
         std::memcpy(tried.half, variants[k], kHalfBytes);
         tried.bits = match;
@@ -330,7 +217,7 @@ void Pass::try_copy(Choice& best, int half, const Choice& other, const Matches& 
     }
 }
 
-Choice Pass::choose(int half, const Choice& other, const Matches& matches, const std::vector<Source>& sources) {
+Choice Pass::choose(int half, const Choice& other, const RdoMatches& matches, const std::vector<Source>& sources) {
     Choice best;
     for (const std::vector<std::byte>* literals : {&band_.plain, &band_.improved}) {
         Choice tried;
@@ -343,9 +230,9 @@ Choice Pass::choose(int half, const Choice& other, const Matches& matches, const
 }
 
 // Adds copies at the last distances.
-void Pass::add_near(int half, const Matches& matches, std::vector<Source>& sources) const {
+void Pass::add_near(int half, const RdoMatches& matches, std::vector<Source>& sources) const {
     const HalfKind kind = halves_[static_cast<std::size_t>(half % 2)].kind();
-    for (const int distance : matches.last) {
+    for (const int distance : matches.last()) {
         const int at = half - distance / kHalfBytes;
         if (distance % kHalfBytes != 0 || at < 0 || halves_[static_cast<std::size_t>(at % 2)].kind() != kind) continue;
         for (const Copied copied : {Copied::indices, Copied::all_but_first, Copied::all})
@@ -370,10 +257,10 @@ void Pass::choose_block(int block) {
     }
     Choice best_x;
     Choice best_y;
-    Matches best_matches;
+    RdoMatches best_matches;
     float least = kForbidden;
     for (const Choice& first : firsts) {
-        Matches matches = matches_;
+        RdoMatches matches = matches_;
         matches.use(first.distance);
         pending_ = x;
         pending_half_ = first.half;

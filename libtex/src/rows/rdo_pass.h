@@ -12,17 +12,16 @@
 // and takes the one with the least D + lambda R. All earlier halves in the window are scored by the squared error of a
 // fit, in closed form (kernels/copy_search.h); the best few are decoded and measured as angles.
 //
-// R is an estimate of zstd's cost. A literal byte costs -log2 of its frequency among the literals. A match costs a few
-// bits, and the bits of its distance.
+// R is estimated by rdo_rate.h.
 
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 #include <tex/pack_options.h>
+
+#include "rows/rdo_rate.h"
 
 namespace tex {
 
@@ -40,9 +39,6 @@ struct RdoBand {
     std::vector<std::byte> plain;     // 16 bytes a block
     std::vector<std::byte> improved;  // the same or better literals
 };
-
-// How often each byte is a literal.
-using ByteCounts = std::array<std::int64_t, 256>;
 
 struct RdoResult {
     std::vector<std::byte> blocks;
