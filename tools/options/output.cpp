@@ -106,17 +106,18 @@ void OutputOptions::add(Command& command, std::string format_default, std::strin
 
 void OutputOptions::add_rdo(Command& command) {
     constexpr Range kAngle{0.0, 180.0, false};
-    command.number(rdo.mean, "--rdo-mean", "DEG", kAngle,
-                   "choose blocks that compress better; the mean angle grows by at most DEG");
+    command
+        .number(rdo.mean, "--rdo-mean", "DEG", kAngle,
+                "choose blocks that compress better; the mean angle grows by at most DEG")
+        .preset = "off";
     command.number(rdo.max, "--rdo-max", "DEG", kAngle, "with --rdo-mean, no texel's angle grows beyond DEG");
     command.number(rdo.window, "--rdo-window", "BYTES", kLeastRdoWindow, kMostRdoWindow,
                    "how far back --rdo-mean looks for what a block can copy");
-    command.check([this] {
-        const RdoOptions usual;
-        if (rdo.mean == 0.0f && (rdo.max != usual.max || rdo.window != usual.window))
-            throw UsageError("--rdo-max and --rdo-window need --rdo-mean");
-        const bool fits = !format || std::find(std::begin(kOptimised), std::end(kOptimised), *format) !=
-                                         std::end(kOptimised);
+    command.check([this, &command] {
+        const std::vector<std::string> more = command.given_of({"--rdo-max", "--rdo-window"});
+        if (rdo.mean == 0.0f && !more.empty()) throw UsageError(fmt::format("{} needs --rdo-mean", more.front()));
+        const bool fits =
+            !format || std::find(std::begin(kOptimised), std::end(kOptimised), *format) != std::end(kOptimised);
         if (rdo.mean > 0.0f && !fits)
             throw UsageError("--rdo-mean needs --format dxt5nm, bc5, bc5-snorm, eac-rg11 or eac-rg11-snorm");
     });
