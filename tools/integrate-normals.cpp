@@ -118,7 +118,7 @@ Result<void> IntegrateNormals::check(const std::vector<cli::Task>& tasks) {
     for (const cli::Task& task : tasks) {
         std::ignore = stored_.format_in(task);
         if (!all_levels_ || can_hold_levels(task.container) || cli::has_level(task.output)) continue;
-        throw cli::UsageError(fmt::format("{}: a {} file holds one level; --level all needs --name with {{level}}",
+        throw cli::UsageError(fmt::format("{}: {} files hold one level; --level all needs --name with {{level}}",
                                           cli::printable(task.output), name_of(kContainerNames, task.container)));
     }
     return {};

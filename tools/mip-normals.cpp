@@ -61,7 +61,7 @@ Result<void> MipNormals::check(const std::vector<cli::Task>& tasks) {
     for (const cli::Task& task : tasks) {
         if (mips_.levels || can_hold_levels(task.container) || cli::has_level(task.output)) continue;
         throw cli::UsageError(
-            fmt::format("{}: a {} file holds one level; give .dds, .ktx2 or .exr, or --name with {{level}}",
+            fmt::format("{}: {} files hold one level; give .dds, .ktx2 or .exr, or --name with {{level}}",
                         cli::printable(task.output), name_of(kContainerNames, task.container)));
     }
     return {};

@@ -54,7 +54,7 @@ UnpackNormals::UnpackNormals(const cli::ProgramRow& row) : Repacker(row) {
 Result<void> UnpackNormals::check(const std::vector<cli::Task>& tasks) {
     for (const cli::Task& task : tasks) {
         if (!all_levels_ || can_hold_levels(task.container) || cli::has_level(task.output)) continue;
-        throw cli::UsageError(fmt::format("{}: a {} file holds one level; --level all needs --name with {{level}}",
+        throw cli::UsageError(fmt::format("{}: {} files hold one level; --level all needs --name with {{level}}",
                                           cli::printable(task.output), name_of(kContainerNames, task.container)));
     }
     return {};

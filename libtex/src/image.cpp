@@ -6,6 +6,8 @@
 #include <cstring>
 #include <new>
 
+#include "threads/huge_pages.h"
+
 #if defined(__SANITIZE_ADDRESS__)
 #define TEX_ADDRESS_SANITIZER
 #elif defined(__has_feature)
@@ -35,6 +37,7 @@ std::shared_ptr<void> allocate_rows(std::size_t bytes) {
     void* const block = std::malloc(bytes + kRowAlignment);
 #endif
     if (block == nullptr) throw std::bad_alloc();
+    prefer_huge_pages(block, bytes);
     char* const rows =
         static_cast<char*>(block) + (kRowAlignment - reinterpret_cast<std::uintptr_t>(block) % kRowAlignment);
     std::memcpy(rows - sizeof block, &block, sizeof block);

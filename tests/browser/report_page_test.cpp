@@ -201,6 +201,16 @@ TEST_F(ReportPage, OpensWithGreenAsMeasured) {
     }
 }
 
+TEST_F(ReportPage, NamesGreenWhereTheFileStatesTheOppositeOfItsTexels) {
+    shell(
+        "bake-normals waves.png -o up.png --bumpiness 6;"
+        "pack-normals up.png -o down.ktx2 --format bc5 --y-in down --y down; check-normals down.ktx2 --report page.html");
+    open("page.html");
+    wait_for_light();
+    EXPECT_EQ(js("document.querySelector('.stage select[name=yA]').value").get<std::string>(), "up");
+    expect_picture_of_command("green up, stated as down");
+}
+
 // With TEX_SCREENSHOTS set to a folder, pictures of the page are left there.
 TEST_F(ReportPage, HasTwoThemesAndFitsNarrowWindows) {
     shell(

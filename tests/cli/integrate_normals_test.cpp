@@ -144,7 +144,7 @@ TEST_F(IntegrateNormals, LevelsAreIntegratedOneByOne) {
     EXPECT_EQ(heights_of("h0.exr").extent(), (Extent{128, 128}));
     EXPECT_EQ(report_of({"n.ktx2", "-o", "all.exr", "--level", "all"})["levels"], 8);
     refuses({"n.ktx2", "-o", "x.png", "--level", "9"}, 4, "has no level 9, only 8");
-    refuses({"n.ktx2", "-o", "x.png", "--level", "all"}, 2, "a png file holds one level");
+    refuses({"n.ktx2", "-o", "x.png", "--level", "all"}, 2, "png files hold one level");
 }
 
 TEST_F(IntegrateNormals, CurvatureAndCurlAreMapsOfTheirOwn) {
@@ -180,7 +180,7 @@ TEST_F(IntegrateNormals, BadInputIsRefusedWithItsReason) {
     refuses({"n.png", "-o", "h.png", "--heights", "1,0"}, 2, "LOW must be less than HIGH");
     refuses({"n.png", "-o", "h.png", "--heights", "nan,1"}, 2, "--heights");
     refuses({"n.png", "-o", "h.png", "--heights", "most"}, 2, "fit, raw or LOW,HIGH");
-    refuses({"n.png", "-o", "h.png", "--format", "float"}, 2, "a png file cannot hold heights as float");
+    refuses({"n.png", "-o", "h.png", "--format", "float"}, 2, "png files cannot hold heights as float");
     refuses({"n.png", "-o", "h.png", "--steepest", "0"}, 2, "--steepest");
     refuses({"n.png", "-o", "h.png", "--curl-out", "h.png"}, 2, "h.png");
     refuses({"n.png", "-o", "h.png", "--curl-out", "c"}, 2, "unsupported output format");

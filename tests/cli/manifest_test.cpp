@@ -114,7 +114,7 @@ TEST(Manifest, MistakesNameTheirPlaceAndTheRemedy) {
               "n.toml: line 2, column 1: name: a ");
     EXPECT_EQ(
         refusal_of("[ { bake = {} } ]", "name = \"{stem}.png\"\noutputs = [ { format = \"bc5\" } ]").substr(0, 60),
-        "n.toml: line 6, column 13: bake: name.png: a png file cannot");
+        "n.toml: line 6, column 13: bake: name.png: png files cannot");
     EXPECT_EQ(refusal_of("[ { bake = {} } ]", "outputs = [ { fromat = \"bc5\" } ]"),
               "n.toml: line 5, column 15: fromat: bake-normals has no such option here; did you mean format?");
     EXPECT_EQ(refusal_of("[ { bake = {} } ]", "check = { requir = 1 }"),

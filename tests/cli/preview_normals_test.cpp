@@ -259,7 +259,7 @@ TEST_F(PreviewNormals, RefusesMisuse) {
     refuses(with({"--height", "height.png", "--parallax-steps", "4"}), "--parallax-steps needs --parallax");
     refuses(with({"--detail-scale", "2"}), "--detail-scale needs --detail");
     refuses(with({"--anisotropy", "17"}), "--anisotropy");
-    refuses({"bricks.dds", "-o", "x.exr"}, "a exr file cannot hold rgb8");
+    refuses({"bricks.dds", "-o", "x.exr"}, "exr files cannot hold rgb8");
     refuses({"bricks.dds", "--name", "{stem}_{level}.png"}, "{level} has no meaning");
     refuses({"bricks.dds", "-o", "height.png", "--height", "height.png"},
             "the output height.png is the input height.png");

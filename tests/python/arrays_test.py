@@ -112,6 +112,14 @@ def test_values_must_be_finite(value):
             call(normals)
 
 
+@pytest.mark.parametrize("row", [0, 1499, 2000, 2999])
+def test_every_row_of_a_large_array_is_examined(row):
+    heights = np.zeros((3000, 1600), np.float32)  # large enough for several threads
+    heights[row, 1599] = np.nan
+    with pytest.raises(ValueError, match="height: some values are infinite or NaN"):
+        tex.bake(heights)
+
+
 @pytest.mark.parametrize("wrong", [None, "n.png", 3, {}, np.zeros((4, 4), np.float32), np.zeros((4, 4, 4), np.float32)])
 def test_maps_must_be_maps(wrong):
     with pytest.raises((TypeError, ValueError), match="^(base|chain|n|a)"):

@@ -89,7 +89,7 @@ Chain measure_chain(const Texture& texture) {
     auto averages = *base_averages(base.stored, {});
     Chain chain;
     for (int k = 1; k < static_cast<int>(texture.levels.size()); ++k) {
-        if (k > 1) averages = averages_of(averages);
+        if (k > 1) averages = *averages_of(averages, {});
         if (averages.extent().width < kLeastSide || averages.extent().height < kLeastSide) break;
         const auto image = decode(texture, k);
         Stored level = base.stored;

@@ -133,7 +133,7 @@ double average_of(const Plane<float>& plane, Extent to, int i, int j) {
 
 TEST(Levels, AveragesWeightTexelsByWhatIsCovered) {
     for (const Extent extent : {Extent{8, 6}, Extent{7, 5}, Extent{9, 1}, Extent{1, 3}, Extent{33, 18}}) {
-        const NormalMap map = wavy_map(extent), half = averages_of(map);
+        const NormalMap map = wavy_map(extent), half = *averages_of(map, {});
         const Extent to = half.extent();
         EXPECT_EQ(to, (Extent{std::max(1, extent.width / 2), std::max(1, extent.height / 2)}));
         const StoredMap stored(extent, [&](int i, int j) {
@@ -160,7 +160,7 @@ TEST(Levels, VectorsOutsideTheCircleAreShortenedIfZIsNotStored) {
     });
     map.swizzle = kSwizzleXy;
     float x[4], y[4], z[4];
-    vectors_of_row(map.stored(), 0, x, y, z);
+    vectors_of_row(map.stored(), 0, 0, 4, x, y, z);
     EXPECT_NEAR(z[0], 0.8f, 1e-6f);
     EXPECT_NEAR(x[1], 0.6f, 1e-6f);
     EXPECT_NEAR(y[1], 0.8f, 1e-6f);
@@ -168,8 +168,13 @@ TEST(Levels, VectorsOutsideTheCircleAreShortenedIfZIsNotStored) {
     EXPECT_EQ(x[2], 0.0f);
     EXPECT_EQ(z[2], 0.0f);
     EXPECT_NEAR(y[3], -1.0f, 1e-6f);
+    float part_x[2], part_y[2], part_z[2];
+    vectors_of_row(map.stored(), 0, 1, 2, part_x, part_y, part_z);
+    EXPECT_EQ(part_x[0], x[1]);
+    EXPECT_EQ(part_y[0], y[1]);
+    EXPECT_EQ(part_z[1], z[2]);
     map.swizzle = kSwizzleXyz;
-    vectors_of_row(map.stored(), 0, x, y, z);
+    vectors_of_row(map.stored(), 0, 0, 4, x, y, z);
     EXPECT_EQ(x[1], 0.0f) << "longer than 4";
     EXPECT_NEAR(x[0], 0.6f, 1e-6f);
     EXPECT_EQ(z[0], 0.0f);

@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <mutex>
 #include <new>
 #include <set>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -52,6 +54,20 @@ TEST(Parallel, SaysNothingWhereMoreThreadsAreWantedThanThereAreProcessors) {
     const Execution execution{1000, {}};
     EXPECT_TRUE(parallel_for(execution, 5000, 1, [](int, int) {}).has_value());
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(Parallel, ReportsTheEndEvenIfAnotherThreadWasReporting) {
+    for (int round = 0; round < 50; ++round) {
+        double last = 0.0;
+        Execution execution{2, {}};
+        execution.progress = [&](double fraction) {
+            std::this_thread::sleep_for(std::chrono::microseconds(200));  // the other thread ends meanwhile
+            last = fraction;
+            return true;
+        };
+        ASSERT_TRUE(parallel_for(execution, 3, 1, [](int, int) {}).has_value());
+        ASSERT_EQ(last, 1.0) << "round " << round;
+    }
 }
 
 TEST(Parallel, ReportsProgressUpwardsWithinItsSpanAndFromOneThreadAtATime) {

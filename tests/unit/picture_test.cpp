@@ -2,6 +2,10 @@
 
 #include "formats/picture.h"
 
+#include <cstddef>
+#include <utility>
+#include <vector>
+
 #include <gtest/gtest.h>
 #include <tex/unpack.h>
 
@@ -15,6 +19,16 @@ Image picture(std::vector<std::string> names, std::vector<float> values, SampleK
     image.sample = sample;
     image.bits = bits;
     return image;
+}
+
+Result<Texture> texture_of(const Image& image) {
+    Result<PictureTexture> picture = picture_texture_of(image.names, image.sample, image.bits);
+    if (!picture) return picture.error();
+    Texture texture = std::move(picture->head);
+    const Extent extent = image.extent();
+    texture.levels.push_back({extent, std::vector<std::byte>(level_bytes(texture.format, extent))});
+    store_texels(image, extent.height, texture.format, picture->planes, texture.levels[0].bytes.data());
+    return texture;
 }
 
 TEST(Picture, KeepsItsValuesInTheSmallestFormat) {

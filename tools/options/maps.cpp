@@ -40,7 +40,7 @@ Container MapOutput::container_of_path(const std::string& path) const {
     const auto container = container_of(path);
     if (!container) throw UsageError(fmt::format("{}: {}: unsupported output format", name_, printable(path)));
     if (can_hold(*container, map_format(*container))) return *container;
-    throw UsageError(fmt::format("{}: {}: a {} file cannot hold such a map", name_, printable(path),
+    throw UsageError(fmt::format("{}: {}: {} files cannot hold such a map", name_, printable(path),
                                  name_of(kContainerNames, *container)));
 }
 

@@ -190,7 +190,7 @@ Container OutputOptions::container_of_output(const std::string& output, Containe
 
 void OutputOptions::check_holds(const std::string& output, Container container, Encoding encoding) {
     if (can_hold(container, encoding)) return;
-    throw UsageError(fmt::format("{}: a {} file cannot hold {}, it holds {}; {} goes into {}", printable(output),
+    throw UsageError(fmt::format("{}: {} files cannot hold {}, they hold {}; {} goes into {}", printable(output),
                                  name_of(kContainerNames, container), name_of(kEncodingNames, encoding),
                                  encodings_in(container), name_of(kEncodingNames, encoding), containers_for(encoding)));
 }

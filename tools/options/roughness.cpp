@@ -93,12 +93,12 @@ void RoughnessOptions::check(const std::vector<Task>& tasks, int levels) const {
         const Container container = container_for(path);
         const auto kind = name_of(kContainerNames, container);
         if (!can_hold(container, format_in(container))) {
-            throw UsageError(fmt::format("{}: a {} file cannot hold roughness as {}", printable(path), kind,
+            throw UsageError(fmt::format("{}: {} files cannot hold roughness as {}", printable(path), kind,
                                          name_of(kRoughnessFormatNames, format_in(container))));
         }
         if (levels == 1 || can_hold_levels(container) || has_level(path)) continue;
         throw UsageError(
-            fmt::format("{}: a {} file holds one level; --roughness-out needs .dds, .ktx2 or .exr, or {{level}}",
+            fmt::format("{}: {} files hold one level; --roughness-out needs .dds, .ktx2 or .exr, or {{level}}",
                         printable(path), kind));
     }
 }

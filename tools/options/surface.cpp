@@ -46,7 +46,7 @@ void StoredHeights::parse(const std::string& text) {
 Format StoredHeights::format_in(const Task& task) const {
     const Format chosen = format.value_or(map_format(task.container));
     if (can_hold(task.container, chosen)) return chosen;
-    throw UsageError(fmt::format("{}: a {} file cannot hold heights as {}", printable(task.output),
+    throw UsageError(fmt::format("{}: {} files cannot hold heights as {}", printable(task.output),
                                  name_of(kContainerNames, task.container), name_of(kHeightFormatNames, chosen)));
 }
 

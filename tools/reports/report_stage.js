@@ -245,7 +245,7 @@ class Stage {
     words.push("--light", this.light.join(","));
     if (this.point) words.push("--light-kind", "point");
     if (this.bump !== 1) words.push("--bump-scale", this.bump);
-    if (this.yA !== this.maps[this.map].y || this.yA === "down") words.push("--y-in", this.yA);
+    words.push("--y-in", this.yA);  // always: a file may state another direction than its texels show
     if (this.tiles > 1) words.push("--shape", `tiled:${this.tiles}x${this.tiles}`);
     return words.concat("--size", this.size.join("x")).join(" ");
   }

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <tex/normal_map.h>
 
+#include "kernels/level_sums.h"
+#include "kernels/mip.h"
 #include "kernels/stored.h"
 #include "threads/parallel.h"
 
@@ -16,19 +19,6 @@ namespace tex {
 namespace {
 
 constexpr int kRowsPerPiece = 16;
-
-struct Vector {
-    float x = 0.0f, y = 0.0f, z = 0.0f;
-};
-
-float length_of(const Vector& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
-
-Vector normalised(const Vector& v) {
-    const float length = length_of(v);
-    return length < 1e-6f ? Vector{0.0f, 0.0f, 1.0f} : Vector{v.x / length, v.y / length, v.z / length};
-}
-
-Vector at(const NormalMap& map, int i, int j) { return {map.x.at(i, j), map.y.at(i, j), map.z.at(i, j)}; }
 
 // A larger level, or the rows of it that begin at row `first`.
 struct LargerRows {
@@ -70,96 +60,60 @@ void average_row(const LargerRows& larger, Extent to, int j, float* out) {
     }
 }
 
-// Sums over the texels of a level, from which its measures are computed.
-struct Sums {
-    double count = 0.0;
-    double length = 0.0, average_length = 0.0;
-    double r[2] = {}, s[2] = {}, rr = 0.0, ss = 0.0, rs = 0.0;  // the squares are sums over both components
-    double normalised_square = 0.0, average_square = 0.0;
-    // Normal equations of s - g r = d_x r_x + d_y r_y.
-    double xx = 0.0, xy = 0.0, yy = 0.0, xr = 0.0, yr = 0.0, xs = 0.0, ys = 0.0;
+// The memory for a window's normalised averages, and the place of its rows: add_level_row() reads one texel before
+// each.
+struct Unit {
+    static constexpr int kBefore = static_cast<int>(kRowAlignment / sizeof(float));
+    Rect window;
+    NormalMap map = NormalMap({window.width + 2 * kBefore, window.height});
 
-    void add(const Sums& o) {
-        count += o.count;
-        length += o.length, average_length += o.average_length;
-        for (int c = 0; c < 2; ++c) r[c] += o.r[c], s[c] += o.s[c];
-        rr += o.rr, ss += o.ss, rs += o.rs;
-        normalised_square += o.normalised_square, average_square += o.average_square;
-        xx += o.xx, xy += o.xy, yy += o.yy, xr += o.xr, yr += o.yr, xs += o.xs, ys += o.ys;
+    NormalRow row(int j) { return {map.x.row(j) + kBefore, map.y.row(j) + kBefore, map.z.row(j) + kBefore}; }
+    // Rows of the window; null outside.
+    NormalisedRow components(int j) {
+        return j < 0 || j >= window.height ? NormalisedRow{} : NormalisedRow{row(j).x, row(j).y};
+    }
+    void normalise(const NormalMap& averages, int j) {
+        constexpr float kAnyZ = -2.0f;
+        const NormalRow to = row(j);
+        const VectorRow from = row_of(averages, window, j);
+        const auto count = static_cast<std::size_t>(window.width);
+        std::copy_n(from.x, count, to.x);
+        std::copy_n(from.y, count, to.y);
+        std::copy_n(from.z, count, to.z);
+        finish_vectors(to.x, to.y, to.z, window.width, 0.0f, kAnyZ);
+    }
+    static VectorRow row_of(const NormalMap& map, const Rect& window, int j) {
+        const int y = window.y + j;
+        return {map.x.row(y) + window.x, map.y.row(y) + window.x, map.z.row(y) + window.x};
     }
 };
 
-void add_texel(Sums& sums, const Vector& s, const Vector& r, const Vector& a, bool has_z) {
-    sums.count += 1.0;
-    sums.length += has_z ? length_of(s) : 1.0;
-    sums.average_length += length_of(a);
-    const float of_s[2] = {s.x, s.y}, of_r[2] = {r.x, r.y}, of_a[2] = {a.x, a.y};
-    for (int c = 0; c < 2; ++c) {
-        const double sc = of_s[c], rc = of_r[c];
-        sums.s[c] += sc;
-        sums.r[c] += rc;
-        sums.ss += sc * sc;
-        sums.rr += rc * rc;
-        sums.rs += sc * rc;
-        sums.normalised_square += (sc - rc) * (sc - rc);
-        sums.average_square += (sc - of_a[c]) * (sc - of_a[c]);
-    }
-}
-
-void add_gradients(Sums& sums, const Vector& s, const NormalMap& r, int i, int j) {
-    const double of_s[2] = {s.x, s.y};
-    const Plane<float>* planes[2] = {&r.x, &r.y};
-    for (int c = 0; c < 2; ++c) {
-        const Plane<float>& plane = *planes[c];
-        const double gx = 0.5 * (static_cast<double>(plane.at(i + 1, j)) - plane.at(i - 1, j));
-        const double gy = 0.5 * (static_cast<double>(plane.at(i, j + 1)) - plane.at(i, j - 1));
-        sums.xx += gx * gx;
-        sums.xy += gx * gy;
-        sums.yy += gy * gy;
-        sums.xr += gx * plane.at(i, j);
-        sums.yr += gy * plane.at(i, j);
-        sums.xs += gx * of_s[c];
-        sums.ys += gy * of_s[c];
-    }
-}
-
-// `unit` has the extent of the window; its values are overwritten.
-Result<void> add_window(const Stored& stored, const NormalMap& averages, Rect window, const Execution& execution,
-                        NormalMap& unit, Sums& all) {
+// `unit` is for windows of this extent; its values are overwritten.
+Result<void> add_window(const Stored& stored, const NormalMap& averages, const Execution& execution, Unit& unit,
+                        LevelSums& all) {
+    const Rect& window = unit.window;
     const auto normalise = [&](int begin, int end) {
-        for (int j = begin; j < end; ++j) {
-            for (int i = 0; i < window.width; ++i) {
-                const Vector r = normalised(at(averages, window.x + i, window.y + j));
-                unit.x.at(i, j) = r.x;
-                unit.y.at(i, j) = r.y;
-                unit.z.at(i, j) = r.z;
-            }
-        }
+        for (int j = begin; j < end; ++j) unit.normalise(averages, j);
     };
     if (auto done = parallel_for(execution, window.height, kRowsPerPiece, normalise); !done) return done;
-    std::vector<Sums> pieces(static_cast<std::size_t>((window.height + kRowsPerPiece - 1) / kRowsPerPiece));
-    const bool has_z = stored.has_z();
+    std::vector<LevelSums> pieces(static_cast<std::size_t>((window.height + kRowsPerPiece - 1) / kRowsPerPiece));
     const auto sum = [&](int begin, int end) {
-        Sums& sums = pieces[static_cast<std::size_t>(begin / kRowsPerPiece)];
-        NormalMap row(Extent{stored.extent().width, 1});
+        NormalMap row(Extent{window.width, 1});
+        const NormalRow s{row.x.row(0), row.y.row(0), row.z.row(0)};
         for (int j = begin; j < end; ++j) {
-            vectors_of_row(stored, window.y + j, row.x.row(0), row.y.row(0), row.z.row(0));
-            for (int i = 0; i < window.width; ++i) {
-                const Vector s = at(row, window.x + i, 0);
-                add_texel(sums, s, at(unit, i, j), at(averages, window.x + i, window.y + j), has_z);
-                const bool inner = i > 0 && j > 0 && i + 1 < window.width && j + 1 < window.height;
-                if (inner) add_gradients(sums, s, unit, i, j);
-            }
+            vectors_of_row(stored, window.y + j, window.x, window.width, s.x, s.y, s.z);
+            add_level_row({s, Unit::row_of(averages, window, j), unit.components(j), unit.components(j - 1),
+                           unit.components(j + 1)},
+                          window.width, pieces[static_cast<std::size_t>(begin / kRowsPerPiece)]);
         }
     };
     if (auto done = parallel_for(execution, window.height, kRowsPerPiece, sum); !done) return done;
-    for (const Sums& piece : pieces) all.add(piece);
+    for (const LevelSums& piece : pieces) all.add(piece);
     return {};
 }
 
-LevelMeasure measure_of(const Sums& sums) {
+LevelMeasure measure_of(const LevelSums& sums, double n, bool has_z) {
     LevelMeasure measure;
-    const double n = sums.count;
     const double rr = sums.rr - (sums.r[0] * sums.r[0] + sums.r[1] * sums.r[1]) / n;
     const double ss = sums.ss - (sums.s[0] * sums.s[0] + sums.s[1] * sums.s[1]) / n;
     const double rs = sums.rs - (sums.r[0] * sums.s[0] + sums.r[1] * sums.s[1]) / n;
@@ -167,7 +121,7 @@ LevelMeasure measure_of(const Sums& sums) {
     measure.stored_signal = std::sqrt(std::max(0.0, ss) / n);
     measure.correlation = rr > 0.0 && ss > 0.0 ? rs / std::sqrt(rr * ss) : 0.0;
     measure.gain = sums.rr > 0.0 ? sums.rs / sums.rr : 1.0;
-    measure.length = sums.length / n;
+    measure.length = has_z ? sums.length / n : 1.0;
     measure.average_length = sums.average_length / n;
     measure.error_normalised = std::sqrt(sums.normalised_square / n);
     measure.error_average = std::sqrt(sums.average_square / n);
@@ -184,24 +138,27 @@ LevelMeasure measure_of(const Sums& sums) {
 
 }  // namespace
 
-void vectors_of_row(const Stored& stored, int j, float* x, float* y, float* z) {
+void vectors_of_row(const Stored& stored, int j, int first, int count, float* x, float* y, float* z) {
     const auto row_of = [&](Component component) {
         const int channel = stored.channel(component);
-        return channel < 0 ? nullptr : stored.image->planes[static_cast<std::size_t>(channel)].row(j);
+        return channel < 0 ? nullptr : stored.image->planes[static_cast<std::size_t>(channel)].row(j) + first;
     };
     const StoredRow row{row_of(Component::x), row_of(Component::y), row_of(Component::z),
                         stored.is_signed ? 1.0f : 2.0f, stored.is_signed ? 0.0f : -1.0f};
-    restore_stored_vectors(row, stored.extent().width, x, y, z);
+    restore_stored_vectors(row, count, x, y, z);
 }
 
-NormalMap averages_of(const NormalMap& larger) {
+Result<NormalMap> averages_of(const NormalMap& larger, const Execution& execution) {
     const Extent to = level_extent(larger.extent(), 1);
     NormalMap map(to);
-    for (int j = 0; j < to.height; ++j) {
-        average_row({larger.x, larger.extent(), 0}, to, j, map.x.row(j));
-        average_row({larger.y, larger.extent(), 0}, to, j, map.y.row(j));
-        average_row({larger.z, larger.extent(), 0}, to, j, map.z.row(j));
-    }
+    const auto body = [&](int begin, int end) {
+        for (int j = begin; j < end; ++j) {
+            average_row({larger.x, larger.extent(), 0}, to, j, map.x.row(j));
+            average_row({larger.y, larger.extent(), 0}, to, j, map.y.row(j));
+            average_row({larger.z, larger.extent(), 0}, to, j, map.z.row(j));
+        }
+    };
+    if (auto done = parallel_for(execution, to.height, kRowsPerPiece, body); !done) return done.error();
     return map;
 }
 
@@ -215,7 +172,8 @@ Result<NormalMap> base_averages(const Stored& stored, const Execution& execution
         for (int j = begin; j < end; ++j) {
             const int first = first_covered(j, from.height, to.height), last = last_covered(j, from.height, to.height);
             for (int k = first; k < last; ++k)
-                vectors_of_row(stored, k, rows.x.row(k - first), rows.y.row(k - first), rows.z.row(k - first));
+                vectors_of_row(stored, k, 0, from.width, rows.x.row(k - first), rows.y.row(k - first),
+                               rows.z.row(k - first));
             average_row({rows.x, from, first}, to, j, map.x.row(j));
             average_row({rows.y, from, first}, to, j, map.y.row(j));
             average_row({rows.z, from, first}, to, j, map.z.row(j));
@@ -227,14 +185,18 @@ Result<NormalMap> base_averages(const Stored& stored, const Execution& execution
 
 Result<void> measure_level(const Stored& stored, const NormalMap& averages, int level, const Execution& execution,
                            LevelMeasure& measure) {
-    Sums all;
-    NormalMap unit;  // new memory for every window would take longer than the window
+    LevelSums all;
+    double texels = 0.0;
+    std::optional<Unit> unit;  // new memory for every window would take longer than the window
     for (const Rect& window : sample_windows(stored.extent())) {
-        const Extent extent{window.width, window.height};
-        if (unit.extent() != extent) unit = NormalMap(extent);
-        if (auto done = add_window(stored, averages, window, execution, unit, all); !done) return done;
+        if (unit)
+            unit->window = window;  // all have the same extent
+        else
+            unit.emplace(Unit{window});
+        if (auto done = add_window(stored, averages, execution, *unit, all); !done) return done;
+        texels += static_cast<double>(window.width) * window.height;
     }
-    measure = measure_of(all);
+    measure = measure_of(all, texels, stored.has_z());
     measure.level = level;
     measure.extent = stored.extent();
     return {};

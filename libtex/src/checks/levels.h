@@ -11,12 +11,13 @@
 
 namespace tex {
 
-// Row j of a level as vectors, as stored or with z reconstructed. A texel without a usable normal is (0, 0, 0).
-void vectors_of_row(const Stored& stored, int j, float* x, float* y, float* z);
+// Texels `first` to `first + count - 1` of row j of a level as vectors, as stored or with z reconstructed. A texel
+// without a usable normal is (0, 0, 0).
+void vectors_of_row(const Stored& stored, int j, int first, int count, float* x, float* y, float* z);
 
 // Averages of a level over the texels that each texel of the next level covers (for odd sizes weighted by the covered
 // share), not normalised: of vectors, and of the base level as it is stored. Errors: cancelled, out_of_memory.
-NormalMap averages_of(const NormalMap& larger);
+Result<NormalMap> averages_of(const NormalMap& larger, const Execution& execution);
 Result<NormalMap> base_averages(const Stored& stored, const Execution& execution);
 
 // Compares a level with the averages of the base level over the same texels. r is the normalised average, a is the

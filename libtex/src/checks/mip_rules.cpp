@@ -102,10 +102,10 @@ Result<void> check_mip_rules(const Subject& subject, Findings& findings) {
     const Texture& texture = subject.texture;
     if (!subject.has_vectors || subject.constant || texture.levels.size() < 2) return {};
     auto averages = base_averages(subject.stored, subject.execution);
-    if (!averages) return averages.error();
     std::vector<LevelMeasure> levels;
     for (int k = 1; k < static_cast<int>(texture.levels.size()); ++k) {
-        if (k > 1) *averages = averages_of(*averages);
+        if (k > 1) averages = averages_of(*averages, subject.execution);
+        if (!averages) return averages.error();
         const Extent extent = averages->extent();
         if (extent.width < kLeastSide || extent.height < kLeastSide) break;
         const auto image = decode(texture, k, subject.execution);

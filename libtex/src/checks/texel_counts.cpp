@@ -33,10 +33,15 @@ struct RowCounts {
         low.fill(std::numeric_limits<float>::max());
         high.fill(std::numeric_limits<float>::lowest());
     }
-    void mark(Property p, bool holds, int column) {
-        if (!holds) return;
+    // Counts the columns for which holds(column) is true. The loop has no branches, so that compilers use vectors.
+    template <class Holds>
+    void mark(Property p, int width, const Holds& holds) {
+        int found = 0;
+        for (int i = 0; i < width; ++i) found += holds(i) ? 1 : 0;
+        if (found == 0) return;
         const auto k = static_cast<std::size_t>(p);
-        if (count[k]++ == 0) first[k] = column;
+        count[k] = found;
+        while (!holds(first[k])) ++first[k];
     }
 };
 
@@ -84,22 +89,24 @@ void count_vectors(const RowView& view, int width, RowCounts& row) {
 void count_colors(const RowView& view, int width, RowCounts& row) {
     for (std::size_t c = 0; c < static_cast<std::size_t>(view.channels); ++c)
         widen_range(view.channel[c], width, row.low[c], row.high[c]);
-    if (view.one_in_red && row.low[0] < 1.0f) {
-        for (int i = 0; i < width; ++i) row.mark(Property::red_not_one, view.channel[0][i] < 1.0f, i);
-    }
-    if (view.alpha_free && row.low[3] < 1.0f) {
-        for (int i = 0; i < width; ++i) row.mark(Property::alpha_not_one, view.channel[3][i] < 1.0f, i);
-    }
+    const float *r = view.channel[0], *g = view.channel[1], *b = view.channel[2], *alpha = view.channel[3];
+    if (view.one_in_red && row.low[0] < 1.0f)
+        row.mark(Property::red_not_one, width, [r](int i) { return r[i] < 1.0f; });
+    if (view.alpha_free && row.low[3] < 1.0f)
+        row.mark(Property::alpha_not_one, width, [alpha](int i) { return alpha[i] < 1.0f; });
     if (view.channels >= 3 && view.z != nullptr) {
-        const float *r = view.channel[0], *g = view.channel[1], *b = view.channel[2];
-        for (int i = 0; i < width; ++i) {
-            row.mark(Property::grey, std::abs(r[i] - g[i]) <= kCodeAndHalf && std::abs(g[i] - b[i]) <= kCodeAndHalf, i);
-        }
+        row.mark(Property::grey, width, [r, g, b](int i) {
+            const bool red_is = std::abs(r[i] - g[i]) <= kCodeAndHalf, blue_is = std::abs(g[i] - b[i]) <= kCodeAndHalf;
+            return red_is && blue_is;
+        });
     }
     if (!view.colors) return;
+    const auto brightest = [r, g, b](int i) { return std::max(std::max(r[i], g[i]), b[i]); };
+    row.mark(Property::above_alpha, width, [=](int i) {
+        return static_cast<double>(brightest(i)) > static_cast<double>(alpha[i]) + static_cast<double>(kCodeAndHalf);
+    });
     for (int i = 0; i < width; ++i) {
-        const double m = std::max({view.channel[0][i], view.channel[1][i], view.channel[2][i]}), a = view.channel[3][i];
-        row.mark(Property::above_alpha, m > a + static_cast<double>(kCodeAndHalf), i);
+        const double m = brightest(i), a = alpha[i];
         row.a += a;
         row.m += m;
         row.aa += a * a;

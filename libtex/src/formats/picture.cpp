@@ -46,23 +46,34 @@ std::vector<std::size_t> planes_of(const std::vector<std::string>& names) {
     return planes;
 }
 
-std::uint32_t code_of(float value, float greatest) {
-    return static_cast<std::uint32_t>(std::floor(std::min(std::max(value, 0.0f), 1.0f) * greatest + 0.5f));
+// The nearest code. A sum that is not negative is rounded by cutting it off, for which every processor has vectors.
+std::int32_t code_of(float value, float greatest) {
+    return static_cast<std::int32_t>(std::min(std::max(value, 0.0f), 1.0f) * greatest + 0.5f);
 }
 
-// Stores `value` as a sample. The values come from samples of at most this depth, so nothing is lost.
-template <class Code>
-void store_as(Code code, std::byte* out) {
-    std::memcpy(out, &code, sizeof code);
+// Stores values as samples `step` bytes apart. They come from samples of at most this depth, so nothing is lost.
+template <class Code, class Convert>
+void store_samples(const float* values, int count, std::size_t step, const Convert& convert, std::byte* out) {
+    for (int i = 0; i < count; ++i) {
+        const Code code = convert(values[i]);
+        std::memcpy(out + static_cast<std::size_t>(i) * step, &code, sizeof code);
+    }
 }
-void store(const FormatInfo& info, float value, std::byte* out) {
-    const bool is_float = info.sample == SampleKind::floating;
+
+void store_channel(const FormatInfo& info, const float* values, int count, std::byte* out) {
+    const auto step = static_cast<std::size_t>(info.block_bytes);
+    const auto half = [](float value) { return Imath::half(value).bits(); };
+    const auto same = [](float value) { return value; };
+    const auto code8 = [](float value) { return static_cast<std::uint8_t>(code_of(value, 255.0f)); };
+    const auto code16 = [](float value) { return static_cast<std::uint16_t>(code_of(value, 65535.0f)); };
     if (info.bits == 8) {
-        *out = static_cast<std::byte>(code_of(value, 255.0f));
-    } else if (info.bits == 16) {
-        store_as(is_float ? Imath::half(value).bits() : static_cast<std::uint16_t>(code_of(value, 65535.0f)), out);
+        store_samples<std::uint8_t>(values, count, step, code8, out);
+    } else if (info.bits == 32) {
+        store_samples<float>(values, count, step, same, out);
+    } else if (info.sample == SampleKind::floating) {
+        store_samples<std::uint16_t>(values, count, step, half, out);
     } else {
-        store_as(value, out);
+        store_samples<std::uint16_t>(values, count, step, code16, out);
     }
 }
 
@@ -87,31 +98,15 @@ void round_to_texels(const float* values, int count, float* out) {
     for (int i = 0; i < count; ++i) out[i] = static_cast<float>(code_of(values[i], 65535.0f)) / 65535.0f;
 }
 
-Level level_of(const Image& image, Format format, const std::vector<std::size_t>& planes) {
+void store_texels(const Image& image, int rows, Format format, const std::vector<std::size_t>& planes, std::byte* out) {
     const FormatInfo info = format_info(format);
-    const Extent extent = image.extent();
-    Level level{extent, std::vector<std::byte>(level_bytes(format, extent))};
+    const int width = image.extent().width;
     const std::size_t sample_bytes = info.block_bytes / planes.size();
-    std::byte* out = level.bytes.data();
-    for (int j = 0; j < extent.height; ++j) {
-        for (int i = 0; i < extent.width; ++i) {
-            for (const std::size_t plane : planes) {
-                store(info, image.planes[plane].at(i, j), out);
-                out += sample_bytes;
-            }
-        }
+    for (int j = 0; j < rows; ++j) {
+        for (std::size_t c = 0; c < planes.size(); ++c)
+            store_channel(info, image.planes[planes[c]].row(j), width, out + c * sample_bytes);
+        out += static_cast<std::size_t>(width) * info.block_bytes;
     }
-    return level;
-}
-
-Result<Texture> texture_of(const Image& image) {
-    Result<PictureTexture> picture = picture_texture_of(image.names, image.sample, image.bits);
-    if (!picture) return std::move(picture).error();
-    Texture texture = std::move(picture->head);
-    texture.normal_encoding = image.normal_encoding;
-    apply_found_mark(image.normal_mark, texture);
-    texture.levels.push_back(level_of(image, texture.format, picture->planes));
-    return texture;
 }
 
 }  // namespace tex

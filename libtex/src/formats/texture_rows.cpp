@@ -26,6 +26,7 @@ Result<TextureRows> picture_rows(const InputFile& file, Result<std::unique_ptr<R
     }
     TextureRows texture;
     texture.head = std::move(picture->head);
+    texture.head.normal_encoding = (*rows)->normal_encoding();
     apply_found_mark((*rows)->normal_mark(), texture.head);
     texture.levels.push_back(std::move(*rows));
     texture.planes = std::move(picture->planes);
@@ -68,10 +69,16 @@ Result<Texture> read_all(Result<TextureRows> rows) {
     return guarded([&]() -> Result<Texture> {
         if (!rows) return rows.error();
         Texture texture = std::move(rows->head);
-        for (const std::unique_ptr<RowSource>& level : rows->levels) {
-            const Result<Image> image = level->read_all();
-            if (!image) return image.error();
-            texture.levels.push_back(level_of(*image, texture.format, rows->planes));
+        for (const std::unique_ptr<RowSource>& rows_of : rows->levels) {
+            Level level{rows_of->extent(), std::vector<std::byte>(level_bytes(texture.format, rows_of->extent()))};
+            const std::size_t row_bytes = level.bytes.size() / static_cast<std::size_t>(level.extent.height);
+            const auto take = [&](const Image& image, int first, int count) -> Result<void> {
+                store_texels(image, count, texture.format, rows->planes,
+                             level.bytes.data() + static_cast<std::size_t>(first) * row_bytes);
+                return {};
+            };
+            if (const Result<void> read = rows_of->visit({}, take); !read) return read.error();
+            texture.levels.push_back(std::move(level));
         }
         return texture;
     });
@@ -90,9 +97,7 @@ Result<Texture> read_texture(InputFile& file, const ReadOptions& options) {
             if (!texture) return texture.error().of(file.path());
             return texture;
         }
-        const Result<Image> image = read_image(file, options);
-        if (!image) return image.error();
-        Result<Texture> texture = texture_of(*image);
+        Result<Texture> texture = read_all(picture_rows(file, codec.open_rows(file, options)));
         if (!texture) return texture.error().of(file.path());
         return texture;
     });

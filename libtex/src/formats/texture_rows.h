@@ -35,8 +35,7 @@ struct TextureRows {
     }
 };
 
-// Reads the whole texture if it could be opened. Precondition: `rounds` is false. Errors: that of opening; as
-// RowSource::read_all().
+// Reads the whole texture if it could be opened. Errors: that of opening; as RowSource::visit().
 Result<Texture> read_all(Result<TextureRows> rows);
 
 // Opens the texture in `file`, which must outlive the rows. Errors: those of read_texture() that the header reveals.

@@ -33,10 +33,11 @@ public:
         if (!execution_.progress) return;
         // If another thread is reporting, this one does not wait: the next tick reports the progress of both.
         const std::unique_lock lock(reporting_, std::try_to_lock);
-        if (!lock.owns_lock() || done <= reported_) return;
-        reported_ = done;
-        const double fraction = span_.from + (span_.to - span_.from) * done / pieces_;
-        if (!execution_.progress(fraction)) stopped_.store(true, std::memory_order_relaxed);
+        if (lock.owns_lock()) report(done);
+    }
+    // After the last tick, which another thread's report may have kept from being reported.
+    void finish() {
+        if (execution_.progress && !stopped()) report(done_);
     }
     [[nodiscard]] Result<void> result() const {
         if (out_of_memory_) return out_of_memory_error();
@@ -45,6 +46,13 @@ public:
     }
 
 private:
+    void report(int done) {
+        if (done <= reported_) return;
+        reported_ = done;
+        const double fraction = span_.from + (span_.to - span_.from) * done / pieces_;
+        if (!execution_.progress(fraction)) stopped_.store(true, std::memory_order_relaxed);
+    }
+
     const Execution& execution_;
     const int pieces_;
     const ProgressSpan span_;
@@ -96,6 +104,7 @@ Result<void> parallel_for(const Execution& execution, int count, int grain,
             return no_threads_error();
         }
     }
+    ticker.finish();
     return ticker.result();
 }
 
