@@ -98,7 +98,7 @@ Result<void> BakeNormals::process(cli::Job& job) {
     if (!baked) return with_remedy(baked.error());
     reader_.note(job, baked->heights);
     cli::wrote_levels(job, job.task.output, baked->levels);
-    cli::report_texture(job, baked->extent, baked->levels, with.pack, baked->bytes);
+    cli::report_texture(job, baked->extent, baked->levels, with.pack, baked->bytes, baked->rdo);
     warn_of_steep(job, baked->steep_texels, baked->extent, with.pack.encoding);
     const SlopeRange& slopes = baked->slopes;
     job.report["slopes"] = {{"x", {slopes.min_x, slopes.max_x}}, {"y", {slopes.min_y, slopes.max_y}}};

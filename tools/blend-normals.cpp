@@ -120,7 +120,7 @@ Result<void> BlendNormals::process(cli::Job& job) {
         normals.note(job, with.layers[k].input, blended->details[k]);
     cli::report_input(job, blended->source);
     cli::wrote_levels(job, job.task.output, blended->levels);
-    cli::report_texture(job, blended->extent, blended->levels, blended->pack, blended->bytes);
+    cli::report_texture(job, blended->extent, blended->levels, blended->pack, blended->bytes, blended->rdo);
     return {};
 }
 

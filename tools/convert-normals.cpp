@@ -2,6 +2,7 @@
 // convert-normals: converts normal maps between tangent space and object space, and makes them fit another mesh.
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -113,12 +114,14 @@ Result<void> ConvertNormals::process(cli::Job& job) {
     const auto chain = build_mip_chain(std::move(converted->map), mip, job.until(0.85));
     if (!chain) return chain.error();
     const PackOptions pack_with = packing(source->info, job.task);
-    auto texture = pack(*chain, pack_with, job.until(0.95));
+    std::optional<RdoReport> rdo;
+    if (pack_with.rdo.mean > 0.0f) rdo.emplace();
+    auto texture = pack(*chain, pack_with, job.until(0.95), rdo ? &*rdo : nullptr);
     if (!texture) return texture.error();
     const Extent extent = texture->extent();
     const auto written = cli::write_levels(job, std::move(*texture), output.of(job.task.engine).write_options(job));
     if (!written) return written.error();
-    cli::report_texture(job, extent, written->levels, pack_with, written->bytes);
+    cli::report_texture(job, extent, written->levels, pack_with, written->bytes, rdo);
     return {};
 }
 

@@ -68,12 +68,26 @@ void each_field(CurvatureOptions& o, F& f) {
 }
 
 template <class F>
+void each_rdo_field(RdoOptions& o, F& f) {
+    f("rdo_mean", o.mean);
+    f("rdo_max", o.max);
+    f("rdo_window", o.window);
+}
+
+inline void check_rdo(const RdoOptions& o) {
+    need(o.mean >= 0.0f && o.mean <= 180.0f, "rdo_mean", "must be from 0 to 180");
+    need(o.max > 0.0f && o.max <= 180.0f, "rdo_max", "must be above 0 and at most 180");
+    need(o.window >= kLeastRdoWindow && o.window <= kMostRdoWindow, "rdo_window", "must be from 64 to 1048576");
+}
+
+template <class F>
 void each_field(PackOptions& o, F& f) {
     f("encoding", o.encoding);
     f("y_axis", o.y_axis);
     f("effort", o.effort);
     f("metric", o.metric);
     f("y_known", o.y_known);
+    each_rdo_field(o.rdo, f);
 }
 
 template <class F>
@@ -226,6 +240,7 @@ struct PackFields {
     std::optional<YAxis> y_axis;
     Effort effort = PackOptions().effort;
     Metric metric = PackOptions().metric;
+    RdoOptions rdo;
 };
 
 template <class F>
@@ -234,6 +249,7 @@ void each_field(PackFields& o, F& f) {
     f("y_axis", o.y_axis);
     f("effort", o.effort);
     f("metric", o.metric);
+    each_rdo_field(o.rdo, f);
 }
 
 // The fields of SourceInfo.

@@ -19,6 +19,7 @@ void each_field(PackKeywords& o, F& f) {
     f("effort", o.effort);
     f("metric", o.metric);
     f("y_known", o.y_known);
+    each_rdo_field(o.rdo, f);
 }
 
 // The fields that blocks depend on.
@@ -67,6 +68,7 @@ void add_packing(Module& module) {
         "`chain` is a list of levels, as build_mip_chain() returns it, or one array (height, width, 3).",
         [](Call& call, PackKeywords& options, Running& running) -> py::object {
             if (call.has("encoding")) options.encoding = Convert<Encoding>::from(call["encoding"], "encoding");
+            check_rdo(options.rdo);
             const MipChain chain = chain_from(call["chain"], "chain");
             return object_of(running.run([&](const Execution& e) { return pack(chain, options, e); }));
         });

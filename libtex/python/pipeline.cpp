@@ -43,6 +43,7 @@ PackOptions pack_options(const PackFields& fields, Container container, YAxis y,
     options.y_known = fields.y_axis.has_value() || y_known;
     options.effort = fields.effort;
     options.metric = fields.metric;
+    options.rdo = fields.rdo;
     return options;
 }
 
@@ -56,6 +57,14 @@ py::dict written(const Report& report) {
     facts["extent"] = tuple_of(report.extent);
     facts["levels"] = report.levels;
     facts["bytes"] = report.bytes;
+    if (report.rdo) {
+        py::dict angles;
+        angles["plain_mean"] = report.rdo->plain_mean;
+        angles["mean"] = report.rdo->mean;
+        angles["most_growth"] = report.rdo->most_growth;
+        angles["most_raised"] = report.rdo->most_raised;
+        facts["rdo"] = angles;
+    }
     return facts;
 }
 
@@ -91,6 +100,7 @@ py::object baked(Call& call, BakeFields& fields, Running& running) {
     need(options.bake.gaussian_sigma > 0.0f && options.bake.gaussian_sigma <= kMaxGaussianSigma, "bake",
          "gaussian_sigma must be above 0 and at most 64");
     check(options.mip);
+    check_rdo(fields.pack.rdo);
     const std::string input = path_from(call["input"], "input");
     const Output output = output_of(call);
     const Strength strength{fields.bumpiness_x, fields.bumpiness_y};
@@ -133,6 +143,7 @@ py::object repacked(Call& call, RepackFields& fields, Running& running) {
     need(!options.scale || std::abs(options.scale->scale) <= kMaxScale, "scale", "must be at most 1e6 in magnitude");
     need(options.max_side >= 0, "max_side", "must be 0, for no limit, or more");
     if (options.mip) check(*options.mip);
+    check_rdo(fields.pack.rdo);
     const std::string input = path_from(call["input"], "input");
     const Output output = output_of(call);
     options.pack = pack_by(fields.pack, output.container);
@@ -179,6 +190,7 @@ py::object blended(Call& call, BlendFields& fields, Running& running) {
     need((options.blend.extent.width == 0) == (options.blend.extent.height == 0), "blend",
          "both sides of extent or neither must be 0");
     check(options.mip);
+    check_rdo(fields.pack.rdo);
     const py::object layers = call["layers"];
     if (!py::isinstance<py::list>(layers) && !py::isinstance<py::tuple>(layers))
         raise_type("layers", "a list of dicts", layers);

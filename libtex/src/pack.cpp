@@ -10,6 +10,7 @@
 
 #include "kernels/encode.h"
 #include "rows/pack_rows.h"
+#include "rows/rdo_rows.h"
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
@@ -19,7 +20,8 @@ namespace {
 // The number of texels in a piece of work: enough to be worth passing to a thread, few enough to stay in its cache.
 constexpr int kPieceTexels = 1 << 15;
 
-Result<Texture> pack_chain(const MipChain& chain, const PackOptions& options, const Execution& execution) {
+Result<Texture> pack_chain(const MipChain& chain, const PackOptions& options, const Execution& execution,
+                           RdoTally* tally) {
     const EncodingInfo encoding = encoding_info(options.encoding);
     Texture texture;
     texture.format = encoding.format;
@@ -28,6 +30,7 @@ Result<Texture> pack_chain(const MipChain& chain, const PackOptions& options, co
     texture.y_axis = options.y_axis;
     texture.y_known = options.y_known;
 
+    const int band_rows = rdo_band_rows(options, chain.levels[0].extent().width);
     std::int64_t total = 0;
     for (const NormalMap& map : chain.levels) total += map.extent().texels();
     std::int64_t done = 0;
@@ -39,7 +42,8 @@ Result<Texture> pack_chain(const MipChain& chain, const PackOptions& options, co
         packed.extent = extent;
         packed.bytes.resize(level_bytes(texture.format, extent));
         const int block = format_info(texture.format).block.height;
-        const int grain = std::max(1, kPieceTexels / extent.width / block) * block;
+        const int together = is_optimised(options) ? band_rows : block;
+        const int grain = std::max(1, kPieceTexels / extent.width / together) * together;
         const auto fraction = [&] { return static_cast<double>(done) / static_cast<double>(total); };
         ProgressSpan span;
         span.from = fraction();
@@ -47,7 +51,10 @@ Result<Texture> pack_chain(const MipChain& chain, const PackOptions& options, co
         span.to = fraction();
         const Result<void> result = parallel_for(
             execution, extent.height, grain,
-            [&](int begin, int end) { pack_rows(map, extent.height, options, begin, end, packed.bytes.data()); }, span);
+            [&](int begin, int end) {
+                pack_rows(map, extent.height, options, begin, end, packed.bytes.data(), band_rows, tally);
+            },
+            span);
         if (!result) return result.error();
         texture.levels.push_back(std::move(packed));
     }
@@ -56,9 +63,14 @@ Result<Texture> pack_chain(const MipChain& chain, const PackOptions& options, co
 
 }  // namespace
 
-Result<Texture> pack(const MipChain& chain, const PackOptions& options, const Execution& execution) {
+Result<Texture> pack(const MipChain& chain, const PackOptions& options, const Execution& execution, RdoReport* rdo) {
     assert(!chain.levels.empty());
-    return guarded([&]() -> Result<Texture> { return pack_chain(chain, options, execution); });
+    return guarded([&]() -> Result<Texture> {
+        RdoTally tally;
+        Result<Texture> texture = pack_chain(chain, options, execution, &tally);
+        if (texture && rdo != nullptr && is_optimised(options)) *rdo = tally.report();
+        return texture;
+    });
 }
 
 void encode_blocks(PlaneView<const float> x, PlaneView<const float> y, const PackOptions& options, std::byte* blocks,

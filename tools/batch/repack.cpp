@@ -49,7 +49,7 @@ Result<void> Repacker::process(Job& job) {
     normals.note(job, job.task.input, packed->source);
     report_input(job, packed->source);
     wrote_levels(job, job.task.output, packed->levels);
-    report_texture(job, packed->extent, packed->levels, packed->pack, packed->bytes);
+    report_texture(job, packed->extent, packed->levels, packed->pack, packed->bytes, packed->rdo);
     report(job, *packed);
     return {};
 }

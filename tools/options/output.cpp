@@ -2,8 +2,10 @@
 
 #include "options/output.h"
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -53,6 +55,10 @@ int parse_zstd(const std::string& text) {
         fmt::format("'{}' is neither zstd nor zstd:N with N from 1 to {}", printable(text), kHighestZstdLevel));
 }
 
+// The encodings whose blocks can be optimised.
+constexpr Encoding kOptimised[] = {Encoding::dxt5nm, Encoding::bc5, Encoding::bc5_snorm, Encoding::eac_rg11,
+                                   Encoding::eac_rg11_snorm};
+
 }  // namespace
 
 std::string default_encodings() {
@@ -87,6 +93,7 @@ void OutputOptions::add(Command& command, std::string format_default, std::strin
     command.choice(y, "--y", "AXIS", kYAxisNames, "which way green points in the output").preset = std::move(y_default);
     command.choice(effort, "--effort", "E", kEffortNames, "how hard block encoders search for the smallest error");
     command.choice(metric, "--metric", "M", kMetricNames, "the error that --effort best minimises; angle implies best");
+    add_rdo(command);
     command.choice(dds_header, "--dds-header", "H", kDdsHeaderNames, "the header of DDS files");
     command.flag(dds_mark, "--dds-mark", "mark DDS files as normal maps, as NVIDIA's tools do");
     command.option("--supercompress", "zstd[:N]", "compress the levels of KTX2 files; N is from 1 (fast) to 22 (small)",
@@ -95,6 +102,25 @@ void OutputOptions::add(Command& command, std::string format_default, std::strin
         .option("--quality", "N", "the quality of JPEG files, from 1 (small) to 100",
                 [this](const std::string& text) { quality = parse_int(text, 1, 100); })
         .preset = std::to_string(WriteOptions{}.jpeg_quality);
+}
+
+void OutputOptions::add_rdo(Command& command) {
+    constexpr Range kAngle{0.0, 180.0, false};
+    command
+        .number(rdo.mean, "--rdo-mean", "DEG", kAngle,
+                "choose blocks that compress better; the mean angle grows by at most DEG")
+        .preset = "off";
+    command.number(rdo.max, "--rdo-max", "DEG", kAngle, "with --rdo-mean, no texel's angle grows beyond DEG");
+    command.number(rdo.window, "--rdo-window", "BYTES", kLeastRdoWindow, kMostRdoWindow,
+                   "how far back --rdo-mean looks for what a block can copy");
+    command.check([this, &command] {
+        const std::vector<std::string> more = command.given_of({"--rdo-max", "--rdo-window"});
+        if (rdo.mean == 0.0f && !more.empty()) throw UsageError(fmt::format("{} needs --rdo-mean", more.front()));
+        const bool fits =
+            !format || std::find(std::begin(kOptimised), std::end(kOptimised), *format) != std::end(kOptimised);
+        if (rdo.mean > 0.0f && !fits)
+            throw UsageError("--rdo-mean needs --format dxt5nm, bc5, bc5-snorm, eac-rg11 or eac-rg11-snorm");
+    });
 }
 
 void OutputOptions::add_engines(Command& command) {
@@ -136,6 +162,8 @@ Container OutputOptions::container_for(const std::string& output, Container stan
     const Container chosen = container_of_output(output, standard_output);
     if (zstd != 0 && !can_compress(chosen))
         throw UsageError(fmt::format("{}: --supercompress needs a KTX2 file", printable(output)));
+    if (rdo.mean > 0.0f && !can_hold(chosen, Encoding::dxt5nm))
+        throw UsageError(fmt::format("{}: --rdo-mean needs a DDS or KTX2 file", printable(output)));
     if (quality && chosen != Container::jpeg)
         throw UsageError(fmt::format("{}: --quality needs a JPEG file", printable(output)));
     return chosen;
@@ -176,13 +204,20 @@ WriteOptions OutputOptions::write_options(const Job& job) const {
     return write;
 }
 
-void report_texture(Job& job, Extent extent, int levels, const PackOptions& pack, std::size_t bytes) {
+void report_texture(Job& job, Extent extent, int levels, const PackOptions& pack, std::size_t bytes,
+                    const std::optional<RdoReport>& rdo) {
     job.report["extent"] = {extent.width, extent.height};
     job.report["levels"] = levels;
     job.report["format"] = name_of(kEncodingNames, pack.encoding);
     job.report["y"] = nullptr;
     if (pack.y_known) job.report["y"] = name_of(kYAxisNames, pack.y_axis);
     job.report["bytes"] = bytes;
+    if (rdo) {
+        job.report["rdo"] = {{"plain_mean", rdo->plain_mean},
+                             {"mean", rdo->mean},
+                             {"most_growth", rdo->most_growth},
+                             {"most_raised", rdo->most_raised}};
+    }
     if (job.task.engine != nullptr) job.report["for"] = job.task.engine->name;
 }
 

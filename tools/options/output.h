@@ -24,6 +24,7 @@ struct OutputOptions {
     std::optional<YAxis> y;              // none: the input's
     Effort effort = PackOptions{}.effort;
     Metric metric = PackOptions{}.metric;
+    RdoOptions rdo;
     DdsHeader dds_header = WriteOptions{}.dds_header;
     bool dds_mark = WriteOptions{}.dds_mark;
     int zstd = WriteOptions{}.zstd;
@@ -55,7 +56,7 @@ struct OutputOptions {
     // effort.
     [[nodiscard]] PackOptions pack_options(Encoding encoding, YAxis input, bool input_known) const {
         const Effort effort_for_metric = metric == Metric::angle ? Effort::best : effort;
-        return {encoding, y.value_or(input), effort_for_metric, metric, y || input_known};
+        return {encoding, y.value_or(input), effort_for_metric, metric, y || input_known, rdo};
     }
     // The job's write options, with the user's choices.
     [[nodiscard]] WriteOptions write_options(const Job& job) const;
@@ -64,6 +65,7 @@ struct OutputOptions {
     static void check_holds(const std::string& output, Container container, Encoding encoding);
 
 private:
+    void add_rdo(Command& command);
     [[nodiscard]] Container container_of_output(const std::string& output, Container standard_output) const;
 };
 
@@ -73,7 +75,8 @@ private:
 // The first extension of a container: ".dds" for Container::dds.
 [[nodiscard]] std::string extension_of(Container container);
 
-// Puts extent, levels, format, y and bytes into the job's report.
-void report_texture(Job& job, Extent extent, int levels, const PackOptions& pack, std::size_t bytes);
+// Puts extent, levels, format, y and bytes into the job's report, and what optimisation has done, if there was any.
+void report_texture(Job& job, Extent extent, int levels, const PackOptions& pack, std::size_t bytes,
+                    const std::optional<RdoReport>& rdo);
 
 }  // namespace tex::cli

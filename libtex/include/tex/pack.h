@@ -23,12 +23,15 @@ namespace tex {
 // both endpoints of every block, so that every decoder returns exactly 255. A flat block decodes to 127 or 128 in G and
 // A under the rules of AMD, Intel and NVIDIA, within 0.23 degrees of (0, 0, 1).
 //
+// PackOptions::rdo optimises blocks for compression. If `rdo` is not null, it then gets what that has done; otherwise,
+// and if an error occurs, it stays as it is.
+//
 // Preconditions (asserted): the chain has at least one level, each level has the extent of level_extent(), and
 // components are finite.
 // Errors: out_of_memory, cancelled.
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] Result<Texture> pack(const MipChain& chain, const PackOptions& options = {},
-                                   const Execution& execution = {});
+                                   const Execution& execution = {}, RdoReport* rdo = nullptr);
 
 // The block encoders alone, for engines with their own memory and threads. Encodes x and y of a level, or of whole rows
 // of its blocks.
@@ -43,7 +46,8 @@ namespace tex {
 //
 // BC4's layout is two endpoints of 8 bits, then 16 indices of 3 bits, texel 0 in the lowest bits, little-endian. BC3's
 // colours are two of 5, 6 and 5 bits, red highest, then 16 indices of 2 bits (Direct3D 11.3 Functional Specification,
-// 19.5). Bytes and errors are the same as those of pack().
+// 19.5). Bytes and errors are the same as those of pack()
+// without optimisation: PackOptions::rdo, which needs many rows of blocks at once, is ignored.
 //
 // Preconditions (asserted): x and y have the same extent, at least 1x1; options.encoding is one of the five; pitch is
 // at least 16 bytes for each block of a row; components are finite. Allocates no memory and starts no threads:

@@ -54,12 +54,50 @@ inline constexpr Named<Metric> kMetricNames[] = {
     {Metric::angle, "angle", "the angle between normals, much slower"},
 };
 
+// Rate-distortion optimisation: blocks that compress better, at a promised angle. Games store textures compressed
+// (zstd, LZ4, deflate), so a file gets smaller if its blocks repeat bytes of earlier blocks. The encoder may replace a
+// block by one that copies the indices, and perhaps the endpoints, of blocks shortly before it. It takes the block with
+// the least D + lambda R (Sullivan and Wiegand, 1998): D is the sum of the angles of its texels, R its estimated size
+// as matches and literals of a Lempel-Ziv coder.
+//
+// It applies to dxt5nm, bc5, bc5_snorm, eac_rg11 and eac_rg11_snorm; the other encodings ignore it. A level is divided
+// into bands of whole rows of blocks, from the top: as many rows as a power of two needs to give a band of the base
+// level at least 16384 blocks, and as many in the smaller levels. Bands do not depend on each other. Memory therefore
+// holds a few of them, and the bytes are the same for every number of threads. Each band has its own lambda, the
+// greatest one found that keeps the promise.
+//
+// The promise concerns the angles between the normals of the source and those of the blocks, with z = sqrt(1 - min(1,
+// x^2 + y^2)) on both sides:
+//
+//   mean     the mean angle of every band, and so of every level, exceeds that of the same encoding without
+//            optimisation by at most so many degrees
+//   max      no texel's angle exceeds both `max` degrees and its own angle without optimisation
+//
+// A band that cannot keep the promise gets the blocks without optimisation.
+inline constexpr int kLeastRdoWindow = 64;
+inline constexpr int kMostRdoWindow = 1 << 20;
+
+struct RdoOptions {
+    float mean = 0.0f;   // degrees, at least 0; 0: no optimisation
+    float max = 180.0f;  // degrees, above 0
+    int window = 65536;  // bytes from a block back to what it may copy, in these bounds; time grows with it
+};
+
+// What optimisation has done, in degrees, in all levels together.
+struct RdoReport {
+    double plain_mean = 0.0;   // the mean angle without optimisation
+    double mean = 0.0;         // the mean angle of the blocks
+    double most_growth = 0.0;  // the greatest growth of a band's mean angle: at most RdoOptions::mean
+    double most_raised = 0.0;  // the greatest angle of the texels whose angles have grown: at most RdoOptions::max
+};
+
 struct PackOptions {
     Encoding encoding = Encoding::dxt5nm;
     YAxis y_axis = YAxis::up;  // of the texture; down stores -y
     Effort effort = Effort::normal;
     Metric metric = Metric::component;
     bool y_known = true;  // whether the texture states y_axis; false if that is only an assumption about the source
+    RdoOptions rdo = {};
 };
 
 }  // namespace tex

@@ -66,6 +66,7 @@ struct BakeFileReport {
     HeightReport heights;
     SlopeRange slopes;              // zeros unless BakeFileOptions::slopes is set
     std::int64_t steep_texels = 0;  // of the base level: slopes above steepest_slope() of the encoding
+    std::optional<RdoReport> rdo;   // of the first file whose blocks are optimised
 };
 
 // Bakes the height map `input` ("-" is standard input) and writes it to `output` as a file of type `container`.
@@ -132,6 +133,7 @@ struct PackFileReport {
     std::size_t roughness_bytes = 0;
     PackOptions pack;
     SourceInfo source;
+    std::optional<RdoReport> rdo;  // of the first file whose blocks are optimised
 };
 
 // Reads the normal map `input` ("-" is standard input) and writes it to `output` as a file of type `container`: in
@@ -194,6 +196,7 @@ struct BlendFileReport {
     PackOptions pack;
     SourceInfo source;                // of the base
     std::vector<SourceInfo> details;  // of the layers
+    std::optional<RdoReport> rdo;     // of the first file whose blocks are optimised
 };
 
 // Blends the maps of the layers onto the normal map `input` and writes the result to `output` as a file of type

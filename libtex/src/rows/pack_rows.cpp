@@ -104,7 +104,8 @@ void pack_astc(const Rows& rows, Format format, Effort effort, int j, int count,
 
 }  // namespace
 
-void pack_rows(const NormalMap& map, int height, const PackOptions& options, int begin, int end, std::byte* out) {
+void pack_rows(const NormalMap& map, int height, const PackOptions& options, int begin, int end, std::byte* out,
+               int band_rows, RdoTally* tally) {
     const auto [format, swizzle] = encoding_info(options.encoding);
     const FormatInfo info = format_info(format);
     const Rows rows(map, height, swizzle, options.y_axis);
@@ -118,6 +119,12 @@ void pack_rows(const NormalMap& map, int height, const PackOptions& options, int
             } else {
                 encode_blocks(rows.blocks(j), options, blocks);
             }
+        }
+        if (!is_optimised(options)) return;
+        for (int j = begin; j < end; j += band_rows) {
+            const auto row = [&](int r) { return rows.blocks(j + r * block); };
+            optimise_band(row, blocks_across(std::min(band_rows, end - j), block), options,
+                          out + size(j / block) * pitch, tally);
         }
         return;
     }

@@ -8,12 +8,17 @@
 #include <tex/normal_map.h>
 #include <tex/pack_options.h>
 
+#include "rows/rdo_rows.h"
+
 namespace tex {
 
 // Packs rows [begin, end) of a level, or of a strip of one, that is `height` rows high (at most the height of `map`).
 // `begin` is a multiple of the height of a block. If blocks are encoded, `end` is such a multiple too, or equals the
 // height; rows that the last block lacks repeat the last row. `out` is where row 0 goes.
-// Throws std::bad_alloc.
-void pack_rows(const NormalMap& map, int height, const PackOptions& options, int begin, int end, std::byte* out);
+//
+// If is_optimised(options), rows are optimised in bands of `band_rows`, see rdo_band_rows(); `begin` is then a multiple
+// of it, and `end` too, unless it is the height. `tally` may be null. Throws std::bad_alloc.
+void pack_rows(const NormalMap& map, int height, const PackOptions& options, int begin, int end, std::byte* out,
+               int band_rows, RdoTally* tally = nullptr);
 
 }  // namespace tex

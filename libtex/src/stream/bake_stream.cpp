@@ -53,6 +53,7 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
     if (const Result<void> done = stream.run(stage, levels); !done) return done.error();
     if (const Result<void> done = writer.commit(); !done) return done.error();
     report.bytes = writer.file_bytes();
+    report.rdo = writer.rdo();
     const HeightCounts& counts = stage.counts();
     report.heights = {heights->counts.luma + counts.luma, heights->counts.invalid + counts.invalid, heights->deband};
     report.slopes = slopes.range();

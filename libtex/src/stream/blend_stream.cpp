@@ -86,6 +86,7 @@ Result<bool> BlendRun::run(const Execution& execution) {
     blending_.judge_y(report_.source, report_.details);
     if (const Result<void> committed = writer_->commit(); !committed) return committed.error();
     report_.bytes = writer_->file_bytes();
+    report_.rdo = writer_->rdo();
     return true;
 }
 

@@ -39,7 +39,7 @@ NormalSink MadeRows::sink() {
                 PackOptions pack;
                 pack.encoding = Encoding::float_;
                 pack.y_axis = y_;
-                pack_rows(row_, 1, pack, 0, 1, bytes.data());
+                pack_rows(row_, 1, pack, 0, 1, bytes.data(), kBlockEdge);
             }};
 }
 

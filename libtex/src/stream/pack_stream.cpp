@@ -229,6 +229,7 @@ Result<std::optional<PackFileReport>> Attempt::run() {
     if (const Result<void> committed = writer.commit(); !committed) return committed.error();
     report_.bytes = writer.file_bytes();
     report_.roughness_bytes = writer.roughness_bytes();
+    report_.rdo = writer.rdo();
     return std::optional(report_);
 }
 

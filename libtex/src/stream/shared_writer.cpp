@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 namespace tex {
@@ -39,15 +40,18 @@ public:
         for (Member& member : members_) {
             if (Result<void> done = member.writer->commit(); !done) return done;
             bytes_ += member.writer->file_bytes();
+            if (!rdo_) rdo_ = member.writer->rdo();
             member.writer.reset();
         }
         return {};
     }
     [[nodiscard]] std::size_t file_bytes() const override { return bytes_; }
+    [[nodiscard]] std::optional<RdoReport> rdo() const override { return rdo_; }
 
 private:
     std::vector<Member> members_;
     std::size_t bytes_ = 0;
+    std::optional<RdoReport> rdo_;
 };
 
 }  // namespace

@@ -173,15 +173,18 @@ public:
         for (std::unique_ptr<StripWriter>& level : levels_) {
             if (Result<void> done = level->commit(); !done) return done;
             bytes_ += level->file_bytes();
+            rdo_ = level->rdo();
             level.reset();
         }
         return {};
     }
     [[nodiscard]] std::size_t file_bytes() const override { return bytes_; }
+    [[nodiscard]] std::optional<RdoReport> rdo() const override { return rdo_; }
 
 private:
     std::vector<std::unique_ptr<StripWriter>> levels_;
     std::size_t bytes_ = 0;
+    std::optional<RdoReport> rdo_;  // the levels share a tally
 };
 
 // Writes normals, and roughness into a second file.
@@ -196,11 +199,13 @@ public:
     Result<void> commit() override {
         if (Result<void> done = normals_->commit(); !done) return done;
         bytes_ = normals_->file_bytes();
+        rdo_ = normals_->rdo();
         normals_.reset();
         return roughness_->commit();
     }
     [[nodiscard]] std::size_t file_bytes() const override { return bytes_; }
     [[nodiscard]] std::size_t roughness_bytes() const override { return roughness_->file_bytes(); }
+    [[nodiscard]] std::optional<RdoReport> rdo() const override { return rdo_; }
 
 private:
     [[nodiscard]] StripWriter& of(const Strip& strip) const {
@@ -210,6 +215,7 @@ private:
     std::unique_ptr<StripWriter> normals_;
     const std::unique_ptr<StripWriter> roughness_;
     std::size_t bytes_ = 0;
+    std::optional<RdoReport> rdo_;
 };
 
 using Opening = Result<std::unique_ptr<StripWriter>>;
@@ -253,18 +259,24 @@ bool holds_levels(Container container, const LevelNames& names) { return names |
 
 StripPacking packing_of(const PackOptions& options, Extent extent, int levels) {
     const EncodingInfo encoding = encoding_info(options.encoding);
+    const std::shared_ptr<RdoTally> tally = is_optimised(options) ? std::make_shared<RdoTally>() : nullptr;
+    const int band_rows = rdo_band_rows(options, extent.width);
     return {{encoding.format, extent, levels, encoding.swizzle, true, options.y_axis, options.y_known},
-            [options](const Strip& strip, std::byte* out) {
-                pack_rows(strip.map, strip.height, options, 0, strip.height, out);
-            }};
+            [options, band_rows, tally](const Strip& strip, std::byte* out) {
+                pack_rows(strip.map, strip.height, options, 0, strip.height, out, band_rows, tally.get());
+            },
+            band_rows,
+            tally};
 }
 
 StripPacking packing_of(const RoughnessFile& options, Extent extent, int levels) {
     TextureHead head{options.format, extent, levels};
     head.swizzle = kRoughnessSwizzle;
-    return {head, [format = options.format, effort = options.effort](const Strip& strip, std::byte* out) {
+    return {head,
+            [format = options.format, effort = options.effort](const Strip& strip, std::byte* out) {
                 pack_roughness_rows(strip.map.x, strip.height, format, effort, 0, strip.height, out);
-            }};
+            },
+            1, nullptr};
 }
 
 Opening StripWriter::open(const OutputNames& names, Container container, StripPacking packing,

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <tex/container.h>
@@ -15,6 +16,7 @@
 #include "blocks/extent.h"
 #include "files/output_file.h"
 #include "formats/file_layout.h"
+#include "rows/rdo_rows.h"
 #include "stream/strips.h"
 
 namespace tex {
@@ -29,6 +31,8 @@ struct OutputNames {
 struct StripPacking {
     TextureHead head;
     std::function<void(const Strip& strip, std::byte* out)> pack;
+    int rows_together = 1;            // strips consist of so many rows of texels, or of whole blocks
+    std::shared_ptr<RdoTally> tally;  // of blocks that are optimised; otherwise null
 };
 StripPacking packing_of(const PackOptions& options, Extent extent, int levels);
 StripPacking packing_of(const RoughnessFile& options, Extent extent, int levels);
@@ -68,6 +72,8 @@ public:
 
     [[nodiscard]] virtual std::size_t file_bytes() const = 0;
     [[nodiscard]] virtual std::size_t roughness_bytes() const { return 0; }
+    // What optimisation has done to the first file whose blocks are optimised. To be called after commit().
+    [[nodiscard]] virtual std::optional<RdoReport> rdo() const { return std::nullopt; }
 };
 
 // Whether strips may be written in any order: DDS, KTX2.

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -40,11 +41,14 @@ public:
     [[nodiscard]] bool is_in_order(const Strip&) const override { return false; }
     [[nodiscard]] int block_rows() const override {
         const FormatInfo format = format_info(packing_.head.format);
-        return format.has_blocks() ? format.block.height : kBlockEdge;
+        return std::max(packing_.rows_together, format.has_blocks() ? format.block.height : kBlockEdge);
     }
     Result<void> write(Strip& strip) override;
     Result<void> commit() override;
     [[nodiscard]] std::size_t file_bytes() const override { return size_; }
+    [[nodiscard]] std::optional<RdoReport> rdo() const override {
+        return packing_.tally ? std::optional(packing_.tally->report()) : std::nullopt;
+    }
 
 private:
     const std::unique_ptr<OutputFile> file_;

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// half_block.h: one of the two 8-byte halves of a block with two channels, as a palette on a line: what rate-distortion
+// optimisation copies and fits.
+//
+// A texel has the value offset + slope * weight, where its index selects the weight. Weights and slope follow from the
+// bytes:
+//
+//             first bytes                weight                       offset             slope
+//     BC4     2: e0, e1                  1 for e0, 0 for e1, k/7      e1                 e0 - e1
+//     green   4: c0, c1                  1 for c0, 0 for c1, k/3      c1                 c0 - c1
+//     EAC     2: base, multiplier and    the table's modifier         the base           8 multiplier (or 1)
+//                table
+
+#pragma once
+
+#include <cstddef>
+
+#include <tex/format.h>
+
+namespace tex {
+
+inline constexpr int kHalfBytes = 8;
+
+enum class HalfKind { bc4_unorm, bc4_snorm, green, eac_unorm, eac_snorm };
+
+// The kind of half 0 (x) or 1 (y) of an encoding's blocks. Precondition: one of the five that pack_options.h names.
+HalfKind half_kind(Encoding encoding, int half);
+
+// Decodes a half into components in [-1, 1], as unpack() does, and in the same order.
+void decode_half(HalfKind kind, const std::byte* half, float values[16]);
+
+struct HalfShape {
+    float weights[16];
+    float offset, slope;  // in components
+    bool is_line;         // false for the palette of BC4 with 6 values, which can only be copied as a whole
+};
+HalfShape half_shape(HalfKind kind, const std::byte* half);
+
+// What is copied from another half, counted from its end.
+enum class Copied { indices, all_but_first, all };
+
+// The number of bytes in front of what is copied: 2 (green: 4), 1 (green: 2), 0.
+int literals_before(HalfKind kind, Copied copied);
+
+// Whether copying all but the first leaves the offset free (EAC: the multiplier is copied). Otherwise the slope is
+// free.
+constexpr bool keeps_slope(HalfKind kind) { return kind == HalfKind::eac_unorm || kind == HalfKind::eac_snorm; }
+
+struct HalfLine {
+    float offset, slope;
+};
+// The line with the least sum of squares to 16 values, if the weights of `shape` and what follows from copying are
+// given. The slope is not negative, unless it is copied.
+HalfLine fit_line(HalfKind kind, const HalfShape& shape, Copied copied, const float values[16]);
+
+// The halves that copy from `source` and are close to a line: at most kMostVariants. Returns their number.
+inline constexpr int kMostVariants = 9;
+int half_variants(HalfKind kind, const std::byte* source, Copied copied, HalfLine line,
+                  std::byte variants[kMostVariants][kHalfBytes]);
+
+}  // namespace tex

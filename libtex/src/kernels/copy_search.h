@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// copy_search.h: searches earlier blocks for what a block may copy (rate-distortion optimisation, rows/rdo_pass.h).
+
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace tex {
+
+// The shapes (blocks/half_block.h) of many halves, an array for each property. Arrays can be read a whole vector (64
+// bytes) past their last value.
+struct LineTable {
+    const float* weights[16];
+    const float* sum;      // of the weights
+    const float* squares;  // the sum of their squares
+    const float* inverse;  // 1 / (16 squares - sum^2), or 0 if all weights are equal or the shape is not a line
+    const float* offset;
+    const float* slope;
+};
+
+// For halves 0 to count - 1 of the table: the least sums of squared differences between the 16 values and the values of
+// a half with the same weights,
+//     errors[0]    whose offset and slope are free
+//     errors[1]    whose slope is that of the table, if keeps_slope is set; otherwise, whose offset is
+//     errors[2]    whose offset and slope are those of the table
+// Rounding to codes is ignored. The first three arrays have room for a whole vector past the last value.
+void copy_errors(const LineTable& table, int count, const float values[16], bool keeps_slope, float* const errors[3]);
+
+// What may be copied, in the order of its cost.
+struct CheapCopy {
+    float cost;
+    int at;      // the half of the table
+    int copied;  // the index of its errors
+};
+
+class CheapCopies {
+public:
+    static constexpr int kMost = 6;
+
+    void add(CheapCopy copy) {
+        if (count_ == kMost && copy.cost >= copies_[kMost - 1].cost) return;
+        int k = count_ == kMost ? kMost - 1 : count_++;
+        for (; k > 0 && copies_[static_cast<std::size_t>(k - 1)].cost > copy.cost; --k)
+            copies_[static_cast<std::size_t>(k)] = copies_[static_cast<std::size_t>(k - 1)];
+        copies_[static_cast<std::size_t>(k)] = copy;
+    }
+    // Costs that are not below this one need not be added.
+    [[nodiscard]] float bound() const { return count_ == kMost ? copies_[kMost - 1].cost : 3e38f; }
+    [[nodiscard]] const CheapCopy* begin() const { return copies_.data(); }
+    [[nodiscard]] const CheapCopy* end() const { return copies_.data() + count_; }
+
+private:
+    std::array<CheapCopy, kMost> copies_{};
+    int count_ = 0;
+};
+
+// Adds those of the halves 0 to count - 1 that are among the cheapest. The cost of half k is
+//     scale * sqrt(errors[k] + more[k] + rest) + prices[k] + extra
+// `more` may be null, which counts as zeros.
+struct CopyCosts {
+    const float* errors;
+    const float* more;
+    float rest;
+    float scale;
+    const float* prices;
+    float extra;
+    int copied;
+};
+void add_cheapest(const CopyCosts& costs, int count, CheapCopies& cheapest);
+
+// The lengths of the chords |n - m| between 16 normals and the decoded components x and y, with z = sqrt(1 - min(1, x^2
+// + y^2)).
+void block_chords(const float* const normals[3], const float x[16], const float y[16], float chords[16]);
+
+}  // namespace tex

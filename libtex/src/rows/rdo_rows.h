@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// rdo_rows.h: rate-distortion optimisation of rows of blocks, band by band, and the promise that it keeps.
+
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+
+#include <tex/pack_options.h>
+
+#include "kernels/encode.h"
+
+namespace tex {
+
+// Collects what bands report, from several threads at once. The report does not depend on their order.
+class RdoTally {
+public:
+    // Sums of angles in millionths of a degree.
+    struct Band {
+        std::int64_t texels, plain, optimised;
+        double most_growth, most_raised;
+    };
+    void add(const Band& band);
+    [[nodiscard]] RdoReport report() const;
+
+private:
+    mutable std::mutex mutex_;
+    Band sum_{};
+};
+
+// Whether blocks of this encoding are optimised with these options.
+[[nodiscard]] bool is_optimised(const PackOptions& options);
+
+// The number of rows of texels in a band (see RdoOptions), for a base level of this width. kBlockEdge if blocks are not
+// optimised.
+[[nodiscard]] int rdo_band_rows(const PackOptions& options, int base_width);
+
+// Optimises the `count` rows of blocks of a band, which hold what encode_blocks() has written, one after the other.
+// Precondition: is_optimised(options). Throws std::bad_alloc.
+void optimise_band(const std::function<BlockRow(int row)>& rows, int count, const PackOptions& options,
+                   std::byte* blocks, RdoTally* tally);
+
+}  // namespace tex

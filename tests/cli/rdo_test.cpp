@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// --rdo-mean makes compressed files smaller, at a promised angle.
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+
+namespace tex::cli {
+namespace {
+
+class RdoOption : public testing::Test {
+protected:
+    RdoOption() {
+        scratch_.add_sample("bricks.png", "a.png");
+        does("bake-normals a.png -o n.exr --mips none");
+    }
+    std::string does(const std::string& line) {
+        const Ran ran = shell(scratch_, line + " --no-sync");
+        EXPECT_EQ(ran.code, 0) << line << ": " << ran.err;
+        EXPECT_EQ(ran.err, "") << line;
+        return ran.out;
+    }
+
+    Scratch scratch_;
+};
+
+TEST_F(RdoOption, FilesAreSmallerAndTheReportShowsThePromise) {
+    const std::string pack = "pack-normals n.exr --supercompress zstd:19 --format bc5 --json -o ";
+    const auto plain = nlohmann::json::parse(does(pack + "plain.ktx2"));
+    EXPECT_FALSE(plain.contains("rdo"));
+    const auto small = nlohmann::json::parse(does(pack + "small.ktx2 --rdo-mean 0.25 --rdo-max 2 --rdo-window 4096"));
+    EXPECT_LT(small["bytes"], plain["bytes"]);
+    const auto& rdo = small["rdo"];
+    EXPECT_LE(rdo["mean"].get<double>(), rdo["plain_mean"].get<double>() + 0.25);
+    EXPECT_LE(rdo["most_growth"], 0.25);
+    EXPECT_LE(rdo["most_raised"], 2.0);
+    EXPECT_EQ(shell(scratch_, "check-normals small.ktx2").code, 0);
+}
+
+TEST_F(RdoOption, BytesAreTheSameForAllThreads) {
+    const std::string pack = "pack-normals n.exr --mips all --effort fast --rdo-mean 0.2 --rdo-window 256 -o ";
+    does(pack + "one.dds --threads 1");
+    does(pack + "four.dds --threads 4");
+    EXPECT_TRUE(scratch_.read("one.dds") == scratch_.read("four.dds"));
+    does(pack + "{level}.dds --threads 2");
+    EXPECT_TRUE(scratch_.has("0.dds"));
+}
+
+TEST_F(RdoOption, WhatDoesNotFitIsAUsageError) {
+    const std::pair<const char*, const char*> cases[] = {
+        {"-o b.png --rdo-mean 1", "pack-normals: error: b.png: --rdo-mean needs a DDS or KTX2 file\n"},
+        {"-o b.dds --rdo-max 1", "pack-normals: error: --rdo-max needs --rdo-mean\n"},
+        {"-o b.dds --rdo-window 1024", "pack-normals: error: --rdo-window needs --rdo-mean\n"},
+        {"-o b.dds --rdo-mean 1 --format rgba8",
+         "pack-normals: error: --rdo-mean needs --format dxt5nm, bc5, bc5-snorm, eac-rg11 or eac-rg11-snorm\n"}};
+    for (const auto& [arguments, message] : cases) {
+        const Ran ran = shell(scratch_, std::string("pack-normals n.exr ") + arguments);
+        EXPECT_EQ(ran.code, 2) << arguments;
+        EXPECT_EQ(ran.err, message);
+    }
+    for (const char* wrong : {"--rdo-mean 0", "--rdo-mean nan", "--rdo-mean -1", "--rdo-mean 1 --rdo-max 0",
+                              "--rdo-mean 1 --rdo-window 63", "--rdo-mean 1 --rdo-window 1048577"})
+        EXPECT_EQ(shell(scratch_, std::string("pack-normals n.exr -o b.dds ") + wrong).code, 2) << wrong;
+    EXPECT_FALSE(scratch_.has("b.dds") || scratch_.has("b.png"));
+}
+
+}  // namespace
+}  // namespace tex::cli

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rate-distortion optimisation: the promise, the size after zstd, and the same bytes everywhere. Angles are computed
+// here from decoded blocks, in double.
+
+#include "rows/rdo_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <tex/tex.h>
+
+#include "unit/packing.h"
+#include "unit/streams.h"
+#include "unit/targets.h"
+
+namespace tex {
+namespace {
+
+constexpr Encoding kEncodings[] = {Encoding::dxt5nm, Encoding::bc5, Encoding::bc5_snorm, Encoding::eac_rg11,
+                                   Encoding::eac_rg11_snorm};
+
+// The library computes in float. Close to the rim, z magnifies the difference.
+constexpr double kRounding = 0.02;
+
+// The angles of all texels of the first level.
+std::vector<double> angles_of(const NormalMap& map, const std::vector<std::byte>& blocks, const PackOptions& options) {
+    const Extent extent = map.extent();
+    const int across = (extent.width + 3) / 4;
+    const double sign = options.y_axis == YAxis::down ? -1.0 : 1.0;
+    std::vector<double> angles;
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) {
+            float x[16], y[16];
+            packing::decode_codes(blocks.data() + 16 * (j / 4 * across + i / 4), options.encoding, x, y);
+            const int k = j % 4 * 4 + i % 4;
+            const double n[2] = {double{map.x.at(i, j)}, sign * double{map.y.at(i, j)}};
+            const double m[2] = {double{x[k]} / 127.5 - 1.0, double{y[k]} / 127.5 - 1.0};
+            const auto z = [](const double* v) { return std::sqrt(1.0 - std::min(1.0, v[0] * v[0] + v[1] * v[1])); };
+            const double chord = std::hypot(n[0] - m[0], n[1] - m[1], z(n) - z(m));
+            angles.push_back(2.0 * std::asin(std::min(1.0, chord / 2.0)) * 180.0 / 3.14159265358979323846);
+        }
+    }
+    return angles;
+}
+
+double mean_of(const std::vector<double>& values) {
+    double sum = 0.0;
+    for (const double value : values) sum += value;
+    return sum / static_cast<double>(values.size());
+}
+
+// Directions without any order, up to 64 degrees from z.
+NormalMap noise(Extent extent) {
+    NormalMap map(extent);
+    std::mt19937 random(3);
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) {
+            const double angle = static_cast<double>(random() % 6283) / 1000.0;
+            const double length = static_cast<double>(random() % 901) / 1000.0;
+            map.x.at(i, j) = static_cast<float>(length * std::cos(angle));
+            map.y.at(i, j) = static_cast<float>(length * std::sin(angle));
+            map.z.at(i, j) = static_cast<float>(std::sqrt(1.0 - length * length));
+        }
+    }
+    return map;
+}
+
+// Flat, but for one steep texel in every third block.
+NormalMap spikes(Extent extent) {
+    NormalMap map(extent);
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) {
+            const bool is_spike = i % 12 == 5 && j % 4 == 2;
+            map.x.at(i, j) = is_spike ? 0.8f : 0.0f;
+            map.y.at(i, j) = 0.0f;
+            map.z.at(i, j) = is_spike ? 0.6f : 1.0f;
+        }
+    }
+    return map;
+}
+
+TEST(Rdo, KeepsThePromiseForEveryEncodingAndReportsIt) {
+    for (const Encoding encoding : kEncodings) {
+        for (int which = 0; which < 3; ++which) {
+            const Extent extent{77, 50};  // blocks that lie partly outside
+            const MipChain chain = packing::chain_of(which == 0   ? packing::bumpy(extent, 5)
+                                                     : which == 1 ? noise(extent)
+                                                                  : spikes(extent));
+            for (const YAxis y : {YAxis::up, YAxis::down}) {
+                PackOptions options{encoding, y};
+                const std::vector<double> plain =
+                    angles_of(chain.levels[0], packing::pack_bytes(chain, options), options);
+                options.rdo = {0.5f, 4.0f, 1024};
+                RdoReport report;
+                const Result<Texture> texture = pack(chain, options, {1, {}}, &report);
+                ASSERT_TRUE(texture);
+                const std::vector<double> angles = angles_of(chain.levels[0], texture->levels[0].bytes, options);
+                EXPECT_LE(mean_of(angles), mean_of(plain) + 0.5 + 1e-4);
+                double most_raised = 0.0;
+                for (std::size_t k = 0; k < angles.size(); ++k) {
+                    EXPECT_LE(angles[k], std::max(plain[k], 4.0) + kRounding) << k;
+                    if (angles[k] > plain[k] + kRounding) most_raised = std::max(most_raised, angles[k]);
+                }
+                EXPECT_NEAR(report.plain_mean, mean_of(plain), 1e-4);
+                EXPECT_NEAR(report.mean, mean_of(angles), 1e-4);
+                EXPECT_LE(report.most_growth, 0.5);
+                EXPECT_LE(report.most_raised, 4.0);
+                EXPECT_GE(report.most_raised, most_raised - kRounding);
+            }
+        }
+    }
+}
+
+TEST(Rdo, FilesAreSmallerAfterZstd) {
+    for (const Encoding encoding : kEncodings) {
+        const MipChain chain = packing::chain_of(packing::bumpy({256, 256}, 5));
+        PackOptions options{encoding};
+        const auto size = [&] {
+            WriteOptions write;
+            write.zstd = 19;
+            const Result<Texture> texture = pack(chain, options);
+            const auto bytes = encode_file(*texture, Container::ktx2, write);
+            return bytes->size();
+        };
+        const std::vector<double> plain = angles_of(chain.levels[0], packing::pack_bytes(chain, options), options);
+        const std::size_t whole = size();
+        options.rdo.mean = static_cast<float>(0.3 * mean_of(plain));
+        EXPECT_LT(size(), whole * 9 / 10) << static_cast<int>(encoding);
+    }
+}
+
+TEST(Rdo, ChangesNothingUnlessItIsAskedFor) {
+    const MipChain chain = packing::chain_of(packing::bumpy({64, 64}, 5));
+    PackOptions options{Encoding::bc5};
+    const std::vector<std::byte> plain = packing::pack_bytes(chain, options);
+    options.rdo = {0.0f, 1.0f, 64};
+    EXPECT_EQ(packing::pack_bytes(chain, options), plain);
+    RdoReport report{-1.0, -1.0, -1.0, -1.0};
+    ASSERT_TRUE(pack(chain, options, {1, {}}, &report));
+    EXPECT_EQ(report.mean, -1.0);
+    options = {Encoding::rgb8};
+    const std::vector<std::byte> colors = packing::pack_bytes(chain, options);
+    options.rdo.mean = 1.0f;
+    EXPECT_EQ(packing::pack_bytes(chain, options), colors);
+}
+
+TEST(Rdo, SameBytesOnEveryTarget) {
+    for (const Encoding encoding : kEncodings) {
+        const MipChain chain = packing::chain_of(packing::bumpy({100, 60}, 8));
+        PackOptions options{encoding};
+        options.rdo = {0.3f, 5.0f, 2048};
+        std::vector<std::byte> wanted;
+        on_every_target([&] {
+            const std::vector<std::byte> bytes = packing::pack_bytes(chain, options);
+            if (wanted.empty()) wanted = bytes;
+            EXPECT_EQ(bytes, wanted);
+        });
+    }
+}
+
+TEST(Rdo, BandsDependOnTheWidthOfTheBaseLevelAlone) {
+    PackOptions options{Encoding::bc5};
+    EXPECT_EQ(rdo_band_rows(options, 4096), 4);
+    options.rdo.mean = 0.1f;
+    EXPECT_EQ(rdo_band_rows(options, 4096), 64);
+    EXPECT_EQ(rdo_band_rows(options, 512), 512);
+    EXPECT_EQ(rdo_band_rows(options, 500), 1024);
+    EXPECT_EQ(rdo_band_rows(options, 1), 65536);
+    EXPECT_EQ(rdo_band_rows(options, 65536), 4);
+    options.encoding = Encoding::rgb8;
+    EXPECT_EQ(rdo_band_rows(options, 512), 4);
+}
+
+class RdoStream : public StreamTest {};
+
+// Two bands in the base level, of which the second one is small, and three smaller levels.
+TEST_F(RdoStream, TheStreamWritesTheSameBytesOnEveryNumberOfThreads) {
+    MipOptions mip;
+    mip.levels = 4;
+    const Result<MipChain> chain = build_mip_chain(packing::bumpy({512, 544}, 4), mip);
+    ASSERT_TRUE(chain);
+    const Result<Texture> floats = pack(*chain, {Encoding::float_});
+    ASSERT_TRUE(floats);
+    ASSERT_TRUE(write_texture(path("in.ktx2"), *floats));
+    PackFileOptions options;
+    options.pack = [](const SourceInfo& info) {
+        PackOptions with{Encoding::bc5, info.y_axis, Effort::fast};
+        with.rdo = {0.2f, 180.0f, 64};
+        return with;
+    };
+    const Result<Source> source = read_normals(path("in.ktx2"));
+    ASSERT_TRUE(source);
+    RdoReport report;
+    const Result<Texture> texture = pack(source->chain, options.pack(source->info), {2, {}}, &report);
+    ASSERT_TRUE(texture);
+    const auto wanted = encode_file(*texture, Container::dds);
+    ASSERT_TRUE(wanted);
+    for (const int threads : {1, 3}) {
+        const auto packed = pack_file(path("in.ktx2"), path("out.dds"), Container::dds, options, {threads, {}});
+        ASSERT_TRUE(packed);
+        std::ifstream file(path("out.dds"), std::ios::binary);
+        const std::vector<char> bytes(std::istreambuf_iterator<char>(file), {});
+        ASSERT_EQ(bytes.size(), wanted->size());
+        EXPECT_TRUE(std::equal(bytes.begin(), bytes.end(), wanted->begin(),
+                               [](char a, std::byte b) { return static_cast<std::byte>(a) == b; }));
+        ASSERT_TRUE(packed->rdo);
+        EXPECT_EQ(packed->rdo->mean, report.mean);
+        EXPECT_EQ(packed->rdo->most_growth, report.most_growth);
+    }
+}
+
+}  // namespace
+}  // namespace tex
