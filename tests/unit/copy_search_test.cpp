@@ -68,7 +68,9 @@ TEST(HalfBlock, VariantsKeepWhatIsCopiedAndComeCloseToTheLine) {
                     nearest = std::min(nearest,
                                        std::fabs(found.offset - shape.offset) + std::fabs(found.slope - shape.slope));
                 }
-                if (shape.slope > 0.0f) EXPECT_LT(nearest, 1e-4f);
+                if (shape.slope > 0.0f) {
+                    EXPECT_LT(nearest, 1e-4f);
+                }
             }
         }
     }
