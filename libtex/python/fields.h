@@ -75,7 +75,7 @@ void each_rdo_field(RdoOptions& o, F& f) {
 
 inline void check_rdo(const RdoOptions& o) {
     need(o.mean >= 0.0f && o.mean <= 180.0f, "rdo_mean", "must be from 0 to 180");
-    need(o.max > 0.0f && o.max <= 180.0f, "rdo_max", "must be above 0 and at most 180");
+    need(o.max >= 0.0f && o.max <= 180.0f, "rdo_max", "must be from 0 to 180");
     need(o.window >= kLeastRdoWindow && o.window <= kMostRdoWindow, "rdo_window", "must be from 64 to 1048576");
 }
 

@@ -117,6 +117,23 @@ TEST(Rdo, KeepsThePromiseForEveryEncodingAndReportsIt) {
     }
 }
 
+// The usual limit is four times the mean that is allowed, and 180 is none.
+TEST(Rdo, SmoothMapsStaySmoothUnlessThereIsNoLimit) {
+    const MipChain chain = packing::chain_of(packing::bumpy({128, 128}, 40));
+    PackOptions options{Encoding::bc5};
+    const std::vector<double> plain = angles_of(chain.levels[0], packing::pack_bytes(chain, options), options);
+    const auto most_of = [&](float max) {
+        options.rdo = {static_cast<float>(0.5 * mean_of(plain)), max, 4096};
+        RdoReport report;
+        EXPECT_TRUE(pack(chain, options, {1, {}}, &report));
+        return report.most_raised;
+    };
+    const double usual = 4.0 * 1.5 * mean_of(plain);
+    EXPECT_LE(most_of(0.0f), usual + 1e-6);
+    EXPECT_GT(most_of(0.0f), 0.5 * usual);
+    EXPECT_GT(most_of(180.0f), usual);
+}
+
 TEST(Rdo, FilesAreSmallerAfterZstd) {
     for (const Encoding encoding : kEncodings) {
         const MipChain chain = packing::chain_of(packing::bumpy({128, 128}, 5));

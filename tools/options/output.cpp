@@ -110,7 +110,8 @@ void OutputOptions::add_rdo(Command& command) {
         .number(rdo.mean, "--rdo-mean", "DEG", kAngle,
                 "choose blocks that compress better; the mean angle grows by at most DEG")
         .preset = "off";
-    command.number(rdo.max, "--rdo-max", "DEG", kAngle, "with --rdo-mean, no texel's angle grows beyond DEG");
+    command.number(rdo.max, "--rdo-max", "DEG", kAngle, "with --rdo-mean, no texel's angle grows beyond DEG").preset =
+        "four times the mean";
     command.number(rdo.window, "--rdo-window", "BYTES", kLeastRdoWindow, kMostRdoWindow,
                    "how far back --rdo-mean looks for what a block can copy");
     command.check([this, &command] {

@@ -71,15 +71,17 @@ inline constexpr Named<Metric> kMetricNames[] = {
 //
 //   mean     the mean angle of every band, and so of every level, exceeds that of the same encoding without
 //            optimisation by at most so many degrees
-//   max      no texel's angle exceeds both `max` degrees and its own angle without optimisation
+//   max      no texel's angle exceeds both `max` degrees and its own angle without optimisation; if `max` is 0, it is
+//            kRdoMaxOfMean times the mean angle that the band may have, so that smooth maps stay smooth
 //
 // A band that cannot keep the promise gets the blocks without optimisation.
 inline constexpr int kLeastRdoWindow = 64;
 inline constexpr int kMostRdoWindow = 1 << 20;
+inline constexpr double kRdoMaxOfMean = 4.0;
 
 struct RdoOptions {
     float mean = 0.0f;   // degrees, at least 0; 0: no optimisation
-    float max = 180.0f;  // degrees, above 0
+    float max = 0.0f;    // degrees, at least 0; 0: in proportion to the mean, as above; 180: no limit
     int window = 65536;  // bytes from a block back to what it may copy, in these bounds; time grows with it
 };
 
@@ -88,7 +90,7 @@ struct RdoReport {
     double plain_mean = 0.0;   // the mean angle without optimisation
     double mean = 0.0;         // the mean angle of the blocks
     double most_growth = 0.0;  // the greatest growth of a band's mean angle: at most RdoOptions::mean
-    double most_raised = 0.0;  // the greatest angle of the texels whose angles have grown: at most RdoOptions::max
+    double most_raised = 0.0;  // the greatest angle of the texels whose angles have grown: at most `max`
 };
 
 struct PackOptions {

@@ -83,7 +83,7 @@ Angles measure(const RdoBand& band, const std::vector<std::byte>& blocks, const 
     return angles;
 }
 
-// Reads the band, and sets its limits. Returns the chords of the plain blocks.
+// Reads the band. Returns the chords of the plain blocks.
 std::vector<float> read_band(const std::function<BlockRow(int row)>& rows, int count, const PackOptions& options,
                              const std::byte* blocks, RdoBand& band) {
     band.encoding = options.encoding;
@@ -98,15 +98,19 @@ std::vector<float> read_band(const std::function<BlockRow(int row)>& rows, int c
         const bool is_eac = keeps_slope(half_kind(band.encoding, 0));
         if (!is_eac) improve_angles(row, options.encoding, band.improved.data() + r * pitch);
     }
-    const float longest = chord_of(options.rdo.max);
     std::vector<float> plain(16 * band.blocks.size());
+    for (std::size_t index = 0; index < band.blocks.size(); ++index)
+        chords_of(band, band.plain, index, plain.data() + 16 * index);
+    return plain;
+}
+
+// Sets how long the chords of all texels may get: `longest`, or as long as they are without optimisation.
+void set_limits(const std::vector<float>& plain, float longest, RdoBand& band) {
     for (std::size_t index = 0; index < band.blocks.size(); ++index) {
         RdoBlock& block = band.blocks[index];
-        chords_of(band, band.plain, index, plain.data() + 16 * index);
         for (std::size_t k = 0; k < 16; ++k)
             block.most[k] = block.inside[k] == 0.0f ? 1e30f : std::max(longest, plain[16 * index + k]);
     }
-    return plain;
 }
 
 // Searches for the greatest lambda whose pass keeps the mean: the growth of the sum of angles rises with lambda, almost
@@ -204,6 +208,8 @@ void optimise_band(const std::function<BlockRow(int row)>& rows, int count, cons
     // A good first lambda: the mean angle that is allowed, shared among the bits that are usually saved.
     const double mean = plain_sum / texels;
     const auto allowed = static_cast<double>(options.rdo.mean);
+    const auto usual_max = static_cast<float>(std::min(180.0, kRdoMaxOfMean * (mean + allowed)));
+    set_limits(plain, chord_of(options.rdo.max > 0.0f ? options.rdo.max : usual_max), band);
     LambdaSearch search(most, 0.36 * std::sqrt(allowed * (mean + 0.1 * allowed)));
     ByteCounts literals{};
     for (const std::byte byte : band.plain) ++literals[std::to_integer<std::size_t>(byte)];
