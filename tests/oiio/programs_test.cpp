@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // oiiotool, iinfo and maketx with the plug-in, beside the commands.
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -20,27 +23,45 @@ protected:
     }
     // The same normals in an 8-bit picture and with signed floats.
     void add_maps() {
-        scratch_.add_sample("bricks.png", "bricks.png");
-        go("bake-normals bricks.png -o n.png --bumpiness 12 --no-sync && "
-           "bake-normals bricks.png -o n.exr --bumpiness 12 --no-sync --mips none");
+        scratch_.add_sample("waves.png", "waves.png");
+        go("bake-normals waves.png -o n.png --bumpiness 12 --no-sync && "
+           "bake-normals waves.png -o n.exr --bumpiness 12 --no-sync --mips none");
+    }
+    // Bakes x-ENCODING.ktx2 and, where DDS can hold the encoding, x-ENCODING.dds.
+    void bake_each_encoding() {
+        std::string script = ":";
+        for (const auto& [format, type] : kinds()) {
+            script +=
+                " && bake-normals waves.png -o x-" + format + type + " --bumpiness 12 --no-sync --format " + format;
+        }
+        go(script);
+    }
+    // Each encoding with each extension whose files can hold it.
+    static std::vector<std::pair<std::string, std::string>> kinds() {
+        std::vector<std::pair<std::string, std::string>> kinds;
+        for (const Named<Encoding>& row : kEncodingNames) {
+            if (can_hold(Container::dds, row.value)) kinds.emplace_back(row.name, ".dds");
+            if (can_hold(Container::ktx2, row.value)) kinds.emplace_back(row.name, ".ktx2");
+        }
+        return kinds;
     }
     cli::Scratch scratch_;
 };
 
+// OpenImageIO's programs take long to start, so one start does all that it can.
 TEST_F(OiioPrograms, OiiotoolWritesTheBytesOfPackNormals) {
     add_maps();
+    std::string theirs = "oiiotool", ours;
     for (const std::string input : {"n.png", "n.exr"}) {
-        for (const Named<Encoding>& row : kEncodingNames) {
-            const std::string format(row.name);
-            for (const std::string type : {"dds", "ktx2"}) {
-                if (!can_hold(type == "dds" ? Container::dds : Container::ktx2, row.value)) continue;
-                const std::string out = "." + type;
-                go("oiiotool " + input + " --attrib tex:format " + format + " -o a" + out + " && pack-normals " +
-                   input + " --format " + format + " --mips keep --no-sync -o b" + out + " && cmp a" + out + " b" +
-                   out);
-            }
+        theirs += " " + input;
+        for (const auto& [format, type] : kinds()) {
+            const std::string name = input + "-" + format + type;
+            theirs += " --attrib tex:format " + format + " -o a-" + name;
+            ours += " && pack-normals " + input + " --format " + format + " --mips keep --no-sync -o b-" + name +
+                    " && cmp a-" + name + " b-" + name;
         }
     }
+    go(theirs + ours);
 }
 
 TEST_F(OiioPrograms, AttributesAreTheOptionsOfTheCommands) {
@@ -63,57 +84,90 @@ TEST_F(OiioPrograms, AttributesAreTheOptionsOfTheCommands) {
         {"--attrib tex:dds-header dx10", "--dds-header dx10", "dds"},
         {"--attrib tex:dds-mark 1", "--dds-mark", "dds"},
     };
+    std::string theirs = "oiiotool", ours;
+    int number = 0;
     for (const auto& c : kCases) {
-        const std::string type = c.type;
-        go(std::string("oiiotool n.png ") + c.attributes + " -o a." + type + " && pack-normals n.png " + c.options +
-           " --no-sync -o b." + type + " && cmp a." + type + " b." + type);
+        const std::string name = std::to_string(number++) + "." + c.type;
+        theirs += std::string(" n.png ") + c.attributes + " -o a" + name;
+        ours += std::string(" && pack-normals n.png ") + c.options + " --no-sync -o b" + name + " && cmp a" + name +
+                " b" + name;
     }
+    go(theirs + ours);
 }
 
 TEST_F(OiioPrograms, OiiotoolReadsThePixelsOfUnpackNormals) {
     add_maps();
-    for (const Named<Encoding>& row : kEncodingNames) {
-        const std::string format(row.name);
-        const bool floats = row.value == Encoding::half || row.value == Encoding::float_;
-        go("bake-normals bricks.png -o x.ktx2 --bumpiness 12 --no-sync --format " + format);
-        if (floats) continue;  // input_test.cpp compares them; unpack-normals writes them with signs
-        go("oiiotool x.ktx2 -o a.png && unpack-normals x.ktx2 --format rgb16 --no-sync -o b.png && idiff a.png b.png");
-        if (!can_hold(Container::dds, row.value)) continue;
-        go("bake-normals bricks.png -o x.dds --bumpiness 12 --no-sync --format " + format +
-           " && oiiotool x.dds.tex -o a.png && unpack-normals x.dds --format rgb16 --no-sync -o b.png && "
-           "idiff a.png b.png");
+    bake_each_encoding();
+    std::string theirs = "oiiotool", ours, diff = " && oiiotool";
+    for (const auto& [format, type] : kinds()) {
+        // input_test.cpp compares floats; unpack-normals writes them with signs.
+        if (format == name_of(kEncodingNames, Encoding::half) || format == name_of(kEncodingNames, Encoding::float_))
+            continue;
+        const std::string name = "x-" + format + type, a = name + ".a.png", b = name + ".b.png";
+        theirs.append(" ").append(name).append(type == ".dds" ? ".tex" : "").append(" -o ").append(a);
+        ours += " && unpack-normals " + name + " --format rgb16 --no-sync -o " + b;
+        diff += " --fail 0 --hardfail 0 " + a + " " + b + " --diff";
+    }
+    go(theirs + ours + diff);
+}
+
+// From file to file, what was not asked for stays: the encoding, the levels and y. Codes may differ by one, because the
+// copy's vectors were given unit length and quantised again.
+TEST_F(OiioPrograms, CopiesKeepEncodingLevelsAndY) {
+    add_maps();
+    go("bake-normals waves.png -o x.ktx2 --bumpiness 12 --no-sync --format rgb16 --y down && oiiotool x.ktx2 -o "
+       "y.ktx2");
+    const auto from = read_texture(scratch_.path("x.ktx2"));
+    const auto copy = read_texture(scratch_.path("y.ktx2"));
+    ASSERT_TRUE(from && copy);
+    EXPECT_EQ(copy->format, from->format);
+    EXPECT_EQ(copy->swizzle, from->swizzle);
+    EXPECT_EQ(copy->y_axis, YAxis::down);
+    EXPECT_TRUE(copy->y_known);
+    ASSERT_EQ(copy->levels.size(), from->levels.size());
+    for (std::size_t k = 0; k < from->levels.size(); ++k) {
+        const auto expected = decode(*from, static_cast<int>(k)), read = decode(*copy, static_cast<int>(k));
+        ASSERT_TRUE(expected && read);
+        ASSERT_EQ(read->extent(), expected->extent());
+        float largest = 0.0f;
+        for (std::size_t c = 0; c < 3; ++c) {
+            for (int j = 0; j < read->extent().height; ++j) {
+                for (int i = 0; i < read->extent().width; ++i)
+                    largest = std::max(largest, std::abs(read->planes[c].at(i, j) - expected->planes[c].at(i, j)));
+            }
+        }
+        EXPECT_LT(largest, 1.5f / 65535.0f) << "level " << k;
     }
 }
 
-// From file to file, what was not asked for stays: the encoding, the levels and y.
-TEST_F(OiioPrograms, CopiesKeepEncodingLevelsAndY) {
+// What states the layout and y travels with the stored channels.
+TEST_F(OiioPrograms, StoredChannelsKeepTheirLayoutInOtherFileTypes) {
     add_maps();
-    go("bake-normals bricks.png -o x.ktx2 --bumpiness 12 --no-sync --format rgb16 --y down && oiiotool x.ktx2 -o "
-       "y.ktx2");
-    EXPECT_EQ(scratch_.read("x.ktx2"), scratch_.read("y.ktx2"));
-    go("oiiotool --iconfig tex:unpack 0 x.ktx2 -o z.exr && unpack-normals z.exr --format rgb16 --no-sync -o z.png && "
-       "unpack-normals x.ktx2 --format rgb16 --no-sync -o w.png && idiff z.png w.png");
+    go("bake-normals waves.png -o x.ktx2 --bumpiness 12 --no-sync --format rgb16 --mips none --y down && "
+       "oiiotool --iconfig tex:unpack 0 x.ktx2 -o z.png && unpack-normals z.png --format rgb16 --no-sync -o a.png && "
+       "unpack-normals x.ktx2 --format rgb16 --no-sync -o b.png && cmp a.png b.png");
 }
 
 TEST_F(OiioPrograms, StoredChannelsCanBePackedAgain) {
     add_maps();
-    go("bake-normals bricks.png -o x.ktx2 --bumpiness 12 --no-sync --mips none --format ag8 && "
+    go("bake-normals waves.png -o x.ktx2 --bumpiness 12 --no-sync --mips none --format ag8 && "
        "oiiotool --iconfig tex:unpack 0 x.ktx2 -o y.ktx2 && cmp x.ktx2 y.ktx2");
 }
 
 TEST_F(OiioPrograms, IinfoListsLevelsAndStatistics) {
     add_maps();
+    bake_each_encoding();
+    const std::string text = go("iinfo -v --stats x-*.ktx2");
     for (const Named<Encoding>& row : kEncodingNames) {
-        go("bake-normals bricks.png -o x.ktx2 --bumpiness 12 --no-sync --format " + std::string(row.name));
-        const std::string text = go("iinfo -v --stats x.ktx2");
-        EXPECT_NE(text.find("MIP-map levels: 512x512 256x256 128x128 64x64 32x32 16x16 8x8 4x4 2x2 1x1"),
-                  std::string::npos)
-            << text;
-        EXPECT_NE(text.find("tex:format: \"" + std::string(row.name) + "\""), std::string::npos) << text;
-        EXPECT_NE(text.find("NanCount: 0 0 0"), std::string::npos) << text;
+        const std::string format(row.name);
+        const std::size_t start = text.find("Reading x-" + format + ".ktx2");
+        ASSERT_NE(start, std::string::npos) << format << "\n" << text;
+        const std::string part = text.substr(start, text.find("\nReading ", start) - start);
+        EXPECT_NE(part.find("MIP-map levels: 128x128 64x64 32x32 16x16 8x8 4x4 2x2 1x1"), std::string::npos) << part;
+        EXPECT_NE(part.find("tex:format: \"" + format + "\""), std::string::npos) << part;
+        EXPECT_NE(part.find("NanCount: 0 0 0"), std::string::npos) << part;
     }
-    EXPECT_NE(go("oiiotool --help").find("tex"), std::string::npos);
-    go("bake-normals bricks.png -o x.dds --no-sync && iinfo x.dds.tex | grep -q '3 channel, uint16 tex'");
+    EXPECT_NE(go("iinfo x-bc5.dds.tex").find("3 channel, uint16 tex"), std::string::npos);
 }
 
 TEST_F(OiioPrograms, MaketxWritesLevels) {
@@ -122,10 +176,10 @@ TEST_F(OiioPrograms, MaketxWritesLevels) {
         go("maketx n.png --attrib tex:effort fast -o " + name);
         const auto texture = read_texture(scratch_.path(name));
         ASSERT_TRUE(texture) << texture.error().message();
-        EXPECT_EQ(texture->levels.size(), 10u);
+        EXPECT_EQ(texture->levels.size(), 8u);
         EXPECT_EQ(texture->format, Format::bc3_unorm);
         // maketx averages colours; levels of both are the same map.
-        go("bake-normals bricks.png -o own.dds --bumpiness 12 --no-sync && compare-normals " + name +
+        go("bake-normals waves.png -o own.dds --bumpiness 12 --no-sync && compare-normals " + name +
            " own.dds --max-mean 2");
     }
 }
