@@ -155,7 +155,8 @@ mapfile -t outside_formats_and_tools < <(select_files '^(libtex|tools)/.*\.(cpp|
 mapfile -t below_verbs < <(select_files '^libtex/src/(rows|kernels|blocks|surface)/')
 mapfile -t outside_color < <(printf '%s\n' "${library[@]}" | grep -v '/color\.' || true)
 mapfile -t outside_formats < <(printf '%s\n' "${library[@]}" | grep -v '/formats/' || true)
-mapfile -t outside_reader < <(select_files '^(libtex|tools)/.*\.(cpp|h)$' | grep -v '^\(tools/reader\|libtex/oiio\)/' || true)
+mapfile -t outside_reader < <(select_files '^(libtex|tools)/.*\.(cpp|h)$' |
+    grep -v '^\(tools/reader\|libtex/oiio\)/' || true)
 ban '#include [<"]hwy/|\bHWY_|\bhwy::' 'only kernels/ knows Highway' "${outside_kernels[@]}"
 verbs='bake|blend|check|color|compare|convert|curvature|heat_map|image_io|integrate|mesh_io|mesh_selection|mip|pack'
 verbs+='|pipeline|preview|probe|roughness|scale|sheet|source|tangents|unpack'

@@ -95,7 +95,7 @@ constexpr Attribute kAttributes[] = {
     {"tex:unpack", ignore},
 };
 
-const Attribute* find_attribute(OIIO::string_view name) {
+const Attribute* find_attribute(const OIIO::string_view& name) {
     for (const Attribute& row : kAttributes) {
         if (name == row.name) return &row;
     }

@@ -53,7 +53,7 @@ Result<void> check_magic(const std::string& path) {
     return Error{ErrorCode::unsupported, path, "not a DDS, KTX2 or ASTC file"};
 }
 
-std::size_t bytes_of(TypeDesc type, int channels, Extent extent) {
+std::size_t bytes_of(const TypeDesc& type, int channels, Extent extent) {
     return type.size() * static_cast<std::size_t>(channels) * static_cast<std::size_t>(extent.texels());
 }
 

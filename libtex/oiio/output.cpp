@@ -20,7 +20,7 @@ using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
 // Pixels are kept in the type in which they come, if libtex has a format for it; others become floats.
-TypeDesc kept_type(TypeDesc type) {
+TypeDesc kept_type(const TypeDesc& type) {
     switch (type.basetype) {
         case TypeDesc::UINT8:
         case TypeDesc::UINT16:
@@ -29,19 +29,19 @@ TypeDesc kept_type(TypeDesc type) {
     }
 }
 
-Format format_of_pixels(TypeDesc type, int channels) {
+Format format_of_pixels(const TypeDesc& type, int channels) {
     const bool floating = type.is_floating_point();
     const auto bits = static_cast<int>(type.size() * 8);
     const std::optional<Format> format = format_of(floating ? SampleKind::floating : SampleKind::unorm, bits, channels);
     return format.value_or(Format::rgba32_float);
 }
 
-bool is_signed_integer(TypeDesc type) {
+bool is_signed_integer(const TypeDesc& type) {
     return type.basetype == TypeDesc::INT8 || type.basetype == TypeDesc::INT16 || type.basetype == TypeDesc::INT32 ||
            type.basetype == TypeDesc::INT64;
 }
 
-bool is_unsigned_integer(TypeDesc type) { return !type.is_floating_point() && !is_signed_integer(type); }
+bool is_unsigned_integer(const TypeDesc& type) { return !type.is_floating_point() && !is_signed_integer(type); }
 
 Error mistake(const std::string& file, const std::string& reason) { return {ErrorCode::bad_option, file, reason}; }
 
