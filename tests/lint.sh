@@ -155,7 +155,8 @@ mapfile -t outside_formats_and_tools < <(select_files '^(libtex|tools)/.*\.(cpp|
 mapfile -t below_verbs < <(select_files '^libtex/src/(rows|kernels|blocks|surface)/')
 mapfile -t outside_color < <(printf '%s\n' "${library[@]}" | grep -v '/color\.' || true)
 mapfile -t outside_formats < <(printf '%s\n' "${library[@]}" | grep -v '/formats/' || true)
-mapfile -t outside_reader < <(select_files '^(libtex|tools)/.*\.(cpp|h)$' | grep -v '^tools/reader/' || true)
+mapfile -t outside_reader < <(select_files '^(libtex|tools)/.*\.(cpp|h)$' |
+    grep -v '^\(tools/reader\|libtex/oiio\)/' || true)
 ban '#include [<"]hwy/|\bHWY_|\bhwy::' 'only kernels/ knows Highway' "${outside_kernels[@]}"
 verbs='bake|blend|check|color|compare|convert|curvature|deband|heat_map|image_io|integrate|mesh_io|mesh_selection|mip'
 verbs+='|pack|pipeline|preview|probe|roughness|scale|sheet|source|tangents|unpack'
@@ -169,9 +170,11 @@ ban '#include <nlohmann/' 'only mesh/ knows nlohmann-json' "${outside_mesh[@]}"
 ban '#include <OpenColorIO' 'only color knows OpenColorIO' "${outside_color[@]}"
 ban '#include <(png\.h|isa-l|OpenEXR/|Imf)' 'only formats/ knows libpng, ISA-L and OpenEXR' "${outside_formats[@]}"
 ban '\+ 3\) / 4' 'blocks/extent.h counts blocks' "${library[@]}"
-ban '#include <OpenImageIO' 'only the reader knows OpenImageIO' "${outside_reader[@]}"
+ban '#include <OpenImageIO' 'only the reader and the plug-in know OpenImageIO' "${outside_reader[@]}"
 mapfile -t outside_python < <(select_files '^(libtex|tools)/.*\.(cpp|h)$' | grep -v '^libtex/python/' || true)
 ban '#include <(pybind11/|Python)' 'only the Python module knows Python' "${outside_python[@]}"
+mapfile -t plugin < <(select_files '^libtex/oiio/.*\.(cpp|h)$')
+ban '#include "[a-z]+/' 'the plug-in uses the public headers of libtex alone' "${plugin[@]}"
 mapfile -t outside_mesh_reader < <(select_files '^(libtex|tools)/.*\.(cpp|h)$' | grep -v '^tools/mesh-reader/' || true)
 ban '#include <assimp' 'only the mesh reader knows Assimp' "${outside_mesh_reader[@]}"
 ban '#include ("|<(hwy|png|isa-l|OpenEXR|Imath|Imf|OpenColorIO|OpenImageIO|tbb|fmt))' \

@@ -8,6 +8,6 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . .ci/packages.sh
 
 need_packages "${build_packages[@]}" "${test_packages[@]}"
-cmake --preset release -DBUILD_TESTING=ON -DTEX_PYTHON=ON
+cmake --preset release -DBUILD_TESTING=ON -DTEX_PYTHON=ON -DTEX_OIIO=ON
 cmake --build --preset release
 ctest --preset release -j "$(nproc)" "$@"

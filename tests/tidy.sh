@@ -52,10 +52,12 @@ start() {
 }
 
 sources=("$@")
-if [ "${#sources[@]}" -eq 0 ]; then mapfile -t sources < <(find libtex/src libtex/python tools -name '*.cpp' | sort); fi
+if [ "${#sources[@]}" -eq 0 ]; then
+    mapfile -t sources < <(find libtex/src libtex/python libtex/oiio tools -name '*.cpp' | sort)
+fi
 rm -rf "$out"
 mkdir -p "$out"
-cmake --preset fuzz -DTEX_PYTHON=ON >"$out/configure.log" || { cat "$out/configure.log"; exit 1; }
+cmake --preset fuzz -DTEX_PYTHON=ON -DTEX_OIIO=ON >"$out/configure.log" || { cat "$out/configure.log"; exit 1; }
 declare -A batches=()  # the sources, by their compile flags
 for source in "${sources[@]}"; do
     key=$(flags "$source")

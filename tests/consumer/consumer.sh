@@ -49,11 +49,13 @@ check_files() {
     sed -e "${2:-}" "$here/manifest.txt" | LC_ALL=C sort >"$scratch/wanted.txt"
     diff -u "$scratch/wanted.txt" "$scratch/installed.txt" || fail "the files differ from those of $here/manifest.txt"
 }
-# The Python module is installed if the build has it. The Debian package leaves it out.
+# The Python module and the plug-in of OpenImageIO are installed if the build has them. The Debian package leaves them
+# out.
 no_python='/^lib\/python\//d'
+no_oiio='/^lib\/OpenImageIO\//d; /tex-oiio/d'
 # shellcheck disable=SC2016  # sed's last line
 static_files='/^lib\/libtex\.so/d; $a lib/libtex.a'
-library_files=$no_python'; /^bin\//d; /^libexec\//d; /^share\/doc\//!{/^share\//d}'
+library_files=$no_python'; '$no_oiio'; /^bin\//d; /^libexec\//d; /^share\/doc\//!{/^share\//d}'
 
 # Compiles no object of libtex again: BUILD has them.
 reuse=(-DCMAKE_CXX_COMPILER_LAUNCHER="$here/reuse_objects.sh")
@@ -96,6 +98,7 @@ install)
     cmake --install "$build" --prefix "$stage" >/dev/null
     files=''
     if [ ! -e "$build/python" ]; then files=$no_python; fi
+    if [ ! -e "$build/oiio" ]; then files+=$'\n'$no_oiio; fi
     if [ -e "$build/libtex.a" ]; then files+=$'\n'$static_files; fi
     check_files "$stage" "$files"
     ;;
@@ -191,7 +194,7 @@ package)
         case $depends in *"$wanted"*) ;; *) fail "the package does not depend on $wanted: $depends" ;; esac
     done
     dpkg-deb --extract "$package" "$scratch/root"
-    check_files "$scratch/root/usr" "$no_python"
+    check_files "$scratch/root/usr" "$no_python;$no_oiio"
     "$scratch/root/usr/bin/bake-normals" "$samples/bricks.png" -o "$scratch/bricks.dds" --bumpiness 12
     check_bake "$scratch/bricks.dds"
     # Hardened as by Debian's hardening=+all: position-independent, read-only relocations, bound at start, no code on

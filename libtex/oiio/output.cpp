@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "output.h"
+
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+
+#include <cstring>
+#include <utility>
+
+#include <tex/mip.h>
+#include <tex/pack.h>
+#include <tex/swizzle.h>
+#include <tex/unpack.h>
+
+namespace tex::oiio {
+namespace {
+
+using OIIO::ImageSpec;
+using OIIO::TypeDesc;
+
+// Pixels are kept in the type in which they come, if libtex has a format for it; others become floats.
+TypeDesc kept_type(const TypeDesc& type) {
+    switch (type.basetype) {
+        case TypeDesc::UINT8:
+        case TypeDesc::UINT16:
+        case TypeDesc::HALF: return TypeDesc(static_cast<TypeDesc::BASETYPE>(type.basetype));
+        default: return TypeDesc::FLOAT;
+    }
+}
+
+Format format_of_pixels(const TypeDesc& type, int channels) {
+    const bool floating = type.is_floating_point();
+    const auto bits = static_cast<int>(type.size() * 8);
+    const std::optional<Format> format = format_of(floating ? SampleKind::floating : SampleKind::unorm, bits, channels);
+    return format.value_or(Format::rgba32_float);
+}
+
+bool is_signed_integer(const TypeDesc& type) {
+    return type.basetype == TypeDesc::INT8 || type.basetype == TypeDesc::INT16 || type.basetype == TypeDesc::INT32 ||
+           type.basetype == TypeDesc::INT64;
+}
+
+bool is_unsigned_integer(const TypeDesc& type) { return !type.is_floating_point() && !is_signed_integer(type); }
+
+Error mistake(const std::string& file, const std::string& reason) { return {ErrorCode::bad_option, file, reason}; }
+
+// Makes colours that were multiplied by their alpha what they were.
+void divide_by_alpha(const ImageSpec& spec, std::vector<std::byte>& bytes) {
+    if (spec.alpha_channel != 3 || spec.nchannels != 4 || spec.get_int_attribute("oiio:UnassociatedAlpha") != 0) return;
+    ImageSpec plain(spec.width, spec.height, spec.nchannels, spec.format);
+    OIIO::ImageBuf buffer(plain, bytes.data());
+    OIIO::ImageBufAlgo::unpremult(buffer, buffer);
+}
+
+}  // namespace
+
+// As in OpenImageIO's own writers, a file that was not closed is finished. If pixels are missing, there is no file.
+Output::~Output() { close(); }
+
+const char* Output::format_name() const { return kFormatName; }
+
+int Output::supports(OIIO::string_view feature) const {
+    return feature == "tiles" || feature == "mipmap" || feature == "alpha" ? 1 : 0;
+}
+
+bool Output::report(const Result<void>& done) {
+    if (done) return true;
+    open_ = false;  // nothing is written
+    failed_ = true;
+    pixels_ = {};
+    errorfmt("{}", done.error().message());
+    return false;
+}
+
+bool Output::open(const std::string& name, const ImageSpec& spec, OpenMode mode) {
+    return guarded(*this, [&] {
+        switch (mode) {
+            case Create:
+                if (!close()) return false;
+                return report(begin(name, spec));
+            case AppendMIPLevel: return report(add_level(spec));
+            default: return report(mistake(name, "a texture holds one picture, besides its levels"));
+        }
+    });
+}
+
+Result<void> Output::begin(const std::string& name, const ImageSpec& spec) {
+    const std::optional<Container> container = container_of(name);
+    if (!container || !(can_hold_blocks(*container) || can_hold(*container, Encoding::astc_4x4)))
+        return mistake(name, "the name must end in .dds, .ktx2 or .astc");
+    if (spec.deep || spec.depth > 1) return mistake(name, "deep pictures and volumes are no normal maps");
+    if (spec.nchannels < 2 || spec.nchannels > 4)
+        return mistake(name, "a normal map has 2 to 4 channels, not " + std::to_string(spec.nchannels));
+    Result<Wanted> wanted = wanted_of(spec);
+    if (!wanted) return mistake(name, wanted.error().reason);
+    const Encoding encoding = wanted->format.value_or(default_encoding(*container));
+    if (!can_hold(*container, encoding))
+        return mistake(name, "a " + std::string(name_of(kContainerNames, *container)) + " file cannot hold " +
+                                 std::string(name_of(kEncodingNames, encoding)) +
+                                 "; set the attribute tex:format to another encoding");
+    const TypeDesc type = spec.format;
+    if (is_signed_integer(type)) wanted->pixels.range = ValueRange::signed_;
+    if (is_unsigned_integer(type)) wanted->pixels.range = ValueRange::unsigned_;
+
+    pixels_ = {};
+    pixels_.format = format_of_pixels(kept_type(type), spec.nchannels);
+    pixels_.swizzle = spec.nchannels == 2 ? kSwizzleXy : kSwizzleXyz;
+    pixels_.normal_encoding = spec.get_string_attribute("normalEncoding");
+    name_ = name;
+    container_ = *container;
+    wanted_ = std::move(*wanted);
+    wanted_.pack.encoding = encoding;
+    open_ = true;
+    return add_level(spec);
+}
+
+Result<void> Output::add_level(const ImageSpec& spec) {
+    if (!open_) return mistake(name_, "no file is open");
+    const Extent extent{spec.width, spec.height};
+    if (extent.width < 1 || extent.height < 1 || extent.width > kMaxExtent || extent.height > kMaxExtent)
+        return mistake(name_, "the picture is empty or has a side of more than " + std::to_string(kMaxExtent));
+    if (!pixels_.levels.empty()) {
+        if (const Result<void> finished = finish_level(); !finished) return finished.error();
+        if (!can_hold_levels(container_)) return mistake(name_, "this file type holds one level");
+        const auto level = static_cast<int>(pixels_.levels.size());
+        const Extent before = pixels_.levels.back().extent;
+        if (extent != level_extent(pixels_.extent(), level) || before == Extent{1, 1} ||
+            spec.nchannels != m_spec.nchannels) {
+            return mistake(name_, "level " + std::to_string(level) +
+                                      " must have half the width and height of the level before it, rounded down, and "
+                                      "the same channels");
+        }
+    }
+    const TypeDesc type = pixels_.levels.empty() ? kept_type(spec.format) : m_spec.format;
+    m_spec = spec;
+    m_spec.set_format(type);
+    m_spec.channelformats.clear();
+    pixels_.levels.push_back({extent, std::vector<std::byte>(level_bytes(pixels_.format, extent))});
+    const bool tiled = spec.tile_width > 0 && spec.tile_height > 0;
+    next_ = 0;
+    end_ = !tiled ? spec.height
+                  : std::int64_t{(spec.width + spec.tile_width - 1) / spec.tile_width} *
+                        ((spec.height + spec.tile_height - 1) / spec.tile_height);
+    return {};
+}
+
+// Scanlines and tiles come in their order, so a count shows that none is missing. `part` is -1 if there is no such
+// part.
+bool Output::next_is(std::int64_t part) {
+    if (!open_) {
+        errorfmt("{}", "no file is open");
+        return false;
+    }
+    if (part != next_ || part >= end_)
+        return report(mistake(name_, "scanlines and tiles must come in their order, each once"));
+    ++next_;
+    return true;
+}
+
+bool Output::write_scanline(int y, int z, TypeDesc format, const void* data, OIIO::stride_t xstride) {
+    return guarded(*this, [&] {
+        if (!next_is(z == m_spec.z ? std::int64_t{y} - m_spec.y : -1)) return false;
+        return copy_to_image_buffer(m_spec.x, m_spec.x + m_spec.width, y, y + 1, z, z + 1, format, data, xstride,
+                                    OIIO::AutoStride, OIIO::AutoStride, pixels_.levels.back().bytes.data(),
+                                    TypeDesc::UNKNOWN);
+    });
+}
+
+bool Output::write_tile(int x, int y, int z, TypeDesc format, const void* data, OIIO::stride_t xstride,
+                        OIIO::stride_t ystride, OIIO::stride_t zstride) {
+    return guarded(*this, [&] {
+        if (m_spec.tile_width < 1 || m_spec.tile_height < 1)
+            return report(mistake(name_, "a tile of a picture without tiles"));
+        const std::int64_t across = (m_spec.width + m_spec.tile_width - 1) / m_spec.tile_width;
+        const std::int64_t column = (std::int64_t{x} - m_spec.x) / m_spec.tile_width;
+        const std::int64_t row = (std::int64_t{y} - m_spec.y) / m_spec.tile_height;
+        const bool aligned = m_spec.x + column * m_spec.tile_width == x && m_spec.y + row * m_spec.tile_height == y;
+        if (!next_is(aligned && column >= 0 && column < across && z == m_spec.z ? row * across + column : -1))
+            return false;
+        return copy_tile_to_image_buffer(x, y, z, format, data, xstride, ystride, zstride,
+                                         pixels_.levels.back().bytes.data(), TypeDesc::UNKNOWN);
+    });
+}
+
+Result<void> Output::finish_level() {
+    if (next_ != end_)
+        return mistake(name_, "level " + std::to_string(pixels_.levels.size() - 1) + " has " + std::to_string(next_) +
+                                  " of " + std::to_string(end_) + " scanlines or tiles; no file is written");
+    divide_by_alpha(m_spec, pixels_.levels.back().bytes);
+    return {};
+}
+
+bool Output::close() {
+    return guarded(*this, [&] {
+        if (open_) report(finish());
+        open_ = false;
+        pixels_ = {};
+        return !std::exchange(failed_, false);  // programs may look at nothing else
+    });
+}
+
+Result<MipChain> Output::levels() const {
+    const Execution execution{threads(), {}};
+    Result<MipChain> sent = unpack(pixels_, wanted_.pixels, execution);
+    if (!sent || wanted_.keep_levels) return sent;
+    MipOptions options;
+    options.levels = wanted_.levels;
+    return build_mip_chain(std::move(sent->levels.front()), options, execution);
+}
+
+Result<void> Output::finish() {
+    if (const Result<void> finished = finish_level(); !finished) return finished.error();
+    Result<MipChain> chain = levels();
+    if (!chain) return Error{chain.error().code, name_, chain.error().reason};
+    pixels_ = {};
+    PackOptions pack_options = wanted_.pack;
+    pack_options.y_axis = wanted_.y.value_or(wanted_.pixels.y_axis.value_or(YAxis::up));
+    pack_options.y_known = wanted_.y || wanted_.pixels.y_axis;
+    const Execution execution{threads(), {}};
+    Result<Texture> texture = pack(*chain, pack_options, execution);
+    if (!texture) return Error{texture.error().code, name_, texture.error().reason};
+    if (!can_hold_levels(container_)) texture->levels.resize(1);
+    return write_texture(name_, *texture, wanted_.write, execution);
+}
+
+}  // namespace tex::oiio

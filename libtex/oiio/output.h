@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// output.h: the writer: pictures of normals as DDS, KTX2 and ASTC files. The pixels of all levels are kept until the
+// file is closed; then it appears whole, or not at all.
+
+#pragma once
+
+#include <OpenImageIO/imageio.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include <tex/mip_chain.h>
+#include <tex/texture.h>
+
+#include "attributes.h"
+
+namespace tex::oiio {
+
+class Output final : public OIIO::ImageOutput {
+public:
+    Output() = default;
+    ~Output() override;
+    Output(const Output&) = delete;
+    Output& operator=(const Output&) = delete;
+
+    [[nodiscard]] const char* format_name() const override;
+    [[nodiscard]] int supports(OIIO::string_view feature) const override;
+    bool open(const std::string& name, const OIIO::ImageSpec& spec, OpenMode mode) override;
+    bool close() override;
+    bool write_scanline(int y, int z, OIIO::TypeDesc format, const void* data, OIIO::stride_t xstride) override;
+    bool write_tile(int x, int y, int z, OIIO::TypeDesc format, const void* data, OIIO::stride_t xstride,
+                    OIIO::stride_t ystride, OIIO::stride_t zstride) override;
+
+private:
+    [[nodiscard]] Result<void> begin(const std::string& name, const OIIO::ImageSpec& spec);
+    [[nodiscard]] Result<void> add_level(const OIIO::ImageSpec& spec);
+    [[nodiscard]] Result<void> finish_level();
+    [[nodiscard]] Result<MipChain> levels() const;
+    [[nodiscard]] Result<void> finish();
+    [[nodiscard]] bool next_is(std::int64_t part);
+    bool report(const Result<void>& done);
+
+    bool open_ = false;
+    bool failed_ = false;  // close() has not reported it yet
+    std::string name_;
+    Container container_ = Container::dds;
+    Wanted wanted_;
+    Texture pixels_;         // as they were sent
+    std::int64_t next_ = 0;  // the number of the scanline or tile of this level that comes next
+    std::int64_t end_ = 0;   // the number of them
+};
+
+}  // namespace tex::oiio
