@@ -204,7 +204,8 @@ TEST_F(ReportPage, OpensWithGreenAsMeasured) {
 TEST_F(ReportPage, NamesGreenWhereTheFileStatesTheOppositeOfItsTexels) {
     shell(
         "bake-normals waves.png -o up.png --bumpiness 6;"
-        "pack-normals up.png -o down.ktx2 --format bc5 --y-in down --y down; check-normals down.ktx2 --report page.html");
+        "pack-normals up.png -o down.ktx2 --format bc5 --y-in down --y down;"
+        "check-normals down.ktx2 --report page.html");
     open("page.html");
     wait_for_light();
     EXPECT_EQ(js("document.querySelector('.stage select[name=yA]').value").get<std::string>(), "up");

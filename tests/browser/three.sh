@@ -33,11 +33,11 @@ done
 (IFS=,; echo "[${entries[*]}]") >files.json
 (
     until (exec 3<>/dev/tcp/127.0.0.1/8617) 2>/dev/null; do sleep 0.1; done
-    exec chromium --headless --no-sandbox --disable-gpu --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader \
-        --user-data-dir="$scratch/profile" http://127.0.0.1:8617/three.html 2>log
+    exec chromium --headless --no-sandbox --disable-gpu --use-gl=angle --use-angle=swiftshader \
+        --enable-unsafe-swiftshader --user-data-dir="$scratch/profile" http://127.0.0.1:8617/three.html 2>log
 ) &
 browser=$!
-timeout 120 python3 - <<'SERVER' | tee result || { cat log; exit 1; } # serves this folder until the page sends its result
+timeout 120 python3 - <<'SERVER' | tee result || { cat log; exit 1; } # until the page sends its result
 import http.server
 
 class Handler(http.server.SimpleHTTPRequestHandler):

@@ -113,7 +113,7 @@ TEST(Manifest, MistakesNameTheirPlaceAndTheRemedy) {
     EXPECT_EQ(refusal_of("[ { bake = {} } ]", "name = \"{stm}.dds\"").substr(0, 34),
               "n.toml: line 2, column 1: name: a ");
     EXPECT_EQ(
-        refusal_of("[ { bake = {} } ]", "name = \"{stem}.png\"\noutputs = [ { format = \"bc5\" } ]").substr(0, 60),
+        refusal_of("[ { bake = {} } ]", "name = \"{stem}.png\"\noutputs = [ { format = \"bc5\" } ]").substr(0, 59),
         "n.toml: line 6, column 13: bake: name.png: png files cannot");
     EXPECT_EQ(refusal_of("[ { bake = {} } ]", "outputs = [ { fromat = \"bc5\" } ]"),
               "n.toml: line 5, column 15: fromat: bake-normals has no such option here; did you mean format?");

@@ -13,10 +13,10 @@
 
 namespace tex {
 
-// What a picture becomes: each plane is a channel of a texture, in the smallest format that holds the values unchanged (8
-// bits if samples have 1, 2, 4 or 8 bits, otherwise 16; half; float). If there is a plane R, the channels are R, G, B
-// and A. Grey and alpha become R = G = B and A. In all other cases the channels are the planes in their order. What the
-// channels hold is not known (Texture::swizzle_known).
+// What a picture becomes: each plane is a channel of a texture, in the smallest format that holds the values unchanged
+// (8 bits if samples have 1, 2, 4 or 8 bits, otherwise 16; half; float). If there is a plane R, the channels are R, G,
+// B and A. Grey and alpha become R = G = B and A. In all other cases the channels are the planes in their order. What
+// the channels hold is not known (Texture::swizzle_known).
 struct PictureTexture {
     Texture head;                     // without a level
     std::vector<std::size_t> planes;  // the plane for each channel
