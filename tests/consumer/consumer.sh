@@ -66,7 +66,7 @@ without() {
     local folder=$1 word
     shift
     for word in "$@"; do
-        ! grep -i -- "^[^=]*$word" "$folder/CMakeCache.txt" || fail "the configuration $folder looked for $word"
+        ! grep -i -- "^[^=/]*$word" "$folder/CMakeCache.txt" || fail "the configuration $folder looked for $word"
     done
 }
 

@@ -38,6 +38,11 @@ float quality_of(Use use) {
     }
 }
 
+// libastcenc 4.2 keeps these two settings of the first image that a process encodes, for all later ones
+// (compress_block() has them in static constants). The bytes would depend on the files before, so all images have the
+// same: the greatest that it uses for fast and normal. A greater one ends the search of a block later.
+constexpr float kOvershoot = 3.5f;
+
 // The memory that libastcenc works with, and a row of texels for it.
 struct Context {
     struct Free {
@@ -51,10 +56,12 @@ struct Context {
         const unsigned flags = use == Use::decode ? ASTCENC_FLG_DECOMPRESS_ONLY : ASTCENC_FLG_MAP_NORMAL;
         astcenc_config config = {};
         astcenc_context* made = nullptr;
-        const bool done = astcenc_config_init(ASTCENC_PRF_LDR, static_cast<unsigned>(block.width),
-                                              static_cast<unsigned>(block.height), 1, quality_of(use), flags,
-                                              &config) == ASTCENC_SUCCESS &&
-                          astcenc_context_alloc(&config, 1, &made) == ASTCENC_SUCCESS;
+        bool done = astcenc_config_init(ASTCENC_PRF_LDR, static_cast<unsigned>(block.width),
+                                        static_cast<unsigned>(block.height), 1, quality_of(use), flags,
+                                        &config) == ASTCENC_SUCCESS;
+        config.tune_mode0_mse_overshoot = kOvershoot;
+        config.tune_refinement_mse_overshoot = kOvershoot;
+        done = done && astcenc_context_alloc(&config, 1, &made) == ASTCENC_SUCCESS;
         library.reset(made);
         if (!done) throw std::bad_alloc();
     }
