@@ -99,7 +99,7 @@ struct Pairs {
 };
 HWY_INLINE Pairs pairs_at(const float* row, int i) {
     Pairs pairs;
-    hn::LoadInterleaved2(kD, row + 2 * i, pairs.even, pairs.odd);
+    hn::LoadInterleaved2(kD, row + std::ptrdiff_t{2} * i, pairs.even, pairs.odd);
     return pairs;
 }
 
@@ -147,12 +147,13 @@ void DoubleRow(const float* row, int count, float* out) {
         const V at = hn::Mul(near, load(row + i));
         const V even = hn::Add(at, hn::Mul(far, load(row + i - 1)));
         const V odd = hn::Add(at, hn::Mul(far, load(row + i + 1)));
-        hn::StoreInterleaved2(even, odd, kD, out + 2 * i);
+        hn::StoreInterleaved2(even, odd, kD, out + std::ptrdiff_t{2} * i);
     }
 }
 
 void RepeatTexels(const float* row, int count, float* out) {
-    for (int i = 0; i < count; i += kLanes) hn::StoreInterleaved2(load(row + i), load(row + i), kD, out + 2 * i);
+    for (int i = 0; i < count; i += kLanes)
+        hn::StoreInterleaved2(load(row + i), load(row + i), kD, out + std::ptrdiff_t{2} * i);
 }
 
 void LimitRow(const float* low, const float* high, float otherwise, int count, float* row) {
