@@ -2,6 +2,8 @@
 
 #include "kernels/deband.h"
 
+#include <cstddef>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/deband.cpp"
 #include <hwy/foreach_target.h>
