@@ -12,8 +12,8 @@
 #   library       the library alone, static if BUILD has a shared one and the reverse, needs no package of the commands;
 #                 it is installed, and a project finds it
 #   subdirectory  a project adds the sources as a folder, once with a shared and once with a static library
-#   packages      cpack makes the Debian packages, from the objects of BUILD; their files and dependencies are right, and
-#                 their commands run
+#   packages      cpack makes the Debian packages from the objects of BUILD; files and dependencies
+#                 are right, and commands run
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 source=$(cd "$here/../.." && pwd)
@@ -228,7 +228,8 @@ packages)
     quietly 'the packages cannot be built' cmake --build "$scratch/build"
     quietly 'cpack failed' cpack --config "$scratch/build/CPackConfig.cmake" -B "$scratch"
     root=$scratch/root
-    package libtex0 libc6 libpng16-16 libdeflate0 libisal2 libzstd1 libastcenc3d libopenexr libtbb12 libhwy libopencolorio
+    package libtex0 libc6 libpng16-16 libdeflate0 libisal2 libzstd1 libastcenc3d libopenexr libtbb12 libhwy \
+        libopencolorio
     case $depends in *openimageio* | *assimp*) fail "the library needs the readers: $depends" ;; esac
     package libtex-dev 'libtex0 (= '
     package libtex-tools 'libtex0 (= ' libopenimageio libassimp libseccomp2
