@@ -116,26 +116,19 @@ def test_spaces_are_inverse(normals):
         tex.to_object_space(flat, square())
 
 
-def written(commands, n, **options):
-    """What a file has of a map: pack() normalises it."""
-    tex.write_texture(commands.folder / "written.exr", tex.pack(tex.build_mip_chain(n, levels=1, **options), "float"))
-    return commands.floats("written.exr")
-
-
-def test_the_bytes_of_convert_normals(commands, normals):
+def test_maps_are_those_of_convert_normals(commands, normals):
     mesh = BROKEN / "meshes/N711.glb"
     tex.write_texture(commands.folder / "n.exr", tex.pack(normals, "float"))
-    normals = tex.read_normals(commands.folder / "n.exr")[0][0]
     commands("convert-normals", "n.exr", "-o", "o.exr", "--mesh", mesh, "--to", "object", "--format", "float",
              "--decoder", "unreal", "--subsamples", "2")
     space = tex.select_part(tex.read_mesh(mesh))
     n = tex.to_object_space(normals, space, decoder="unreal", subsamples=2)["map"]
-    np.testing.assert_array_equal(commands.floats("o.exr"), written(commands, n, any_z=True))
+    np.testing.assert_allclose(commands.floats("o.exr"), n, rtol=0, atol=3e-7)  # the command normalises what it reads
     commands("convert-normals", "n.exr", "-o", "r.exr", "--mesh", mesh, "--to-mesh", mesh, "--decoder-in", "unreal",
              "--decoder", "godot", "--tangents", "meshopt", "--format", "float")
     other = tex.select_part(tex.read_mesh(mesh), tangents="meshopt")
     fitted = tex.refit(normals, space, other, source_decoder="unreal", target_decoder="godot")
-    np.testing.assert_array_equal(commands.floats("r.exr"), written(commands, fitted["map"]))
+    np.testing.assert_allclose(commands.floats("r.exr"), fitted["map"], rtol=0, atol=3e-7)
     assert fitted["unmatched"] == 0
 
 
