@@ -39,7 +39,7 @@ TEST(HalfBlock, ShapesAreWhatDecodersMake) {
             float values[16];
             decode_half(kind, half, values);
             for (int k = 0; k < 16; ++k) {
-                const float line = shape.offset + shape.slope * shape.weights[k];
+                const float line = shape.line.offset + shape.line.slope * shape.weights[k];
                 EXPECT_NEAR(std::clamp(line, -1.0f, 1.0f), values[k], 1e-4f);
             }
         }
@@ -56,19 +56,19 @@ TEST(HalfBlock, VariantsKeepWhatIsCopiedAndComeCloseToTheLine) {
             const HalfShape shape = half_shape(kind, half);
             if (!shape.is_line) continue;
             for (const Copied copied : {Copied::indices, Copied::all_but_first}) {
-                std::byte variants[kMostVariants][kHalfBytes];
-                const int count = half_variants(kind, half, copied, {shape.offset, shape.slope}, variants);
+                HalfVariant variants[kMostVariants];
+                const int count = half_variants(kind, half, copied, shape.line, variants);
                 ASSERT_LE(count, kMostVariants);
                 const int literals = literals_before(kind, copied);
                 float nearest = 10.0f;
                 for (int v = 0; v < count; ++v) {
-                    EXPECT_TRUE(std::equal(half + literals, half + kHalfBytes, variants[v] + literals));
-                    const HalfShape found = half_shape(kind, variants[v]);
+                    EXPECT_TRUE(std::equal(half + literals, half + kHalfBytes, variants[v].half + literals));
+                    const HalfShape found = half_shape(kind, variants[v].half);
                     EXPECT_TRUE(found.is_line);
                     nearest = std::min(nearest,
-                                       std::fabs(found.offset - shape.offset) + std::fabs(found.slope - shape.slope));
+                                       std::fabs(found.line.offset - shape.line.offset) + std::fabs(found.line.slope - shape.line.slope));
                 }
-                if (shape.slope > 0.0f) {
+                if (shape.line.slope > 0.0f) {
                     EXPECT_LT(nearest, 1e-4f);
                 }
             }
@@ -85,7 +85,7 @@ struct Table {
         for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
             std::byte half[kHalfBytes];
             HalfShape shape{};
-            while (!shape.is_line || shape.slope < 0.0f) {
+            while (!shape.is_line || shape.line.slope < 0.0f) {
                 make_half(random, half);
                 shape = half_shape(kind, half);
             }
@@ -95,8 +95,8 @@ struct Table {
                 values[17][i] += shape.weights[k] * shape.weights[k];
             }
             values[18][i] = 1.0f / (16.0f * values[17][i] - values[16][i] * values[16][i]);
-            values[19][i] = shape.offset;
-            values[20][i] = shape.slope;
+            values[19][i] = shape.line.offset;
+            values[20][i] = shape.line.slope;
         }
         for (std::size_t k = 0; k < 16; ++k) table.weights[k] = values[k].data();
         table.sum = values[16].data();

@@ -2,6 +2,9 @@
 
 #include "kernels/copy_search.h"
 
+#include <algorithm>
+#include <cmath>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/copy_search.cpp"
 #include <hwy/foreach_target.h>
@@ -74,22 +77,26 @@ void copy_errors_target(const LineTable& table, int count, const float values[16
     }
 }
 
+// From the last half on, because near ones cost least: so most of the others are dismissed without a root.
 void add_cheapest_target(const CopyCosts& costs, int count, CheapCopies& cheapest) {
     const Floats d;
     const int lanes = static_cast<int>(hn::Lanes(d));
-    const auto scale = hn::Set(d, costs.scale);
+    const auto zero = hn::Zero(d);
     const auto rest = hn::Set(d, costs.rest);
-    const auto extra = hn::Set(d, costs.extra);
-    HWY_ALIGN float found[16];
-    for (int i = 0; i < count; i += lanes) {
+    // Rounding must not dismiss what is below the bound.
+    const auto square_scale = hn::Set(d, 0.9999f * costs.scale * costs.scale);
+    HWY_ALIGN float squares[16];
+    for (int i = (count - 1) / lanes * lanes; i >= 0; i -= lanes) {
         auto square = hn::LoadU(d, costs.errors + i);
         if (costs.more != nullptr) square = hn::Add(square, hn::LoadU(d, costs.more + i));
-        const auto length = hn::Mul(scale, hn::Sqrt(hn::Add(square, rest)));
-        const auto cost = hn::Add(hn::Add(length, hn::LoadU(d, costs.prices + i)), extra);
-        if (hn::AllFalse(d, hn::Lt(cost, hn::Set(d, cheapest.bound())))) continue;
-        hn::Store(cost, d, found);
-        for (int k = 0; k < lanes && i + k < count; ++k) {
-            if (found[k] < cheapest.bound()) cheapest.add({found[k], i + k, costs.copied});
+        square = hn::Add(square, rest);
+        const auto room =
+            hn::Max(zero, hn::Sub(hn::Set(d, cheapest.bound() - costs.extra), hn::LoadU(d, costs.prices + i)));
+        if (hn::AllFalse(d, hn::Lt(hn::Mul(square_scale, square), hn::Mul(room, room)))) continue;
+        hn::Store(square, d, squares);
+        for (int k = std::min(lanes, count - i) - 1; k >= 0; --k) {
+            const float cost = costs.scale * std::sqrt(squares[k]) + costs.prices[i + k] + costs.extra;
+            if (cost < cheapest.bound()) cheapest.add({cost, i + k, costs.copied});
         }
     }
 }
@@ -110,6 +117,28 @@ void block_chords_target(const float* const normals[3], const float x[16], const
     }
 }
 
+void chord_sums_target(const ChordTexels& texels, const float* values, int stride, int count, float* sums) {
+    const Floats d;
+    const auto one = hn::Set(d, 1.0f);
+    for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
+        auto sum = hn::Zero(d);
+        auto allowed = hn::Eq(one, one);
+        for (int k = 0; k < 16; ++k) {
+            const auto value = hn::LoadU(d, values + k * stride + i);
+            const auto decoded = hn::Set(d, texels.decoded[k]);
+            const auto flat = hn::Min(one, hn::Add(hn::Mul(value, value), hn::Mul(decoded, decoded)));
+            const auto dv = hn::Sub(hn::Set(d, texels.own[k]), value);
+            const auto dw = hn::Sub(hn::Set(d, texels.other[k]), decoded);
+            const auto dz = hn::Sub(hn::Set(d, texels.z[k]), hn::Sqrt(hn::Sub(one, flat)));
+            const auto square = hn::Add(hn::Add(hn::Mul(dv, dv), hn::Mul(dw, dw)), hn::Mul(dz, dz));
+            const auto chord = hn::Sqrt(square);
+            allowed = hn::And(allowed, hn::Le(chord, hn::Set(d, texels.most[k])));
+            sum = hn::Add(sum, hn::Mul(chord, hn::Set(d, texels.inside[k])));
+        }
+        hn::StoreU(hn::IfThenElse(allowed, sum, hn::Set(d, kTooLong)), d, sums + i);
+    }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace tex
 HWY_AFTER_NAMESPACE();
@@ -120,6 +149,7 @@ namespace tex {
 HWY_EXPORT(copy_errors_target);
 HWY_EXPORT(add_cheapest_target);
 HWY_EXPORT(block_chords_target);
+HWY_EXPORT(chord_sums_target);
 
 void copy_errors(const LineTable& table, int count, const float values[16], bool keeps_slope, float* const errors[3]) {
     HWY_DYNAMIC_DISPATCH(copy_errors_target)(table, count, values, keeps_slope, errors);
@@ -131,6 +161,10 @@ void add_cheapest(const CopyCosts& costs, int count, CheapCopies& cheapest) {
 
 void block_chords(const float* const normals[3], const float x[16], const float y[16], float chords[16]) {
     HWY_DYNAMIC_DISPATCH(block_chords_target)(normals, x, y, chords);
+}
+
+void chord_sums(const ChordTexels& texels, const float* values, int stride, int count, float* sums) {
+    HWY_DYNAMIC_DISPATCH(chord_sums_target)(texels, values, stride, count, sums);
 }
 
 }  // namespace tex

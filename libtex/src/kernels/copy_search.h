@@ -73,4 +73,19 @@ void add_cheapest(const CopyCosts& costs, int count, CheapCopies& cheapest);
 // + y^2)).
 void block_chords(const float* const normals[3], const float x[16], const float y[16], float chords[16]);
 
+// For many candidates for one component of a block's texels: the sum of the chords that block_chords() computes, each
+// times `inside`, in the order of the texels; or kTooLong if a chord is longer than `most`.
+inline constexpr float kTooLong = 1e30f;
+struct ChordTexels {
+    const float* own;    // the component that candidates replace, of the normals
+    const float* other;  // the other one
+    const float* z;
+    const float* decoded;  // the other component of all candidates
+    const float* most;
+    const float* inside;
+};
+// `values` has the candidates of texel k from k * stride on. The rows of `values`, and `sums`, have room for a whole
+// vector past the last candidate.
+void chord_sums(const ChordTexels& texels, const float* values, int stride, int count, float* sums);
+
 }  // namespace tex
