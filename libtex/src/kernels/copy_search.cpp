@@ -19,84 +19,69 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::CappedTag<float, 16>;
 using Vector = hn::Vec<Floats>;
 
-// The sums over the 16 values that do not depend on the half.
-struct ValueSums {
-    float sum = 0.0f, squares = 0.0f;
-    explicit ValueSums(const float values[16]) {
-        for (int k = 0; k < 16; ++k) {
-            sum += values[k];
-            squares += values[k] * values[k];
-        }
-    }
-};
-
 // All errors are quadratic forms of four sums: those of the values, of the weights, of their squares and of their
 // products. Only the products need a loop over texels.
-void copy_errors_target(const LineTable& table, int count, const float values[16], bool keeps_slope,
-                        float* const errors[3]) {
+void score_copies_target(const LineTable& table, int count, const float values[16], float sum, float squares,
+                         float* products, float* least) {
     const Floats d;
-    const ValueSums of(values);
     const auto zero = hn::Zero(d);
     const auto sixteenth = hn::Set(d, 1.0f / 16.0f);
-    const auto two = hn::Set(d, 2.0f);
-    const auto v = hn::Set(d, of.sum);
-    const auto vv = hn::Set(d, of.squares);
-    const auto spread = hn::Sub(vv, hn::Mul(hn::Mul(v, v), sixteenth));
+    const auto v = hn::Set(d, sum);
+    const auto spread = hn::Set(d, squares - sum * sum * (1.0f / 16.0f));
     for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
-        auto wv = zero;
-        for (int k = 0; k < 16; ++k)
-            wv = hn::Add(wv, hn::Mul(hn::LoadU(d, table.weights[k] + i), hn::Set(d, values[k])));
+        auto even = zero;
+        auto odd = zero;
+        for (int k = 0; k < 16; k += 2) {
+            even = hn::Add(even, hn::Mul(hn::LoadU(d, table.weights[k] + i), hn::Set(d, values[k])));
+            odd = hn::Add(odd, hn::Mul(hn::LoadU(d, table.weights[k + 1] + i), hn::Set(d, values[k + 1])));
+        }
+        const auto wv = hn::Add(even, odd);
+        hn::StoreU(wv, d, products + i);
         const auto w = hn::LoadU(d, table.sum + i);
-        const auto ww = hn::LoadU(d, table.squares + i);
-        const auto offset = hn::LoadU(d, table.offset + i);
-        const auto slope = hn::LoadU(d, table.slope + i);
-
         const auto covariance = hn::Max(zero, hn::Sub(hn::Mul(hn::Set(d, 16.0f), wv), hn::Mul(w, v)));
         const auto explained =
             hn::Mul(hn::Mul(hn::Mul(covariance, covariance), hn::LoadU(d, table.inverse + i)), sixteenth);
-        hn::StoreU(hn::Max(zero, hn::Sub(spread, explained)), d, errors[0] + i);
-
-        // Relative to the offset of the half.
-        const auto moved = hn::Sub(wv, hn::Mul(offset, w));
-        const auto offset_twice = hn::Mul(two, offset);
-        const auto base =
-            hn::Add(hn::Sub(vv, hn::Mul(offset_twice, v)), hn::Mul(hn::Set(d, 16.0f), hn::Mul(offset, offset)));
-        if (keeps_slope) {
-            const auto both = hn::Sub(wv, hn::Mul(hn::Mul(w, v), sixteenth));
-            const auto own = hn::Sub(ww, hn::Mul(hn::Mul(w, w), sixteenth));
-            const auto gain = hn::Mul(slope, hn::Sub(hn::Mul(two, both), hn::Mul(slope, own)));
-            hn::StoreU(hn::Max(zero, hn::Sub(spread, gain)), d, errors[1] + i);
-        } else {
-            const auto least = hn::Set(d, 1e-6f);
-            const auto part = hn::Max(zero, moved);
-            const auto gain = hn::Div(hn::Mul(part, part), hn::Max(ww, least));
-            hn::StoreU(hn::Max(zero, hn::Sub(base, gain)), d, errors[1] + i);
-        }
-        const auto gain = hn::Mul(slope, hn::Sub(hn::Mul(two, moved), hn::Mul(slope, ww)));
-        hn::StoreU(hn::Max(zero, hn::Sub(base, gain)), d, errors[2] + i);
+        hn::StoreU(hn::Max(zero, hn::Sub(spread, explained)), d, least + i);
     }
 }
 
-// From the last half on, because near ones cost least: so most of the others are dismissed without a root.
+// Adds one half with its three errors.
+void add_copies_at(const CopyCosts& costs, int at, CheapCopies& cheapest) {
+    std::array<float, 3> errors = copy_errors(*costs.scores, at);
+    if (costs.more != nullptr) {
+        const std::array<float, 3> more = copy_errors(*costs.more, at);
+        for (std::size_t q = 0; q < 3; ++q) errors[q] += more[q];
+    }
+    for (int q = 2; q >= 0; --q) {
+        const float length = costs.scale * std::sqrt(errors[static_cast<std::size_t>(q)] + costs.rest);
+        const float cost = length + costs.prices[at] + costs.extra[q];
+        if (cost < cheapest.bound()) cheapest.add({cost, at, q});
+    }
+}
+
+// From the last half on, because near ones cost least: so the least error of most of the others, at the least price,
+// is above the bound.
 void add_cheapest_target(const CopyCosts& costs, int count, CheapCopies& cheapest) {
     const Floats d;
     const int lanes = static_cast<int>(hn::Lanes(d));
     const auto zero = hn::Zero(d);
     const auto rest = hn::Set(d, costs.rest);
-    // Rounding must not dismiss what is below the bound.
+    // Rounding must not dismiss what is below the bound, so both sides leave room for it.
     const auto square_scale = hn::Set(d, 0.9999f * costs.scale * costs.scale);
-    HWY_ALIGN float squares[16];
+    const float* const least = costs.scores->least;
+    const float* const more = costs.more == nullptr ? nullptr : costs.more->least;
+    HWY_ALIGN float below[16];
     for (int i = (count - 1) / lanes * lanes; i >= 0; i -= lanes) {
-        auto square = hn::LoadU(d, costs.errors + i);
-        if (costs.more != nullptr) square = hn::Add(square, hn::LoadU(d, costs.more + i));
-        square = hn::Add(square, rest);
-        const auto room =
-            hn::Max(zero, hn::Sub(hn::Set(d, cheapest.bound() - costs.extra), hn::LoadU(d, costs.prices + i)));
-        if (hn::AllFalse(d, hn::Lt(hn::Mul(square_scale, square), hn::Mul(room, room)))) continue;
-        hn::Store(square, d, squares);
+        auto square = hn::LoadU(d, least + i);
+        if (more != nullptr) square = hn::Add(square, hn::LoadU(d, more + i));
+        square = hn::Mul(square_scale, hn::Add(square, rest));
+        const auto bound = hn::Set(d, 1.00001f * cheapest.bound() - costs.extra[2]);
+        const auto room = hn::Max(zero, hn::Sub(bound, hn::LoadU(d, costs.prices + i)));
+        const auto is_below = hn::Lt(square, hn::Mul(room, room));
+        if (hn::AllFalse(d, is_below)) continue;
+        hn::Store(hn::IfThenElseZero(is_below, hn::Set(d, 1.0f)), d, below);
         for (int k = std::min(lanes, count - i) - 1; k >= 0; --k) {
-            const float cost = costs.scale * std::sqrt(squares[k]) + costs.prices[i + k] + costs.extra;
-            if (cost < cheapest.bound()) cheapest.add({cost, i + k, costs.copied});
+            if (below[k] != 0.0f) add_copies_at(costs, i + k, cheapest);
         }
     }
 }
@@ -146,13 +131,45 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex {
 
-HWY_EXPORT(copy_errors_target);
+HWY_EXPORT(score_copies_target);
 HWY_EXPORT(add_cheapest_target);
 HWY_EXPORT(block_chords_target);
 HWY_EXPORT(chord_sums_target);
 
-void copy_errors(const LineTable& table, int count, const float values[16], bool keeps_slope, float* const errors[3]) {
-    HWY_DYNAMIC_DISPATCH(copy_errors_target)(table, count, values, keeps_slope, errors);
+CopyScores score_copies(const LineTable& table, int count, const float values[16], bool keeps_slope, float* products,
+                        float* least) {
+    CopyScores scores{table, keeps_slope, 0.0f, 0.0f, products, least};
+    for (int k = 0; k < 16; ++k) {
+        scores.sum += values[k];
+        scores.squares += values[k] * values[k];
+    }
+    HWY_DYNAMIC_DISPATCH(score_copies_target)(table, count, values, scores.sum, scores.squares, products, least);
+    return scores;
+}
+
+std::array<float, 3> copy_errors(const CopyScores& scores, int at) {
+    const float v = scores.sum;
+    const float vv = scores.squares;
+    const float wv = scores.products[at];
+    const float w = scores.table.sum[at];
+    const float ww = scores.table.squares[at];
+    const float offset = scores.table.offset[at];
+    const float slope = scores.table.slope[at];
+    const float least = scores.least[at];
+    // Relative to the offset of the half.
+    const float moved = wv - offset * w;
+    const float flat = vv - offset * (2.0f * v - 16.0f * offset);
+    float one = 0.0f;
+    if (scores.keeps_slope) {
+        const float both = wv - w * v * (1.0f / 16.0f);
+        const float own = ww - w * w * (1.0f / 16.0f);
+        one = vv - v * v * (1.0f / 16.0f) - slope * (2.0f * both - slope * own);
+    } else {
+        const float part = std::max(0.0f, moved);
+        one = flat - part * part / std::max(ww, 1e-6f);
+    }
+    const float none = flat - slope * (2.0f * moved - slope * ww);
+    return {least, std::max(least, one), std::max(least, none)};
 }
 
 void add_cheapest(const CopyCosts& costs, int count, CheapCopies& cheapest) {

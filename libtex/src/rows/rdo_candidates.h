@@ -29,7 +29,7 @@ struct RdoAim {
 
 class RdoCandidates {
 public:
-    static constexpr int kMost = 64;
+    static constexpr int kMost = 80;
 
     void start(const RdoAim& aim) {
         aim_ = aim;
@@ -39,7 +39,7 @@ public:
     void keep(int count) { count_ = count; }
     void add_literals(const std::byte* half);
     // Adds the best copies from the half at this distance: at most `most`, and at most kMostCopies.
-    static constexpr int kMostCopies = 2;
+    static constexpr int kMostCopies = 3;
     void add_copies(const std::byte* from, int distance, Copied copied, int most = kMostCopies);
 
     [[nodiscard]] int count() const { return count_; }

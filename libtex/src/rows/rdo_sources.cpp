@@ -14,9 +14,12 @@ RdoSources::RdoSources(Encoding encoding, int window, std::size_t most, float la
     const auto farthest = static_cast<std::size_t>(std::min(reach_, static_cast<int>(most)));
     prices_.resize(farthest + kVectorSlack);
     for (std::size_t k = 0; k < farthest; ++k) prices_[k] = lambda * match_bits(static_cast<int>(16 * (farthest - k)));
-    for (auto& of_target : errors_)
-        for (auto& of_source : of_target)
-            for (std::vector<float>& errors : of_source) errors.resize(farthest + kVectorSlack);
+    for (std::size_t to = 0; to < 2; ++to) {
+        for (std::size_t from = 0; from < 2; ++from) {
+            products_[to][from].resize(farthest + kVectorSlack);
+            least_[to][from].resize(farthest + kVectorSlack);
+        }
+    }
 }
 
 // Scores all halves in the window as sources of both halves of a block.
@@ -27,45 +30,39 @@ void RdoSources::scan(const RdoSearcher& block) {
         const HalfKind kind = halves_[to].kind();
         for (std::size_t from = 0; from < 2; ++from) {
             if (halves_[from].kind() != kind) continue;
-            auto& errors = errors_[to][from];
-            float* const out[3] = {errors[0].data(), errors[1].data(), errors[2].data()};
-            copy_errors(halves_[from].from(static_cast<std::size_t>(first_)), count_, block.values[to],
-                        keeps_slope(kind), out);
+            scores_[to][from] =
+                score_copies(halves_[from].from(static_cast<std::size_t>(first_)), count_, block.values[to],
+                             keeps_slope(kind), products_[to][from].data(), least_[to][from].data());
         }
     }
+}
+
+// Adds the cheapest sources. If `more` is not null, y copies too.
+void RdoSources::add(const CopyScores& scores, const CopyScores* more, float rest, float scale, int from,
+                     std::vector<RdoSource>& sources) const {
+    const float* const prices = prices_.data() + (static_cast<int>(prices_.size()) - kVectorSlack - count_);
+    CopyCosts costs{&scores, more, rest, scale, prices, {}};
+    for (const Copied copied : {Copied::indices, Copied::all_but_first, Copied::all}) {
+        int literals = literals_before(kind(from), copied);
+        if (more != nullptr) literals += literals_before(kind(1), copied);
+        costs.extra[static_cast<int>(copied)] = lambda_ * kUsualLiteral * static_cast<float>(literals);
+    }
+    CheapCopies cheapest;
+    add_cheapest(costs, count_, cheapest);
+    for (const CheapCopy& copy : cheapest) sources.push_back({2 * (first_ + copy.at) + from, Copied{copy.copied}});
 }
 
 void RdoSources::find(const RdoSearcher& block) {
     scan(block);
-    const float* const prices = prices_.data() + (static_cast<int>(prices_.size()) - kVectorSlack - count_);
     for (int to = 0; to < 2; ++to) {
         sources_[to].clear();
         for (int from = 0; from < 2; ++from) {
-            if (kind(from) != kind(to)) continue;
-            CheapCopies cheapest;
-            for (int copied = 0; copied < 3; ++copied) {
-                const auto literals = static_cast<float>(literals_before(kind(to), Copied{copied}));
-                add_cheapest({errors_[to][from][copied].data(), nullptr, block.rests[to], block.scale, prices,
-                              lambda_ * kUsualLiteral * literals, copied},
-                             count_, cheapest);
-            }
-            for (const CheapCopy& copy : cheapest)
-                sources_[to].push_back({2 * (first_ + copy.at) + from, Copied{copy.copied}});
+            if (kind(from) == kind(to))
+                add(scores_[to][from], nullptr, block.rests[to], block.scale, from, sources_[to]);
         }
     }
-    find_pairs(block.scale, prices);
-}
-
-void RdoSources::find_pairs(float scale, const float* prices) {
-    CheapCopies cheapest;
-    for (int copied = 0; copied < 3; ++copied) {
-        const int literals = literals_before(kind(0), Copied{copied}) + literals_before(kind(1), Copied{copied});
-        add_cheapest({errors_[0][0][copied].data(), errors_[1][1][copied].data(), 0.0f, scale, prices,
-                      lambda_ * kUsualLiteral * static_cast<float>(literals), copied},
-                     count_, cheapest);
-    }
     pairs_.clear();
-    for (const CheapCopy& copy : cheapest) pairs_.push_back({2 * (first_ + copy.at), Copied{copy.copied}});
+    add(scores_[0][0], &scores_[1][1], 0.0f, block.scale, 0, pairs_);
 }
 
 }  // namespace tex

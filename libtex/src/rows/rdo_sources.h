@@ -45,14 +45,17 @@ public:
 
 private:
     void scan(const RdoSearcher& block);
-    void find_pairs(float scale, const float* prices);
+    void add(const CopyScores& scores, const CopyScores* more, float rest, float scale, int from,
+             std::vector<RdoSource>& sources) const;
 
     const float lambda_;
     const int reach_;  // blocks
     std::vector<RdoHalves> halves_;
-    std::vector<float> prices_;           // of matches in the window, the farthest first
-    std::vector<float> errors_[2][2][3];  // of x and y; copied from x or y; by what is copied
-    int first_ = 0, count_ = 0;           // the blocks in the window
+    std::vector<float> prices_;  // of matches in the window, the farthest first
+    // Of x and y; copied from x or y.
+    std::vector<float> products_[2][2], least_[2][2];
+    CopyScores scores_[2][2]{};
+    int first_ = 0, count_ = 0;  // the blocks in the window
     std::vector<RdoSource> sources_[2];
     std::vector<RdoSource> pairs_;
 };
