@@ -22,10 +22,10 @@ constexpr double kPictureHeight = 300.0;
 
 // One direction of a panel: marks at multiples of a round step, from the last one below the data to the first one
 // above.
-struct Axis {
+struct CurveAxis {
     double least, greatest, step;
 
-    Axis(double low, double high) {
+    CurveAxis(double low, double high) {
         const double span = std::max(high - low, 1e-3 * std::max(std::abs(high), 1e-3));
         const double power = std::pow(10.0, std::floor(std::log10(span / 4.0)));
         step = power;
@@ -40,7 +40,7 @@ struct Axis {
     [[nodiscard]] double mark(int k) const { return least + step * k; }
 };
 
-Axis axis_of(const std::vector<CurvePoint>& points, double (*value)(const CurvePoint&)) {
+CurveAxis axis_of(const std::vector<CurvePoint>& points, double (*value)(const CurvePoint&)) {
     const auto [low, high] = std::minmax_element(
         points.begin(), points.end(), [&](const CurvePoint& a, const CurvePoint& b) { return value(a) < value(b); });
     return {value(*low), value(*high)};
@@ -48,18 +48,19 @@ Axis axis_of(const std::vector<CurvePoint>& points, double (*value)(const CurveP
 
 double bytes_of(const CurvePoint& point) { return static_cast<double>(point.bytes); }
 
-struct Panel {
+struct CurvePanel {
     const char* words;
     double (*value)(const CurvePoint&);
 };
-constexpr Panel kPanels[] = {
+constexpr CurvePanel kCurvePanels[] = {
     {"mean angle, degrees", [](const CurvePoint& point) { return point.error.mean; }},
     {"99.9th percentile, degrees", [](const CurvePoint& point) { return point.error.p999; }},
     {"largest angle, degrees", [](const CurvePoint& point) { return point.error.max; }},
 };
 
-std::string draw_panel(const Panel& panel, double left, const Axis& bytes, const std::vector<CurvePoint>& points) {
-    const Axis angles = axis_of(points, panel.value);
+std::string draw_panel(const CurvePanel& panel, double left, const CurveAxis& bytes,
+                       const std::vector<CurvePoint>& points) {
+    const CurveAxis angles = axis_of(points, panel.value);
     const double bottom = kPanelTop + kPanelHeight;
     const auto x = [&](double angle) { return left + kPanelWidth * angles.part(angle); };
     const auto y = [&](double size) { return bottom - kPanelHeight * bytes.part(size); };
@@ -93,7 +94,7 @@ std::string draw_panel(const Panel& panel, double left, const Axis& bytes, const
 }  // namespace
 
 std::string plot_curve(const std::string& title, const std::vector<CurvePoint>& points) {
-    const Axis bytes = axis_of(points, bytes_of);
+    const CurveAxis bytes = axis_of(points, bytes_of);
     std::string svg = fmt::format(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
         "height=\"{1}\" role=\"img\">\n<title>{2}</title>\n",
@@ -114,7 +115,7 @@ std::string plot_curve(const std::string& title, const std::vector<CurvePoint>& 
                            kPanelTop + kPanelHeight * (1.0 - bytes.part(bytes.mark(k))) + 4.0, bytes.mark(k));
     }
     double left = kPanelLeft;
-    for (const Panel& panel : kPanels) {
+    for (const CurvePanel& panel : kCurvePanels) {
         svg += draw_panel(panel, left, bytes, points);
         left += kPanelStep;
     }
