@@ -7,10 +7,13 @@
 #include <tex/tex.h>
 
 #include "cli/programs.h"
+#include "cli/text_file.h"
 #include "cli/usage_error.h"
+#include "options/curve.h"
 #include "options/pair.h"
 #include "options/run.h"
 #include "reports/comparison.h"
+#include "reports/curve.h"
 
 namespace {
 
@@ -23,24 +26,30 @@ public:
 
 private:
     [[nodiscard]] Result<cli::ExitCode> compare_files(cli::Console& console);
+    [[nodiscard]] Result<cli::ExitCode> draw_curve(cli::Console& console);
     [[nodiscard]] Result<void> write_page(cli::Console& console, const std::vector<cli::ComparedLevel>& levels,
                                           const Plane<float>& degrees);
 
     cli::PairOptions pair_;
     cli::CompareDocuments documents_;
+    cli::CurveOptions curve_;
     cli::RunOptions running_;
     cli::ComparisonRun run_{command.inputs(), pair_.warnings()};
 };
 
 CompareNormals::CompareNormals(const cli::ProgramRow& row) : Program(row) {
     command.usage("A B");
+    command.usage("A --rdo-means LIST");
     command.input("A B", "two textures or pictures; - is standard input");
     command.finds_things();
     pair_.add(command);
     documents_.add(command);
+    curve_.add(command);
     running_.add(command);
     command.check([this] {
         const std::vector<std::string>& inputs = command.inputs();
+        curve_.check(command);
+        if (curve_.is_asked()) return;
         if (inputs.size() != 2) throw cli::UsageError("two files are compared: A and B");
         if (inputs[0] == "-" && inputs[1] == "-") throw cli::UsageError("standard input can only be read once");
         documents_.check(inputs);
@@ -51,13 +60,15 @@ CompareNormals::CompareNormals(const cli::ProgramRow& row) : Program(row) {
     command.example("compare-normals bricks.exr bricks.dds --report loss.html",
                     "A page with both maps under a light that can be moved.");
     command.example("compare-normals gl.png dx.png --y-b down", "Two conventions of one map.");
+    command.example("compare-normals bricks.exr --rdo-means 0,0.1,0.3,1 --plot curve.svg",
+                    "What --rdo-mean saves in bytes, and costs in degrees.");
 }
 
 cli::ExitCode CompareNormals::work(cli::Console& console) {
     if (running_.quiet) console.be_quiet();
     cli::Host& host = console.host();
     host.begin();
-    auto code = compare_files(console);
+    auto code = curve_.is_asked() ? draw_curve(console) : compare_files(console);
     if (code) {
         if (auto written = documents_.write_depfile(command.inputs()); !written) code = written.error();
     }
@@ -98,6 +109,31 @@ Result<cli::ExitCode> CompareNormals::compare_files(cli::Console& console) {
     }
     if (!documents_.has_page()) return code;
     if (auto written = write_page(console, levels, degrees); !written) return written.error();
+    return code;
+}
+
+Result<cli::ExitCode> CompareNormals::draw_curve(cli::Console& console) {
+    const std::string& name = command.inputs().front();
+    auto map = pair_.read_levels(name, 0, running_.read, console, running_.step(console, 0.0, 0.1, name));
+    if (!map) return map.error();
+    map->levels.resize(1);
+    const std::vector<PackOptions> settings = curve_.settings();
+    const double part = 0.9 / static_cast<double>(settings.size());
+    std::vector<cli::CurvePoint> points;
+    auto code = cli::ExitCode::done;
+    for (const PackOptions& options : settings) {
+        const double from = 0.1 + part * static_cast<double>(points.size());
+        const std::string words = fmt::format("--rdo-mean {}", options.rdo.mean);
+        auto point = cli::measure_point(*map, options, running_.step(console, from, from + part, words));
+        if (!point) return point.error().of(name);
+        points.push_back(*point);
+        code = std::max(code, cli::print_point(console, run_, points, options, running_.json));
+    }
+    if (curve_.plot().empty()) return code;
+    const std::string title =
+        fmt::format("{}, {}, zstd -19", name, name_of(cli::kCurveFormatNames, settings.front().encoding));
+    if (auto written = cli::write_text_file(curve_.plot(), cli::plot_curve(title, points)); !written)
+        return written.error();
     return code;
 }
 

@@ -133,6 +133,41 @@ TEST(Rdo, SmoothMapsStaySmoothUnlessThereIsNoLimit) {
     EXPECT_GT(most_of(180.0f), usual);
 }
 
+// Slopes that change slowly, on which a raking light shows every step.
+NormalMap smooth(Extent extent) {
+    NormalMap map(extent);
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) {
+            const double u = 0.35 * std::sin(0.05 * i + 0.02 * j);
+            const double v = 0.35 * std::cos(0.04 * j - 0.01 * i);
+            const double length = std::sqrt(u * u + v * v + 1.0);
+            map.x.at(i, j) = static_cast<float>(u / length);
+            map.y.at(i, j) = static_cast<float>(v / length);
+            map.z.at(i, j) = static_cast<float>(1.0 / length);
+        }
+    }
+    return map;
+}
+
+double p999_of(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return values[values.size() * 999 / 1000];
+}
+
+// 0.999 of the texels stay within the promise for single texels, which for a smooth map is a fraction of a degree.
+TEST(Rdo, SmoothSlopesGetNoVisibleSteps) {
+    const MipChain chain = packing::chain_of(smooth({96, 64}));
+    PackOptions options{Encoding::bc5};
+    const std::vector<double> plain = angles_of(chain.levels[0], packing::pack_bytes(chain, options), options);
+    for (const double growth : {0.1, 0.3}) {
+        options.rdo.mean = static_cast<float>(growth * mean_of(plain));
+        const std::vector<double> angles = angles_of(chain.levels[0], packing::pack_bytes(chain, options), options);
+        EXPECT_LE(p999_of(angles), kRdoMaxOfMean * (1.0 + growth) * mean_of(plain) + 1e-3);
+        EXPECT_LE(p999_of(angles), 1.75 * p999_of(plain)) << growth << " " << p999_of(angles);
+        EXPECT_LE(p999_of(angles), 0.75) << growth;
+    }
+}
+
 TEST(Rdo, FilesAreSmallerAfterZstd) {
     for (const Encoding encoding : kEncodings) {
         const MipChain chain = packing::chain_of(packing::bumpy({64, 64}, 5));

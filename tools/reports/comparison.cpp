@@ -23,7 +23,7 @@ namespace {
 Json json_of(const std::vector<std::string>& inputs) {
     Json line;
     line["a"] = inputs[0];
-    line["b"] = inputs[1];
+    if (inputs.size() > 1) line["b"] = inputs[1];
     return line;
 }
 

@@ -30,13 +30,22 @@ float from_unorm(float value) { return 2.0f * value - 1.0f; }
 int green_code(const std::byte* color) { return (byte_at(color, 0) >> 5 | byte_at(color, 1) << 3) & 63; }
 float green_value(int code) { return from_unorm(static_cast<float>(widen_green(code)) / 255.0f); }
 
+HalfLine bc4_line(int e0, int e1, bool is_signed) {
+    const float code = is_signed ? 1.0f / 127.0f : 2.0f / 255.0f;
+    return {static_cast<float>(e1) * code - (is_signed ? 0.0f : 1.0f), static_cast<float>(e0 - e1) * code};
+}
+
+HalfLine eac_line(int base, int multiplier, bool is_signed) {
+    const float code = is_signed ? 1.0f / 1023.0f : 2.0f / 2047.0f;
+    return {is_signed ? static_cast<float>(8 * base) * code : static_cast<float>(8 * base + 4) * code - 1.0f,
+            static_cast<float>(multiplier == 0 ? 1 : 8 * multiplier) * code};
+}
+
 HalfShape bc4_shape(const std::byte* half, bool is_signed) {
     const int e0 = is_signed ? signed_at(half, 0) : byte_at(half, 0);
     const int e1 = is_signed ? signed_at(half, 1) : byte_at(half, 1);
-    const float code = is_signed ? 1.0f / 127.0f : 2.0f / 255.0f;
     HalfShape shape;
-    shape.offset = is_signed ? static_cast<float>(e1) * code : static_cast<float>(e1) * code - 1.0f;
-    shape.slope = static_cast<float>(e0 - e1) * code;
+    shape.line = bc4_line(e0, e1, is_signed);
     shape.is_line = true;
     constexpr float kWeights[8] = {1.0f,        0.0f,        6.0f / 7.0f, 5.0f / 7.0f,
                                    4.0f / 7.0f, 3.0f / 7.0f, 2.0f / 7.0f, 1.0f / 7.0f};
@@ -52,8 +61,8 @@ HalfShape bc4_shape(const std::byte* half, bool is_signed) {
 HalfShape green_shape(const std::byte* half) {
     constexpr float kWeights[4] = {1.0f, 0.0f, 2.0f / 3.0f, 1.0f / 3.0f};
     HalfShape shape;
-    shape.offset = green_value(green_code(half + 2));
-    shape.slope = green_value(green_code(half)) - shape.offset;
+    shape.line.offset = green_value(green_code(half + 2));
+    shape.line.slope = green_value(green_code(half)) - shape.line.offset;
     shape.is_line = true;
     for (int k = 0; k < 16; ++k) shape.weights[k] = kWeights[byte_at(half, 4 + k / 4) >> (2 * (k % 4)) & 3];
     return shape;
@@ -62,11 +71,8 @@ HalfShape green_shape(const std::byte* half) {
 HalfShape eac_shape(const std::byte* half, bool is_signed) {
     const int multiplier = byte_at(half, 1) >> 4;
     const int table = byte_at(half, 1) & 15;
-    const float code = is_signed ? 1.0f / 1023.0f : 2.0f / 2047.0f;
     HalfShape shape;
-    shape.offset = is_signed ? static_cast<float>(8 * signed_at(half, 0)) * code
-                             : static_cast<float>(8 * byte_at(half, 0) + 4) * code - 1.0f;
-    shape.slope = static_cast<float>(multiplier == 0 ? 1 : 8 * multiplier) * code;
+    shape.line = eac_line(is_signed ? signed_at(half, 0) : byte_at(half, 0), multiplier, is_signed);
     shape.is_line = true;
     std::uint64_t bits = 0;
     for (int k = 2; k < 8; ++k) bits = bits << 8 | std::to_integer<std::uint64_t>(half[k]);
@@ -84,66 +90,72 @@ int nearest_code(float value, float low, float high) {
 // Collects variants of a source half.
 struct Variants {
     const std::byte* source;
-    std::byte (*out)[kHalfBytes];
+    HalfVariant* out;
     int count = 0;
 
-    std::byte* add() {
-        std::memcpy(out[count], source, kHalfBytes);
-        return out[count++];
+    std::byte* add(HalfLine line) {
+        std::memcpy(out[count].half, source, kHalfBytes);
+        out[count].line = line;
+        return out[count++].half;
     }
 };
 
-void bc4_variants(Variants& to, Copied copied, bool is_signed, float offset, float slope) {
+void bc4_variants(Variants& to, Copied copied, bool is_signed, HalfLine line) {
     const float scale = is_signed ? 127.0f : 127.5f;
     const float zero = is_signed ? 0.0f : 127.5f;
-    const float low = is_signed ? -127.0f : 0.0f;
-    const float high = is_signed ? 127.0f : 255.0f;
+    const int low = is_signed ? -127 : 0;
+    const int high = is_signed ? 127 : 255;
+    const auto code = [&](float value) {
+        return nearest_code(value * scale + zero, static_cast<float>(low), static_cast<float>(high));
+    };
+    const bool is_free = copied == Copied::indices;
     const int kept = is_signed ? signed_at(to.source, 1) : byte_at(to.source, 1);
-    const int e0 = nearest_code((offset + slope) * scale + zero, low, high);
-    const int e1 = copied == Copied::indices ? nearest_code(offset * scale + zero, low, high) : kept;
-    const int reach = copied == Copied::indices ? 1 : 0;
-    for (int first = std::max(e0 - 1, static_cast<int>(low)); first <= std::min(e0 + 1, static_cast<int>(high));
-         ++first) {
-        for (int second = std::max(e1 - reach, static_cast<int>(low)); second <= e1 + reach && second < first;
-             ++second) {
-            std::byte* half = to.add();
+    const int e0 = code(line.offset + line.slope);
+    const int e1 = is_free ? code(line.offset) : kept;
+    const int reach = is_free ? 1 : 0;
+    for (int first = std::max(e0 - 1, low); first <= std::min(e0 + 1, high); ++first) {
+        for (int second = std::max(e1 - reach, low); second <= e1 + reach && second < first; ++second) {
+            std::byte* half = to.add(bc4_line(first, second, is_signed));
             half[0] = static_cast<std::byte>(first);
-            if (copied == Copied::indices) half[1] = static_cast<std::byte>(second);
+            if (is_free) half[1] = static_cast<std::byte>(second);
         }
     }
 }
 
-void green_variants(Variants& to, Copied copied, float offset, float slope) {
+void green_variants(Variants& to, Copied copied, HalfLine line) {
     const auto code = [](float value) { return nearest_code((value + 1.0f) * 31.5f, 0.0f, 63.0f); };
     const auto put = [](std::byte* color, int green) {
         const int word = 31 << 11 | green << 5 | 31;
         color[0] = static_cast<std::byte>(word);
         color[1] = static_cast<std::byte>(word >> 8);
     };
-    const int c0 = code(offset + slope);
-    const int c1 = copied == Copied::indices ? code(offset) : green_code(to.source + 2);
-    const int reach = copied == Copied::indices ? 1 : 0;
+    const bool is_free = copied == Copied::indices;
+    const int c0 = code(line.offset + line.slope);
+    const int c1 = is_free ? code(line.offset) : green_code(to.source + 2);
+    const int reach = is_free ? 1 : 0;
     for (int first = std::max(c0 - 1, 0); first <= std::min(c0 + 1, 63); ++first) {
         for (int second = std::max(c1 - reach, 0); second <= c1 + reach && second <= first; ++second) {
-            std::byte* half = to.add();
+            const float offset = green_value(second);
+            std::byte* half = to.add({offset, green_value(first) - offset});
             put(half, first);
-            if (copied == Copied::indices) put(half + 2, second);
+            if (is_free) put(half + 2, second);
         }
     }
 }
 
-void eac_variants(Variants& to, Copied copied, bool is_signed, float offset, float slope) {
+void eac_variants(Variants& to, Copied copied, bool is_signed, HalfLine line) {
     const float scale = is_signed ? 1023.0f / 8.0f : 2047.0f / 16.0f;
     const int low = is_signed ? -127 : 0;
     const int high = is_signed ? 127 : 255;
-    const float middle = is_signed ? offset * scale : (offset + 1.0f) * scale - 0.5f;
+    const float middle = is_signed ? line.offset * scale : (line.offset + 1.0f) * scale - 0.5f;
     const int base = nearest_code(middle, static_cast<float>(low), static_cast<float>(high));
     const int kept = byte_at(to.source, 1);
-    const int multiplier = copied == Copied::indices ? nearest_code(slope * scale, 0.0f, 15.0f) : kept >> 4;
-    const int reach = copied == Copied::indices ? 1 : 0;
+    const bool is_free = copied == Copied::indices;
+    const int multiplier = is_free ? nearest_code(line.slope * scale, 0.0f, 15.0f) : kept >> 4;
+    const int reach = is_free ? 1 : 0;
     for (int first = std::max(base - 1, low); first <= std::min(base + 1, high); ++first) {
         for (int second = std::max(multiplier - reach, 0); second <= std::min(multiplier + reach, 15); ++second) {
-            std::byte* half = to.add();
+            std::byte* half = to.add(eac_line(first, second, is_signed));
             half[0] = static_cast<std::byte>(first);
             half[1] = static_cast<std::byte>(second << 4 | (kept & 15));
         }
@@ -189,37 +201,43 @@ int literals_before(HalfKind kind, Copied copied) {
     return copied == Copied::indices ? all : copied == Copied::all_but_first ? all / 2 : 0;
 }
 
-HalfLine fit_line(HalfKind kind, const HalfShape& shape, Copied copied, const float values[16]) {
-    float w = 0.0f;
-    float ww = 0.0f;
-    float v = 0.0f;
-    float wv = 0.0f;
+HalfFit::HalfFit(const HalfShape& shape, const float values[16]) : own_(shape.line) {
     for (int k = 0; k < 16; ++k) {
-        w += shape.weights[k];
-        ww += shape.weights[k] * shape.weights[k];
-        v += values[k];
-        wv += shape.weights[k] * values[k];
+        w_ += shape.weights[k];
+        ww_ += shape.weights[k] * shape.weights[k];
+        v_ += values[k];
+        vv_ += values[k] * values[k];
+        wv_ += shape.weights[k] * values[k];
     }
+}
+
+HalfLine HalfFit::line(HalfKind kind, Copied copied) const {
     constexpr float kLeast = 1e-3f;  // weights that differ less are all equal
     if (copied == Copied::all_but_first && !keeps_slope(kind))
-        return {shape.offset, ww > kLeast ? std::max(0.0f, (wv - shape.offset * w) / ww) : 0.0f};
-    float slope = shape.slope;
+        return {own_.offset, ww_ > kLeast ? std::max(0.0f, (wv_ - own_.offset * w_) / ww_) : 0.0f};
+    float slope = own_.slope;
     if (copied == Copied::indices) {
-        const float variance = 16.0f * ww - w * w;
-        slope = variance > kLeast ? std::max(0.0f, (16.0f * wv - w * v) / variance) : 0.0f;
+        const float variance = 16.0f * ww_ - w_ * w_;
+        slope = variance > kLeast ? std::max(0.0f, (16.0f * wv_ - w_ * v_) / variance) : 0.0f;
     }
-    return {(v - slope * w) / 16.0f, slope};
+    return {(v_ - slope * w_) / 16.0f, slope};
+}
+
+float HalfFit::squared_error(HalfLine line) const {
+    const float flat = vv_ - line.offset * (2.0f * v_ - 16.0f * line.offset);
+    const float sloped = line.slope * (2.0f * (wv_ - line.offset * w_) - line.slope * ww_);
+    return std::max(0.0f, flat - sloped);
 }
 
 int half_variants(HalfKind kind, const std::byte* source, Copied copied, HalfLine line,
-                  std::byte variants[kMostVariants][kHalfBytes]) {
+                  HalfVariant variants[kMostVariants]) {
     Variants to{source, variants};
     switch (kind) {
-        case HalfKind::bc4_unorm: bc4_variants(to, copied, false, line.offset, line.slope); break;
-        case HalfKind::bc4_snorm: bc4_variants(to, copied, true, line.offset, line.slope); break;
-        case HalfKind::green: green_variants(to, copied, line.offset, line.slope); break;
-        case HalfKind::eac_unorm: eac_variants(to, copied, false, line.offset, line.slope); break;
-        case HalfKind::eac_snorm: eac_variants(to, copied, true, line.offset, line.slope); break;
+        case HalfKind::bc4_unorm: bc4_variants(to, copied, false, line); break;
+        case HalfKind::bc4_snorm: bc4_variants(to, copied, true, line); break;
+        case HalfKind::green: green_variants(to, copied, line); break;
+        case HalfKind::eac_unorm: eac_variants(to, copied, false, line); break;
+        case HalfKind::eac_snorm: eac_variants(to, copied, true, line); break;
     }
     return to.count;
 }

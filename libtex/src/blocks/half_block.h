@@ -29,10 +29,13 @@ HalfKind half_kind(Encoding encoding, int half);
 // Decodes a half into components in [-1, 1], as unpack() does, and in the same order.
 void decode_half(HalfKind kind, const std::byte* half, float values[16]);
 
+struct HalfLine {
+    float offset, slope;  // in components
+};
 struct HalfShape {
     float weights[16];
-    float offset, slope;  // in components
-    bool is_line;         // false for the palette of BC4 with 6 values, which can only be copied as a whole
+    HalfLine line;
+    bool is_line;  // false for the palette of BC4 with 6 values, which can only be copied as a whole
 };
 HalfShape half_shape(HalfKind kind, const std::byte* half);
 
@@ -46,16 +49,31 @@ int literals_before(HalfKind kind, Copied copied);
 // free.
 constexpr bool keeps_slope(HalfKind kind) { return kind == HalfKind::eac_unorm || kind == HalfKind::eac_snorm; }
 
-struct HalfLine {
-    float offset, slope;
+// What the squared error of any line with the weights of a shape follows from.
+class HalfFit {
+public:
+    HalfFit(const HalfShape& shape, const float values[16]);
+    // The line with the least sum of squares, if the weights and what follows from copying are given. The slope is not
+    // negative, unless it is copied.
+    [[nodiscard]] HalfLine line(HalfKind kind, Copied copied) const;
+    // The sum of the squared differences between the values and a line, at least 0. Decoders limit values to [-1, 1],
+    // which is ignored.
+    [[nodiscard]] float squared_error(HalfLine line) const;
+
+private:
+    const HalfLine own_;
+    float w_ = 0.0f, ww_ = 0.0f, v_ = 0.0f, vv_ = 0.0f, wv_ = 0.0f;  // sums of weights, values and products
 };
-// The line with the least sum of squares to 16 values, if the weights of `shape` and what follows from copying are
-// given. The slope is not negative, unless it is copied.
-HalfLine fit_line(HalfKind kind, const HalfShape& shape, Copied copied, const float values[16]);
+
+// A half with the indices of another one.
+struct HalfVariant {
+    std::byte half[kHalfBytes];
+    HalfLine line;
+};
 
 // The halves that copy from `source` and are close to a line: at most kMostVariants. Returns their number.
 inline constexpr int kMostVariants = 9;
 int half_variants(HalfKind kind, const std::byte* source, Copied copied, HalfLine line,
-                  std::byte variants[kMostVariants][kHalfBytes]);
+                  HalfVariant variants[kMostVariants]);
 
 }  // namespace tex

@@ -2,6 +2,9 @@
 
 #include "kernels/copy_search.h"
 
+#include <algorithm>
+#include <cmath>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/copy_search.cpp"
 #include <hwy/foreach_target.h>
@@ -16,80 +19,69 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::CappedTag<float, 16>;
 using Vector = hn::Vec<Floats>;
 
-// The sums over the 16 values that do not depend on the half.
-struct ValueSums {
-    float sum = 0.0f, squares = 0.0f;
-    explicit ValueSums(const float values[16]) {
-        for (int k = 0; k < 16; ++k) {
-            sum += values[k];
-            squares += values[k] * values[k];
-        }
-    }
-};
-
 // All errors are quadratic forms of four sums: those of the values, of the weights, of their squares and of their
 // products. Only the products need a loop over texels.
-void copy_errors_target(const LineTable& table, int count, const float values[16], bool keeps_slope,
-                        float* const errors[3]) {
+void score_copies_target(const LineTable& table, int count, const float values[16], float sum, float squares,
+                         float* products, float* least) {
     const Floats d;
-    const ValueSums of(values);
     const auto zero = hn::Zero(d);
     const auto sixteenth = hn::Set(d, 1.0f / 16.0f);
-    const auto two = hn::Set(d, 2.0f);
-    const auto v = hn::Set(d, of.sum);
-    const auto vv = hn::Set(d, of.squares);
-    const auto spread = hn::Sub(vv, hn::Mul(hn::Mul(v, v), sixteenth));
+    const auto v = hn::Set(d, sum);
+    const auto spread = hn::Set(d, squares - sum * sum * (1.0f / 16.0f));
     for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
-        auto wv = zero;
-        for (int k = 0; k < 16; ++k)
-            wv = hn::Add(wv, hn::Mul(hn::LoadU(d, table.weights[k] + i), hn::Set(d, values[k])));
+        auto even = zero;
+        auto odd = zero;
+        for (int k = 0; k < 16; k += 2) {
+            even = hn::Add(even, hn::Mul(hn::LoadU(d, table.weights[k] + i), hn::Set(d, values[k])));
+            odd = hn::Add(odd, hn::Mul(hn::LoadU(d, table.weights[k + 1] + i), hn::Set(d, values[k + 1])));
+        }
+        const auto wv = hn::Add(even, odd);
+        hn::StoreU(wv, d, products + i);
         const auto w = hn::LoadU(d, table.sum + i);
-        const auto ww = hn::LoadU(d, table.squares + i);
-        const auto offset = hn::LoadU(d, table.offset + i);
-        const auto slope = hn::LoadU(d, table.slope + i);
-
         const auto covariance = hn::Max(zero, hn::Sub(hn::Mul(hn::Set(d, 16.0f), wv), hn::Mul(w, v)));
         const auto explained =
             hn::Mul(hn::Mul(hn::Mul(covariance, covariance), hn::LoadU(d, table.inverse + i)), sixteenth);
-        hn::StoreU(hn::Max(zero, hn::Sub(spread, explained)), d, errors[0] + i);
-
-        // Relative to the offset of the half.
-        const auto moved = hn::Sub(wv, hn::Mul(offset, w));
-        const auto offset_twice = hn::Mul(two, offset);
-        const auto base =
-            hn::Add(hn::Sub(vv, hn::Mul(offset_twice, v)), hn::Mul(hn::Set(d, 16.0f), hn::Mul(offset, offset)));
-        if (keeps_slope) {
-            const auto both = hn::Sub(wv, hn::Mul(hn::Mul(w, v), sixteenth));
-            const auto own = hn::Sub(ww, hn::Mul(hn::Mul(w, w), sixteenth));
-            const auto gain = hn::Mul(slope, hn::Sub(hn::Mul(two, both), hn::Mul(slope, own)));
-            hn::StoreU(hn::Max(zero, hn::Sub(spread, gain)), d, errors[1] + i);
-        } else {
-            const auto least = hn::Set(d, 1e-6f);
-            const auto part = hn::Max(zero, moved);
-            const auto gain = hn::Div(hn::Mul(part, part), hn::Max(ww, least));
-            hn::StoreU(hn::Max(zero, hn::Sub(base, gain)), d, errors[1] + i);
-        }
-        const auto gain = hn::Mul(slope, hn::Sub(hn::Mul(two, moved), hn::Mul(slope, ww)));
-        hn::StoreU(hn::Max(zero, hn::Sub(base, gain)), d, errors[2] + i);
+        hn::StoreU(hn::Max(zero, hn::Sub(spread, explained)), d, least + i);
     }
 }
 
+// Adds one half with its three errors.
+void add_copies_at(const CopyCosts& costs, int at, CheapCopies& cheapest) {
+    std::array<float, 3> errors = copy_errors(*costs.scores, at);
+    if (costs.more != nullptr) {
+        const std::array<float, 3> more = copy_errors(*costs.more, at);
+        for (std::size_t q = 0; q < 3; ++q) errors[q] += more[q];
+    }
+    for (int q = 2; q >= 0; --q) {
+        const float length = costs.scale * std::sqrt(errors[static_cast<std::size_t>(q)] + costs.rest);
+        const float cost = length + costs.prices[at] + costs.extra[q];
+        if (cost < cheapest.bound()) cheapest.add({cost, at, q});
+    }
+}
+
+// From the last half on, because near ones cost least: so the least error of most of the others, at the least price,
+// is above the bound.
 void add_cheapest_target(const CopyCosts& costs, int count, CheapCopies& cheapest) {
     const Floats d;
     const int lanes = static_cast<int>(hn::Lanes(d));
-    const auto scale = hn::Set(d, costs.scale);
+    const auto zero = hn::Zero(d);
     const auto rest = hn::Set(d, costs.rest);
-    const auto extra = hn::Set(d, costs.extra);
-    HWY_ALIGN float found[16];
-    for (int i = 0; i < count; i += lanes) {
-        auto square = hn::LoadU(d, costs.errors + i);
-        if (costs.more != nullptr) square = hn::Add(square, hn::LoadU(d, costs.more + i));
-        const auto length = hn::Mul(scale, hn::Sqrt(hn::Add(square, rest)));
-        const auto cost = hn::Add(hn::Add(length, hn::LoadU(d, costs.prices + i)), extra);
-        if (hn::AllFalse(d, hn::Lt(cost, hn::Set(d, cheapest.bound())))) continue;
-        hn::Store(cost, d, found);
-        for (int k = 0; k < lanes && i + k < count; ++k) {
-            if (found[k] < cheapest.bound()) cheapest.add({found[k], i + k, costs.copied});
+    // Rounding must not dismiss what is below the bound, so both sides leave room for it.
+    const auto square_scale = hn::Set(d, 0.9999f * costs.scale * costs.scale);
+    const float* const least = costs.scores->least;
+    const float* const more = costs.more == nullptr ? nullptr : costs.more->least;
+    HWY_ALIGN float below[16];
+    for (int i = (count - 1) / lanes * lanes; i >= 0; i -= lanes) {
+        auto square = hn::LoadU(d, least + i);
+        if (more != nullptr) square = hn::Add(square, hn::LoadU(d, more + i));
+        square = hn::Mul(square_scale, hn::Add(square, rest));
+        const auto bound = hn::Set(d, 1.00001f * cheapest.bound() - costs.extra[2]);
+        const auto room = hn::Max(zero, hn::Sub(bound, hn::LoadU(d, costs.prices + i)));
+        const auto is_below = hn::Lt(square, hn::Mul(room, room));
+        if (hn::AllFalse(d, is_below)) continue;
+        hn::Store(hn::IfThenElseZero(is_below, hn::Set(d, 1.0f)), d, below);
+        for (int k = std::min(lanes, count - i) - 1; k >= 0; --k) {
+            if (below[k] != 0.0f) add_copies_at(costs, i + k, cheapest);
         }
     }
 }
@@ -110,6 +102,28 @@ void block_chords_target(const float* const normals[3], const float x[16], const
     }
 }
 
+void chord_sums_target(const ChordTexels& texels, const float* values, int stride, int count, float* sums) {
+    const Floats d;
+    const auto one = hn::Set(d, 1.0f);
+    for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
+        auto sum = hn::Zero(d);
+        auto allowed = hn::Eq(one, one);
+        for (int k = 0; k < 16; ++k) {
+            const auto value = hn::LoadU(d, values + k * stride + i);
+            const auto decoded = hn::Set(d, texels.decoded[k]);
+            const auto flat = hn::Min(one, hn::Add(hn::Mul(value, value), hn::Mul(decoded, decoded)));
+            const auto dv = hn::Sub(hn::Set(d, texels.own[k]), value);
+            const auto dw = hn::Sub(hn::Set(d, texels.other[k]), decoded);
+            const auto dz = hn::Sub(hn::Set(d, texels.z[k]), hn::Sqrt(hn::Sub(one, flat)));
+            const auto square = hn::Add(hn::Add(hn::Mul(dv, dv), hn::Mul(dw, dw)), hn::Mul(dz, dz));
+            const auto chord = hn::Sqrt(square);
+            allowed = hn::And(allowed, hn::Le(chord, hn::Set(d, texels.most[k])));
+            sum = hn::Add(sum, hn::Mul(chord, hn::Set(d, texels.inside[k])));
+        }
+        hn::StoreU(hn::IfThenElse(allowed, sum, hn::Set(d, kTooLong)), d, sums + i);
+    }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace tex
 HWY_AFTER_NAMESPACE();
@@ -117,12 +131,45 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex {
 
-HWY_EXPORT(copy_errors_target);
+HWY_EXPORT(score_copies_target);
 HWY_EXPORT(add_cheapest_target);
 HWY_EXPORT(block_chords_target);
+HWY_EXPORT(chord_sums_target);
 
-void copy_errors(const LineTable& table, int count, const float values[16], bool keeps_slope, float* const errors[3]) {
-    HWY_DYNAMIC_DISPATCH(copy_errors_target)(table, count, values, keeps_slope, errors);
+CopyScores score_copies(const LineTable& table, int count, const float values[16], bool keeps_slope, float* products,
+                        float* least) {
+    CopyScores scores{table, keeps_slope, 0.0f, 0.0f, products, least};
+    for (int k = 0; k < 16; ++k) {
+        scores.sum += values[k];
+        scores.squares += values[k] * values[k];
+    }
+    HWY_DYNAMIC_DISPATCH(score_copies_target)(table, count, values, scores.sum, scores.squares, products, least);
+    return scores;
+}
+
+std::array<float, 3> copy_errors(const CopyScores& scores, int at) {
+    const float v = scores.sum;
+    const float vv = scores.squares;
+    const float wv = scores.products[at];
+    const float w = scores.table.sum[at];
+    const float ww = scores.table.squares[at];
+    const float offset = scores.table.offset[at];
+    const float slope = scores.table.slope[at];
+    const float least = scores.least[at];
+    // Relative to the offset of the half.
+    const float moved = wv - offset * w;
+    const float flat = vv - offset * (2.0f * v - 16.0f * offset);
+    float one = 0.0f;
+    if (scores.keeps_slope) {
+        const float both = wv - w * v * (1.0f / 16.0f);
+        const float own = ww - w * w * (1.0f / 16.0f);
+        one = vv - v * v * (1.0f / 16.0f) - slope * (2.0f * both - slope * own);
+    } else {
+        const float part = std::max(0.0f, moved);
+        one = flat - part * part / std::max(ww, 1e-6f);
+    }
+    const float none = flat - slope * (2.0f * moved - slope * ww);
+    return {least, std::max(least, one), std::max(least, none)};
 }
 
 void add_cheapest(const CopyCosts& costs, int count, CheapCopies& cheapest) {
@@ -131,6 +178,10 @@ void add_cheapest(const CopyCosts& costs, int count, CheapCopies& cheapest) {
 
 void block_chords(const float* const normals[3], const float x[16], const float y[16], float chords[16]) {
     HWY_DYNAMIC_DISPATCH(block_chords_target)(normals, x, y, chords);
+}
+
+void chord_sums(const ChordTexels& texels, const float* values, int stride, int count, float* sums) {
+    HWY_DYNAMIC_DISPATCH(chord_sums_target)(texels, values, stride, count, sums);
 }
 
 }  // namespace tex

@@ -19,13 +19,24 @@ struct LineTable {
     const float* slope;
 };
 
-// For halves 0 to count - 1 of the table: the least sums of squared differences between the 16 values and the values of
-// a half with the same weights,
-//     errors[0]    whose offset and slope are free
-//     errors[1]    whose slope is that of the table, if keeps_slope is set; otherwise, whose offset is
-//     errors[2]    whose offset and slope are those of the table
-// Rounding to codes is ignored. The first three arrays have room for a whole vector past the last value.
-void copy_errors(const LineTable& table, int count, const float values[16], bool keeps_slope, float* const errors[3]);
+// What copies of halves of a table for 16 values are scored by.
+struct CopyScores {
+    LineTable table;
+    bool keeps_slope;       // see copy_errors()
+    float sum, squares;     // of the values, and of their squares
+    const float* products;  // of weights and values, summed, for each half
+    const float* least;     // the least sum of squared differences, with offset and slope free, for each half
+};
+// Computes the scores of halves 0 to count - 1. Both arrays have room for a whole vector past the last value.
+CopyScores score_copies(const LineTable& table, int count, const float values[16], bool keeps_slope, float* products,
+                        float* least);
+
+// The least sums of squared differences between the 16 values and the values of a half with the weights of half `at`,
+//     [0]    whose offset and slope are free
+//     [1]    whose slope is that of the table, if keeps_slope is set; otherwise, whose offset is
+//     [2]    whose offset and slope are those of the table
+// The later two are never less than the first. Rounding to codes is ignored.
+std::array<float, 3> copy_errors(const CopyScores& scores, int at);
 
 // What may be copied, in the order of its cost.
 struct CheapCopy {
@@ -55,22 +66,36 @@ private:
     int count_ = 0;
 };
 
-// Adds those of the halves 0 to count - 1 that are among the cheapest. The cost of half k is
-//     scale * sqrt(errors[k] + more[k] + rest) + prices[k] + extra
-// `more` may be null, which counts as zeros.
+// Adds those of the halves 0 to count - 1 that are among the cheapest. The cost of half k with errors q is
+//     scale * sqrt(copy_errors(*scores, k)[q] + copy_errors(*more, k)[q] + rest) + prices[k] + extra[q]
+// `more` may be null, which counts as zeros. Of equal costs, the later half comes first.
 struct CopyCosts {
-    const float* errors;
-    const float* more;
+    const CopyScores* scores;
+    const CopyScores* more;
     float rest;
     float scale;
     const float* prices;
-    float extra;
-    int copied;
+    float extra[3];  // the last one is the least
 };
 void add_cheapest(const CopyCosts& costs, int count, CheapCopies& cheapest);
 
 // The lengths of the chords |n - m| between 16 normals and the decoded components x and y, with z = sqrt(1 - min(1, x^2
 // + y^2)).
 void block_chords(const float* const normals[3], const float x[16], const float y[16], float chords[16]);
+
+// For many candidates for one component of a block's texels: the sum of the chords that block_chords() computes, each
+// times `inside`, in the order of the texels; or kTooLong if a chord is longer than `most`.
+inline constexpr float kTooLong = 1e30f;
+struct ChordTexels {
+    const float* own;    // the component that candidates replace, of the normals
+    const float* other;  // the other one
+    const float* z;
+    const float* decoded;  // the other component of all candidates
+    const float* most;
+    const float* inside;
+};
+// `values` has the candidates of texel k from k * stride on. The rows of `values`, and `sums`, have room for a whole
+// vector past the last candidate.
+void chord_sums(const ChordTexels& texels, const float* values, int stride, int count, float* sums);
 
 }  // namespace tex

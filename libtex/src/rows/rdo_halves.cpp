@@ -23,8 +23,8 @@ void RdoHalves::add(const std::byte* half) {
     sum_[count_] = sum;
     squares_[count_] = squares;
     inverse_[count_] = variance > 1e-3f ? 1.0f / variance : 0.0f;
-    offset_[count_] = shape.offset;
-    slope_[count_] = shape.slope;
+    offset_[count_] = shape.line.offset;
+    slope_[count_] = shape.line.slope;
     if (!shape.is_line) {
         // The errors of what is not a line must not look small.
         inverse_[count_] = -1e6f;

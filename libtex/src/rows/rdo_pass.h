@@ -9,10 +9,9 @@
 //                 one endpoint; all 8 bytes; the same at the same distance for x and y, which a coder writes as one
 //                 match; and at the last three distances, which a coder writes in a few bits
 //
-// and takes the one with the least D + lambda R. All earlier halves in the window are scored by the squared error of a
-// fit, in closed form (kernels/copy_search.h); the best few are decoded and measured as angles.
-//
-// R is estimated by rdo_rate.h.
+// and takes the one with the least D + lambda R. rdo_sources.h picks the halves that are worth a copy, by estimates;
+// rdo_candidates.h fits and decodes the copies, which are then measured as angles, all at once. R is estimated by
+// rdo_rate.h.
 
 #pragma once
 
