@@ -21,7 +21,7 @@ test_packages=(
 # shellcheck disable=SC2034
 gate_packages=(
     clang-14 clang-format-14 clang-tidy-14 ccache libbenchmark-dev chromium g++-aarch64-linux-gnu qemu-user-static
-    slurmctld slurmd slurm-client munge parallel
+    slurmctld slurmd slurm-client munge parallel lintian
 )
 
 as_root() {

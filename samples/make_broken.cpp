@@ -132,6 +132,13 @@ void Maker::files() {
     write("N111-srgb-format.dds", bytes);
     write("N112-wrong-declared-y.ktx2", encoded(packed(part(16, 16), Encoding::rgba8, YAxis::down), Container::ktx2));
     dds("N113-unfit-for-engine", packed(part(128, 128), Encoding::bc5));
+    // The head of a file as toktx writes it without --normal_mode. Its texels are never read.
+    bytes = encoded(packed(part(16, 16), Encoding::bc5), Container::ktx2);
+    const auto descriptor = std::to_integer<std::size_t>(bytes[48]);
+    bytes[12] = bytes[13] = std::byte{0};     // VK_FORMAT_UNDEFINED
+    bytes[descriptor + 12] = std::byte{166};  // KHR_DF_MODEL_UASTC
+    bytes[descriptor + 31] = std::byte{0};    // KHR_DF_CHANNEL_UASTC_RGB
+    write("N114-uastc-without-alpha.ktx2", bytes);
 }
 
 void Maker::values() {
@@ -207,6 +214,9 @@ void Maker::damages() {
     png("N310-no-surface", codes_of(changed(base, [&](int, int, double& p, double& q) {
             for (double* slope : {&p, &q}) *slope = ((state = state * 1664525u + 1013904223u) >> 16) / 65536.0 - 0.5;
         })));
+    Texture eac = packed(part(128, 128), Encoding::eac_rg11_snorm);
+    eac.format = Format::eac_rg11_unorm;
+    write("N311-wrong-sign.ktx2", encoded(eac, Container::ktx2));
 }
 
 void Maker::conventions() {

@@ -14,7 +14,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 together=64
 out=$PWD/build/tidy
-database=build/fuzz/compile_commands.json
+database=$out/compile_commands.json
 
 # The preset's compile flags for a source, quoted for a shell.
 flags() { sed -n "s|.*\"command\": \"[^ ]* \(.*\) -o [^ ]* -c $PWD/$1\",\?\$|\1|p" "$database" | sed 's|\\\(.\)|\1|g'; }
@@ -57,7 +57,8 @@ if [ "${#sources[@]}" -eq 0 ]; then
 fi
 rm -rf "$out"
 mkdir -p "$out"
-cmake --preset fuzz -DTEX_PYTHON=ON -DTEX_OIIO=ON >"$out/configure.log" || { cat "$out/configure.log"; exit 1; }
+cmake --preset fuzz -B "$out" -DCMAKE_UNITY_BUILD=OFF -DTEX_PYTHON=ON -DTEX_OIIO=ON >"$out/configure.log" ||
+    { cat "$out/configure.log"; exit 1; }
 declare -A batches=()  # the sources, by their compile flags
 for source in "${sources[@]}"; do
     key=$(flags "$source")

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include "meshes.h"
 #include "modules.h"
 #include "running.h"
 #include "values.h"
@@ -14,7 +15,8 @@ namespace {
 // The keywords of check() and check_file().
 struct Checking {
     py::object require = py::none(), enable = py::none(), disable = py::none(), severity = py::none();
-    py::object height = py::none();
+    py::object height = py::none(), mesh = py::none();
+    Decoder decoder = Decoder::gltf;
 };
 
 template <class F>
@@ -24,6 +26,8 @@ void each_field(Checking& o, F& f) {
     f("disable", o.disable, "Sequence[str] | None");
     f("severity", o.severity, "dict[str, str] | None");
     f("height", o.height, "ArrayLike | HeightField | None");
+    f("mesh", o.mesh, "SelectedPart | None");
+    f("decoder", o.decoder);
 }
 
 struct ReadKeyword {
@@ -53,6 +57,7 @@ const py::dict dict_from(py::handle given, const char* name) {
 struct Checks {
     CheckOptions options;
     HeightField height;
+    std::optional<MeshToCheck> mesh;
 };
 
 void read_checks(const Checking& given, Checks& checks) {
@@ -80,6 +85,10 @@ void read_checks(const Checking& given, Checks& checks) {
     if (!given.height.is_none()) {
         checks.height = field_from(given.height, "height");
         options.height = &checks.height;
+    }
+    if (!given.mesh.is_none()) {
+        const SelectedPart& selected = selected_from(given.mesh, "mesh");
+        options.mesh = &checks.mesh.emplace(MeshToCheck{selected, given.decoder});
     }
 }
 
@@ -150,6 +159,17 @@ py::object pair_of(const std::optional<PairEvidence>& pair) {
     return facts;
 }
 
+py::object seams_of(const std::optional<SeamEvidence>& seams) {
+    if (!seams) return py::none();
+    py::dict facts;
+    facts["edges"] = seams->edges;
+    facts["mean"] = seams->mean;
+    facts["p99"] = seams->p99;
+    facts["worst"] = seams->worst;
+    facts["worst_edge"] = seams->worst_edge;
+    return facts;
+}
+
 void add_report(Module& module) {
     Class<CheckReport>(module, "CheckReport", "The findings about a texture. Iterates over them.")
         .property("file", "str", "The file's name.", [](const CheckReport& r) { return r.file; })
@@ -170,6 +190,10 @@ void add_report(Module& module) {
                   [](const CheckReport& r) { return y_of(r.y); })
         .property("pair", "dict[str, Any] | None", "How the normals follow from the height map.",
                   [](const CheckReport& r) { return pair_of(r.pair); })
+        .property("seams", "dict[str, Any] | None", "How well the map fits the mesh: the fields of SeamEvidence.",
+                  [](const CheckReport& r) { return seams_of(r.seams); })
+        .property("y_on_mesh", "str | None", "Where green of the map points on the mesh.",
+                  [](const CheckReport& r) { return r.y_on_mesh ? py::object(word_of(*r.y_on_mesh)) : py::none(); })
         .method("__iter__", "(self) -> Iterator[Finding]",
                 [](const CheckReport& r) { return py::iter(py::cast(r.findings)); })
         .method("__len__", "(self) -> int", [](const CheckReport& r) { return r.findings.size(); })
@@ -203,7 +227,8 @@ void add_checks(Module& module) {
         "Checks a Texture, which reports call `file`, or a file: check_file(). `require` is a dict of requirements, "
         "{'y': 'up', 'mips': 'full', 'pow2': True}; `enable` and `disable` list rules by id or name; `severity` is a "
         "dict "
-        "of rules and severities; `height` is the map's height map. Raises BadOptionError if a rule or a requirement "
+        "of rules and severities; `height` is the map's height map; `mesh` is the mesh that the map is on, from "
+        "select_part(), and `decoder` the engine. Raises BadOptionError if a rule or a requirement "
         "does not exist.",
         [](Call& call, Checking& given, ReadKeyword& keyword, Running& running) -> py::object {
             if (!py::isinstance<Texture>(call["what"])) return checked_file(call["what"], given, keyword.read, running);

@@ -38,18 +38,29 @@ void add_strengths(Module& module) {
                 });
 }
 
+py::dict dict_of_deband(const DebandReport& report) {
+    py::dict facts;
+    facts["applied"] = report.applied;
+    facts["step"] = report.step;
+    facts["codes"] = report.codes;
+    facts["terrace_texels"] = report.terrace_texels;
+    return facts;
+}
+
+void tell(py::dict facts, const HeightReport& report) {
+    facts["luma_texels"] = report.luma_texels;
+    facts["invalid_texels"] = report.invalid_texels;
+    facts["deband"] = dict_of_deband(report.deband);
+}
+
 // The caller's array stays as it is.
 py::object debanded(Call& call, Relief& relief, Running& running) {
     const Deband when = call.has("when") ? Convert<Deband>::from(call["when"], "when") : Deband::on;
     HeightField given = field_from(call["height"], "height", relief);
     HeightField field{given.height.clone(), given.bumpiness_x, given.bumpiness_y, given.wrap_x, given.wrap_y};
     const DebandReport report = running.run([&](const Execution& e) { return deband(field, when, e); });
-    py::dict result;
+    py::dict result = dict_of_deband(report);
     result["field"] = object_of(std::move(field));
-    result["applied"] = report.applied;
-    result["step"] = report.step;
-    result["codes"] = report.codes;
-    result["terrace_texels"] = report.terrace_texels;
     return result;
 }
 
@@ -57,15 +68,20 @@ py::object debanded(Call& call, Relief& relief, Running& running) {
 
 void add_heights(Module& module) {
     module.verb<HeightOptions, Running>(
-        "height_field", {{"image", "ArrayLike | Image"}}, "HeightField",
+        "height_field", {{"image", "ArrayLike | Image"}, {"report", "dict[str, Any] | None", "None"}}, "HeightField",
         "The heights of a picture, or of an array (height, width) or (height, width, channels), of which HeightChannel "
-        "chooses one. The HeightReport is left out.",
+        "chooses one. `report` is a dict that gets the fields of HeightReport.",
         [](Call& call, HeightOptions& options, Running& running) -> py::object {
             check(options);
             const Picture image(call["image"], "image");
-            HeightField field = running.run([&](const Execution& e) { return height_field(*image, options, e); });
+            if (call.has("report") && !py::isinstance<py::dict>(call["report"]))
+                raise_type("report", "a dict", call["report"]);
+            HeightReport found;
+            HeightField field =
+                running.run([&](const Execution& e) { return height_field(*image, options, e, &found); });
             field.wrap_x = options.wrap_x;
             field.wrap_y = options.wrap_y;
+            if (call.has("report")) tell(call["report"], found);
             return object_of(std::move(field));
         });
     module.verb<Relief, Running>("deband", {{"height", kHeights}, {"when", "str", "'on'"}}, "dict[str, Any]",

@@ -15,6 +15,8 @@ void add_surfaces(Module& module);
 void add_packing(Module& module);
 void add_files(Module& module);
 void add_pipeline(Module& module);
+void add_meshes(Module& module);
+void add_spaces(Module& module);
 void add_checks(Module& module);
 void add_pictures(Module& module);
 void add_programs(Module& module);

@@ -22,7 +22,9 @@
 #include "checks/mip_rules.h"
 #include "checks/pair_rules.h"
 #include "checks/rules.h"
+#include "checks/sign_rules.h"
 #include "checks/value_rules.h"
+#include "formats/ktx2/ktx2.h"
 #include "rows/unpack_rows.h"
 #include "threads/guard.h"
 
@@ -214,6 +216,7 @@ Result<CheckReport> check(const std::string& file, const Texture& texture, const
         check_file_rules(subject, findings);
         check_value_rules(subject, findings);
         if (auto done = check_damage_rules(subject, findings); !done) return done.error();
+        if (auto done = check_sign_rules(subject, findings); !done) return done.error();
         if (auto done = check_field_rules(subject, findings); !done) return done.error();
         check_convention_rules(subject, findings);
         if (auto done = check_mip_rules(subject, findings); !done) return done.error();
@@ -253,7 +256,8 @@ Result<CheckReport> check_file(const std::string& path, const CheckOptions& opti
         report.error = texture.error();
         if (report.error->code == ErrorCode::bad_data || report.error->code == ErrorCode::unsupported) {
             Findings findings(options);
-            findings.add("N101", report.error->reason);
+            const bool uastc = report.error->reason == kUastcWithoutAlpha;
+            findings.add(uastc ? "N114" : "N101", report.error->reason);
             report.findings = findings.take(report.explained);
         }
         return report;

@@ -12,11 +12,7 @@
 #include "threads/parallel.h"
 
 namespace tex {
-namespace {
-
-constexpr int kRowsPerPiece = 16;
-
-}  // namespace
+namespace {}  // namespace
 
 Result<Comparison> compare(const NormalMap& a, const NormalMap& b, const Execution& execution) {
     assert(a.extent() == b.extent() && a.extent().width > 0 && a.extent().height > 0);

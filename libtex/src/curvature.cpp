@@ -17,8 +17,6 @@
 namespace tex {
 namespace {
 
-constexpr int kPieceTexels = 1 << 15;
-
 struct RowRange {
     float least = std::numeric_limits<float>::max();
     float greatest = std::numeric_limits<float>::lowest();
@@ -40,7 +38,7 @@ Result<Curvature> measured(const NormalMap& map, const CurvatureOptions& options
             range.squares = sum_of_squares(row, extent.width);
         }
     };
-    const int grain = std::max(1, kPieceTexels / extent.width);
+    const int grain = rows_per_piece(extent);
     if (auto done = parallel_for(execution, extent.height, grain, body); !done) return done.error();
     RowRange all;
     for (const RowRange& range : ranges) {

@@ -14,7 +14,6 @@
 namespace tex {
 namespace {
 
-constexpr int kRowsPerPiece = 16;
 static_assert(kHeatMapLegendRows == render::kLegendRows);
 
 // Copies the codes of a picture to planes, from row `top` on.

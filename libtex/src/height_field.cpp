@@ -23,7 +23,7 @@ namespace tex {
 namespace {
 
 // The number of rows of an extent that are worth a thread.
-int strip_rows(Extent extent) { return std::max(1, (1 << 16) / extent.width); }
+int rows_per_strip(Extent extent) { return std::max(1, (1 << 16) / extent.width); }
 
 // Finds the first texel that is NaN. Precondition: there is one.
 std::pair<int, int> first_invalid(const Plane<float>& heights) {
@@ -45,7 +45,7 @@ float finite(double strength) {
 Result<void> blur(HeightField& field, double sigma, const Execution& execution, ProgressSpan span) {
     const Extent extent = field.height.extent();
     const std::vector<float> weights = gaussian_weights(sigma);
-    const int strip = strip_rows(extent);
+    const int strip = rows_per_strip(extent);
     const double half = (span.from + span.to) / 2;
     Plane<float> across(extent);
     const auto rows = [&](int begin, int end) {
@@ -101,7 +101,7 @@ Result<HeightField> height_field(const Image& image, const HeightOptions& option
             luma_texels += all.luma;
             invalid_texels += all.invalid;
         };
-        if (auto done = parallel_for(execution, extent.height, strip_rows(extent), take, {0.0, taken}); !done)
+        if (auto done = parallel_for(execution, extent.height, rows_per_strip(extent), take, {0.0, taken}); !done)
             return done.error();
 
         if (invalid_texels > 0 && (!options.fill_invalid || invalid_texels == extent.texels())) {

@@ -28,7 +28,7 @@ void finish_rows(NormalMap& level, const MipOptions& options, int index, int beg
 }
 
 // One level and the next.
-struct Step {
+struct Halving {
     NormalMap& from;
     NormalMap& to;
     int level;  // the level of `from`
@@ -46,7 +46,7 @@ Plane<float>& plane_of(NormalMap& map, int plane) { return plane == 0 ? map.x : 
 // from its vectors and kept while they are needed.
 class SourceRows {
 public:
-    explicit SourceRows(const Step& step)
+    explicit SourceRows(const Halving& step)
         : step_(step), taps_(step.filter.y.taps), converts_(step.from_base() && step.planes() == 2),
           window_(static_cast<std::size_t>(taps_)) {
         if (!converts_) return;
@@ -83,7 +83,7 @@ public:
 private:
     [[nodiscard]] int slot_of(int j, int k) const { return wrap_around(2 * j + step_.filter.y.first + k, taps_); }
 
-    const Step& step_;
+    const Halving& step_;
     const int taps_;
     const bool converts_;
     Plane<float> p_, q_;
@@ -93,7 +93,7 @@ private:
 
 // Makes rows [begin, end) of step.to. If the filter halves, a row of `from` contributes to only one row of `to`, and is
 // finished as soon as that row is made.
-void make_strip(const Step& step, int begin, int end) {
+void make_strip(const Halving& step, int begin, int end) {
     SourceRows source(step);
     MipRows rows(step.filter);
     for (int j = begin; j < end; ++j) {
@@ -106,19 +106,13 @@ void make_strip(const Step& step, int begin, int end) {
     }
 }
 
-// The number of rows of an extent that are worth a thread.
-int strip_rows(Extent extent) {
-    constexpr int kTexels = 1 << 15;
-    return std::max(1, kTexels / extent.width);
-}
-
 Result<void> finish_level(NormalMap& level, const MipOptions& options, int index, const Execution& execution,
                           ProgressSpan span) {
     const auto strip = [&](int begin, int end) { finish_rows(level, options, index, begin, end); };
-    return parallel_for(execution, level.extent().height, strip_rows(level.extent()), strip, span);
+    return parallel_for(execution, level.extent().height, rows_per_piece(level.extent()), strip, span);
 }
 
-Step make_step(MipChain& chain, int level, const MipOptions& options) {
+Halving make_halving(MipChain& chain, int level, const MipOptions& options) {
     NormalMap& from = chain.levels[static_cast<std::size_t>(level)];
     NormalMap& to = chain.levels[static_cast<std::size_t>(level) + 1];
     return {from, to, level, options, LevelFilter(from.extent(), options)};
@@ -126,11 +120,11 @@ Step make_step(MipChain& chain, int level, const MipOptions& options) {
 
 // The step from `level`. If it halves, the steps after it that also halve are included, at most four steps in all: a
 // strip of sixteen rows fits into the cache.
-std::vector<Step> next_steps(MipChain& chain, int level, const MipOptions& options) {
+std::vector<Halving> next_steps(MipChain& chain, int level, const MipOptions& options) {
     const int end = std::min(level + 4, static_cast<int>(chain.levels.size()) - 1);
-    std::vector<Step> steps;
+    std::vector<Halving> steps;
     for (; level < end; ++level) {
-        Step step = make_step(chain, level, options);
+        Halving step = make_halving(chain, level, options);
         const bool halves = step.filter.halves;
         if (steps.empty() || halves) steps.push_back(std::move(step));
         if (!halves) break;
@@ -140,7 +134,7 @@ std::vector<Step> next_steps(MipChain& chain, int level, const MipOptions& optio
 
 // Performs the steps one after the other, strip by strip of the last level: the output of a step is still in the cache
 // when the next step reads it. Finishes the levels from which the steps started.
-Result<void> make_levels(const std::vector<Step>& steps, const Execution& execution, ProgressSpan span) {
+Result<void> make_levels(const std::vector<Halving>& steps, const Execution& execution, ProgressSpan span) {
     const int last = static_cast<int>(steps.size()) - 1;
     const Extent extent = steps.back().to.extent();
     const auto strip = [&](int begin, int end) {
@@ -148,8 +142,8 @@ Result<void> make_levels(const std::vector<Step>& steps, const Execution& execut
             make_strip(steps[static_cast<std::size_t>(k)], begin << (last - k), end << (last - k));
     };
     const Extent strip_of_first{steps.front().to.extent().width << last, extent.height};
-    auto done = parallel_for(execution, extent.height, strip_rows(strip_of_first), strip, span);
-    const Step& first = steps.front();
+    auto done = parallel_for(execution, extent.height, rows_per_piece(strip_of_first), strip, span);
+    const Halving& first = steps.front();
     if (!done || first.filter.halves || first.from_base()) return done;
     return finish_level(first.from, first.options, first.level, execution, {span.to, span.to});
 }
@@ -174,7 +168,7 @@ Result<MipChain> build_mip_chain(NormalMap base, const MipOptions& options, cons
             // Three quarters of the remaining progress, because each level has a quarter of the texels of the one
             // before.
             const double next = done + (1.0 - done) * 0.75;
-            const std::vector<Step> steps = next_steps(chain, k, all);
+            const std::vector<Halving> steps = next_steps(chain, k, all);
             if (const auto made = make_levels(steps, execution, {done, next}); !made) return made.error();
             k += static_cast<int>(steps.size());
             done = next;

@@ -18,7 +18,6 @@ namespace tex {
 namespace {
 
 // The number of texels in a piece of work: enough to be worth passing to a thread, few enough to stay in its cache.
-constexpr int kPieceTexels = 1 << 15;
 
 Result<Texture> pack_chain(const MipChain& chain, const PackOptions& options, const Execution& execution,
                            RdoTally* tally) {

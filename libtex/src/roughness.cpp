@@ -21,7 +21,6 @@
 namespace tex {
 namespace {
 
-constexpr int kPieceTexels = 1 << 15;
 constexpr std::size_t kAlpha2 = 3;  // after x, y and z
 
 // x, y, z and alpha^2 of a level, not normalised.
@@ -31,8 +30,6 @@ using AverageViews = std::array<PlaneView<const float>, 4>;
 AverageViews views_of(const Averages& averages) {
     return {averages[0].view(), averages[1].view(), averages[2].view(), averages[3].view()};
 }
-
-int strip_rows(Extent extent) { return std::max(1, kPieceTexels / extent.width); }
 
 // Filters rows [begin, end) of a plane of the next level.
 void filter_strip(const LevelFilter& filter, PlaneView<const float> from, Plane<float>& to, int begin, int end) {
@@ -54,7 +51,7 @@ Result<void> fill_base(const Plane<float>& own, const MipOptions& options, const
     const auto fill = [&](int begin, int end) {
         for (int j = begin; j < end; ++j) rows->row(j, roughness.row(j), alpha2.row(j));
     };
-    return parallel_for(execution, extent.height, strip_rows(extent), fill, {middle, span.to});
+    return parallel_for(execution, extent.height, rows_per_piece(extent), fill, {middle, span.to});
 }
 
 Result<RoughnessChain> build_chain(const NormalMap& base, const Plane<float>& roughness, RoughnessModel model,
@@ -86,7 +83,7 @@ Result<RoughnessChain> build_chain(const NormalMap& base, const Plane<float>& ro
             }
         };
         const double next = level + 1 < count ? done + (1.0 - done) * 0.75 : 1.0;
-        const auto made = parallel_for(execution, smaller.height, strip_rows(smaller), strip, {done, next});
+        const auto made = parallel_for(execution, smaller.height, rows_per_piece(smaller), strip, {done, next});
         if (!made) return made.error();
         held = std::move(to);
         from = views_of(held);
@@ -105,7 +102,7 @@ Result<Texture> pack_chain(const RoughnessChain& chain, Format format, Effort ef
         Level level{plane.extent(), std::vector<std::byte>(level_bytes(format, plane.extent()))};
         const bool last = &plane == &chain.levels.back();
         const double next = last ? 1.0 : done + (1.0 - done) * 0.75;
-        const int grain = whole_blocks(strip_rows(plane.extent()));
+        const int grain = whole_blocks(rows_per_piece(plane.extent()));
         const auto packed = parallel_for(execution, plane.extent().height, grain,
                                          [&](int begin, int end) {
                                              pack_roughness_rows(plane, plane.extent().height, format, effort, begin,

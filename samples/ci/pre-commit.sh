@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # .git/hooks/pre-commit: refuses a commit whose normal maps have errors. Checks the staged contents of the staged files.
+# check-normals is in the Debian package libtex-tools.
 set -eu
 staged=$(mktemp -d)
 trap 'rm -rf "$staged"' EXIT

@@ -30,6 +30,7 @@ def store(name, n):
     texels[..., :3] = n[::-1] * 0.5 + 0.5
     image.pixels.foreach_set(texels.ravel())
     image.pack()
+    image.use_fake_user = True  # or Blender does not save what no material uses
     return image
 
 

@@ -12,7 +12,8 @@
 #   library       the library alone, static if BUILD has a shared one and the reverse, needs no package of the commands;
 #                 it is installed, and a project finds it
 #   subdirectory  a project adds the sources as a folder, once with a shared and once with a static library
-#   package       cpack makes a Debian package; its dependencies are named, and its commands run
+#   packages      cpack makes the Debian packages from the objects of BUILD; files and dependencies
+#                 are right, and commands run
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 source=$(cd "$here/../.." && pwd)
@@ -49,8 +50,7 @@ check_files() {
     sed -e "${2:-}" "$here/manifest.txt" | LC_ALL=C sort >"$scratch/wanted.txt"
     diff -u "$scratch/wanted.txt" "$scratch/installed.txt" || fail "the files differ from those of $here/manifest.txt"
 }
-# The Python module and the plug-in of OpenImageIO are installed if the build has them. The Debian package leaves them
-# out.
+# The Python module and the plug-in of OpenImageIO are installed if the build has them.
 no_python='/^lib\/python\//d'
 no_oiio='/^lib\/OpenImageIO\//d; /tex-oiio/d'
 # shellcheck disable=SC2016  # sed's last line
@@ -90,6 +90,43 @@ use_library() {
         "$folder/bake_${name}_exceptions" "$samples/bricks.png" "$scratch/bricks.dds"
         check_bake "$scratch/bricks.dds"
     done
+}
+
+# package NAME DEPENDENCY...: the package NAME is there and depends on these. Unpacks it into $root.
+package() {
+    local file wanted document
+    file=$(find "$scratch" -maxdepth 1 -name "$1_*.deb")
+    [ -e "$file" ] || fail "there is no package $1"
+    dpkg-deb --field "$file" Package Version Depends
+    depends=$(dpkg-deb --field "$file" Depends)
+    for wanted in "${@:2}"; do
+        case $depends in *"$wanted"*) ;; *) fail "$1 does not depend on $wanted: $depends" ;; esac
+    done
+    dpkg-deb --extract "$file" "$root"
+    for document in copyright changelog.Debian.gz; do
+        [ -s "$root/usr/share/doc/$1/$document" ] || fail "$1 has no $document"
+        debian_files+=$'\n'"\$a share/doc/$1/$document"
+    done
+    debian_files+=$'\n'"\$a share/lintian/overrides/$1"
+}
+# What is in Debian's own places; package() adds the documents of each package.
+debian_files='s|/zsh/site-functions/|/zsh/vendor-completions/|; s|^share/man/.*|&.gz|; /doc\/libtex\/LICENSE/d
+s|doc/libtex/CHANGELOG.md|doc/libtex-dev/changelog.gz|; s|doc/libtex/|doc/libtex-dev/|'
+
+# Hardened as by Debian's hardening=+all: position-independent, read-only relocations, bound at start, no code on the
+# stack, with stack protector and fortified calls. And no search path for libraries.
+check_hardening() {
+    readelf --dyn-syms -W "$1" >"$scratch/symbols.txt"
+    readelf -hW "$1" | grep -q 'Type: *DYN' || fail "$1 is not position-independent"
+    readelf -dW "$1" | grep -q BIND_NOW || fail "$1 binds lazily"
+    readelf -lW "$1" | grep -q GNU_RELRO || fail "$1 has writable relocations"
+    readelf -lW "$1" | grep -q 'GNU_STACK.* RW  *0x' || fail "$1 may run code on its stack"
+    grep -q ' __stack_chk_fail@' "$scratch/symbols.txt" || fail "$1 has no stack protector"
+    case $1 in
+    *.imageio.so) ;; # calls nothing that could be fortified
+    *) grep -q ' __[a-z]*_chk@' "$scratch/symbols.txt" || fail "$1 has no fortified calls" ;;
+    esac
+    ! readelf -dW "$1" | grep -q 'R\(UN\)\?PATH' || fail "$1 has a search path for libraries"
 }
 
 case $step in
@@ -183,32 +220,30 @@ subdirectory)
         [ ! -e "$folder/stage" ] || fail "a project that adds libtex installs $(list_files "$folder/stage")"
     done
     ;;
-package)
-    cd "$build"
-    quietly 'cpack failed' cpack -G DEB -B "$scratch"
-    package=$(find "$scratch" -maxdepth 1 -name '*.deb')
-    dpkg-deb --info "$package"
-    depends=$(dpkg-deb --field "$package" Depends)
-    for wanted in libc6 libpng16-16 libdeflate0 libisal2 libzstd1 libastcenc3d libopenexr libtbb12 libhwy \
-        libopencolorio libopenimageio libseccomp2; do
-        case $depends in *"$wanted"*) ;; *) fail "the package does not depend on $wanted: $depends" ;; esac
-    done
-    dpkg-deb --extract "$package" "$scratch/root"
-    check_files "$scratch/root/usr" "$no_python;$no_oiio"
-    "$scratch/root/usr/bin/bake-normals" "$samples/bricks.png" -o "$scratch/bricks.dds" --bumpiness 12
+packages)
+    # The preset `debian` differs from `release` in what links see, not in objects.
+    export TEX_OBJECTS_OF=all
+    quietly 'the packages cannot be configured' cmake -S "$source" --preset debian -B "$scratch/build" "${reuse[@]}" \
+        -DCMAKE_CXX_COMPILER="$cxx"
+    quietly 'the packages cannot be built' cmake --build "$scratch/build"
+    quietly 'cpack failed' cpack --config "$scratch/build/CPackConfig.cmake" -B "$scratch"
+    root=$scratch/root
+    package libtex0 libc6 libpng16-16 libdeflate0 libisal2 libzstd1 libastcenc3d libopenexr libtbb12 libhwy \
+        libopencolorio
+    case $depends in *openimageio* | *assimp*) fail "the library needs the readers: $depends" ;; esac
+    package libtex-dev 'libtex0 (= '
+    package libtex-tools 'libtex0 (= ' libopenimageio libassimp libseccomp2
+    package python3-libtex 'libtex0 (= ' 'python3 (>= 3.11)' python3-numpy
+    package libtex-oiio 'libtex0 (= ' libopenimageio
+    check_files "$root/usr" "$debian_files"
+    LD_LIBRARY_PATH=$(dirname "$(find "$root" -name libtex.so.0)")
+    export LD_LIBRARY_PATH
+    "$root/usr/bin/bake-normals" "$samples/bricks.png" -o "$scratch/bricks.dds" --bumpiness 12
     check_bake "$scratch/bricks.dds"
-    # Hardened as by Debian's hardening=+all: position-independent, read-only relocations, bound at start, no code on
-    # the stack, with stack protector and fortified calls.
-    for program in "$scratch"/root/usr/bin/* "$scratch"/root/usr/libexec/libtex/* \
-        "$(find "$scratch/root" -name 'libtex.so.0')"; do
-        readelf --dyn-syms -W "$program" >"$scratch/symbols.txt"
-        readelf -hW "$program" | grep -q 'Type: *DYN' || fail "$program is not position-independent"
-        readelf -dW "$program" | grep -q BIND_NOW || fail "$program binds lazily"
-        readelf -lW "$program" | grep -q GNU_RELRO || fail "$program has writable relocations"
-        readelf -lW "$program" | grep -q 'GNU_STACK.* RW  *0x' || fail "$program may run code on its stack"
-        grep -q ' __stack_chk_fail@' "$scratch/symbols.txt" || fail "$program has no stack protector"
-        grep -q ' __[a-z]*_chk@' "$scratch/symbols.txt" || fail "$program has no fortified calls"
-    done
+    # TIFF goes through the reader program, which must be found too.
+    "$root/usr/bin/bake-normals" "$samples/bricks.png" -o "$scratch/bricks.tif" --bumpiness 12
+    while read -r program; do check_hardening "$program"; done \
+        < <(find "$root/usr/bin" "$root/usr/libexec" "$root/usr/lib" -type f \( -perm -u+x -o -name '*.so*' \))
     ;;
 *) fail "no such step" ;;
 esac

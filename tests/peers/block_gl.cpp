@@ -9,7 +9,7 @@
 namespace peers {
 namespace {
 
-constexpr const char* kFragmentShader =
+constexpr const char* kBlockFragmentShader =
     "#version 330 core\n"
     "uniform sampler2D map; uniform float lod; uniform vec2 extent; out vec4 color;\n"
     "void main() { color = textureLod(map, gl_FragCoord.xy / extent, lod); }\n";
@@ -49,7 +49,7 @@ GLuint upload_blocks(const Gl& gl, tex::Format format, const std::vector<tex::Le
 std::vector<std::vector<float>> sample_levels(tex::Format format, const std::vector<tex::Level>& levels) {
     if (!software_gl_works()) return {};
     const Gl& gl = software_gl();
-    static const GLuint program = make_program(kWholeTarget, kFragmentShader);
+    static const GLuint program = make_program(kWholeTarget, kBlockFragmentShader);
     const GLuint texture = upload_blocks(gl, format, levels);
     std::vector<std::vector<float>> result;
     for (std::size_t k = 0; k < levels.size(); ++k) {

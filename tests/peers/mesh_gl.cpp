@@ -10,7 +10,7 @@ namespace peers {
 namespace {
 
 // The corners are texels of a texture, four for each: position and u, normal and v, tangent and w.
-constexpr const char* kVertexShader = R"(#version 330 core
+constexpr const char* kMeshVertexShader = R"(#version 330 core
 uniform sampler2D corners;
 uniform vec3 eye, right, up, toward, centre;
 uniform float slope, aspect, scale, normalizes;
@@ -36,7 +36,7 @@ void main() {
                        (depth * (far + near) - 2.0 * far * near) / (far - near), depth);
 })";
 
-constexpr const char* kFragmentShader = R"(#version 330 core
+constexpr const char* kMeshFragmentShader = R"(#version 330 core
 uniform sampler2D bumpMap;
 uniform vec3 eye, light, lightColor, ambient, color, specColor;
 uniform float shininess, normalizes, per_fragment;
@@ -106,7 +106,7 @@ void set_uniforms(const Gl& gl, const Place& place, const GlScene& s, const GlMe
 std::vector<float> draw_mesh(const GlScene& scene, const GlMesh& mesh) {
     if (!software_gl_works()) return {};
     const Gl& gl = software_gl();
-    const GLuint program = make_program(kVertexShader, kFragmentShader);
+    const GLuint program = make_program(kMeshVertexShader, kMeshFragmentShader);
     gl.ActiveTexture(GL_TEXTURE1);
     const GLuint corners = upload_corners(*mesh.space);
     gl.ActiveTexture(GL_TEXTURE0);

@@ -17,23 +17,11 @@ HEADERS = SOURCE / "libtex/include/tex"
 sys.path.insert(0, str(SOURCE / "libtex/python"))
 from docstrings import DECLARATION, comments  # noqa: E402
 
-MESHES = "meshes are not bound yet; run('convert-normals', ...) and the --mesh options of commands use them"
 NOT_BOUND = {
-    "check_part": MESHES,
-    "decoder_kind": MESHES,
-    "in_scene": MESHES,
-    "in_tile": MESHES,
-    "make_tangents": MESHES,
-    "mesh_files": MESHES,
-    "read_mesh": MESHES,
-    "refit": MESHES,
-    "select_part": MESHES,
-    "stored_tangents": MESHES,
-    "to_object_space": MESHES,
-    "to_tangent_space": MESHES,
     "add_requirement": "the argument `require` of check()",
     "allocate_rows": "memory of planes, which arrays keep",
     "apply_steps": "run('build-normals', ...) runs steps without files in between",
+    "check_part": "MeshPart() checks, and parts cannot change",
     "find_by_name": "words are the names",
     "is_fillable": "BadDataError of height_field() without fill_invalid",
     "name_of": "words are the names",
@@ -106,6 +94,7 @@ STRUCTURES = [
     ("write_texture", "container.h", "WriteOptions"),
     ("read_image", "image_io.h", "ReadOptions"),
     ("bake", "execution.h", "Execution"),
+    ("to_object_space", "convert_options.h", "ConvertOptions"),
 ]
 
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace reference {
+namespace tex::reference {
 namespace {
 
 double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -74,4 +74,4 @@ double encode_srgb(double linear) {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
 }
 
-}  // namespace reference
+}  // namespace tex::reference

@@ -6,7 +6,7 @@
 
 #include <array>
 
-namespace reference {
+namespace tex::reference {
 
 using Vec3 = std::array<double, 3>;
 
@@ -31,4 +31,4 @@ double parallax_offset(double parallax, double height, double view_xy, double vi
 // sRGB value of linear light, both 0 to 1 (IEC 61966-2-1), clamped.
 double encode_srgb(double linear);
 
-}  // namespace reference
+}  // namespace tex::reference

@@ -19,7 +19,7 @@ using tex::Wrap;
 using tex::fields::noise;
 using tex::fields::plane_of;
 
-constexpr Wrap kWraps[] = {Wrap::repeat, Wrap::clamp, Wrap::mirror};
+constexpr Wrap kBlurWraps[] = {Wrap::repeat, Wrap::clamp, Wrap::mirror};
 
 Plane<float> blurred(const Plane<float>& heights, double sigma, Wrap wrap_x, Wrap wrap_y) {
     const std::vector<float> weights = tex::gaussian_weights(sigma);
@@ -46,8 +46,8 @@ TEST(Blur, WeightsAreOfAGaussianAndSumToOne) {
 
 TEST(Blur, AgreesWithTheReference) {
     for (const double sigma : {0.01, 0.5, 1.0, 3.3, 12.0}) {
-        for (const Wrap wrap_x : kWraps) {
-            for (const Wrap wrap_y : kWraps) {
+        for (const Wrap wrap_x : kBlurWraps) {
+            for (const Wrap wrap_y : kBlurWraps) {
                 for (const Extent extent : {Extent{1, 1}, Extent{2, 1}, Extent{3, 40}, Extent{33, 17}}) {
                     const Plane<float> heights = plane_of(extent, [](int i, int j) { return noise(i, j); });
                     const Plane<float> result = blurred(heights, sigma, wrap_x, wrap_y);
@@ -72,7 +72,7 @@ TEST(Blur, KeepsClampedRampsUpToTheBorder) {
 }
 
 TEST(Blur, MakesOneValueOfConstantHeights) {
-    for (const Wrap wrap : kWraps) {
+    for (const Wrap wrap : kBlurWraps) {
         const Plane<float> result = blurred(Plane<float>({50, 50}, 0.1f), 4.0, wrap, wrap);
         for (int j = 0; j < 50; ++j) {
             for (int i = 0; i < 50; ++i) ASSERT_EQ(result.at(i, j), result.at(0, 0));

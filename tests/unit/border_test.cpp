@@ -14,10 +14,10 @@ namespace {
 using tex::Extent;
 using tex::Wrap;
 
-constexpr Wrap kWraps[] = {Wrap::repeat, Wrap::clamp, Wrap::mirror};
+constexpr Wrap kBorderWraps[] = {Wrap::repeat, Wrap::clamp, Wrap::mirror};
 
 TEST(Border, HeightsBeyondItFollowTheRulesOfWrap) {
-    for (const Wrap wrap : kWraps) {
+    for (const Wrap wrap : kBorderWraps) {
         for (const int n : {1, 2, 3, 8}) {
             const auto h = [](int i) { return std::sin(1.0 + i); };
             tex::reference::Grid<double> row(Extent{n, 1});
@@ -42,8 +42,8 @@ TEST(Border, FiltersReadTexelsInside) {
 }
 
 TEST(Border, RowsOfHeightsHaveAnApronOnAllSides) {
-    for (const Wrap wrap_x : kWraps) {
-        for (const Wrap wrap_y : kWraps) {
+    for (const Wrap wrap_x : kBorderWraps) {
+        for (const Wrap wrap_y : kBorderWraps) {
             const auto plane = tex::fields::plane_of({5, 4}, [](int i, int j) { return tex::fields::noise(i, j); });
             const auto truth = tex::reference::grid_of(plane);
             tex::HeightRows rows(plane.view(), wrap_x, wrap_y, 9, 3);

@@ -31,7 +31,7 @@
 namespace tex {
 namespace {
 
-const std::string kData = TEX_SOURCE_DIR "/../shared/data/";
+const std::string kSharedMaps = TEX_SOURCE_DIR "/../shared/data/";
 
 // The values of one statistic: [the half that sets thresholds, the held-out half].
 struct Statistic {
@@ -193,12 +193,12 @@ constexpr bool kSanitized = false;
 #endif
 
 TEST(CheckThresholds, FollowFromTheHalfThatSetsThem) {
-    if (!std::filesystem::exists(kData)) GTEST_SKIP() << "no " << kData;
+    if (!std::filesystem::exists(kSharedMaps)) GTEST_SKIP() << "no " << kSharedMaps;
     Statistics all;
     int maps = 0;
     for (const auto& map : reference::real_maps()) {
         if (!map.intact) continue;
-        const auto texture = read_texture(kData + map.path);
+        const auto texture = read_texture(kSharedMaps + map.path);
         ASSERT_TRUE(texture) << texture.error().message();
         if (kSanitized && maps == 2) return;  // sanitizers are slow, and have seen all of the code by then
         ++maps;
@@ -232,8 +232,8 @@ TEST(CheckThresholds, FollowFromTheHalfThatSetsThem) {
 // SOURCES.md does not name this damage: x and y of this map have few values, in groups about 8 codes apart, like slopes
 // of few grey levels.
 TEST(CheckThresholds, Water1TakesFewSlopes) {
-    if (!std::filesystem::exists(kData)) GTEST_SKIP() << "no " << kData;
-    const auto texture = read_texture(kData + "normal/water1_256.tga");
+    if (!std::filesystem::exists(kSharedMaps)) GTEST_SKIP() << "no " << kSharedMaps;
+    const auto texture = read_texture(kSharedMaps + "normal/water1_256.tga");
     ASSERT_TRUE(texture);
     const auto image = decode(*texture, 0);
     ASSERT_TRUE(image);

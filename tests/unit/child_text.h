@@ -29,7 +29,7 @@ inline std::string child_text(const std::function<int(int fd)>& body) {
     close(ends[1]);
     std::string text;
     char buffer[1000];
-    for (ssize_t n = 0; (n = read(ends[0], buffer, sizeof buffer)) > 0;)
+    for (ssize_t n = 0; (n = ::read(ends[0], buffer, sizeof buffer)) > 0;)
         text.append(buffer, static_cast<std::size_t>(n));
     close(ends[0]);
     int status = 0;

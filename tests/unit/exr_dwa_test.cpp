@@ -19,7 +19,7 @@ const std::vector<std::string> kColors = {"A", "B", "G", "R"};
 const std::vector<std::string> kChannels = {
     "A", "B", "G", "R", "Y", "depth", "two.B", "two.G", "two.R"};  // runs, cosine terms (three times), the rest
 
-Result<Image> read(const Bytes& bytes) {
+Result<Image> read_dwa(const Bytes& bytes) {
     Result<InputFile> opened = InputFile::from_memory("test.exr", bytes);
     return read_all(open_exr_rows(*opened, {}));
 }
@@ -44,7 +44,7 @@ TEST(ExrDwa, SoundFilesAreWhole) {
         for (const Imf::PixelType type : {Imf::HALF, Imf::FLOAT, Imf::UINT}) {
             for (const bool tiled : {false, true}) {
                 for (const Extent extent : {Extent{1, 1}, {8, 8}, {9, 33}, {37, 41}, {257, 70}, {64, 300}}) {
-                    const auto image = read(exr_file(extent, kChannels, type, compression, tiled));
+                    const auto image = read_dwa(exr_file(extent, kChannels, type, compression, tiled));
                     EXPECT_TRUE(image) << compression << type << tiled << " " << extent.width << "x" << extent.height
                                        << ": " << image.error().message();
                 }
@@ -58,7 +58,7 @@ TEST(ExrDwa, SoundColoursAndHeightsAreWhole) {
         kColors, {"Y"}, {"R", "G"}, {"layer.red", "layer.green", "layer.blue"}, {"depth"}};
     for (const std::vector<std::string>& names : sets) {
         for (const Imf::PixelType type : {Imf::HALF, Imf::FLOAT})
-            EXPECT_TRUE(read(exr_file({70, 41}, names, type, Imf::DWAB_COMPRESSION))) << names[0];
+            EXPECT_TRUE(read_dwa(exr_file({70, 41}, names, type, Imf::DWAB_COMPRESSION))) << names[0];
     }
 }
 
@@ -68,7 +68,7 @@ TEST(ExrDwa, ShortBuffersAreDamage) {
         const Bytes sound = exr_file({64, 32}, names, Imf::HALF, Imf::DWAA_COMPRESSION);
         const std::size_t head = first_chunk(sound);
         ASSERT_GT(head, 300u);
-        ASSERT_TRUE(read(sound));
+        ASSERT_TRUE(read_dwa(sound));
         enum : std::size_t {
             rest_bytes = 1,
             rest_packed,
@@ -93,7 +93,7 @@ TEST(ExrDwa, ShortBuffersAreDamage) {
             {"no AC", changed({{ac_packed, 0}, {dc_packed, 0}, {dc_count, 0}})},
         };
         for (const auto& [name, bytes] : cases) {
-            const auto image = read(bytes);
+            const auto image = read_dwa(bytes);
             ASSERT_FALSE(image) << name;
             EXPECT_EQ(image.error().code, ErrorCode::bad_data) << name;
         }

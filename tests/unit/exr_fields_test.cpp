@@ -17,15 +17,15 @@ namespace {
 using reference::ExrAttribute;
 using reference::ExrFile;
 
-constexpr int kWidth = 5, kHeight = 3;
+constexpr int kFieldsWidth = 5, kFieldsHeight = 3;
 
 float value_of(int i, int j) { return static_cast<float>(i * 3 - j * 5) / 16.0f; }
 
 // One channel of floats.
 std::string rows() {
     std::string bytes;
-    for (int j = 0; j < kHeight; ++j) {
-        for (int i = 0; i < kWidth; ++i) {
+    for (int j = 0; j < kFieldsHeight; ++j) {
+        for (int i = 0; i < kFieldsWidth; ++i) {
             std::uint32_t bits = 0;
             const float value = value_of(i, j);
             std::memcpy(&bits, &value, sizeof bits);
@@ -36,8 +36,8 @@ std::string rows() {
 }
 
 std::vector<ExrFile> plain_files() {
-    return {reference::exr_scan_lines(kWidth, kHeight, {{"Y", 2}}, rows()),
-            reference::exr_tile(kWidth, kHeight, {{"Y", 2}}, rows())};
+    return {reference::exr_scan_lines(kFieldsWidth, kFieldsHeight, {{"Y", 2}}, rows()),
+            reference::exr_tile(kFieldsWidth, kFieldsHeight, {{"Y", 2}}, rows())};
 }
 
 InputFile input_of(const ExrFile& file) {
@@ -53,9 +53,9 @@ ReadOptions limited() {
 }
 
 bool is_plain(const Image& image) {
-    if (image.extent() != Extent{kWidth, kHeight} || image.planes.size() != 1) return false;
-    for (int j = 0; j < kHeight; ++j) {
-        for (int i = 0; i < kWidth; ++i) {
+    if (image.extent() != Extent{kFieldsWidth, kFieldsHeight} || image.planes.size() != 1) return false;
+    for (int j = 0; j < kFieldsHeight; ++j) {
+        for (int i = 0; i < kFieldsWidth; ++i) {
             if (image.planes[0].at(i, j) != value_of(i, j)) return false;
         }
     }

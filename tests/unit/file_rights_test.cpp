@@ -27,7 +27,7 @@ struct Entry {
     std::uint16_t tag, rights;
     std::uint32_t id = 0xffffffff;
 };
-constexpr std::uint16_t kOwner = 1, kUser = 2, kGroup = 4, kNamedGroup = 8, kMask = 16, kOther = 32;
+constexpr std::uint16_t kOwner = 1, kUser = 2, kOwningGroup = 4, kNamedGroup = 8, kMask = 16, kOther = 32;
 
 // In the form in which Linux stores it; setfacl makes the same.
 std::string acl(const std::vector<Entry>& entries) {
@@ -39,7 +39,7 @@ std::string acl(const std::vector<Entry>& entries) {
     return bytes;
 }
 
-const std::string kOneUser = acl({{kOwner, 6}, {kUser, 6, 1234}, {kGroup, 0}, {kMask, 6}, {kOther, 0}});
+const std::string kOneUser = acl({{kOwner, 6}, {kUser, 6, 1234}, {kOwningGroup, 0}, {kMask, 6}, {kOther, 0}});
 
 class FileRights : public testing::Test {
 protected:
@@ -110,13 +110,14 @@ TEST_F(FileRights, TheFoldersAclIsNotForAFileThatHadNone) {
 TEST(FileRightsWithoutAcl, NobodyHasMoreThanBefore) {
     // The group itself had no rights.
     EXPECT_EQ(without(0660, kOneUser), 0600u);
-    EXPECT_EQ(without(0664, acl({{kOwner, 6}, {kUser, 6, 1}, {kGroup, 4}, {kMask, 6}, {kOther, 4}})), 0644u);
+    EXPECT_EQ(without(0664, acl({{kOwner, 6}, {kUser, 6, 1}, {kOwningGroup, 4}, {kMask, 6}, {kOther, 4}})), 0644u);
     // The mask removes rights from the group.
-    EXPECT_EQ(without(0640, acl({{kOwner, 6}, {kUser, 6, 1}, {kGroup, 6}, {kMask, 4}, {kOther, 0}})), 0640u);
+    EXPECT_EQ(without(0640, acl({{kOwner, 6}, {kUser, 6, 1}, {kOwningGroup, 6}, {kMask, 4}, {kOther, 0}})), 0640u);
     // A user who was denied by name now counts as one of the others, or of the group.
-    EXPECT_EQ(without(0664, acl({{kOwner, 6}, {kUser, 0, 1}, {kGroup, 6}, {kMask, 6}, {kOther, 4}})), 0600u);
-    EXPECT_EQ(without(0664, acl({{kOwner, 6}, {kGroup, 6}, {kNamedGroup, 0, 1}, {kMask, 6}, {kOther, 4}})), 0660u);
-    EXPECT_EQ(without(04755, acl({{kOwner, 7}, {kGroup, 5}, {kOther, 5}})), 04755u);
+    EXPECT_EQ(without(0664, acl({{kOwner, 6}, {kUser, 0, 1}, {kOwningGroup, 6}, {kMask, 6}, {kOther, 4}})), 0600u);
+    EXPECT_EQ(without(0664, acl({{kOwner, 6}, {kOwningGroup, 6}, {kNamedGroup, 0, 1}, {kMask, 6}, {kOther, 4}})),
+              0660u);
+    EXPECT_EQ(without(04755, acl({{kOwner, 7}, {kOwningGroup, 5}, {kOther, 5}})), 04755u);
 }
 
 TEST(FileRightsWithoutAcl, OfWhatIsNotUnderstoodTheOwnerHasRights) {

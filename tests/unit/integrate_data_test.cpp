@@ -96,7 +96,7 @@ double error_of(const Plane<float>& is, const Plane<float>& truth, Wrap wrap) {
     return high > low ? largest / static_cast<double>(high - low) : largest;
 }
 
-double round_trip_error(const HeightField& field, const BakeOptions& with = {}) {
+double error_of_round_trip(const HeightField& field, const BakeOptions& with = {}) {
     const auto map = bake(field, with);
     IntegrateOptions options;
     options.bake = with;
@@ -115,7 +115,7 @@ TEST(IntegrateData, KernelsThatSeeEverythingGiveRealHeightsBackInEveryWrap) {
         for (const GradientKernel kernel : kExact) {
             for (const auto& wrap : kWrapNames) {
                 piece.wrap_x = piece.wrap_y = wrap.value;
-                EXPECT_LT(round_trip_error(piece, {kernel, 1.0f}), kLimit)
+                EXPECT_LT(error_of_round_trip(piece, {kernel, 1.0f}), kLimit)
                     << path << " " << name_of(kGradientKernelNames, kernel) << " " << wrap.name;
             }
         }
@@ -129,7 +129,7 @@ TEST(IntegrateData, WholeMapsComeBackApartFromWhatAlternates) {
         for (const auto& wrap : kWrapNames) {
             if (wrap.value != Wrap::repeat && field.height.extent().texels() > 4 << 20) continue;  // takes seconds
             field.wrap_x = field.wrap_y = wrap.value;
-            EXPECT_LT(round_trip_error(field), kLimit) << path << " " << wrap.name;
+            EXPECT_LT(error_of_round_trip(field), kLimit) << path << " " << wrap.name;
         }
     }
 }

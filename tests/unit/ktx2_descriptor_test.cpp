@@ -13,7 +13,7 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 
-std::uint32_t field(const Bytes& bytes, std::size_t offset) { return load_u32(bytes.data() + offset); }
+std::uint32_t descriptor_field(const Bytes& bytes, std::size_t offset) { return load_u32(bytes.data() + offset); }
 
 // A sample of a descriptor: first word (bit offset, bit length - 1, channel with qualifiers), lower, upper.
 struct Sample {
@@ -24,16 +24,16 @@ void expect_descriptor(Format format, std::uint32_t model, std::uint32_t block, 
                        const std::vector<Sample>& samples) {
     const Bytes descriptor = data_format_descriptor(format);
     ASSERT_EQ(descriptor.size(), 28 + 16 * samples.size());
-    EXPECT_EQ(field(descriptor, 0), descriptor.size());
-    EXPECT_EQ(field(descriptor, 4), 0u);
-    EXPECT_EQ(field(descriptor, 8), 2u | static_cast<std::uint32_t>(descriptor.size() - 4) << 16);
-    EXPECT_EQ(field(descriptor, 12), model | 0x10000u);  // no primaries, linear, straight alpha
-    EXPECT_EQ(field(descriptor, 16), block);
-    EXPECT_EQ(field(descriptor, 20), bytes);
+    EXPECT_EQ(descriptor_field(descriptor, 0), descriptor.size());
+    EXPECT_EQ(descriptor_field(descriptor, 4), 0u);
+    EXPECT_EQ(descriptor_field(descriptor, 8), 2u | static_cast<std::uint32_t>(descriptor.size() - 4) << 16);
+    EXPECT_EQ(descriptor_field(descriptor, 12), model | 0x10000u);  // no primaries, linear, straight alpha
+    EXPECT_EQ(descriptor_field(descriptor, 16), block);
+    EXPECT_EQ(descriptor_field(descriptor, 20), bytes);
     for (std::size_t k = 0; k < samples.size(); ++k) {
-        EXPECT_EQ(field(descriptor, 28 + 16 * k), samples[k].word);
-        EXPECT_EQ(field(descriptor, 36 + 16 * k), samples[k].lower);
-        EXPECT_EQ(field(descriptor, 40 + 16 * k), samples[k].upper);
+        EXPECT_EQ(descriptor_field(descriptor, 28 + 16 * k), samples[k].word);
+        EXPECT_EQ(descriptor_field(descriptor, 36 + 16 * k), samples[k].lower);
+        EXPECT_EQ(descriptor_field(descriptor, 40 + 16 * k), samples[k].upper);
     }
 }
 

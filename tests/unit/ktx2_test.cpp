@@ -170,6 +170,21 @@ TEST(Ktx2, TellsUnsupportedFromDamaged) {
     EXPECT_EQ(code_with(kLevel0At + 8, 63), "bad-data");
 }
 
+TEST(Ktx2, TellsUastcWithoutAlpha) {
+    const auto reason = [](int model, int channel) {
+        Bytes file = encode(patterned_texture(Format::bc5_unorm, {8, 8}, 1));
+        const auto descriptor = std::to_integer<std::size_t>(file[48]);
+        set_field(file, kVkFormatAt, 0);
+        file[descriptor + 12] = static_cast<std::byte>(model);
+        file[descriptor + 31] = static_cast<std::byte>(channel);
+        return decode_bytes(file).error().reason;
+    };
+    for (const int channel : {0, 4}) EXPECT_EQ(reason(166, channel), kUastcWithoutAlpha);  // RGB, RRR
+    for (const int channel : {3, 5})                                                       // RGBA, RRRG
+        EXPECT_NE(reason(166, channel).find("ktx transcode"), std::string::npos);
+    EXPECT_NE(reason(132, 0).find("ktx transcode"), std::string::npos);
+}
+
 TEST(Ktx2, RejectsEveryTruncation) {
     const Bytes file = encode(encoded_texture(Encoding::rgb8, {9, 5}, 4));
     for (std::size_t size = 0; size < file.size(); ++size) {

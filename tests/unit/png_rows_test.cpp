@@ -24,8 +24,8 @@ using reference::PngHeader;
 
 const std::string kData = TEX_SOURCE_DIR "/../shared/data/";
 
-constexpr std::pair<unsigned, unsigned> kKinds[] = {{1, 0}, {2, 0}, {4, 0}, {8, 0}, {16, 0}, {8, 2}, {16, 2}, {1, 3},
-                                                    {2, 3}, {4, 3}, {8, 3}, {8, 4}, {16, 4}, {8, 6}, {16, 6}};
+constexpr std::pair<unsigned, unsigned> kRowKinds[] = {{1, 0}, {2, 0}, {4, 0}, {8, 0}, {16, 0}, {8, 2}, {16, 2}, {1, 3},
+                                                       {2, 3}, {4, 3}, {8, 3}, {8, 4}, {16, 4}, {8, 6}, {16, 6}};
 
 // How texels are compressed. Strategies give blocks of every type: stored, with fixed and with dynamic codes.
 struct Packing {
@@ -53,14 +53,14 @@ std::string packed(const std::string& bytes, const Packing& packing = {}) {
 }
 
 // Waves and noise; some texels are those that tRNS hides.
-unsigned sample_of(const PngHeader& header, unsigned x, unsigned y, unsigned c) {
+unsigned row_sample(const PngHeader& header, unsigned x, unsigned y, unsigned c) {
     const unsigned noise = (x * 40503u + y * 30011u + c * 7919u) >> 3 & 7u;
     return (x * 3 + y * 5 + c * 17 + noise * (header.bits == 16 ? 131 : 1)) & ((1u << header.bits) - 1);
 }
 
 std::string texels_of(const PngHeader& header, unsigned filter = 0) {
     return reference::png_texels(header, filter,
-                                 [&](unsigned x, unsigned y, unsigned c) { return sample_of(header, x, y, c); });
+                                 [&](unsigned x, unsigned y, unsigned c) { return row_sample(header, x, y, c); });
 }
 
 std::string big_endian16(unsigned value) { return {static_cast<char>(value >> 8), static_cast<char>(value)}; }
@@ -79,7 +79,7 @@ std::vector<PngChunk> begin_of(const PngHeader& header, bool transparent) {
     } else if (transparent && header.color_type < 4) {
         std::string hidden;
         for (unsigned c = 0; c < reference::png_samples(header.color_type); ++c)
-            hidden += big_endian16(sample_of(header, 0, 0, c));
+            hidden += big_endian16(row_sample(header, 0, 0, c));
         chunks.push_back({"tRNS", hidden});
     }
     return chunks;
@@ -128,7 +128,7 @@ std::string name_of_kind(const PngHeader& header, bool transparent) {
 
 TEST(PngRows, TexelsOfEveryKindAndSizeAreThoseOfLibpng) {
     unsigned k = 0;
-    for (const auto& [bits, color_type] : kKinds) {
+    for (const auto& [bits, color_type] : kRowKinds) {
         for (const bool transparent : {false, true}) {
             for (unsigned size = 1; size <= 40; ++size, ++k) {
                 const PngHeader header{size, 1 + (size * 7 + bits) % 40, bits, color_type, 0, 0, 0};
@@ -146,7 +146,7 @@ TEST(PngRows, TexelsOfEveryKindAndSizeAreThoseOfLibpng) {
 
 TEST(PngRows, LargerPicturesAreThoseOfLibpng) {
     unsigned k = 0;
-    for (const auto& [bits, color_type] : kKinds) {
+    for (const auto& [bits, color_type] : kRowKinds) {
         for (const PngHeader& header :
              {PngHeader{700, 33, bits, color_type, 0, 0, 0}, PngHeader{90, 260, bits, color_type, 0, 0, 0}}) {
             Packing packing = kPackings[k++ % (std::size(kPackings) - 1)];
@@ -160,7 +160,7 @@ TEST(PngRows, LargerPicturesAreThoseOfLibpng) {
 }
 
 TEST(PngRows, InterlacedPicturesAreReadByLibpng) {
-    for (const auto& [bits, color_type] : kKinds) {
+    for (const auto& [bits, color_type] : kRowKinds) {
         const std::string file = reference::write_png(picture({13, 9, bits, color_type, 0, 0, 1}, true));
         EXPECT_EQ(our_verdict(file).refused, "");
         expect_same(file, std::to_string(bits));

@@ -23,7 +23,7 @@
 namespace tex {
 namespace {
 
-const std::string kData = TEX_SOURCE_DIR "/../shared/data/";
+const std::string kSharedData = TEX_SOURCE_DIR "/../shared/data/";
 
 const std::vector<Format> kPngFormats = {Format::r8_unorm,  Format::rgb8_unorm,  Format::rgba8_unorm,
                                          Format::r16_unorm, Format::rgb16_unorm, Format::rgba16_unorm};
@@ -240,10 +240,10 @@ TEST(PngWrite, MissingRowsAreAnError) {
 }
 
 TEST(PngWrite, TakesNoMoreBytesThanLibpngOnRealMaps) {
-    if (!std::filesystem::exists(kData)) GTEST_SKIP() << "../shared/data is missing";
+    if (!std::filesystem::exists(kSharedData)) GTEST_SKIP() << "../shared/data is missing";
     std::size_t ours = 0, theirs = 0;
     for (const reference::RealMap& map : reference::real_maps()) {
-        const Result<Image> image = read_image(kData + map.path);
+        const Result<Image> image = read_image(kSharedData + map.path);
         if (!image || image->bits != 8 || image->planes.size() < 3) continue;
         Texture texture;
         texture.format = Format::rgb8_unorm;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rate-distortion optimisation: the promise, the size after zstd, and the same bytes everywhere. Angles are computed
-// here from decoded blocks, in double.
+// Rate-distortion optimisation: the promise, and the size after zstd. Angles are computed here from decoded blocks, in
+// double. rdo_bytes_test.cpp compares instruction sets.
 
 #include "rows/rdo_rows.h"
 
@@ -17,7 +17,6 @@
 
 #include "unit/packing.h"
 #include "unit/streams.h"
-#include "unit/targets.h"
 
 namespace tex {
 namespace {
@@ -88,7 +87,7 @@ NormalMap spikes(Extent extent) {
 TEST(Rdo, KeepsThePromiseForEveryEncodingAndReportsIt) {
     for (const Encoding encoding : kEncodings) {
         for (int which = 0; which < 3; ++which) {
-            const Extent extent{77, 50};  // blocks that lie partly outside
+            const Extent extent{37, 22};  // blocks that lie partly outside
             const MipChain chain = packing::chain_of(which == 0   ? packing::bumpy(extent, 5)
                                                      : which == 1 ? noise(extent)
                                                                   : spikes(extent));
@@ -119,7 +118,7 @@ TEST(Rdo, KeepsThePromiseForEveryEncodingAndReportsIt) {
 
 // The usual limit is four times the mean that is allowed, and 180 is none.
 TEST(Rdo, SmoothMapsStaySmoothUnlessThereIsNoLimit) {
-    const MipChain chain = packing::chain_of(packing::bumpy({128, 128}, 40));
+    const MipChain chain = packing::chain_of(packing::bumpy({64, 64}, 40));
     PackOptions options{Encoding::bc5};
     const std::vector<double> plain = angles_of(chain.levels[0], packing::pack_bytes(chain, options), options);
     const auto most_of = [&](float max) {
@@ -136,7 +135,7 @@ TEST(Rdo, SmoothMapsStaySmoothUnlessThereIsNoLimit) {
 
 TEST(Rdo, FilesAreSmallerAfterZstd) {
     for (const Encoding encoding : kEncodings) {
-        const MipChain chain = packing::chain_of(packing::bumpy({128, 128}, 5));
+        const MipChain chain = packing::chain_of(packing::bumpy({64, 64}, 5));
         PackOptions options{encoding};
         const auto size = [&] {
             WriteOptions write;
@@ -167,20 +166,6 @@ TEST(Rdo, ChangesNothingUnlessItIsAskedFor) {
     EXPECT_EQ(packing::pack_bytes(chain, options), colors);
 }
 
-TEST(Rdo, SameBytesOnEveryTarget) {
-    for (const Encoding encoding : kEncodings) {
-        const MipChain chain = packing::chain_of(packing::bumpy({68, 40}, 8));
-        PackOptions options{encoding};
-        options.rdo = {0.3f, 5.0f, 2048};
-        std::vector<std::byte> wanted;
-        on_every_target([&] {
-            const std::vector<std::byte> bytes = packing::pack_bytes(chain, options);
-            if (wanted.empty()) wanted = bytes;
-            EXPECT_EQ(bytes, wanted);
-        });
-    }
-}
-
 TEST(Rdo, BandsDependOnTheWidthOfTheBaseLevelAlone) {
     PackOptions options{Encoding::bc5};
     EXPECT_EQ(rdo_band_rows(options, 4096), 4);
@@ -196,11 +181,11 @@ TEST(Rdo, BandsDependOnTheWidthOfTheBaseLevelAlone) {
 
 class RdoStream : public StreamTest {};
 
-// Two bands in the base level, of which the second one is small, and two smaller levels.
-TEST_F(RdoStream, TheStreamWritesTheSameBytesOnEveryNumberOfThreads) {
+// Two bands in the base level, of which the second one is small, and a smaller level.
+TEST_F(RdoStream, ThreeThreadsStreamWhatOneWritesInMemory) {
     MipOptions mip;
-    mip.levels = 3;
-    const Result<MipChain> chain = build_mip_chain(spikes({512, 528}), mip);
+    mip.levels = 2;
+    const Result<MipChain> chain = build_mip_chain(spikes({512, 516}), mip);
     ASSERT_TRUE(chain);
     const Result<Texture> floats = pack(*chain, {Encoding::float_});
     ASSERT_TRUE(floats);
@@ -214,22 +199,20 @@ TEST_F(RdoStream, TheStreamWritesTheSameBytesOnEveryNumberOfThreads) {
     const Result<Source> source = read_normals(path("in.ktx2"));
     ASSERT_TRUE(source);
     RdoReport report;
-    const Result<Texture> texture = pack(source->chain, options.pack(source->info), {2, {}}, &report);
+    const Result<Texture> texture = pack(source->chain, options.pack(source->info), {1, {}}, &report);
     ASSERT_TRUE(texture);
     const auto wanted = encode_file(*texture, Container::dds);
     ASSERT_TRUE(wanted);
-    for (const int threads : {1, 3}) {
-        const auto packed = pack_file(path("in.ktx2"), path("out.dds"), Container::dds, options, {threads, {}});
-        ASSERT_TRUE(packed);
-        std::ifstream file(path("out.dds"), std::ios::binary);
-        const std::vector<char> bytes(std::istreambuf_iterator<char>(file), {});
-        ASSERT_EQ(bytes.size(), wanted->size());
-        EXPECT_TRUE(std::equal(bytes.begin(), bytes.end(), wanted->begin(),
-                               [](char a, std::byte b) { return static_cast<std::byte>(a) == b; }));
-        ASSERT_TRUE(packed->rdo);
-        EXPECT_EQ(packed->rdo->mean, report.mean);
-        EXPECT_EQ(packed->rdo->most_growth, report.most_growth);
-    }
+    const auto packed = pack_file(path("in.ktx2"), path("out.dds"), Container::dds, options, {3, {}});
+    ASSERT_TRUE(packed);
+    std::ifstream file(path("out.dds"), std::ios::binary);
+    const std::vector<char> bytes(std::istreambuf_iterator<char>(file), {});
+    ASSERT_EQ(bytes.size(), wanted->size());
+    EXPECT_TRUE(std::equal(bytes.begin(), bytes.end(), wanted->begin(),
+                           [](char a, std::byte b) { return static_cast<std::byte>(a) == b; }));
+    ASSERT_TRUE(packed->rdo);
+    EXPECT_EQ(packed->rdo->mean, report.mean);
+    EXPECT_EQ(packed->rdo->most_growth, report.most_growth);
 }
 
 }  // namespace

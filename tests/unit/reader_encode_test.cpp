@@ -16,20 +16,20 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 
-WriteOptions quick() {
+WriteOptions quick_write() {
     WriteOptions options;
     options.reader.reader_timeout = 20;
     return options;
 }
 
-void put(Bytes& bytes, std::uint32_t value, int count) {
+void put_value(Bytes& bytes, std::uint32_t value, int count) {
     for (int k = 0; k < count; ++k) bytes.push_back(static_cast<std::byte>(value >> (8 * k)));
 }
 
-Result<Image> read(const Bytes& bytes) {
+Result<Image> read_encoded(const Bytes& bytes) {
     Result<InputFile> file = InputFile::from_memory("test", bytes);
     if (!file) return file.error();
-    return read_all(open_reader_rows(*file, quick().reader));
+    return read_all(open_reader_rows(*file, quick_write().reader));
 }
 
 Texture texture_of(Format format, Extent extent) {
@@ -40,13 +40,13 @@ Texture texture_of(Format format, Extent extent) {
     for (std::int64_t k = 0; k < extent.texels() * info.channels; ++k) {
         const float v = static_cast<float>(k % 97) / 96.0f;
         if (info.sample == SampleKind::unorm) {
-            put(level.bytes, static_cast<std::uint32_t>(v * (info.bits == 8 ? 255.0f : 65535.0f)), info.bits / 8);
+            put_value(level.bytes, static_cast<std::uint32_t>(v * (info.bits == 8 ? 255.0f : 65535.0f)), info.bits / 8);
         } else if (info.bits == 16) {
-            put(level.bytes, static_cast<std::uint32_t>(k % 97) + 0x3800, 2);  // halves from 0.5 on
+            put_value(level.bytes, static_cast<std::uint32_t>(k % 97) + 0x3800, 2);  // halves from 0.5 on
         } else {
             std::uint32_t bits = 0;
             std::memcpy(&bits, &v, 4);
-            put(level.bytes, bits, 4);
+            put_value(level.bytes, bits, 4);
         }
     }
     texture.levels.push_back(std::move(level));
@@ -62,14 +62,14 @@ Bytes repack(const Image& image, Format format) {
             for (const Plane<float>& plane : image.planes) {
                 const float v = plane.at(i, j);
                 if (info.sample == SampleKind::unorm) {
-                    put(bytes, static_cast<std::uint32_t>(std::lround(v * (info.bits == 8 ? 255.0f : 65535.0f))),
-                        info.bits / 8);
+                    put_value(bytes, static_cast<std::uint32_t>(std::lround(v * (info.bits == 8 ? 255.0f : 65535.0f))),
+                              info.bits / 8);
                 } else if (info.bits == 16) {
-                    put(bytes, static_cast<std::uint32_t>(std::lround((v - 0.5f) * 2048.0f)) + 0x3800, 2);
+                    put_value(bytes, static_cast<std::uint32_t>(std::lround((v - 0.5f) * 2048.0f)) + 0x3800, 2);
                 } else {
                     std::uint32_t bits = 0;
                     std::memcpy(&bits, &v, 4);
-                    put(bytes, bits, 4);
+                    put_value(bytes, bits, 4);
                 }
             }
         }
@@ -88,9 +88,9 @@ TEST(ReaderEncode, WritesExactlyWhatItReads) {
     for (const auto& [container, format] : pairs) {
         SCOPED_TRACE(testing::Message() << name_of(kContainerNames, container) << " " << name_of(kFormatNames, format));
         const Texture texture = texture_of(format, {131, 67});
-        const Result<Bytes> bytes = encode_with_reader(texture, container, quick());
+        const Result<Bytes> bytes = encode_with_reader(texture, container, quick_write());
         ASSERT_TRUE(bytes) << bytes.error().message();
-        const Result<Image> image = read(*bytes);
+        const Result<Image> image = read_encoded(*bytes);
         ASSERT_TRUE(image) << image.error().message();
         EXPECT_EQ(image->bits, format_info(format).bits);
         EXPECT_EQ(repack(*image, format), texture.levels.front().bytes);
@@ -103,15 +103,15 @@ TEST(ReaderEncode, JpegStaysClose) {
     Level level{{64, 64}, {}};
     for (int j = 0; j < 64; ++j) {
         for (int i = 0; i < 64; ++i) {
-            put(level.bytes, static_cast<std::uint32_t>(2 * i + 64), 1);
-            put(level.bytes, static_cast<std::uint32_t>(2 * j + 64), 1);
-            put(level.bytes, 240, 1);
+            put_value(level.bytes, static_cast<std::uint32_t>(2 * i + 64), 1);
+            put_value(level.bytes, static_cast<std::uint32_t>(2 * j + 64), 1);
+            put_value(level.bytes, 240, 1);
         }
     }
     texture.levels.push_back(level);
-    const Result<Bytes> bytes = encode_with_reader(texture, Container::jpeg, quick());
+    const Result<Bytes> bytes = encode_with_reader(texture, Container::jpeg, quick_write());
     ASSERT_TRUE(bytes) << bytes.error().message();
-    const Result<Image> image = read(*bytes);
+    const Result<Image> image = read_encoded(*bytes);
     ASSERT_TRUE(image) << image.error().message();
     for (int j = 0; j < 64; ++j) {
         for (int i = 0; i < 64; ++i) {
@@ -126,10 +126,10 @@ TEST(ReaderEncode, EqualTexturesGiveEqualBytesWithoutDates) {
     const Container containers[] = {Container::tiff, Container::tga, Container::bmp, Container::jpeg};
     std::vector<Bytes> first;
     for (const Container container : containers)
-        first.push_back(encode_with_reader(texture, container, quick()).value());
+        first.push_back(encode_with_reader(texture, container, quick_write()).value());
     usleep(1'100'000);  // long enough that a clock would show a different second
     for (std::size_t k = 0; k < first.size(); ++k) {
-        EXPECT_EQ(encode_with_reader(texture, containers[k], quick()).value(), first[k]);
+        EXPECT_EQ(encode_with_reader(texture, containers[k], quick_write()).value(), first[k]);
         const std::string text(reinterpret_cast<const char*>(first[k].data()), first[k].size());
         for (const char* trace : {"OpenImageIO", "oiio", "tex-reader", "/proc"}) {
             EXPECT_EQ(text.find(trace), std::string::npos) << trace;
@@ -143,7 +143,7 @@ TEST(ReaderEncode, RefusesWhatTheContainerCannotHold) {
         {Container::bmp, Format::rgb32_float},  {Container::tiff, Format::bc3_unorm},
         {Container::tiff, Format::rg8_unorm},   {Container::png, Format::rgb8_unorm}};
     for (const auto& [container, format] : pairs) {
-        const Result<Bytes> bytes = encode_with_reader(texture_of(format, {4, 4}), container, quick());
+        const Result<Bytes> bytes = encode_with_reader(texture_of(format, {4, 4}), container, quick_write());
         ASSERT_FALSE(bytes);
         EXPECT_EQ(bytes.error().code, ErrorCode::unsupported) << bytes.error().reason;
     }

@@ -316,7 +316,7 @@ TEST(ReaderZygote, EndsWithItsReadersWhenItsParentIsKilled) {
         for (;;) pause();
     }
     pid_t ids[2] = {-1, -1};
-    EXPECT_EQ(read(ends[0], ids, sizeof ids), static_cast<ssize_t>(sizeof ids));
+    EXPECT_EQ(::read(ends[0], ids, sizeof ids), static_cast<ssize_t>(sizeof ids));
     for (const pid_t id : ids) EXPECT_TRUE(id > 0 && is_running(id)) << id;
     kill(parent, SIGKILL);
     waitpid(parent, nullptr, 0);

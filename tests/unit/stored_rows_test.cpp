@@ -17,16 +17,16 @@
 namespace tex {
 namespace {
 
-using Row = std::vector<float>;
+using FloatRow = std::vector<float>;
 
 constexpr int kWidths[] = {1, 2, 15, 16, 17, 33, 257};
 constexpr VectorLimits kLimits{1.03f, 0.01f, 0.97f, 1.03f, -0.016f, -0.1f, 127.0f / 255.0f, 128.0f / 255.0f};
 
 // Codes of 8 bits with what damaged files hold; some texels are flat, one in x only.
-Row random_row(std::mt19937& random, int width) {
+FloatRow random_row(std::mt19937& random, int width) {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
     constexpr float kOdd[] = {kNan, kInfinity, -kInfinity, 1e30f, -0.0f, 3.0e38f, 2.5f};
-    Row row(static_cast<std::size_t>(width));
+    FloatRow row(static_cast<std::size_t>(width));
     for (float& value : row) {
         const auto kind = random() % 20;
         value = kind < 2    ? kOdd[random() % std::size(kOdd)]
@@ -37,7 +37,7 @@ Row random_row(std::mt19937& random, int width) {
 }
 
 struct Rows {
-    Row x, y, z;
+    FloatRow x, y, z;
     bool has_z, is_signed;
     [[nodiscard]] StoredRow row() const {
         return {x.data(), y.data(), has_z ? z.data() : nullptr, is_signed ? 1.0f : 2.0f, is_signed ? 0.0f : -1.0f};
@@ -127,7 +127,7 @@ TEST(StoredRows, VectorsAreThoseOfPlainLoopsOnEveryTarget) {
     for_all_rows([](const Rows& rows, int width) {
         const StoredRow row = rows.row();
         const auto size = static_cast<std::size_t>(width);
-        Row x(size), y(size), z(size);
+        FloatRow x(size), y(size), z(size);
         restore_stored_vectors(row, width, x.data(), y.data(), z.data());
         for (std::size_t i = 0; i < size; ++i) {
             float nx = row.x[i] * row.scale + row.offset, ny = row.y[i] * row.scale + row.offset;
@@ -148,12 +148,12 @@ TEST(StoredRows, VectorsAreThoseOfPlainLoopsOnEveryTarget) {
 TEST(StoredRows, AveragesAreThoseOfPlainLoopsOnEveryTarget) {
     std::mt19937 random(5);
     for (const int width : kWidths) {
-        Row upper(static_cast<std::size_t>(2 * width)), lower(upper.size());
-        for (Row* row : {&upper, &lower}) {
+        FloatRow upper(static_cast<std::size_t>(2 * width)), lower(upper.size());
+        for (FloatRow* row : {&upper, &lower}) {
             for (float& value : *row) value = static_cast<float>(random() % 100'000) / 99'999.0f;
         }
         on_every_target([&] {
-            Row out(static_cast<std::size_t>(width));
+            FloatRow out(static_cast<std::size_t>(width));
             average_pairs(upper.data(), lower.data(), width, out.data());
             for (std::size_t i = 0; i < out.size(); ++i)
                 EXPECT_EQ(out[i], (upper[2 * i] + upper[2 * i + 1] + lower[2 * i] + lower[2 * i + 1]) * 0.25f) << i;

@@ -12,15 +12,15 @@
 namespace tex {
 namespace {
 
-struct Row {
+struct Rgba {
     std::vector<float> r, g, b, a;
-    explicit Row(std::size_t width) : r(width), g(width), b(width), a(width) {}
+    explicit Rgba(std::size_t width) : r(width), g(width), b(width), a(width) {}
 };
 
 float code(double n) { return static_cast<float>(n * 0.5 + 0.5); }
 
 // x, y, z in R, G, B; or x in A and y in G.
-void set(Row& row, int i, int j, bool rgb) {
+void set(Rgba& row, int i, int j, bool rgb) {
     const auto k = static_cast<std::size_t>(i);
     const double x = 0.5 * std::sin(0.3 * i + 0.1 * j), y = 0.4 * std::cos(0.2 * j - 0.1 * i);
     row.r[k] = rgb ? code(x) : 1.0f;
@@ -34,7 +34,7 @@ template <class IsRgb>
 std::string layout(Extent extent, int rows, IsRgb&& is_rgb) {
     SwizzleEvidence evidence(extent, Format::rgba8_unorm);
     for (int j = 0; j < rows; ++j) {
-        Row row(static_cast<std::size_t>(extent.width));
+        Rgba row(static_cast<std::size_t>(extent.width));
         for (int i = 0; i < extent.width; ++i) set(row, i, j, is_rgb(i, j));
         evidence.add_row(j, {row.r.data(), row.g.data(), row.b.data(), row.a.data()});
     }

@@ -24,8 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kHead = "libtex-cache 1 ";
-constexpr std::size_t kHeadBytes = kHead.size() + 64 + 1;
+constexpr std::string_view kCacheHead = "libtex-cache 1 ";
+constexpr std::size_t kCacheHeadBytes = kCacheHead.size() + 64 + 1;
 
 // If each level has its file, there is an entry for each of them, and one with their number.
 Digest key_of_part(const Digest& key, const std::string& part) {
@@ -52,15 +52,15 @@ std::optional<std::string> Cache::read(const Digest& key) {
     const std::string from = entry(key);
     auto text = read_text_file(from);
     if (!text) return std::nullopt;
-    const std::string_view body = std::string_view(*text).substr(std::min(kHeadBytes, text->size()));
-    if (!text->starts_with(kHead) || text->size() < kHeadBytes || (*text)[kHeadBytes - 1] != '\n' ||
-        std::string_view(*text).substr(kHead.size(), 64) != digest_of(body).hex()) {
+    const std::string_view body = std::string_view(*text).substr(std::min(kCacheHeadBytes, text->size()));
+    if (!text->starts_with(kCacheHead) || text->size() < kCacheHeadBytes || (*text)[kCacheHeadBytes - 1] != '\n' ||
+        std::string_view(*text).substr(kCacheHead.size(), 64) != digest_of(body).hex()) {
         ++damaged_;
         return std::nullopt;
     }
     // The time of the last use, for shrink(). It does not matter if this fails.
     std::ignore = utimensat(AT_FDCWD, from.c_str(), nullptr, 0);
-    text->erase(0, kHeadBytes);
+    text->erase(0, kCacheHeadBytes);
     return std::move(*text);
 }
 
@@ -69,7 +69,7 @@ Result<void> Cache::write(const Digest& key, const std::string& bytes) const {
     if (auto created = create_folders_of(to); !created) return created;
     WriteOptions options;
     options.sync = false;  // a damaged entry is found when it is read
-    return write_text_file(to, std::string(kHead) + digest_of(bytes).hex() + "\n" + bytes, options);
+    return write_text_file(to, std::string(kCacheHead) + digest_of(bytes).hex() + "\n" + bytes, options);
 }
 
 Result<std::vector<std::string>> Cache::fetch(const Digest& key, const std::string& output, const WriteOptions& write) {

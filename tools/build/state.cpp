@@ -18,7 +18,7 @@
 namespace tex::cli {
 namespace {
 
-constexpr std::string_view kHead = "build-normals state 1\n";
+constexpr std::string_view kStateHead = "build-normals state 1\n";
 
 // Tabs and line feeds separate fields and lines.
 void add_name(std::string& text, std::string_view name) {
@@ -152,7 +152,7 @@ std::optional<FileStamp> FileStamp::of(const std::string& path) {
 }
 
 std::string BuildState::text(Memos memos_of) const {
-    std::string text(kHead);
+    std::string text(kStateHead);
     for (const auto& [name, memo] : memos) {
         if (!memo.is_used && memos_of == Memos::used) continue;
         const FileStamp& stamp = memo.stamp;
@@ -179,11 +179,11 @@ std::string BuildState::text(Memos memos_of) const {
 
 BuildState BuildState::parse(std::string_view text) {
     constexpr std::size_t kTail = 4 + 64 + 1;  // "end", a tab, the digest of what is before, a line feed
-    if (!text.starts_with(kHead) || text.size() < kHead.size() + kTail) return {};
+    if (!text.starts_with(kStateHead) || text.size() < kStateHead.size() + kTail) return {};
     const std::string_view tail = text.substr(text.size() - kTail);
     text.remove_suffix(kTail);
     if (!tail.starts_with("end\t") || !tail.ends_with('\n') || digest_of(text).hex() != tail.substr(4, 64)) return {};
-    text.remove_prefix(kHead.size());
+    text.remove_prefix(kStateHead.size());
     BuildState state;
     while (!text.empty()) {
         const std::size_t end = text.find('\n');

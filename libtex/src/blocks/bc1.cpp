@@ -62,11 +62,6 @@ void decode_bc2_alpha(const std::byte* block, float a[16]) {
 
 namespace {
 
-struct Nearest {
-    int index;
-    std::int64_t squared;
-};
-
 // The palette in the order of its indices, the greater endpoint first, in units of 1/kGreenErrorUnit of a code.
 void make_palette(GreenEndpoints e, std::int64_t palette[4]) {
     const std::int64_t low = widen_green(e.e0);
@@ -77,22 +72,13 @@ void make_palette(GreenEndpoints e, std::int64_t palette[4]) {
     palette[3] = (high + 2 * low) * kCodeUnit;
 }
 
-Nearest nearest(const std::int64_t palette[4], std::int32_t value) {
-    Nearest best{0, std::numeric_limits<std::int64_t>::max()};
-    for (int k = 0; k < 4; ++k) {
-        const std::int64_t d = std::int64_t{3} * value - palette[k];
-        if (d * d < best.squared) best = {k, d * d};
-    }
-    return best;
-}
-
 // The error, or any number above `limit` if the error is greater than `limit`.
 std::int64_t error_up_to(std::int64_t limit, const BlockTexels& texels, GreenEndpoints endpoints) {
     std::int64_t palette[4];
     make_palette(endpoints, palette);
     std::int64_t sum = 0;
     for (int k = 0; k < 16 && sum <= limit; ++k) {
-        if (texels.mask >> k & 1) sum += nearest(palette, texels.values[k]).squared;
+        if (texels.mask >> k & 1) sum += nearest(palette, std::int64_t{3} * texels.values[k]).squared;
     }
     return sum;
 }
@@ -139,7 +125,7 @@ void write_green(const BlockTexels& texels, GreenEndpoints endpoints, std::byte*
     const int c1 = word(endpoints.e0);
     std::uint32_t indices = 0;
     for (int k = 0; k < 16; ++k) {
-        indices |= static_cast<std::uint32_t>(nearest(palette, texels.values[k]).index) << (2 * k);
+        indices |= static_cast<std::uint32_t>(nearest(palette, std::int64_t{3} * texels.values[k]).index) << (2 * k);
     }
     block[0] = static_cast<std::byte>(c0);
     block[1] = static_cast<std::byte>(c0 >> 8);

@@ -64,27 +64,13 @@ void make_palette(Bc4Codes codes, Bc4Endpoints e, std::int64_t palette[8]) {
     }
 }
 
-struct Nearest {
-    int index;
-    std::int64_t squared;
-};
-
-Nearest nearest(const std::int64_t palette[8], std::int32_t value) {
-    Nearest best{0, std::numeric_limits<std::int64_t>::max()};
-    for (int k = 0; k < 8; ++k) {
-        const std::int64_t d = value * (kBc4ErrorUnit / kCodeUnit) - palette[k];
-        if (d * d < best.squared) best = {k, d * d};
-    }
-    return best;
-}
-
 // The error, or any number above `limit` if the error is greater than `limit`.
 std::int64_t error_up_to(std::int64_t limit, const BlockTexels& texels, Bc4Codes codes, Bc4Endpoints endpoints) {
     std::int64_t palette[8];
     make_palette(codes, endpoints, palette);
     std::int64_t sum = 0;
     for (int k = 0; k < 16 && sum <= limit; ++k) {
-        if (texels.mask >> k & 1) sum += nearest(palette, texels.values[k]).squared;
+        if (texels.mask >> k & 1) sum += nearest(palette, texels.values[k] * (kBc4ErrorUnit / kCodeUnit)).squared;
     }
     return sum;
 }
@@ -133,7 +119,8 @@ void write_bc4(const BlockTexels& texels, Bc4Codes codes, Bc4Endpoints endpoints
     block[1] = static_cast<std::byte>(endpoints.e1 - codes.bias);
     std::uint64_t indices = 0;
     for (int k = 0; k < 16; ++k) {
-        indices |= static_cast<std::uint64_t>(nearest(palette, texels.values[k]).index) << (3 * k);
+        indices |= static_cast<std::uint64_t>(nearest(palette, texels.values[k] * (kBc4ErrorUnit / kCodeUnit)).index)
+                   << (3 * k);
     }
     for (int k = 0; k < 6; ++k) block[2 + k] = static_cast<std::byte>(indices >> (8 * k));
 }

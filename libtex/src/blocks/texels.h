@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace tex {
 
@@ -23,6 +24,23 @@ inline std::int32_t to_code_units(float n, int top) {
     const float half_range = 0.5f * static_cast<float>(top) * static_cast<float>(kCodeUnit);
     const float clamped = std::fmin(std::fmax(n, -1.0f), 1.0f);
     return static_cast<std::int32_t>(std::floor(clamped * half_range + half_range + 0.5f));
+}
+
+// An entry of a palette, and the square of its distance to what was wanted.
+struct Nearest {
+    int index;
+    std::int64_t squared;
+};
+
+// The nearest entry, the first if several are equally near.
+template <int N>
+Nearest nearest(const std::int64_t (&palette)[N], std::int64_t wanted) {
+    Nearest best{0, std::numeric_limits<std::int64_t>::max()};
+    for (int k = 0; k < N; ++k) {
+        const std::int64_t d = wanted - palette[k];
+        if (d * d < best.squared) best = {k, d * d};
+    }
+    return best;
 }
 
 }  // namespace tex

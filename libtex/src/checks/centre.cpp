@@ -13,21 +13,21 @@
 namespace tex {
 namespace {
 
-constexpr int kBins = 1024;
+constexpr int kValueBins = 1024;
 constexpr float kBlack = 0.01f;
 
 double median_of(const Stored& stored, Component component) {
     const Plane<float>& x = stored.image->planes[static_cast<std::size_t>(stored.channel(Component::x))];
     const Plane<float>& y = stored.image->planes[static_cast<std::size_t>(stored.channel(Component::y))];
     const Plane<float>& plane = component == Component::x ? x : y;
-    std::vector<std::int64_t> bins(kBins);
+    std::vector<std::int64_t> bins(kValueBins);
     std::int64_t count = 0;
     for (const Rect& window : sample_windows(stored.extent())) {
         for (int j = window.y; j < window.y + window.height; ++j) {
             for (int i = window.x; i < window.x + window.width; ++i) {
                 const float value = plane.at(i, j);
                 if (!(std::max(x.at(i, j), y.at(i, j)) > kBlack) || !(value >= 0.0f && value <= 1.0f)) continue;
-                ++bins[static_cast<std::size_t>(value * static_cast<float>(kBins - 1))];
+                ++bins[static_cast<std::size_t>(value * static_cast<float>(kValueBins - 1))];
                 ++count;
             }
         }
@@ -35,7 +35,7 @@ double median_of(const Stored& stored, Component component) {
     if (count == 0) return 0.5;
     std::size_t bin = 0;
     for (std::int64_t below = bins[0]; 2 * below < count; below += bins[bin]) ++bin;
-    return static_cast<double>(bin) / (kBins - 1);
+    return static_cast<double>(bin) / (kValueBins - 1);
 }
 
 }  // namespace

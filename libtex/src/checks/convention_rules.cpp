@@ -12,7 +12,6 @@ namespace {
 
 // A neighbourhood of 3x3 regions counts as clear if its correlation is at least kLeastCorrelation and at least the
 // share kLeastAgreement of its evidence agrees.
-constexpr double kLeastCorrelation = 0.2;
 constexpr double kLeastAgreement = 0.8;
 constexpr std::size_t kLeastNeighbours = 4;
 constexpr double kLeastEnergy = 0.25;  // of the energy of the median neighbourhood
@@ -21,7 +20,6 @@ constexpr std::size_t kMixedRegions = 3;
 // Neighbourhoods with a smaller correlation are weak evidence, as those of UV islands are: more of them must disagree.
 constexpr double kClearCorrelation = 0.5;
 constexpr double kMixedShareSoftly = 0.25;
-constexpr double kLeastUsable = 0.5;  // share of texels with a normal; a few between texels without one prove nothing
 
 struct Neighbourhood {
     const CurlRegion* centre = nullptr;

@@ -11,13 +11,10 @@
 namespace tex {
 namespace {
 
-constexpr float kJump = 0.5f;  // a change of slope over two texels that counts as a jump
 constexpr int kWideMap = 512;
 
 // What makes the direction of green clear.
-constexpr double kLeastCorrelation = 0.2;
 constexpr double kLeastConfidence = 0.99;
-constexpr double kLeastUsable = 0.5;  // the share of texels that must hold a normal
 
 // Length of a region's edge in texels: maps of 128 texels and above have 16 regions or more.
 int region_size(Extent extent) { return std::min(extent.width, extent.height) >= kWideMap ? 64 : 32; }
@@ -35,8 +32,8 @@ CurlSums sum_region(const Slopes& s, int x0, int y0, int x1, int y1) {
             const float all = py + qx + px + qy;
             if (!(all == all)) continue;  // a neighbour has no normal
             // Jumps (the borders of UV islands, scratches) count as much as moderate changes, not as their square.
-            const float w = 1.0f / (kJump * kJump + py * py + qx * qx);
-            const float v = 1.0f / (kJump * kJump + px * px + qy * qy);
+            const float w = 1.0f / (kSlopeJump * kSlopeJump + py * py + qx * qx);
+            const float v = 1.0f / (kSlopeJump * kSlopeJump + px * px + qy * qy);
             sums.cross += static_cast<double>(w * py) * qx;
             sums.p_square += static_cast<double>(w * py) * py;
             sums.q_square += static_cast<double>(w * qx) * qx;

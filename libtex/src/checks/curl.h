@@ -19,6 +19,10 @@
 
 namespace tex {
 
+inline constexpr float kSlopeJump = 0.5f;         // a change of slope over two texels that counts as a jump
+inline constexpr double kLeastCorrelation = 0.2;  // smaller ones prove nothing
+inline constexpr double kLeastUsable = 0.5;       // the share of texels that must hold a normal to prove anything
+
 // Sums over texels. All results are ratios of these sums.
 struct CurlSums {
     double cross = 0.0;      // sum of dp/dy dq/dx, with y up as the file defines up

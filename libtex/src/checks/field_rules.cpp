@@ -12,7 +12,6 @@
 namespace tex {
 namespace {
 
-constexpr double kLeastUsable = 0.5;  // share of texels with a normal
 // Of the changes of p and q across their own directions. After a turn by the angle a, bumps without a preferred
 // direction have cos(2 a) / (1 + 2 sin(a)^2) left: 0.76 after 15 degrees.
 constexpr double kSoundCorrelation = 0.9;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "checks/grid.h"
-#include "blocks/extent.h"
 
 #include <algorithm>
 #include <array>
@@ -9,19 +8,15 @@
 #include <cstddef>
 #include <vector>
 
+#include "blocks/extent.h"
+#include "checks/median.h"
+
 namespace tex {
 namespace {
 
 // Blocks of half the size are as visible half-way between the borders as at the borders, and more than at the quarters.
 constexpr double kHalfStandsOut = 1.2;
 constexpr double kHalfAsMuch = 0.8;
-
-double median(std::vector<double>& values) {
-    if (values.empty()) return 0.0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 // The mean steps of one window along one axis: steps[k] is the step between line k and line k + 1.
 std::vector<double> mean_steps(const Plane<float>& plane, Rect window, bool columns) {

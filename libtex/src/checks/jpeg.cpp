@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "checks/median.h"
 #include "rows/math.h"
 
 namespace tex {
@@ -119,12 +120,6 @@ Step step_of(const Histogram& histogram) {
         if (strength >= most - kAsStrong && strength > 0.0) return {strength, step};
     }
     return {};
-}
-
-double median(std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 }  // namespace

@@ -12,8 +12,8 @@
 namespace tex {
 namespace {
 
-constexpr int kBins = 2048;  // of slopes from -1/2 to 1/2
-constexpr double kRange = 0.5;
+constexpr int kSlopeBins = 2048;  // of slopes from -1/2 to 1/2
+constexpr double kSlopeRange = 0.5;
 constexpr double kLeastRate = 16.0;  // teeth per unit of slope
 constexpr double kMostRate = 51.0;
 constexpr double kRateStep = 0.25;
@@ -24,9 +24,9 @@ void add_slopes(const Plane<float>& slopes, const Plane<float>& across, std::vec
     for (int j = 0; j < slopes.extent().height; ++j) {
         for (int i = 0; i < slopes.extent().width; ++i) {
             const float s = slopes.at(i, j);
-            if (!(std::abs(s) < static_cast<float>(kRange)) || std::abs(across.at(i, j)) > kSteep) continue;
-            const auto bin = static_cast<int>((s + static_cast<float>(kRange)) * static_cast<float>(kBins));
-            bins[static_cast<std::size_t>(std::clamp(bin, 0, kBins - 1))] += 1.0;
+            if (!(std::abs(s) < static_cast<float>(kSlopeRange)) || std::abs(across.at(i, j)) > kSteep) continue;
+            const auto bin = static_cast<int>((s + static_cast<float>(kSlopeRange)) * static_cast<float>(kSlopeBins));
+            bins[static_cast<std::size_t>(std::clamp(bin, 0, kSlopeBins - 1))] += 1.0;
         }
     }
 }
@@ -40,19 +40,19 @@ double count(const std::vector<double>& bins) {
 // Subtracts the average over one period of the slowest comb, and removes slopes near 0, because a flat map is not a
 // comb.
 std::vector<double> detail_of(const std::vector<double>& bins) {
-    constexpr int kRadius = static_cast<int>(kBins / kLeastRate / 2.0);
+    constexpr int kRadius = static_cast<int>(kSlopeBins / kLeastRate / 2.0);
     std::vector<double> weighted(bins.size()), detail(bins.size());
     double total = 0.0;
-    for (int k = 0; k < kBins; ++k) {
-        const double s = (k + 0.5) / kBins - kRange;
+    for (int k = 0; k < kSlopeBins; ++k) {
+        const double s = (k + 0.5) / kSlopeBins - kSlopeRange;
         weighted[static_cast<std::size_t>(k)] =
             bins[static_cast<std::size_t>(k)] * (math::exp(-s * s / (0.2 * 0.2)) - math::exp(-s * s / (0.03 * 0.03)));
         total += weighted[static_cast<std::size_t>(k)];
     }
-    for (int k = 0; k < kBins; ++k) {
+    for (int k = 0; k < kSlopeBins; ++k) {
         double sum = 0.0;
         int count = 0;
-        for (int n = std::max(0, k - kRadius); n <= std::min(kBins - 1, k + kRadius); ++n, ++count) {
+        for (int n = std::max(0, k - kRadius); n <= std::min(kSlopeBins - 1, k + kRadius); ++n, ++count) {
             sum += weighted[static_cast<std::size_t>(n)];
         }
         detail[static_cast<std::size_t>(k)] =
@@ -63,13 +63,14 @@ std::vector<double> detail_of(const std::vector<double>& bins) {
 
 // The number of teeth at multiples of `step` other than 0 that hold at least 1 % of the total of all these teeth.
 int count_teeth(const std::vector<double>& bins, double step) {
-    std::vector<double> teeth(static_cast<std::size_t>(2.0 * kRange / step) + 3);
+    std::vector<double> teeth(static_cast<std::size_t>(2.0 * kSlopeRange / step) + 3);
     double sum = 0.0;
-    for (int k = 0; k < kBins; ++k) {
-        const double s = (k + 0.5) / kBins - kRange;
+    for (int k = 0; k < kSlopeBins; ++k) {
+        const double s = (k + 0.5) / kSlopeBins - kSlopeRange;
         const double tooth = std::floor(s / step + 0.5);
         if (tooth == 0.0) continue;
-        teeth[static_cast<std::size_t>(tooth + std::floor(kRange / step) + 1.0)] += bins[static_cast<std::size_t>(k)];
+        teeth[static_cast<std::size_t>(tooth + std::floor(kSlopeRange / step) + 1.0)] +=
+            bins[static_cast<std::size_t>(k)];
         sum += bins[static_cast<std::size_t>(k)];
     }
     return static_cast<int>(
@@ -79,7 +80,7 @@ int count_teeth(const std::vector<double>& bins, double step) {
 }  // namespace
 
 Lattice measure_lattice(const Stored& stored) {
-    std::vector<double> bins_p(kBins), bins_q(kBins);
+    std::vector<double> bins_p(kSlopeBins), bins_q(kSlopeBins);
     double looked_at = 0.0;
     for (const Rect& window : sample_windows(stored.extent())) {
         looked_at += static_cast<double>(window.width) * window.height;
@@ -95,8 +96,8 @@ Lattice measure_lattice(const Stored& stored) {
         const double rate = kLeastRate + r * kRateStep;
         // A comb has a tooth at 0, so only the cosine is used.
         double p = 0.0, q = 0.0;
-        for (int k = 0; k < kBins; ++k) {
-            const double wave = math::cos(2.0 * math::kPi * rate * ((k + 0.5) / kBins - kRange));
+        for (int k = 0; k < kSlopeBins; ++k) {
+            const double wave = math::cos(2.0 * math::kPi * rate * ((k + 0.5) / kSlopeBins - kSlopeRange));
             p += detail_p[static_cast<std::size_t>(k)] * wave;
             q += detail_q[static_cast<std::size_t>(k)] * wave;
         }

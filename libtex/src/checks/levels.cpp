@@ -18,8 +18,6 @@
 namespace tex {
 namespace {
 
-constexpr int kRowsPerPiece = 16;
-
 // A larger level, or the rows of it that begin at row `first`.
 struct LargerRows {
     const Plane<float>& rows;

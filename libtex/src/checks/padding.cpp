@@ -20,27 +20,29 @@ namespace {
 // In the plane of charts: background that differs from the chart beside it.
 constexpr std::int32_t kHarmful = -2;
 
-using Vector = std::array<float, 2>;  // x and y
+using Direction = std::array<float, 2>;  // x and y
 
 class Components {
 public:
     explicit Components(const Stored& stored)
         : stored_(stored), x_(stored.channel(Component::x)), y_(stored.channel(Component::y)) {}
-    [[nodiscard]] Vector at(int i, int j) const { return {stored_.component(x_, i, j), stored_.component(y_, i, j)}; }
+    [[nodiscard]] Direction at(int i, int j) const {
+        return {stored_.component(x_, i, j), stored_.component(y_, i, j)};
+    }
 
 private:
     const Stored& stored_;
     int x_, y_;
 };
 
-double distance(const Vector& a, const Vector& b) {
+double distance(const Direction& a, const Direction& b) {
     const double x = static_cast<double>(a[0]) - static_cast<double>(b[0]);
     const double y = static_cast<double>(a[1]) - static_cast<double>(b[1]);
     return std::sqrt(x * x + y * y);
 }
 
 // The most frequent value outside of the charts, if it is frequent.
-std::optional<Vector> background_of(const Components& map, const Plane<std::int32_t>& charts) {
+std::optional<Direction> background_of(const Components& map, const Plane<std::int32_t>& charts) {
     std::vector<std::int64_t> counts(std::size_t{256} * 256);
     std::int64_t outside = 0;
     const auto code = [](float c) {
@@ -49,7 +51,7 @@ std::optional<Vector> background_of(const Components& map, const Plane<std::int3
     for (int j = 0; j < charts.extent().height; ++j) {
         for (int i = 0; i < charts.extent().width; ++i) {
             if (charts.at(i, j) != kNoChart) continue;
-            const Vector v = map.at(i, j);
+            const Direction v = map.at(i, j);
             if (!std::isfinite(v[0] + v[1])) continue;
             ++outside;
             ++counts[code(v[0]) * 256 + code(v[1])];
@@ -59,13 +61,13 @@ std::optional<Vector> background_of(const Components& map, const Plane<std::int3
     if (outside == 0 || static_cast<double>(*most) < thresholds::kBackground * static_cast<double>(outside)) return {};
     const auto peak = static_cast<std::size_t>(most - counts.begin());
     const auto component = [](std::size_t c) { return static_cast<float>(c) / 127.5f - 1.0f; };
-    return Vector{component(peak / 256), component(peak % 256)};
+    return Direction{component(peak / 256), component(peak % 256)};
 }
 
 // Replaces kNoChart by kHarmful where the map shows a background that differs from the nearest chart.
 Result<void> mark_background(const Stored& stored, Plane<std::int32_t>& charts, const Execution& execution) {
     const Components map(stored);
-    const std::optional<Vector> background = background_of(map, charts);
+    const std::optional<Direction> background = background_of(map, charts);
     if (!background) return {};
     Plane<float> covered(charts.extent());
     bool any = false;

@@ -50,6 +50,11 @@ constexpr Rule kRules[] = {
      "The engine named by --for does not read its file type, does not read normals from its format, or gets too few "
      "levels. Engines do not build levels for block formats.",
      "Make the file again with bake-normals or pack-normals and the same --for.", "N103"},
+    {"N114", "uastc-without-alpha", file, error, true, "UASTC has no alpha to make y from.",
+     "Transcoders make x of BC5 and EAC RG11 from R, and y from A. Without alpha, y is 1 everywhere.",
+     "Encode the source again with x in R, G and B and y in A (toktx has --normal_mode for that), or bake or pack it "
+     "as BC5, EAC or ASTC.",
+     "N101"},
 
     // -- the vectors ------------------------------------------------------------------------------------------
     {"N201", "not-unit-length", values, note, true, "Vectors are not of unit length.",
@@ -88,9 +93,7 @@ constexpr Rule kRules[] = {
      "R, G and B are equal everywhere: this is a height or bump map, not a normal map.",
      "bake-normals FILE --bumpiness TEXELS --format SAME -o FIXED",
      "N201 N202 N203 N205 N206 N207 N208 N209 N213 N214 N301 N302 N303 N304 N305 N306 N308 N309 N310 N401 N402 N403 "
-     "N404 N501 "
-     "N502 "
-     "N503 N504"},
+     "N404 N501 N502 N503 N504"},
     {"N211", "dxt5nm-red", values, note, true, "R is not 255 in the layout of DXT5nm.",
      "Unity's shaders multiply R and A to read x from either; where R is not 255, x comes out too small (or 0). "
      "Shaders that read A and G alone are right. Require format=dxt5nm where R matters.",
@@ -148,6 +151,13 @@ constexpr Rule kRules[] = {
      "normals, x and y come from different maps, or compression left nothing of faint bumps. Less curl than that is no "
      "finding: intact maps from high-poly models have up to 40 %.",
      "Bake the map again, or compress it less.", "N403"},
+    {"N311", "wrong-sign", damage, error, true, "The file declares the wrong sign.",
+     "Its texels are those of the signed format, and the header names the unsigned one, or the other way round. Then "
+     "flat texels point outwards along a diagonal.",
+     "Write the file again, or its header alone, with the format that the message names.",
+     "N201 N202 N203 N205 N206 N207 N208 N213 N214 N301 N302 N305 N306 N307 N308 N309 N310 N401 N402 N403 N404 N501 "
+     "N502 "
+     "N503 N504"},
 
     // -- convention -------------------------------------------------------------------------------------------
     {"N401", "wrong-y", convention, error, true, "Green points the other way than required.",

@@ -13,7 +13,6 @@
 namespace tex {
 namespace {
 
-constexpr int kRowsPerPiece = 16;
 constexpr float kCodeAndHalf = 1.5f / 255.0f;
 constexpr float kBehind = -0.1f;
 constexpr float kBeyond = 1.0f + kTwoCodes;

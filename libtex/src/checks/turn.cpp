@@ -7,13 +7,12 @@
 #include <cstddef>
 #include <vector>
 
+#include "checks/curl.h"
 #include "rows/math.h"
 #include "threads/parallel.h"
 
 namespace tex {
 namespace {
-
-constexpr float kJump = 0.5f;  // a change of slope over two texels that counts as a jump: see curl.cpp
 
 void add_pair(TurnSums& sums, float weight, float curl, float divergence) {
     sums.curl += static_cast<double>(weight * curl) * curl;
@@ -32,7 +31,7 @@ TurnScale sum_scale(const Slopes& s) {
             const float qx = q[i + 1] - q[i - 1], qy = qu[i] - qd[i];
             const float p_square = px * px + py * py, q_square = qx * qx + qy * qy;
             if (!(p_square + q_square == p_square + q_square)) continue;  // a neighbour has no normal
-            const float w = 1.0f / (2.0f * kJump * kJump + p_square + q_square);
+            const float w = 1.0f / (2.0f * kSlopeJump * kSlopeJump + p_square + q_square);
             add_pair(sums.up, w, py - qx, px + qy);
             add_pair(sums.down, w, py + qx, px - qy);
             sums.weight += static_cast<double>(w);

@@ -29,9 +29,9 @@ namespace {
 
 // Returns 0 or an errno.
 int write_fully(int fd, std::uint64_t offset, std::span<const std::byte> bytes) {
-    constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;
+    constexpr std::size_t kMostWritten = std::size_t{1} << 30;
     while (!bytes.empty()) {
-        const ssize_t n = ::pwrite(fd, bytes.data(), std::min(bytes.size(), kMostAtOnce), static_cast<off_t>(offset));
+        const ssize_t n = ::pwrite(fd, bytes.data(), std::min(bytes.size(), kMostWritten), static_cast<off_t>(offset));
         if (n < 0 && errno == EINTR) continue;
         if (n <= 0) return n < 0 ? errno : EIO;
         bytes = bytes.subspan(static_cast<std::size_t>(n));

@@ -20,9 +20,9 @@ namespace {
 
 // Returns 0 or an errno.
 int write_fully(int fd, std::span<const std::byte> bytes) {
-    constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;
+    constexpr std::size_t kMostWritten = std::size_t{1} << 30;
     while (!bytes.empty()) {
-        const ssize_t n = ::write(fd, bytes.data(), std::min(bytes.size(), kMostAtOnce));
+        const ssize_t n = ::write(fd, bytes.data(), std::min(bytes.size(), kMostWritten));
         if (n < 0 && errno == EINTR) continue;
         if (n <= 0) return n < 0 ? errno : EIO;
         bytes = bytes.subspan(static_cast<std::size_t>(n));

@@ -7,29 +7,12 @@
 #include <numeric>
 #include <tuple>
 
+#include "mesh/disjoint_sets.h"
+
 namespace tex {
-namespace {
-
-// Sets of vertices, each named by one of its members (Galler, Fischer, An Improved Equivalence Algorithm, 1964).
-class Sets {
-public:
-    explicit Sets(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0U); }
-
-    std::uint32_t find(std::uint32_t v) {
-        while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
-        return v;
-    }
-    void join(std::uint32_t a, std::uint32_t b) { parent_[find(a)] = find(b); }
-
-private:
-    std::vector<std::uint32_t> parent_;
-};
-
-}  // namespace
-
 std::vector<std::int32_t> charts_of(const MeshPart& part, int uv_set) {
     const std::vector<Float2>& uvs = part.uvs[static_cast<std::size_t>(uv_set)];
-    Sets sets(uvs.size());
+    DisjointSets sets(uvs.size());
     std::vector<std::uint32_t> order(uvs.size());
     std::iota(order.begin(), order.end(), 0U);
     const auto place = [&](std::uint32_t v) { return std::tuple(uvs[v].x, uvs[v].y); };
@@ -44,7 +27,7 @@ std::vector<std::int32_t> charts_of(const MeshPart& part, int uv_set) {
     std::vector<std::int32_t> number(uvs.size(), -1), charts(part.triangles());
     std::int32_t next = 0;
     for (std::size_t t = 0; t < charts.size(); ++t) {
-        std::int32_t& chart = number[sets.find(part.indices[3 * t])];
+        std::int32_t& chart = number[sets.root(part.indices[3 * t])];
         if (chart < 0) chart = next++;
         charts[t] = chart;
     }

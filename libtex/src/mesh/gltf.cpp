@@ -15,7 +15,6 @@
 namespace tex {
 namespace {
 
-Error bad(std::string reason) { return {ErrorCode::bad_data, {}, std::move(reason)}; }
 Error unsupported(std::string reason) { return {ErrorCode::unsupported, {}, std::move(reason)}; }
 
 std::uint32_t load_u32(std::span<const std::byte> bytes, std::size_t at) {
@@ -37,21 +36,21 @@ struct Chunks {
 Result<Chunks> split(std::span<const std::byte> bytes) {
     if (!text_of(bytes).starts_with("glTF")) return Chunks{text_of(bytes), {}};
     constexpr std::uint32_t kJson = 0x4e4f534a, kBinary = 0x004e4942;
-    if (bytes.size() < 20) return bad("truncated: a GLB file has a header of 20 bytes");
+    if (bytes.size() < 20) return bad_gltf("truncated: a GLB file has a header of 20 bytes");
     if (const std::uint32_t version = load_u32(bytes, 4); version != 2)
         return unsupported("its GLB version is " + std::to_string(version) + ", only 2 is supported");
     const std::uint32_t total = load_u32(bytes, 8), length = load_u32(bytes, 12);
     if (total > bytes.size()) {
-        return bad("truncated: its header claims " + std::to_string(total) + " bytes, there are " +
-                   std::to_string(bytes.size()));
+        return bad_gltf("truncated: its header claims " + std::to_string(total) + " bytes, there are " +
+                        std::to_string(bytes.size()));
     }
-    if (total < 20 || load_u32(bytes, 16) != kJson) return bad("its first chunk is not JSON");
-    if (length > total - 20) return bad("truncated: its JSON leaves the file");
+    if (total < 20 || load_u32(bytes, 16) != kJson) return bad_gltf("its first chunk is not JSON");
+    if (length > total - 20) return bad_gltf("truncated: its JSON leaves the file");
     Chunks chunks{text_of(bytes.subspan(20, length)), {}};
     const std::span<const std::byte> rest = bytes.subspan(20 + std::size_t{length}, total - 20 - length);
     if (rest.size() < 8 || load_u32(rest, 4) != kBinary) return chunks;
     const std::uint32_t size = load_u32(rest, 0);
-    if (size > rest.size() - 8) return bad("truncated: its binary chunk leaves the file");
+    if (size > rest.size() - 8) return bad_gltf("truncated: its binary chunk leaves the file");
     chunks.binary = rest.subspan(8, size);
     return chunks;
 }
@@ -67,7 +66,7 @@ bool is_harmless(std::string_view extension) {
 
 Result<void> check_asset(JsonValue root) {
     const std::optional<std::string> version = root["asset"]["version"].text();
-    if (!version) return bad("is JSON, but not glTF: asset.version is missing");
+    if (!version) return bad_gltf("is JSON, but not glTF: asset.version is missing");
     if (!version->starts_with("2.")) return unsupported("its glTF version is " + *version + ", only 2.x is supported");
     const JsonValue required = root["extensionsRequired"];
     for (std::size_t k = 0; k < required.size(); ++k) {
@@ -126,7 +125,7 @@ private:
 // Corners of triangles from those of lists, strips and fans (glTF 2.0, 3.7.2.1).
 Result<std::vector<std::uint32_t>> triangles_of(std::vector<std::uint32_t> corners, std::int64_t mode) {
     if (mode == 4) {
-        if (corners.size() % 3 != 0) return bad("has " + std::to_string(corners.size()) + " corners of triangles");
+        if (corners.size() % 3 != 0) return bad_gltf("has " + std::to_string(corners.size()) + " corners of triangles");
         return corners;
     }
     std::vector<std::uint32_t> result;
@@ -140,7 +139,7 @@ Result<std::vector<std::uint32_t>> triangles_of(std::vector<std::uint32_t> corne
 
 Result<PrimitiveReader::Read> PrimitiveReader::corners_of(JsonValue primitive, std::size_t vertices) {
     const auto mode = primitive["mode"].is_null() ? std::optional<std::int64_t>(4) : primitive["mode"].count();
-    if (!mode || *mode > 6) return bad("its mode is not one of glTF's");
+    if (!mode || *mode > 6) return bad_gltf("its mode is not one of glTF's");
     const JsonValue index = primitive["indices"];
     const GltfAccessor* indices = nullptr;
     if (!index.is_null()) {
@@ -148,20 +147,20 @@ Result<PrimitiveReader::Read> PrimitiveReader::corners_of(JsonValue primitive, s
         if (!accessor) return accessor.error();
         indices = *accessor;
         if (indices->components != 1 || (indices->type != 5121 && indices->type != 5123 && indices->type != 5125))
-            return bad("its indices are not unsigned integers");
+            return bad_gltf("its indices are not unsigned integers");
     }
     Read corners;
     if (*mode < 4) return corners;  // points and lines
     const std::size_t count = indices == nullptr ? vertices : indices->count;
     corners_ += count;
     if (corners_ > buffers_.bytes() || count / 3 > kMaxTriangles)
-        return bad("claims more triangles than the bytes of the file can hold");
+        return bad_gltf("claims more triangles than the bytes of the file can hold");
     corners.resize(count);
     for (std::size_t k = 0; k < count; ++k) {
         corners[k] = indices == nullptr ? static_cast<std::uint32_t>(k) : indices->integer(k);
         if (corners[k] >= vertices) {
-            return bad("index " + std::to_string(corners[k]) + " is out of range: there are " +
-                       std::to_string(vertices) + " vertices");
+            return bad_gltf("index " + std::to_string(corners[k]) + " is out of range: there are " +
+                            std::to_string(vertices) + " vertices");
         }
     }
     return triangles_of(std::move(corners), *mode);
@@ -200,10 +199,10 @@ Result<const GltfAccessor*> PrimitiveReader::attribute(JsonValue attributes, con
         return error;
     }
     if ((*accessor)->components != components || (*accessor)->type == 5125)
-        return bad(name + " has numbers of the wrong type");
+        return bad_gltf(name + " has numbers of the wrong type");
     if (vertices_ != 0 && (*accessor)->count != vertices_) {
-        return bad(name + " has " + std::to_string((*accessor)->count) + " elements for " + std::to_string(vertices_) +
-                   " vertices");
+        return bad_gltf(name + " has " + std::to_string((*accessor)->count) + " elements for " +
+                        std::to_string(vertices_) + " vertices");
     }
     return *accessor;
 }
@@ -230,7 +229,7 @@ Result<void> PrimitiveReader::read_attributes(JsonValue attributes, const Read& 
         const std::string name = "TEXCOORD_" + std::to_string(set);
         if (attributes[name].is_null()) continue;
         if (part.uvs.size() != static_cast<std::size_t>(set))
-            return bad("has " + name + ", but not TEXCOORD_" + std::to_string(part.uvs.size()));
+            return bad_gltf("has " + name + ", but not TEXCOORD_" + std::to_string(part.uvs.size()));
         part.uvs.emplace_back();
         if (const auto done = fill(attributes, name, used, part.uvs.back()); !done) return done.error();
     }
@@ -249,7 +248,7 @@ Result<void> PrimitiveReader::read(JsonValue primitive, MeshPart& part) {
     if (!corners) return corners.error();
     if (!material.is_null()) {
         const auto number = material.count();
-        if (!number || static_cast<std::size_t>(*number) >= materials_) return bad("its material does not exist");
+        if (!number || static_cast<std::size_t>(*number) >= materials_) return bad_gltf("its material does not exist");
         part.material = static_cast<int>(*number);
     }
     if (corners->empty()) return {};
@@ -323,7 +322,7 @@ Result<Mesh> parse_gltf(std::span<const std::byte> bytes, const LoadBeside& load
     mesh.nodes = std::move(*nodes);
     GltfBuffers buffers(root, chunks->json.size(), chunks->binary, load);
     if (const auto read = read_primitives(root, buffers, mesh); !read) return read.error();
-    if (mesh.parts.empty()) return bad("has no triangles");
+    if (mesh.parts.empty()) return bad_gltf("has no triangles");
     mesh.materials = materials_of(root);
     return mesh;
 }

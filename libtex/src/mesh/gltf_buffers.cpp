@@ -10,8 +10,6 @@
 namespace tex {
 namespace {
 
-Error bad(std::string reason) { return {ErrorCode::bad_data, {}, std::move(reason)}; }
-
 // The size in bytes of a component, or 0.
 std::size_t size_of_type(std::int64_t type) {
     switch (type) {
@@ -102,17 +100,17 @@ Result<std::string> path_of_uri(std::string_view uri) {
 Result<std::vector<std::byte>> decode_data_uri(std::string_view uri) {
     const std::size_t comma = uri.find(',');
     if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64"))
-        return bad("a data URI is not base64");
+        return bad_gltf("a data URI is not base64");
     std::string_view digits = uri.substr(comma + 1);
     while (digits.ends_with('=')) digits.remove_suffix(1);
-    if (digits.size() % 4 == 1) return bad("a data URI is truncated");
+    if (digits.size() % 4 == 1) return bad_gltf("a data URI is truncated");
     std::vector<std::byte> bytes;
     bytes.reserve(digits.size() * 3 / 4);
     std::uint32_t buffer = 0;
     int bits = 0;
     for (const char c : digits) {
         const int digit = base64_digit(c);
-        if (digit < 0) return bad("a data URI is not base64");
+        if (digit < 0) return bad_gltf("a data URI is not base64");
         buffer = (buffer << 6 | static_cast<std::uint32_t>(digit)) & 0xffffff;
         bits += 6;
         if (bits < 8) continue;
@@ -171,20 +169,20 @@ Result<std::span<const std::byte>> GltfBuffers::buffer(std::int64_t index) {
     const std::string name = "buffer " + std::to_string(index);
     const JsonValue description = root_["buffers"][static_cast<std::size_t>(index)];
     const std::optional<std::int64_t> length = description["byteLength"].count();
-    if (!length) return bad(name + " does not exist or has no length");
+    if (!length) return bad_gltf(name + " does not exist or has no length");
     std::span<const std::byte> bytes = binary_;
     if (const JsonValue uri = description["uri"]; !uri.is_null()) {
         const std::optional<std::string> text = uri.text();
-        if (!text) return bad(name + ": its URI is not a text");
+        if (!text) return bad_gltf(name + ": its URI is not a text");
         const auto loaded = load(*text);
         if (!loaded) return loaded.error();
         bytes = *loaded;
     } else if (index != 0 || binary_.empty()) {
-        return bad(name + " has no bytes");
+        return bad_gltf(name + " has no bytes");
     }
     if (static_cast<std::size_t>(*length) > bytes.size()) {
-        return bad(name + " is truncated: it claims " + std::to_string(*length) + " bytes, there are " +
-                   std::to_string(bytes.size()));
+        return bad_gltf(name + " is truncated: it claims " + std::to_string(*length) + " bytes, there are " +
+                        std::to_string(bytes.size()));
     }
     return bytes.first(static_cast<std::size_t>(*length));
 }
@@ -192,19 +190,19 @@ Result<std::span<const std::byte>> GltfBuffers::buffer(std::int64_t index) {
 Result<GltfBuffers::View> GltfBuffers::view(JsonValue index) {
     const std::optional<std::int64_t> number = index.count();
     const JsonValue description = number ? root_["bufferViews"][static_cast<std::size_t>(*number)] : JsonValue();
-    if (!description.is_object()) return bad("a buffer view does not exist");
+    if (!description.is_object()) return bad_gltf("a buffer view does not exist");
     const std::string name = "buffer view " + std::to_string(*number);
     if (!description["extensions"]["EXT_meshopt_compression"].is_null() ||
         !description["extensions"]["KHR_meshopt_compression"].is_null())
         return Error{ErrorCode::unsupported, {}, name + " is compressed by meshoptimizer"};
     const auto of = description["buffer"].count(), offset = count_or(description["byteOffset"], 0),
                length = description["byteLength"].count(), stride = count_or(description["byteStride"], 0);
-    if (!of || !offset || !length || !stride) return bad(name + " is damaged");
-    if (*stride != 0 && (*stride < 4 || *stride > 252)) return bad(name + ": its stride must be from 4 to 252");
+    if (!of || !offset || !length || !stride) return bad_gltf(name + " is damaged");
+    if (*stride != 0 && (*stride < 4 || *stride > 252)) return bad_gltf(name + ": its stride must be from 4 to 252");
     auto bytes = buffer(*of);
     if (!bytes) return bytes.error();
     const auto from = static_cast<std::size_t>(*offset), size = static_cast<std::size_t>(*length);
-    if (from > bytes->size() || bytes->size() - from < size) return bad(name + " leaves its buffer");
+    if (from > bytes->size() || bytes->size() - from < size) return bad_gltf(name + " leaves its buffer");
     return View{bytes->subspan(from, size), static_cast<std::size_t>(*stride)};
 }
 
@@ -213,7 +211,7 @@ Result<void> GltfBuffers::make_sparse(JsonValue sparse, GltfAccessor& accessor) 
                index_offset = count_or(sparse["indices"]["byteOffset"], 0),
                value_offset = count_or(sparse["values"]["byteOffset"], 0);
     if (!count || !index_offset || !value_offset || !type || (*type != 5121 && *type != 5123 && *type != 5125))
-        return bad("its sparse elements are damaged");
+        return bad_gltf("its sparse elements are damaged");
     const auto indices = view(sparse["indices"]["bufferView"]);
     if (!indices) return indices.error();
     const auto values = view(sparse["values"]["bufferView"]);
@@ -222,12 +220,12 @@ Result<void> GltfBuffers::make_sparse(JsonValue sparse, GltfAccessor& accessor) 
     const std::size_t index_size = size_of_type(*type);
     if (!fits(indices->bytes.size(), *index_offset, n, index_size, index_size) ||
         !fits(values->bytes.size(), *value_offset, n, accessor.size_, accessor.size_))
-        return bad("its sparse elements leave their buffer view");
+        return bad_gltf("its sparse elements leave their buffer view");
     for (std::size_t k = 0; k < n; ++k) {
         const std::uint32_t element =
             load_le(indices->bytes.data() + static_cast<std::size_t>(*index_offset) + k * index_size, index_size);
         if (element >= accessor.count || (k > 0 && element <= accessor.replaced_.back()))
-            return bad("its sparse elements are not in ascending order or out of range");
+            return bad_gltf("its sparse elements are not in ascending order or out of range");
         accessor.replaced_.push_back(element);
     }
     if (n > 0) accessor.replacements_ = values->bytes.data() + static_cast<std::size_t>(*value_offset);
@@ -239,7 +237,8 @@ Result<GltfAccessor> GltfBuffers::make(JsonValue description) {
                offset = count_or(description["byteOffset"], 0);
     GltfAccessor accessor;
     accessor.components = components_of(description["type"].text());
-    if (!count || !type || !offset || size_of_type(*type) == 0 || accessor.components == 0) return bad("is damaged");
+    if (!count || !type || !offset || size_of_type(*type) == 0 || accessor.components == 0)
+        return bad_gltf("is damaged");
     accessor.count = static_cast<std::size_t>(*count);
     accessor.type = static_cast<int>(*type);
     accessor.normalized = description["normalized"].boolean().value_or(false);
@@ -248,10 +247,10 @@ Result<GltfAccessor> GltfBuffers::make(JsonValue description) {
         const auto bytes = view(index);
         if (!bytes) return bytes.error();
         accessor.stride_ = bytes->stride == 0 ? accessor.size_ : bytes->stride;
-        if (accessor.stride_ < accessor.size_) return bad("its elements are longer than their stride");
+        if (accessor.stride_ < accessor.size_) return bad_gltf("its elements are longer than their stride");
         if (!fits(bytes->bytes.size(), *offset, accessor.count, accessor.stride_, accessor.size_)) {
-            return bad("leaves its buffer view: " + std::to_string(accessor.count) + " elements of " +
-                       std::to_string(accessor.size_) + " bytes in " + std::to_string(bytes->bytes.size()));
+            return bad_gltf("leaves its buffer view: " + std::to_string(accessor.count) + " elements of " +
+                            std::to_string(accessor.size_) + " bytes in " + std::to_string(bytes->bytes.size()));
         }
         if (accessor.count > 0) accessor.data_ = bytes->bytes.data() + static_cast<std::size_t>(*offset);
     }
@@ -259,14 +258,14 @@ Result<GltfAccessor> GltfBuffers::make(JsonValue description) {
         if (const auto made = make_sparse(sparse, accessor); !made) return made.error();
     }
     if (accessor.data_ == nullptr && accessor.count > bytes_)
-        return bad("claims " + std::to_string(accessor.count) + " elements without bytes");
+        return bad_gltf("claims " + std::to_string(accessor.count) + " elements without bytes");
     return accessor;
 }
 
 Result<const GltfAccessor*> GltfBuffers::accessor(JsonValue index) {
     const std::optional<std::int64_t> number = index.count();
     const JsonValue description = number ? root_["accessors"][static_cast<std::size_t>(*number)] : JsonValue();
-    if (!description.is_object()) return bad("an accessor does not exist");
+    if (!description.is_object()) return bad_gltf("an accessor does not exist");
     auto found = accessors_.find(*number);
     if (found == accessors_.end()) {
         auto made = make(description);

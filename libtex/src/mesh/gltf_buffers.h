@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <tex/result.h>
@@ -18,6 +19,9 @@
 #include "mesh/json.h"
 
 namespace tex {
+
+// The error of a file whose data is wrong.
+inline Error bad_gltf(std::string reason) { return {ErrorCode::bad_data, {}, std::move(reason)}; }
 
 // Loads the file that a glTF file names: a relative path without "..", already decoded.
 using LoadBeside = std::function<Result<std::vector<std::byte>>(const std::string& path)>;

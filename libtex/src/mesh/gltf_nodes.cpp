@@ -13,8 +13,6 @@ namespace {
 
 using Matrix = std::array<double, 12>;  // rows of 3x4
 
-Error bad(std::string reason) { return {ErrorCode::bad_data, {}, std::move(reason)}; }
-
 // a after b: the point is multiplied by b first.
 Matrix product(const Matrix& a, const Matrix& b) {
     Matrix result{};
@@ -81,9 +79,9 @@ Result<void> add_children(JsonValue list, const Matrix& parent, std::vector<bool
                           std::vector<Waiting>& waiting) {
     for (std::size_t k = list.size(); k-- > 0;) {
         const std::optional<std::int64_t> child = list[k].count();
-        if (!child || static_cast<std::size_t>(*child) >= known.size()) return bad("a node does not exist");
+        if (!child || static_cast<std::size_t>(*child) >= known.size()) return bad_gltf("a node does not exist");
         const auto index = static_cast<std::size_t>(*child);
-        if (known[index]) return bad("node " + std::to_string(index) + " has two parents, or is its own ancestor");
+        if (known[index]) return bad_gltf("node " + std::to_string(index) + " has two parents, or is its own ancestor");
         known[index] = true;
         waiting.push_back({*child, parent});
     }
@@ -96,7 +94,8 @@ Result<std::vector<Waiting>> roots_of(JsonValue root, std::vector<bool>& known) 
     std::vector<Waiting> roots;
     if (root["scenes"].size() > 0) {
         const auto scene = root["scene"].is_null() ? std::optional<std::int64_t>(0) : root["scene"].count();
-        if (!scene || static_cast<std::size_t>(*scene) >= root["scenes"].size()) return bad("its scene does not exist");
+        if (!scene || static_cast<std::size_t>(*scene) >= root["scenes"].size())
+            return bad_gltf("its scene does not exist");
         const JsonValue list = root["scenes"][static_cast<std::size_t>(*scene)]["nodes"];
         if (const auto added = add_children(list, identity, known, roots); !added) return added.error();
         return roots;
@@ -133,12 +132,12 @@ Result<std::vector<MeshNode>> gltf_nodes(JsonValue root) {
         const std::string name = "node " + std::to_string(index);
         const JsonValue node = nodes[index];
         const std::optional<Matrix> matrix = matrix_of(node);
-        if (!matrix) return bad(name + ": its transform is damaged");
+        if (!matrix) return bad_gltf(name + ": its transform is damaged");
         const Matrix to_scene = product(next.parent, *matrix);
         if (const JsonValue mesh = node["mesh"]; !mesh.is_null()) {
             const std::optional<std::int64_t> number = mesh.count();
             if (!number || static_cast<std::size_t>(*number) >= root["meshes"].size())
-                return bad(name + ": its mesh does not exist");
+                return bad_gltf(name + ": its mesh does not exist");
             result.push_back({node["name"].text().value_or(""), static_cast<int>(*number), to_scene});
         }
         if (const auto added = add_children(node["children"], to_scene, known, *waiting); !added) return added.error();

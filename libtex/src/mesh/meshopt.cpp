@@ -6,13 +6,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 #include <span>
 #include <string>
 #include <utility>
 
 #include <tex/tangents.h>
 
+#include "mesh/disjoint_sets.h"
 #include "mesh/vectors.h"
 #include "mesh/weld.h"
 #include "threads/parallel.h"
@@ -20,25 +20,10 @@
 namespace tex {
 namespace {
 
-constexpr int kGrain = 1 << 13;  // triangles that a thread takes at a time
+constexpr int kTrianglesPerPiece = 1 << 13;  // triangles that a thread takes at a time
 
 // Signs of the UVs' area, as a set: a group of triangles without area takes the sign of the first other one.
 constexpr std::uint8_t kPositive = 1, kNegative = 2, kBoth = 3;
-
-// Disjoint sets of numbers.
-class Sets {
-public:
-    explicit Sets(std::size_t count) : parents_(count) { std::iota(parents_.begin(), parents_.end(), 0u); }
-
-    std::uint32_t root(std::uint32_t k) {
-        while (parents_[k] != k) k = parents_[k] = parents_[parents_[k]];
-        return k;
-    }
-    void attach(std::uint32_t child, std::uint32_t to) { parents_[child] = to; }
-
-private:
-    std::vector<std::uint32_t> parents_;
-};
 
 struct Direction {
     Float3 s;  // unit, or 0
@@ -94,13 +79,13 @@ private:
     std::vector<std::uint32_t> welded_;
     std::vector<Direction> directions_;
     std::vector<std::uint8_t> signs_;  // of the groups of triangles, at their roots
-    Sets groups_;                      // of corners
-    Sets triangle_groups_;             // of triangles that share a sign
+    DisjointSets groups_;              // of corners
+    DisjointSets triangle_groups_;     // of triangles that share a sign
 };
 
 Result<void> Meshopt::find_directions(const Execution& execution) {
     directions_.resize(part_.triangles());
-    return parallel_for(execution, static_cast<int>(part_.triangles()), kGrain, [&](int begin, int end) {
+    return parallel_for(execution, static_cast<int>(part_.triangles()), kTrianglesPerPiece, [&](int begin, int end) {
         for (auto f = static_cast<std::size_t>(begin); f < static_cast<std::size_t>(end); ++f) {
             const std::uint32_t* v = &part_.indices[3 * f];
             directions_[f] = direction_of({part_.positions[v[0]], part_.positions[v[1]], part_.positions[v[2]]},

@@ -19,8 +19,6 @@
 namespace tex::render {
 namespace {
 
-constexpr int kRowsPerPiece = 16;
-
 Vec3 normal_at(const NormalMap& map, int i, int j) {
     return {static_cast<double>(map.x.at(i, j)), static_cast<double>(map.y.at(i, j)),
             static_cast<double>(map.z.at(i, j))};

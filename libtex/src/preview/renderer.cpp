@@ -12,7 +12,7 @@
 namespace tex::render {
 namespace {
 
-constexpr int kRowsPerPiece = 8;
+constexpr int kRowsOfRays = 8;
 constexpr int kRaysPerSide = 4;  // rays per side of a pixel on an outline
 
 Camera camera_of(const PreviewOptions& options, bool of_mesh) {
@@ -94,7 +94,7 @@ Result<Texture> render(const Stage& stage, Space space, const Surface& surface, 
     Canvas canvas(stage.size);
     const Painter painter(stage, space, surface);
     const auto code = space == Space::linear ? srgb_code : display_code;
-    const auto done = parallel_for(execution, stage.size.height, kRowsPerPiece, [&](int begin, int end) {
+    const auto done = parallel_for(execution, stage.size.height, kRowsOfRays, [&](int begin, int end) {
         for (int j = begin; j < end; ++j) {
             for (int i = 0; i < stage.size.width; ++i) {
                 const Vec3 color = painter.pixel(i, j);

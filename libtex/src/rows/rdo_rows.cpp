@@ -19,18 +19,18 @@ namespace {
 
 constexpr std::ptrdiff_t kBytes = 16;  // of a block
 constexpr double kMillionths = 1e6;
-constexpr double kDegrees = 180.0 / math::kPi;
+constexpr double kDegreesOfRadian = 180.0 / math::kPi;
 
 double degrees_of(float chord) {
     const double half = std::min(1.0, 0.5 * static_cast<double>(chord));
-    return half >= 1.0 ? 180.0 : 2.0 * kDegrees * math::atan(half / std::sqrt(1.0 - half * half));
+    return half >= 1.0 ? 180.0 : 2.0 * kDegreesOfRadian * math::atan(half / std::sqrt(1.0 - half * half));
 }
 
 // The longest chord whose angle, as degrees_of() computes it, is not above `degrees`.
 float chord_of(float degrees) {
-    constexpr double kBelow = 1.0 - 1e-6;
+    constexpr double kJustBelow = 1.0 - 1e-6;
     if (degrees >= 180.0f) return 2.0f;
-    return static_cast<float>(2.0 * math::sin(0.5 * static_cast<double>(degrees) / kDegrees) * kBelow);
+    return static_cast<float>(2.0 * math::sin(0.5 * static_cast<double>(degrees) / kDegreesOfRadian) * kJustBelow);
 }
 
 float clamped(float n) { return std::fmin(std::fmax(n, -1.0f), 1.0f); }

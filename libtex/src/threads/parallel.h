@@ -3,9 +3,11 @@
 
 #pragma once
 
+#include <algorithm>
 #include <functional>
 
 #include <tex/execution.h>
+#include <tex/image.h>
 #include <tex/result.h>
 
 namespace tex {
@@ -15,6 +17,14 @@ struct ProgressSpan {
     double from = 0.0;
     double to = 1.0;
 };
+
+// Rows that a loop over a whole map gives to a thread at a time.
+inline constexpr int kRowsPerPiece = 16;
+// The same in texels, for loops over levels, whose rows may be short.
+inline constexpr int kPieceTexels = 1 << 15;
+
+// The rows of `extent` that hold about kPieceTexels texels: at least 1.
+inline int rows_per_piece(Extent extent) { return std::max(1, kPieceTexels / extent.width); }
 
 // Calls body(begin, end) for consecutive pieces [begin, end) of [0, count), each of `grain` indices (the last may be
 // shorter), on up to execution.threads threads. Pieces are the same for every number of threads, so a body

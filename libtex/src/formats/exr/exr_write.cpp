@@ -91,10 +91,10 @@ std::vector<std::byte> bytes_of(const Imf::Header& header) {
 // Collects rows in bands, and writes the blocks of these in the order of the table of chunks: level by level, from the
 // top. Blocks of smaller levels wait in memory until the larger levels are in the file. (If they were stored in the
 // order in which they arrive, the bytes would depend on the path that a texture takes.)
-class ExrTarget final : public RowTarget {
+class ExrRowTarget final : public RowTarget {
 public:
     // `head` is what comes before the table.
-    ExrTarget(const TextureHead& texture, std::vector<std::byte> head, WriteBytes write);
+    ExrRowTarget(const TextureHead& texture, std::vector<std::byte> head, WriteBytes write);
 
     Result<void> put(int level, const std::byte* rows, int count) override;
     [[nodiscard]] bool has_work() const override { return true; }
@@ -128,7 +128,7 @@ int blocks_of_band(const ExrGrid& grid) {
     return (grid.chunks_of_band() + grid.chunks_of_block() - 1) / grid.chunks_of_block();
 }
 
-ExrTarget::ExrTarget(const TextureHead& texture, std::vector<std::byte> head, WriteBytes write)
+ExrRowTarget::ExrRowTarget(const TextureHead& texture, std::vector<std::byte> head, WriteBytes write)
     : write_(std::move(write)), head_(std::move(head)) {
     const FormatInfo format = format_info(texture.format);
     int blocks = 0;
@@ -145,7 +145,7 @@ ExrTarget::ExrTarget(const TextureHead& texture, std::vector<std::byte> head, Wr
     at_ = begin_;
 }
 
-Result<void> ExrTarget::put(int index, const std::byte* rows, int count) {
+Result<void> ExrRowTarget::put(int index, const std::byte* rows, int count) {
     Level& level = levels_[static_cast<std::size_t>(index)];
     while (count > 0) {
         if (!level.open) {
@@ -161,7 +161,7 @@ Result<void> ExrTarget::put(int index, const std::byte* rows, int count) {
 }
 
 // Makes blocks of a full band.
-void ExrTarget::divide(Level& level) {
+void ExrRowTarget::divide(Level& level) {
     const ExrGrid& grid = level.grid;
     int number = level.first_block + level.next * blocks_of_band(grid);
     for (int begin = 0; begin < grid.chunks_of_band(); begin += grid.chunks_of_block()) {
@@ -172,14 +172,14 @@ void ExrTarget::divide(Level& level) {
     ++level.next;
 }
 
-std::shared_ptr<RowWork> ExrTarget::take_work() {
+std::shared_ptr<RowWork> ExrRowTarget::take_work() {
     if (blocks_.empty()) return nullptr;
     std::shared_ptr<ExrBlock> block = std::move(blocks_.front());
     blocks_.pop_front();
     return block;
 }
 
-Result<void> ExrTarget::end_work(const std::shared_ptr<RowWork>& work) {
+Result<void> ExrRowTarget::end_work(const std::shared_ptr<RowWork>& work) {
     const auto ended = std::static_pointer_cast<ExrBlock>(work);
     waiting_[ended->number()] = ended;
     while (!waiting_.empty() && waiting_.begin()->first == written_) {
@@ -190,7 +190,7 @@ Result<void> ExrTarget::end_work(const std::shared_ptr<RowWork>& work) {
     return {};
 }
 
-Result<void> ExrTarget::write(const ExrBlock& block) {
+Result<void> ExrRowTarget::write(const ExrBlock& block) {
     std::uint64_t at = at_;
     for (const std::size_t size : block.chunk_bytes()) {
         const auto* entry = reinterpret_cast<const std::byte*>(&at);
@@ -200,7 +200,7 @@ Result<void> ExrTarget::write(const ExrBlock& block) {
     return write_(std::exchange(at_, at), block.bytes());
 }
 
-Result<void> ExrTarget::finish() {
+Result<void> ExrRowTarget::finish() {
     if (head_.size() == begin_) return write_(0, head_);
     return Error{ErrorCode::unsupported, {}, "rows are missing: this is a bug"};
 }
@@ -225,7 +225,7 @@ Result<std::unique_ptr<RowTarget>> open_exr_target(const TextureHead& head, Writ
         }
         try {
             return std::unique_ptr<RowTarget>(
-                std::make_unique<ExrTarget>(head, bytes_of(header_of(head)), std::move(write)));
+                std::make_unique<ExrRowTarget>(head, bytes_of(header_of(head)), std::move(write)));
         } catch (const std::bad_alloc&) {
             throw;
         } catch (const std::exception& thrown) {

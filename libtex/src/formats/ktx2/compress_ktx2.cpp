@@ -15,8 +15,6 @@
 namespace tex {
 namespace {
 
-constexpr std::size_t kChunk = std::size_t{1} << 18;  // bytes that are read or written together
-
 struct FreeCompressor {
     void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
 };
@@ -25,7 +23,7 @@ struct FreeCompressor {
 class LevelCompressor {
 public:
     LevelCompressor(int level, const FetchBytes& fetch, const WriteBytes& write)
-        : context_(ZSTD_createCCtx()), fetch_(fetch), write_(write), packed_(kChunk) {
+        : context_(ZSTD_createCCtx()), fetch_(fetch), write_(write), packed_(kChunkBytes) {
         if (context_ == nullptr) throw std::bad_alloc();
         ZSTD_CCtx_setParameter(context_.get(), ZSTD_c_compressionLevel, level);
     }
@@ -36,7 +34,7 @@ public:
         ZSTD_CCtx_setPledgedSrcSize(context_.get(), place.bytes);
         std::uint64_t written = 0;
         for (std::uint64_t done = 0; done < place.bytes;) {
-            const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(kChunk, place.bytes - done));
+            const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(kChunkBytes, place.bytes - done));
             const Result<std::vector<std::byte>> plain = fetch_(place.offset + done, count);
             if (!plain) return plain.error();
             done += count;

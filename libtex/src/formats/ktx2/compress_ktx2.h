@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include <tex/result.h>
@@ -12,6 +13,8 @@
 #include "formats/stored_texture.h"
 
 namespace tex {
+
+inline constexpr std::size_t kChunkBytes = std::size_t{1} << 18;  // that are read or written together
 
 // Compresses the levels of a KTX2 file with Zstandard. `layout` is that of the file without compression, which `fetch`
 // reads; `level` is from 1 (fast) to 22 (small). Returns the size of the compressed file. Equal files give equal bytes.

@@ -117,6 +117,24 @@ Result<Extent> check_header(const Ktx2Header& header, const std::string& name, c
     return claimed_extent(name, header.width, header.height, options);
 }
 
+// Files without a VkFormat hold UASTC, and their descriptor says which channels it has.
+Error uastc_error(const FetchBytes& fetch, std::size_t size, const std::string& name) {
+    constexpr std::size_t kDescriptorOffset = 48, kModel = 12, kFirstChannel = 31, kBytes = 32;
+    constexpr unsigned kUastc = 166, kRgb = 0, kRrr = 4;  // KHR_DF_MODEL_UASTC, KHR_DF_CHANNEL_UASTC_...
+    if (const auto field = fetch(kDescriptorOffset, 4)) {
+        const std::size_t offset = load_u32(field->data());
+        if (offset <= size && size - offset >= kBytes) {
+            const auto bytes = fetch(offset, kBytes);
+            if (!bytes) return bytes.error();
+            const auto model = std::to_integer<unsigned>((*bytes)[kModel]);
+            const auto channel = std::to_integer<unsigned>((*bytes)[kFirstChannel]) & 15u;
+            if (model == kUastc && (channel == kRgb || channel == kRrr))
+                return unsupported(name, std::string(kUastcWithoutAlpha));
+        }
+    }
+    return unsupported(name, "UASTC is not supported; \"ktx transcode --target bc5\" makes a file that is");
+}
+
 struct KeyValue {
     std::string_view key;
     std::string_view value;  // without the final zero of a string
@@ -272,8 +290,7 @@ Result<StoredTexture> parse_ktx2(const FetchBytes& fetch, std::size_t size, cons
     const Result<Extent> extent = check_header(header, name, options);
     if (!extent) return extent.error();
     const std::optional<VkRow> row = find_vk_format(header.vk_format);
-    if (!row && header.vk_format == 0)
-        return unsupported(name, "UASTC is not supported; \"ktx transcode --target bc5\" makes a file that is");
+    if (!row && header.vk_format == 0) return uastc_error(fetch, size, name);
     if (!row) return unsupported(name, "VkFormat " + std::to_string(header.vk_format) + " is not supported");
     const auto levels = std::max<std::uint32_t>(1, header.levels);  // 0: the reader generates the other levels
     if (levels > static_cast<std::uint32_t>(level_count(*extent))) {

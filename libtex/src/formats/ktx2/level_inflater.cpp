@@ -14,11 +14,10 @@
 
 #include "formats/bytes.h"
 #include "formats/claims.h"
+#include "formats/ktx2/compress_ktx2.h"
 
 namespace tex {
 namespace {
-
-constexpr std::size_t kChunk = std::size_t{1} << 18;  // bytes that are read or written together
 
 Error damaged(std::string reason) { return {ErrorCode::bad_data, {}, "compressed level: " + std::move(reason)}; }
 
@@ -69,7 +68,7 @@ private:
 Result<void> ZstdInflater::fill() {
     if (input_.pos < input_.size || fetched_ == stored()) return {};
     Result<std::vector<std::byte>> bytes =
-        fetch(fetched_, static_cast<std::size_t>(std::min<std::uint64_t>(kChunk, stored() - fetched_)));
+        fetch(fetched_, static_cast<std::size_t>(std::min<std::uint64_t>(kChunkBytes, stored() - fetched_)));
     if (!bytes) return bytes.error();
     waiting_ = std::move(*bytes);
     if (fetched_ == 0) {
@@ -165,7 +164,7 @@ Result<void> LevelInflater::read(std::uint64_t offset, std::span<std::byte> byte
         restart();
         position_ = 0;
     }
-    std::vector<std::byte> skipped(static_cast<std::size_t>(std::min<std::uint64_t>(kChunk, offset - position_)));
+    std::vector<std::byte> skipped(static_cast<std::size_t>(std::min<std::uint64_t>(kChunkBytes, offset - position_)));
     while (position_ < offset) {
         const std::span<std::byte> part(
             skipped.data(), static_cast<std::size_t>(std::min<std::uint64_t>(skipped.size(), offset - position_)));

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// sign_rules.h: the rule about files that declare the other sign than their texels have (N311).
+
+#pragma once
+
+#include <tex/result.h>
+
+#include "checks/findings.h"
+
+namespace tex {
+
+// Errors: cancelled, out_of_memory.
+Result<void> check_sign_rules(const Subject& subject, Findings& findings);
+
+}  // namespace tex
