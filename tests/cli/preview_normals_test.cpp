@@ -277,6 +277,25 @@ TEST_F(PreviewNormals, TakesHeightsFromTheNormalsIfThereIsNoHeightMap) {
     EXPECT_GT(largest_difference(lit("-0.02", {}), by_itself), 0.2f);
 }
 
+TEST_F(PreviewNormals, DebandsTheHeightMap) {
+    std::string text = "P5\n64 48\n255\n";
+    for (int k = 0; k < 64 * 48; ++k) text += static_cast<char>(40 + k % 64 / 8);
+    scratch_.write("terraces.pgm", text);
+    const auto shown = [&](const char* when) {
+        const Ran ran = preview({"bricks.dds", "-o", "x.png", "--height", "terraces.pgm", "--deband", when,
+                                 "--parallax", "0.5", "--parallax-steps", "32", "--size", "64", "--json"});
+        EXPECT_EQ(ran.code, 0) << ran.err;
+        return nlohmann::json::parse(ran.out);
+    };
+    EXPECT_FALSE(shown("off").contains("deband"));
+    const std::string terraces = scratch_.read("x.png");
+    EXPECT_EQ(shown("on")["deband"]["codes"], 8);
+    EXPECT_NE(scratch_.read("x.png"), terraces);
+    const std::string smooth = scratch_.read("x.png");
+    EXPECT_EQ(shown("auto")["deband"]["applied"], true);
+    EXPECT_EQ(scratch_.read("x.png"), smooth);
+}
+
 TEST_F(PreviewNormals, RefusesHeightsOfMapsWithoutSlopes) {
     scratch_.add_sample("broken/N213-object-space.png", "object.png");
     refuses({"object.png", "-o", "x.png", "--show", "height"}, "object.png: z is negative in", 4);
@@ -305,6 +324,7 @@ TEST_F(PreviewNormals, RefusesMisuse) {
     refuses(with({"--shininess", "0"}), "--shininess");
     refuses(with({"--parallax", "high"}), "--parallax");
     refuses(with({"--height", "height.png", "--parallax-steps", "4"}), "--parallax-steps needs --parallax");
+    refuses(with({"--deband", "on"}), "--deband needs --height");
     refuses(with({"--detail-scale", "2"}), "--detail-scale needs --detail");
     refuses(with({"--anisotropy", "17"}), "--anisotropy");
     refuses({"bricks.dds", "-o", "x.exr"}, "exr files cannot hold rgb8");

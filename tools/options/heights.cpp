@@ -113,6 +113,15 @@ void HeightGroup::add(Command& command) {
                    });
 }
 
+void note_deband(Job& job, const DebandReport& report, Deband when) {
+    job.report["deband"] = {{"applied", report.applied},
+                            {"step", report.step},
+                            {"codes", report.codes},
+                            {"terrace_texels", report.terrace_texels}};
+    if (when == Deband::on && !report.applied)
+        job.warn("--deband on changes nothing: the heights lie on no common steps coarser than 12 bits");
+}
+
 ChannelFile parse_channel_file(const std::string& text) {
     if (text.empty()) throw UsageError("needs a value that is not empty");
     ChannelFile source{text};
@@ -145,16 +154,6 @@ namespace {
 
 std::string luma_text(std::int64_t texels) {
     return fmt::format("R, G and B differ in {} texels: their luma is the height; --channel chooses another", texels);
-}
-
-// What was found goes into the report. Who asked for it and does not get it is told why.
-void note_deband(Job& job, const DebandReport& report, Deband when) {
-    job.report["deband"] = {{"applied", report.applied},
-                            {"step", report.step},
-                            {"codes", report.codes},
-                            {"terrace_texels", report.terrace_texels}};
-    if (when == Deband::on && !report.applied)
-        job.warn("--deband on changes nothing: the heights lie on no common steps coarser than 12 bits");
 }
 
 }  // namespace

@@ -60,6 +60,9 @@ struct HeightGroup {
     void add(Command& command);
 };
 
+// Writes into the job's report what debanding found. Who asked for it and does not get it is told why.
+void note_deband(Job& job, const DebandReport& report, Deband when);
+
 // FILE[:CHANNEL]: one channel of a picture, for a mask or a roughness map.
 struct ChannelFile {
     std::string file;

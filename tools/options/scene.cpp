@@ -13,6 +13,7 @@
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "options/heights.h"
 #include "options/mips.h"
 #include "options/surface.h"
 
@@ -174,6 +175,9 @@ void SceneOptions::add_parallax(Command& command) {
     command.group("Parallax");
     Parallax& parallax = preview.parallax;
     add_file(command, height, "--height", "the height map, white being high; else heights come from the normals");
+    command.choice(deband, "--deband", "WHEN", kDebandNames,
+                   "regain the bits of --height that rounding to 8 bits took away");
+    check_needs(command, "--height", {"--deband"});
     Row& row = command.option("--parallax", "P|auto", "height of white over black in widths of the map",
                               [this, &parallax](const std::string& text) {
                                   parallax_of_map = text == "auto";
@@ -270,8 +274,14 @@ Result<SceneFiles> SceneOptions::read(Job& job, NormalsReader& normals, const Ex
     if (!height.empty()) {
         auto image = read_image(height, job.read_options);
         if (!image) return image.error();
-        auto field = height_field(*image, {}, execution);
+        HeightOptions options;
+        options.deband = deband;
+        options.wrap_x = preview.wrap_x;
+        options.wrap_y = preview.wrap_y;
+        HeightReport found;
+        auto field = height_field(*image, options, execution, &found);
         if (!field) return field.error().of(height);
+        if (deband != Deband::off) note_deband(job, found.deband, deband);
         files.height = std::move(field->height);
     }
     return files;

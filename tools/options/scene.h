@@ -46,6 +46,7 @@ struct SceneFiles {
 struct SceneOptions {
     PreviewOptions preview;
     std::string albedo, detail, detail_albedo, height;  // paths, or empty
+    Deband deband = Deband::off;                        // of the heights of `height`
     std::optional<YAxis> detail_y_in;
     bool parallax_of_map = false;  // as high as the normals show, instead of preview.parallax.amount
 

@@ -24,6 +24,9 @@ constexpr int kLanes = static_cast<int>(hn::MaxLanes(kD));
 constexpr float kReach = 0.499f;
 // The greatest energy of a texel: beyond, the ground is a cliff, and a greater one would only spread farther.
 constexpr float kMostEnergy = 1e6f;
+// A greater weight is that of a cliff. Heights near it are held at their codes, so that its plateau stays flat.
+constexpr float kMostWeight = 1e5f;
+constexpr float kHolds = 1e12f;
 // The largest eigenvalue of the squared Laplacian.
 constexpr float kStiffest = 64.0f;
 
@@ -45,17 +48,6 @@ void HeightsOfCodes(const float* codes, float lowest, float step, int count, flo
         const M same = hn::Eq(hn::Round(hn::Div(hn::Sub(height, from), by)), code);
         const V kept = hn::Add(from, hn::Mul(by, code));  // NaN if the code is
         hn::StoreU(hn::IfThenElse(same, height, kept), kD, row + i);
-    }
-}
-
-void BoundsOfCodes(const float* codes, float least, float greatest, int count, float* low, float* high) {
-    for (int i = 0; i < count; i += kLanes) {
-        const V code = load(codes + i);
-        const M unknown = hn::IsNaN(code);
-        const V l = hn::Max(hn::Sub(code, set(kReach)), set(least));
-        const V h = hn::Min(hn::Add(code, set(kReach)), set(greatest));
-        hn::StoreU(hn::IfThenElse(unknown, set(-kUnbounded), l), kD, low + i);
-        hn::StoreU(hn::IfThenElse(unknown, set(kUnbounded), h), kD, high + i);
     }
 }
 
@@ -83,7 +75,15 @@ void SquareRow(int count, float* row) {
     }
 }
 
-void RelaxRow(const BendingRow& in, int count, float* out) {
+// The height within the bounds; without a code, as it is.
+HWY_INLINE V limited(V height, V code, V least, V greatest) {
+    const V low = hn::Max(hn::Sub(code, set(kReach)), least);
+    const V high = hn::Min(hn::Add(code, set(kReach)), greatest);
+    return hn::IfThenElse(hn::IsNaN(code), height, hn::Min(hn::Max(height, low), high));
+}
+
+void RelaxRow(const BendingRow& in, CodeRange range, int count, float* out) {
+    const V least = set(range.least), greatest = set(range.greatest);
     for (int i = 0; i < count; i += kLanes) {
         const V height = load(in.heights + i);
         const V code = load(in.codes + i);
@@ -91,7 +91,7 @@ void RelaxRow(const BendingRow& in, int count, float* out) {
         const V pull = hn::IfThenZeroElse(hn::IsNaN(code), hn::Mul(weight, hn::Sub(height, code)));
         const V gradient = hn::Add(laplacian(in.above + i, in.at + i, in.below + i), pull);
         const V moved = hn::Sub(height, hn::Div(gradient, hn::Add(set(kStiffest), weight)));
-        hn::StoreU(hn::Min(hn::Max(moved, load(in.low + i)), load(in.high + i)), kD, out + i);
+        hn::StoreU(limited(moved, code, least, greatest), kD, out + i);
     }
 }
 
@@ -105,22 +105,12 @@ HWY_INLINE Pairs pairs_at(const float* row, int i) {
     return pairs;
 }
 
-HWY_INLINE void count_code(V code, V& sum, V& known) {
-    const M unknown = hn::IsNaN(code);
-    sum = hn::Add(sum, hn::IfThenZeroElse(unknown, code));
-    known = hn::Add(known, hn::IfThenZeroElse(unknown, set(1.0f)));
-}
+HWY_INLINE V known_or(V code, V otherwise) { return hn::IfThenElse(hn::IsNaN(code), otherwise, code); }
 
 void HalveCodes(const float* upper, const float* lower, int count, float* out) {
     for (int i = 0; i < count; i += kLanes) {
         const Pairs a = pairs_at(upper, i), b = pairs_at(lower, i);
-        V sum = hn::Zero(kD), known = hn::Zero(kD);
-        count_code(a.even, sum, known);
-        count_code(a.odd, sum, known);
-        count_code(b.even, sum, known);
-        count_code(b.odd, sum, known);
-        const V mean = hn::Div(sum, hn::Max(known, set(1.0f)));
-        hn::StoreU(hn::IfThenElse(hn::Gt(known, hn::Zero(kD)), mean, hn::NaN(kD)), kD, out + i);
+        hn::StoreU(known_or(a.even, known_or(a.odd, known_or(b.even, b.odd))), kD, out + i);
     }
 }
 
@@ -132,24 +122,21 @@ void HalveMeans(const float* upper, const float* lower, int count, float* out) {
     }
 }
 
-void HalveBounds(BoundsRow upper, BoundsRow lower, int count, float* low, float* high) {
-    for (int i = 0; i < count; i += kLanes) {
-        const Pairs a = pairs_at(upper.low, i), b = pairs_at(lower.low, i);
-        const Pairs c = pairs_at(upper.high, i), d = pairs_at(lower.high, i);
-        const V l = hn::Max(hn::Max(a.even, a.odd), hn::Max(b.even, b.odd));
-        const V h = hn::Min(hn::Min(c.even, c.odd), hn::Min(d.even, d.odd));
-        hn::StoreU(hn::Min(l, h), kD, low + i);
-        hn::StoreU(hn::Max(l, h), kD, high + i);
-    }
+HWY_INLINE V between(V before, V left, V right, V after) {
+    const V near = hn::Mul(set(9.0f / 16.0f), hn::Add(left, right));
+    return hn::Sub(near, hn::Mul(set(1.0f / 16.0f), hn::Add(before, after)));
+}
+
+void BetweenRows(const float* const rows[4], int count, float* out) {
+    for (int i = 0; i < count; i += kLanes)
+        hn::StoreU(between(load(rows[0] + i), load(rows[1] + i), load(rows[2] + i), load(rows[3] + i)), kD, out + i);
 }
 
 void DoubleRow(const float* row, int count, float* out) {
-    const V near = set(0.75f), far = set(0.25f);
     for (int i = 0; i < count; i += kLanes) {
-        const V at = hn::Mul(near, load(row + i));
-        const V even = hn::Add(at, hn::Mul(far, load(row + i - 1)));
-        const V odd = hn::Add(at, hn::Mul(far, load(row + i + 1)));
-        hn::StoreInterleaved2(even, odd, kD, out + std::ptrdiff_t{2} * i);
+        const float* const at = row + i;
+        const V odd = between(load(at - 1), load(at), load(at + 1), load(at + 2));
+        hn::StoreInterleaved2(load(at), odd, kD, out + std::ptrdiff_t{2} * i);
     }
 }
 
@@ -158,17 +145,20 @@ void RepeatTexels(const float* row, int count, float* out) {
         hn::StoreInterleaved2(load(row + i), load(row + i), kD, out + std::ptrdiff_t{2} * i);
 }
 
-void LimitRow(const float* low, const float* high, float otherwise, int count, float* row) {
+void LimitRow(const float* codes, CodeRange range, int count, float* row) {
+    const V least = set(range.least), greatest = set(range.greatest);
     for (int i = 0; i < count; i += kLanes) {
-        const V value = hn::IfThenElse(hn::IsNaN(load(row + i)), set(otherwise), load(row + i));
-        hn::StoreU(hn::Min(hn::Max(value, load(low + i)), load(high + i)), kD, row + i);
+        const V value = known_or(load(row + i), least);
+        hn::StoreU(limited(value, load(codes + i), least, greatest), kD, row + i);
     }
 }
 
-void WeightsOfEnergy(float noise, float factor, int count, float* row) {
+void WeightsOfEnergy(float noise, float significant, float factor, int count, float* row) {
     for (int i = 0; i < count; i += kLanes) {
-        const V excess = hn::Max(hn::Sub(load(row + i), set(noise)), hn::Zero(kD));
-        hn::StoreU(hn::Mul(set(factor), excess), kD, row + i);
+        const V energy = load(row + i);
+        const V weight = hn::Mul(set(factor), hn::Max(hn::Sub(energy, set(noise)), hn::Zero(kD)));
+        const V held = hn::IfThenElse(hn::Gt(weight, set(kMostWeight)), set(kHolds), weight);
+        hn::StoreU(hn::IfThenElseZero(hn::Gt(energy, set(significant)), held), kD, row + i);
     }
 }
 
@@ -176,9 +166,11 @@ void LeastOf(const float* other, int count, float* row) {
     for (int i = 0; i < count; i += kLanes) hn::StoreU(hn::Min(load(row + i), load(other + i)), kD, row + i);
 }
 
-void GreatestOf(const float* other, float factor, int count, float* row) {
-    for (int i = 0; i < count; i += kLanes)
-        hn::StoreU(hn::Max(load(row + i), hn::Mul(set(factor), load(other + i))), kD, row + i);
+void GreatestOf(float factor, float factor_of_other, const float* other, int count, float* row) {
+    for (int i = 0; i < count; i += kLanes) {
+        const V own = hn::Mul(set(factor), load(row + i));
+        hn::StoreU(hn::Max(own, hn::Mul(set(factor_of_other), load(other + i))), kD, row + i);
+    }
 }
 
 }  // namespace HWY_NAMESPACE
@@ -190,14 +182,13 @@ namespace tex {
 
 HWY_EXPORT(CodesOfHeights);
 HWY_EXPORT(HeightsOfCodes);
-HWY_EXPORT(BoundsOfCodes);
 HWY_EXPORT(ExtrapolateRow);
 HWY_EXPORT(LaplaceRow);
 HWY_EXPORT(SquareRow);
 HWY_EXPORT(RelaxRow);
 HWY_EXPORT(HalveCodes);
 HWY_EXPORT(HalveMeans);
-HWY_EXPORT(HalveBounds);
+HWY_EXPORT(BetweenRows);
 HWY_EXPORT(DoubleRow);
 HWY_EXPORT(RepeatTexels);
 HWY_EXPORT(LimitRow);
@@ -213,10 +204,6 @@ void heights_of_codes(const float* codes, float lowest, float step, int count, f
     HWY_DYNAMIC_DISPATCH(HeightsOfCodes)(codes, lowest, step, count, row);
 }
 
-void bounds_of_codes(const float* codes, float least, float greatest, int count, float* low, float* high) {
-    HWY_DYNAMIC_DISPATCH(BoundsOfCodes)(codes, least, greatest, count, low, high);
-}
-
 void extrapolate_row(const float* a, const float* b, float factor, int count, float* out) {
     HWY_DYNAMIC_DISPATCH(ExtrapolateRow)(a, b, factor, count, out);
 }
@@ -227,7 +214,9 @@ void laplace_row(const float* above, const float* row, const float* below, int c
 
 void square_row(int count, float* row) { HWY_DYNAMIC_DISPATCH(SquareRow)(count, row); }
 
-void relax_row(const BendingRow& in, int count, float* out) { HWY_DYNAMIC_DISPATCH(RelaxRow)(in, count, out); }
+void relax_row(const BendingRow& in, CodeRange range, int count, float* out) {
+    HWY_DYNAMIC_DISPATCH(RelaxRow)(in, range, count, out);
+}
 
 void halve_codes(const float* upper, const float* lower, int count, float* out) {
     HWY_DYNAMIC_DISPATCH(HalveCodes)(upper, lower, count, out);
@@ -237,26 +226,26 @@ void halve_means(const float* upper, const float* lower, int count, float* out) 
     HWY_DYNAMIC_DISPATCH(HalveMeans)(upper, lower, count, out);
 }
 
-void halve_bounds(BoundsRow upper, BoundsRow lower, int count, float* low, float* high) {
-    HWY_DYNAMIC_DISPATCH(HalveBounds)(upper, lower, count, low, high);
+void between_rows(const float* const rows[4], int count, float* out) {
+    HWY_DYNAMIC_DISPATCH(BetweenRows)(rows, count, out);
 }
 
 void double_row(const float* row, int count, float* out) { HWY_DYNAMIC_DISPATCH(DoubleRow)(row, count, out); }
 
 void repeat_texels(const float* row, int count, float* out) { HWY_DYNAMIC_DISPATCH(RepeatTexels)(row, count, out); }
 
-void limit_row(const float* low, const float* high, float otherwise, int count, float* row) {
-    HWY_DYNAMIC_DISPATCH(LimitRow)(low, high, otherwise, count, row);
+void limit_row(const float* codes, CodeRange range, int count, float* row) {
+    HWY_DYNAMIC_DISPATCH(LimitRow)(codes, range, count, row);
 }
 
-void weights_of_energy(float noise, float factor, int count, float* row) {
-    HWY_DYNAMIC_DISPATCH(WeightsOfEnergy)(noise, factor, count, row);
+void weights_of_energy(float noise, float significant, float factor, int count, float* row) {
+    HWY_DYNAMIC_DISPATCH(WeightsOfEnergy)(noise, significant, factor, count, row);
 }
 
 void least_of(const float* other, int count, float* row) { HWY_DYNAMIC_DISPATCH(LeastOf)(other, count, row); }
 
-void greatest_of(const float* other, float factor, int count, float* row) {
-    HWY_DYNAMIC_DISPATCH(GreatestOf)(other, factor, count, row);
+void greatest_of(float factor, float factor_of_other, const float* other, int count, float* row) {
+    HWY_DYNAMIC_DISPATCH(GreatestOf)(factor, factor_of_other, other, count, row);
 }
 
 }  // namespace tex

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 
 #include "kernels/deband.h"
@@ -13,6 +14,9 @@
 
 namespace tex {
 namespace {
+
+// Smaller grids take less time for a step than threads take to wait for each other.
+constexpr std::int64_t kWorthThreads = 256 * 256;
 
 constexpr int kReach = kStraightApron;  // the squared Laplacian reaches two texels
 
@@ -66,7 +70,7 @@ private:
         std::array<ApronRow, 5> ahead{ApronRow(width), ApronRow(width), ApronRow(width), ApronRow(width),
                                       ApronRow(width)};
         std::array<ApronRow, 3> bends{ApronRow(width), ApronRow(width), ApronRow(width)};
-        ApronRow weights(2 * ((width + 1) / 2)), low(width), high(width);
+        ApronRow weights(2 * ((width + 1) / 2));
         const auto row = [&](auto& ring, int j) {
             return ring[static_cast<std::size_t>(j + kReach) % ring.size()].data();
         };
@@ -84,10 +88,9 @@ private:
             const int at = j - kReach;
             if (at < begin) continue;
             repeat_texels(grid_.weights.row(at / 2), (width + 1) / 2, weights.data());
-            const RowBounds bounds = bounds_of(grid_, at, low.data(), high.data());
             relax_row({row(bends, at - 1), row(bends, at), row(bends, at + 1), row(ahead, at), grid_.codes.row(at),
-                       weights.data(), bounds.low, bounds.high},
-                      width, older_.row(at));
+                       weights.data()},
+                      grid_.range, width, older_.row(at));
         }
     }
 
@@ -118,68 +121,56 @@ private:
     ApronRow upper_, lower_;
 };
 
-void halve_rows(const BendingGrid& grid, int begin, int end, BendingGrid& out) {
-    const auto [width, height] = grid.extent();
-    const int count = (width + 1) / 2;
-    EvenRows codes(width), low(width), high(width);
-    ApronRow low0(width), high0(width), low1(width), high1(width);
-    for (int j = begin; j < end; ++j) {
-        const int upper = 2 * j, lower = std::min(2 * j + 1, height - 1);
-        codes.take(grid.codes.row(upper), grid.codes.row(lower));
-        halve_codes(codes.upper(), codes.lower(), count, out.codes.row(j));
-        const RowBounds a = bounds_of(grid, upper, low0.data(), high0.data());
-        const RowBounds b = bounds_of(grid, lower, low1.data(), high1.data());
-        low.take(a.low, b.low);
-        high.take(a.high, b.high);
-        halve_bounds({low.upper(), high.upper()}, {low.lower(), high.lower()}, count, out.low.row(j), out.high.row(j));
-    }
-}
-
 void refine_rows(const Plane<float>& coarse, const BendingGrid& grid, int begin, int end, Plane<float>& out) {
     const int width = grid.extent().width, count = coarse.extent().width;
-    ApronRow near(count), far(count), wide(2 * count), low(width), high(width);
+    std::array<ApronRow, 4> rows{ApronRow(count), ApronRow(count), ApronRow(count), ApronRow(count)};
+    const float* const around[4] = {rows[0].data(), rows[1].data(), rows[2].data(), rows[3].data()};
+    ApronRow across(count), wide(2 * count);
     for (int j = begin; j < end; ++j) {
-        straight_row(coarse, grid.wrap_y, j / 2, near.data());
-        straight_row(coarse, grid.wrap_y, j / 2 + (j % 2 == 0 ? -1 : 1), far.data());
-        extrapolate_row(near.data(), far.data(), -0.25f, count, near.data());
-        continue_ends(near.data(), count, grid.wrap_x);
-        double_row(near.data(), count, wide.data());
+        if (j % 2 == 0) {
+            std::copy_n(coarse.row(j / 2), count, across.data());
+        } else {
+            for (int k = 0; k < 4; ++k)
+                straight_row(coarse, grid.wrap_y, j / 2 - 1 + k, rows[static_cast<std::size_t>(k)].data());
+            between_rows(around, count, across.data());
+        }
+        continue_ends(across.data(), count, grid.wrap_x);
+        double_row(across.data(), count, wide.data());
         std::copy_n(wide.data(), width, out.row(j));
-        const RowBounds bounds = bounds_of(grid, j, low.data(), high.data());
-        limit_row(bounds.low, bounds.high, grid.least, width, out.row(j));
+        limit_row(grid.codes.row(j), grid.range, width, out.row(j));
     }
 }
 
 }  // namespace
 
-RowBounds bounds_of(const BendingGrid& grid, int j, float* low, float* high) {
-    if (!grid.low.empty()) return {grid.low.row(j), grid.high.row(j)};
-    bounds_of_codes(grid.codes.row(j), grid.least, grid.greatest, grid.extent().width, low, high);
-    return {low, high};
-}
-
 Result<void> relax(const BendingGrid& grid, int steps, Plane<float>& heights, const Execution& execution,
                    ProgressSpan span) {
     Relaxation relaxation(grid, heights);
+    const Execution own{grid.extent().texels() < kWorthThreads ? 1 : execution.threads, execution.progress};
     double t = 1.0;  // Beck and Teboulle's sequence
     for (int k = 0; k < steps; ++k) {
         const double next = (1.0 + std::sqrt(1.0 + 4.0 * t * t)) / 2.0;
         const double part = (span.to - span.from) / steps;
-        const ProgressSpan own{span.from + k * part, span.from + (k + 1) * part};
-        if (auto done = relaxation.step(static_cast<float>((t - 1.0) / next), execution, own); !done) return done;
+        const ProgressSpan now{span.from + k * part, span.from + (k + 1) * part};
+        if (auto done = relaxation.step(static_cast<float>((t - 1.0) / next), own, now); !done) return done;
         t = next;
     }
     return {};
 }
 
-Result<BendingGrid> halve(const BendingGrid& grid, const Execution& execution) {
-    const Extent extent{(grid.extent().width + 1) / 2, (grid.extent().height + 1) / 2};
-    BendingGrid half{Plane<float>(extent), Plane<float>(extent), Plane<float>(extent), {},
-                     grid.wrap_x,          grid.wrap_y,          grid.least,           grid.greatest};
+Result<Plane<float>> halve(const Plane<float>& plane, HalveRows* halve_two, const Execution& execution) {
+    const Extent full = plane.extent();
+    Plane<float> out(Extent{(full.width + 1) / 2, (full.height + 1) / 2});
     const Execution silent{execution.threads, {}};
-    const auto body = [&](int begin, int end) { halve_rows(grid, begin, end, half); };
-    if (auto done = parallel_for(silent, extent.height, kBendingStrip, body); !done) return done.error();
-    return half;
+    const auto body = [&](int begin, int end) {
+        EvenRows rows(full.width);
+        for (int j = begin; j < end; ++j) {
+            rows.take(plane.row(2 * j), plane.row(std::min(2 * j + 1, full.height - 1)));
+            halve_two(rows.upper(), rows.lower(), out.extent().width, out.row(j));
+        }
+    };
+    if (auto done = parallel_for(silent, out.extent().height, kBendingStrip, body); !done) return done.error();
+    return out;
 }
 
 Result<Plane<float>> refine(const Plane<float>& coarse, const BendingGrid& grid, const Execution& execution) {

@@ -8,18 +8,17 @@
 #include <tex/image.h>
 #include <tex/result.h>
 
+#include "kernels/deband.h"
 #include "threads/parallel.h"
 
 namespace tex {
 
 struct BendingGrid {
-    Plane<float> codes;      // NaN where no height is known
-    Plane<float> low, high;  // the bounds; empty: half a step around the code
-    Plane<float> weights;    // of the pull to the code, for each square of 2x2 texels
+    Plane<float> codes;    // NaN where no height is known
+    Plane<float> weights;  // of the pull to the code, for each square of 2x2 texels
     Wrap wrap_x = Wrap::repeat;
     Wrap wrap_y = Wrap::repeat;
-    float least = 0.0f;     // no height is below
-    float greatest = 0.0f;  // no height is above
+    CodeRange range;
 
     [[nodiscard]] Extent extent() const { return codes.extent(); }
 };
@@ -32,17 +31,11 @@ inline constexpr int kBendingStrip = 64;
 Result<void> relax(const BendingGrid& grid, int steps, Plane<float>& heights, const Execution& execution,
                    ProgressSpan span);
 
-// The grid of half the size, without weights.
-Result<BendingGrid> halve(const BendingGrid& grid, const Execution& execution);
+// A plane of half the size, each row of which `halve_two` makes of two: see kernels/deband.h.
+using HalveRows = void(const float* upper, const float* lower, int count, float* out);
+Result<Plane<float>> halve(const Plane<float>& plane, HalveRows* halve_two, const Execution& execution);
 
-// Heights of a grid of half the size, on `grid`, within its bounds. Heights that are NaN become grid.least.
+// Heights of a grid of half the size, on `grid`, within its bounds.
 Result<Plane<float>> refine(const Plane<float>& coarse, const BendingGrid& grid, const Execution& execution);
-
-// The bounds of row j: rows of the grid, or computed into `low` and `high`.
-struct RowBounds {
-    const float* low;
-    const float* high;
-};
-RowBounds bounds_of(const BendingGrid& grid, int j, float* low, float* high);
 
 }  // namespace tex

@@ -11,11 +11,8 @@
 
 namespace tex {
 
-// The weights of the finest grid, for each square of 2x2 texels. `half` is the grid of half the size; null if there is
-// none. Errors: out_of_memory, cancelled.
-Result<Plane<float>> finest_weights(const BendingGrid& grid, const BendingGrid* half, const Execution& execution);
-
-// The weights of a grid, the next finer one of which has the weights `finer`.
-Result<Plane<float>> coarser_weights(const BendingGrid& grid, const Plane<float>& finer, const Execution& execution);
+// The weights of a grid, for each square of 2x2 texels. `finer` are those of the next finer grid; null for the finest.
+// Errors: out_of_memory, cancelled.
+Result<Plane<float>> bending_weights(const BendingGrid& grid, const Plane<float>* finer, const Execution& execution);
 
 }  // namespace tex

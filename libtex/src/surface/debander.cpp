@@ -19,13 +19,14 @@
 namespace tex {
 namespace {
 
-// Steps on each grid: more no longer change the angles of real maps (tests/bench/RESULTS.md).
-constexpr int kSteps = 30;
+// Steps on the finest grid, where real maps gain no more from further ones, and on those of half its size, of a
+// quarter, and so on: twice as many on each, because what the coarse ones leave is beyond the reach of the finer ones,
+// and because they cost half as much as those of the grid before nevertheless.
+constexpr int kFinestSteps = 20;
+constexpr int kHalfSteps = 60;
+constexpr int kMostSteps = 480;
 constexpr int kCoarsestGrid = 8;  // texels of the longer side
-// Grids have half the size of the one before: the work on all of them is 4/3 of that on the finest.
-constexpr double kFinestPart = 0.75;
-
-constexpr int kLooks = 64;  // strips whose different heights are collected: 64 KB each
+constexpr int kLooks = 64;        // strips whose different heights are collected: 64 KB each
 
 struct Found {
     std::optional<HeightSteps> steps;
@@ -63,45 +64,48 @@ Result<Found> look_at(const Plane<float>& heights, const Execution& execution) {
 Result<std::vector<BendingGrid>> grids_of(BendingGrid finest, const Execution& execution) {
     std::vector<BendingGrid> grids;
     grids.push_back(std::move(finest));
-    while (std::max(grids.back().extent().width, grids.back().extent().height) > kCoarsestGrid) {
-        auto half = halve(grids.back(), execution);
-        if (!half) return half.error();
-        grids.push_back(std::move(*half));
-    }
-    for (std::size_t k = 0; k < grids.size(); ++k) {
-        const BendingGrid* const half = grids.size() > 1 ? &grids[1] : nullptr;
-        auto weights = k == 0 ? finest_weights(grids[0], half, execution)
-                              : coarser_weights(grids[k], grids[k - 1].weights, execution);
+    while (true) {
+        BendingGrid& grid = grids.back();
+        const Plane<float>* const finer = grids.size() > 1 ? &grids[grids.size() - 2].weights : nullptr;
+        auto weights = bending_weights(grid, finer, execution);
         if (!weights) return weights.error();
-        grids[k].weights = std::move(*weights);
+        grid.weights = std::move(*weights);
+        if (std::max(grid.extent().width, grid.extent().height) <= kCoarsestGrid) break;
+        auto codes = halve(grid.codes, halve_codes, execution);
+        if (!codes) return codes.error();
+        grids.push_back({std::move(*codes), {}, grid.wrap_x, grid.wrap_y, grid.range});
     }
     return grids;
 }
 
-// The coarsest heights are the codes; each finer grid begins with the heights of the one before.
+int steps_on(std::size_t grid) {
+    return grid == 0 ? kFinestSteps : std::min(kMostSteps, kHalfSteps << std::min<std::size_t>(grid - 1, 8));
+}
+
+// The coarsest heights are the codes; each finer grid begins with the heights of the one before. Progress: the share of
+// each grid is that of its texels, times its steps.
 Result<Plane<float>> solve(std::vector<BendingGrid>& grids, const Execution& execution, ProgressSpan span) {
+    double work = 0.0, done = 0.0;
+    const auto work_on = [&](std::size_t k) { return static_cast<double>(steps_on(k)) * std::pow(0.25, k); };
+    for (std::size_t k = 0; k < grids.size(); ++k) work += work_on(k);
+    const auto at = [&](double part) { return span.from + (span.to - span.from) * std::min(1.0, part / work); };
     Plane<float> heights;
-    double done = span.from;
     while (true) {
         const BendingGrid& grid = grids.back();
         if (heights.empty()) {
             heights = grid.codes.clone();
-            Plane<float> bounds(Extent{grid.extent().width, 2});
-            for (int j = 0; j < grid.extent().height; ++j) {
-                const RowBounds row = bounds_of(grid, j, bounds.row(0), bounds.row(1));
-                limit_row(row.low, row.high, grid.least, grid.extent().width, heights.row(j));
-            }
+            for (int j = 0; j < grid.extent().height; ++j)
+                limit_row(grid.codes.row(j), grid.range, grid.extent().width, heights.row(j));
         } else {
             auto finer = refine(heights, grid, execution);
             if (!finer) return finer.error();
             heights = std::move(*finer);
         }
-        const double left =
-            grids.size() == 1 ? 1.0 : std::pow(1.0 - kFinestPart, static_cast<double>(grids.size() - 1));
-        const double to = std::max(done, span.from + (span.to - span.from) * left);
-        if (auto relaxed = relax(grid, kSteps, heights, execution, {done, to}); !relaxed) return relaxed.error();
-        done = to;
-        if (grids.size() == 1) return heights;
+        const std::size_t level = grids.size() - 1;
+        const ProgressSpan own{at(done), level == 0 ? span.to : at(done + work_on(level))};
+        if (auto relaxed = relax(grid, steps_on(level), heights, execution, own); !relaxed) return relaxed.error();
+        done += work_on(level);
+        if (level == 0) return heights;
         grids.pop_back();
     }
 }
@@ -143,8 +147,8 @@ Result<DebandReport> deband_heights(Plane<float>& heights, Wrap wrap_x, Wrap wra
     BendingGrid grid;
     grid.wrap_x = wrap_x;
     grid.wrap_y = wrap_y;
-    grid.least = steps.lowest == 0.0f ? 0.0f : -1.0f;
-    grid.greatest = reaches_one ? highest : highest + 1.0f;
+    grid.range.least = steps.lowest == 0.0f ? 0.0f : -1.0f;
+    grid.range.greatest = reaches_one ? highest : highest + 1.0f;
     const auto to_codes = [&](int j) { codes_of_heights(steps.lowest, steps.step, extent.width, heights.row(j)); };
     if (auto done = in_strips(extent, execution, to_codes); !done) return done.error();
     grid.codes = std::move(heights);
