@@ -29,9 +29,9 @@ namespace tex {
 // leaves the range from 0 to 1 where the input ends at 0 or at 1. Where the ground is smooth, w is 0. Where it is
 // rough, rounding acts as white noise of variance 1/12, and the best estimate is that of a Wiener filter: w is 12 times
 // the variance of L h (Wiener 1949). It is estimated as the local mean of (L k)^2, less 20/12 for the noise; the
-// means of 2x2 texels must confirm it, with 4 times their energy less 0.6, and an energy of at least 1, so that the beat
-// of a steady slope with the steps is not mistaken for roughness. Beside cliffs (w > 1e5), heights stay at their codes,
-// so that plateaus stay flat.
+// means of 2x2 texels must confirm it, with 4 times their energy less 0.6, and an energy of at least 1, so that the
+// beat of a steady slope with the steps is not mistaken for roughness. Beside cliffs (w > 1e5), heights stay at their
+// codes, so that plateaus stay flat.
 //
 // Method: from coarse grids to fine ones; on each, a fixed number of projected gradient steps with momentum (Beck,
 // Teboulle 2009): more on coarse grids, where they are cheap and reach far. A coarse grid has every other texel of the
