@@ -47,7 +47,7 @@ py::dict dict_of_deband(const DebandReport& report) {
     return facts;
 }
 
-void tell(py::dict facts, const HeightReport& report) {
+void tell(const py::dict& facts, const HeightReport& report) {
     facts["luma_texels"] = report.luma_texels;
     facts["invalid_texels"] = report.invalid_texels;
     facts["deband"] = dict_of_deband(report.deband);

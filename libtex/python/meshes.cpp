@@ -247,8 +247,8 @@ const SelectedPart& selected_from(py::handle from, std::string_view name) {
 }
 
 py::array tangents_of(const std::vector<Float4>& tangents) {
-    const py::array_t<float> array({static_cast<py::ssize_t>(tangents.size()), py::ssize_t{4}},
-                                   tangents.empty() ? nullptr : &tangents.data()->x);
+    py::array_t<float> array({static_cast<py::ssize_t>(tangents.size()), py::ssize_t{4}},
+                             tangents.empty() ? nullptr : &tangents.data()->x);
     return array;
 }
 

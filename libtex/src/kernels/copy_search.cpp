@@ -109,7 +109,7 @@ void chord_sums_target(const ChordTexels& texels, const float* values, int strid
         auto sum = hn::Zero(d);
         auto allowed = hn::Eq(one, one);
         for (int k = 0; k < 16; ++k) {
-            const auto value = hn::LoadU(d, values + k * stride + i);
+            const auto value = hn::LoadU(d, values + static_cast<std::ptrdiff_t>(k) * stride + i);
             const auto decoded = hn::Set(d, texels.decoded[k]);
             const auto flat = hn::Min(one, hn::Add(hn::Mul(value, value), hn::Mul(decoded, decoded)));
             const auto dv = hn::Sub(hn::Set(d, texels.own[k]), value);

@@ -20,7 +20,7 @@ void RdoCandidates::add(const std::byte* half, int distance, int literals) {
     float values[16];
     decode_half(aim_.kind, half, values);
     float* const column = values_.data() + count_++;
-    for (int k = 0; k < 16; ++k) column[k * kStride] = values[k];
+    for (std::ptrdiff_t k = 0; k < 16; ++k) column[k * kStride] = values[k];
 }
 
 void RdoCandidates::add_literals(const std::byte* half) { add(half, 0, kHalfBytes); }
@@ -51,7 +51,8 @@ void RdoCandidates::add_copies(const std::byte* from, int distance, Copied copie
 }
 
 void RdoCandidates::copy_values(int index, float values[16]) const {
-    for (int k = 0; k < 16; ++k) values[k] = values_[static_cast<std::size_t>(k * kStride + index)];
+    const float* const column = values_.data() + index;
+    for (std::ptrdiff_t k = 0; k < 16; ++k) values[k] = column[k * kStride];
 }
 
 }  // namespace tex

@@ -16,7 +16,7 @@ namespace tex {
 namespace {
 
 // Smaller grids take less time for a step than threads take to wait for each other.
-constexpr std::int64_t kWorthThreads = 256 * 256;
+constexpr std::int64_t kWorthThreads = std::int64_t{256} * 256;
 
 constexpr int kReach = kStraightApron;  // the squared Laplacian reaches two texels
 
