@@ -35,7 +35,7 @@ namespace tex {
 //
 // Method: from coarse grids to fine ones; on each, a fixed number of projected gradient steps with momentum (Beck,
 // Teboulle 2009): more on coarse grids, where they are cheap and reach far. A coarse grid has every other texel of the
-// finer one, with its bounds, and a pull of its own where the ground is rough at that scale. Cubic interpolation takes
+// finer one, with its bounds, and a pull where the ground is rough at that scale. Cubic interpolation takes
 // its heights to the finer one (Dubuc 1986). The bending energy is near its least, not at it; the bounds hold exactly.
 //
 // Texels that are NaN have no bounds and stay NaN; the field bends through them. Wraps are those of the field; with

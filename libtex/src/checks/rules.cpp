@@ -50,7 +50,7 @@ constexpr Rule kRules[] = {
      "The engine named by --for does not read its file type, does not read normals from its format, or gets too few "
      "levels. Engines do not build levels for block formats.",
      "Make the file again with bake-normals or pack-normals and the same --for.", "N103"},
-    {"N114", "uastc-without-alpha", file, error, true, "UASTC has no alpha to make y from.",
+    {"N114", "uastc-without-alpha", file, error, true, "The file has no y.",
      "Transcoders make x of BC5 and EAC RG11 from R, and y from A. Without alpha, y is 1 everywhere.",
      "Encode the source again with x in R, G and B and y in A (toktx has --normal_mode for that), or bake or pack it "
      "as BC5, EAC or ASTC.",

@@ -10,7 +10,7 @@
 
 namespace tex {
 
-// At first, each number from 0 to count - 1 is a set of its own.
+// Sets of the numbers from 0 to count - 1. At first, each set has one number.
 class DisjointSets {
 public:
     explicit DisjointSets(std::size_t count) : parents_(count) { std::iota(parents_.begin(), parents_.end(), 0U); }
