@@ -96,7 +96,7 @@ void add_heights(Module& module) {
         [](Call& call, Relief& relief, BakeOptions& options, Running& running) -> py::object {
             need(options.gaussian_sigma > 0.0f && options.gaussian_sigma <= kMaxGaussianSigma, "gaussian_sigma",
                  "must be above 0 and at most 64");
-            const HeightField field = field_from(call["height"], "height", relief);
+            const HeightField field = field_from(call["height"], "height", relief, false);  // bake() checks
             return array_of(running.run([&](const Execution& e) { return bake(field, options, e); }));
         });
     module.verb<Running>("slope_range", {{"n", "ArrayLike"}}, "dict[str, tuple[float, float]]",

@@ -160,7 +160,7 @@ py::object make_object(T value) {
 
 }  // namespace
 
-HeightField field_from(py::handle from, std::string_view name, const Relief& relief) {
+HeightField field_from(py::handle from, std::string_view name, const Relief& relief, bool finite) {
     HeightField field;
     if (py::isinstance<HeightField>(from)) {
         const auto& given = from.cast<const HeightField&>();
@@ -173,7 +173,7 @@ HeightField field_from(py::handle from, std::string_view name, const Relief& rel
         field.wrap_x = given.wrap_x;
         field.wrap_y = given.wrap_y;
     } else {
-        field.height = plane_from(from, name);
+        field.height = plane_from(from, name, finite);
     }
     field.bumpiness_x = relief.bumpiness_x.value_or(field.bumpiness_x);
     field.bumpiness_y = relief.bumpiness_y.value_or(field.bumpiness_y);

@@ -14,7 +14,9 @@
 namespace tex::python {
 
 // The field that bake() reads: a HeightField, or an array with bumpiness 1 that repeats; `relief` takes precedence.
-[[nodiscard]] HeightField field_from(py::handle from, std::string_view name, const Relief& relief = {});
+// `finite`: an array is checked.
+[[nodiscard]] HeightField field_from(py::handle from, std::string_view name, const Relief& relief = {},
+                                     bool finite = true);
 
 // An Image, or an array.
 class Picture {

@@ -4,6 +4,7 @@
 #include <tex/bake.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -25,7 +26,12 @@ Result<NormalMap> bake(const HeightField& field, const BakeOptions& options, con
     return guarded([&]() -> Result<NormalMap> {
         NormalMap map(extent);
         const Gradient gradient = gradient_of(options);
-        const auto heights = [&field](int j) { return field.height.row(j); };
+        std::atomic<bool> finite = true;
+        const auto heights = [&](int j) {
+            const float* const row = field.height.row(j);
+            if (!are_finite(row, extent.width)) finite = false;  // now that the row is in the cache anyway
+            return row;
+        };
         const HeightFieldHead head{field.bumpiness_x, field.bumpiness_y, field.wrap_x, field.wrap_y};
         const auto body = [&](int begin, int end) {
             BakeRows rows(extent, heights, gradient, head, begin);
@@ -33,6 +39,10 @@ Result<NormalMap> bake(const HeightField& field, const BakeOptions& options, con
         };
         const auto done = parallel_for(execution, extent.height, strip_rows(extent.width, 2 * gradient.radius), body);
         if (!done) return done.error();
+        if (!finite)
+            return Error{ErrorCode::bad_data,
+                         {},
+                         "some heights are NaN or infinite; height_field() with fill_invalid replaces them"};
         return map;
     });
 }

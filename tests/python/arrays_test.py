@@ -103,8 +103,10 @@ def test_sides_are_limited():
 def test_values_must_be_finite(value):
     heights = HEIGHTS.copy()
     heights[-1, -1] = value
-    with pytest.raises(ValueError, match="height: some values are infinite or NaN"):
+    with pytest.raises(tex.BadDataError, match="some heights are NaN or infinite"):
         tex.bake(heights)
+    with pytest.raises(ValueError, match="height: some values are infinite or NaN"):
+        tex.deband(heights)
     normals = tex.bake(HEIGHTS)
     normals[3, 5, 2] = value
     for call in (tex.pack, tex.build_mip_chain, tex.encode_blocks, tex.slope_range, lambda n: tex.compare(n, n)):
@@ -117,6 +119,8 @@ def test_every_row_of_a_large_array_is_examined(row):
     heights = np.zeros((3000, 1600), np.float32)  # large enough for several threads
     heights[row, 1599] = np.nan
     with pytest.raises(ValueError, match="height: some values are infinite or NaN"):
+        tex.deband(heights)
+    with pytest.raises(tex.BadDataError, match="some heights are NaN or infinite"):
         tex.bake(heights)
 
 

@@ -263,6 +263,19 @@ TEST(Bake, EveryFiniteHeightGivesAFiniteUnitNormal) {
     }
 }
 
+TEST(Bake, RefusesHeightsThatAreNotFinite) {
+    const float infinity = std::numeric_limits<float>::infinity();
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), infinity, -infinity}) {
+        for (const auto& [i, j] : {std::pair{0, 0}, {36, 0}, {18, 150}, {36, 299}}) {
+            HeightField field = field_of({37, 300}, 1.0f, Wrap::clamp, [](int, int) { return 0.5; });
+            field.height.at(i, j) = bad;
+            const auto map = tex::bake(field, {}, {2, {}});
+            ASSERT_FALSE(map) << i << ", " << j;
+            EXPECT_EQ(map.error().code, tex::ErrorCode::bad_data);
+        }
+    }
+}
+
 TEST(Bake, LengthsAreExactToTwoUnitsInTheLastPlace) {
     const NormalMap map =
         baked(field_of({512, 64}, 50.0f, Wrap::repeat, [](int i, int j) { return noise(i, j) * noise(j, i); }));

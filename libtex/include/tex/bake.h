@@ -19,11 +19,11 @@ namespace tex {
 //
 // (Blinn 1978; Catlike Coding, Rendering 6, 1.3.) Computed in float: slopes are exact to rounding, and lengths to 2
 // units in the last place. Slopes are clamped to +-1e15, so that every finite height gives a finite unit normal with
-// z > 0. Heights must be finite (see height_field()). Only if bumpiness is above 2^40 (or HeightOptions::blur_sigma
-// above 0) are heights beyond +-1e34 limited to that first.
+// z > 0. Only if bumpiness is above 2^40 (or HeightOptions::blur_sigma above 0) are heights beyond +-1e34 limited to
+// that first.
 //
 // Preconditions (asserted): 1 <= width, height <= kMaxExtent; finite bumpiness; gaussian_sigma in range.
-// Errors: out_of_memory, cancelled.
+// Errors: bad_data if a height is NaN or infinite (height_field() replaces or refuses them), out_of_memory, cancelled.
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] Result<NormalMap> bake(const HeightField& field, const BakeOptions& options = {},
                                      const Execution& execution = {});

@@ -26,6 +26,15 @@ HWY_INLINE V height(const float* in, V scale) {
     return clamped(hn::Mul(hn::LoadU(kD, in), scale), hn::Set(kD, kMaxHeight));
 }
 
+bool AreFinite(const float* row, int count) {
+    auto bad = hn::FirstN(kD, 0);
+    for (int i = 0; i < count; i += kLanes) {
+        const auto inside = hn::FirstN(kD, static_cast<std::size_t>(count - i));
+        bad = hn::Or(bad, hn::AndNot(hn::IsFinite(hn::LoadU(kD, row + i)), inside));
+    }
+    return hn::AllFalse(kD, bad);
+}
+
 void LimitHeights(const float* in, float scale, int count, float* out) {
     const V s = hn::Set(kD, scale);
     for (int i = 0; i < count; i += kLanes) hn::StoreU(height(in + i, s), kD, out + i);
@@ -149,6 +158,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex {
 
+HWY_EXPORT(AreFinite);
 HWY_EXPORT(LimitHeights);
 HWY_EXPORT(ContinueHeights);
 HWY_EXPORT(NormalsByDifference);
@@ -157,6 +167,8 @@ HWY_EXPORT(DeriveColumn);
 HWY_EXPORT(NormalsBySmoothing);
 HWY_EXPORT(WidenSlopeBounds);
 HWY_EXPORT(CountBelow);
+
+bool are_finite(const float* row, int count) { return HWY_DYNAMIC_DISPATCH(AreFinite)(row, count); }
 
 void limit_heights(const float* in, float scale, int count, float* out) {
     HWY_DYNAMIC_DISPATCH(LimitHeights)(in, scale, count, out);

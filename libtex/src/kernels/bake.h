@@ -21,6 +21,9 @@ inline constexpr float kHeightScale = 0x1p-16f;
 // Slopes are clamped to this, so that their squares are finite.
 inline constexpr float kMaxSlope = 1e15f;
 
+// Whether no height of the row is NaN or infinite.
+bool are_finite(const float* row, int count);
+
 // out[i] = scale in[i], limited to +-kMaxHeight.
 void limit_heights(const float* in, float scale, int count, float* out);
 
