@@ -7,6 +7,7 @@
 //     waves.png       128x128, 16 bits   crossing sines; tiles
 //     bricks.png      512x512, 16 bits   a brick wall with worn edges and mortar; tiles (uses 11 bits: a smaller file)
 //     ramp.png         64x64,   8 bits   four codes a column: a constant slope
+//     dunes.png       256x256,  8 bits   low smooth hills: each code is a terrace
 //
 // Uses only + - * / and sqrt in double, so that every machine writes the same bytes. A test compares them with the
 // committed files.
@@ -185,6 +186,14 @@ Grey bricks() {
     return grey;
 }
 
+Grey dunes() {
+    Grey grey(256, 256, 8);
+    for (int j = 0; j < 256; ++j) {
+        for (int i = 0; i < 256; ++i) grey.set(i, j, 0.5 + 0.25 * noise(i, j, 64, 9) + 0.05 * noise(i, j, 32, 10));
+    }
+    return grey;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -196,8 +205,11 @@ int main(int argc, char** argv) {
         const char* name;
         Grey grey;
     };
-    Sample samples[] = {
-        {"hemisphere.png", hemisphere()}, {"waves.png", waves()}, {"bricks.png", bricks()}, {"ramp.png", ramp()}};
+    Sample samples[] = {{"hemisphere.png", hemisphere()},
+                        {"waves.png", waves()},
+                        {"bricks.png", bricks()},
+                        {"ramp.png", ramp()},
+                        {"dunes.png", dunes()}};
     for (Sample& sample : samples) {
         if (!write_png(std::string(argv[1]) + "/" + sample.name, sample.grey)) return 3;
     }

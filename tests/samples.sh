@@ -7,7 +7,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
 "$1" "$scratch"
-for made in hemisphere waves bricks ramp; do cmp "$scratch/$made.png" "$samples/$made.png"; done
+for made in hemisphere waves bricks ramp dunes; do cmp "$scratch/$made.png" "$samples/$made.png"; done
 if [ $# -gt 1 ]; then
     # The README's picture, made in the same way as in quickstart.sh.
     "$2" "$samples/bricks.png" -o "$scratch/bricks_normals.png" --bumpiness 12
@@ -26,4 +26,12 @@ if [ $# -gt 1 ]; then
     "$3" "$scratch/+Y.png" "$scratch/-Y.png" -o "$scratch/y_axis.png" --show normals,lit --columns 4 --size 200 \
         --light -0.3,1,0.8 --specular 0.15 --no-legend --y-in up
     cmp "$scratch/y_axis.png" "$samples/y_axis.png"
+    # The README's picture of heights of 8 bits.
+    for how in "off:8 bits" "on:8 bits, debanded"; do
+        "$2" "$samples/dunes.png" -o "$scratch/${how#*:}.png" --format rgb16 --bumpiness 48 --wrap clamp \
+            --deband "${how%%:*}"
+    done
+    "$3" "$scratch/8 bits.png" "$scratch/8 bits, debanded.png" -o "$scratch/deband.png" --show lit --columns 2 \
+        --size 320 --light -1,0.6,0.9 --tint 0.7,0.5,0.3 --specular 0.03 --no-legend
+    cmp "$scratch/deband.png" "$samples/deband.png"
 fi
