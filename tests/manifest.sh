@@ -16,8 +16,10 @@ builds() {
     [ "$said" = "$1" ] || { echo "manifest.sh: expected '$1', got '$said'" >&2; exit 1; }
 }
 
-builds '4 made, 0 up to date'
-for name in waves_n.ktx2 bricks_n.dds bricks_ue.dds ramp_n.dds hemisphere_n.dds; do [ -s "$scratch/built/$name" ]; done
-builds '0 made, 4 up to date'
+builds '5 made, 0 up to date'
+for name in waves_n.ktx2 bricks_n.dds bricks_ue.dds ramp_n.dds hemisphere_n.dds dunes_n.dds; do
+    [ -s "$scratch/built/$name" ]
+done
+builds '0 made, 5 up to date'
 cp "$scratch/ramp.png" "$scratch/new.png"
-builds '1 made, 4 up to date'
+builds '1 made, 5 up to date'
