@@ -14,7 +14,7 @@
 namespace tex::python {
 
 // The field that bake() reads: a HeightField, or an array with bumpiness 1 that repeats; `relief` takes precedence.
-// `finite`: an array is checked.
+// `finite`: whether an array is checked for NaN and infinities.
 [[nodiscard]] HeightField field_from(py::handle from, std::string_view name, const Relief& relief = {},
                                      bool finite = true);
 

@@ -29,7 +29,7 @@ Result<NormalMap> bake(const HeightField& field, const BakeOptions& options, con
         std::atomic<bool> finite = true;
         const auto heights = [&](int j) {
             const float* const row = field.height.row(j);
-            if (!are_finite(row, extent.width)) finite = false;  // now that the row is in the cache anyway
+            if (!are_finite(row, extent.width)) finite = false;  // the bake reads the row next
             return row;
         };
         const HeightFieldHead head{field.bumpiness_x, field.bumpiness_y, field.wrap_x, field.wrap_y};
