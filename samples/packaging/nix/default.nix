@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: Apache-2.0
+# The library and the commands, built from the clone in which this file lies:
+#
+#   with import <nixpkgs> { }; callPackage ./samples/packaging/nix { astcenc = ...; }
+#
+# nixpkgs has no libastcenc: its astc-encoder installs the program alone. See the README of samples/packaging.
+{
+  lib,
+  stdenv,
+  cmake,
+  ninja,
+  pkg-config,
+  assimp,
+  astcenc ? null,
+  fmt,
+  isa-l,
+  libdeflate,
+  libhwy,
+  libpng,
+  libseccomp,
+  nlohmann_json,
+  onetbb,
+  opencolorio,
+  openexr,
+  openimageio,
+  tomlplusplus,
+  zstd,
+}:
+
+let
+  version = "0.1.0";
+  commands = [
+    "bake-normals"
+    "blend-normals"
+    "build-normals"
+    "check-normals"
+    "compare-normals"
+    "convert-normals"
+    "integrate-normals"
+    "mip-normals"
+    "pack-normals"
+    "preview-normals"
+    "scale-normals"
+    "unpack-normals"
+  ];
+in
+lib.throwIf (astcenc == null)
+  "libtex needs libastcenc, its header and its CMake package: give them to callPackage as astcenc"
+  (
+    stdenv.mkDerivation {
+      pname = "libtex";
+      inherit version;
+
+      # The clone without .git and the folder in which CMake builds.
+      src = lib.cleanSourceWith {
+        src = lib.cleanSource ../../..;
+        filter = path: type: type != "directory" || baseNameOf path != "build";
+      };
+
+      nativeBuildInputs = [
+        cmake
+        ninja
+        pkg-config
+      ];
+      buildInputs = [
+        assimp
+        astcenc
+        fmt
+        isa-l
+        libdeflate
+        libhwy
+        libpng
+        libseccomp
+        nlohmann_json
+        onetbb
+        opencolorio
+        openexr
+        openimageio
+        tomlplusplus
+        zstd
+      ];
+      cmakeFlags = [ "-DBUILD_TESTING=OFF" ];
+
+      doInstallCheck = true;
+      installCheckPhase = ''
+        for command in ${toString commands}; do
+          "$out/bin/$command" --version | grep -F ${version}
+        done
+        for file in include/tex/tex.h lib/libtex.so lib/pkgconfig/libtex.pc libexec/libtex/tex-reader \
+          libexec/libtex/tex-mesh-reader share/man/man7/normal-maps.7*; do
+          ls "$out"/$file
+        done
+      '';
+
+      meta = {
+        description = "Tangent-space normal maps: bake, mip, pack, check";
+        license = lib.licenses.asl20;
+        platforms = lib.platforms.linux;
+        mainProgram = "bake-normals";
+      };
+    }
+  )
