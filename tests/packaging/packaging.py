@@ -104,7 +104,10 @@ def test_table() -> None:
 
 def test_vcpkg(stage: Path, scratch: Path) -> None:
     port = PACKAGING / "vcpkg/libtex"
-    manifest = json.loads((port / "vcpkg.json").read_text())
+    try:
+        manifest = json.loads((port / "vcpkg.json").read_text())
+    except json.JSONDecodeError as error:
+        return check(False, f"vcpkg.json is not JSON: {error}")
     # What vcpkg demands of a manifest: a name, one version, known fields, dependencies with names, sorted.
     known = {"name", "version-semver", "description", "license", "supports", "dependencies"}
     same("fields of vcpkg.json", manifest, known)
