@@ -116,6 +116,17 @@ TEST(Deband, NeverMakesRoughGroundWorse) {
     }
 }
 
+// Plateaus whose heights differ by at least 20 steps: there is nothing to smooth.
+TEST(Deband, LeavesPlateausBetweenCliffsAlone) {
+    const Formula height = [](int i, int j) {
+        const int x = i / 10, y = j / 10;
+        return 0.1 + 0.2 * ((x + 2 * y) % 4) + 0.1 * noise(x, y);
+    };
+    const HeightField truth = field_of({160, 160}, height);
+    const HeightField in = field_of({160, 160}, in_8_bits(height));
+    EXPECT_LE(angle(truth, debanded(in)), angle(truth, in) + 1e-6);
+}
+
 // The sum of squared Laplacians inside the border, in double precision.
 double bending_energy(const Plane<float>& heights) {
     double energy = 0.0;

@@ -30,8 +30,8 @@ namespace tex {
 // rough, rounding acts as white noise of variance 1/12, and the best estimate is that of a Wiener filter: w is 12 times
 // the variance of L h (Wiener 1949). It is estimated as the local mean of (L k)^2, less 20/12 for the noise; the
 // means of 2x2 texels must confirm it, with 4 times their energy less 0.6, and an energy of at least 1, so that the
-// beat of a steady slope with the steps is not mistaken for roughness. Beside cliffs (w > 1e5), heights stay at their
-// codes, so that plateaus stay flat.
+// beat of a steady slope with the steps is not mistaken for roughness. Where w > 300, heights stay at their codes: the
+// pull would move them by about 1 / sqrt(12 w), a sixtieth of a step, and the plateaus between cliffs stay flat.
 //
 // Method: from coarse grids to fine ones; on each, a fixed number of projected gradient steps with momentum (Beck,
 // Teboulle 2009): more on coarse grids, where they are cheap and reach far. A coarse grid has every other texel of the

@@ -24,8 +24,9 @@ constexpr int kLanes = static_cast<int>(hn::MaxLanes(kD));
 constexpr float kReach = 0.499f;
 // The greatest energy of a texel: beyond, the ground is a cliff, and a greater one would only spread farther.
 constexpr float kMostEnergy = 1e6f;
-// A greater weight is that of a cliff. Heights near it are held at their codes, so that its plateau stays flat.
-constexpr float kMostWeight = 1e5f;
+// With a greater weight, heights stay at their codes. They would move by about 1 / sqrt(12 weight), a sixtieth of a
+// step, which helps no rough ground, but bends the plateaus between cliffs.
+constexpr float kMostWeight = 300.0f;
 constexpr float kHolds = 1e12f;
 // The largest eigenvalue of the squared Laplacian.
 constexpr float kStiffest = 64.0f;

@@ -60,7 +60,7 @@ void repeat_texels(const float* row, int count, float* out);
 void limit_row(const float* codes, CodeRange range, int count, float* row);
 
 // In place: energies become weights: factor max(0, energy - noise); 0 if the energy is at most `significant`; and
-// beyond 1e5, one that holds heights at their codes.
+// beyond 300, one that holds heights at their codes.
 void weights_of_energy(float noise, float significant, float factor, int count, float* row);
 
 // row[i] = min(row[i], other[i]), and row[i] = max(factor row[i], factor_of_other other[i]).
