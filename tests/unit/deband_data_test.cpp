@@ -50,7 +50,7 @@ HeightField field_of(const Plane<float>& heights) {
 }
 
 // The mean angle, in degrees.
-double angle(const HeightField& truth, const HeightField& field) {
+double mean_error(const HeightField& truth, const HeightField& field) {
     return tex::compare(tex::bake(field).value(), tex::bake(truth).value())->error.mean;
 }
 
@@ -72,7 +72,7 @@ TEST(DebandData, NeverMakesAMapWorse) {
         const HeightField truth = field_of(heights), rounded = field_of(in_8_bits(heights));
         HeightField debanded = field_of(rounded.height);
         ASSERT_TRUE(tex::deband(debanded)) << name;
-        EXPECT_LE(angle(truth, debanded), angle(truth, rounded) + kRounding) << name;
+        EXPECT_LE(mean_error(truth, debanded), mean_error(truth, rounded) + kRounding) << name;
         ++maps;
     }
     EXPECT_GE(maps, 10);
