@@ -18,6 +18,7 @@
 #include <tex/tex.h>
 
 #include "broken_meshes.h"
+#include "reference/astc_block.h"
 #include "reference/damage.h"
 
 namespace {
@@ -107,6 +108,21 @@ NormalMap changed(const NormalMap& map, Change&& change) {
     return result;
 }
 
+// ASTC with x, y and z in R, G and B, as colours: a block of 4x4 texels for each texel of the map.
+Texture astc_colors(const NormalMap& map) {
+    Texture texture;
+    texture.format = Format::astc_4x4_unorm;
+    texture.levels = {{{4 * map.extent().width, 4 * map.extent().height}, {}}};
+    const auto code = [](float c) { return static_cast<unsigned>(std::lround((c + 1.0f) / 2.0f * 65535.0f)); };
+    for (int k = 0; k < map.extent().texels(); ++k) {
+        const int i = k % map.extent().width, j = k / map.extent().width;
+        const AstcBlock block =
+            one_color(false, {code(map.x.at(i, j)), code(map.y.at(i, j)), code(map.z.at(i, j)), 65535});
+        texture.levels[0].bytes.insert(texture.levels[0].bytes.end(), block.begin(), block.end());
+    }
+    return texture;
+}
+
 void Maker::files() {
     std::vector<std::byte> whole = encoded(packed(part(64, 64), Encoding::bc5), Container::dds);
     auto bytes = whole;
@@ -139,6 +155,7 @@ void Maker::files() {
     bytes[descriptor + 12] = std::byte{166};  // KHR_DF_MODEL_UASTC
     bytes[descriptor + 31] = std::byte{0};    // KHR_DF_CHANNEL_UASTC_RGB
     write("N114-uastc-without-alpha.ktx2", bytes);
+    write("N115-astc-layout.astc", encoded(astc_colors(part(16, 16)), Container::astc));
 }
 
 void Maker::values() {

@@ -100,7 +100,7 @@ bool has_more_data(const Stored& stored, const TexelCounts& counts) {
     };
     const std::size_t channels = std::min(planes.size(), stored.swizzle.size());
     for (std::size_t c = 0; c < channels; ++c) {
-        if (holds_component(c) || counts.high[c] == counts.low[c]) continue;
+        if (holds_component(c) || counts.high[c] - counts.low[c] <= (stored.in_blocks ? kBlockError : 0.0f)) continue;
         bool copied = false;
         for (std::size_t other = 0; other < channels; ++other)
             copied = copied || (holds_component(other) && equal(c, other));

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "cli/program.h"
 
@@ -51,6 +52,43 @@ TEST_F(AstcFiles, WeReadThoseOfAstcenc) {
         does("astcenc -cl a_n.png theirs.astc " + block + " -fast -normal -silent");
         const Ran ran = shell(scratch_, "compare-normals a.exr theirs.astc --max-mean 2");
         EXPECT_EQ(ran.code, 0) << block << ": " << ran.out << ran.err;
+    }
+}
+
+// What astcenc makes without its mode for normal maps, and what check-normals says and does about it.
+TEST_F(AstcFiles, WithOtherLayoutsAreFoundAndFixed) {
+    if (!has_astcenc()) GTEST_SKIP() << "no astcenc here";
+    does("unpack-normals a.exr -o a_n.png --format rgb8");
+    for (const std::string block : {"4x4", "8x8"}) {
+        for (const auto& [options, places] :
+             {std::pair("", "x in R, y in G, z in B"), std::pair(" -esw 1g1r", "x in A, y in G")}) {
+            does("astcenc -cl a_n.png colors.astc " + block + " -medium -silent" + options);
+            const auto report = nlohmann::json::parse(does("check-normals --json colors.astc"));
+            ASSERT_EQ(report["findings"].size(), 1u) << report;
+            const auto& finding = report["findings"][0];
+            EXPECT_EQ(finding["id"], "N115");
+            EXPECT_THAT(std::string(finding["message"]), HasSubstr(places));
+            does(std::string(finding["fix"]));
+            EXPECT_EQ(nlohmann::json::parse(does("check-normals --json FIXED.astc"))["findings"].size(), 0u);
+            does("compare-normals a.exr FIXED.astc --max-mean 3");
+        }
+        does("astcenc -cl a_n.png normals.astc " + block + " -medium -silent -normal");
+        EXPECT_EQ(nlohmann::json::parse(does("check-normals --json normals.astc"))["findings"].size(), 0u);
+    }
+}
+
+// Their blue holds nothing: that is the finding, and its fix makes ASTC with the usual layout.
+TEST_F(AstcFiles, OfTwoChannelsAreFoundAndFixed) {
+    if (!has_astcenc()) GTEST_SKIP() << "no astcenc here";
+    does("bake-normals a.png -o steep.png --bumpiness 12 --format rgb8");
+    for (const std::string swizzle : {"rg01", "rg11"}) {
+        does("astcenc -cl steep.png two.astc 4x4 -medium -silent -esw " + swizzle);
+        const auto report = nlohmann::json::parse(does("check-normals --json two.astc"));
+        ASSERT_EQ(report["findings"].size(), 1u) << report;
+        EXPECT_EQ(report["findings"][0]["id"], "N209");
+        does(std::string(report["findings"][0]["fix"]));
+        EXPECT_EQ(nlohmann::json::parse(does("check-normals --json FIXED.astc"))["findings"].size(), 0u);
+        does("compare-normals steep.png FIXED.astc --max-mean 3");
     }
 }
 

@@ -218,6 +218,10 @@ TEST_F(Engines, CheckNormalsAcceptsWhatForMakesAndNamesWhatDoesNotFit) {
     };
     says("gltf", "out/bevy/rock.ktx2", "gltf does not read ktx2 but png, jpeg");
     says("gltf", "out/bevy/rock.ktx2", "it does not read normals from bc5-unorm, rg but from rgb8, rgba8, rgb16");
+    does("bake-normals rock.png -o astc.ktx2 --for ios --format astc-8x6 --effort fast");
+    EXPECT_EQ(shell(scratch_, "check-normals --for ios astc.ktx2").code, 0);
+    EXPECT_EQ(shell(scratch_, "check-normals --for android astc.ktx2").code, 0);
+    says("bevy", "astc.ktx2", "does not read normals from astc-8x6-unorm, ra");
     says("bevy", "out/godot/rock.png", "bevy needs all 10 levels, and the file has 1");
     does("bake-normals rock.png -o one.dds --mips none");
     says("unity", "one.dds", "unity needs all 10 levels, and the file has 1");

@@ -14,26 +14,14 @@
 #include <tex/pack.h>
 #include <tex/unpack.h>
 
+#include "reference/astc_block.h"
+
 namespace tex {
 namespace {
 
-using Block = std::array<std::byte, 16>;
+using reference::one_color;
 
-// A block of one colour ("void extent", without coordinates): 9 bits 0x1fc, bit 9 for high dynamic range, then four
-// numbers of 16 bits.
-Block one_color(bool is_hdr, const std::array<unsigned, 4>& rgba) {
-    Block block;
-    block.fill(std::byte{0xff});
-    block[0] = std::byte{0xfc};
-    block[1] = is_hdr ? std::byte{0xff} : std::byte{0xfd};
-    for (std::size_t c = 0; c < 4; ++c) {
-        block[8 + 2 * c] = static_cast<std::byte>(rgba[c] & 0xff);
-        block[9 + 2 * c] = static_cast<std::byte>(rgba[c] >> 8);
-    }
-    return block;
-}
-
-std::array<float, 4> first_texel(Format format, const Block& block) {
+std::array<float, 4> first_texel(Format format, const reference::AstcBlock& block) {
     const Extent extent = format_info(format).block;
     std::vector<float> rgba(4 * static_cast<std::size_t>(extent.texels()), -1.0f);
     decode_astc(format, block.data(), extent, rgba.data());
@@ -49,7 +37,7 @@ TEST(Astc, BlocksOfOneColorAreThatColor) {
 
 TEST(Astc, BlocksThatAreNotValidOrOfHighRangeAreMagenta) {
     constexpr std::array<float, 4> kMagenta = {1.0f, 0.0f, 1.0f, 1.0f};
-    EXPECT_EQ(first_texel(Format::astc_4x4_unorm, Block{}), kMagenta);
+    EXPECT_EQ(first_texel(Format::astc_4x4_unorm, reference::AstcBlock{}), kMagenta);
     EXPECT_EQ(first_texel(Format::astc_12x12_unorm, one_color(true, {0x3c00, 0x3c00, 0x3c00, 0x3c00})), kMagenta);
 }
 

@@ -2,6 +2,7 @@
 
 #include <tex/swizzle.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <initializer_list>
@@ -11,6 +12,7 @@
 #include <tex/container.h>
 #include <tex/pack.h>
 
+#include "reference/astc_block.h"
 #include "unit/textures.h"
 
 namespace tex {
@@ -88,6 +90,35 @@ TEST(Swizzle, OfRxgbIsToldFromTheUnitVectors) {
         texture.levels[0].bytes[k] = std::byte{0};
     }
     EXPECT_EQ(guess(texture), "rxgb");
+}
+
+// Maps with a constant channel: flat ones, and those that slope along one axis.
+TEST(Swizzle, OfAstcIsToldFromGreyWithAlpha) {
+    const auto layout = [](float along_x, float along_y) {
+        MipChain chain = bumps({16, 16}, 0.5f);
+        NormalMap& map = chain.levels[0];
+        for (int k = 0; k < 16 * 16; ++k) {
+            map.x.at(k % 16, k / 16) *= along_x;
+            map.y.at(k % 16, k / 16) *= along_y;
+        }
+        return guess(unmarked(chain, Encoding::astc_4x4));
+    };
+    EXPECT_EQ(layout(1.0f, 1.0f), "ra");
+    EXPECT_EQ(layout(1.0f, 0.0f), "ra");
+    EXPECT_EQ(layout(0.0f, 1.0f), "ra");
+    EXPECT_EQ(layout(0.0f, 0.0f), "ra");
+    Texture texture = unmarked(bumps({8, 4}, 0.0f), Encoding::astc_4x4);
+    const auto of_blocks = [&](const std::array<unsigned, 4>& left, const std::array<unsigned, 4>& right) {
+        texture.levels[0].bytes.clear();
+        for (const auto& rgba : {left, right}) {
+            const auto block = reference::one_color(false, rgba);
+            texture.levels[0].bytes.insert(texture.levels[0].bytes.end(), block.begin(), block.end());
+        }
+        return guess(texture);
+    };
+    EXPECT_EQ(of_blocks({0x8000, 0x8000, 0xffff, 0xffff}, {0x8000, 0x8000, 0xffff, 0xffff}), "rgb");
+    EXPECT_EQ(of_blocks({0x8000, 0x8000, 0x8000, 0xffff}, {0x4000, 0x4000, 0x4000, 0xffff}), "rgb") << "heights";
+    EXPECT_EQ(of_blocks({0xffff, 0x8000, 0xffff, 0x8000}, {0xffff, 0x8000, 0xffff, 0x4000}), "dxt5nm");
 }
 
 TEST(Swizzle, OfTheFileIsTrusted) {

@@ -31,7 +31,8 @@ constexpr Container kThreeTypes[] = {png, jpeg, tga, tiff, exr, ktx2};
 constexpr Container kBevyTypes[] = {ktx2, dds, png, tiff, tga, bmp, jpeg, exr};
 constexpr Encoding kBevyEncodings[] = {bc5, eac_rg11, rg8, rg16, rgb8, rgba8, rgb16, half, float_};
 constexpr Container kPhoneTypes[] = {ktx2};
-constexpr Encoding kPhoneEncodings[] = {eac_rg11, eac_rg11_snorm, rg8, rgb8, rgba8};
+constexpr Encoding kPhoneEncodings[] = {eac_rg11, eac_rg11_snorm, astc_4x4, astc_5x4, astc_5x5, astc_6x5, astc_6x6,
+                                        astc_8x5, astc_8x6,       astc_8x8, rg8,      rgb8,     rgba8};
 
 // Engines that compress textures themselves get a picture that is not compressed: a second lossy step would add its
 // error to the first one's, and the engine would read x and y from the wrong channels of DXT5nm and BC5.
@@ -74,15 +75,16 @@ constexpr Engine kEngines[] = {
      "The asset processor chooses the preset Normals by the suffix, compresses and builds the levels. Its own OpenGL "
      "maps need Flip Y, so green points down.",
      kPictures, kRgb},
-    // OpenGL ES 3.0 and Vulkan's textureCompressionETC2; the direction is OpenGL's.
+    // OpenGL ES 3.0 and Vulkan's textureCompressionETC2; ASTC: ES 3.2 and textureCompressionASTC_LDR. The direction is
+    // OpenGL's.
     {"android", ktx2, eac_rg11, YAxis::up, true, "",
      "Every GPU with OpenGL ES 3.0 reads EAC RG11, which stores x and y in 8 bits a texel; the shader rebuilds z. "
-     "Green points up, as in OpenGL.",
+     "Green points up, as in OpenGL. ASTC needs fewer bytes and a GPU with OpenGL ES 3.2: --format astc-6x6.",
      kPhoneTypes, kPhoneEncodings},
-    // Metal: MTLPixelFormatEAC_RG11Unorm from A7 on. ASTC, which Apple prefers, is not written yet.
+    // Metal: MTLPixelFormatEAC_RG11Unorm from A7 on, MTLPixelFormatASTC_4x4_LDR from A8 on.
     {"ios", ktx2, eac_rg11, YAxis::up, true, "",
      "Every Apple GPU since A7 reads EAC RG11, which stores x and y in 8 bits a texel; the shader rebuilds z. "
-     "ASTC would need fewer bytes, but is not written yet.",
+     "ASTC needs fewer bytes and a GPU since A8: --format astc-6x6.",
      kPhoneTypes, kPhoneEncodings},
 };
 

@@ -21,11 +21,11 @@ void replace_word(std::string& text, std::string_view word, std::string_view by)
 }
 
 // The encoding that holds every stored component of this layout with as many bits; none if there is no such encoding.
+// ASTC, whose layout is always the same, rebuilds z.
 std::optional<Encoding> same_encoding(Format format, const Swizzle& swizzle) {
     const auto is_at = [&](std::size_t channel, Component component) { return swizzle[channel] == component; };
     const bool xyz = is_at(0, Component::x) && is_at(1, Component::y) && is_at(2, Component::z);
     const bool ag = is_at(3, Component::x) && is_at(1, Component::y) && !is_at(2, Component::z);
-    const bool ra = is_at(0, Component::x) && is_at(3, Component::y);
     const bool xy = is_at(0, Component::x) && is_at(1, Component::y) && !is_at(2, Component::z);
     const auto if_holds = [](bool holds, Encoding encoding) {
         return holds ? std::optional<Encoding>(encoding) : std::nullopt;
@@ -36,14 +36,14 @@ std::optional<Encoding> same_encoding(Format format, const Swizzle& swizzle) {
         case Format::bc5_snorm: return if_holds(xy, Encoding::bc5_snorm);
         case Format::eac_rg11_unorm: return if_holds(xy, Encoding::eac_rg11);
         case Format::eac_rg11_snorm: return if_holds(xy, Encoding::eac_rg11_snorm);
-        case Format::astc_4x4_unorm: return if_holds(ra, Encoding::astc_4x4);
-        case Format::astc_5x4_unorm: return if_holds(ra, Encoding::astc_5x4);
-        case Format::astc_5x5_unorm: return if_holds(ra, Encoding::astc_5x5);
-        case Format::astc_6x5_unorm: return if_holds(ra, Encoding::astc_6x5);
-        case Format::astc_6x6_unorm: return if_holds(ra, Encoding::astc_6x6);
-        case Format::astc_8x5_unorm: return if_holds(ra, Encoding::astc_8x5);
-        case Format::astc_8x6_unorm: return if_holds(ra, Encoding::astc_8x6);
-        case Format::astc_8x8_unorm: return if_holds(ra, Encoding::astc_8x8);
+        case Format::astc_4x4_unorm: return Encoding::astc_4x4;
+        case Format::astc_5x4_unorm: return Encoding::astc_5x4;
+        case Format::astc_5x5_unorm: return Encoding::astc_5x5;
+        case Format::astc_6x5_unorm: return Encoding::astc_6x5;
+        case Format::astc_6x6_unorm: return Encoding::astc_6x6;
+        case Format::astc_8x5_unorm: return Encoding::astc_8x5;
+        case Format::astc_8x6_unorm: return Encoding::astc_8x6;
+        case Format::astc_8x8_unorm: return Encoding::astc_8x8;
         case Format::rg8_unorm: return if_holds(xy, Encoding::rg8);
         case Format::rg16_unorm: return if_holds(xy, Encoding::rg16);
         case Format::rgb8_unorm: return if_holds(xyz, Encoding::rgb8);

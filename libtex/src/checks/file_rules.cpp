@@ -115,6 +115,24 @@ void check_engine(const Subject& subject, const EngineNeeds& needs, Findings& fi
     if (!message.empty()) findings.add("N113", message);
 }
 
+// For example: "x in R, y in G, z in B".
+std::string places(const Stored& stored) {
+    std::string text;
+    for (const Component component : {Component::x, Component::y, Component::z}) {
+        const int channel = stored.channel(component);
+        if (channel < 0) continue;
+        text += (text.empty() ? "" : ", ") + std::string(name_of(kComponentNames, component)) + " in ";
+        text += "RGBA"[channel];
+    }
+    return text;
+}
+
+void check_astc_layout(const Subject& subject, Findings& findings) {
+    if (!is_astc(subject.texture.format) || !subject.has_vectors) return;
+    if (same_layout(kSwizzleXxxy, subject.stored.swizzle, 4)) return;
+    findings.add("N115", places(subject.stored) + " instead of x in R, G and B, y in A");
+}
+
 }  // namespace
 
 void check_file_rules(const Subject& subject, Findings& findings) {
@@ -127,6 +145,7 @@ void check_file_rules(const Subject& subject, Findings& findings) {
     check_levels(texture, require, findings);
     check_extent(texture, require, findings);
     if (texture.srgb) findings.add("N111", format_text(texture, subject.stored.swizzle) + ", as sRGB");
+    check_astc_layout(subject, findings);
     if (require.engine) check_engine(subject, *require.engine, findings);
     if (require.y && texture.y_known && texture.y_axis != *require.y) {
         findings.add("N112", "the file says " + direction(texture.y_axis) + " instead of " + direction(*require.y));

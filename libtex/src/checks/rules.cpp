@@ -55,6 +55,11 @@ constexpr Rule kRules[] = {
      "Encode the source again with x in R, G and B and y in A (toktx has --normal_mode for that), or bake or pack it "
      "as BC5, EAC or ASTC.",
      "N101"},
+    {"N115", "astc-layout", file, warning, true, "The channels are not those of ASTC normal maps.",
+     "Encoders store x in R, G and B and y in A in their mode for normal maps (astcenc -normal), and shaders read them "
+     "there. Compressed as colours, a map has y = 1 everywhere for such a shader, and three components share the bits "
+     "of two. Compress its source again if you have it; compressing the file again loses a little.",
+     "pack-normals FILE --format SAME -o FIXED", "N211"},
 
     // -- the vectors ------------------------------------------------------------------------------------------
     {"N201", "not-unit-length", values, note, true, "Vectors are not of unit length.",
@@ -88,12 +93,12 @@ constexpr Rule kRules[] = {
     {"N209", "blue-not-z", values, warning, true, "Blue does not hold z.",
      "Blue is constant while x and y vary: the file has two components, and its third channel is a filler. Readers "
      "that do not rebuild z get bent normals.",
-     "pack-normals FILE --swizzle rg --format SAME -o FIXED", "N201 N202 N205"},
+     "pack-normals FILE --swizzle rg --format SAME -o FIXED", "N115 N201 N202 N205 N213 N214"},
     {"N210", "grey-picture", values, error, true, "The picture is grey.",
      "R, G and B are equal everywhere: this is a height or bump map, not a normal map.",
      "bake-normals FILE --bumpiness TEXELS --format SAME -o FIXED",
-     "N201 N202 N203 N205 N206 N207 N208 N209 N213 N214 N301 N302 N303 N304 N305 N306 N308 N309 N310 N401 N402 N403 "
-     "N404 N501 N502 N503 N504"},
+     "N115 N201 N202 N203 N205 N206 N207 N208 N209 N213 N214 N301 N302 N303 N304 N305 N306 N308 N309 N310 N401 N402 "
+     "N403 N404 N501 N502 N503 N504"},
     {"N211", "dxt5nm-red", values, note, true, "R is not 255 in the layout of DXT5nm.",
      "Unity's shaders multiply R and A to read x from either; where R is not 255, x comes out too small (or 0). "
      "Shaders that read A and G alone are right. Require format=dxt5nm where R matters.",
@@ -105,10 +110,10 @@ constexpr Rule kRules[] = {
     {"N213", "object-space", values, error, true, "The normals are not in tangent space.",
      "z points away from the surface in many texels and the vectors face all directions: an object-space or "
      "world-space map.",
-     "", "N201 N202 N205 N207 N305 N310 N401 N402 N403 N404 N501 N502 N504"},
+     "", "N115 N201 N202 N205 N207 N305 N310 N401 N402 N403 N404 N501 N502 N504"},
     {"N214", "not-a-normal-map", values, error, true, "The picture is no normal map.",
      "Nearly all texels are far from unit length and many point away from the surface: colours, not vectors.", "",
-     "N201 N202 N205 N207 N213 N304 N305 N306 N310 N401 N402 N403 N404 N501 N502 N504"},
+     "N115 N201 N202 N205 N207 N213 N304 N305 N306 N310 N401 N402 N403 N404 N501 N502 N504"},
 
     // -- damage -----------------------------------------------------------------------------------------------
     {"N301", "srgb-decoded", damage, error, true, "The map went through the sRGB curve: it is too dark.",

@@ -30,6 +30,9 @@ struct Stored {
     }
 };
 
+// The most by which texel blocks change a constant channel.
+inline constexpr float kBlockError = 4.0f / 255.0f;
+
 // A rectangle of texels: x to the right, y down from the top row.
 struct Rect {
     int x = 0, y = 0, width = 0, height = 0;

@@ -74,9 +74,11 @@ Swizzle SwizzleEvidence::layout() const {
     constexpr double kNotUnit = 0.25;  // far beyond quantisation and filtering
     // Floats without a negative value may still be signed: a flat map is 0, 0, 1.
     const bool is_unit = rgb_error <= kNotUnit || (is_float_ && signed_.rgb / count <= kNotUnit);
-    if (r.is_constant() && b.is_constant() && (!a.is_constant() || !is_unit)) return named("dxt5nm");
     constexpr double kGrey = 4.0 / 255.0;  // the same grey in 5 and in 6 bits differs by this much
-    if (!a.is_constant() && off_grey_ / count <= kGrey) return named(is_astc_ ? "ra" : "dxt5nm");
+    const bool is_grey = off_grey_ / count <= kGrey;
+    if (is_astc_ && is_grey && !(a.least > 1.0f - kConstant)) return named("ra");
+    if (r.is_constant() && b.is_constant() && (!a.is_constant() || !is_unit)) return named("dxt5nm");
+    if (!a.is_constant() && is_grey) return named("dxt5nm");
     if (r.is_constant() && !a.is_constant() && rxgb_error < rgb_error) return named("rxgb");
     return named("rgb");
 }
