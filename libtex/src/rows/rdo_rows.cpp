@@ -13,6 +13,7 @@
 #include "kernels/copy_search.h"
 #include "rows/math.h"
 #include "rows/rdo_pass.h"
+#include "rows/zstd_size.h"
 
 namespace tex {
 namespace {
@@ -214,6 +215,7 @@ void optimise_band(const std::function<BlockRow(int row)>& rows, int count, cons
     ByteCounts literals{};
     for (const std::byte byte : band.plain) ++literals[std::to_integer<std::size_t>(byte)];
     Angles best{plain_sum, 0.0};
+    std::vector<std::byte> best_blocks;
     constexpr int kMostPasses = 7;
     for (int pass = 0; pass < kMostPasses && !search.is_done(); ++pass) {
         RdoResult result = rdo_pass(band, search.lambda(), literals);
@@ -221,7 +223,13 @@ void optimise_band(const std::function<BlockRow(int row)>& rows, int count, cons
         const Angles angles = measure(band, result.blocks, plain);
         if (!search.add(angles.sum - plain_sum)) continue;
         best = angles;
-        std::copy(result.blocks.begin(), result.blocks.end(), blocks);
+        best_blocks = std::move(result.blocks);
+    }
+    // The rate is an estimate: where copies are dear, what it saves may be less than nothing.
+    if (!best_blocks.empty() && zstd_size(best_blocks) < zstd_size(band.plain)) {
+        std::copy(best_blocks.begin(), best_blocks.end(), blocks);
+    } else {
+        best = {plain_sum, 0.0};
     }
     if (tally == nullptr) return;
     tally->add({static_cast<std::int64_t>(texels), std::llround(kMillionths * plain_sum),

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "rows/zstd_size.h"
+
+#include <new>
+
+#include <zstd.h>
+
+namespace tex {
+
+std::size_t zstd_size(const std::vector<std::byte>& bytes) {
+    constexpr int kLevel = 19;
+    std::vector<std::byte> packed(ZSTD_compressBound(bytes.size()));
+    const std::size_t size = ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), kLevel);
+    if (ZSTD_isError(size) != 0) throw std::bad_alloc();  // the bound is met, so that only memory can be missing
+    return size;
+}
+
+}  // namespace tex

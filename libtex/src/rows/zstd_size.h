@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// zstd_size.h: how small bytes get.
+
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace tex {
+
+// The number of bytes after zstd -19. Throws std::bad_alloc.
+[[nodiscard]] std::size_t zstd_size(const std::vector<std::byte>& bytes);
+
+}  // namespace tex
