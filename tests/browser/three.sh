@@ -12,7 +12,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 build=$(cd "${1:-build/release}" && pwd)
 export PATH=$build:$PATH
-samples=$PWD/samples page=$PWD/tests/browser/three.html
+samples=$PWD/samples page=$PWD/tests/browser/three.html server=$PWD/tests/browser/serve.py
 scratch=$(mktemp -d)
 browser=
 trap '[ -z "$browser" ] || kill "$browser" || true; wait; rm -rf "$scratch"' EXIT
@@ -37,19 +37,6 @@ done
         --enable-unsafe-swiftshader --user-data-dir="$scratch/profile" http://127.0.0.1:8617/three.html 2>log
 ) &
 browser=$!
-timeout 120 python3 - <<'SERVER' | tee result || { cat log; exit 1; } # until the page sends its result
-import http.server
-
-class Handler(http.server.SimpleHTTPRequestHandler):
-    def log_message(self, *_):
-        pass
-
-    def do_POST(self):
-        print(self.rfile.read(int(self.headers["Content-Length"])).decode())
-        self.send_response(204)
-        self.end_headers()
-        self.server.shutdown()
-
-http.server.ThreadingHTTPServer(("127.0.0.1", 8617), Handler).serve_forever()
-SERVER
+timeout 120 python3 "$server" 8617 || { cat log; exit 1; }
+cat result
 grep -q "all agree" result
