@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include "meshes.h"
 #include "modules.h"
 #include "running.h"
 #include "values.h"
@@ -11,11 +12,13 @@
 namespace tex::python {
 namespace {
 
-// The maps of a PreviewScene besides the normal map.
+// What a PreviewScene has besides the normal map.
 struct Scene {
     py::object detail = py::none(), albedo = py::none(), detail_albedo = py::none(), height_map = py::none();
     float white = 1.0f;
     bool map_without_z = false, detail_without_z = false;
+    py::object mesh = py::none();
+    Decoder decoder = Decoder::gltf;
 };
 
 template <class F>
@@ -27,6 +30,8 @@ void each_field(Scene& o, F& f) {
     f("white", o.white);
     f("map_without_z", o.map_without_z);
     f("detail_without_z", o.detail_without_z);
+    f("mesh", o.mesh, "SelectedPart | None");
+    f("decoder", o.decoder);
 }
 
 py::object previewed(Call& call, Scene& given, PreviewOptions& options, Running& running) {
@@ -50,6 +55,8 @@ py::object previewed(Call& call, Scene& given, PreviewOptions& options, Running&
         height = plane_from(given.height_map, "height_map").clone();
         scene.height = &height;
     }
+    std::optional<TangentSpace> space;
+    if (!given.mesh.is_none()) scene.mesh = &space.emplace(space_of(selected_from(given.mesh, "mesh"), given.decoder));
     return object_of(running.run([&](const Execution& e) { return preview(scene, options, e); }));
 }
 
@@ -113,8 +120,8 @@ void add_pictures(Module& module) {
     module.verb<Scene, PreviewOptions, Running>(
         "preview", {{"n", "ArrayLike | Sequence[ArrayLike]"}}, "Texture",
         "A picture (rgb8, one level) of a map, or of a list of its levels. Structures are dicts with the names of "
-        "their "
-        "fields: light={'x': 1.0}. encode_picture() makes a PNG of it, write_texture() a file. Meshes: use run().",
+        "their fields: light={'x': 1.0}. `mesh` is what select_part() returns. encode_picture() makes a PNG of it, "
+        "write_texture() a file.",
         previewed);
     module.verb<Running>(
         "heat_map", {{"degrees", "ArrayLike"}, {"full_scale", "float"}}, "Image",

@@ -114,13 +114,13 @@ void add_parts(Module& module) {
                       const MeshPart& part = part_from(call["part"], "part");
                       return tangents_of(value_of(without_gil([&] { return stored_tangents(part); })));
                   });
-    module.verb<MeshSelection, Running>(
-        "select_part", {{"mesh", "Mesh"}}, "SelectedPart", "What to give to to_object_space(), refit() and check().",
-        [](Call& call, MeshSelection& selection, Running& running) -> py::object {
-            const Mesh& mesh = mesh_from(call["mesh"], "mesh");
-            return py::cast(std::make_shared<SelectedPart>(
-                running.run([&](const Execution& e) { return select_part(mesh, selection, e); })));
-        });
+    module.verb<MeshSelection, Running>("select_part", {{"mesh", "Mesh"}}, "SelectedPart",
+                                        "What to give to to_object_space(), refit(), check() and preview().",
+                                        [](Call& call, MeshSelection& selection, Running& running) -> py::object {
+                                            const Mesh& mesh = mesh_from(call["mesh"], "mesh");
+                                            return py::cast(std::make_shared<SelectedPart>(running.run(
+                                                [&](const Execution& e) { return select_part(mesh, selection, e); })));
+                                        });
     module.verb<>(
         "in_tile", {{"selected", "SelectedPart"}, {"tile", "int"}}, "SelectedPart", "", [](Call& call) -> py::object {
             const SelectedPart& selected = selected_from(call["selected"], "selected");

@@ -132,6 +132,21 @@ def test_maps_are_those_of_convert_normals(commands, normals):
     assert fitted["unmatched"] == 0
 
 
+@pytest.mark.parametrize("show", ["lit", "seams"])
+def test_previews_are_those_of_preview_normals(commands, normals, show):
+    mesh = BROKEN / "meshes/N711.glb"
+    tex.write_texture(commands.folder / "n.dds", tex.pack(tex.build_mip_chain(normals), "rgba8"))
+    commands("preview-normals", "n.dds", "-o", "c.png", "--mesh", mesh, "--decoder", "unreal", "--show", show, "--size",
+             "160", "--no-legend")
+    chain, _ = tex.read_normals(commands.folder / "n.dds", unpack={"keep_length": True})  # as the command samples it
+    space = tex.select_part(tex.read_mesh(mesh))
+    tex.write_texture(commands.folder / "p.png",
+                      tex.preview(chain, mesh=space, decoder="unreal", show=show, size=(160, 0), legend=False))
+    assert commands.bytes("p.png") == commands.bytes("c.png")
+    with pytest.raises(TypeError, match="mesh: expected tex.SelectedPart"):
+        tex.preview(chain, mesh=tex.read_mesh(mesh))
+
+
 def test_files():
     path = BROKEN / "meshes/N705.glb"
     mesh = tex.read_mesh(path)
