@@ -21,8 +21,8 @@ constexpr double kColorShare = 0.9;
 constexpr double kFlatShare = 0.25;
 constexpr std::int64_t kFlatLeast = 256;  // texels
 constexpr double kLeanDegrees = 10.0;
-constexpr float kVaries = 0.05f;  // of a stored channel: more than its rounding
-constexpr float kSteep = 0.4f;    // of x or y as stored: z would vary by 10 codes
+constexpr float kVaries = 0.05f;     // of a stored channel: more than its rounding
+constexpr float kSteepRange = 0.4f;  // of x or y as stored: z would vary by 10 codes
 
 Finding& add_counted(const Subject& subject, Findings& findings, std::string_view id, Property property,
                      const std::string& what) {
@@ -99,7 +99,7 @@ void check_channels(const Subject& subject, Findings& findings) {
     const auto is_filler = [&] {
         const float varies = std::max(range(cx), range(cy));
         if (range(cz) == 0.0f) return varies > 2.0f * kVaries;
-        return stored.in_blocks && range(cz) <= kBlockError && varies > kSteep;
+        return stored.in_blocks && range(cz) <= kBlockError && varies > kSteepRange;
     };
     if (cz >= 0 && is_filler()) {
         findings.add("N209", "blue is " + decimal(static_cast<double>(counts.low[static_cast<std::size_t>(cz)]), 3) +
