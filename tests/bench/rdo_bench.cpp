@@ -28,7 +28,7 @@ namespace {
 
 using namespace bench;
 
-constexpr std::array<int, 3> kGrowths = {0, 10, 30};
+constexpr std::array<int, 6> kGrowths = {0, 10, 20, 30, 50, 100};
 
 struct Point {
     double bytes = 0, mean = 0, most_999 = 0, largest = 0, seconds = 0;
