@@ -115,22 +115,11 @@ void check_engine(const Subject& subject, const EngineNeeds& needs, Findings& fi
     if (!message.empty()) findings.add("N113", message);
 }
 
-// For example: "x in R, y in G, z in B".
-std::string places(const Stored& stored) {
-    std::string text;
-    for (const Component component : {Component::x, Component::y, Component::z}) {
-        const int channel = stored.channel(component);
-        if (channel < 0) continue;
-        text += (text.empty() ? "" : ", ") + std::string(name_of(kComponentNames, component)) + " in ";
-        text += "RGBA"[channel];
-    }
-    return text;
-}
-
 void check_astc_layout(const Subject& subject, Findings& findings) {
     if (!is_astc(subject.texture.format) || !subject.has_vectors) return;
     if (same_layout(kSwizzleXxxy, subject.stored.swizzle, 4)) return;
-    findings.add("N115", places(subject.stored) + " instead of x in R, G and B, y in A");
+    findings.add("N115",
+                 "the layout is " + layout_name(subject.stored.swizzle) + " instead of " + layout_name(kSwizzleXxxy));
 }
 
 }  // namespace
