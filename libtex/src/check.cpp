@@ -25,6 +25,7 @@
 #include "checks/sign_rules.h"
 #include "checks/value_rules.h"
 #include "formats/ktx2/ktx2.h"
+#include "formats/level_planes.h"
 #include "rows/unpack_rows.h"
 #include "threads/guard.h"
 
@@ -126,7 +127,9 @@ bool is_signed(const Texture& texture, const Image& image, const Swizzle& swizzl
 }
 
 Result<void> measure(Subject& subject) {
-    auto image = decode(subject.texture, 0, subject.execution);
+    PlaneNeeds needs;
+    needs.share_constants = true;
+    auto image = decode_planes(subject.texture, subject.texture.levels.front(), needs, subject.execution);
     if (!image) return image.error();
     subject.base = std::move(*image);
     const auto swizzle = guess_swizzle(subject.texture, subject.execution);

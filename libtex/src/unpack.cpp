@@ -9,8 +9,7 @@
 #include <cstring>
 
 #include "blocks/extent.h"
-#include "formats/channels.h"
-#include "kernels/decode.h"
+#include "formats/level_planes.h"
 #include "kernels/unpack.h"
 #include "rows/decode_rows.h"
 #include "rows/unpack_rows.h"
@@ -22,33 +21,6 @@ namespace {
 
 constexpr const char* kChannelNames[] = {"R", "G", "B", "A"};
 constexpr int kMostStripRows = 12;  // the greatest height of a block
-
-// Rows of a strip: one row of blocks, if the format has blocks.
-int strip_rows_of(Format format) {
-    const FormatInfo info = format_info(format);
-    return info.has_blocks() ? info.block.height : kBlockEdge;
-}
-
-// Decodes the rows of strip `strip` into `rows`. The rows are `stride` apart and must have room for all rows of a
-// strip, with the width rounded up to whole blocks.
-void decode_strip(Format format, const Level& level, int strip, const ChannelRows& rows, std::ptrdiff_t stride) {
-    const int width = level.extent.width;
-    const std::size_t pitch = level_bytes(format, {width, 1});  // of a row of blocks, for block formats
-    if (format_info(format).has_blocks()) {
-        decode_row_of_blocks(format, level.bytes.data() + static_cast<std::size_t>(strip) * pitch, width, rows, stride);
-        return;
-    }
-    const int first = strip * kBlockEdge;
-    const int end = std::min(level.extent.height, first + kBlockEdge);
-    for (int j = first; j < end; ++j) {
-        ChannelRows row;
-        for (int c = 0; c < 4; ++c) {
-            float* const channel = rows.channel[c];
-            row.channel[c] = channel == nullptr ? nullptr : channel + (j - first) * stride;
-        }
-        decode_texels(format, level.bytes.data() + static_cast<std::size_t>(j) * pitch, width, row);
-    }
-}
 
 // The rows of one strip, for x, y and z, padded to whole vectors. The rows of z are null if there is no z.
 struct StripRows {
@@ -99,9 +71,6 @@ struct ImageReader {
 
 Plane<float> make_scratch(Extent extent, int rows) { return Plane<float>({whole_blocks(extent.width), rows}); }
 
-// The number of strips that one thread takes at once: enough texels to be worth it.
-int grain_of(Extent extent, int strip_rows) { return std::max(1, (1 << 16) / (strip_rows * extent.width)); }
-
 // Whether floats are (n + 1) / 2: see unpack().
 template <class Reader>
 Result<bool> weigh_range(const Reader& reader, const Execution& execution) {
@@ -112,7 +81,7 @@ Result<bool> weigh_range(const Reader& reader, const Execution& execution) {
     silent.threads = execution.threads;
     const int strip_rows = reader.strip_rows();
     const int strips = blocks_across(extent.height, strip_rows);
-    const auto weighed = parallel_for(silent, strips, grain_of(extent, strip_rows), [&](int begin, int end) {
+    const auto weighed = parallel_for(silent, strips, strips_at_once(extent, strip_rows), [&](int begin, int end) {
         Plane<float> scratch = make_scratch(extent, 3 * strip_rows);
         for (int strip = begin; strip < end && !negative; ++strip) {
             const StripRows held = reader.read(strip, scratch);
@@ -144,7 +113,7 @@ Result<void> unpack_rows(const Reader& reader, const UnpackRule& rule, NormalMap
     map = NormalMap(extent);
     const int strip_rows = reader.strip_rows();
     return parallel_for(
-        execution, blocks_across(extent.height, strip_rows), grain_of(extent, strip_rows),
+        execution, blocks_across(extent.height, strip_rows), strips_at_once(extent, strip_rows),
         [&](int begin, int end) {
             Plane<float> scratch = make_scratch(extent, 3 * strip_rows);
             for (int strip = begin; strip < end; ++strip) {
@@ -186,37 +155,6 @@ bool is_whole(const Texture& texture) {
     return !texture.levels.empty();
 }
 #endif
-
-Result<Image> decode_level(const Texture& texture, const Level& level, const Execution& execution) {
-    const Format format = texture.format;
-    const FormatInfo info = format_info(format);
-    Image image;
-    image.sample = info.sample;
-    image.bits = info.bits;
-    image.normal_encoding = texture.normal_encoding;
-    image.names = channel_names(texture);
-    for (int c = 0; c < info.channels; ++c) image.planes.emplace_back(level.extent);
-    const Extent extent = level.extent;
-    const int strip_rows = strip_rows_of(format);
-    const int strips = blocks_across(extent.height, strip_rows);
-    const auto decoded = parallel_for(execution, strips, grain_of(extent, strip_rows), [&](int begin, int end) {
-        Plane<float> scratch = make_scratch(extent, 4 * strip_rows);
-        ChannelRows rows;
-        for (int c = 0; c < info.channels; ++c) rows.channel[c] = scratch.row(c * strip_rows);
-        for (int strip = begin; strip < end; ++strip) {
-            decode_strip(format, level, strip, rows, scratch.stride());
-            for (int c = 0; c < info.channels; ++c) {
-                for (int r = 0; r < strip_rows && strip * strip_rows + r < extent.height; ++r) {
-                    std::memcpy(image.planes[static_cast<std::size_t>(c)].row(strip * strip_rows + r),
-                                scratch.row(c * strip_rows + r),
-                                static_cast<std::size_t>(extent.width) * sizeof(float));
-                }
-            }
-        }
-    });
-    if (!decoded) return decoded.error();
-    return image;
-}
 
 Result<MipChain> unpack_levels(const Texture& texture, const UnpackOptions& options, const Execution& execution) {
     const FormatInfo info = format_info(texture.format);
@@ -270,7 +208,7 @@ Result<Image> decode(const Texture& texture, int level, const Execution& executi
     assert(level >= 0 && static_cast<std::size_t>(level) < texture.levels.size());
     const Level& chosen = texture.levels[static_cast<std::size_t>(level)];
     assert(chosen.bytes.size() == level_bytes(texture.format, chosen.extent));
-    return guarded([&] { return decode_level(texture, chosen, execution); });
+    return guarded([&] { return decode_planes(texture, chosen, {}, execution); });
 }
 
 Result<MipChain> unpack(const Texture& texture, const UnpackOptions& options, const Execution& execution) {

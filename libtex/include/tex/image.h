@@ -81,9 +81,9 @@ public:
         }
     }
     // A plane in memory that exists already. `rows` points to the first texel and keeps the memory; `stride` is in
-    // elements, at least extent.width. Every row, also the last one, must be followed by readable memory up to a
-    // multiple of kRowAlignment bytes after its start, but need not be aligned: a verb that takes the plane as const
-    // only reads it, and all give the same bytes.
+    // elements, at least extent.width, or 0 if all rows are the same row, which must not be written to. Every row, also
+    // the last one, must be followed by readable memory up to a multiple of kRowAlignment bytes after its start, but
+    // need not be aligned: a verb that takes the plane as const only reads it, and all give the same bytes.
     Plane(Extent extent, std::ptrdiff_t stride, std::shared_ptr<T> rows)
         : extent_(extent), stride_(stride), rows_(std::move(rows)) {}
 

@@ -7,10 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include <tex/unpack.h>
-
 #include "checks/levels.h"
 #include "checks/thresholds.h"
+#include "formats/level_planes.h"
 
 namespace tex {
 namespace {
@@ -96,6 +95,24 @@ void check_fade(const std::vector<LevelMeasure>& levels, Findings& findings) {
     finding.regions = {whole(last)};
 }
 
+// Decodes what measure_level() reads of level k.
+Result<Image> decode_windows(const Subject& subject, int k) {
+    const Level& level = subject.texture.levels[static_cast<std::size_t>(k)];
+    const std::vector<Rect> windows = sample_windows(level.extent);
+    PlaneNeeds needs;
+    needs.channels = 0;
+    for (const Component component : {Component::x, Component::y, Component::z}) {
+        const int channel = subject.stored.channel(component);
+        if (channel >= 0) needs.channels |= 1u << channel;
+    }
+    needs.rows = [&](int first, int count) {
+        return std::any_of(windows.begin(), windows.end(), [&](const Rect& window) {
+            return first < window.y + window.height && window.y < first + count;
+        });
+    };
+    return decode_planes(subject.texture, level, needs, subject.execution);
+}
+
 }  // namespace
 
 Result<void> check_mip_rules(const Subject& subject, Findings& findings) {
@@ -108,7 +125,7 @@ Result<void> check_mip_rules(const Subject& subject, Findings& findings) {
         if (!averages) return averages.error();
         const Extent extent = averages->extent();
         if (extent.width < kLeastSide || extent.height < kLeastSide) break;
-        const auto image = decode(texture, k, subject.execution);
+        const auto image = decode_windows(subject, k);
         if (!image) return image.error();
         Stored stored = subject.stored;
         stored.image = &*image;
