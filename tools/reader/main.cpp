@@ -1,44 +1,55 @@
 // SPDX-License-Identifier: Apache-2.0
-// tex-reader: decodes and encodes pictures with OpenImageIO for libtex, which starts it. Do not run it by hand, except
+// tex-reader: loads tex-pictures.so, which is all the rest (program.cpp), from its own folder.
 //
-//     tex-reader --version      prints OpenImageIO's version, and whether the kernel supports the restriction of files
-//                               and the filter of system calls
+// OpenImageIO links 260 libraries, and most of the time of a start goes into those that tex-reader never calls. The
+// folder stand-ins, if there is one, has small libraries of the same names (stand_ins.cmake). A library of a name that
+// is loaded already is not loaded again, so they come first. If OpenImageIO needs more of a library than its stand-in
+// has, which is possible after an update, all of them go, and the real ones are loaded.
 
+#include <dlfcn.h>
 #include <unistd.h>
 
-#include <OpenImageIO/imageio.h>
-
+#include <climits>
 #include <cstdio>
-#include <string_view>
+#include <filesystem>
+#include <string>
+#include <system_error>
+#include <vector>
 
-#include "reader.h"
-
-namespace tex::reader {
 namespace {
 
-int version() {
-    const bool restricted = restrict_files();
-    const bool filtered = filter_calls();
-    std::printf("OpenImageIO %s, files %s, system calls %s\n", OIIO_VERSION_STRING,
-                restricted ? "restricted" : "not restricted", filtered ? "filtered" : "not filtered");
-    return std::fflush(stdout) == 0 ? 0 : 1;
+std::string own_folder() {
+    std::error_code error;
+    return std::filesystem::read_symlink("/proc/self/exe", error).parent_path().string();
+}
+
+std::vector<void*> load_stand_ins(const std::string& folder) {
+    std::vector<void*> loaded;
+    std::error_code error;
+    for (const auto& file : std::filesystem::directory_iterator(folder + "/stand-ins", error)) {
+        if (file.path().extension() != ".so") continue;
+        if (void* const library = dlopen(file.path().c_str(), RTLD_NOW | RTLD_LOCAL)) loaded.push_back(library);
+    }
+    return loaded;
+}
+
+void* load_pictures(const std::string& folder) {
+    const std::string library = folder + "/tex-pictures.so";
+    const std::vector<void*> stand_ins = load_stand_ins(folder);
+    if (void* const pictures = dlopen(library.c_str(), RTLD_NOW | RTLD_GLOBAL)) return pictures;
+    for (void* const stand_in : stand_ins) dlclose(stand_in);
+    return dlopen(library.c_str(), RTLD_NOW | RTLD_GLOBAL);
 }
 
 }  // namespace
-}  // namespace tex::reader
 
 int main(int argc, char** argv) {
-    using namespace tex::reader;
-    const std::string_view verb = argc > 1 ? argv[1] : "";
-    // The process always ends without running destructors: those of OpenImageIO's libraries take a tenth of a second,
-    // and the sandbox makes no allowance for them.
-    if (argc == 2 && verb == "--version") _exit(version());
-    int parent = 0;
-    if (argc == 3 && verb == "zygote" && parse_number(argv[2], parent)) _exit(serve(parent));
-    Task task;
-    if (!parse_task(argc, argv, task) || (verb != "decode" && verb != "encode" && verb != "describe")) {
-        static_cast<void>(std::fputs("tex-reader: started by libtex, not by hand\n", stderr));
-        return 2;
+    using Program = int(int, char**);
+    void* const pictures = load_pictures(own_folder());
+    void* const program = pictures == nullptr ? nullptr : dlsym(pictures, "tex_read_pictures");
+    if (program == nullptr) {
+        std::fprintf(stderr, "tex-reader: %s\n", dlerror());
+        return 1;
     }
-    _exit(run(task, kPictures));
+    return reinterpret_cast<Program*>(program)(argc, argv);
 }
