@@ -51,10 +51,15 @@ TEST_F(StandIns, GiveWayIfOneLacksAFunction) {
     EXPECT_TRUE(has_movies(loaded()));
 }
 
-TEST_F(StandIns, AreNotNeededAsLibraries) {
+TEST_F(StandIns, MayBeDamaged) {
     copy_stand_ins();
     scratch_.write("stand-ins/avcodec.so", "not a library");
     EXPECT_TRUE(has_movies(loaded()));
+}
+
+TEST_F(StandIns, AreNotAllOfTheReader) {
+    std::filesystem::remove(scratch_.path("tex-pictures.so"));
+    EXPECT_EQ(run(scratch_, scratch_.path("tex-reader"), {"--version"}).code, 127);
 }
 
 }  // namespace

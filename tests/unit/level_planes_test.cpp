@@ -13,7 +13,7 @@
 namespace tex {
 namespace {
 
-constexpr Extent kExtent{37, 29};  // no multiple of any block
+constexpr Extent kOddExtent{37, 29};  // no multiple of any block
 
 // NaN counts as equal to itself.
 bool same_row(const Plane<float>& a, const Plane<float>& b, int j) {
@@ -29,7 +29,7 @@ bool same_plane(const Plane<float>& a, const Plane<float>& b) {
 
 // A texture of BC2 or BC3 in which `change` alters the colours of each block.
 Texture colored(Format format, const std::function<void(unsigned block, unsigned& c0, unsigned& c1)>& change) {
-    Texture texture = patterned_texture(format, kExtent, 1);
+    Texture texture = patterned_texture(format, kOddExtent, 1);
     std::byte* const bytes = texture.levels[0].bytes.data();
     for (unsigned block = 0; 16 * block < texture.levels[0].bytes.size(); ++block) {
         std::uint16_t colors[2];
@@ -52,7 +52,7 @@ Image shared_of(const Texture& texture) {
 TEST(LevelPlanes, HoldNoMoreThanTheNeededChannels) {
     for (const auto& row : kFormatNames) {
         SCOPED_TRACE(row.name);
-        const Texture texture = patterned_texture(row.value, kExtent, 2);
+        const Texture texture = patterned_texture(row.value, kOddExtent, 2);
         const Image all = std::move(decode(texture, 1).value());
         for (unsigned channels = 0; channels < 16; ++channels) {
             PlaneNeeds needs;
@@ -73,7 +73,7 @@ TEST(LevelPlanes, HoldNoMoreThanTheNeededChannels) {
 TEST(LevelPlanes, HoldTheNeededRows) {
     for (const auto& row : kFormatNames) {
         SCOPED_TRACE(row.name);
-        const Texture texture = patterned_texture(row.value, kExtent, 1);
+        const Texture texture = patterned_texture(row.value, kOddExtent, 1);
         const Image all = std::move(decode(texture, 0).value());
         PlaneNeeds needs;
         needs.rows = [](int first, int count) { return first <= 20 && 20 < first + count; };

@@ -135,8 +135,8 @@ void catch_signals() {
     sigaction(SIGALRM, &action, nullptr);
 }
 
-// Keeps freed memory for the next file, up to kKept bytes at the end of each heap. By default, glibc gives it back after
-// each file, and the system clears it again for the next one. Larger blocks are still given back at once.
+// Keeps freed memory for the next file, up to kKept bytes at the end of each heap. By default, glibc gives it back
+// after each file, and the system clears it again for the next one. Large blocks are still given back at once.
 void keep_freed_memory() {
 #ifdef __GLIBC__
     constexpr int kKept = 32 << 20, kLargeBlock = 4 << 20;

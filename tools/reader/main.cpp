@@ -44,12 +44,13 @@ void* load_pictures(const std::string& folder) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    constexpr int kNotLoaded = 127;  // as the dynamic loader
     using Program = int(int, char**);
     void* const pictures = load_pictures(own_folder());
     void* const program = pictures == nullptr ? nullptr : dlsym(pictures, "tex_read_pictures");
     if (program == nullptr) {
         std::fprintf(stderr, "tex-reader: %s\n", dlerror());
-        return 1;
+        return kNotLoaded;
     }
     return reinterpret_cast<Program*>(program)(argc, argv);
 }

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-# Stand-ins for libraries that OpenImageIO links and tex-reader never calls: those of cameras and movies, raw photographs
-# and HEIF. With all that these link in turn, they are 200 of 260 libraries, and most of the time that the reader takes
-# to start. A stand-in has the name of the library and the functions that OpenImageIO imports; each ends the process.
+# Stand-ins for libraries that OpenImageIO links and tex-reader never calls: those of cameras, movies and HEIF. With all
+# that these link in turn, they are 200 of 260 libraries, and most of the time that the reader takes to start. A
+# stand-in has the name of the library and the functions that OpenImageIO imports; each of them ends the process.
+# (LibRaw has none, because OpenImageIO asks it for its version.)
 #
 # Makes a target for each library that exists here and from which OpenImageIO imports functions alone, and adds its name
 # to `targets`. `library` is the path of libOpenImageIO.so.
