@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // rdo_bench: how much smaller textures are after zstd -19 with rate-distortion optimisation, and at what angles.
 //
-//     rdo_bench [ENCODING [WINDOW [MAX]]] [MAP ... | DIRECTORY ...]
+//     rdo_bench [--one-mean] [ENCODING [WINDOW [MAX]]] [MAP ... | DIRECTORY ...]
 //
 // The maps are those of encode_bench, without smaller levels. For each growth of the mean angle, in percent of the mean
 // angle of the plain encoding (--effort normal), it prints for each map and for all maps together: the bytes after
 // zstd, the mean, 99.9th percentile and largest angle in degrees, and the processor time. "pooled" adds up the bytes,
-// and averages the angles.
+// and averages the angles. With --one-mean, all maps have the same --rdo-mean, as in one run of the command: the growth
+// is that of the average over all maps.
 
 #include <algorithm>
 #include <array>
@@ -28,7 +29,7 @@ namespace {
 
 using namespace bench;
 
-constexpr std::array<int, 6> kGrowths = {0, 10, 20, 30, 50, 100};
+constexpr std::array<int, 3> kGrowths = {0, 10, 30};
 
 struct Point {
     double bytes = 0, mean = 0, most_999 = 0, largest = 0, seconds = 0;
@@ -70,7 +71,8 @@ Point measure(const tex::NormalMap& map, const tex::Texture& texture) {
     return point;
 }
 
-Point pack_map(const Map& map, tex::PackOptions options, double growth, double plain_mean) {
+// `mean` is the growth that is allowed, in degrees.
+Point pack_map(const Map& map, tex::PackOptions options, double mean) {
     tex::NormalMap whole({map.width, map.height});
     for (int j = 0; j < map.height; ++j) {
         for (int i = 0; i < map.width; ++i) {
@@ -79,7 +81,7 @@ Point pack_map(const Map& map, tex::PackOptions options, double growth, double p
             whole.z.at(i, j) = 1.0f;
         }
     }
-    options.rdo.mean = static_cast<float>(growth * plain_mean);
+    options.rdo.mean = static_cast<float>(mean);
     tex::MipChain chain;
     chain.levels.push_back(std::move(whole));
     const double start = processor_seconds();
@@ -102,26 +104,33 @@ void print(const std::string& name, int growth, const Point& point, const Point&
 int main(int argc, char** argv) {
     tex::PackOptions options;
     options.encoding = tex::Encoding::bc5;
-    if (argc > 1) options.encoding = tex::find_by_name(tex::kEncodingNames, argv[1]).value_or(options.encoding);
-    if (argc > 2) options.rdo.window = std::atoi(argv[2]);
-    if (argc > 3) options.rdo.max = static_cast<float>(std::atof(argv[3]));
+    std::vector<std::string> words(argv + 1, argv + argc);
+    const bool one_mean = std::erase(words, "--one-mean") != 0;
+    if (!words.empty()) options.encoding = tex::find_by_name(tex::kEncodingNames, words[0]).value_or(options.encoding);
+    if (words.size() > 1) options.rdo.window = std::atoi(words[1].c_str());
+    if (words.size() > 2) options.rdo.max = static_cast<float>(std::atof(words[2].c_str()));
     std::vector<Map> maps;
-    for (int k = 4; k < argc; ++k) {
-        if (std::filesystem::is_directory(argv[k]))
-            add_directory(argv[k], maps);
+    for (std::size_t k = 3; k < words.size(); ++k) {
+        if (std::filesystem::is_directory(words[k]))
+            add_directory(words[k], maps);
         else
-            add_map(argv[k], maps);
+            add_map(words[k], maps);
     }
-    if (argc <= 4) add_usual_maps(maps);
+    if (words.size() <= 3) add_usual_maps(maps);
     std::printf("%-24s %6s %10s %9s %8s %8s %8s %8s\n", "map", "growth", "bytes", "change", "mean", "p99.9", "largest",
                 "seconds");
-    std::array<Point, kGrowths.size()> pooled;
+    std::vector<Point> plain;
+    double mean = 0.0;  // of all maps
     for (const Map& map : maps) {
-        Point plain;
+        plain.push_back(pack_map(map, options, 0.0));
+        mean += plain.back().mean / static_cast<double>(maps.size());
+    }
+    std::array<Point, kGrowths.size()> pooled;
+    for (std::size_t m = 0; m < maps.size(); ++m) {
         for (std::size_t k = 0; k < kGrowths.size(); ++k) {
-            const Point point = pack_map(map, options, 0.01 * kGrowths[k], plain.mean);
-            if (k == 0) plain = point;
-            print(map.name, kGrowths[k], point, plain);
+            const double growth = 0.01 * kGrowths[k] * (one_mean ? mean : plain[m].mean);
+            const Point point = k == 0 ? plain[m] : pack_map(maps[m], options, growth);
+            print(maps[m].name, kGrowths[k], point, plain[m]);
             pooled[k].bytes += point.bytes;
             pooled[k].mean += point.mean / static_cast<double>(maps.size());
             pooled[k].most_999 += point.most_999 / static_cast<double>(maps.size());

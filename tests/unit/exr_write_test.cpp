@@ -2,6 +2,7 @@
 // What libtex writes, judged by OpenEXR: header, table, texels.
 
 #include "formats/exr/exr.h"
+#include "formats/exr/exr_waiting.h"
 
 #include <algorithm>
 #include <atomic>
@@ -194,7 +195,9 @@ TEST(ExrWrite, NoiseTakesNoMoreBytesThanFromOpenExr) {
 // threads.
 class ManyHands {
 public:
-    explicit ManyHands(const Texture& texture, unsigned seed) : texture_(texture), random_(seed) {
+    // What waits may go to a scratch file beside `beside`, if that is not empty.
+    explicit ManyHands(const Texture& texture, unsigned seed, const std::string& beside = {})
+        : texture_(texture), random_(seed) {
         target_ =
             open_exr_target(head_of(texture),
                             [this](std::uint64_t offset, std::span<const std::byte> bytes) -> Result<void> {
@@ -204,6 +207,7 @@ public:
                                 return {};
                             })
                 .value();
+        if (!beside.empty()) target_->wait_beside(beside);
         next_.assign(texture.levels.size(), 0);
     }
     Bytes run(int threads) {
@@ -269,6 +273,43 @@ TEST(ExrWrite, BytesDoNotDependOnThreadsAndOrder) {
                 EXPECT_TRUE(ManyHands(texture, round).run(threads) == expected) << extent.width << ", " << round;
             }
         }
+    }
+}
+
+// The bytes that wait are more than those that may wait in memory.
+TEST(ExrWrite, BytesDoNotDependOnScratchFiles) {
+    const Texture texture = texture_of_bits(Format::rgba16_float, {1100, 1300}, true, 256);
+    const Bytes expected = encode_exr(texture).value();
+    for (const std::string beside : {"", "out.exr", "/no/such/folder/out.exr"})
+        EXPECT_TRUE(ManyHands(texture, 5, beside).run(2) == expected) << beside;
+}
+
+ExrChunks chunks_of(std::size_t bytes, int number) {
+    return {Bytes(bytes, static_cast<std::byte>(number)), {bytes, static_cast<std::size_t>(number)}};
+}
+
+void expect_takes(ExrWaitingBlocks& blocks, std::size_t bytes, int number) {
+    const Result<std::optional<ExrChunks>> taken = blocks.take(number);
+    ASSERT_TRUE(taken);
+    ASSERT_TRUE(*taken) << number;
+    const ExrChunks expected = chunks_of(bytes, number);
+    EXPECT_TRUE((*taken)->bytes == expected.bytes) << number;
+    EXPECT_EQ((*taken)->sizes, expected.sizes) << number;
+    EXPECT_FALSE(blocks.take(number).value()) << number;
+}
+
+TEST(ExrWaitingBlocks, ComeBackInAnyOrder) {
+    constexpr std::size_t kMegabyte = std::size_t{1} << 20;
+    for (const std::string output : {"", "out.exr"}) {
+        ExrWaitingBlocks blocks;
+        blocks.wait_beside(output);
+        EXPECT_FALSE(blocks.take(0).value());
+        for (const int number : {9, 2, 7, 4, 8, 3, 1}) ASSERT_TRUE(blocks.add(number, chunks_of(kMegabyte, number)));
+        for (const int number : {3, 9, 1}) expect_takes(blocks, kMegabyte, number);
+        for (const int number : {6, 5}) ASSERT_TRUE(blocks.add(number, chunks_of(2 * kMegabyte, number)));
+        for (const int number : {2, 4}) expect_takes(blocks, kMegabyte, number);
+        for (const int number : {5, 6}) expect_takes(blocks, 2 * kMegabyte, number);
+        for (const int number : {7, 8}) expect_takes(blocks, kMegabyte, number);
     }
 }
 

@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <tex/execution.h>
@@ -48,6 +49,10 @@ public:
     // Whether put() only collects rows, for work that is taken, run and ended. The run() of several may take place at
     // once, on any threads; no two calls of other functions may.
     [[nodiscard]] virtual bool has_work() const { return false; }
+
+    // Allows a scratch file beside the file `output`, for what has been encoded and waits for its place. To be called
+    // before put(). Without it, that waits in memory.
+    virtual void wait_beside(const std::string& /*output*/) {}
 
     // Returns work whose rows have all been put, or null if there is none. Throws std::bad_alloc.
     virtual std::shared_ptr<RowWork> take_work() { return nullptr; }

@@ -40,6 +40,7 @@ public:
             });
         if (!target) return target.error().of(path_);
         target_ = std::move(*target);
+        target_->wait_beside(path_);
         return {};
     }
     // If the target has work, several threads pack strips and do that work.

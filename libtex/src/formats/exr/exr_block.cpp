@@ -63,7 +63,7 @@ int ExrBand::add(const ExrGrid& grid, const std::byte* from, int count) {
 Result<void> ExrBlock::run() {
     const std::shared_ptr<Zipper> zipper = zippers_.take([] { return std::make_unique<Zipper>(); });
     for (int chunk = begin_; chunk < end_; ++chunk) append_chunk(chunk, *zipper);
-    bytes_.shrink_to_fit();  // blocks of smaller levels wait for long
+    chunks_.bytes.shrink_to_fit();  // blocks of smaller levels wait for long
     band_.reset();
     return {};
 }
@@ -89,14 +89,14 @@ void ExrBlock::append_chunk(int chunk, Zipper& zipper) {
         }
     }
     const std::span<const std::byte> bytes = zipper.chunk();
-    const std::size_t begin = bytes_.size();
+    const std::size_t begin = chunks_.bytes.size();
     const auto size = static_cast<std::int32_t>(bytes.size());
     if (grid_.has_tiles)
-        append(bytes_, {chunk, band_->index, grid_.level, grid_.level, size});
+        append(chunks_.bytes, {chunk, band_->index, grid_.level, grid_.level, size});
     else
-        append(bytes_, {band_->index * grid_.band_rows(), size});
-    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
-    chunk_bytes_.push_back(bytes_.size() - begin);
+        append(chunks_.bytes, {band_->index * grid_.band_rows(), size});
+    chunks_.bytes.insert(chunks_.bytes.end(), bytes.begin(), bytes.end());
+    chunks_.sizes.push_back(chunks_.bytes.size() - begin);
 }
 
 }  // namespace tex

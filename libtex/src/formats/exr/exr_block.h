@@ -54,6 +54,12 @@ struct ExrBand {
     [[nodiscard]] bool is_full() const { return held == rows; }
 };
 
+// What a block puts into the file.
+struct ExrChunks {
+    std::vector<std::byte> bytes;
+    std::vector<std::size_t> sizes;  // of each chunk
+};
+
 // Some chunks of a band.
 class ExrBlock final : public RowWork {
 public:
@@ -66,9 +72,8 @@ public:
     Result<void> run() override;
 
     [[nodiscard]] int number() const { return number_; }
-    // What run() has made: the chunks as they are in the file, and the size of each.
-    [[nodiscard]] const std::vector<std::byte>& bytes() const { return bytes_; }
-    [[nodiscard]] const std::vector<std::size_t>& chunk_bytes() const { return chunk_bytes_; }
+    // Takes what run() has made.
+    [[nodiscard]] ExrChunks take_chunks() { return std::move(chunks_); }
 
 private:
     void append_chunk(int chunk, Zipper& zipper);
@@ -77,8 +82,7 @@ private:
     std::shared_ptr<const ExrBand> band_;  // until run() has ended
     const int begin_, end_, number_;
     Pool<Zipper> zippers_;
-    std::vector<std::byte> bytes_;
-    std::vector<std::size_t> chunk_bytes_;
+    ExrChunks chunks_;
 };
 
 }  // namespace tex

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <deque>
 #include <exception>
-#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -21,8 +21,8 @@
 
 #include <tex/mip_chain.h>
 
-#include "formats/exr/exr_block.h"
 #include "formats/exr/exr_part.h"
+#include "formats/exr/exr_waiting.h"
 #include "formats/row_target.h"
 #include "threads/guard.h"
 #include "threads/pool.h"
@@ -89,8 +89,8 @@ std::vector<std::byte> bytes_of(const Imf::Header& header) {
 }
 
 // Collects rows in bands, and writes the blocks of these in the order of the table of chunks: level by level, from the
-// top. Blocks of smaller levels wait in memory until the larger levels are in the file. (If they were stored in the
-// order in which they arrive, the bytes would depend on the path that a texture takes.)
+// top. (If they were stored in the order in which they arrive, the bytes would depend on the path that a texture
+// takes.)
 class ExrRowTarget final : public RowTarget {
 public:
     // `head` is what comes before the table.
@@ -98,6 +98,7 @@ public:
 
     Result<void> put(int level, const std::byte* rows, int count) override;
     [[nodiscard]] bool has_work() const override { return true; }
+    void wait_beside(const std::string& output) override { waiting_.wait_beside(output); }
     std::shared_ptr<RowWork> take_work() override;
     Result<void> end_work(const std::shared_ptr<RowWork>& work) override;
     Result<void> finish() override;
@@ -111,17 +112,17 @@ private:
         std::shared_ptr<ExrBand> open;  // that band, if it has any
     };
     void divide(Level& level);
-    Result<void> write(const ExrBlock& block);
+    Result<void> write(const ExrChunks& chunks);
 
     const WriteBytes write_;
     std::vector<Level> levels_;
     Pool<Zipper> zippers_;
-    std::deque<std::shared_ptr<ExrBlock>> blocks_;      // to be run
-    std::map<int, std::shared_ptr<ExrBlock>> waiting_;  // have been run; by number
-    int written_ = 0;                                   // blocks
-    std::vector<std::byte> head_;                       // and the table, as far as chunks have been written
-    std::size_t begin_ = 0;                             // of the chunks in the file
-    std::uint64_t at_ = 0;                              // the end of the chunks that have been written
+    std::deque<std::shared_ptr<ExrBlock>> blocks_;  // to be run
+    ExrWaitingBlocks waiting_;                      // have been run
+    int written_ = 0;                               // blocks
+    std::vector<std::byte> head_;                   // and the table, as far as chunks have been written
+    std::size_t begin_ = 0;                         // of the chunks in the file
+    std::uint64_t at_ = 0;                          // the end of the chunks that have been written
 };
 
 int blocks_of_band(const ExrGrid& grid) {
@@ -181,23 +182,24 @@ std::shared_ptr<RowWork> ExrRowTarget::take_work() {
 
 Result<void> ExrRowTarget::end_work(const std::shared_ptr<RowWork>& work) {
     const auto ended = std::static_pointer_cast<ExrBlock>(work);
-    waiting_[ended->number()] = ended;
-    while (!waiting_.empty() && waiting_.begin()->first == written_) {
-        const std::shared_ptr<ExrBlock> block = std::move(waiting_.extract(waiting_.begin()).mapped());
-        if (Result<void> done = write(*block); !done) return done;
+    if (Result<void> added = waiting_.add(ended->number(), ended->take_chunks()); !added) return added;
+    while (true) {
+        Result<std::optional<ExrChunks>> next = waiting_.take(written_);
+        if (!next) return next.error();
+        if (!*next) return {};
+        if (Result<void> done = write(**next); !done) return done;
         ++written_;
     }
-    return {};
 }
 
-Result<void> ExrRowTarget::write(const ExrBlock& block) {
+Result<void> ExrRowTarget::write(const ExrChunks& chunks) {
     std::uint64_t at = at_;
-    for (const std::size_t size : block.chunk_bytes()) {
+    for (const std::size_t size : chunks.sizes) {
         const auto* entry = reinterpret_cast<const std::byte*>(&at);
         head_.insert(head_.end(), entry, entry + sizeof at);
         at += size;
     }
-    return write_(std::exchange(at_, at), block.bytes());
+    return write_(std::exchange(at_, at), chunks.bytes);
 }
 
 Result<void> ExrRowTarget::finish() {
