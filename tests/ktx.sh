@@ -5,8 +5,9 @@
 #
 #     tests/ktx.sh /path/to/ktx [BUILD_FOLDER]
 #
-# Last run: 2026-11-25, ktx of KTX-Software 5.0.0-rc2: 64 files are valid. Two warnings: the key libtex.normal is not one
-# of Khronos' own; and since KTX 2.0.4 (2025) compressed files should state the bytes of a plane, where KTX 2.0 demands 0.
+# Last result: 2026-11-25, ktx of KTX-Software 5.0.0-rc2: 64 files are valid. There are two warnings: the key
+# libtex.normal is not one of Khronos' own; and since KTX 2.0.4 (2025) compressed files should state the bytes of a
+# plane, where KTX 2.0 demands 0.
 set -euo pipefail
 ktx=$1
 build=${2:-$(dirname "$0")/../build/release}
@@ -19,7 +20,8 @@ for format in dxt5nm bc5 bc5-snorm rg8 rgb8 rgba8 rg16 rgb16 half float eac-rg11
     for compression in "" "--supercompress zstd"; do
         for y in up down; do
             # shellcheck disable=SC2086  # two words or none
-            "$build/bake-normals" "$sample" -o "$folder/map.ktx2" --format "$format" --y "$y" $compression --no-sync --quiet
+            "$build/bake-normals" "$sample" -o "$folder/map.ktx2" --format "$format" --y "$y" $compression \
+                --no-sync --quiet
             "$ktx" validate "$folder/map.ktx2" >"$folder/log" 2>&1 ||
                 { echo "$format $compression, y $y:"; cat "$folder/log"; exit 1; }
             files=$((files + 1))
