@@ -39,8 +39,10 @@ def collect(folder, stage):
     subprocess.run(["cmake", "--install", folder, "--component", "python", "--prefix", stage], check=True,
                    stdout=sys.stderr)
     package = next(stage.rglob("_tex.*.so")).parent
-    beside = [folder / "tex-reader", folder / "tex-mesh-reader", folder / "libtex.so.0"]
-    return {f"tex/{path.name}": path for path in sorted([*package.iterdir(), *filter(Path.exists, beside)])}
+    beside = [folder / name for name in ("tex-reader", "tex-pictures.so", "tex-mesh-reader", "libtex.so.0")]
+    files = {f"tex/{path.name}": path for path in sorted([*package.iterdir(), *filter(Path.exists, beside)])}
+    stand_ins = sorted((folder / "stand-ins").glob("*.so"))
+    return files | {f"tex/stand-ins/{path.name}": path for path in stand_ins}
 
 
 def version():

@@ -7,9 +7,7 @@
 // has, which is possible after an update, all of them go, and the real ones are loaded.
 
 #include <dlfcn.h>
-#include <unistd.h>
 
-#include <climits>
 #include <cstdio>
 #include <filesystem>
 #include <string>
