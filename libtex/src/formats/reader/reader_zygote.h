@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // reader_zygote.h: one process that is forked for each file, so that OpenImageIO's libraries are loaded once.
 //
-// Loading them takes a fifth of a second. The zygote is a tex-reader that has loaded them, has given up what it does
-// not need, and waits for requests. It never sees a file: it passes the descriptors of a request to a process that it
-// forks for it. That process takes its limits, Landlock and seccomp as a reader does that was started for one file,
+// Loading them takes a twentieth of a second. The zygote is a tex-reader that has loaded them, has given up what it
+// does not need, and waits for requests. It never sees a file: it passes the descriptors of a request to a process that
+// it forks for it. That process takes its limits, Landlock and seccomp as a reader does that was started for one file,
 // sees that file and no other, and ends. So a crash still costs one file. (All readers of one zygote have the same
 // layout of memory, and so the same addresses.)
 //
