@@ -37,6 +37,7 @@ TEST_F(StandIns, KeepLibrariesOfMoviesOut) {
     copy_stand_ins();
     const std::string libraries = loaded();
     EXPECT_FALSE(has_movies(libraries)) << libraries;
+    EXPECT_EQ(libraries.find("/liblog4cplus"), std::string::npos) << libraries;
     EXPECT_NE(libraries.find("/libtiff.so"), std::string::npos) << libraries;
 }
 

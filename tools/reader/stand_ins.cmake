@@ -1,24 +1,36 @@
 # SPDX-License-Identifier: Apache-2.0
-# Stand-ins for libraries that OpenImageIO links and tex-reader never calls: those of cameras, movies and HEIF. With all
-# that these link in turn, they are 200 of 260 libraries, and most of the time that the reader takes to start. A
-# stand-in has the name of the library and the functions that OpenImageIO imports; each of them ends the process.
-# (LibRaw has none, because OpenImageIO asks it for its version.)
-#
-# Makes a target for each library that exists here and from which OpenImageIO imports functions alone, and adds its name
-# to `targets`. `library` is the path of libOpenImageIO.so.
-function(add_stand_ins library targets)
-  set(result)
+# Stand-ins for libraries that OpenImageIO links and tex-reader never calls: those of cameras, movies and HEIF; and
+# log4cplus, which OpenVDB links, and which starts threads while it is loaded. (If they get no memory, it waits for them
+# for ever.) With all that these libraries link in turn, they are 200 of 260, and most of the time that the reader takes
+# to start. A stand-in has the name of the library and the functions that are imported from it; each of them ends the
+# process. (LibRaw has none, because OpenImageIO asks it for its version.)
+
+# Sets `path` to the file of library lib<name>.so that `importer` links, and `soname` to its name; empty if it does not
+# link it.
+function(find_linked importer name soname path)
   find_program(TEX_LDD ldd)
-  execute_process(COMMAND ${TEX_LDD} ${library} OUTPUT_VARIABLE libraries ERROR_QUIET)
-  execute_process(COMMAND ${CMAKE_NM} -D --undefined-only --with-symbol-versions ${library}
+  execute_process(COMMAND ${TEX_LDD} ${importer} OUTPUT_VARIABLE libraries ERROR_QUIET)
+  if(NOT libraries MATCHES "(lib${name}[.]so[^ ]*) => (/[^ ]+)")
+    set(CMAKE_MATCH_1)
+    set(CMAKE_MATCH_2)
+  endif()
+  set(${soname} "${CMAKE_MATCH_1}" PARENT_SCOPE)
+  set(${path} "${CMAKE_MATCH_2}" PARENT_SCOPE)
+endfunction()
+
+# Makes a target for each named library that exists here and from which `importer`, the path of a library, imports
+# functions alone (and types, whose addresses are enough). Adds their names to `targets`.
+function(add_stand_ins importer targets)
+  set(result ${${targets}})
+  execute_process(COMMAND ${CMAKE_NM} -D --undefined-only --with-symbol-versions ${importer}
                   OUTPUT_VARIABLE imports ERROR_QUIET)
   string(REGEX MATCHALL "[^ \n]+" imports "${imports}")
-  foreach(name opencv_core opencv_imgproc opencv_videoio avcodec avformat avutil swscale heif)
-    if(NOT libraries MATCHES "(lib${name}[.]so[^ ]*) => (/[^ ]+)")
+  foreach(name ${ARGN})
+    find_linked(${importer} ${name} soname path)
+    if(NOT path)
       continue()
     endif()
-    set(soname ${CMAKE_MATCH_1})
-    execute_process(COMMAND ${CMAKE_NM} -D --defined-only ${CMAKE_MATCH_2} OUTPUT_VARIABLE exports ERROR_QUIET)
+    execute_process(COMMAND ${CMAKE_NM} -D --defined-only ${path} OUTPUT_VARIABLE exports ERROR_QUIET)
     set(functions)
     set(versions)
     set(has_data OFF)
@@ -29,7 +41,7 @@ function(add_stand_ins library targets)
       if(NOT exports MATCHES " ([A-Za-z]) ${symbol}(@[^\n]*)?\n")
         continue()
       endif()
-      if(NOT CMAKE_MATCH_1 MATCHES "[TW]")
+      if(NOT "${CMAKE_MATCH_1} ${symbol}" MATCHES "^([TW] |V _ZTI)")
         set(has_data ON)
       endif()
       string(APPEND functions "extern \"C\" [[gnu::visibility(\"default\")]] void ${symbol}() { __builtin_trap(); }\n")

@@ -71,8 +71,8 @@ void warm_up() {
     }
 }
 
-// Ends the threads that libraries start while they are loaded. On Debian 12 that is log4cplus, which comes with OpenCV;
-// this program does not link it.
+// Ends the threads that libraries start while they are loaded. On Debian 12 that is log4cplus, which comes with
+// OpenVDB, if it is loaded because there is no stand-in for it (main.cpp). This program does not link it.
 void stop_threads_of_libraries() {
     using Stop = void();
     if (void* const stop = dlsym(RTLD_DEFAULT, "_ZN9log4cplus18shutdownThreadPoolEv"); stop != nullptr)
