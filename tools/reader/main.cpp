@@ -47,7 +47,7 @@ int main(int argc, char** argv) {
     void* const pictures = load_pictures(own_folder());
     void* const program = pictures == nullptr ? nullptr : dlsym(pictures, "tex_read_pictures");
     if (program == nullptr) {
-        std::fprintf(stderr, "tex-reader: %s\n", dlerror());
+        static_cast<void>(std::fprintf(stderr, "tex-reader: %s\n", dlerror()));
         return kNotLoaded;
     }
     return reinterpret_cast<Program*>(program)(argc, argv);
