@@ -102,8 +102,22 @@ void ExrReader::read(int level, int first, int count, const ExrTarget& target) {
                 target.row_bytes * static_cast<std::size_t>(count));
 }
 
+// If the header says that lines come from the bottom, OpenEXR reads the lines above the last ones from where it is in
+// the file, without a look at the table. If that order is not true, these lines would be damaged or not, depending on
+// what was read before. A new reader begins with the table.
+void ExrReader::begin_lines(int begin, int end) {
+    if (header().lineOrder() != Imf::INCREASING_Y && begin == last_chunk_ - 1) {
+        lines_.reset();
+        exr_.reset();
+        stream_.seekg(0);
+        open_part();
+    }
+    last_chunk_ = end - 1;
+}
+
 void ExrReader::read_lines(int first, int last, const ExrTarget& target) {
     const Chunks chunks(header(), first, last);
+    begin_lines(chunks.begin, chunks.end);
     lines_->setFrameBuffer(buffer_of(chunks.window, first, last - first + 1, target));
     for (int chunk = chunks.begin; chunk < chunks.end; ++chunk) {
         const int begin = chunks.first_line(chunk);
@@ -118,6 +132,7 @@ void ExrReader::unzip_lines(int first, int last, const ExrTarget& target) {
     const Chunks chunks(header(), first, last);
     const int width = width_of(chunks.window);
     const std::size_t pitch = size_of(width, 1, texel_bytes(header()));
+    begin_lines(chunks.begin, chunks.end);
     for (int chunk = chunks.begin; chunk < chunks.end; ++chunk) {
         const int begin = chunks.first_line(chunk);
         const int end = chunks.last_line(chunk);

@@ -55,6 +55,8 @@ public:
 
 private:
     void open_part();
+    // To be called before the lines of chunk `begin` are read, and those that follow up to chunk `end` - 1.
+    void begin_lines(int begin, int end);
     // Lines are in the file's coordinates.
     void read_lines(int first, int last, const ExrTarget& target);
     void unzip_lines(int first, int last, const ExrTarget& target);
@@ -70,6 +72,7 @@ private:
     std::optional<std::uint64_t> table_;  // where the table of chunks begins, in a file of one part
     std::optional<Imf::MultiPartInputFile> exr_;
     std::optional<Imf::InputPart> lines_;
+    int last_chunk_ = 0;  // of the lines that were read last
     std::optional<Imf::TiledInputPart> tiles_;
     Unzipper unzipper_;
 };
