@@ -6,7 +6,6 @@
 #include <array>
 #include <atomic>
 #include <cassert>
-#include <cstring>
 
 #include "blocks/extent.h"
 #include "formats/level_planes.h"

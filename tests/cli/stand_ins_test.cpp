@@ -11,7 +11,7 @@
 namespace tex::cli {
 namespace {
 
-// A copy of the reader in a folder of its own.
+// A copy of the reader, alone in a folder.
 class StandIns : public testing::Test {
 protected:
     StandIns() {

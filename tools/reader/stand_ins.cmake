@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Stand-ins for libraries that OpenImageIO links and tex-reader never calls: those of cameras, movies and HEIF; and
-# log4cplus, which OpenVDB links, and which starts threads while it is loaded. (If they get no memory, it waits for them
+# log4cplus, which OpenVDB links, and which starts threads while it is loaded. (If these get no memory, it waits
 # for ever.) With all that these libraries link in turn, they are 200 of 260, and most of the time that the reader takes
 # to start. A stand-in has the name of the library and the functions that are imported from it; each of them ends the
 # process. (LibRaw has none, because OpenImageIO asks it for its version.)

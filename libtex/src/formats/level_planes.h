@@ -12,14 +12,13 @@
 
 namespace tex {
 
-// What to leave out. Planes that are left out exist, but have one row in memory, which is that of all rows of texels
-// (stride 0), so they must not be written to.
+// What must be decoded. A plane that need not be decoded has one row in memory, which all of its rows share (stride 0).
+// It must not be written to.
 struct PlaneNeeds {
-    unsigned channels = 0xF;  // bit c is set if channel c is needed; the others are left out, and are 0
+    unsigned channels = 0xF;  // bit c is set if channel c is needed; the other planes are 0
     // Whether one of the rows first to first + count - 1 is needed; null if all are. Other rows may be unset.
     std::function<bool(int first, int count)> rows;
-    // Leaves out the colours of BC2 and BC3 that have one value in all texels, such as R and B of DXT5nm. The value of
-    // the plane is right.
+    // Whether R, G and B of BC2 and BC3 share one row if they have one value in all texels, as R and B of DXT5nm do.
     bool share_constants = false;
 };
 

@@ -102,9 +102,9 @@ void ExrReader::read(int level, int first, int count, const ExrTarget& target) {
                 target.row_bytes * static_cast<std::size_t>(count));
 }
 
-// If the header says that lines come from the bottom, OpenEXR reads the lines above the last ones from where it is in
-// the file, without a look at the table. If that order is not true, these lines would be damaged or not, depending on
-// what was read before. A new reader begins with the table.
+// OpenEXR trusts the line order that the header states. If that is from the bottom, and the chunk below was read last,
+// it reads on from there and does not look at the table. If the header is wrong, the lines could then be read or not,
+// depending on what was read before. A new reader always looks at the table first.
 void ExrReader::begin_lines(int begin, int end) {
     if (header().lineOrder() != Imf::INCREASING_Y && begin == last_chunk_ - 1) {
         lines_.reset();

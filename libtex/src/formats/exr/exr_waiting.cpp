@@ -2,50 +2,47 @@
 
 #include "formats/exr/exr_waiting.h"
 
+#include <iterator>
 #include <utility>
 
 namespace tex {
 
 Result<void> ExrWaitingBlocks::add(int number, ExrChunks chunks) {
-    const std::size_t count = chunks.bytes.size();
-    held_ += count;
-    blocks_[number] = {std::move(chunks), 0, count, true};
-    // The blocks that are taken next stay in memory.
-    for (auto last = blocks_.rbegin(); held_ > kMostHeld && last != blocks_.rend() && !output_.empty(); ++last) {
-        if (!last->second.is_held) continue;
-        if (Result<void> moved = move_out(last->second); !moved) return moved;
+    held_bytes_ += chunks.bytes.size();
+    held_[number] = std::move(chunks);
+    while (held_bytes_ > kMostHeld && !output_.empty()) {
+        if (Result<void> moved = move_last(); !moved) return moved;
     }
     return {};
 }
 
-Result<void> ExrWaitingBlocks::move_out(Waiting& block) {
+// Moves the block that must wait longest to the scratch file.
+Result<void> ExrWaitingBlocks::move_last() {
     if (!scratch_) {
         Result<ScratchFile> scratch = ScratchFile::open(output_);
         if (!scratch) return scratch.error();
         scratch_.emplace(std::move(*scratch));
     }
-    if (Result<void> written = scratch_->write_at(end_, block.chunks.bytes); !written) return written;
-    block.at = end_;
-    end_ += block.count;
-    block.is_held = false;
-    held_ -= block.count;
-    block.chunks.bytes = std::vector<std::byte>();  // which, unlike clear(), frees them
+    auto [number, chunks] = std::move(*std::prev(held_.end()));
+    held_.erase(number);
+    const std::size_t count = chunks.bytes.size();
+    held_bytes_ -= count;
+    if (Result<void> written = scratch_->write_at(end_, chunks.bytes); !written) return written;
+    moved_[number] = {end_, count, std::move(chunks.sizes)};
+    end_ += count;
     return {};
 }
 
 Result<std::optional<ExrChunks>> ExrWaitingBlocks::take(int number) {
-    const auto found = blocks_.find(number);
-    if (found == blocks_.end()) return std::optional<ExrChunks>();
-    Waiting block = std::move(found->second);
-    blocks_.erase(found);
-    if (block.is_held) {
-        held_ -= block.count;
-    } else {
-        Result<std::vector<std::byte>> bytes = scratch_->read_at(block.at, block.count);
-        if (!bytes) return bytes.error();
-        block.chunks.bytes = std::move(*bytes);
+    if (auto held = held_.extract(number)) {
+        held_bytes_ -= held.mapped().bytes.size();
+        return std::optional(std::move(held.mapped()));
     }
-    return std::optional(std::move(block.chunks));
+    auto moved = moved_.extract(number);
+    if (!moved) return std::optional<ExrChunks>();
+    Result<std::vector<std::byte>> bytes = scratch_->read_at(moved.mapped().at, moved.mapped().count);
+    if (!bytes) return bytes.error();
+    return std::optional(ExrChunks{std::move(*bytes), std::move(moved.mapped().sizes)});
 }
 
 }  // namespace tex

@@ -34,17 +34,17 @@ public:
     Result<std::optional<ExrChunks>> take(int number);
 
 private:
-    struct Waiting {
-        ExrChunks chunks;      // without bytes, if these are in the scratch file
-        std::uint64_t at = 0;  // there
-        std::size_t count = 0;
-        bool is_held = true;
+    struct Moved {
+        std::uint64_t at;  // in the scratch file
+        std::size_t count;
+        std::vector<std::size_t> sizes;
     };
-    Result<void> move_out(Waiting& block);
+    Result<void> move_last();
 
     std::string output_;
-    std::map<int, Waiting> blocks_;  // by number
-    std::size_t held_ = 0;           // bytes in memory
+    std::map<int, ExrChunks> held_;  // in memory; by number
+    std::size_t held_bytes_ = 0;
+    std::map<int, Moved> moved_;  // to the scratch file
     std::optional<ScratchFile> scratch_;
     std::uint64_t end_ = 0;  // of the scratch file
 };
