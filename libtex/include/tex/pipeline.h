@@ -76,7 +76,8 @@ struct BakeFileReport {
 //   fill_invalid        all heights, and for each the row of its nearest valid neighbour: 8 bytes a texel
 //   deband              all heights, and what deband() needs besides: 13 bytes a texel
 //   TIFF, TGA ... out   all packed texels: the reader process encodes whole pictures
-//   EXR out             the compressed tiles of smaller levels, until the base level is done
+//   EXR out             compressed tiles of smaller levels, until the base level is done: up to 4 MB, and the rest in a
+//                       file without a name in the folder of the output
 // PNG and EXR are written from the top. If the heights repeat from bottom to top, the last rows are therefore decoded
 // first: a PNG is decoded twice; the reader process holds all rows of a TIFF, TGA, JPEG ... as the file stores them. A
 // picture that can hold only one level gets the base level.

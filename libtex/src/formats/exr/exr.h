@@ -23,7 +23,7 @@ const char* exr_version();
 const char* inflater_version();
 
 // Writes a half or float texture row by row, with the bytes of encode_exr(). The compressed tiles of smaller levels
-// wait in memory until the larger levels are complete. Errors: those of encode_exr().
+// wait until the larger levels are complete (exr_waiting.h). Errors: those of encode_exr(), io.
 Result<std::unique_ptr<RowTarget>> open_exr_target(const TextureHead& head, WriteBytes write);
 
 // Encodes a half or float texture with ZIP compression. A texture of more than one level is stored in tiles of 64x64
