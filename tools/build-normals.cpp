@@ -7,16 +7,16 @@
 
 #include <fmt/format.h>
 
-#include "build/builder.h"
-#include "build/explain.h"
-#include "build/farm.h"
-#include "build/manifest.h"
-#include "build/recipe.h"
-#include "build/watch.h"
-#include "build/work.h"
 #include "cli/text_file.h"
 #include "cli/usage_error.h"
 #include "options/run.h"
+#include "tree/builder.h"
+#include "tree/explain.h"
+#include "tree/farm.h"
+#include "tree/manifest.h"
+#include "tree/recipe.h"
+#include "tree/watch.h"
+#include "tree/work.h"
 
 namespace {
 

@@ -6,11 +6,11 @@
 #include <chrono>
 #include <thread>
 
-#include "build/cache.h"
-#include "build/queue.h"
-#include "build/state.h"
 #include "cli/host.h"
 #include "cli/program.h"
+#include "tree/cache.h"
+#include "tree/queue.h"
+#include "tree/state.h"
 
 namespace tex::cli {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "build/deal.h"
+#include "tree/deal.h"
 
 namespace tex::cli {
 namespace {

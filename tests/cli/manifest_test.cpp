@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "build/manifest.h"
-#include "build/recipe.h"
 #include "cli/host.h"
 #include "cli/usage_error.h"
+#include "tree/manifest.h"
+#include "tree/recipe.h"
 
 namespace tex::cli {
 namespace {

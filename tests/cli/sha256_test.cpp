@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "build/sha256.h"
+#include "tree/sha256.h"
 
 namespace tex::cli {
 

@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <string>
 
-#include "build/farm_plan.h"
-#include "build/shard_report.h"
 #include "cli/usage_error.h"
+#include "tree/farm_plan.h"
+#include "tree/shard_report.h"
 
 namespace {
 

@@ -5,9 +5,9 @@
 #include <cstdlib>
 #include <string>
 
-#include "build/manifest.h"
 #include "cli/glob.h"
 #include "cli/usage_error.h"
+#include "tree/manifest.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string text(reinterpret_cast<const char*>(data), size);

@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <deque>
+#include <filesystem>
+#include <new>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "cli/text.h"
+#include "cli/text_file.h"
+#include "files/system_error.h"
+#include "tree/build_run.h"
+
+namespace tex::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A file without a name, in memory, that a texture is in while it is checked. Nothing of it is left, however the run
+// ends.
+class MemoryFile {
+public:
+    MemoryFile() : fd_(memfd_create("texture", MFD_CLOEXEC)) {}
+    MemoryFile(const MemoryFile&) = delete;
+    MemoryFile& operator=(const MemoryFile&) = delete;
+    ~MemoryFile() {
+        if (fd_ >= 0) close(fd_);
+    }
+    [[nodiscard]] bool is_open() const { return fd_ >= 0; }
+    [[nodiscard]] std::string path() const { return fmt::format("/proc/self/fd/{}", fd_); }
+
+private:
+    const int fd_;
+};
+
+// The output of `maker` that the recipe reads.
+std::string needed_file(const BuildTask& maker, const Recipe& recipe) {
+    for (const std::string& file : recipe.files()) {
+        std::string name = fs::path(file).lexically_normal().string();
+        if (std::find(maker.outputs.begin(), maker.outputs.end(), name) != maker.outputs.end()) return name;
+    }
+    return maker.outputs.front();
+}
+
+}  // namespace
+
+Error BuildRun::with_remedy(const Error& error, const std::string& output) const {
+    struct stat status {};
+    const bool is_read_only = error.code == ErrorCode::io && stat(output.c_str(), &status) == 0 &&
+                              (status.st_mode & (S_IWUSR | S_IWGRP | S_IWOTH)) == 0;
+    if (!is_read_only) return error;
+    return {error.code, error.file, error.reason + "; make it writable (chmod u+w, p4 edit) or remove it"};
+}
+
+Result<Made> BuildRun::make(const BuildTask& task, const std::vector<Stale>& stale, double& counted, Outcome& outcome) {
+    const Recipe& recipe = recipes_[task.recipe];
+    const bool is_checked = recipe.check().is_given();
+    std::deque<MemoryFile> waiting;
+    const auto in_memory = [&waiting] { return waiting.emplace_back().path(); };
+    std::vector<WantedOutput> wanted;
+    for (const Stale& one : stale) {
+        const std::string target = contents_.path(task.outputs[one.index]);
+        if (const auto created = create_folders_of(target); !created) return created.error();
+        wanted.push_back({one.index, target, is_checked ? in_memory() : std::string()});
+    }
+    MakeSettings settings{running_, write_, [&](double fraction) {
+                              advance(counted, static_cast<double>(task.size), fraction);
+                              return !stopped();
+                          }};
+    if (recipe.check().compares()) settings.source = in_memory();
+    if (!std::all_of(waiting.begin(), waiting.end(), [](const MemoryFile& file) { return file.is_open(); }))
+        return Error{ErrorCode::out_of_memory, {}, system_reason(errno)};
+    Result<Made> made = make_texture(recipe, contents_.path(task.input), wanted, settings, console_);
+    if (!made) return with_remedy(made.error(), wanted.front().path);
+    if (!is_checked) return made;
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+        const MadeTexture texture{wanted[k].write_to, settings.source, made->packs[k], task.outputs[wanted[k].index]};
+        const Execution execution{running_.threads, [this](double) { return !stopped(); }};
+        const auto findings = recipe.check().findings(texture, running_.read, execution);
+        if (!findings) return findings.error();
+        for (const std::string& sentence : *findings) {
+            outcome.code = ExitCode::findings;
+            console_.error(fmt::format("{}: {}", texture.name, sentence));
+            outcome.report["findings"].push_back({{"output", texture.name}, {"message", sentence}});
+        }
+    }
+    if (outcome.code == ExitCode::findings) return made;
+    for (const WantedOutput& output : wanted) {
+        const auto bytes = read_text_file(output.write_to);
+        if (!bytes) return bytes.error();
+        if (const auto put = write_text_file(output.path, *bytes, write_); !put)
+            return with_remedy(put.error(), output.path);
+    }
+    return made;
+}
+
+// Takes outputs from the cache, and off the list of those to make.
+Result<void> BuildRun::fetch(const BuildTask& task, Judgement& judgement, Outcome& outcome) {
+    if (!cache_.is_used()) return {};
+    std::vector<Stale> left;
+    for (Stale& stale : judgement.stale) {
+        const std::string& output = task.outputs[stale.index];
+        const std::string path = contents_.path(output);
+        if (auto created = create_folders_of(path); !created) return created;
+        const auto found = cache_.fetch(key_of(stale.settings, judgement.inputs), path, write_);
+        if (!found) return with_remedy(found.error(), path);
+        if (found->empty()) {
+            left.push_back(std::move(stale));
+        } else if (auto recorded = record(task, stale, judgement.inputs, *found, outcome); !recorded) {
+            return recorded;
+        }
+    }
+    judgement.stale = std::move(left);
+    return {};
+}
+
+// Records an output that is in its place.
+Result<void> BuildRun::record(const BuildTask& task, const Stale& made, const Digest& inputs,
+                              const std::vector<std::string>& paths, Outcome& outcome) {
+    std::vector<std::string> files;
+    for (const std::string& path : paths) {
+        const bool is_below = !options_.root.empty() && path.starts_with(options_.root + "/");
+        files.push_back(is_below ? path.substr(options_.root.size() + 1) : path);
+    }
+    outcome.outputs.insert(outcome.outputs.end(), files.begin(), files.end());
+    if (options_.lists_made)
+        outcome.text += fmt::format("{} -> {}\n", printable(task.input), printable(with_level(files.front(), 0)));
+    return judge_.record(task, made, inputs, files);
+}
+
+void BuildRun::list_stale(const BuildTask& task, const std::vector<Stale>& stale, Outcome& outcome) {
+    ++totals_.made;
+    outcome.report["status"] = "stale";
+    for (const Stale& one : stale) {
+        const std::string output = with_level(task.outputs[one.index], 0);
+        outcome.outputs.push_back(output);
+        outcome.text += fmt::format("{} -> {}: {}\n", printable(task.input), printable(output), one.why);
+    }
+}
+
+// What stat() says about the files that the outputs are made from, except those that this or another builder makes.
+std::vector<std::optional<FileStamp>> BuildRun::stamps_of(const BuildTask& task) const {
+    const auto is_made = [&](const std::string& file) {
+        const std::string name = fs::path(file).lexically_normal().string();
+        return std::any_of(task.needs.begin(), task.needs.end(), [&](std::size_t needed) {
+            const std::vector<std::string>& outputs = work_.tasks[needed].outputs;
+            return std::find(outputs.begin(), outputs.end(), name) != outputs.end();
+        });
+    };
+    std::vector<std::optional<FileStamp>> stamps = {contents_.stamp(task.input)};
+    for (const std::string& file : recipes_[task.recipe].files()) {
+        if (!is_made(file)) stamps.push_back(contents_.stamp(file));
+    }
+    return stamps;
+}
+
+// Whether no file was replaced since `stamps`. Another builder may have put the same bytes in the place of a file that
+// both make, so the contents of those are compared with `inputs`.
+Result<bool> BuildRun::are_unchanged(const BuildTask& task, const std::vector<std::optional<FileStamp>>& stamps,
+                                     const Digest& inputs) {
+    if (stamps_of(task) != stamps) return false;
+    if (task.needs.empty()) return true;
+    const Result<Judgement> now = judge_.judge(task, recipes_[task.recipe]);
+    if (!now) return now.error();
+    return now->inputs == inputs;
+}
+
+// Makes what is stale, unless the cache has it. Returns false if a file was replaced while it was read. Nothing is then
+// recorded or put into the cache, because its key names the contents before.
+Result<bool> BuildRun::make_stale(const BuildTask& task, Judgement judgement,
+                                  const std::vector<std::optional<FileStamp>>& stamps, double& counted,
+                                  Outcome& outcome) {
+    if (Result<void> fetched = fetch(task, judgement, outcome); !fetched) return fetched.error();
+    if (judgement.stale.empty()) {
+        ++totals_.cached;
+        outcome.report["status"] = "cached";
+        return are_unchanged(task, stamps, judgement.inputs);
+    }
+    const Result<Made> made = make(task, judgement.stale, counted, outcome);
+    if (!made) return made.error();
+    Result<bool> unchanged = are_unchanged(task, stamps, judgement.inputs);
+    if (!unchanged || !*unchanged) return unchanged;
+    outcome.warnings.insert(outcome.warnings.end(), made->warnings.begin(), made->warnings.end());
+    outcome.remarks.insert(outcome.remarks.end(), made->remarks.begin(), made->remarks.end());
+    if (outcome.code == ExitCode::findings) {
+        outcome.report["status"] = "refused";
+        return true;
+    }
+    for (std::size_t k = 0; k < judgement.stale.size(); ++k) {
+        const Stale& stale = judgement.stale[k];
+        if (auto recorded = record(task, stale, judgement.inputs, made->files[k], outcome); !recorded)
+            return recorded.error();
+        if (!cache_.is_used()) continue;
+        const std::string output = contents_.path(task.outputs[stale.index]);
+        const auto stored = cache_.store(key_of(stale.settings, judgement.inputs), output, made->files[k]);
+        if (!stored)
+            outcome.warnings.push_back({task.input, "the cache does not take it: " + stored.error().message()});
+    }
+    texels_ += made->report.extent.texels();
+    outcome.report["status"] = "made";
+    outcome.report["extent"] = {made->report.extent.width, made->report.extent.height};
+    outcome.report["levels"] = made->report.levels;
+    outcome.report["bytes"] = made->report.bytes;
+    ++totals_.made;
+    return true;
+}
+
+// A texture that needs `name` fails in the same way as that did.
+Result<void> BuildRun::fail_with(ExitCode cause, const BuildTask& task, const std::string& name, Outcome& outcome) {
+    const std::string reason = fmt::format("needs {}, which could not be made", name);
+    if (cause != ExitCode::findings)
+        return Error{cause == ExitCode::io ? ErrorCode::io : ErrorCode::bad_data, task.input, reason};
+    outcome.code = cause;
+    outcome.report["status"] = "refused";
+    outcome.report["findings"].push_back({{"output", task.outputs.front()}, {"message", reason}});
+    console_.error(fmt::format("{}: {}", task.input, reason));
+    return {};
+}
+
+Result<void> BuildRun::bring_up_to_date(std::size_t index, Outcome& outcome) {
+    const BuildTask& task = work_.tasks[index];
+    const Recipe& recipe = recipes_[task.recipe];
+    outcome.report["rule"] = recipe.number();
+    if (!task.refusal.empty()) return Error{ErrorCode::bad_option, task.input, task.refusal};
+    for (const std::size_t needed : task.needs) {
+        const std::string name = printable(needed_file(work_.tasks[needed], recipe));
+        if (const ExitCode cause = failed_[needed]; cause != ExitCode::done)
+            return fail_with(cause, task, name, outcome);
+        if (!stale_[needed]) continue;
+        stale_[index] = true;
+        std::vector<Stale> all(task.outputs.size());
+        for (std::size_t k = 0; k < all.size(); ++k) all[k] = {k, {}, fmt::format("{}, which it needs, is made", name)};
+        list_stale(task, all, outcome);
+        return {};
+    }
+    double counted = 0.0;
+    constexpr int kMostAttempts = 3;
+    for (int attempt = 1; attempt <= kMostAttempts; ++attempt) {
+        const auto stamps = stamps_of(task);
+        Result<Judgement> judged = judge_.judge(task, recipe);
+        if (!judged) return judged.error();
+        if (judged->stale.empty()) {
+            ++totals_.current;
+            outcome.report["status"] = "current";
+            return {};
+        }
+        outcome.report["why"] = judged->stale.front().why;
+        if (options_.dry_run) {
+            stale_[index] = true;
+            list_stale(task, judged->stale, outcome);
+            return {};
+        }
+        const Result<bool> made = make_stale(task, std::move(*judged), stamps, counted, outcome);
+        if (!made) return made.error();
+        if (*made) return {};
+        for (const std::string& output : task.outputs) judge_.forget(output);
+        outcome.code = ExitCode::done;
+        outcome.report.erase("findings");
+        outcome.outputs.clear();
+        outcome.warnings.clear();
+        outcome.remarks.clear();
+    }
+    return Error{ErrorCode::io, contents_.path(task.input),
+                 "this file, or one that its rule reads, changes while it is read"};
+}
+
+Outcome BuildRun::outcome_of(std::size_t index) {
+    const BuildTask& task = work_.tasks[index];
+    Outcome outcome;
+    outcome.input = task.input;
+    outcome.has_levels = true;  // a list of outputs
+    const auto start = std::chrono::steady_clock::now();
+    try {
+        if (const auto done = bring_up_to_date(index, outcome); !done) outcome.error = done.error();
+    } catch (const std::bad_alloc&) {
+        outcome.error = Error{ErrorCode::out_of_memory, {}, "out of memory"};
+    } catch (const std::exception& exception) {
+        outcome.error = Error{ErrorCode::io, {}, fmt::format("{}; {}", exception.what(), kBugReport)};
+        outcome.is_bug = true;
+    }
+    if (outcome.error || outcome.code == ExitCode::findings) {
+        failed_[index] = outcome.error ? std::max(outcome.code, exit_code(outcome.error->code)) : outcome.code;
+        ++totals_.failed;
+    }
+    outcome.seconds = std::chrono::duration<float>(std::chrono::steady_clock::now() - start).count();
+    ++finished_;
+    return outcome;
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// build_run.h: one run of build(). builder.cpp does what concerns all textures, build_one.cpp what concerns one.
+
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "batch/outcome.h"
+#include "tree/builder.h"
+#include "tree/cache.h"
+#include "tree/judge.h"
+#include "tree/queue.h"
+#include "tree/state.h"
+#include "tree/texture_maker.h"
+
+namespace tex::cli {
+
+// What happened to the textures.
+struct BuildTotals {
+    std::atomic<std::size_t> made{0}, cached{0}, current{0}, failed{0}, pruned{0};
+};
+
+class BuildRun {
+public:
+    BuildRun(const std::vector<Recipe>& recipes, const WorkList& work, const BuildOptions& options,
+             const RunOptions& running, Console& console)
+        : recipes_(recipes), work_(work), options_(options), running_(running), console_(console),
+          contents_(options.root, state_.memos), judge_(state_, contents_, options.output_version),
+          reporter_(console, work.tasks.size(), running.json), cache_(options.cache), failed_(work.tasks.size()),
+          stale_(work.tasks.size()), results_(work.tasks.size()) {
+        write_.sync = !options.no_sync;
+        write_.reader = running.read;
+    }
+
+    ExitCode run();
+
+private:
+    void read_state();
+    void save_state(BuildState::Memos memos_of);
+    void save_now_and_then();
+    void run_tasks();
+    void work_on(TaskQueue& queue);
+    Outcome outcome_of(std::size_t index);
+    Result<void> fail_with(ExitCode cause, const BuildTask& task, const std::string& name, Outcome& outcome);
+    Result<void> bring_up_to_date(std::size_t index, Outcome& outcome);
+    Result<bool> make_stale(const BuildTask& task, Judgement judgement,
+                            const std::vector<std::optional<FileStamp>>& stamps, double& counted, Outcome& outcome);
+    [[nodiscard]] std::vector<std::optional<FileStamp>> stamps_of(const BuildTask& task) const;
+    Result<bool> are_unchanged(const BuildTask& task, const std::vector<std::optional<FileStamp>>& stamps,
+                               const Digest& inputs);
+    Result<void> fetch(const BuildTask& task, Judgement& judgement, Outcome& outcome);
+    Result<void> record(const BuildTask& task, const Stale& made, const Digest& inputs,
+                        const std::vector<std::string>& paths, Outcome& outcome);
+    void list_stale(const BuildTask& task, const std::vector<Stale>& stale, Outcome& outcome);
+    Result<Made> make(const BuildTask& task, const std::vector<Stale>& stale, double& counted, Outcome& outcome);
+    [[nodiscard]] Error with_remedy(const Error& error, const std::string& output) const;
+    void prune();
+    bool remove_files(const OutputRecord& output);
+    [[nodiscard]] ExitCode write_depfile() const;
+    [[nodiscard]] QueuedTask queued(const BuildTask& task) const;
+    void advance(double& counted, double size, double fraction);
+    [[nodiscard]] std::string progress_words() const;
+    [[nodiscard]] bool stopped() const { return !console_.host().interruption().empty() || reporter_.is_abandoned(); }
+
+    const std::vector<Recipe>& recipes_;
+    const WorkList& work_;
+    const BuildOptions& options_;
+    const RunOptions& running_;
+    Console& console_;
+    WriteOptions write_;
+    BuildState state_;
+    Contents contents_;
+    Judge judge_;
+    Reporter reporter_;
+    Cache cache_;
+    std::vector<std::atomic<ExitCode>> failed_;  // how, or ExitCode::done
+    std::vector<std::atomic<bool>> stale_;       // in a dry run
+    std::vector<BuildResult> results_;
+    BuildTotals totals_;
+    bool lost_names_ = false;  // outputs were removed from the state
+    std::atomic<std::size_t> finished_{0};
+    std::atomic<double> done_bytes_{0.0};
+    double all_bytes_ = 1.0;
+    std::atomic<std::int64_t> texels_{0};
+    std::mutex throwing_;
+    std::mutex saving_;
+    std::chrono::steady_clock::time_point next_save_ = std::chrono::steady_clock::now() + std::chrono::seconds(1);
+    std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
+    std::exception_ptr thrown_;
+};
+
+}  // namespace tex::cli

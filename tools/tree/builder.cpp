@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "tree/builder.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <optional>
+#include <system_error>
+#include <thread>
+#include <tuple>
+#include <utility>
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tex/container.h>
+#include <unistd.h>
+
+#include "batch/depfile.h"
+#include "cli/text.h"
+#include "cli/text_file.h"
+#include "files/system_error.h"
+#include "tree/build_run.h"
+
+namespace tex::cli {
+void BuildRun::read_state() {
+    if (const auto text = read_text_file(options_.state_file)) state_ = BuildState::parse(*text);
+    if (options_.shard_state.empty()) return;
+    // What an earlier try of this shard has made.
+    if (const auto text = read_text_file(options_.shard_state)) {
+        BuildState earlier = BuildState::parse(*text);
+        for (auto& [name, record] : earlier.outputs) state_.outputs[name] = std::move(record);
+        for (const auto& [name, memo] : earlier.memos) state_.memos[name] = memo;
+    }
+}
+
+void BuildRun::save_state(BuildState::Memos memos_of) {
+    const std::string& file = options_.is_shard ? options_.shard_state : options_.state_file;
+    if (file.empty() || options_.dry_run || (!judge_.has_changed() && !contents_.has_changed() && !lost_names_)) return;
+    if (options_.is_part) memos_of = BuildState::Memos::all;
+    WriteOptions write;
+    write.sync = false;  // the state may be lost
+    std::string text;
+    {
+        const auto outputs = judge_.hold();
+        const auto memos = contents_.hold();
+        text = state_.text(memos_of);
+    }
+    if (const auto saved = write_text_file(file, text, write); !saved)
+        console_.warning(fmt::format("{}; the next run will make everything again", saved.error().message()));
+}
+
+// Saves the state during a long run, so that less is lost if it is killed. This takes a fiftieth of the time at most.
+void BuildRun::save_now_and_then() {
+    using std::chrono::steady_clock;
+    const std::unique_lock lock(saving_, std::try_to_lock);
+    const auto begun = steady_clock::now();
+    if (!lock || begun < next_save_) return;
+    save_state(BuildState::Memos::all);
+    const auto ended = steady_clock::now();
+    next_save_ = ended + std::max<steady_clock::duration>(std::chrono::seconds(1), 50 * (ended - begun));
+}
+
+// An estimate: streams take little, pictures that the reader process decodes are held whole, and so are detail maps.
+QueuedTask BuildRun::queued(const BuildTask& task) const {
+    constexpr std::int64_t kStream = std::int64_t{24} << 20;
+    const auto container = container_of(task.input);
+    const bool streams = container && (can_hold_levels(*container) || *container == *container_of("a.png"));
+    std::int64_t memory = kStream + (streams ? 0 : 8 * task.size);
+    for (const std::string& file : recipes_[task.recipe].files()) {
+        if (const auto stamp = contents_.stamp(file)) memory += 8 * stamp->size;
+    }
+    return {task.size, memory, task.needs};
+}
+
+std::string BuildRun::progress_words() const {
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
+    const double done = done_bytes_ / all_bytes_;
+    std::string words = fmt::format("{} of {}", finished_.load(), work_.tasks.size());
+    if (texels_ > 0 && seconds > 0.0)
+        words += fmt::format(", {:.0f} Mtexel/s", static_cast<double>(texels_) / seconds / 1e6);
+    if (done > 0.01 && seconds > 1.0) words += fmt::format(", {:.0f} s left", seconds * (1.0 - done) / done);
+    return words;
+}
+
+// Adds the progress of one file of `size` bytes, from `counted` to `fraction`, to the total.
+void BuildRun::advance(double& counted, double size, double fraction) {
+    const double done = done_bytes_ += (fraction - counted) * size;
+    counted = fraction;
+    if (running_.shows_progress(console_.host())) console_.draw_progress(done / all_bytes_, progress_words());
+}
+
+void BuildRun::work_on(TaskQueue& queue) {
+    try {
+        while (const auto index = queue.take()) {
+            Outcome outcome = outcome_of(*index);
+            queue.finish(*index);
+            results_[*index] = {outcome.error ? "failed" : outcome.report.value("status", std::string()),
+                                outcome.error ? std::optional(outcome.error->of(outcome.input)) : std::nullopt,
+                                outcome.seconds};
+            save_now_and_then();
+            reporter_.finish(*index, std::move(outcome));
+            if (stopped()) queue.stop();
+        }
+    } catch (...) {
+        const std::lock_guard lock(throwing_);
+        if (!thrown_) thrown_ = std::current_exception();
+        queue.stop();
+    }
+}
+
+void BuildRun::run_tasks() {
+    std::vector<QueuedTask> tasks;
+    all_bytes_ = 1.0;
+    for (const BuildTask& task : work_.tasks) {
+        tasks.push_back(queued(task));
+        all_bytes_ += static_cast<double>(task.size);
+    }
+    std::int64_t memory = options_.memory;
+    if (memory == 0) memory = static_cast<std::int64_t>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGESIZE) / 2;
+    TaskQueue queue(std::move(tasks), memory);
+    const int threads = running_.threads > 0 ? running_.threads : tbb::info::default_concurrency();
+    const std::size_t workers = std::min({static_cast<std::size_t>(threads), kMostFilesAtOnce, work_.tasks.size()});
+    // The workers are threads of their own: a worker of TBB that waits for a task could be the one that the task needs.
+    std::vector<std::thread> others;
+    try {
+        for (std::size_t k = 1; k < workers; ++k) others.emplace_back([&] { work_on(queue); });
+    } catch (const std::system_error&) {
+        // Fewer threads do the work, too.
+    }
+    work_on(queue);
+    for (std::thread& other : others) other.join();
+    console_.clear_progress();
+    if (thrown_) std::rethrow_exception(thrown_);
+}
+
+// Removes the outputs that no rule makes any more.
+void BuildRun::prune() {
+    std::vector<std::string> wanted;
+    for (const BuildTask& task : work_.tasks) wanted.insert(wanted.end(), task.outputs.begin(), task.outputs.end());
+    std::sort(wanted.begin(), wanted.end());
+    for (auto record = state_.outputs.begin(); record != state_.outputs.end();) {
+        if (std::binary_search(wanted.begin(), wanted.end(), record->first)) {
+            ++record;
+            continue;
+        }
+        const bool is_gone = remove_files(record->second);
+        lost_names_ = lost_names_ || is_gone;
+        record = is_gone ? state_.outputs.erase(record) : std::next(record);
+    }
+}
+
+// Removes the files of an output. Returns false if the state must go on to know them.
+bool BuildRun::remove_files(const OutputRecord& output) {
+    bool is_gone = true, removes = false;
+    for (const auto& [file, digest] : output.files) {
+        const std::string path = contents_.path(file);
+        const Result<Digest> now = contents_.digest(file);
+        if (!now) continue;
+        if (*now != digest) {
+            console_.warning(fmt::format("{} is not removed: something else has changed it", path));
+        } else if (options_.dry_run) {
+            std::ignore = console_.print(fmt::format("remove {}\n", printable(file)));
+            is_gone = false;
+            removes = true;
+        } else if (std::remove(path.c_str()) != 0) {
+            console_.warning(fmt::format("{}: cannot be removed: {}", path, system_reason(errno)));
+            is_gone = false;
+        } else {
+            removes = true;
+        }
+    }
+    if (removes) ++totals_.pruned;
+    return is_gone;
+}
+
+// Writes which files the outputs that are up to date were made from.
+ExitCode BuildRun::write_depfile() const {
+    if (options_.depfile.empty() || options_.dry_run || options_.is_part) return ExitCode::done;
+    std::vector<Dependency> dependencies;
+    for (std::size_t k = 0; k < work_.tasks.size(); ++k) {
+        const BuildTask& task = work_.tasks[k];
+        Dependency& dependency = dependencies.emplace_back();
+        for (const std::string& output : task.outputs) {
+            const auto record = state_.outputs.find(output);
+            if (failed_[k] != ExitCode::done || record == state_.outputs.end()) continue;
+            for (const auto& [file, digest] : record->second.files) dependency.outputs.push_back(contents_.path(file));
+        }
+        dependency.inputs = {contents_.path(task.input), options_.manifest};
+        for (const std::string& file : recipes_[task.recipe].files()) dependency.inputs.push_back(contents_.path(file));
+    }
+    const auto text = depfile_text(dependencies);
+    const auto written = text ? write_text_file(options_.depfile, *text) : Result<void>(text.error());
+    if (written) return ExitCode::done;
+    console_.error(written.error().message());
+    return exit_code(written.error().code);
+}
+
+ExitCode BuildRun::run() {
+    std::optional<tbb::global_control> limit;
+    if (running_.threads > 1)
+        limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(running_.threads));
+    Host& host = console_.host();
+    host.begin();
+    read_state();
+    run_tasks();
+    ExitCode code = reporter_.exit_code();
+    for (const std::string& folder : work_.unreadable) {
+        console_.error(folder);
+        code = std::max(code, ExitCode::io);
+    }
+    const std::string_view by = host.interruption();
+    if (by.empty() && options_.prune && !options_.is_part && work_.unreadable.empty()) prune();
+    save_state(BuildState::Memos::used);
+    if (by.empty()) code = std::max(code, write_depfile());
+    if (cache_.is_used() && options_.cache_size > 0 && !options_.dry_run) cache_.shrink(options_.cache_size, console_);
+    if (!by.empty()) {
+        console_.error(
+            fmt::format("interrupted by {}; {} of {} files are done", by, finished_.load(), work_.tasks.size()));
+        host.end_interrupted();
+        return ExitCode::io;
+    }
+    if (options_.finished && !options_.dry_run) code = std::max(code, options_.finished(results_, state_));
+    for (const Recipe& recipe : recipes_) {
+        for (const ReadyCommand& command : recipe.before()) command.converter->finish_steps(console_);
+        for (const RecipeOutput& output : recipe.outputs()) output.last.converter->finish_steps(console_);
+    }
+    if (running_.json || running_.quiet) return code;
+    std::string summary = fmt::format("{} {}, {} up to date", totals_.made.load(),
+                                      options_.dry_run ? "to make" : "made", totals_.current.load());
+    if (cache_.is_used()) summary += fmt::format(", {} from the cache", totals_.cached.load());
+    if (cache_.damaged() > 0) summary += fmt::format(" ({} damaged entries repaired)", cache_.damaged());
+    if (totals_.failed > 0) summary += fmt::format(", {} failed", totals_.failed.load());
+    if (totals_.pruned > 0)
+        summary += fmt::format(", {} {}", totals_.pruned.load(), options_.dry_run ? "to remove" : "removed");
+    return std::max(code, console_.print(summary + "\n"));
+}
+
+ExitCode build(const std::vector<Recipe>& recipes, const WorkList& work, const BuildOptions& options,
+               const RunOptions& running, Console& console) {
+    return BuildRun(recipes, work, options, running, console).run();
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "tree/explain.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "cli/text.h"
+#include "cli/usage_error.h"
+
+namespace tex::cli {
+namespace {
+
+const OptionSetting* find_setting(const Settings& settings, const std::string& key) {
+    const auto found = std::find_if(settings.begin(), settings.end(),
+                                    [&](const OptionSetting& setting) { return setting.key == key; });
+    return found == settings.end() ? nullptr : &*found;
+}
+
+std::string value_text(const OptionSetting& setting) {
+    return setting.is_flag ? (setting.is_on ? "true" : "false") : join(setting.values, ", ");
+}
+
+// One line for each option of a step that has a value.
+std::string settings_text(const StepSettings& step, const OutputSettings* output, const Command& command) {
+    std::string text;
+    for (const Row& row : command.rows()) {
+        if (row.hidden || row.group == kHelpGroup || row.group == "Files" || row.group == "Running") continue;
+        const std::string key = row.name().substr(2);
+        const OptionSetting* setting = output == nullptr ? nullptr : find_setting(output->settings, key);
+        const char* from = "outputs, ";
+        if (setting == nullptr) {
+            setting = find_setting(step.settings, key);
+            from = setting != nullptr && setting->is_default ? "[defaults], " : "";
+        }
+        if (setting != nullptr) {
+            text += fmt::format("    {} = {}  ({}line {})\n", key, printable(value_text(*setting)), from,
+                                setting->place.line);
+        } else if (!row.preset.empty() && (output != nullptr || row.group != "Output")) {
+            text += fmt::format("    {} = {}  (default of {})\n", key, row.preset, command.name());
+        }
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string explanation_of(const std::string& file, const std::vector<Recipe>& recipes, const WorkList& work) {
+    const std::string name = std::filesystem::path(file).lexically_normal().string();
+    const auto task = std::find_if(work.tasks.begin(), work.tasks.end(), [&](const BuildTask& candidate) {
+        return candidate.input == name ||
+               std::find(candidate.outputs.begin(), candidate.outputs.end(), name) != candidate.outputs.end();
+    });
+    if (task == work.tasks.end())
+        throw UsageError(fmt::format("--explain: no rule matches or makes {}", printable(name)));
+    const Recipe& recipe = recipes[task->recipe];
+    const RuleSettings& rule = recipe.rule();
+    std::string text = fmt::format("{}: rule {} (line {}), match {}\n", printable(task->input), recipe.number(),
+                                   rule.place.line, printable(join(rule.match)));
+    if (!task->refusal.empty()) text += "  cannot be made: " + task->refusal + "\n";
+    for (std::size_t k = 0; k + 1 < rule.steps.size(); ++k) {
+        text += fmt::format("  {}:\n", rule.steps[k].command);
+        text += settings_text(rule.steps[k], nullptr, recipe.before()[k].program->command);
+    }
+    for (const std::string& needed : recipe.files()) text += fmt::format("  reads {}\n", printable(needed));
+    for (std::size_t k = 0; k < task->outputs.size(); ++k) {
+        text += fmt::format("  {} for {}:\n", rule.steps.back().command, printable(with_level(task->outputs[k], 0)));
+        text += settings_text(rule.steps.back(), &rule.outputs[k], recipe.outputs()[k].last.program->command);
+        text += "  the same by hand:\n";
+        for (const std::string& line : recipe.command_lines(task->input, k)) text += "    " + line + "\n";
+    }
+    return text;
+}
+
+}  // namespace tex::cli

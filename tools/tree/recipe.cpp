@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "tree/recipe.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "cli/text.h"
+#include "cli/usage_error.h"
+
+namespace tex::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSuffix = "-normals";
+constexpr const char* kOutputGroup = "Output";
+// An intermediate result, of which only the type and the encoding count. No such file exists.
+constexpr const char* kBetween = "between.exr";
+
+Converter* converter_of(Program& program) { return dynamic_cast<Converter*>(&program); }
+
+const Row* row_of(const Command& command, const std::string& key, const std::vector<std::string>& groups) {
+    for (const Row& row : command.rows()) {
+        if (!row.hidden && row.name() == "--" + key &&
+            std::find(groups.begin(), groups.end(), row.group) != groups.end())
+            return &row;
+    }
+    return nullptr;
+}
+
+// The groups of options that a manifest can set: those that say how normals are made.
+std::vector<std::string> groups_of(const Command& command) {
+    std::vector<std::string> groups;
+    for (const Row& row : command.rows()) {
+        if (row.group != kHelpGroup && row.group != "Files" && row.group != "Running") groups.push_back(row.group);
+    }
+    return groups;
+}
+
+bool names_a_file(const Row& row) { return row.completes == Completes::files; }
+
+}  // namespace
+
+std::vector<std::string> step_names() {
+    std::vector<std::string> names;
+    for (const ProgramRow& row : programs()) {
+        const std::unique_ptr<Program> program = row.make(row);
+        if (converter_of(*program) != nullptr && row.name.ends_with(kSuffix))
+            names.emplace_back(row.name.substr(0, row.name.size() - std::string_view(kSuffix).size()));
+    }
+    return names;
+}
+
+Recipe::Recipe(const Manifest& manifest, const RuleSettings& rule, int number, const std::string& root,
+               Console& console)
+    : manifest_(manifest), rule_(rule), number_(number), root_(root) {
+    for (const std::string& pattern : rule.match) match_.emplace_back(pattern);
+    for (const std::string& pattern : rule.exclude) exclude_.emplace_back(pattern);
+    check_ = std::make_unique<TextureCheck>(manifest, rule.check, console);
+    for (std::size_t k = 0; k + 1 < rule.steps.size(); ++k) {
+        before_.push_back(ready(rule.steps[k], nullptr, false, kBetween, console));
+        check_order(rule.steps[k], before_.back(), k, console);
+    }
+    for (const OutputSettings& output : rule.outputs) add_output(output, console);
+}
+
+bool Recipe::takes(const std::string& input) const {
+    const auto matches = [&](const Glob& glob) { return glob.matches(input); };
+    return std::any_of(match_.begin(), match_.end(), matches) &&
+           std::none_of(exclude_.begin(), exclude_.end(), matches);
+}
+
+void Recipe::add_option(const OptionSetting& setting, const Command& command, const std::vector<std::string>& groups,
+                        std::vector<std::string>& arguments) const {
+    const auto fail = [&](const std::string& reason) {
+        fail_at(manifest_.path, setting.place, fmt::format("{}: {}", printable(setting.key), reason));
+    };
+    const Row* row = row_of(command, setting.key, groups);
+    if (row == nullptr && setting.is_default && row_of(command, setting.key, groups_of(command)) != nullptr) return;
+    if (row == nullptr) {
+        std::vector<std::string> known;
+        for (const Row& other : command.rows()) {
+            if (row_of(command, other.name().substr(2), groups) == &other) known.push_back(other.name().substr(2));
+        }
+        fail(fmt::format("{} has no such option here{}", command.name(), did_you_mean(setting.key, known)));
+    }
+    if (row->value.empty() != setting.is_flag) fail(row->value.empty() ? "must be true or false" : "needs a value");
+    if (setting.is_flag) {
+        if (setting.is_on) arguments.push_back(row->name());
+        return;
+    }
+    std::vector<std::string> values = setting.values;
+    if (values.size() > 1 && !row->repeatable) values = {join(values, ",")};
+    for (const std::string& value : values) {
+        if (names_a_file(*row) && value == "-") fail("standard input cannot be a file of a manifest");
+        arguments.push_back(fmt::format("{}={}", row->name(), value));
+    }
+}
+
+// The argument as the command gets it: files are below the root.
+std::string Recipe::with_root(const std::string& argument, const Command& command) const {
+    const auto [name, value] = cut(argument, '=');
+    const Row* const row = row_of(command, name.substr(2), groups_of(command));
+    const bool is_below = !root_.empty() && row != nullptr && names_a_file(*row) && !fs::path(value).is_absolute();
+    return is_below ? fmt::format("{}={}/{}", name, root_, value) : argument;
+}
+
+// `out` is the name of an output; its extension says the file type.
+ReadyCommand Recipe::ready(const StepSettings& step, const OutputSettings* output, bool is_last, const std::string& out,
+                           Console& console) const {
+    const ProgramRow* row = find_program(step.command + kSuffix);
+    ReadyCommand command;
+    command.program = row->make(*row);
+    command.converter = converter_of(*command.program);
+    Command& table = command.program->command;
+    std::vector<std::string> groups = groups_of(table);
+    if (!is_last) std::erase(groups, kOutputGroup);
+    const auto overrides = [&](const std::string& key) {
+        return output != nullptr && std::any_of(output->settings.begin(), output->settings.end(),
+                                                [&](const OptionSetting& setting) { return setting.key == key; });
+    };
+    for (const OptionSetting& setting : step.settings) {
+        if (!overrides(setting.key)) add_option(setting, table, groups, command.arguments);
+    }
+    if (output != nullptr) {
+        for (const OptionSetting& setting : output->settings)
+            add_option(setting, table, {kOutputGroup}, command.arguments);
+    }
+    std::sort(command.arguments.begin(), command.arguments.end(),
+              [](const std::string& a, const std::string& b) { return cut(a, '=').first < cut(b, '=').first; });
+    std::vector<std::string> line;
+    for (const std::string& argument : command.arguments) line.push_back(with_root(argument, table));
+    if (!is_last) line.emplace_back("--format=float");
+    line.insert(line.end(), {"-o", out, "--", "input"});
+    std::vector<const char*> pointers;
+    pointers.reserve(line.size());
+    for (const std::string& argument : line) pointers.push_back(argument.c_str());
+    const auto place_of = [&](const std::string& message) {
+        for (const auto* settings : {&step.settings, output != nullptr ? &output->settings : nullptr}) {
+            if (settings == nullptr) continue;
+            for (const OptionSetting& setting : *settings) {
+                if (message.starts_with("--" + setting.key + ":")) return setting.place;
+            }
+        }
+        return output != nullptr && message.starts_with(out) ? output->place : step.place;
+    };
+    table.forbid_answers();
+    try {
+        std::ignore = table.parse(pointers, console);
+        const Task task = command.converter->task_for(before_.empty() ? "input" : kBetween, out);
+        if (!task.more_outputs.empty()) throw UsageError("a manifest cannot name a second file to write yet");
+        if (const auto checked = command.converter->check_task(task); !checked)
+            throw UsageError(checked.error().message());
+    } catch (const UsageError& error) {
+        fail_at(manifest_.path, place_of(error.what()), fmt::format("{}: {}", step.command, error.what()));
+    }
+    return command;
+}
+
+// Whether the command can stand where it does.
+void Recipe::check_order(const StepSettings& step, const ReadyCommand& command, std::size_t index,
+                         Console& console) const {
+    const auto fail = [&](const char* reason) {
+        fail_at(manifest_.path, step.place, fmt::format("{} {}", step.command, reason));
+    };
+    const bool is_only = rule_.steps.size() == 1, is_last = index + 1 == rule_.steps.size();
+    const Task task{"input", kBetween, Container::exr};
+    const ReadOptions read;
+    const WriteOptions write;
+    Job job(task, console, read, write, 1, [](double) { return true; });
+    const std::optional<Step> made = command.converter->step(job);
+    if (!made && !is_only) fail("must be the only step");
+    if (!made && check_->is_given()) fail("makes no normals, so check cannot be used");
+    if (made && index > 0 && std::holds_alternative<BakeFileOptions>(*made)) fail("must be the first step");
+    const auto* const packed = made ? std::get_if<PackFileOptions>(&*made) : nullptr;
+    if (packed != nullptr && packed->mip && !is_last) fail("builds levels, so it must be the last step");
+}
+
+void Recipe::add_output(const OutputSettings& output, Console& console) {
+    std::optional<NamePattern> name;
+    std::string out;
+    try {
+        name.emplace(output.name);
+        if (name->uses("type")) throw UsageError("{type} cannot be used here: the extension says the file type");
+        out = name->expand({".", "name", ".png", "format", "engine"});
+    } catch (const UsageError& error) {
+        fail_at(manifest_.path, output.place, fmt::format("name: {}", error.what()));
+    }
+    const bool names_engine = name->uses("engine");
+    if (check_->is_given() && has_level(out))
+        fail_at(manifest_.path, output.place, "check needs all levels in one file");
+    RecipeOutput made{ready(rule_.steps.back(), &output, true, out, console), std::move(*name), {}, output.place};
+    if (names_engine && made.last.converter->output_for_task().engine == nullptr)
+        fail_at(manifest_.path, output.place, "name: {engine} needs the key for");
+    const std::size_t last = rule_.steps.size() - 1;
+    check_order(rule_.steps.back(), made.last, last, console);
+    const auto settings_of = [&](const std::string& step, const ReadyCommand& command) {
+        std::string text = step + "\n";
+        for (const std::string& argument : command.arguments) text += fmt::format("{} {}\n", argument.size(), argument);
+        return text;
+    };
+    for (std::size_t k = 0; k < last; ++k) made.settings += settings_of(rule_.steps[k].command, before_[k]);
+    made.settings += settings_of(rule_.steps[last].command, made.last);
+    const Task task = made.last.converter->task_for("input", out);
+    made.settings += fmt::format("{} {}\n", name_of(kContainerNames, task.container), has_level(out) ? "levels" : "");
+    made.settings += check_->text();
+    if (outputs_.empty()) {
+        const auto add_files = [this](const Task& of) {
+            for (const std::string& file : of.prerequisites()) {
+                const bool is_below = !root_.empty() && file.starts_with(root_ + "/");
+                files_.push_back(is_below ? file.substr(root_.size() + 1) : file);
+            }
+        };
+        for (const ReadyCommand& command : before_) add_files(command.converter->task_for(kBetween, kBetween));
+        add_files(task);
+    }
+    outputs_.push_back(std::move(made));
+}
+
+std::string Recipe::output_name(const std::string& input, std::size_t index) const {
+    const RecipeOutput& output = outputs_[index];
+    NameFields fields = name_fields(input);
+    const OutputOptions options = output.last.converter->output_for_task();
+    options.fill(fields);
+    if (!options.format && output.name.uses("format")) {
+        const Task task = output.last.converter->task_for(input, output.name.expand(fields));
+        fields.format = name_of(kEncodingNames, default_encoding(task.container));
+    }
+    const fs::path name = fs::path(output.name.expand(fields)).relative_path();
+    const fs::path whole = (fs::path(rule_.out_dir) / name).lexically_normal();
+    if (!whole.is_absolute() && *whole.begin() == "..") {
+        throw UsageError(
+            fmt::format("the output {} leads out of the folder of the manifest", printable(whole.string())));
+    }
+    return whole.string();
+}
+
+std::vector<std::string> Recipe::command_lines(const std::string& input, std::size_t index) const {
+    std::vector<std::string> lines;
+    std::string from = input;
+    for (std::size_t k = 0; k < rule_.steps.size(); ++k) {
+        const bool is_last = k + 1 == rule_.steps.size();
+        const ReadyCommand& command = is_last ? outputs_[index].last : before_[k];
+        const std::string to = is_last ? output_name(input, index) : fmt::format("step{}.exr", k + 1);
+        std::string line =
+            fmt::format("{} {} -o {}", command.program->command.name(), shell_file(from), shell_file(to));
+        for (const std::string& argument : command.arguments) {
+            const auto [name, value] = cut(argument, '=');
+            line += " " + name;
+            if (argument.size() > name.size()) line += " " + shell_word(value);
+        }
+        lines.push_back(line + (is_last ? "" : " --format float"));
+        from = to;
+    }
+    return lines;
+}
+
+}  // namespace tex::cli

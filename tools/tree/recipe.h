@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// recipe.h: a rule of the manifest as commands that are ready to run.
+//
+// The keys of a rule become a command line, which the command itself reads. So a key is an option, with the same words,
+// limits and messages, and an option that a command gains is a key at once.
+
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "batch/batch.h"
+#include "batch/name_pattern.h"
+#include "cli/console.h"
+#include "cli/glob.h"
+#include "cli/programs.h"
+#include "tree/manifest.h"
+#include "tree/texture_check.h"
+
+namespace tex::cli {
+
+// The names of steps: "bake" for bake-normals. These are the commands that make an output from each input.
+[[nodiscard]] std::vector<std::string> step_names();
+
+// A command whose options have been read.
+struct ReadyCommand {
+    std::unique_ptr<Program> program;
+    Converter* converter = nullptr;      // the program
+    std::vector<std::string> arguments;  // the options as the manifest gives them, sorted by name
+};
+
+// One output of a rule.
+struct RecipeOutput {
+    ReadyCommand last;     // the last step, with the settings of this output
+    NamePattern name;      // below out_dir
+    std::string settings;  // what its bytes depend on, besides the contents of files
+    Place place;
+};
+
+class Recipe {
+public:
+    // `number` counts the rules from 1. Paths in options are relative to `root`, the folder of the manifest (empty: the
+    // working directory). Throws UsageError with the place in the manifest.
+    Recipe(const Manifest& manifest, const RuleSettings& rule, int number, const std::string& root, Console& console);
+    Recipe(Recipe&&) = default;
+    Recipe(const Recipe&) = delete;
+    ~Recipe() = default;
+
+    [[nodiscard]] int number() const { return number_; }
+    [[nodiscard]] const RuleSettings& rule() const { return rule_; }
+    [[nodiscard]] const std::vector<Glob>& match() const { return match_; }
+    [[nodiscard]] bool takes(const std::string& input) const;
+
+    [[nodiscard]] const std::vector<ReadyCommand>& before() const { return before_; }  // the steps before the last
+    [[nodiscard]] const std::vector<RecipeOutput>& outputs() const { return outputs_; }
+    // The name of an output of `input`, relative to the root. It contains kLevelMark if each level has its own file.
+    // Throws UsageError if it leads out of the root.
+    [[nodiscard]] std::string output_name(const std::string& input, std::size_t output) const;
+
+    [[nodiscard]] const TextureCheck& check() const { return *check_; }
+
+    // The files that options name and every output depends on, relative to the root.
+    [[nodiscard]] const std::vector<std::string>& files() const { return files_; }
+    // The command lines that do the same, one for each step, for people.
+    [[nodiscard]] std::vector<std::string> command_lines(const std::string& input, std::size_t output) const;
+
+private:
+    [[nodiscard]] ReadyCommand ready(const StepSettings& step, const OutputSettings* output, bool is_last,
+                                     const std::string& out, Console& console) const;
+    void add_option(const OptionSetting& setting, const Command& command, const std::vector<std::string>& groups,
+                    std::vector<std::string>& arguments) const;
+    [[nodiscard]] std::string with_root(const std::string& argument, const Command& command) const;
+    void check_order(const StepSettings& step, const ReadyCommand& command, std::size_t index, Console& console) const;
+    void add_output(const OutputSettings& output, Console& console);
+
+    const Manifest& manifest_;
+    const RuleSettings& rule_;
+    const int number_;
+    const std::string root_;
+    std::vector<Glob> match_, exclude_;
+    std::unique_ptr<TextureCheck> check_;
+    std::vector<ReadyCommand> before_;
+    std::vector<RecipeOutput> outputs_;
+    std::vector<std::string> files_;
+};
+
+}  // namespace tex::cli

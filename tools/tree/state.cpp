@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "tree/state.h"
+
+#include <cerrno>
+#include <charconv>
+#include <chrono>
+#include <string_view>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include "files/system_error.h"
+
+namespace tex::cli {
+namespace {
+
+constexpr std::string_view kStateHead = "build-normals state 1\n";
+
+// Tabs and line feeds separate fields and lines.
+void add_name(std::string& text, std::string_view name) {
+    for (const char c : name) {
+        if (c == '%' || c == '\t' || c == '\n' || c == '\0') {
+            text += fmt::format("%{:02x}", static_cast<unsigned char>(c));
+        } else {
+            text += c;
+        }
+    }
+}
+
+class Fields {
+public:
+    explicit Fields(std::string_view line) : rest_(line) {}
+
+    [[nodiscard]] bool ok() const { return ok_; }
+    std::string_view next() {
+        const std::size_t end = rest_.find('\t');
+        const std::string_view field = rest_.substr(0, end);
+        if (done_) ok_ = false;
+        done_ = end == std::string_view::npos;
+        rest_.remove_prefix(done_ ? rest_.size() : end + 1);
+        return field;
+    }
+    template <class T>
+    T number() {
+        T value{};
+        const std::string_view field = next();
+        const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+        if (error != std::errc() || end != field.data() + field.size()) ok_ = false;
+        return value;
+    }
+    Digest digest() {
+        const std::optional<Digest> digest = Digest::from_hex(next());
+        if (!digest) ok_ = false;
+        return digest.value_or(Digest());
+    }
+    std::string name() {
+        const std::string_view field = next();
+        std::string name;
+        for (std::size_t k = 0; k < field.size(); ++k) {
+            if (field[k] != '%') {
+                name += field[k];
+                continue;
+            }
+            int code = 0;
+            const char* const digits = field.data() + k + 1;
+            if (k + 2 >= field.size() || std::from_chars(digits, digits + 2, code, 16).ptr != digits + 2) ok_ = false;
+            name += static_cast<char>(code);
+            k += 2;
+        }
+        return name;
+    }
+
+private:
+    std::string_view rest_;
+    bool ok_ = true;
+    bool done_ = false;
+};
+
+bool read_line(std::string_view line, BuildState& state) {
+    Fields fields(line);
+    const std::string_view kind = fields.next();
+    if (kind == "file") {
+        Memo memo;
+        memo.stamp.device = fields.number<std::uint64_t>();
+        memo.stamp.inode = fields.number<std::uint64_t>();
+        memo.stamp.size = fields.number<std::int64_t>();
+        memo.stamp.mtime = fields.number<std::int64_t>();
+        memo.stamp.ctime = fields.number<std::int64_t>();
+        memo.digest = fields.digest();
+        state.memos[fields.name()] = memo;
+        return fields.ok();
+    }
+    if (kind != "made") return false;
+    OutputRecord record;
+    record.settings = fields.digest();
+    record.inputs = fields.digest();
+    record.input = fields.name();
+    std::string output = fields.name();
+    const auto count = fields.number<std::size_t>();
+    for (std::size_t k = 0; k < count && fields.ok(); ++k) {
+        const Digest digest = fields.digest();
+        record.files.emplace_back(fields.name(), digest);
+    }
+    state.outputs[std::move(output)] = std::move(record);
+    return fields.ok();
+}
+
+// The digest of the file. The stamp is not set.
+Result<Memo> read_digest(const std::string& path) {
+    struct OpenFile {
+        ~OpenFile() {
+            if (fd >= 0) close(fd);
+        }
+        const int fd;
+    };
+    const OpenFile file{open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
+    const auto failed = [&] { return Error{ErrorCode::io, path, system_reason(errno)}; };
+    struct stat status {};
+    if (file.fd < 0 || fstat(file.fd, &status) != 0) return failed();
+    if (!S_ISREG(status.st_mode)) return Error{ErrorCode::io, path, "is not a file"};
+    Memo memo;
+    Sha256 sum;
+    std::vector<char> buffer(std::size_t{1} << 18);
+    while (true) {
+        const ssize_t count = read(file.fd, buffer.data(), buffer.size());
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) return failed();
+        if (count == 0) break;
+        sum.add(buffer.data(), static_cast<std::size_t>(count));
+    }
+    memo.digest = sum.finish();
+    return memo;
+}
+
+std::int64_t now() {
+    const auto since = std::chrono::system_clock::now().time_since_epoch();
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(since).count();
+}
+
+}  // namespace
+
+std::optional<FileStamp> FileStamp::of(const std::string& path) {
+    struct stat status {};
+    if (stat(path.c_str(), &status) != 0) return std::nullopt;
+    const auto nanoseconds = [](const timespec& time) { return std::int64_t{time.tv_sec} * 1000000000 + time.tv_nsec; };
+    return FileStamp{status.st_dev, status.st_ino, status.st_size, nanoseconds(status.st_mtim),
+                     nanoseconds(status.st_ctim)};
+}
+
+std::string BuildState::text(Memos memos_of) const {
+    std::string text(kStateHead);
+    for (const auto& [name, memo] : memos) {
+        if (!memo.is_used && memos_of == Memos::used) continue;
+        const FileStamp& stamp = memo.stamp;
+        text += fmt::format("file\t{}\t{}\t{}\t{}\t{}\t{}\t", stamp.device, stamp.inode, stamp.size, stamp.mtime,
+                            stamp.ctime, memo.digest.hex());
+        add_name(text, name);
+        text += '\n';
+    }
+    for (const auto& [output, record] : outputs) {
+        text += fmt::format("made\t{}\t{}\t", record.settings.hex(), record.inputs.hex());
+        add_name(text, record.input);
+        text += '\t';
+        add_name(text, output);
+        text += fmt::format("\t{}", record.files.size());
+        for (const auto& [name, digest] : record.files) {
+            text += fmt::format("\t{}\t", digest.hex());
+            add_name(text, name);
+        }
+        text += '\n';
+    }
+    text += "end\t" + digest_of(text).hex() + "\n";
+    return text;
+}
+
+BuildState BuildState::parse(std::string_view text) {
+    constexpr std::size_t kTail = 4 + 64 + 1;  // "end", a tab, the digest of what is before, a line feed
+    if (!text.starts_with(kStateHead) || text.size() < kStateHead.size() + kTail) return {};
+    const std::string_view tail = text.substr(text.size() - kTail);
+    text.remove_suffix(kTail);
+    if (!tail.starts_with("end\t") || !tail.ends_with('\n') || digest_of(text).hex() != tail.substr(4, 64)) return {};
+    text.remove_prefix(kStateHead.size());
+    BuildState state;
+    while (!text.empty()) {
+        const std::size_t end = text.find('\n');
+        if (end == std::string_view::npos || !read_line(text.substr(0, end), state)) return {};
+        text.remove_prefix(end + 1);
+    }
+    return state;
+}
+
+std::string Contents::path(const std::string& name) const {
+    return root_.empty() || name.starts_with('/') ? name : root_ + "/" + name;
+}
+
+Result<Digest> Contents::digest(const std::string& name) { return find(name, false); }
+Result<Digest> Contents::digest_of_own(const std::string& name) { return find(name, true); }
+
+Result<Digest> Contents::find(const std::string& name, bool is_own) {
+    const std::string file = path(name);
+    const std::optional<FileStamp> before = FileStamp::of(file);
+    if (!before) return Error{ErrorCode::io, file, system_reason(errno)};
+    {
+        const std::lock_guard lock(mutex_);
+        const auto known = memos_.find(name);
+        if (known != memos_.end() && known->second.stamp == *before) {
+            known->second.is_used = true;
+            return known->second.digest;
+        }
+    }
+    Result<Memo> read = read_digest(file);
+    if (!read) return read.error();
+    const std::optional<FileStamp> after = FileStamp::of(file);
+    // The clock of file systems has ticks of up to 10 ms. A file that was changed so recently could change again
+    // without a new stamp.
+    constexpr std::int64_t kTicks = 20000000;
+    const bool is_settled = is_own || (before->ctime < now() - kTicks && before->mtime < now() - kTicks);
+    if (after != before || !is_settled) return read->digest;
+    read->stamp = *before;
+    read->is_used = true;
+    const std::lock_guard lock(mutex_);
+    memos_[name] = *read;
+    changed_ = true;
+    return read->digest;
+}
+
+}  // namespace tex::cli

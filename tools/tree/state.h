@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// state.h: what the last run made, kept beside the manifest in .NAME.state. If it is lost or damaged, nothing is taken
+// to be up to date; the contents of files decide everything.
+
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include <tex/result.h>
+
+#include "tree/sha256.h"
+
+namespace tex::cli {
+
+// What stat() says about a file. While it stays the same, so do the contents: whoever writes a file changes its ctime,
+// which no program can set.
+struct FileStamp {
+    std::uint64_t device = 0;
+    std::uint64_t inode = 0;
+    std::int64_t size = 0;
+    std::int64_t mtime = 0;  // this and ctime in nanoseconds
+    std::int64_t ctime = 0;
+
+    friend bool operator==(const FileStamp&, const FileStamp&) = default;
+    // Nothing if there is no such file.
+    [[nodiscard]] static std::optional<FileStamp> of(const std::string& path);
+};
+
+// The contents of a file when it had this stamp.
+struct Memo {
+    FileStamp stamp;
+    Digest digest;
+    bool is_used = false;  // in this run; others are forgotten
+};
+
+// An output as it was made.
+struct OutputRecord {
+    std::string input;
+    Digest settings;
+    Digest inputs;
+    std::vector<std::pair<std::string, Digest>> files;  // several if each level has its own
+
+    friend bool operator==(const OutputRecord&, const OutputRecord&) = default;
+};
+
+// Paths are relative to the root.
+struct BuildState {
+    std::unordered_map<std::string, Memo> memos;
+    std::map<std::string, OutputRecord> outputs;  // by the name that the recipe gives, which may hold kLevelMark
+
+    // The memos to write: a run that comes to its end has used all that it will need again.
+    enum class Memos { used, all };
+    [[nodiscard]] std::string text(Memos memos_of = Memos::used) const;
+    // Returns an empty state if the text is damaged or of another version.
+    [[nodiscard]] static BuildState parse(std::string_view text);
+};
+
+// The digests of files. Any thread may call any of these functions.
+class Contents {
+public:
+    // `root` is empty or the folder that names are relative to.
+    Contents(std::string root, std::unordered_map<std::string, Memo>& memos) : root_(std::move(root)), memos_(memos) {}
+
+    [[nodiscard]] std::string path(const std::string& name) const;
+    [[nodiscard]] std::optional<FileStamp> stamp(const std::string& name) const { return FileStamp::of(path(name)); }
+
+    // The digest of a file. Reads it only if its stamp is new. Errors: io, as the file's path.
+    [[nodiscard]] Result<Digest> digest(const std::string& name);
+    // The same for a file that this run has just written, and that nobody else writes.
+    [[nodiscard]] Result<Digest> digest_of_own(const std::string& name);
+    // Keeps all other threads out while the memos are read.
+    [[nodiscard]] std::unique_lock<std::mutex> hold() { return std::unique_lock(mutex_); }
+    // Whether a memo was added.
+    [[nodiscard]] bool has_changed() const { return changed_; }
+
+private:
+    [[nodiscard]] Result<Digest> find(const std::string& name, bool is_own);
+
+    const std::string root_;
+    std::mutex mutex_;
+    std::unordered_map<std::string, Memo>& memos_;
+    std::atomic<bool> changed_{false};
+};
+
+}  // namespace tex::cli

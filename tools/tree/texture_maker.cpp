@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "tree/texture_maker.h"
+
+#include <algorithm>
+#include <deque>
+#include <utility>
+#include <variant>
+
+#include "batch/repack.h"
+
+namespace tex::cli {
+namespace {
+
+// The tasks and jobs of one texture's steps. Options refer to their job, so both stay where they are.
+class Jobs {
+public:
+    Jobs(const MakeSettings& settings, Console& console) : settings_(settings), console_(console) {}
+
+    Job& add(Task task) {
+        tasks_.push_back(std::move(task));
+        return jobs_.emplace_back(tasks_.back(), console_, settings_.running.read, settings_.write,
+                                  settings_.running.threads, settings_.advance);
+    }
+    void add_warnings(Made& made) const {
+        for (const Job& job : jobs_) {
+            made.warnings.insert(made.warnings.end(), job.warnings().begin(), job.warnings().end());
+            made.remarks.insert(made.remarks.end(), job.remarks().begin(), job.remarks().end());
+        }
+    }
+
+private:
+    const MakeSettings& settings_;
+    Console& console_;
+    std::deque<Task> tasks_;
+    std::deque<Job> jobs_;
+};
+
+// The number of levels that a step makes; 0: all, or those of the source.
+int levels_of(const Step& step) {
+    if (const auto* bake = std::get_if<BakeFileOptions>(&step)) return bake->mip.levels;
+    if (const auto* blend = std::get_if<BlendFileOptions>(&step)) return blend->mip.levels;
+    const auto& pack = std::get<PackFileOptions>(step);
+    return pack.mip ? pack.mip->levels : 0;
+}
+
+// Makes the step store how it packs its output.
+void keep_packing(Step& step, PackOptions& kept) {
+    const auto keep = [&kept](std::function<PackOptions(const SourceInfo&)>& pack) {
+        pack = [inner = std::move(pack), &kept](const SourceInfo& source) { return kept = inner(source); };
+    };
+    if (const auto* bake = std::get_if<BakeFileOptions>(&step)) {
+        kept = bake->pack;
+    } else if (auto* pack = std::get_if<PackFileOptions>(&step)) {
+        keep(pack->pack);
+    } else {
+        keep(std::get<BlendFileOptions>(step).pack);
+    }
+}
+
+// Takes the output of a step as one more file of another step.
+MoreFile more_file(const Step& step, const Task& task) {
+    MoreFile file;
+    file.output = task.output;
+    file.container = task.container;
+    file.levels = levels_of(step);
+    std::visit(
+        [&](const auto& options) {
+            file.level_names = options.level_names;
+            file.write = options.write;
+        },
+        step);
+    if (const auto* bake = std::get_if<BakeFileOptions>(&step)) {
+        file.pack = [pack = bake->pack](const SourceInfo&) { return pack; };
+    } else if (const auto* pack = std::get_if<PackFileOptions>(&step)) {
+        file.pack = pack->pack;
+    } else {
+        file.pack = std::get<BlendFileOptions>(step).pack;
+    }
+    return file;
+}
+
+// Notes what the steps have learnt about the files: the first step about heights, one other about normals.
+void note(const Recipe& recipe, const RecipeOutput& output, const std::string& input, const StepsReport& report,
+          Jobs& jobs) {
+    Job& job = jobs.add(Task{input, {}});
+    Converter& last = *output.last.converter;
+    Converter& first = recipe.before().empty() ? last : *recipe.before().front().converter;
+    first.note(job, report);
+    if (&first != &last && dynamic_cast<NormalsConverter*>(&first) == nullptr) last.note(job, report);
+}
+
+// The files that an output has if it has this number of levels.
+std::vector<std::string> files_of(const std::string& path, int levels) {
+    const int count = has_level(path) ? levels : 1;
+    std::vector<std::string> files;
+    files.reserve(static_cast<std::size_t>(count));
+    for (int k = 0; k < count; ++k) files.push_back(with_level(path, k));
+    return files;
+}
+
+// Commands that are no steps make their outputs one after the other.
+Result<Made> run_commands(const Recipe& recipe, const std::string& input, const std::vector<WantedOutput>& wanted,
+                          Jobs& jobs) {
+    Made made;
+    for (const WantedOutput& output : wanted) {
+        Converter& converter = *recipe.outputs()[output.index].last.converter;
+        Job& job = jobs.add(converter.task_for(input, output.path));
+        if (const Result<void> done = converter.process_task(job); !done) return done.error();
+        made.files.push_back(job.outputs());
+    }
+    jobs.add_warnings(made);
+    return made;
+}
+
+}  // namespace
+
+Result<Made> make_texture(const Recipe& recipe, const std::string& input, const std::vector<WantedOutput>& wanted,
+                          const MakeSettings& settings, Console& console) {
+    Jobs jobs(settings, console);
+    // The files between two steps do not exist; their names say that they are EXR files.
+    const std::string between = "between.exr";
+    std::vector<Step> steps;
+    std::string from = input;
+    for (const ReadyCommand& command : recipe.before()) {
+        steps.push_back(*command.converter->step(jobs.add(command.converter->task_for(from, between))));
+        from = between;
+    }
+    // The output with the most levels is made by the last step itself, and the others beside it.
+    struct Ending {
+        Step step;
+        const Task* task;
+    };
+    std::vector<Ending> endings;
+    for (const WantedOutput& output : wanted) {
+        Converter& converter = *recipe.outputs()[output.index].last.converter;
+        Task task = converter.task_for(from, output.path);
+        if (!output.write_to.empty()) task.output = output.write_to;
+        Job& job = jobs.add(std::move(task));
+        std::optional<Step> step = converter.step(job);
+        if (!step) return run_commands(recipe, input, wanted, jobs);
+        endings.push_back({std::move(*step), &job.task});
+    }
+    const auto has_fewer = [](const Ending& a, const Ending& b) {
+        const int levels = levels_of(a.step);
+        return levels > 0 && (levels_of(b.step) == 0 || levels < levels_of(b.step));
+    };
+    std::vector<PackOptions> packs(wanted.size());
+    for (std::size_t k = 0; k < endings.size(); ++k) keep_packing(endings[k].step, packs[k]);
+    std::iter_swap(endings.begin(), std::max_element(endings.begin(), endings.end(), has_fewer));
+    const Task* const first = endings.front().task;
+    std::vector<MoreFile> more;
+    for (std::size_t k = 1; k < endings.size(); ++k) more.push_back(more_file(endings[k].step, *endings[k].task));
+    if (!settings.source.empty()) {
+        MoreFile& source = more.emplace_back();
+        source.output = settings.source;
+        source.container = Container::exr;
+        source.levels = 1;
+        source.pack = [](const SourceInfo&) { return PackOptions{Encoding::float_}; };
+        source.write.sync = false;
+    }
+    steps.push_back(std::move(endings.front().step));
+    std::visit([&](auto& options) { options.more = std::move(more); }, steps.back());
+    const Execution execution{settings.running.threads, settings.advance};
+    Result<StepsReport> done = apply_steps(input, steps, first->output, first->container, execution);
+    const RecipeOutput& output = recipe.outputs()[wanted.front().index];
+    if (!done) {
+        const Converter& reader = recipe.before().empty() ? *output.last.converter : *recipe.before().front().converter;
+        return reader.with_remedy(done.error());
+    }
+    note(recipe, output, input, *done, jobs);
+    Made made;
+    made.report = std::move(*done);
+    made.packs = std::move(packs);
+    jobs.add_warnings(made);
+    for (const WantedOutput& file : wanted) {
+        // A file that holds one level has no other names.
+        made.files.push_back(files_of(file.path, made.report.levels));
+    }
+    return made;
+}
+
+}  // namespace tex::cli

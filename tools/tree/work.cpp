@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "tree/work.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <unordered_map>
+#include <unordered_set>
+
+#include <fmt/format.h>
+
+#include "cli/text.h"
+#include "cli/usage_error.h"
+
+namespace tex::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string in_lower_case(std::string text) {
+    for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return text;
+}
+
+// The folders of outputs, each with "/" at its end.
+std::vector<std::string> output_folders(const std::vector<Recipe>& recipes) {
+    std::vector<std::string> folders;
+    for (const Recipe& recipe : recipes) {
+        const std::string folder = fs::path(recipe.rule().out_dir).lexically_normal().string();
+        if (!folder.empty() && folder != ".") folders.push_back(folder.ends_with('/') ? folder : folder + "/");
+    }
+    std::erase_if(folders, [&](const std::string& folder) {
+        return std::any_of(recipes.begin(), recipes.end(), [&](const Recipe& recipe) {
+            return std::any_of(recipe.match().begin(), recipe.match().end(),
+                               [&](const Glob& glob) { return glob.text().starts_with(folder); });
+        });
+    });
+    return folders;
+}
+
+class Lister {
+public:
+    Lister(const Manifest& manifest, const std::vector<Recipe>& recipes, const std::string& root,
+           const FolderVisitor& entered)
+        : manifest_(manifest), recipes_(recipes), root_(root), entered_(entered) {}
+
+    WorkList list() {
+        find_inputs();
+        find_collisions();
+        find_needs();
+        return std::move(work_);
+    }
+
+private:
+    void find_inputs();
+    void find_collisions();
+    void find_needs();
+    void check_cycle(std::size_t recipe, std::vector<std::size_t>& open);
+    [[noreturn]] void fail(std::size_t recipe, const std::string& reason) const {
+        fail_at(manifest_.path, recipes_[recipe].rule().place, reason);
+    }
+
+    const Manifest& manifest_;
+    const std::vector<Recipe>& recipes_;
+    const std::string& root_;
+    const FolderVisitor& entered_;
+    WorkList work_;
+    std::unordered_map<std::string, std::size_t> makers_;  // the task that makes an output
+    std::vector<std::set<std::size_t>> needed_;            // the recipes that each recipe needs
+    std::set<std::size_t> checked_;                        // recipes that need no cycle
+};
+
+void Lister::find_inputs() {
+    const std::vector<std::string> folders = output_folders(recipes_);
+    FileSearch search;
+    for (const Recipe& recipe : recipes_) {
+        for (const Glob& glob : recipe.match()) search.globs.push_back(&glob);
+    }
+    search.skip = [&](const std::string& folder) {
+        return std::find(folders.begin(), folders.end(), folder) != folders.end();
+    };
+    search.entered = entered_;
+    search.unreadable = [&](const std::string& folder, const std::string& reason) {
+        work_.unreadable.push_back(folder + ": " + reason);
+    };
+    for (FoundFile& file : find_files(root_, search)) {
+        const auto recipe = std::find_if(recipes_.begin(), recipes_.end(),
+                                         [&](const Recipe& candidate) { return candidate.takes(file.path); });
+        if (recipe == recipes_.end()) continue;
+        BuildTask task;
+        task.recipe = static_cast<std::size_t>(recipe - recipes_.begin());
+        task.size = file.size;
+        for (std::size_t k = 0; k < recipe->outputs().size(); ++k) {
+            try {
+                task.outputs.push_back(recipe->output_name(file.path, k));
+            } catch (const UsageError& error) {
+                task.refusal = error.what();
+            }
+        }
+        task.input = std::move(file.path);
+        work_.tasks.push_back(std::move(task));
+    }
+}
+
+void Lister::find_collisions() {
+    std::unordered_set<std::string> inputs;
+    for (const BuildTask& task : work_.tasks) inputs.insert(task.input);
+    std::unordered_map<std::string, std::size_t> folded;
+    for (std::size_t k = 0; k < work_.tasks.size(); ++k) {
+        BuildTask& task = work_.tasks[k];
+        for (std::size_t n = 0; n < task.outputs.size(); ++n) {
+            const std::string& output = task.outputs[n];
+            if (inputs.contains(output)) {
+                fail(task.recipe,
+                     fmt::format("the output {} of {} is an input", printable(output), printable(task.input)));
+            }
+            makers_.emplace(output, k);
+            const auto [found, is_new] = folded.emplace(in_lower_case(output), k);
+            if (is_new) continue;
+            BuildTask& other = work_.tasks[found->second];
+            const std::string both = fmt::format("{} and {}", printable(other.input), printable(task.input));
+            if (found->second == k) {
+                fail(task.recipe, fmt::format("two outputs of {} are one file, {}; give each a name",
+                                              printable(task.input), printable(output)));
+            }
+            if (other.recipe != task.recipe) {
+                fail(task.recipe,
+                     fmt::format("{} have the same output {}, by the rules {} and {}", both, printable(output),
+                                 recipes_[other.recipe].number(), recipes_[task.recipe].number()));
+            }
+            const bool same = std::find(other.outputs.begin(), other.outputs.end(), output) != other.outputs.end();
+            const std::string refusal = fmt::format(
+                "{} have {} {}; rename or exclude one", both,
+                same ? "the same output" : "outputs that differ only in the case of letters,", printable(output));
+            for (BuildTask* const one : {&task, &other}) {
+                if (one->refusal.empty()) one->refusal = refusal;
+            }
+        }
+    }
+}
+
+void Lister::find_needs() {
+    needed_.resize(recipes_.size());
+    std::vector<std::vector<std::size_t>> needs(recipes_.size());
+    for (std::size_t k = 0; k < recipes_.size(); ++k) {
+        for (const std::string& file : recipes_[k].files()) {
+            const auto maker = makers_.find(fs::path(file).lexically_normal().string());
+            if (maker == makers_.end()) continue;
+            needs[k].push_back(maker->second);
+            needed_[k].insert(work_.tasks[maker->second].recipe);
+        }
+    }
+    for (std::size_t k = 0; k < recipes_.size(); ++k) {
+        std::vector<std::size_t> open;
+        check_cycle(k, open);
+    }
+    for (BuildTask& task : work_.tasks) task.needs = needs[task.recipe];
+}
+
+void Lister::check_cycle(std::size_t recipe, std::vector<std::size_t>& open) {
+    if (std::find(open.begin(), open.end(), recipe) != open.end()) {
+        std::string path;
+        for (const std::size_t step : open) path += fmt::format("{} needs ", recipes_[step].number());
+        fail(recipe, fmt::format("rules need each other's outputs: rule {}{}", path, recipes_[recipe].number()));
+    }
+    if (checked_.contains(recipe)) return;
+    open.push_back(recipe);
+    for (const std::size_t needed : needed_[recipe]) check_cycle(needed, open);
+    open.pop_back();
+    checked_.insert(recipe);
+}
+
+}  // namespace
+
+WorkList list_work(const Manifest& manifest, const std::vector<Recipe>& recipes, const std::string& root,
+                   const FolderVisitor& entered) {
+    return Lister(manifest, recipes, root, entered).list();
+}
+
+WorkList part_of(const WorkList& work, std::set<std::size_t> part) {
+    for (std::size_t before = 0; before != part.size();) {
+        before = part.size();
+        for (std::size_t k = 0; k < work.tasks.size(); ++k) {
+            const std::vector<std::size_t>& needs = work.tasks[k].needs;
+            const auto is_in = [&](std::size_t needed) { return part.contains(needed); };
+            if (std::any_of(needs.begin(), needs.end(), is_in)) part.insert(k);
+        }
+    }
+    std::vector<std::size_t> open(part.begin(), part.end());
+    while (!open.empty()) {
+        const std::size_t task = open.back();
+        open.pop_back();
+        for (const std::size_t needed : work.tasks[task].needs) {
+            if (part.insert(needed).second) open.push_back(needed);
+        }
+    }
+    std::unordered_map<std::size_t, std::size_t> place;
+    for (const std::size_t task : part) place.emplace(task, place.size());
+    WorkList list;
+    for (const std::size_t task : part) {
+        BuildTask& copy = list.tasks.emplace_back(work.tasks[task]);
+        for (std::size_t& needed : copy.needs) needed = place.at(needed);
+    }
+    return list;
+}
+
+}  // namespace tex::cli
