@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "cli/text_file.h"
 #include "cli/usage_error.h"
 #include "options/run.h"
+#include "options/toml_bounds.h"
 #include "tree/builder.h"
 #include "tree/explain.h"
 #include "tree/farm.h"
@@ -98,7 +98,7 @@ std::string BuildNormals::manifest() const {
 Result<std::unique_ptr<cli::BuildTree>> BuildNormals::read(cli::Console& console) {
     namespace fs = std::filesystem;
     const std::string path = manifest();
-    auto text = cli::read_text_file(path);
+    auto text = cli::read_toml_file(path);
     if (!text) return text.error();
     auto tree = std::make_unique<cli::BuildTree>();
     tree->text = std::move(*text);
@@ -126,7 +126,7 @@ Result<std::unique_ptr<cli::BuildTree>> BuildNormals::read(cli::Console& console
 
 // Finds the files of the tree.
 void BuildNormals::find(cli::BuildTree& tree, const cli::FolderVisitor& entered, cli::Console& console) const {
-    tree.work = cli::list_work(tree.manifest, tree.recipes, build_.root, entered);
+    tree.work = cli::list_work(tree.recipes, build_.root, entered);
     if (!explain_.empty()) return;
     for (std::size_t k = 0; k < tree.recipes.size(); ++k) {
         const auto makes = [k](const cli::BuildTask& task) { return task.recipe == k; };
@@ -161,7 +161,7 @@ cli::ExitCode BuildNormals::work(cli::Console& console) {
         head.manifest = build_.manifest;
         head.root = root_;
         head.manifest_digest = cli::digest_of(tree.text);
-        return farm_.write_plan(head, tree.work, build_, running_, console);
+        return farm_.write_plan(head, tree.recipes, tree.work, build_, running_, console);
     }
     return cli::build(tree.recipes, tree.work, build_, running_, console);
 }

@@ -132,7 +132,7 @@ Result<cli::ExitCode> CompareNormals::draw_curve(cli::Console& console) {
     if (curve_.plot().empty()) return code;
     const std::string title =
         fmt::format("{}, {}, zstd -19", name, name_of(cli::kCurveFormatNames, settings.front().encoding));
-    if (auto written = cli::write_text_file(curve_.plot(), cli::plot_curve(title, points)); !written)
+    if (auto written = cli::write_document(curve_.plot(), cli::plot_curve(title, points)); !written)
         return written.error();
     return code;
 }

@@ -108,7 +108,7 @@ Result<void> write_texture(const std::string& path, const Texture& texture, cons
 }
 
 Result<void> write_file(const std::string& path, const std::vector<std::byte>& bytes, const WriteOptions& options) {
-    return write_atomically(path, bytes, {options.sync, options.no_clobber});
+    return write_atomically(path, bytes, AtomicFileOptions::of(options));
 }
 
 void remove_unfinished_files() noexcept { UnfinishedFile::remove_all(); }

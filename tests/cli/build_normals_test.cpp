@@ -45,7 +45,7 @@ TEST_F(BuildNormals, MakesNothingTwice) {
     ASSERT_EQ(build().code, 0);
     EXPECT_EQ(count("made"), 3u);
     EXPECT_EQ(outputs(), first);
-    scratch_.write(".normals.toml.state", "damaged");
+    scratch_.write(".normals.toml.state", "build-normals state 1\ndamaged");
     ASSERT_EQ(build().code, 0);
     EXPECT_EQ(count("made"), 3u);
 }
@@ -172,7 +172,7 @@ TEST_F(BuildNormals, MistakesAreFoundBeforeAnythingIsWritten) {
         {rule + "name = \"same.dds\"\n[[rule]]\nmatch = \"shared/*\"\nname = \"same.dds\"\nsteps = [ { bake = {} } ]\n",
          "line 6, column 1: art/wall_h.png and shared/grain.png have the same output same.dds, by the rules 1 and 2"},
         {rule + "name = \"shared/grain.png\"\n[[rule]]\nmatch = \"shared/*\"\nsteps = [ { bake = {} } ]\n",
-         "line 2, column 1: the output shared/grain.png of art/wall_h.png is an input"},
+         "line 2, column 1: the output shared/grain.png of art/wall_h.png is the input shared/grain.png"},
         {rule + "outputs = [ {}, {} ]\n",
          "two outputs of art/wall_h.png are one file, art/wall_h.dds; give each a name"},
         {"[[rule]]\nmatch = \"art/*.png\"\nsteps = [ { bake = {} }, { blend = { detail = \"art/wall_h.dds\" } } ]\n",

@@ -17,6 +17,28 @@ struct GlobCase {
     std::vector<const char*> others;
 };
 
+// Patterns come from files that anybody may have written.
+TEST(Glob, ManyBracesAreRefusedAtOnce) {
+    const auto refusal = [](const std::string& pattern) {
+        try {
+            const Glob glob(pattern);
+        } catch (const UsageError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    std::string nested(15, '{');
+    nested += "a,b" + std::string(15, '}');
+    EXPECT_EQ(refusal(nested), "");
+    EXPECT_EQ(refusal("{{" + nested + "}}"), "'{{" + nested + "}}' nests braces in more than 16 levels");
+    EXPECT_EQ(refusal("{a,b}{a,b}{a,b}{a,b}{a,b}{a,b}{a,b}{a,b}{a,b}{a,b}"), "");
+    EXPECT_EQ(refusal("{a,b,c}{a,b}{a,b}{a,b}{a,b}{a,b}{a,b}{a,b}{a,b}{a,b}"),
+              "'{a,b,c}{a,b}{a,b}{a,b}{a,b}{a,b}{a,b}{a,b}{a,b}{a,b}' stands for more than 1024 patterns");
+    EXPECT_EQ(refusal("{{a,b},{c,d}}{{a,b},{c,d}}{{a,b},{c,d}}{{a,b},{c,d}}{{a,b},{c,d}}"), "");
+    const std::string wide = refusal(std::string(100000, '{'));
+    EXPECT_EQ(wide, "'" + std::string(200, '{') + "...' has more than 4096 bytes");
+}
+
 TEST(Glob, MatchesAsAShellDoes) {
     const GlobCase cases[] = {
         {"*.png", {"a.png", "a.b.png"}, {"a/b.png", "a.pngx", ".a.png"}},

@@ -199,7 +199,7 @@ ExitCode Batch::run_tasks(const std::vector<Task>& tasks, Console& console) {
     if (!files.depfile.empty()) {
         write.no_clobber = false;  // every run rewrites its depfile
         const auto text = depfile_text(reporter.dependencies());
-        const auto written = text ? write_text_file(files.depfile, *text, write) : Result<void>(text.error());
+        const auto written = text ? write_document(files.depfile, *text, write) : Result<void>(text.error());
         code = std::max(code, code_of(written, console));
     }
     return code;

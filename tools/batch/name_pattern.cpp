@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include <fmt/format.h>
+#include <tex/mip_chain.h>
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
@@ -62,6 +63,13 @@ std::string with_level(const std::string& name, int level) {
 }
 
 bool has_level(const std::string& name) { return name.find(kLevelMark) != std::string::npos; }
+
+std::vector<std::string> with_all_levels(const std::string& name) {
+    const int levels = has_level(name) ? level_count({kMaxExtent, 1}) : 1;
+    std::vector<std::string> names;
+    for (int level = 0; level < levels; ++level) names.push_back(with_level(name, level));
+    return names;
+}
 
 NamePattern::NamePattern(std::string_view text) {
     std::string literal;

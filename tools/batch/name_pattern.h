@@ -29,6 +29,8 @@ struct NameFields {
 inline constexpr char kLevelMark = '\0';
 [[nodiscard]] std::string with_level(const std::string& name, int level);
 [[nodiscard]] bool has_level(const std::string& name);
+// The names of all files that an output may have: one for each level of the largest extent, or the name itself.
+[[nodiscard]] std::vector<std::string> with_all_levels(const std::string& name);
 
 class NamePattern {
 public:

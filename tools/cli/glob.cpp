@@ -15,6 +15,14 @@ namespace tex::cli {
 namespace {
 
 constexpr std::size_t kMostAlternatives = 1024;
+constexpr std::size_t kMostOfPattern = 4096;  // bytes: the longest path that the system takes
+constexpr std::size_t kMostNested = 16;       // braces in braces
+constexpr std::size_t kMostShown = 200;       // characters of a pattern in messages
+
+std::string shown(std::string_view pattern) {
+    std::string text = printable(std::string(pattern.substr(0, kMostShown)));
+    return pattern.size() > kMostShown ? text + "..." : text;
+}
 
 // Returns the end of the braces that open at `begin`, or npos.
 std::size_t closing_brace(std::string_view text, std::size_t begin) {
@@ -52,13 +60,38 @@ std::vector<std::string_view> choices_of(std::string_view inside) {
     return choices;
 }
 
+// The number of patterns that a text with braces stands for, without making them. A sequence stands for the product of
+// its parts, braces for the sum of their choices. Numbers above kMostAlternatives are not exact.
+std::size_t count_patterns(std::string_view text) {
+    struct Level {
+        std::size_t sum = 0, product = 1;
+    };
+    std::vector<Level> levels(1);
+    for (std::size_t k = 0; k < text.size(); ++k) {
+        Level& level = levels.back();
+        if (text[k] == '\\') {
+            ++k;
+        } else if (text[k] == '{') {
+            levels.emplace_back();
+            if (levels.size() > kMostNested + 1)
+                throw UsageError(fmt::format("'{}' nests braces in more than {} levels", shown(text), kMostNested));
+        } else if (text[k] == ',' && levels.size() > 1) {
+            level.sum += std::exchange(level.product, 1);
+        } else if (text[k] == '}' && levels.size() > 1) {
+            const std::size_t choices = level.sum + level.product;
+            levels.pop_back();
+            levels.back().product = std::min(levels.back().product * choices, kMostAlternatives + 1);
+        }
+    }
+    return levels.front().product;
+}
+
 // Replaces braces by their choices, the first braces first.
 std::vector<std::string> without_braces(const std::string& text) {
+    if (count_patterns(text) > kMostAlternatives)
+        throw UsageError(fmt::format("'{}' stands for more than {} patterns", shown(text), kMostAlternatives));
     std::vector<std::string> ready, open = {text};
     while (!open.empty()) {
-        if (ready.size() + open.size() > kMostAlternatives) {
-            throw UsageError(fmt::format("'{}' stands for more than {} patterns", printable(text), kMostAlternatives));
-        }
         const std::string one = std::move(open.back());
         open.pop_back();
         std::size_t begin = 0;
@@ -68,7 +101,7 @@ std::vector<std::string> without_braces(const std::string& text) {
             continue;
         }
         const std::size_t end = closing_brace(one, begin);
-        if (end == std::string::npos) throw UsageError(fmt::format("'{}' has a {{ without its }}", printable(text)));
+        if (end == std::string::npos) throw UsageError(fmt::format("'{}' has a {{ without its }}", shown(text)));
         for (const std::string_view choice : choices_of(std::string_view(one).substr(begin + 1, end - begin - 1)))
             open.push_back(one.substr(0, begin) + std::string(choice) + one.substr(end + 1));
     }
@@ -185,7 +218,7 @@ void check_brackets(const std::string& text, const std::string& part) {
         } else if (part[k] == '[') {
             const ClassMatch found = match_class(part, k + 1, '\0');
             if (found.end == std::string_view::npos)
-                throw UsageError(fmt::format("'{}' has a [ without its ]", printable(text)));
+                throw UsageError(fmt::format("'{}' has a [ without its ]", shown(text)));
             k = found.end - 1;
         }
     }
@@ -196,23 +229,25 @@ void check_brackets(const std::string& text, const std::string& part) {
 Glob::Glob(std::string_view text) : text_(text) {
     if (text.empty()) throw UsageError("a pattern is empty");
     if (text.find('\0') != std::string_view::npos) throw UsageError("a pattern holds a NUL character");
+    if (text.size() > kMostOfPattern)
+        throw UsageError(fmt::format("'{}' has more than {} bytes", shown(text), kMostOfPattern));
     for (const std::string& one : without_braces(text_)) {
         if (one.starts_with('/')) {
-            throw UsageError(fmt::format("'{}' begins with /; patterns are relative to the root", printable(text)));
+            throw UsageError(fmt::format("'{}' begins with /; patterns are relative to the root", shown(text)));
         }
         Parts parts;
         for (std::string& part : split(one, '/')) {
             if (part.empty() || part == ".") continue;
-            if (part == "..") throw UsageError(fmt::format("'{}' leads out of the root by ..", printable(text)));
+            if (part == "..") throw UsageError(fmt::format("'{}' leads out of the root by ..", shown(text)));
             check_brackets(text_, part);
             if (part == "**" && !parts.empty() && parts.back() == "**") continue;
             parts.push_back(std::move(part));
         }
-        if (parts.empty()) throw UsageError(fmt::format("'{}' names no file", printable(text)));
+        if (parts.empty()) throw UsageError(fmt::format("'{}' names no file", shown(text)));
         if (parts.back() == "**") parts.emplace_back("*");
         constexpr std::size_t kMostDeep = 4;  // matching tries all divisions of a path
         if (std::count(parts.begin(), parts.end(), "**") > static_cast<std::ptrdiff_t>(kMostDeep)) {
-            throw UsageError(fmt::format("'{}' has more than {} parts **", printable(text), kMostDeep));
+            throw UsageError(fmt::format("'{}' has more than {} parts **", shown(text), kMostDeep));
         }
         alternatives_.push_back(std::move(parts));
     }

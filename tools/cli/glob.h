@@ -20,7 +20,8 @@ namespace tex::cli {
 // names begin with a dot match only if the pattern names the dot.
 class Glob {
 public:
-    // Throws UsageError: an empty or absolute pattern, "..", brackets without their ends, more than 1024 alternatives.
+    // Throws UsageError: an empty or absolute pattern, "..", brackets without their ends, more than 1024 alternatives,
+    // 16 levels of braces or 4096 bytes.
     explicit Glob(std::string_view text);
 
     [[nodiscard]] bool matches(std::string_view path) const;

@@ -7,23 +7,28 @@
 #include <memory>
 #include <vector>
 
+#include <fmt/format.h>
+#include <sys/stat.h>
+
 #include "files/system_error.h"
 
 namespace tex::cli {
 
-Result<std::string> read_text_file(const std::string& path) {
+Result<std::string> read_text_file(const std::string& path, std::size_t most) {
     const bool from_stdin = path == "-";
     const std::unique_ptr<FILE, int (*)(FILE*)> opened(
         from_stdin ? nullptr : std::fopen(path.c_str(), "rbe"),
         [](FILE* file) { return file == nullptr ? 0 : std::fclose(file); });
     FILE* file = from_stdin ? stdin : opened.get();
-    const auto failed = [&] {
-        return Error{ErrorCode::io, from_stdin ? "standard input" : path, system_reason(errno)};
-    };
+    const std::string name = from_stdin ? "standard input" : path;
+    const auto failed = [&] { return Error{ErrorCode::io, name, system_reason(errno)}; };
     if (file == nullptr) return failed();
     std::string text;
     char buffer[65536];
-    while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, file)) text.append(buffer, count);
+    while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, file)) {
+        text.append(buffer, count);
+        if (text.size() > most) return Error{ErrorCode::bad_data, name, fmt::format("has more than {} bytes", most)};
+    }
     if (std::ferror(file) != 0) return failed();
     return text;
 }
@@ -31,6 +36,16 @@ Result<std::string> read_text_file(const std::string& path) {
 Result<void> write_text_file(const std::string& path, const std::string& text, const WriteOptions& options) {
     const auto* bytes = reinterpret_cast<const std::byte*>(text.data());
     return write_file(path, std::vector<std::byte>(bytes, bytes + text.size()), options);
+}
+
+bool is_special_file(const std::string& path) {
+    struct stat status {};
+    return path == "-" || (stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode));
+}
+
+Result<void> write_document(const std::string& path, const std::string& text, WriteOptions options) {
+    options.follow_links = is_special_file(path);
+    return write_text_file(path, text, options);
 }
 
 }  // namespace tex::cli

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include <tex/container.h>
@@ -10,11 +11,22 @@
 
 namespace tex::cli {
 
-// The bytes of a file; "-" is standard input. Errors: io.
-[[nodiscard]] Result<std::string> read_text_file(const std::string& path);
+// Of files whose size nothing else limits. It ends the reading of devices such as /dev/zero.
+inline constexpr std::size_t kMostOfTextFile = std::size_t{1} << 30;
+
+// The bytes of a file; "-" is standard input. Errors: io; bad_data, if there are more than `most` bytes (none of them
+// beyond these is read).
+[[nodiscard]] Result<std::string> read_text_file(const std::string& path, std::size_t most = kMostOfTextFile);
+
+// Whether a write to `path` goes through: to standard output, a FIFO or a device.
+[[nodiscard]] bool is_special_file(const std::string& path);
 
 // write_file() of libtex, for text.
 [[nodiscard]] Result<void> write_text_file(const std::string& path, const std::string& text,
                                            const WriteOptions& options = {});
+
+// The same for reports and other documents: a link that has the name is replaced, so that nobody can choose by a link
+// which file is written.
+[[nodiscard]] Result<void> write_document(const std::string& path, const std::string& text, WriteOptions options = {});
 
 }  // namespace tex::cli

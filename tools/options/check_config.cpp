@@ -135,7 +135,7 @@ bool CheckRule::takes(const std::string& path) const {
 }
 
 Result<CheckConfig> read_check_config(const std::string& path) {
-    const auto text = read_text_file(path);
+    const auto text = read_toml_file(path);
     if (!text) return text.error();
     return parse_check_config(path, *text);
 }

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "cli/text.h"
+#include "cli/text_file.h"
 #include "cli/usage_error.h"
 
 namespace tex::cli {
@@ -99,6 +100,12 @@ private:
 };
 
 }  // namespace
+
+Result<std::string> read_toml_file(const std::string& path) {
+    auto text = read_text_file(path, kMostTomlBytes);
+    if (!text && text.error().code == ErrorCode::bad_data) throw UsageError(text.error().message());
+    return text;
+}
 
 void check_toml_bounds(const std::string& path, std::string_view text) {
     if (text.size() > kMostTomlBytes) {

@@ -10,10 +10,16 @@
 #include <string>
 #include <string_view>
 
+#include <tex/result.h>
+
 namespace tex::cli {
 
 inline constexpr std::size_t kMostTomlBytes = std::size_t{1} << 20;
 inline constexpr int kMostTomlLevels = 64;
+
+// The text of a TOML file; "-" is standard input. Reads no more than the limit. Throws UsageError if there is more.
+// Errors: io.
+[[nodiscard]] Result<std::string> read_toml_file(const std::string& path);
 
 // Throws UsageError, with `path` and the line, if the text is longer than kMostTomlBytes or if a statement nests deeper
 // than kMostTomlLevels. Each dot of a key or of a table's name counts as one level, and so does each array and each

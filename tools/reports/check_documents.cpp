@@ -109,7 +109,7 @@ ExitCode CheckDocuments::write(Console& console, const std::string& summary) con
     for (const auto& [file, report] : reports_) all.push_back(report);
     ExitCode code = ExitCode::done;
     const auto write = [&](const std::string& path, const std::string& text) {
-        const auto written = write_text_file(path, text);
+        const auto written = write_document(path, text);
         if (written) return;
         console.error(written.error().message());
         code = std::max(code, exit_code(written.error().code));

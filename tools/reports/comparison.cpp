@@ -123,7 +123,7 @@ Result<void> CompareDocuments::write_page(const std::vector<ComparedLevel>& leve
     HtmlReport page("compare-normals", compare_columns());
     page.add("", std::move(*entry));
     const AngularError& e = levels.front().error;
-    return write_text_file(
+    return write_document(
         page_path_, page.page(fmt::format("level {}: mean {:.4f}, 99.9th percentile {:.4f}, largest {:.4f} degrees",
                                           levels.front().number, e.mean, e.p999, e.max)));
 }
@@ -133,7 +133,7 @@ Result<void> CompareDocuments::write_depfile(const std::vector<std::string>& inp
     std::vector<std::string> outputs = {heat_map_path_, page_path_};
     std::erase(outputs, std::string());
     const auto text = depfile_text({{outputs, inputs}});
-    return text ? write_text_file(depfile_, *text) : text.error();
+    return text ? write_document(depfile_, *text) : text.error();
 }
 
 }  // namespace tex::cli

@@ -14,6 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "batch/name_pattern.h"
 #include "cli/text.h"
 #include "cli/text_file.h"
 #include "files/system_error.h"
@@ -60,7 +61,8 @@ Error BuildRun::with_remedy(const Error& error, const std::string& output) const
     return {error.code, error.file, error.reason + "; make it writable (chmod u+w, p4 edit) or remove it"};
 }
 
-Result<Made> BuildRun::make(const BuildTask& task, const std::vector<Stale>& stale, double& counted, Outcome& outcome) {
+Result<Made> BuildRun::make(const BuildTask& task, const std::vector<Stale>& stale, const WriteOptions& write,
+                            double& counted, Outcome& outcome) {
     const Recipe& recipe = recipes_[task.recipe];
     const bool is_checked = recipe.check().is_given();
     std::deque<MemoryFile> waiting;
@@ -71,7 +73,7 @@ Result<Made> BuildRun::make(const BuildTask& task, const std::vector<Stale>& sta
         if (const auto created = create_folders_of(target); !created) return created.error();
         wanted.push_back({one.index, target, is_checked ? in_memory() : std::string()});
     }
-    MakeSettings settings{running_, write_, [&](double fraction) {
+    MakeSettings settings{running_, write, [&](double fraction) {
                               advance(counted, static_cast<double>(task.size), fraction);
                               return !stopped();
                           }};
@@ -96,44 +98,63 @@ Result<Made> BuildRun::make(const BuildTask& task, const std::vector<Stale>& sta
     for (const WantedOutput& output : wanted) {
         const auto bytes = read_text_file(output.write_to);
         if (!bytes) return bytes.error();
-        if (const auto put = write_text_file(output.path, *bytes, write_); !put)
+        if (const auto put = write_text_file(output.path, *bytes, write); !put)
             return with_remedy(put.error(), output.path);
     }
     return made;
 }
 
 // Takes outputs from the cache, and off the list of those to make.
-Result<void> BuildRun::fetch(const BuildTask& task, Judgement& judgement, Outcome& outcome) {
+Result<void> BuildRun::fetch(const BuildTask& task, Judgement& judgement, Placement& placement, Outcome& outcome) {
     if (!cache_.is_used()) return {};
     std::vector<Stale> left;
     for (Stale& stale : judgement.stale) {
         const std::string& output = task.outputs[stale.index];
         const std::string path = contents_.path(output);
         if (auto created = create_folders_of(path); !created) return created;
-        const auto found = cache_.fetch(key_of(stale.settings, judgement.inputs), path, write_);
+        const auto found = cache_.fetch(key_of(stale.settings, judgement.inputs), path, placement.watched(write_));
         if (!found) return with_remedy(found.error(), path);
         if (found->empty()) {
             left.push_back(std::move(stale));
-        } else if (auto recorded = record(task, stale, judgement.inputs, *found, outcome); !recorded) {
-            return recorded;
+        } else {
+            record(task, stale, judgement.inputs, *found, placement, outcome);
         }
     }
     judgement.stale = std::move(left);
     return {};
 }
 
+std::string BuildRun::name_of_path(const std::string& path) const {
+    const bool is_below = !options_.root.empty() && path.starts_with(options_.root + "/");
+    return is_below ? path.substr(options_.root.size() + 1) : path;
+}
+
 // Records an output that is in its place.
-Result<void> BuildRun::record(const BuildTask& task, const Stale& made, const Digest& inputs,
-                              const std::vector<std::string>& paths, Outcome& outcome) {
-    std::vector<std::string> files;
+void BuildRun::record(const BuildTask& task, const Stale& made, const Digest& inputs,
+                      const std::vector<std::string>& paths, const Placement& placement, Outcome& outcome) {
+    PlacedFiles files;
     for (const std::string& path : paths) {
-        const bool is_below = !options_.root.empty() && path.starts_with(options_.root + "/");
-        files.push_back(is_below ? path.substr(options_.root.size() + 1) : path);
+        const auto placed = placement.placed().find(path);
+        if (placed != placement.placed().end()) files.emplace_back(name_of_path(path), placed->second);
     }
-    outcome.outputs.insert(outcome.outputs.end(), files.begin(), files.end());
-    if (options_.lists_made)
-        outcome.text += fmt::format("{} -> {}\n", printable(task.input), printable(with_level(files.front(), 0)));
-    return judge_.record(task, made, inputs, files);
+    for (const auto& [name, file] : files) outcome.outputs.push_back(name);
+    if (options_.lists_made) {
+        outcome.text +=
+            fmt::format("{} -> {}\n", printable(task.input), printable(with_level(name_of_path(paths.front()), 0)));
+    }
+    judge_.record(task, made, inputs, files);
+}
+
+// Records what has taken its place although the whole failed, so that it can be found and replaced.
+void BuildRun::record_parts(const BuildTask& task, const Placement& placement) {
+    for (const std::string& output : task.outputs) {
+        PlacedFiles files;
+        for (const std::string& path : with_all_levels(contents_.path(output))) {
+            const auto placed = placement.placed().find(path);
+            if (placed != placement.placed().end()) files.emplace_back(name_of_path(path), placed->second);
+        }
+        if (!files.empty()) judge_.record_part(task, output, files);
+    }
 }
 
 void BuildRun::list_stale(const BuildTask& task, const std::vector<Stale>& stale, Outcome& outcome) {
@@ -173,21 +194,35 @@ Result<bool> BuildRun::are_unchanged(const BuildTask& task, const std::vector<st
     return now->inputs == inputs;
 }
 
-// Makes what is stale, unless the cache has it. Returns false if a file was replaced while it was read. Nothing is then
-// recorded or put into the cache, because its key names the contents before.
+// Makes what is stale, unless the cache has it. Returns false if something that it is made from was replaced meanwhile:
+// then nothing was put in place, because the digests name the contents before.
 Result<bool> BuildRun::make_stale(const BuildTask& task, Judgement judgement,
                                   const std::vector<std::optional<FileStamp>>& stamps, double& counted,
                                   Outcome& outcome) {
-    if (Result<void> fetched = fetch(task, judgement, outcome); !fetched) return fetched.error();
+    const auto is_unchanged = [&] { return are_unchanged(task, stamps, judgement.inputs); };
+    Placement fetched(files_, is_unchanged);
+    const Result<void> done = fetch(task, judgement, fetched, outcome);
+    if (fetched.met_change()) return false;
+    if (!done) {
+        record_parts(task, fetched);
+        return done.error();
+    }
     if (judgement.stale.empty()) {
         ++totals_.cached;
         outcome.report["status"] = "cached";
-        return are_unchanged(task, stamps, judgement.inputs);
+        return true;
     }
-    const Result<Made> made = make(task, judgement.stale, counted, outcome);
-    if (!made) return made.error();
-    Result<bool> unchanged = are_unchanged(task, stamps, judgement.inputs);
-    if (!unchanged || !*unchanged) return unchanged;
+    Placement placement(files_, is_unchanged);
+    const Result<Made> made = make(task, judgement.stale, placement.watched(write_), counted, outcome);
+    if (placement.met_change()) return false;
+    if (!made) {
+        record_parts(task, placement);
+        return made.error();
+    }
+    if (outcome.code == ExitCode::findings) {
+        Result<bool> unchanged = is_unchanged();
+        if (!unchanged || !*unchanged) return unchanged;
+    }
     outcome.warnings.insert(outcome.warnings.end(), made->warnings.begin(), made->warnings.end());
     outcome.remarks.insert(outcome.remarks.end(), made->remarks.begin(), made->remarks.end());
     if (outcome.code == ExitCode::findings) {
@@ -196,13 +231,8 @@ Result<bool> BuildRun::make_stale(const BuildTask& task, Judgement judgement,
     }
     for (std::size_t k = 0; k < judgement.stale.size(); ++k) {
         const Stale& stale = judgement.stale[k];
-        if (auto recorded = record(task, stale, judgement.inputs, made->files[k], outcome); !recorded)
-            return recorded.error();
-        if (!cache_.is_used()) continue;
-        const std::string output = contents_.path(task.outputs[stale.index]);
-        const auto stored = cache_.store(key_of(stale.settings, judgement.inputs), output, made->files[k]);
-        if (!stored)
-            outcome.warnings.push_back({task.input, "the cache does not take it: " + stored.error().message()});
+        record(task, stale, judgement.inputs, made->files[k], placement, outcome);
+        if (cache_.is_used()) store(task, stale, judgement.inputs, made->files[k], placement, outcome);
     }
     texels_ += made->report.extent.texels();
     outcome.report["status"] = "made";
@@ -211,6 +241,20 @@ Result<bool> BuildRun::make_stale(const BuildTask& task, Judgement judgement,
     outcome.report["bytes"] = made->report.bytes;
     ++totals_.made;
     return true;
+}
+
+// Puts an output into the cache, unless another program has replaced it.
+void BuildRun::store(const BuildTask& task, const Stale& made, const Digest& inputs,
+                     const std::vector<std::string>& paths, const Placement& placement, Outcome& outcome) {
+    std::vector<std::string> contents;
+    for (const std::string& path : paths) {
+        auto bytes = read_text_file(path);
+        const auto placed = placement.placed().find(path);
+        if (!bytes || placed == placement.placed().end() || digest_of(*bytes) != placed->second.digest) return;
+        contents.push_back(std::move(*bytes));
+    }
+    const auto stored = cache_.store(key_of(made.settings, inputs), task.outputs[made.index], contents);
+    if (!stored) outcome.warnings.push_back({task.input, "the cache does not take it: " + stored.error().message()});
 }
 
 // A texture that needs `name` fails in the same way as that did.
@@ -261,7 +305,6 @@ Result<void> BuildRun::bring_up_to_date(std::size_t index, Outcome& outcome) {
         const Result<bool> made = make_stale(task, std::move(*judged), stamps, counted, outcome);
         if (!made) return made.error();
         if (*made) return {};
-        for (const std::string& output : task.outputs) judge_.forget(output);
         outcome.code = ExitCode::done;
         outcome.report.erase("findings");
         outcome.outputs.clear();

@@ -15,6 +15,7 @@
 #include "tree/builder.h"
 #include "tree/cache.h"
 #include "tree/judge.h"
+#include "tree/placement.h"
 #include "tree/queue.h"
 #include "tree/state.h"
 #include "tree/texture_maker.h"
@@ -32,15 +33,19 @@ public:
              const RunOptions& running, Console& console)
         : recipes_(recipes), work_(work), options_(options), running_(running), console_(console),
           contents_(options.root, state_.memos), judge_(state_, contents_, options.output_version),
-          reporter_(console, work.tasks.size(), running.json), cache_(options.cache), failed_(work.tasks.size()),
-          stale_(work.tasks.size()), results_(work.tasks.size()) {
+          reporter_(console, work.tasks.size(), running.json),
+          files_(recipes, work.tasks, options.root, documents_of(options)), cache_(options.cache),
+          failed_(work.tasks.size()), stale_(work.tasks.size()), results_(work.tasks.size()) {
         write_.sync = !options.no_sync;
+        write_.follow_links = false;
         write_.reader = running.read;
     }
 
     ExitCode run();
 
 private:
+    [[nodiscard]] static RunDocuments documents_of(const BuildOptions& options);
+    Result<void> open_files();
     void read_state();
     void save_state(BuildState::Memos memos_of);
     void save_now_and_then();
@@ -54,14 +59,19 @@ private:
     [[nodiscard]] std::vector<std::optional<FileStamp>> stamps_of(const BuildTask& task) const;
     Result<bool> are_unchanged(const BuildTask& task, const std::vector<std::optional<FileStamp>>& stamps,
                                const Digest& inputs);
-    Result<void> fetch(const BuildTask& task, Judgement& judgement, Outcome& outcome);
-    Result<void> record(const BuildTask& task, const Stale& made, const Digest& inputs,
-                        const std::vector<std::string>& paths, Outcome& outcome);
+    Result<void> fetch(const BuildTask& task, Judgement& judgement, Placement& placement, Outcome& outcome);
+    [[nodiscard]] std::string name_of_path(const std::string& path) const;
+    void record(const BuildTask& task, const Stale& made, const Digest& inputs, const std::vector<std::string>& paths,
+                const Placement& placement, Outcome& outcome);
+    void record_parts(const BuildTask& task, const Placement& placement);
+    void store(const BuildTask& task, const Stale& made, const Digest& inputs, const std::vector<std::string>& paths,
+               const Placement& placement, Outcome& outcome);
     void list_stale(const BuildTask& task, const std::vector<Stale>& stale, Outcome& outcome);
-    Result<Made> make(const BuildTask& task, const std::vector<Stale>& stale, double& counted, Outcome& outcome);
+    Result<Made> make(const BuildTask& task, const std::vector<Stale>& stale, const WriteOptions& write,
+                      double& counted, Outcome& outcome);
     [[nodiscard]] Error with_remedy(const Error& error, const std::string& output) const;
     void prune();
-    bool remove_files(const OutputRecord& output);
+    bool remove_files(const OutputRecord& output, const FileTable<bool>& current);
     [[nodiscard]] ExitCode write_depfile() const;
     [[nodiscard]] QueuedTask queued(const BuildTask& task) const;
     void advance(double& counted, double size, double fraction);
@@ -78,6 +88,7 @@ private:
     Contents contents_;
     Judge judge_;
     Reporter reporter_;
+    const TreeFiles files_;
     Cache cache_;
     std::vector<std::atomic<ExitCode>> failed_;  // how, or ExitCode::done
     std::vector<std::atomic<bool>> stale_;       // in a dry run

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tex/container.h>
@@ -21,9 +22,28 @@
 #include "cli/text.h"
 #include "cli/text_file.h"
 #include "files/system_error.h"
+#include "options/files.h"
 #include "tree/build_run.h"
 
 namespace tex::cli {
+// What this run reads and writes besides textures.
+RunDocuments BuildRun::documents_of(const BuildOptions& options) {
+    RunDocuments documents = options.documents;
+    documents.read.push_back({"the manifest", options.manifest});
+    documents.written.push_back({"the state of the build", options.state_file});
+    if (!options.shard_state.empty()) documents.written.push_back({"the state of the shard", options.shard_state});
+    if (!options.depfile.empty()) documents.written.push_back({"--depfile", options.depfile});
+    return documents;
+}
+
+// Checks that the files which this run replaces are its own.
+Result<void> BuildRun::open_files() {
+    const std::string& state = options_.is_shard ? options_.shard_state : options_.state_file;
+    if (auto checked = check_is_state(state); !checked) return checked;
+    if (auto opened = cache_.open(options_.dry_run); !opened) return opened;
+    return options_.shard_state.empty() ? Result<void>() : create_folders_of(options_.shard_state);
+}
+
 void BuildRun::read_state() {
     if (const auto text = read_text_file(options_.state_file)) state_ = BuildState::parse(*text);
     if (options_.shard_state.empty()) return;
@@ -41,6 +61,7 @@ void BuildRun::save_state(BuildState::Memos memos_of) {
     if (options_.is_part) memos_of = BuildState::Memos::all;
     WriteOptions write;
     write.sync = false;  // the state may be lost
+    write.follow_links = false;
     std::string text;
     {
         const auto outputs = judge_.hold();
@@ -140,25 +161,34 @@ void BuildRun::prune() {
     std::vector<std::string> wanted;
     for (const BuildTask& task : work_.tasks) wanted.insert(wanted.end(), task.outputs.begin(), task.outputs.end());
     std::sort(wanted.begin(), wanted.end());
+    const auto is_wanted = [&](const auto& record) {
+        return std::binary_search(wanted.begin(), wanted.end(), record.first);
+    };
+    // Files that are outputs under any name: a folder may have become a link to one.
+    FileTable<bool> current;
+    for (const auto& record : state_.outputs) {
+        if (!is_wanted(record)) continue;
+        for (const auto& [file, digest] : record.second.files) current.add_place(contents_.path(file), true);
+    }
     for (auto record = state_.outputs.begin(); record != state_.outputs.end();) {
-        if (std::binary_search(wanted.begin(), wanted.end(), record->first)) {
-            ++record;
-            continue;
-        }
-        const bool is_gone = remove_files(record->second);
+        const bool is_gone = !is_wanted(*record) && remove_files(record->second, current);
         lost_names_ = lost_names_ || is_gone;
         record = is_gone ? state_.outputs.erase(record) : std::next(record);
     }
 }
 
 // Removes the files of an output. Returns false if the state must go on to know them.
-bool BuildRun::remove_files(const OutputRecord& output) {
+bool BuildRun::remove_files(const OutputRecord& output, const FileTable<bool>& current) {
     bool is_gone = true, removes = false;
     for (const auto& [file, digest] : output.files) {
         const std::string path = contents_.path(file);
         const Result<Digest> now = contents_.digest(file);
-        if (!now) continue;
-        if (*now != digest) {
+        if (!now || current.find(path) != nullptr) continue;
+        struct stat status {};
+        const bool is_ours = *now == digest && lstat(path.c_str(), &status) == 0 && S_ISREG(status.st_mode);
+        if (files_.is_read(path)) {
+            console_.warning(fmt::format("{} is not removed: this run reads it", path));
+        } else if (!is_ours) {
             console_.warning(fmt::format("{} is not removed: something else has changed it", path));
         } else if (options_.dry_run) {
             std::ignore = console_.print(fmt::format("remove {}\n", printable(file)));
@@ -191,7 +221,7 @@ ExitCode BuildRun::write_depfile() const {
         for (const std::string& file : recipes_[task.recipe].files()) dependency.inputs.push_back(contents_.path(file));
     }
     const auto text = depfile_text(dependencies);
-    const auto written = text ? write_text_file(options_.depfile, *text) : Result<void>(text.error());
+    const auto written = text ? write_document(options_.depfile, *text) : Result<void>(text.error());
     if (written) return ExitCode::done;
     console_.error(written.error().message());
     return exit_code(written.error().code);
@@ -201,6 +231,10 @@ ExitCode BuildRun::run() {
     std::optional<tbb::global_control> limit;
     if (running_.threads > 1)
         limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(running_.threads));
+    if (const auto opened = open_files(); !opened) {
+        console_.error(opened.error().message());
+        return exit_code(opened.error().code);
+    }
     Host& host = console_.host();
     host.begin();
     read_state();

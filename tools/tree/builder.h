@@ -12,6 +12,7 @@
 #include "tree/build_result.h"
 #include "tree/recipe.h"
 #include "tree/state.h"
+#include "tree/tree_files.h"
 #include "tree/work.h"
 
 namespace tex::cli {
@@ -23,6 +24,7 @@ struct BuildOptions {
     bool is_shard = false;        // state_file is read and not written, because other shards share it,
     std::string shard_state;      // but this file is, until the shard ends, so that it can go on; empty: none
     std::string depfile;          // empty: none
+    RunDocuments documents;       // what else is read and written
     int output_version = 1;       // part of every key
     std::int64_t memory = 0;      // bytes that all files together may take; 0: half of the machine's
     std::string cache;            // a folder; empty: none
@@ -39,7 +41,8 @@ struct BuildOptions {
 // The version of the bytes that this program makes. It changes when an output changes with the same settings.
 inline constexpr int kOutputVersion = 1;
 
-// Makes what is not up to date. Prints a line for each texture with --json, and a summary without.
+// Makes what is not up to date. Prints a line for each texture with --json, and a summary without. Throws UsageError,
+// and writes nothing, if a file that is written is also read, or is written twice.
 [[nodiscard]] ExitCode build(const std::vector<Recipe>& recipes, const WorkList& work, const BuildOptions& options,
                              const RunOptions& running, Console& console);
 

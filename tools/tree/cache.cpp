@@ -4,28 +4,24 @@
 
 #include <algorithm>
 #include <charconv>
-#include <filesystem>
 #include <system_error>
-#include <tuple>
 #include <utility>
-#include <vector>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include "batch/name_pattern.h"
 #include "cli/text_file.h"
-#include "files/system_error.h"
-#include "options/files.h"
+#include "tree/cache_folder.h"
 
 namespace tex::cli {
 namespace {
 
-namespace fs = std::filesystem;
+std::string cache_head() { return fmt::format("libtex-cache {} ", kCacheVersion); }
 
-constexpr std::string_view kCacheHead = "libtex-cache 1 ";
-constexpr std::size_t kCacheHeadBytes = kCacheHead.size() + 64 + 1;
+// The first line of the entry `key`, whose bytes are `body`.
+std::string first_line(const Digest& key, std::string_view body) {
+    return cache_head() + key.hex() + " " + digest_of(body).hex() + "\n";
+}
 
 // If each level has its file, there is an entry for each of them, and one with their number.
 Digest key_of_part(const Digest& key, const std::string& part) {
@@ -42,34 +38,26 @@ std::size_t level_count(const std::string& entry) {
 
 }  // namespace
 
-std::string Cache::entry(const Digest& key) const {
-    const std::string name = key.hex();
-    return folder_ + "/" + name.substr(0, 2) + "/" + name;
+Result<void> Cache::open(bool is_read_only) const {
+    return is_used() ? open_cache_folder(folder_, is_read_only) : Result<void>();
 }
 
 // The bytes of an entry that is there and undamaged.
 std::optional<std::string> Cache::read(const Digest& key) {
-    const std::string from = entry(key);
-    auto text = read_text_file(from);
+    auto text = read_cache_entry(folder_, key.hex());
     if (!text) return std::nullopt;
-    const std::string_view body = std::string_view(*text).substr(std::min(kCacheHeadBytes, text->size()));
-    if (!text->starts_with(kCacheHead) || text->size() < kCacheHeadBytes || (*text)[kCacheHeadBytes - 1] != '\n' ||
-        std::string_view(*text).substr(kCacheHead.size(), 64) != digest_of(body).hex()) {
+    const std::size_t newline = text->find('\n'), end = newline == std::string::npos ? text->size() : newline + 1;
+    const std::string_view line = std::string_view(*text).substr(0, end), body = std::string_view(*text).substr(end);
+    if (line != first_line(key, body)) {
         ++damaged_;
         return std::nullopt;
     }
-    // The time of the last use, for shrink(). It does not matter if this fails.
-    std::ignore = utimensat(AT_FDCWD, from.c_str(), nullptr, 0);
-    text->erase(0, kCacheHeadBytes);
+    text->erase(0, end);
     return std::move(*text);
 }
 
 Result<void> Cache::write(const Digest& key, const std::string& bytes) const {
-    const std::string to = entry(key);
-    if (auto created = create_folders_of(to); !created) return created;
-    WriteOptions options;
-    options.sync = false;  // a damaged entry is found when it is read
-    return write_text_file(to, std::string(kCacheHead) + digest_of(bytes).hex() + "\n" + bytes, options);
+    return write_cache_entry(folder_, key.hex(), first_line(key, bytes) + bytes);
 }
 
 Result<std::vector<std::string>> Cache::fetch(const Digest& key, const std::string& output, const WriteOptions& write) {
@@ -89,39 +77,28 @@ Result<std::vector<std::string>> Cache::fetch(const Digest& key, const std::stri
     return files;
 }
 
-Result<void> Cache::store(const Digest& key, const std::string& output, const std::vector<std::string>& files) {
+Result<void> Cache::store(const Digest& key, const std::string& output,
+                          const std::vector<std::string>& contents) const {
     const bool has_levels = has_level(output);
-    for (std::size_t k = 0; k < files.size(); ++k) {
-        const auto bytes = read_text_file(files[k]);
-        if (!bytes) return bytes.error();
-        if (auto written = write(has_levels ? level_key(key, k) : key, *bytes); !written) return written;
+    for (std::size_t k = 0; k < contents.size(); ++k) {
+        if (auto written = write(has_levels ? level_key(key, k) : key, contents[k]); !written) return written;
     }
-    return has_levels ? write(count_key(key), std::to_string(files.size())) : Result<void>();
+    return has_levels ? write(count_key(key), std::to_string(contents.size())) : Result<void>();
 }
 
 void Cache::shrink(std::int64_t bytes, Console& console) const {
-    struct Entry {
-        std::int64_t used;
-        std::int64_t size;
-        std::string path;
-    };
-    std::vector<Entry> entries;
+    std::vector<CacheEntry> entries;
     std::int64_t total = 0;
-    std::error_code error;
-    for (fs::recursive_directory_iterator at(folder_, error), end; !error && at != end; at.increment(error)) {
-        struct stat status {};
-        const std::string path = at->path().string();
-        if (stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) continue;
-        entries.push_back(
-            {std::int64_t{status.st_mtim.tv_sec} * 1000000000 + status.st_mtim.tv_nsec, status.st_size, path});
-        total += status.st_size;
-    }
-    if (error) console.warning(fmt::format("{}: {}", folder_, system_reason(error.value())));
-    std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.used < b.used; });
-    for (const Entry& oldest : entries) {
+    const auto listed = list_cache_entries(folder_, cache_head(), [&](CacheEntry entry) {
+        total += entry.size;
+        entries.push_back(std::move(entry));
+    });
+    if (!listed) console.warning(listed.error().message());
+    std::sort(entries.begin(), entries.end(), [](const CacheEntry& a, const CacheEntry& b) { return a.used < b.used; });
+    for (const CacheEntry& oldest : entries) {
         if (total <= bytes) break;
-        std::error_code ignored;  // another process may have removed it
-        if (fs::remove(oldest.path, ignored)) total -= oldest.size;
+        // Another process may have removed it.
+        if (remove_cache_entry(folder_, oldest.name, cache_head())) total -= oldest.size;
     }
 }
 

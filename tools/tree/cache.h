@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // cache.h: a folder of outputs, named by what they are made from. Many machines may share it.
 //
-//     DIR/3f/3f92...   a line "libtex-cache 1 SHA-256", then the bytes that have this sum
+//     DIR/CACHEDIR.TAG    the mark by which backup programs know a cache (bford.info/cachedir)
+//     DIR/libtex-cache    "libtex-cache 2": the version of this layout
+//     DIR/3f/3f92...      an entry: a line "libtex-cache 2 KEY SHA-256", then the bytes that have this sum
 //
-// An entry is written under another name and renamed, so it is whole or absent, and two writers of one entry write the
-// same bytes. An entry that is damaged all the same is found when it is read, and is made again.
+// Whoever may write to a shared cache is not trusted with more than its entries: no link below DIR is followed, an
+// entry is a regular file that names its own key, and one that is damaged is replaced by a rename. Only entries are
+// ever removed. An entry is written under another name and renamed, so it is whole or absent, and two writers of one
+// entry write the same bytes.
 
 #pragma once
 
@@ -31,20 +35,23 @@ public:
 
     [[nodiscard]] bool is_used() const { return !folder_.empty(); }
 
+    // To be called first. A folder that is missing or empty becomes a cache, unless `is_read_only` is set. Throws
+    // UsageError: the folder holds other files and is not marked as a cache, or is one of another version. Errors: io.
+    [[nodiscard]] Result<void> open(bool is_read_only) const;
+
     // Writes the output `key` to the file `output`, or to a file for each level if the name contains {level}. Returns
     // the files; none if there is no such entry, or if it is damaged. Errors: those of writing.
     [[nodiscard]] Result<std::vector<std::string>> fetch(const Digest& key, const std::string& output,
                                                          const WriteOptions& write);
-    // Keeps the files of an output, which are those that fetch() returns. Errors: io.
+    // Keeps the contents of the files that fetch() returns. Errors: io.
     [[nodiscard]] Result<void> store(const Digest& key, const std::string& output,
-                                     const std::vector<std::string>& files);
+                                     const std::vector<std::string>& contents) const;
     // Removes the entries that have not been used for the longest time until the others take at most `bytes`.
     void shrink(std::int64_t bytes, Console& console) const;
 
     [[nodiscard]] std::size_t damaged() const { return damaged_; }  // entries that fetch() has met
 
 private:
-    [[nodiscard]] std::string entry(const Digest& key) const;
     [[nodiscard]] std::optional<std::string> read(const Digest& key);
     [[nodiscard]] Result<void> write(const Digest& key, const std::string& bytes) const;
 

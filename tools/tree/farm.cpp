@@ -96,8 +96,11 @@ void Farm::check_fits(const std::string& manifest, const std::string& text, cons
     }
 }
 
-ExitCode Farm::write_plan(const FarmPlan& head, const WorkList& work, const BuildOptions& options,
-                          const RunOptions& running, Console& console) const {
+ExitCode Farm::write_plan(const FarmPlan& head, const std::vector<Recipe>& recipes, const WorkList& work,
+                          const BuildOptions& options, const RunOptions& running, Console& console) const {
+    const TreeFiles checked(recipes, work.tasks, options.root,
+                            {{{"the manifest", options.manifest}},
+                             {{"the state of the build", options.state_file}, {"--plan", plan_path_}}});
     if (!work.unreadable.empty()) {
         for (const std::string& folder : work.unreadable) console.error(folder);
         return ExitCode::io;
@@ -113,7 +116,7 @@ ExitCode Farm::write_plan(const FarmPlan& head, const WorkList& work, const Buil
         console.error(fmt::format("{}: {}", printable(task.input), task.refusal));
         code = ExitCode::data;
     }
-    if (const auto written = write_text_file(plan_path_, plan.text()); !written) {
+    if (const auto written = write_document(plan_path_, plan.text()); !written) {
         console.error(written.error().message());
         return exit_code(written.error().code);
     }
@@ -161,19 +164,17 @@ ExitCode Farm::run_shard(const std::vector<Recipe>& recipes, BuildOptions option
                          Console& console) const {
     const WorkList work = work_of_shard(recipes, options.root, console);
     options.is_shard = true;
+    options.documents.read.push_back({"the file of --plan", plan_path_});
     if (report_.empty()) return build(recipes, work, options, running, console);
-    if (const auto created = create_folders_of(report_); !created) {
-        console.error(created.error().message());
-        return ExitCode::io;
-    }
+    options.documents.written.push_back({"--report", report_});
     options.shard_state = state_beside(report_);
     options.finished = [&](const std::vector<BuildResult>& results, const BuildState& state) {
         const std::string text = shard_report_text(*plan_, shard_, shards_, work, results, state);
-        if (const auto written = write_text_file(report_, text); !written) {
+        if (const auto written = write_document(report_, text); !written) {
             console.error(written.error().message());
             return exit_code(written.error().code);
         }
-        std::ignore = std::remove(options.shard_state.c_str());
+        if (check_is_state(options.shard_state)) std::ignore = std::remove(options.shard_state.c_str());
         return ExitCode::done;
     };
     return build(recipes, work, options, running, console);
@@ -181,6 +182,14 @@ ExitCode Farm::run_shard(const std::vector<Recipe>& recipes, BuildOptions option
 
 ExitCode Farm::merge(const std::vector<std::string>& reports, const BuildOptions& options, const RunOptions& running,
                      Console& console) const {
+    RunDocuments documents{{{"the manifest", options.manifest}, {"the file of --plan", plan_path_}},
+                           {{"the state of the build", options.state_file}}};
+    for (const std::string& report : reports) documents.read.push_back({"the report of a shard", report});
+    const TreeFiles checked({}, {}, {}, documents);
+    if (const auto is_state = check_is_state(options.state_file); !is_state) {
+        console.error(is_state.error().message());
+        return exit_code(is_state.error().code);
+    }
     return merge_reports(*plan_, reports, options, running, console);
 }
 

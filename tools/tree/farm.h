@@ -28,9 +28,10 @@ public:
     void check_fits(const std::string& manifest, const std::string& text, const BuildOptions& options,
                     Console& console) const;
 
-    // What is asked for. `work` is what the manifest makes; for a shard, what the plan holds.
-    [[nodiscard]] ExitCode write_plan(const FarmPlan& head, const WorkList& work, const BuildOptions& options,
-                                      const RunOptions& running, Console& console) const;
+    // What is asked for. `work` is what the manifest makes; for a shard, what the plan holds. Each throws UsageError,
+    // and writes nothing, if a file that is written is also read, or is written twice.
+    [[nodiscard]] ExitCode write_plan(const FarmPlan& head, const std::vector<Recipe>& recipes, const WorkList& work,
+                                      const BuildOptions& options, const RunOptions& running, Console& console) const;
     [[nodiscard]] ExitCode run_shard(const std::vector<Recipe>& recipes, BuildOptions options,
                                      const RunOptions& running, Console& console) const;
     [[nodiscard]] ExitCode merge(const std::vector<std::string>& reports, const BuildOptions& options,

@@ -2,6 +2,7 @@
 
 #include "tree/judge.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -58,23 +59,42 @@ std::string Judge::why_stale(const std::string& output, const Digest& settings, 
     return {};
 }
 
-Result<void> Judge::record(const BuildTask& task, const Stale& made, const Digest& inputs,
-                           const std::vector<std::string>& files) {
-    OutputRecord record{task.input, made.settings, inputs, {}};
-    for (const std::string& file : files) {
-        const Result<Digest> digest = contents_.digest_of_own(file);
-        if (!digest) return digest.error();
-        record.files.emplace_back(file, *digest);
+void Judge::remember(const PlacedFiles& files) {
+    for (const auto& [name, file] : files) {
+        if (file.stamp) contents_.remember(name, *file.stamp, file.digest);
     }
-    const std::lock_guard lock(mutex_);
-    state_.outputs[task.outputs[made.index]] = std::move(record);
-    changed_ = true;
-    return {};
 }
 
-void Judge::forget(const std::string& output) {
+void Judge::record(const BuildTask& task, const Stale& made, const Digest& inputs, const PlacedFiles& files) {
+    remember(files);
     const std::lock_guard lock(mutex_);
-    changed_ = state_.outputs.erase(output) > 0 || changed_;
+    OutputRecord& record = state_.outputs[task.outputs[made.index]];
+    const OutputRecord before = std::exchange(record, {task.input, made.settings, inputs, {}});
+    for (const auto& [name, file] : files) record.files.emplace_back(name, file.digest);
+    for (const auto& old : before.files) {
+        const auto has_name = [&](const auto& file) { return file.first == old.first; };
+        if (std::none_of(files.begin(), files.end(), has_name))
+            state_.outputs[old.first] = {before.input, before.settings, before.inputs, {old}};
+    }
+    changed_ = true;
+}
+
+void Judge::record_part(const BuildTask& task, const std::string& output, const PlacedFiles& files) {
+    remember(files);
+    const std::lock_guard lock(mutex_);
+    OutputRecord& record = state_.outputs[output];
+    record.input = task.input;
+    record.inputs = {};
+    for (const auto& [name, file] : files) {
+        const auto known = std::find_if(record.files.begin(), record.files.end(),
+                                        [name = name](const auto& other) { return other.first == name; });
+        if (known == record.files.end()) {
+            record.files.emplace_back(name, file.digest);
+        } else {
+            known->second = file.digest;
+        }
+    }
+    changed_ = true;
 }
 
 }  // namespace tex::cli

@@ -6,8 +6,10 @@
 #include <atomic>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "tree/placement.h"
 #include "tree/recipe.h"
 #include "tree/state.h"
 #include "tree/work.h"
@@ -26,6 +28,8 @@ struct Judgement {
     std::vector<Stale> stale;
 };
 
+using PlacedFiles = std::vector<std::pair<std::string, PlacedFile>>;  // names relative to the root
+
 // Any thread may call any of these functions.
 class Judge {
 public:
@@ -34,16 +38,17 @@ public:
 
     // Errors: io, for an input that cannot be read.
     [[nodiscard]] Result<Judgement> judge(const BuildTask& task, const Recipe& recipe);
-    // Records an output that was made. `files` are relative to the root.
-    [[nodiscard]] Result<void> record(const BuildTask& task, const Stale& made, const Digest& inputs,
-                                      const std::vector<std::string>& files);
-    // Forgets an output, because it is about to be replaced.
-    void forget(const std::string& output);
+    // Records an output that is in its place. Files that it had before, such as levels that it has no more, become
+    // outputs that no rule makes.
+    void record(const BuildTask& task, const Stale& made, const Digest& inputs, const PlacedFiles& files);
+    // Records files of an output that is not complete: they are ours, and it is not up to date.
+    void record_part(const BuildTask& task, const std::string& output, const PlacedFiles& files);
     [[nodiscard]] bool has_changed() const { return changed_; }
     // Keeps all other threads out while the outputs are read.
     [[nodiscard]] std::unique_lock<std::mutex> hold() { return std::unique_lock(mutex_); }
 
 private:
+    void remember(const PlacedFiles& files);
     [[nodiscard]] std::string why_stale(const std::string& output, const Digest& settings, const Digest& inputs);
 
     std::mutex mutex_;  // guards state_.outputs

@@ -200,6 +200,7 @@ void Merge::save() {
     }
     WriteOptions write;
     write.sync = false;
+    write.follow_links = false;
     if (const auto saved = write_text_file(options_.state_file, state_.text(BuildState::Memos::all), write); !saved)
         console_.warning(fmt::format("{}; the next run will make everything again", saved.error().message()));
 }

@@ -51,6 +51,8 @@ public:
     [[nodiscard]] const RuleSettings& rule() const { return rule_; }
     [[nodiscard]] const std::vector<Glob>& match() const { return match_; }
     [[nodiscard]] bool takes(const std::string& input) const;
+    // Throws a UsageError with the place of the rule.
+    [[noreturn]] void fail(const std::string& reason) const { fail_at(manifest_.path, rule_.place, reason); }
 
     [[nodiscard]] const std::vector<ReadyCommand>& before() const { return before_; }  // the steps before the last
     [[nodiscard]] const std::vector<RecipeOutput>& outputs() const { return outputs_; }

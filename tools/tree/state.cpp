@@ -18,6 +18,7 @@
 namespace tex::cli {
 namespace {
 
+constexpr std::string_view kStateName = "build-normals state ";
 constexpr std::string_view kStateHead = "build-normals state 1\n";
 
 // Tabs and line feeds separate fields and lines.
@@ -109,32 +110,12 @@ bool read_line(std::string_view line, BuildState& state) {
     return fields.ok();
 }
 
-// The digest of the file. The stamp is not set.
-Result<Memo> read_digest(const std::string& path) {
-    struct OpenFile {
-        ~OpenFile() {
-            if (fd >= 0) close(fd);
-        }
-        const int fd;
-    };
-    const OpenFile file{open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
-    const auto failed = [&] { return Error{ErrorCode::io, path, system_reason(errno)}; };
-    struct stat status {};
-    if (file.fd < 0 || fstat(file.fd, &status) != 0) return failed();
-    if (!S_ISREG(status.st_mode)) return Error{ErrorCode::io, path, "is not a file"};
-    Memo memo;
-    Sha256 sum;
-    std::vector<char> buffer(std::size_t{1} << 18);
-    while (true) {
-        const ssize_t count = read(file.fd, buffer.data(), buffer.size());
-        if (count < 0 && errno == EINTR) continue;
-        if (count < 0) return failed();
-        if (count == 0) break;
-        sum.add(buffer.data(), static_cast<std::size_t>(count));
+struct OpenFile {
+    ~OpenFile() {
+        if (fd >= 0) close(fd);
     }
-    memo.digest = sum.finish();
-    return memo;
-}
+    const int fd;
+};
 
 std::int64_t now() {
     const auto since = std::chrono::system_clock::now().time_since_epoch();
@@ -193,14 +174,50 @@ BuildState BuildState::parse(std::string_view text) {
     return state;
 }
 
-std::string Contents::path(const std::string& name) const {
-    return root_.empty() || name.starts_with('/') ? name : root_ + "/" + name;
+Result<Digest> digest_of_file(const std::string& path) {
+    const OpenFile file{open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
+    const auto failed = [&] { return Error{ErrorCode::io, path, system_reason(errno)}; };
+    struct stat status {};
+    if (file.fd < 0 || fstat(file.fd, &status) != 0) return failed();
+    if (!S_ISREG(status.st_mode)) return Error{ErrorCode::io, path, "is not a file"};
+    Sha256 sum;
+    std::vector<char> buffer(std::size_t{1} << 18);
+    while (true) {
+        const ssize_t count = read(file.fd, buffer.data(), buffer.size());
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) return failed();
+        if (count == 0) break;
+        sum.add(buffer.data(), static_cast<std::size_t>(count));
+    }
+    return sum.finish();
 }
 
-Result<Digest> Contents::digest(const std::string& name) { return find(name, false); }
-Result<Digest> Contents::digest_of_own(const std::string& name) { return find(name, true); }
+std::string path_from(const std::string& root, const std::string& name) {
+    return root.empty() || name.starts_with('/') ? name : root + "/" + name;
+}
 
-Result<Digest> Contents::find(const std::string& name, bool is_own) {
+Result<void> check_is_state(const std::string& path) {
+    struct stat status {};
+    if (lstat(path.c_str(), &status) != 0) return {};
+    const Error error{ErrorCode::io, path, "is not a file of build-normals, which would replace it; move it away"};
+    if (!S_ISREG(status.st_mode)) return error;
+    const OpenFile file{open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW)};
+    char head[kStateName.size()];
+    const ssize_t count = file.fd < 0 ? -1 : read(file.fd, head, sizeof head);
+    if (count < 0) return Error{ErrorCode::io, path, system_reason(errno)};
+    // After a power cut, the file may be empty or hold zeros.
+    const std::string_view begin(head, static_cast<std::size_t>(count));
+    const bool is_ours = kStateName.starts_with(begin) || begin.find_first_not_of('\0') == std::string_view::npos;
+    return is_ours ? Result<void>() : error;
+}
+
+void Contents::remember(const std::string& name, const FileStamp& stamp, const Digest& digest) {
+    const std::lock_guard lock(mutex_);
+    memos_[name] = {stamp, digest, true};
+    changed_ = true;
+}
+
+Result<Digest> Contents::digest(const std::string& name) {
     const std::string file = path(name);
     const std::optional<FileStamp> before = FileStamp::of(file);
     if (!before) return Error{ErrorCode::io, file, system_reason(errno)};
@@ -212,20 +229,15 @@ Result<Digest> Contents::find(const std::string& name, bool is_own) {
             return known->second.digest;
         }
     }
-    Result<Memo> read = read_digest(file);
-    if (!read) return read.error();
+    const Result<Digest> read = digest_of_file(file);
+    if (!read) return read;
     const std::optional<FileStamp> after = FileStamp::of(file);
     // The clock of file systems has ticks of up to 10 ms. A file that was changed so recently could change again
     // without a new stamp.
     constexpr std::int64_t kTicks = 20000000;
-    const bool is_settled = is_own || (before->ctime < now() - kTicks && before->mtime < now() - kTicks);
-    if (after != before || !is_settled) return read->digest;
-    read->stamp = *before;
-    read->is_used = true;
-    const std::lock_guard lock(mutex_);
-    memos_[name] = *read;
-    changed_ = true;
-    return read->digest;
+    const bool is_settled = before->ctime < now() - kTicks && before->mtime < now() - kTicks;
+    if (after == before && is_settled) remember(name, *before, *read);
+    return read;
 }
 
 }  // namespace tex::cli

@@ -63,27 +63,34 @@ struct BuildState {
     [[nodiscard]] static BuildState parse(std::string_view text);
 };
 
+// The path of a file of the tree: `root` is empty or the folder that names are relative to.
+[[nodiscard]] std::string path_from(const std::string& root, const std::string& name);
+
+// Errors: io, also if it is no regular file.
+[[nodiscard]] Result<Digest> digest_of_file(const std::string& path);
+
+// Checks that a state may be written to `path`: nothing is there, or a file that begins as a state does, is empty or
+// begins with zeros. Errors: io.
+[[nodiscard]] Result<void> check_is_state(const std::string& path);
+
 // The digests of files. Any thread may call any of these functions.
 class Contents {
 public:
-    // `root` is empty or the folder that names are relative to.
     Contents(std::string root, std::unordered_map<std::string, Memo>& memos) : root_(std::move(root)), memos_(memos) {}
 
-    [[nodiscard]] std::string path(const std::string& name) const;
+    [[nodiscard]] std::string path(const std::string& name) const { return path_from(root_, name); }
     [[nodiscard]] std::optional<FileStamp> stamp(const std::string& name) const { return FileStamp::of(path(name)); }
 
     // The digest of a file. Reads it only if its stamp is new. Errors: io, as the file's path.
     [[nodiscard]] Result<Digest> digest(const std::string& name);
-    // The same for a file that this run has just written, and that nobody else writes.
-    [[nodiscard]] Result<Digest> digest_of_own(const std::string& name);
+    // Notes the digest of a file that this run has put there, and the stamp that it had then.
+    void remember(const std::string& name, const FileStamp& stamp, const Digest& digest);
     // Keeps all other threads out while the memos are read.
     [[nodiscard]] std::unique_lock<std::mutex> hold() { return std::unique_lock(mutex_); }
     // Whether a memo was added.
     [[nodiscard]] bool has_changed() const { return changed_; }
 
 private:
-    [[nodiscard]] Result<Digest> find(const std::string& name, bool is_own);
-
     const std::string root_;
     std::mutex mutex_;
     std::unordered_map<std::string, Memo>& memos_;

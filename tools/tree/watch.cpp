@@ -179,8 +179,12 @@ void Watch::build(const WorkList& work, bool is_part) {
     BuildOptions options = options_;
     options.is_part = is_part;
     options.lists_made = true;
-    const ExitCode code = cli::build(tree_->recipes, work, options, running_, console_);
-    is_abandoned_ = code != ExitCode::done && console_.host().out_is_abandoned();
+    try {
+        const ExitCode code = cli::build(tree_->recipes, work, options, running_, console_);
+        is_abandoned_ = code != ExitCode::done && console_.host().out_is_abandoned();
+    } catch (const UsageError& error) {  // names that are in each other's way
+        console_.error(error.what());
+    }
 }
 
 void Watch::build_what_is_due() {

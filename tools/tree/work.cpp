@@ -6,17 +6,21 @@
 #include <filesystem>
 #include <set>
 #include <unordered_map>
-#include <unordered_set>
 
 #include <fmt/format.h>
 
+#include "batch/file_table.h"
+#include "batch/name_pattern.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "tree/state.h"
 
 namespace tex::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kSame = "the same output";
 
 std::string in_lower_case(std::string text) {
     for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
@@ -41,9 +45,8 @@ std::vector<std::string> output_folders(const std::vector<Recipe>& recipes) {
 
 class Lister {
 public:
-    Lister(const Manifest& manifest, const std::vector<Recipe>& recipes, const std::string& root,
-           const FolderVisitor& entered)
-        : manifest_(manifest), recipes_(recipes), root_(root), entered_(entered) {}
+    Lister(const std::vector<Recipe>& recipes, const std::string& root, const FolderVisitor& entered)
+        : recipes_(recipes), root_(root), entered_(entered) {}
 
     WorkList list() {
         find_inputs();
@@ -55,13 +58,10 @@ public:
 private:
     void find_inputs();
     void find_collisions();
+    void refuse(std::size_t index, std::size_t earlier, const char* what, const std::string& output);
     void find_needs();
     void check_cycle(std::size_t recipe, std::vector<std::size_t>& open);
-    [[noreturn]] void fail(std::size_t recipe, const std::string& reason) const {
-        fail_at(manifest_.path, recipes_[recipe].rule().place, reason);
-    }
 
-    const Manifest& manifest_;
     const std::vector<Recipe>& recipes_;
     const std::string& root_;
     const FolderVisitor& entered_;
@@ -103,40 +103,42 @@ void Lister::find_inputs() {
     }
 }
 
+// Outputs are compared by their places, whatever links lead there, and without the case of letters, which some file
+// systems ignore.
 void Lister::find_collisions() {
-    std::unordered_set<std::string> inputs;
-    for (const BuildTask& task : work_.tasks) inputs.insert(task.input);
+    FileTable<std::size_t> places;
     std::unordered_map<std::string, std::size_t> folded;
     for (std::size_t k = 0; k < work_.tasks.size(); ++k) {
-        BuildTask& task = work_.tasks[k];
-        for (std::size_t n = 0; n < task.outputs.size(); ++n) {
-            const std::string& output = task.outputs[n];
-            if (inputs.contains(output)) {
-                fail(task.recipe,
-                     fmt::format("the output {} of {} is an input", printable(output), printable(task.input)));
-            }
-            makers_.emplace(output, k);
-            const auto [found, is_new] = folded.emplace(in_lower_case(output), k);
-            if (is_new) continue;
-            BuildTask& other = work_.tasks[found->second];
-            const std::string both = fmt::format("{} and {}", printable(other.input), printable(task.input));
-            if (found->second == k) {
-                fail(task.recipe, fmt::format("two outputs of {} are one file, {}; give each a name",
-                                              printable(task.input), printable(output)));
-            }
-            if (other.recipe != task.recipe) {
-                fail(task.recipe,
-                     fmt::format("{} have the same output {}, by the rules {} and {}", both, printable(output),
-                                 recipes_[other.recipe].number(), recipes_[task.recipe].number()));
-            }
-            const bool same = std::find(other.outputs.begin(), other.outputs.end(), output) != other.outputs.end();
-            const std::string refusal = fmt::format(
-                "{} have {} {}; rename or exclude one", both,
-                same ? "the same output" : "outputs that differ only in the case of letters,", printable(output));
-            for (BuildTask* const one : {&task, &other}) {
-                if (one->refusal.empty()) one->refusal = refusal;
+        for (const std::string& output : work_.tasks[k].outputs) {
+            const bool has_name = makers_.emplace(output, k).second;
+            const auto [same, is_new] = folded.emplace(in_lower_case(output), k);
+            if (!is_new)
+                refuse(k, same->second, has_name ? "outputs that differ only in the case of letters," : kSame, output);
+            for (const std::string& file : with_all_levels(output)) {
+                const std::size_t* const other = places.add_place(path_from(root_, file), k);
+                if (other != nullptr && is_new) refuse(k, *other, kSame, file);
             }
         }
+    }
+}
+
+// Refuses two tasks of one rule that make the file `output`; two rules must not. `what` says what they have in common.
+void Lister::refuse(std::size_t index, std::size_t earlier, const char* what, const std::string& output) {
+    BuildTask& task = work_.tasks[index];
+    BuildTask& other = work_.tasks[earlier];
+    const Recipe& recipe = recipes_[task.recipe];
+    const std::string both = fmt::format("{} and {}", printable(other.input), printable(task.input));
+    if (earlier == index) {
+        recipe.fail(fmt::format("two outputs of {} are one file, {}; give each a name", printable(task.input),
+                                printable(output)));
+    }
+    if (other.recipe != task.recipe) {
+        recipe.fail(fmt::format("{} have the same output {}, by the rules {} and {}", both, printable(output),
+                                recipes_[other.recipe].number(), recipe.number()));
+    }
+    const std::string refusal = fmt::format("{} have {} {}; rename or exclude one", both, what, printable(output));
+    for (BuildTask* const one : {&task, &other}) {
+        if (one->refusal.empty()) one->refusal = refusal;
     }
 }
 
@@ -162,7 +164,8 @@ void Lister::check_cycle(std::size_t recipe, std::vector<std::size_t>& open) {
     if (std::find(open.begin(), open.end(), recipe) != open.end()) {
         std::string path;
         for (const std::size_t step : open) path += fmt::format("{} needs ", recipes_[step].number());
-        fail(recipe, fmt::format("rules need each other's outputs: rule {}{}", path, recipes_[recipe].number()));
+        recipes_[recipe].fail(
+            fmt::format("rules need each other's outputs: rule {}{}", path, recipes_[recipe].number()));
     }
     if (checked_.contains(recipe)) return;
     open.push_back(recipe);
@@ -173,9 +176,8 @@ void Lister::check_cycle(std::size_t recipe, std::vector<std::size_t>& open) {
 
 }  // namespace
 
-WorkList list_work(const Manifest& manifest, const std::vector<Recipe>& recipes, const std::string& root,
-                   const FolderVisitor& entered) {
-    return Lister(manifest, recipes, root, entered).list();
+WorkList list_work(const std::vector<Recipe>& recipes, const std::string& root, const FolderVisitor& entered) {
+    return Lister(recipes, root, entered).list();
 }
 
 WorkList part_of(const WorkList& work, std::set<std::size_t> part) {

@@ -29,13 +29,13 @@ struct WorkList {
 };
 
 // Lists what the recipes make. Of several recipes that match a file, the first one makes it. Files in out-dir are no
-// inputs, unless a pattern begins with its name. Two inputs of one recipe whose outputs have the same name, or names
+// inputs, unless a pattern begins with its name. Two inputs of one recipe whose outputs are one file, or have names
 // that differ only in the case of letters, are refused, and the others are made.
 //
 // Calls `entered`, unless it is empty, with each folder before it is read.
 //
-// Throws UsageError: two recipes with one output; an output that is an input; recipes that need each other's outputs.
-[[nodiscard]] WorkList list_work(const Manifest& manifest, const std::vector<Recipe>& recipes, const std::string& root,
+// Throws UsageError: two recipes with one output; recipes that need each other's outputs.
+[[nodiscard]] WorkList list_work(const std::vector<Recipe>& recipes, const std::string& root,
                                  const FolderVisitor& entered = {});
 
 // The tasks `part`, those that need them, and those that they need.

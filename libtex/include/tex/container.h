@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -59,12 +60,20 @@ inline constexpr int kHighestZstdLevel = 22;
 
 struct WriteOptions {
     DdsHeader dds_header = DdsHeader::legacy;
-    bool dds_mark = false;    // DDPF_NORMAL, and the swizzle code 'A2D5' for dxt5nm, as NVIDIA's tools write them
-    int zstd = 0;             // KTX2: 1 (fast) to 22 (small) compresses each level with Zstandard; 0 does not
-    int jpeg_quality = 95;    // JPEG: 1 (small) to 100 (exact), as libjpeg counts
-    bool sync = true;         // fdatasync before the rename
-    bool no_clobber = false;  // do not replace an existing file; report an error (io)
-    ReadOptions reader;       // the reader process also encodes TIFF, TGA, BMP and JPEG
+    bool dds_mark = false;     // DDPF_NORMAL, and the swizzle code 'A2D5' for dxt5nm, as NVIDIA's tools write them
+    int zstd = 0;              // KTX2: 1 (fast) to 22 (small) compresses each level with Zstandard; 0 does not
+    int jpeg_quality = 95;     // JPEG: 1 (small) to 100 (exact), as libjpeg counts
+    bool sync = true;          // fdatasync before the rename
+    bool no_clobber = false;   // do not replace an existing file; report an error (io)
+    bool follow_links = true;  // write the file that a symbolic link leads to; false replaces the link itself, and a
+                               // FIFO or device that has the name
+    ReadOptions reader;        // the reader process also encodes TIFF, TGA, BMP and JPEG
+    // Called when a file is complete, before it takes its place at `path`. Until the call returns, its bytes can be
+    // read from the file `complete`. If this returns an error, the old file stays, and the error is returned. Not
+    // called for standard output, FIFOs and devices.
+    std::function<Result<void>(const std::string& path, const std::string& complete)> before_replacing = {};
+    // Called when a file has taken its place.
+    std::function<void(const std::string& path)> replaced = {};
 };
 
 // The bytes of a file that holds `texture`. DDS and KTX2 hold all levels, and so does EXR if there is more than one;
@@ -95,11 +104,13 @@ struct WriteOptions {
 
 // Writes `bytes` to `path`. Whatever happens during the call, the path holds either its complete old content or its
 // complete new content. The bytes go to a nameless temporary file (O_TMPFILE) in the same directory, followed by
-// fdatasync, link and rename. A symbolic link is followed and stays a link. The mode of an existing file is kept, as
-// far as this user may. Standard output ("-"), FIFOs and devices are written directly.
+// fdatasync, link and rename. A symbolic link is followed and stays a link, unless options.follow_links is false. The
+// mode of an existing file is kept, as far as this user may. Standard output ("-"), FIFOs and devices are written
+// directly.
 //
 // Errors: io             the directory does not exist or is not writable; the disk is full; the path is a directory; or
 //                        another failure of the file system
+//         those of options.before_replacing
 //         out_of_memory  memory or file descriptors ran out
 //         cancelled      the process caught a signal, without SA_RESTART, while a FIFO waited for its reader
 [[nodiscard]] Result<void> write_file(const std::string& path, const std::vector<std::byte>& bytes,

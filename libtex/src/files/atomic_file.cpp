@@ -45,8 +45,10 @@ struct Target {
     std::string path;  // as the caller gave it, for messages
     Descriptor folder;
     std::string name;
-    std::optional<struct stat> existing;
+    std::optional<struct stat> existing;  // the file whose rights the new one takes over
 };
+
+Error exists_error(const Target& target) { return {ErrorCode::io, target.path, "exists already"}; }
 
 // Follows the last component of `path` through symbolic links, even to a missing target. The link stays, and its target
 // is written.
@@ -68,8 +70,8 @@ Result<std::string> follow_links(const std::string& path) {
     return system_error(path, ELOOP);
 }
 
-Result<Target> find_target(const std::string& path) {
-    const Result<std::string> real = follow_links(path);
+Result<Target> find_target(const std::string& path, const AtomicFileOptions& options) {
+    const Result<std::string> real = options.follow_links ? follow_links(path) : path;
     if (!real) return real.error();
     Target target;
     target.path = path;
@@ -86,7 +88,9 @@ Result<Target> find_target(const std::string& path) {
     }
     struct stat status {};
     if (fstatat(target.folder.get(), target.name.c_str(), &status, AT_SYMLINK_NOFOLLOW) == 0) {
-        target.existing = status;
+        if (options.no_clobber) return exists_error(target);
+        if (S_ISDIR(status.st_mode)) return system_error(path, EISDIR);
+        if (S_ISREG(status.st_mode)) target.existing = status;
     } else if (errno != ENOENT) {
         return system_error(path, errno);
     }
@@ -147,8 +151,6 @@ std::string temporary_name(const Target& target, const Make& make) {
     return {};
 }
 
-Error exists_error(const Target& target) { return {ErrorCode::io, target.path, "exists already"}; }
-
 // Renames a temporary file to the target; if this fails, removes the file. Returns 0 or an errno. The section must also
 // cover all that the caller does with the temporary name.
 int move_into_place(const NameSection&, const Target& target, const std::string& temporary, bool no_clobber) {
@@ -181,13 +183,14 @@ Result<void> moved(const Target& target, int failed, bool no_clobber) {
 // The mode of a new file: the umask decides. A replacement is private until keep_rights().
 mode_t first_mode(const Target& target) { return target.existing ? 0600 : 0666; }
 
+std::string path_of_open(int fd) { return "/proc/self/fd/" + std::to_string(fd); }
+
 // Opens a file without a name; returns an empty descriptor if nameless files are not possible here. Errors: io.
 Result<Descriptor> open_nameless(const Target& target) {
     Descriptor file(::openat(target.folder.get(), ".", O_TMPFILE | O_WRONLY | O_CLOEXEC, first_mode(target)));
     if (file) {
         // The file will get its name through /proc.
-        const std::string path = "/proc/self/fd/" + std::to_string(file.get());
-        if (faccessat(AT_FDCWD, path.c_str(), F_OK, 0) != 0) return Descriptor();
+        if (faccessat(AT_FDCWD, path_of_open(file.get()).c_str(), F_OK, 0) != 0) return Descriptor();
         lock(file.get());
         return file;
     }
@@ -218,7 +221,7 @@ Result<Descriptor> open_named(const Target& target, std::string& name, Unfinishe
 }
 
 Result<void> name_nameless(int fd, const Target& target, bool no_clobber) {
-    const std::string nameless = "/proc/self/fd/" + std::to_string(fd);
+    const std::string nameless = path_of_open(fd);
     const auto link = [&](const std::string& name) {
         return linkat(AT_FDCWD, nameless.c_str(), target.folder.get(), name.c_str(), AT_SYMLINK_FOLLOW) == 0;
     };
@@ -239,6 +242,10 @@ Result<void> name_nameless(int fd, const Target& target, bool no_clobber) {
 }
 
 }  // namespace
+
+AtomicFileOptions AtomicFileOptions::of(const WriteOptions& options) {
+    return {options.sync, options.no_clobber, options.follow_links, options.before_replacing, options.replaced};
+}
 
 struct AtomicFile::State {
     Target target;
@@ -265,15 +272,16 @@ Result<AtomicFile> AtomicFile::open(const std::string& path, const AtomicFileOpt
         if (path.find('\0') != std::string::npos) return Error{ErrorCode::io, path, "the name holds a zero byte"};
         auto state = std::make_unique<State>();
         state->options = options;
-        Result<std::optional<ThroughFile>> through = ThroughFile::open(path);
-        if (!through) return through.error();
-        if (*through) {
-            state->through = std::move(*through);
-            return AtomicFile(std::move(state));
+        if (options.follow_links || named_descriptor(path)) {
+            Result<std::optional<ThroughFile>> through = ThroughFile::open(path);
+            if (!through) return through.error();
+            if (*through) {
+                state->through = std::move(*through);
+                return AtomicFile(std::move(state));
+            }
         }
-        Result<Target> target = find_target(path);
+        Result<Target> target = find_target(path, options);
         if (!target) return target.error();
-        if (target->existing && options.no_clobber) return exists_error(*target);
         // A rename would replace a file that its owner has protected. A user who may not write the file may not replace
         // it.
         if (target->existing && faccessat(target->folder.get(), target->name.c_str(), W_OK, AT_EACCESS) != 0) {
@@ -304,20 +312,30 @@ Result<void> AtomicFile::commit() {
     return guarded([&]() -> Result<void> {
         if (state_->through) return state_->through->write_held();
         const Target& target = state_->target;
-        const int fd = state_->file.get();
-        if (const int failed = settle(fd, target, state_->options.sync); failed != 0) {
+        const AtomicFileOptions& options = state_->options;
+        if (const int failed = settle(state_->file.get(), target, options.sync); failed != 0)
             return system_error(target.path, failed, "cannot be written");
+        if (options.before_replacing) {
+            const std::string complete = path_of_open(state_->file.get());
+            if (Result<void> accepted = options.before_replacing(target.path, complete); !accepted) return accepted;
         }
-        if (state_->temporary.empty()) return name_nameless(fd, target, state_->options.no_clobber);
-        const std::string temporary = std::exchange(state_->temporary, {});
-        int failed = 0;
-        {
-            const NameSection section;
-            state_->unfinished->remove(section);
-            failed = move_into_place(section, target, temporary, state_->options.no_clobber);
-        }
-        return moved(target, failed, state_->options.no_clobber);
+        const Result<void> placed = put_into_place();
+        if (placed && options.replaced) options.replaced(target.path);
+        return placed;
     });
+}
+
+Result<void> AtomicFile::put_into_place() {
+    const Target& target = state_->target;
+    if (state_->temporary.empty()) return name_nameless(state_->file.get(), target, state_->options.no_clobber);
+    const std::string temporary = std::exchange(state_->temporary, {});
+    int failed = 0;
+    {
+        const NameSection section;
+        state_->unfinished->remove(section);
+        failed = move_into_place(section, target, temporary, state_->options.no_clobber);
+    }
+    return moved(target, failed, state_->options.no_clobber);
 }
 
 Result<void> write_atomically(const std::string& path, std::span<const std::byte> bytes,

@@ -15,6 +15,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -23,9 +24,17 @@
 
 namespace tex {
 
+struct WriteOptions;
+
+// As in WriteOptions (container.h).
 struct AtomicFileOptions {
-    bool sync = true;         // fdatasync before the name appears
-    bool no_clobber = false;  // do not replace an existing file; report an error
+    bool sync = true;
+    bool no_clobber = false;
+    bool follow_links = true;
+    std::function<Result<void>(const std::string& path, const std::string& complete)> before_replacing = {};
+    std::function<void(const std::string& path)> replaced = {};
+
+    [[nodiscard]] static AtomicFileOptions of(const WriteOptions& options);
 };
 
 class AtomicFile {
@@ -41,12 +50,14 @@ public:
     // Errors: io, out_of_memory.
     Result<void> write_at(std::uint64_t offset, std::span<const std::byte> bytes);
 
-    // Puts the file into place. Call it once, after all writing. Errors: io, out_of_memory.
+    // Puts the file into place. Call it once, after all writing. Errors: io, out_of_memory, those of
+    // options.before_replacing.
     Result<void> commit();
 
 private:
     friend Result<void> write_atomically(const std::string&, std::span<const std::byte>, const AtomicFileOptions&);
     struct State;
+    [[nodiscard]] Result<void> put_into_place();
     explicit AtomicFile(std::unique_ptr<State> state);
     std::unique_ptr<State> state_;
 };

@@ -71,6 +71,9 @@ Result<std::optional<ThroughFile>> ThroughFile::open(const std::string& path) {
     if (!device && errno == EINTR) return Error{ErrorCode::cancelled, path, "interrupted while waiting for a reader"};
     if (!device) return system_error(path, errno);
     const int fd = device.get();
+    // It may have been replaced since it was looked at. A regular file is never written in place.
+    if (fstat(fd, &status) != 0 || S_ISREG(status.st_mode))
+        return Error{ErrorCode::io, path, "was replaced while it was opened"};
     return std::optional(ThroughFile(path, std::move(device), fd));
 }
 

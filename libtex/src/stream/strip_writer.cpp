@@ -232,7 +232,7 @@ Opening open_file(const std::string& path, Container container, const StripPacki
         layout = codec.layout(head, options);
     }
     const std::size_t bytes = codec.layout != nullptr ? layout.size : level_bytes(head.format, head.extent);
-    Result<std::unique_ptr<OutputFile>> file = OutputFile::open(path, bytes, when, {options.sync, options.no_clobber});
+    Result<std::unique_ptr<OutputFile>> file = OutputFile::open(path, bytes, when, AtomicFileOptions::of(options));
     if (!file) return file.error();
     if (codec.open_target != nullptr) {
         auto picture = std::make_unique<PictureWriter>(path, std::move(*file), packing, first);

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "batch/file_table.h"
+
+#include <filesystem>
+#include <system_error>
+
+#include <sys/stat.h>
+
+namespace tex::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What the last component of `path` leads to as a link, even if nothing is there.
+fs::path target_of_links(const std::string& path) {
+    fs::path at = path;
+    constexpr int kMostLinks = 40;  // the kernel's limit; opening a file behind more links is an error
+    for (int k = 0; k < kMostLinks; ++k) {
+        std::error_code error;
+        const fs::path target = fs::read_symlink(at, error);
+        if (error) break;
+        at = at.parent_path() / target;
+    }
+    return at;
+}
+
+}  // namespace
+
+FileKey place_of_file(const std::string& path) {
+    const fs::path whole(path);
+    fs::path folder = whole.parent_path(), rest = whole.filename();
+    while (true) {
+        struct stat status {};
+        if (stat(folder.empty() ? "." : folder.c_str(), &status) == 0)
+            return {status.st_dev, status.st_ino, rest.lexically_normal().string()};
+        if (folder.empty() || folder == folder.parent_path()) return {0, 0, whole.lexically_normal().string()};
+        rest = folder.filename() / rest;
+        folder = folder.parent_path();
+    }
+}
+
+std::vector<FileKey> keys_of_file(const std::string& path, int standard) {
+    std::vector<FileKey> keys;
+    if (path.empty()) return keys;
+    struct stat status {};
+    const int failed = path == "-" ? fstat(standard, &status) : stat(path.c_str(), &status);
+    if (failed == 0 && S_ISREG(status.st_mode)) keys.push_back({status.st_dev, status.st_ino});
+    if (path == "-") return keys;
+    keys.push_back(place_of_file(path));
+    const std::string target = target_of_links(path).string();
+    if (target != path) keys.push_back(place_of_file(target));
+    return keys;
+}
+
+}  // namespace tex::cli

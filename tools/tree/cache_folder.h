@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// cache_folder.h: the files of a cache. No function here follows a link below the folder of the cache.
+
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include <tex/result.h>
+
+namespace tex::cli {
+
+inline constexpr int kCacheVersion = 2;
+
+// Makes a missing or empty folder a cache, unless `is_read_only` is set, and checks that any other one is a cache.
+// Throws UsageError; see Cache::open(). Errors: io.
+[[nodiscard]] Result<void> open_cache_folder(const std::string& folder, bool is_read_only);
+
+// Reads the entry `name` and sets its time of use. Nothing if there is no file of this name; an empty text if it is
+// something else than a regular file, or cannot be read.
+[[nodiscard]] std::optional<std::string> read_cache_entry(const std::string& folder, const std::string& name);
+
+// Writes the entry `name`, and replaces what has its name. Errors: io.
+[[nodiscard]] Result<void> write_cache_entry(const std::string& folder, const std::string& name,
+                                             const std::string& text);
+
+struct CacheEntry {
+    std::string name;
+    std::int64_t used = 0;  // when, in nanoseconds
+    std::int64_t size = 0;  // in bytes
+};
+
+// Calls `found` with every file that has the name of an entry and begins with `head`. Errors: io.
+[[nodiscard]] Result<void> list_cache_entries(const std::string& folder, const std::string& head,
+                                              const std::function<void(CacheEntry)>& found);
+
+// Removes an entry that list_cache_entries() has found. Returns whether it is gone.
+bool remove_cache_entry(const std::string& folder, const std::string& name, const std::string& head);
+
+}  // namespace tex::cli

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "tree/tree_files.h"
+
+#include <filesystem>
+#include <unordered_set>
+
+#include <fmt/format.h>
+
+#include "batch/name_pattern.h"
+#include "cli/text.h"
+#include "cli/text_file.h"
+#include "cli/usage_error.h"
+#include "tree/state.h"
+
+namespace tex::cli {
+namespace {
+
+std::string normal_name(const std::string& file) { return std::filesystem::path(file).lexically_normal().string(); }
+
+}  // namespace
+
+TreeFiles::TreeFiles(const std::vector<Recipe>& recipes, const std::vector<BuildTask>& tasks, const std::string& root,
+                     const RunDocuments& documents) {
+    for (const auto& [what, path] : documents.read) read_.add(path, what);
+    add_inputs(recipes, tasks, root);
+    add_outputs(recipes, tasks, root);
+    add_documents(documents);
+}
+
+void TreeFiles::add_inputs(const std::vector<Recipe>& recipes, const std::vector<BuildTask>& tasks,
+                           const std::string& root) {
+    std::unordered_set<std::string> made;
+    for (const BuildTask& task : tasks) {
+        read_.add(path_from(root, task.input), "the input " + printable(task.input));
+        made.insert(task.outputs.begin(), task.outputs.end());
+    }
+    for (const Recipe& recipe : recipes) {
+        for (const std::string& file : recipe.files()) {
+            if (made.contains(normal_name(file))) continue;
+            read_.add(path_from(root, file), fmt::format("{}, which rule {} reads", printable(file), recipe.number()));
+        }
+    }
+}
+
+void TreeFiles::add_outputs(const std::vector<Recipe>& recipes, const std::vector<BuildTask>& tasks,
+                            const std::string& root) {
+    for (const BuildTask& task : tasks) {
+        if (!task.refusal.empty()) continue;
+        for (const std::string& output : task.outputs) {
+            for (const std::string& file : with_all_levels(output)) {
+                const std::string path = path_from(root, file);
+                if (const std::string* const known = read_.find(path)) {
+                    recipes[task.recipe].fail(
+                        fmt::format("the output {} of {} is {}", printable(file), printable(task.input), *known));
+                }
+                written_.add_place(path, "an output of " + printable(task.input));
+            }
+        }
+    }
+}
+
+void TreeFiles::add_documents(const RunDocuments& documents) {
+    for (const auto& [option, path] : documents.written) {
+        if (path.empty() || is_special_file(path)) continue;
+        const std::string* known = read_.find(path);
+        if (known == nullptr) known = written_.find(path);
+        if (known != nullptr) throw UsageError(fmt::format("{}: {} is {}", option, printable(path), *known));
+        written_.add(path, "the file of " + option);
+    }
+}
+
+Result<void> TreeFiles::may_replace(const std::string& path) const {
+    const std::string* const known = read_.find(path);
+    if (known == nullptr) return {};
+    return Error{ErrorCode::io, path, fmt::format("is now {}; nothing is replaced", *known)};
+}
+
+}  // namespace tex::cli
