@@ -16,12 +16,14 @@ test_packages=(
     git strace zsh fish assimp-utils nix-bin ruby
     pybind11-dev python3-dev python3-numpy python3-pytest python3-pip
 )
-# The browser takes 300 MB. Without it and GNU parallel, their tests report that they were skipped. The gate starts
-# a Slurm cluster and builds textures on it.
+# The browser takes 300 MB. Without it and GNU parallel, their tests report that they were skipped.
 # shellcheck disable=SC2034
 gate_packages=(
-    clang-14 clang-format-14 clang-tidy-14 ccache libbenchmark-dev chromium g++-aarch64-linux-gnu qemu-user-static
-    slurmctld slurmd slurm-client munge parallel lintian
+    clang-14 clang-format-14 ccache chromium parallel
+)
+# shellcheck disable=SC2034
+nightly_packages=(
+    clang-tidy-14 libbenchmark-dev g++-aarch64-linux-gnu qemu-user-static slurmctld slurmd slurm-client munge lintian
 )
 
 as_root() {
