@@ -89,6 +89,6 @@ def test_check_in_pytest(tmp_path):
 
 def test_the_readme_runs(commands):
     (commands.folder / "rock.png").write_bytes((SAMPLES / "bricks.png").read_bytes())
-    readme = (SOURCE / "README.md").read_text(encoding="utf-8")
+    readme = (SOURCE / "libtex/python/README.md").read_text(encoding="utf-8")
     exec(re.search(r"^```python\n(.*?)^```$", readme, re.DOTALL | re.MULTILINE).group(1), {})
     assert tex.read_texture("out/rock.ktx2").encoding == "dxt5nm"
