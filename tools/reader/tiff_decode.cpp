@@ -227,8 +227,8 @@ bool decode_tiff(const Task& task, ReaderHeader& header) {
     const std::unique_ptr<TIFF, Closer> file(TIFFOpen(kInputPath, "rm"));  // m: the file may change while it is mapped
     if (!file) return refuse_damaged(header);
     TIFF* const tiff = file.get();
-    TIFFSetField(tiff, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB);
     const Layout layout = layout_of(tiff);
+    if (layout.compression == COMPRESSION_JPEG) TIFFSetField(tiff, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB);
     if (const std::string reason = unsupported_reason(tiff, layout); !reason.empty())
         return refuse(header, ErrorCode::unsupported, reason);
     Samples samples{layout.bits, layout.format, layout.photometric == PHOTOMETRIC_MINISWHITE, ReaderType::u8};
