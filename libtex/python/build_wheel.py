@@ -29,7 +29,7 @@ def build():
     options = ["-DCMAKE_BUILD_TYPE=Release", "-DTEX_PYTHON=ON", f"-DPython_EXECUTABLE={sys.executable}"]
     generator = ["-G", "Ninja"] if shutil.which("ninja") else []
     subprocess.run(["cmake", "-S", ROOT, "-B", folder, *generator, *options], check=True)
-    programs = ["tex-reader", "tex-mesh-reader"]
+    programs = ["tex-reader", "tex-reader-oiio", "tex-mesh-reader"]
     subprocess.run(["cmake", "--build", folder, "--target", "tex_python", "tex_python_stubs", *programs], check=True)
     return folder
 
@@ -39,10 +39,8 @@ def collect(folder, stage):
     subprocess.run(["cmake", "--install", folder, "--component", "python", "--prefix", stage], check=True,
                    stdout=sys.stderr)
     package = next(stage.rglob("_tex.*.so")).parent
-    beside = [folder / name for name in ("tex-reader", "tex-pictures.so", "tex-mesh-reader", "libtex.so.0")]
-    files = {f"tex/{path.name}": path for path in sorted([*package.iterdir(), *filter(Path.exists, beside)])}
-    stand_ins = sorted((folder / "stand-ins").glob("*.so"))
-    return files | {f"tex/stand-ins/{path.name}": path for path in stand_ins}
+    beside = [folder / name for name in ("tex-reader", "tex-reader-oiio", "tex-mesh-reader", "libtex.so.0")]
+    return {f"tex/{path.name}": path for path in sorted([*package.iterdir(), *filter(Path.exists, beside)])}
 
 
 def version():

@@ -41,7 +41,7 @@ protected:
         const Result<Descriptor> input = memory_file({});
         const Result<Descriptor> result = memory_file({});
         Result<ReaderProcess> process =
-            ReaderProcess::start({"file", "decode", "tiff", input->get(), result->get()}, options);
+            ReaderProcess::start({ReaderProgram::pictures, "file", "decode", "tiff", input->get(), result->get()}, options);
         if (!process) return process.error();
         std::this_thread::sleep_for(wait);
         return process->finish();

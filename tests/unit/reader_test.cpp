@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <limits>
+#include <memory>
 
 #include "formats/reader/reader_process.h"
 #include "formats/reader/reader_rows.h"
@@ -93,14 +95,76 @@ TEST(Reader, UnassociatedAlphaTouchesNoColour) {
     EXPECT_EQ(image->planes[3].at(0, 0), 10 / 255.0f);
 }
 
-TEST(Reader, OrientationTagsChangeNothing) {
-    TiffMaker tiff{2, 2};
-    tiff.data = raw<std::uint8_t>({10, 20, 30, 40});
-    tiff.orientation = 6;
-    const Result<Image> image = read(tiff.make());
-    ASSERT_TRUE(image);
-    EXPECT_EQ(image->planes[0].at(1, 0), 20 / 255.0f);
-    EXPECT_EQ(image->planes[0].at(0, 1), 30 / 255.0f);
+// What TIFF and EXIF call 6: the first row of the file is the right column of the picture.
+TEST(Reader, OrientationTurnsThePicture) {
+    const std::vector<std::vector<int>> turned = {
+        {10, 20, 30, 40, 50, 60}, {30, 20, 10, 60, 50, 40}, {60, 50, 40, 30, 20, 10}, {40, 50, 60, 10, 20, 30},
+        {10, 40, 20, 50, 30, 60}, {40, 10, 50, 20, 60, 30}, {60, 30, 50, 20, 40, 10}, {30, 60, 20, 50, 10, 40}};
+    for (int orientation = 1; orientation <= 8; ++orientation) {
+        SCOPED_TRACE(orientation);
+        TiffMaker tiff{3, 2};
+        tiff.data = raw<std::uint8_t>({10, 20, 30, 40, 50, 60});
+        tiff.orientation = orientation;
+        const Result<Image> image = read(tiff.make());
+        ASSERT_TRUE(image) << image.error().message();
+        const int width = orientation < 5 ? 3 : 2;
+        ASSERT_EQ(image->extent(), (Extent{width, 6 / width}));
+        for (int k = 0; k < 6; ++k) {
+            EXPECT_EQ(
+                image->planes[0].at(k % width, k / width),
+                static_cast<float>(turned[static_cast<std::size_t>(orientation - 1)][static_cast<std::size_t>(k)]) /
+                    255.0f);
+        }
+    }
+}
+
+TEST(Reader, OddKindsOfSamplesKeepTheirValues) {
+    TiffMaker tiff{2, 1};
+    tiff.bits = 12;
+    tiff.data = raw<std::uint8_t>({0x80, 0x0f, 0xff});  // a stream of bits
+    const Result<Image> twelve = read(tiff.make());
+    expect_row(twelve, 0, {static_cast<float>(2048 / 4095.0), 1.0f});
+    EXPECT_EQ(twelve->bits, 12);
+    tiff.bits = 64;
+    tiff.data = raw<std::uint64_t>({0, ~std::uint64_t{0}});
+    expect_row(read(tiff.make()), 0, {0.0f, 1.0f});
+    tiff.sample_format = 2;
+    tiff.data = raw<std::int64_t>({std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max()});
+    expect_row(read(tiff.make()), 0, {-1.0f, 1.0f});
+    tiff.sample_format = 3;
+    tiff.data = raw<double>({-8848.86, 0.1});
+    expect_row(read(tiff.make()), 0, {-8848.86f, 0.1f});
+    tiff.bits = 24;
+    tiff.data = raw<std::uint8_t>({0, 0x80, 0x3f, 0, 0, 0xc0});  // 1.5 and -2 with 16 bits of fraction
+    expect_row(read(tiff.make()), 0, {1.5f, -2.0f});
+    tiff = TiffMaker{2, 1};
+    tiff.photometric = 0;  // 0 is white
+    tiff.data = raw<std::uint8_t>({0, 200});
+    expect_row(read(tiff.make()), 0, {1.0f, 55 / 255.0f});
+}
+
+TEST(Reader, TellsWhatATiffSaysAboutItsSamples) {
+    TiffMaker tiff{2, 1};
+    tiff.bits = 16;
+    tiff.sample_format = 2;
+    tiff.data = raw<std::int16_t>({-10, 20});
+    Result<InputFile> file = InputFile::from_memory("test", tiff.make());
+    ASSERT_TRUE(file);
+    const Result<std::unique_ptr<RowSource>> rows = open_reader_rows(*file, quick());
+    ASSERT_TRUE(rows) << rows.error().message();
+    EXPECT_EQ((*rows)->stored().kind, 2u);
+    EXPECT_EQ((*rows)->stored().bits, 16u);
+    EXPECT_EQ((*rows)->stored().has_place, 0u);
+    EXPECT_EQ((*rows)->stored().has_scale, 0u);
+    const std::string data = TEX_SOURCE_DIR "/../shared/data/wild/";
+    if (!fs::exists(data)) GTEST_SKIP() << "../shared/data is not there";
+    Result<InputFile> geo = InputFile::open(data + "gtif_scale_offset.tif");
+    ASSERT_TRUE(geo);
+    const Result<std::unique_ptr<RowSource>> geo_rows = open_reader_rows(*geo, quick());
+    ASSERT_TRUE(geo_rows) << geo_rows.error().message();
+    EXPECT_EQ((*geo_rows)->stored().has_place, 1u);
+    EXPECT_EQ((*geo_rows)->stored().has_scale, 1u);
+    EXPECT_NE((*geo_rows)->stored().scale, 1.0);
 }
 
 TEST(Reader, RefusesCmyk) {
@@ -180,16 +244,42 @@ TEST(Reader, TellsWhatItIs) {
     EXPECT_EQ(reader_info(absent).error().code, ErrorCode::io);
 }
 
+TEST(Reader, AMissingProgramIsNamedWithItsPackage) {
+    ReadOptions options = quick();
+    const std::string folder = testing::TempDir() + "reader_alone";
+    fs::create_directory(folder);
+    options.reader = folder + "/tex-reader";
+    fs::copy_file(*find_reader({}), options.reader, fs::copy_options::overwrite_existing);
+    Bytes ppm;
+    for (const char c : std::string("P5 1 1 255\nx")) ppm.push_back(static_cast<std::byte>(c));
+    const Result<Image> image = read(ppm, options);
+    ASSERT_FALSE(image);
+    EXPECT_EQ(image.error().code, ErrorCode::io);
+    EXPECT_EQ(image.error().reason,
+              "files of this type are read and written by tex-reader-oiio, which is not installed: install the "
+              "package libtex-reader-oiio");
+    TiffMaker tiff{1, 1};
+    tiff.data = raw<std::uint8_t>({255});
+    expect_row(read(tiff.make(), options), 0, {1.0f});
+    const Result<ReaderInfo> info = reader_info(options);
+    ASSERT_TRUE(info) << info.error().message();
+    EXPECT_EQ(info->openimageio, "");
+    fs::remove_all(folder);
+}
+
+// The programs restrict themselves, whatever threads their libraries start.
 TEST(Reader, FiltersSystemCallsAndRestrictsFiles) {
-    const Result<std::string> program = find_reader({});
-    ASSERT_TRUE(program) << program.error().message();
-    FILE* pipe = popen((*program + " --version").c_str(), "r");
-    char text[200] = {};
-    EXPECT_GT(fread(text, 1, sizeof text - 1, pipe), 0u);
-    pclose(pipe);
-    EXPECT_NE(std::strstr(text, "system calls filtered"), nullptr) << text;
-    const bool has_landlock = syscall(SYS_landlock_create_ruleset, nullptr, 0, 1) >= 1;
-    EXPECT_NE(std::strstr(text, has_landlock ? "files restricted" : "files not restricted"), nullptr) << text;
+    for (const ReaderProgram which : {ReaderProgram::pictures, ReaderProgram::other_pictures, ReaderProgram::meshes}) {
+        const Result<std::string> program = find_reader({}, which);
+        ASSERT_TRUE(program) << program.error().message();
+        FILE* pipe = popen((*program + " --version").c_str(), "r");
+        char text[200] = {};
+        EXPECT_GT(fread(text, 1, sizeof text - 1, pipe), 0u);
+        pclose(pipe);
+        EXPECT_NE(std::strstr(text, "system calls filtered"), nullptr) << text;
+        const bool has_landlock = syscall(SYS_landlock_create_ruleset, nullptr, 0, 1) >= 1;
+        EXPECT_NE(std::strstr(text, has_landlock ? "files restricted" : "files not restricted"), nullptr) << text;
+    }
 }
 
 }  // namespace

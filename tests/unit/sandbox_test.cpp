@@ -230,16 +230,6 @@ TEST_F(Sandbox, HasNoNetworkNoWritingAndNoOtherProcesses) {
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
 }
 
-// The zygote forks, signals its children, and leaves it to them to limit and restrict themselves.
-TEST_F(Sandbox, OfTheZygoteAllowsProcessesButNoProgramsNoNetworkAndNoWriting) {
-    EXPECT_EQ(possible(filter_calls_of_zygote, attempts(false)),
-              "signal to the parent\nsignal to a thread of the parent\nown limits\nanother process\n"
-              "limits of the parent\nsurvival of the parent\nthe end\n");
-    EXPECT_EQ(possible([] { return filter_calls_of_zygote() && filter_calls(); }, attempts(false)), "the end\n");
-    EXPECT_EQ(std::filesystem::file_size(file_), 4u);
-    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
-}
-
 TEST_F(Sandbox, LetsADecoderDoItsWork) {
     const std::vector<Attempt> work = {
         {"signal to itself", [] { return syscall(SYS_tgkill, getpid(), syscall(SYS_gettid), 0) == 0; }},
@@ -283,56 +273,6 @@ TEST_F(Sandbox, HasNoFilesButTheInput) {
         return;
     }
     EXPECT_EQ(possible([&] { return with_input() && restrict_files(); }, reading), "input\n");
-}
-
-// Files are closed to the children of the zygote as they are to a reader without one.
-TEST_F(Sandbox, OfTheZygoteLeavesOnlyReadingAndItsChildrenNothingButTheInput) {
-    if (landlock_version() == 0) return;
-    const std::vector<Attempt> all = {
-        {"input", [] { return open_with("/proc/self/fd/4", O_RDONLY) >= 0; }},
-        {"file", [this] { return open_with(file_, O_RDONLY) >= 0; }},
-        {"to write", [this] { return open_with(file_, O_WRONLY) >= 0; }},
-        {"create", [this] { return open_with(folder_ + "/new", O_WRONLY | O_CREAT) >= 0; }},
-        {"remove", [this] { return unlink(file_.c_str()) == 0; }}};
-    std::ofstream(folder_ + "/input") << "text";
-    const auto with_input = [this] {
-        return dup2(open((folder_ + "/input").c_str(), O_RDONLY), kInputDescriptor) == kInputDescriptor;
-    };
-    EXPECT_EQ(possible([&] { return restrict_files_of_zygote() && with_input(); }, all), "input\nfile\n");
-    EXPECT_EQ(
-        possible(
-            [&] { return restrict_files_of_zygote() && filter_calls_of_zygote() && with_input() && restrict_files(); },
-            all),
-        "input\n");
-}
-
-// A thread that a library started earlier: an attacker in the process can make it do anything.
-TEST_F(Sandbox, HasNoFilesInAThreadThatWasThereBefore) {
-#if defined(__SANITIZE_THREAD__)
-    return;  // its own internal thread cannot be asked
-#endif
-    std::promise<void> go;
-    std::promise<bool> done;
-    std::thread other;
-    const auto start_thread = [&] {
-        other = std::thread([&] {
-            sigset_t all;  // some libraries block all signals in their threads
-            sigfillset(&all);
-            pthread_sigmask(SIG_BLOCK, &all, nullptr);
-            go.get_future().wait();
-            done.set_value(open_with(file_, O_RDONLY) >= 0);
-        });
-        return true;
-    };
-    const std::vector<Attempt> reading = {{"file in another thread", [&] {
-                                               go.set_value();
-                                               const bool opened = done.get_future().get();
-                                               other.join();
-                                               return opened;
-                                           }}};
-    EXPECT_EQ(possible(start_thread, reading), "file in another thread\n");
-    if (landlock_version() == 0) return;
-    EXPECT_EQ(possible([&] { return start_thread() && restrict_files(); }, reading), "");
 }
 
 // The filter of calls is one reason why the process cannot send signals; Landlock is the other.

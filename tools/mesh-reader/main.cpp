@@ -44,9 +44,7 @@ bool answer(const Glb& glb, ReaderHeader& header) {
                                   static_cast<std::uint32_t>(glb.json.size()), 0x4e4f534a};
     const std::uint32_t middle[] = {static_cast<std::uint32_t>(glb.data.size()), 0x004e4942};
     header.bytes = glb.bytes();
-    put_header(header);
-    put_progress();
-    wait_for_room();
+    reserve_result(glb.bytes());
     std::uint64_t at = kReaderDataOffset;
     const auto put = [&at](const void* from, std::size_t bytes) {
         put_bytes(at, from, bytes);
@@ -82,11 +80,5 @@ bool read_mesh(const Task& task, ReaderHeader& header) {
 }  // namespace tex::reader
 
 int main(int argc, char** argv) {
-    using namespace tex::reader;
-    Task task;
-    if (!parse_task(argc, argv, task) || task.verb != "mesh") {
-        static_cast<void>(std::fputs("tex-mesh-reader: started by libtex, not by hand\n", stderr));
-        return 2;
-    }
-    _exit(run(task, {[] {}, read_mesh}));
+    return tex::reader::run_program("tex-mesh-reader", "Assimp", argc, argv, tex::reader::read_mesh);
 }

@@ -1,54 +1,46 @@
 // SPDX-License-Identifier: Apache-2.0
-// tex-reader: loads tex-pictures.so, which is all the rest (program.cpp), from its own folder.
+// tex-reader: decodes and encodes TIFF and JPEG for libtex, which starts it. Do not run it by hand, except
 //
-// OpenImageIO links 260 libraries, and most of the time of a start goes into those that tex-reader never calls. The
-// folder stand-ins, if there is one, has small libraries of the same names (stand_ins.cmake). A library of a name that
-// is loaded already is not loaded again, so they come first. If OpenImageIO needs more of a library than its stand-in
-// has, which is possible after an update, all of them go, and the real ones are loaded.
+//     tex-reader --version      prints the versions of the decoders, and whether the kernel supports the restriction of
+//                               files and the filter of system calls
 
-#include <dlfcn.h>
-
-#include <cstdio>
-#include <filesystem>
+#include <iterator>
 #include <string>
-#include <system_error>
-#include <vector>
 
+#include <tiffvers.h>
+
+#include "decoders.h"
+
+#define TEX_TEXT_OF(number) #number
+#define TEX_TEXT(number) TEX_TEXT_OF(number)
+
+namespace tex::reader {
 namespace {
 
-std::string own_folder() {
-    std::error_code error;
-    return std::filesystem::read_symlink("/proc/self/exe", error).parent_path().string();
-}
+struct Decoder {
+    std::string_view format;
+    bool (*decode)(const Task& task, ReaderHeader& header);
+    bool (*encode)(const Task& task, ReaderHeader& header);
+};
 
-std::vector<void*> load_stand_ins(const std::string& folder) {
-    std::vector<void*> loaded;
-    std::error_code error;
-    for (const auto& file : std::filesystem::directory_iterator(folder + "/stand-ins", error)) {
-        if (file.path().extension() != ".so") continue;
-        if (void* const library = dlopen(file.path().c_str(), RTLD_NOW | RTLD_LOCAL)) loaded.push_back(library);
+constexpr Decoder kDecoders[] = {
+    {"tiff", decode_tiff, encode_tiff},
+    {"jpeg", decode_jpeg, encode_jpeg},
+};
+
+bool read_or_write(const Task& task, ReaderHeader& header) {
+    if (task.verb == "describe") return true;
+    for (const Decoder& decoder : kDecoders) {
+        if (decoder.format == task.format)
+            return (task.verb == "encode" ? decoder.encode : decoder.decode)(task, header);
     }
-    return loaded;
-}
-
-void* load_pictures(const std::string& folder) {
-    const std::string library = folder + "/tex-pictures.so";
-    const std::vector<void*> stand_ins = load_stand_ins(folder);
-    if (void* const pictures = dlopen(library.c_str(), RTLD_NOW | RTLD_GLOBAL)) return pictures;
-    for (void* const stand_in : stand_ins) dlclose(stand_in);
-    return dlopen(library.c_str(), RTLD_NOW | RTLD_GLOBAL);
+    return refuse(header, ErrorCode::unsupported, "tex-reader does not know the type " + task.format);
 }
 
 }  // namespace
+}  // namespace tex::reader
 
 int main(int argc, char** argv) {
-    constexpr int kNotLoaded = 127;  // as the dynamic loader
-    using Program = int(int, char**);
-    void* const pictures = load_pictures(own_folder());
-    void* const program = pictures == nullptr ? nullptr : dlsym(pictures, "tex_read_pictures");
-    if (program == nullptr) {
-        static_cast<void>(std::fprintf(stderr, "tex-reader: %s\n", dlerror()));
-        return kNotLoaded;
-    }
-    return reinterpret_cast<Program*>(program)(argc, argv);
+    return tex::reader::run_program("tex-reader", "libtiff " TEX_TEXT(TIFFLIB_VERSION), argc, argv,
+                                    tex::reader::read_or_write);
 }

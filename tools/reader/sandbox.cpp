@@ -11,36 +11,23 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
 #include <initializer_list>
 #include <limits>
-#include <span>
 
 #include "reader.h"
-
-// Sanitizers map terabytes of shadow memory, and check memory through pipes. With them the address space stays
-// unlimited and pipes are allowed.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define TEX_READER_SHADOW 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
-#define TEX_READER_SHADOW 1
-#endif
-#endif
 
 namespace tex::reader {
 namespace {
 
-// Lowers a limit. The process may raise it again up to `most`. Returns the maximum that then applies.
-rlim_t limit(__rlimit_resource what, std::int64_t value, std::int64_t most) {
+// Lowers a limit for good. Returns what then applies.
+rlim_t limit(__rlimit_resource what, std::int64_t value) {
     rlimit now{};
     if (getrlimit(what, &now) != 0) return RLIM_INFINITY;
-    const rlim_t highest = std::min(now.rlim_max, static_cast<rlim_t>(most));
-    const rlimit limits{std::min(highest, static_cast<rlim_t>(value)), highest};
+    const rlim_t lowest = std::min(now.rlim_max, static_cast<rlim_t>(value));
+    const rlimit limits{lowest, lowest};
     setrlimit(what, &limits);
-    return highest;
+    return lowest;
 }
-rlim_t limit(__rlimit_resource what, std::int64_t value) { return limit(what, value, value); }
 
 rlim_t highest = RLIM_INFINITY;  // the result of memory_limit()
 
@@ -121,31 +108,6 @@ bool allow(scmp_filter_ctx filter, int call, std::initializer_list<scmp_arg_cmp>
                                   conditions.begin()) == 0;
 }
 
-// What the zygote needs besides that, and its children before they call filter_calls(). (Filters add up: a child can
-// lose calls, but not regain them.)
-constexpr int kAllowedInZygote[] = {
-    SCMP_SYS(recvmsg),
-    SCMP_SYS(sendto),
-    SCMP_SYS(ppoll),
-    SCMP_SYS(wait4),
-    SCMP_SYS(waitid),
-    SCMP_SYS(kill),
-    SCMP_SYS(tgkill),
-    SCMP_SYS(getppid),
-    SCMP_SYS(setpgid),
-    SCMP_SYS(set_tid_address),
-    SCMP_SYS(dup2),
-    SCMP_SYS(dup3),
-    SCMP_SYS(close_range),
-    SCMP_SYS(prctl),
-    SCMP_SYS(prlimit64),
-    SCMP_SYS(setrlimit),
-    SCMP_SYS(seccomp),
-    SCMP_SYS(landlock_create_ruleset),
-    SCMP_SYS(landlock_add_rule),
-    SCMP_SYS(landlock_restrict_self),
-};
-
 // Calls that, depending on their arguments, can reach beyond this process or ask for more than is needed:
 // * files are opened for reading only;
 // * the flags of a descriptor may be read, but no other command of fcntl() is allowed: others make the kernel send
@@ -154,27 +116,22 @@ constexpr int kAllowedInZygote[] = {
 // * limits are read, and processors chosen, for this process only (0);
 // * signals go to this process only;
 // * a new process must be a thread; glibc falls back from clone3, whose flags a filter cannot see, to clone.
-//
-// The zygote may start processes: fork() shares nothing with them. It has their limits to set, and its own threads'
-// ids are not yet known.
-bool allow_conditional(scmp_filter_ctx filter, bool is_zygote) {
-    constexpr scmp_datum_t kKindOfClone = ~static_cast<scmp_datum_t>(CLONE_CHILD_SETTID | CLONE_CHILD_CLEARTID);
+bool allow_conditional(scmp_filter_ctx filter) {
     constexpr scmp_datum_t kWriting = O_WRONLY | O_RDWR | O_CREAT | O_TRUNC | O_APPEND;
     const auto self = static_cast<scmp_datum_t>(getpid());
     return allow(filter, SCMP_SYS(open), {{1, SCMP_CMP_MASKED_EQ, kWriting, 0}}) &&
            allow(filter, SCMP_SYS(openat), {{2, SCMP_CMP_MASKED_EQ, kWriting, 0}}) &&
            allow(filter, SCMP_SYS(fcntl), {{1, SCMP_CMP_EQ, F_GETFD, 0}}) &&
            allow(filter, SCMP_SYS(fcntl), {{1, SCMP_CMP_EQ, F_GETFL, 0}}) &&
-           (is_zygote || allow(filter, SCMP_SYS(prlimit64), {{0, SCMP_CMP_EQ, 0, 0}, {2, SCMP_CMP_EQ, 0, 0}})) &&
+           allow(filter, SCMP_SYS(prlimit64), {{0, SCMP_CMP_EQ, 0, 0}, {2, SCMP_CMP_EQ, 0, 0}}) &&
            allow(filter, SCMP_SYS(sched_setaffinity), {{0, SCMP_CMP_EQ, 0, 0}}) &&
 #ifdef TEX_READER_SHADOW  // whose runtime asks for its threads by their numbers
            allow(filter, SCMP_SYS(sched_getaffinity), {}) &&
 #else
            allow(filter, SCMP_SYS(sched_getaffinity), {{0, SCMP_CMP_EQ, 0, 0}}) &&
 #endif
-           (is_zygote || allow(filter, SCMP_SYS(tgkill), {{0, SCMP_CMP_EQ, self, 0}})) &&
+           allow(filter, SCMP_SYS(tgkill), {{0, SCMP_CMP_EQ, self, 0}}) &&
            allow(filter, SCMP_SYS(clone), {{0, SCMP_CMP_MASKED_EQ, CLONE_THREAD, CLONE_THREAD}}) &&
-           (!is_zygote || allow(filter, SCMP_SYS(clone), {{0, SCMP_CMP_MASKED_EQ, kKindOfClone, SIGCHLD}})) &&
            seccomp_rule_add(filter, SCMP_ACT_ERRNO(ENOSYS), SCMP_SYS(clone3), 0) == 0 &&
            seccomp_rule_add(filter, SCMP_ACT_ERRNO(ENOSYS), SCMP_SYS(openat2), 0) == 0;
 }
@@ -188,7 +145,7 @@ void limit_process(const Task& task) {
 #ifndef TEX_READER_SHADOW
     highest = limit(RLIMIT_AS, task.memory);
 #endif
-    highest = std::min(highest, limit(RLIMIT_FSIZE, kReaderDataOffset, task.memory));
+    highest = std::min(highest, limit(RLIMIT_FSIZE, task.memory));
     limit(RLIMIT_CPU, task.seconds + 1);
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_NOFILE, kDescriptors);
@@ -198,34 +155,14 @@ std::int64_t memory_limit() {
     return static_cast<std::int64_t>(std::min<rlim_t>(highest, std::numeric_limits<std::int64_t>::max()));
 }
 
-void wait_for_room() {
-    rlimit size{};
-    do {
-        if (getrlimit(RLIMIT_FSIZE, &size) != 0 || size.rlim_max <= kReaderDataOffset) return;
-        usleep(50);
-    } while (size.rlim_cur == kReaderDataOffset);
-}
-
-namespace {
-
-bool load_filter(bool is_zygote) {
+bool filter_calls() {
     scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ERRNO(EPERM));
     if (filter == nullptr) return false;
     bool sound = seccomp_attr_set(filter, SCMP_FLTATR_CTL_TSYNC, 1) == 0;
-    const auto allow_all = [&](std::span<const int> calls) {
-        for (const int call : calls) sound = sound && seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, 0) == 0;
-    };
-    allow_all(kAllowed);
-    if (is_zygote) allow_all(kAllowedInZygote);
-    sound = sound && allow_conditional(filter, is_zygote) && seccomp_load(filter) == 0;
+    for (const int call : kAllowed) sound = sound && seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, 0) == 0;
+    sound = sound && allow_conditional(filter) && seccomp_load(filter) == 0;
     seccomp_release(filter);
     return sound;
 }
-
-}  // namespace
-
-bool filter_calls() { return load_filter(false); }
-
-bool filter_calls_of_zygote() { return load_filter(true); }
 
 }  // namespace tex::reader

@@ -2,10 +2,9 @@
 // image_io.h: reads pictures from files.
 //
 // The first bytes of a file, not its name, decide how it is read. PNG and EXR are decoded in this process, by libpng
-// and OpenEXR; DDS and KTX2 by libtex; everything else (TIFF, TGA, JPEG, BMP, HDR, PSD ...) by OpenImageIO in a
-// separate reader process for each file, under limits of memory and time. If such a decoder crashes or hangs, the
-// result is an Error. The second such file also starts a process that stays, idle, until this process ends: it has
-// loaded OpenImageIO, has never seen a file, and forks the readers of all later files.
+// and OpenEXR; DDS and KTX2 by libtex; TIFF by libtiff and JPEG by libjpeg-turbo (tex-reader), and everything else (TGA,
+// BMP, HDR, PSD ...) by OpenImageIO (tex-reader-oiio), in a separate process for each file, under limits of memory and
+// time. If such a decoder crashes or hangs, the result is an Error.
 
 #pragma once
 
@@ -23,9 +22,9 @@ struct ReadOptions {
     std::int64_t max_texels = std::int64_t{1} << 30;
 
     // The reader program, started for each file. Empty: the program that was installed (libexec/libtex/tex-reader) or
-    // built beside libtex.
+    // built beside libtex. tex-reader-oiio is in the same folder.
     std::string reader;
-    std::int64_t reader_memory = std::int64_t{4} << 30;  // bytes: its address space and its result
+    std::int64_t reader_memory = std::int64_t{4} << 30;  // bytes: its address space, with its result
     int reader_timeout = 120;                            // seconds of wall-clock time
 };
 
@@ -33,7 +32,8 @@ struct ReadOptions {
 // PNG: 1 to 16 bits, grey, RGB, alpha, palette (expanded), transparency (as A), interlaced; colour chunks (gAMA, sRGB,
 // iCCP, sBIT) change nothing. EXR: half, float and uint, scanline and tiled, mip-mapped, any channel names (R, G, B, A
 // come first, the others by name); the data window; the first part of a multi-part file. Deep data and subsampled
-// channels are unsupported. `path` "-" reads standard input.
+// channels are unsupported. TIFF and JPEG are turned as their orientation (EXIF) says; x and y of a normal in them stay
+// as they are stored. `path` "-" reads standard input.
 //
 // Errors: io           cannot be opened or read; is a directory; the reader program cannot be started
 //         bad_data     empty, truncated, damaged; not a picture at all
@@ -46,13 +46,13 @@ struct ReadOptions {
 // The reader process, and the access rights that it gives up before it opens a file.
 struct ReaderInfo {
     std::string program;
-    std::string openimageio;        // OpenImageIO's version
+    std::string openimageio;        // its version; empty if tex-reader-oiio is not installed
     int landlock = 0;               // the kernel's version of Landlock; 0: none
     bool files_restricted = false;  // by Landlock: it can open no file except the input
     bool calls_filtered = false;    // by seccomp: no network, no writing, no other programs
 };
 
-// Starts the reader process once to query it, which takes a tenth of a second. Errors: as read_image(), if the process
+// Starts both reader programs once to query them, which takes a fifth of a second. Errors: as read_image(), if the process
 // does not run.
 [[nodiscard]] Result<ReaderInfo> reader_info(const ReadOptions& options = {});
 

@@ -41,7 +41,7 @@ struct Codec {
 
     // Writing. A file type sets `layout` if the place of every byte is known before the first texel; it then takes
     // strips in any order. It sets `open_target` if it takes rows in their order. If the reader process encodes the
-    // file as a whole, `reader_name` is OpenImageIO's name for the type.
+    // file as a whole, `reader_name` is its name for the type (reader_rows.cpp).
     FileLayout (*layout)(const TextureHead& head, const WriteOptions& options) = nullptr;
     Result<std::uint64_t> (*compress)(const FileLayout& layout, int level, const FetchBytes& fetch,
                                       const WriteBytes& write) = nullptr;  // with Zstandard, when all bytes are known

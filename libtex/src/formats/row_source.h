@@ -20,6 +20,7 @@
 
 #include "blocks/extent.h"
 #include "files/input_file.h"
+#include "formats/stored_samples.h"
 
 namespace tex {
 
@@ -38,6 +39,8 @@ public:
     [[nodiscard]] const std::string& normal_encoding() const { return normal_encoding_; }
     [[nodiscard]] const std::string& normal_mark() const { return normal_mark_; }
     [[nodiscard]] std::optional<float> no_data() const { return no_data_; }  // as in Image
+    // What the file says about its samples, if the reader process has decoded it: a GeoTIFF, for example, states units.
+    [[nodiscard]] const StoredSamples& stored() const { return stored_; }
 
     // The number of rows that the file stores as one unit. decode() is cheapest if `first` is a multiple of this
     // number, and `count` either is a multiple too or reaches the last row.
@@ -94,6 +97,7 @@ protected:
 
     void describe_normals(std::string mark) { normal_mark_ = std::move(mark); }
     void describe_no_data(std::optional<float> value) { no_data_ = value; }
+    void describe_stored(const StoredSamples& stored) { stored_ = stored; }
 
 private:
     Extent extent_;
@@ -104,6 +108,7 @@ private:
     std::string normal_encoding_;
     std::string normal_mark_;
     std::optional<float> no_data_;
+    StoredSamples stored_;
 };
 
 // Opens the picture in `file`, which must outlive the rows. Errors: those of read_image() that the header reveals.

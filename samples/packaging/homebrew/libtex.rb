@@ -17,9 +17,11 @@ class Libtex < Formula
   depends_on "fmt"
   depends_on "highway"
   depends_on "isa-l"
+  depends_on "jpeg-turbo"
   depends_on "libdeflate"
   depends_on "libpng"
   depends_on "libseccomp"
+  depends_on "libtiff"
   depends_on :linux
   depends_on "opencolorio"
   depends_on "openexr"
@@ -33,7 +35,7 @@ class Libtex < Formula
   ].freeze
   FILES = %w[
     include/tex/tex.h lib/libtex.so lib/pkgconfig/libtex.pc libexec/libtex/tex-reader
-    libexec/libtex/tex-mesh-reader share/man/man7/normal-maps.7
+    libexec/libtex/tex-reader-oiio libexec/libtex/tex-mesh-reader share/man/man7/normal-maps.7
   ].freeze
 
   def install

@@ -16,8 +16,10 @@
   isa-l,
   libdeflate,
   libhwy,
+  libjpeg,
   libpng,
   libseccomp,
+  libtiff,
   nlohmann_json,
   onetbb,
   opencolorio,
@@ -69,8 +71,10 @@ lib.throwIf (astcenc == null)
         isa-l
         libdeflate
         libhwy
+        libjpeg
         libpng
         libseccomp
+        libtiff
         nlohmann_json
         onetbb
         opencolorio
@@ -87,7 +91,7 @@ lib.throwIf (astcenc == null)
           "$out/bin/$command" --version | grep -F ${version}
         done
         for file in include/tex/tex.h lib/libtex.so lib/pkgconfig/libtex.pc libexec/libtex/tex-reader \
-          libexec/libtex/tex-mesh-reader share/man/man7/normal-maps.7*; do
+          libexec/libtex/tex-reader-oiio libexec/libtex/tex-mesh-reader share/man/man7/normal-maps.7*; do
           ls "$out"/$file
         done
       '';

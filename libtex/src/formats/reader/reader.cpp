@@ -32,21 +32,28 @@ ReaderType texel_type(const FormatInfo& format) {
     return format.bits == 16 ? ReaderType::f16 : ReaderType::f32;
 }
 
+Result<ReaderHeader> describe_reader(ReaderProgram program, const ReadOptions& options) {
+    const Result<Descriptor> input = memory_file({});
+    const Result<Descriptor> result = memory_file({});
+    if (!input) return input.error();
+    if (!result) return result.error();
+    return run_reader({program, {}, "describe", "-", input->get(), result->get()}, options);
+}
+
 }  // namespace
 
 Result<ReaderInfo> reader_info(const ReadOptions& options) {
     return guarded([&]() -> Result<ReaderInfo> {
         const Result<std::string> program = find_reader(options);
         if (!program) return program.error();
-        const Result<Descriptor> input = memory_file({});
-        const Result<Descriptor> result = memory_file({});
-        if (!input) return input.error();
-        if (!result) return result.error();
-        const Result<ReaderHeader> reply = run_reader({{}, "describe", "-", input->get(), result->get()}, options);
+        const Result<ReaderHeader> reply = describe_reader(ReaderProgram::pictures, options);
         if (!reply) return reply.error();
-        const std::string version(reply->reason, strnlen(reply->reason, sizeof reply->reason));
+        if (reply->landlock > INT_MAX) return nonsense({});
+        // Without tex-reader-oiio there is no version.
+        const Result<ReaderHeader> oiio = describe_reader(ReaderProgram::other_pictures, options);
+        const std::string version = oiio ? std::string(oiio->reason, strnlen(oiio->reason, sizeof oiio->reason)) : "";
         const bool sound = std::all_of(version.begin(), version.end(), [](char c) { return c > 0x20 && c < 0x7f; });
-        if (!sound || reply->landlock > INT_MAX) return nonsense({});
+        if (!sound) return nonsense({});
         return ReaderInfo{*program, version, static_cast<int>(reply->landlock),
                           (reply->sandboxed & kFilesRestricted) != 0, (reply->sandboxed & kCallsFiltered) != 0};
     });
@@ -88,7 +95,8 @@ Result<void> ReaderPicture::put(int first, std::span<const std::byte> rows) cons
 Result<std::vector<std::byte>> ReaderPicture::encode() const {
     const Result<Descriptor> result = memory_file({});
     if (!result) return result.error();
-    const Result<ReaderHeader> reply = run_reader({{}, "encode", format_, rows_.get(), result->get()}, options_);
+    const Result<ReaderHeader> reply =
+        run_reader({program_for(format_), {}, "encode", format_, rows_.get(), result->get()}, options_);
     if (!reply) return reply.error();
     return answered_bytes({}, result->get(), *reply);
 }

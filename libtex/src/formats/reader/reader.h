@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// reader.h: reads and writes pictures with OpenImageIO, which runs in its own process.
+// reader.h: reads and writes pictures with decoders that run in processes of their own.
 
 #pragma once
 
@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <tex/container.h>
@@ -16,6 +17,7 @@
 
 #include "files/input_file.h"
 #include "formats/file_layout.h"
+#include "formats/reader/reader_child.h"
 
 namespace tex {
 
@@ -35,7 +37,7 @@ public:
 
 private:
     ReadOptions options_;
-    std::string format_;  // OpenImageIO's name for the file type
+    std::string format_;  // a name of reader_rows.cpp
     Descriptor rows_;
     std::uint64_t row_bytes_ = 0;
 };
@@ -46,13 +48,13 @@ private:
 Result<std::vector<std::byte>> encode_with_reader(const Texture& texture, Container container,
                                                   const WriteOptions& options);
 
-// Finds the reader program: options.reader, or the first of these places, relative to the folder of libtex, in which
-// the installation or the build put it: ../libexec/libtex, ../../libexec/libtex (if libraries are in a folder for their
-// architecture), the same folder.
-// Errors: io.
-Result<std::string> find_reader(const ReadOptions& options);
+// The program that decodes and encodes pictures of this format, a name of reader_rows.cpp.
+ReaderProgram program_for(std::string_view format);
 
-// Finds tex-mesh-reader: in the folder of options.reader, or in one of the same places. Errors: io.
-Result<std::string> find_mesh_reader(const ReadOptions& options);
+// Finds a reader program: tex-reader is options.reader, or the first of these places, relative to the folder of libtex,
+// in which the installation or the build put it: ../libexec/libtex, ../../libexec/libtex (if libraries are in a folder
+// for their architecture), the same folder. Others are in the folder of options.reader, or in one of the same places.
+// Errors: io (a program of another package is not installed, or it is not there).
+Result<std::string> find_reader(const ReadOptions& options, ReaderProgram program = ReaderProgram::pictures);
 
 }  // namespace tex

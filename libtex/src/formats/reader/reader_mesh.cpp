@@ -34,7 +34,7 @@ Result<std::vector<std::byte>> read_with_mesh_reader(const std::string& path, st
     if (!result) return result.error();
     if (!write_exactly(input->get(), 0, file)) return system_error(path, errno, "a file in memory");
     const Result<ReaderHeader> reply =
-        run_reader({path, "mesh", extension_hint(path), input->get(), result->get()}, options);
+        run_reader({ReaderProgram::meshes, path, "mesh", extension_hint(path), input->get(), result->get()}, options);
     if (!reply) return reply.error();
     return answered_bytes(path, result->get(), *reply);
 }

@@ -8,6 +8,7 @@
 #include <sys/ioctl.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -20,15 +21,13 @@
 
 #include "files/system_error.h"
 #include "formats/reader/reader.h"
-#include "formats/reader/reader_memory.h"
 #include "formats/reader/reader_spawn.h"
-#include "formats/reader/reader_zygote.h"
 #include "threads/guard.h"
 
 namespace tex {
 namespace {
 
-using Clock = ReaderClock;
+using Clock = std::chrono::steady_clock;
 
 enum class News { strip, end, late };
 
@@ -80,10 +79,6 @@ bool is_short_of_memory(std::int64_t reader_memory) {
 Error abnormal_end(const ReaderJob& job, const std::string& program, Ending ending, bool begun, bool is_short) {
     constexpr int kNotLoaded = 127;  // exit status of the dynamic loader and of shells
     const std::string signal = " (signal " + std::to_string(ending.signal) + ")";
-    if (ending.is_unknown) {
-        return {ErrorCode::out_of_memory, job.path,
-                does(job) + " ended with the process that started it, which was killed: out of memory?"};
-    }
     if (ending.signal == SIGKILL) {
         return {ErrorCode::out_of_memory, job.path, does(job) + " was killed by the system: out of memory?"};
     }
@@ -180,7 +175,6 @@ struct ReaderProcess::State {
     Descriptor progress;
     ReaderChild child;
     bool has_spoken = false;  // the header is there
-    bool has_room = false;    // grant_result() has been called
     bool in_time = true;
     std::optional<Ending> ending;
 
@@ -190,21 +184,11 @@ struct ReaderProcess::State {
         whole = got == static_cast<ssize_t>(sizeof header) && header.magic == kReaderMagic;
         return header;
     }
-    // Grants room for the result. Called until the process has stated the size of its result.
-    void grant_room() {
-        bool whole = false;
-        const ReaderHeader header = read_header(whole);
-        const auto result = whole ? claimed_result(header, job.verb, memory) : std::nullopt;
-        if (!result) return;
-        has_room = true;
-        grant_result(child.id(), *result, memory);
-    }
     // Waits for the next strip; false if the process has ended.
     bool wait() {
         if (ending) return false;
         const News news = wait_for_news(progress.get(), deadline);
         has_spoken = has_spoken || news == News::strip;
-        if (news == News::strip && !has_room) grant_room();
         if (news == News::strip) return true;
         in_time = news == News::end;
         ending = child.end();
@@ -219,8 +203,7 @@ ReaderProcess::~ReaderProcess() = default;
 
 Result<ReaderProcess> ReaderProcess::start(const ReaderJob& job, const ReadOptions& options) {
     return guarded([&]() -> Result<ReaderProcess> {
-        const bool is_mesh = job.verb == "mesh";
-        const Result<std::string> program = is_mesh ? find_mesh_reader(options) : find_reader(options);
+        const Result<std::string> program = find_reader(options, job.program);
         if (!program) return program.error().of(job.path);
         auto state = std::make_unique<State>();
         state->job = job;
@@ -230,16 +213,13 @@ Result<ReaderProcess> ReaderProcess::start(const ReaderJob& job, const ReadOptio
         state->deadline = Clock::now() + std::chrono::seconds(state->seconds);
 
         int ends[2];
-        if (pipe2(ends, O_CLOEXEC) != 0) return system_error(job.path, errno, "a pipe");
+        if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
+            return system_error(job.path, errno, "a pair of sockets");
         state->progress = Descriptor(ends[0]);
         const Descriptor childs_end(ends[1]);
-        const ReaderLimits limits{options.max_texels, options.reader_memory, state->seconds, state->deadline};
-        if (options.reader.empty() && !is_mesh) state->child = fork_reader(*program, job, childs_end.get(), limits);
-        if (!state->child) {
-            if (const int failed = start_reader(*program, job, childs_end.get(), limits, state->child); failed != 0)
-                return system_error(job.path, failed,
-                                    ("the reader program " + *program + " cannot be started").c_str());
-        }
+        const ReaderLimits limits{options.max_texels, options.reader_memory, state->seconds};
+        if (const int failed = start_reader(*program, job, childs_end.get(), limits, state->child); failed != 0)
+            return system_error(job.path, failed, ("the reader program " + *program + " cannot be started").c_str());
         return ReaderProcess(std::move(state));
     });
 }

@@ -1,41 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
 // reader_protocol.h: the protocol between libtex and its reader process.
 //
-// libtex starts
+// libtex starts one of
 //
-//     tex-reader decode|encode|describe FORMAT MAX_TEXELS MEMORY SECONDS PARENT
-//     tex-mesh-reader mesh EXTENSION MAX_TEXELS MEMORY SECONDS PARENT
+//     tex-reader       decode|encode|describe FORMAT MAX_TEXELS MEMORY SECONDS PARENT
+//     tex-reader-oiio  decode|encode|describe FORMAT MAX_TEXELS MEMORY SECONDS PARENT
+//     tex-mesh-reader  mesh EXTENSION MAX_TEXELS MEMORY SECONDS PARENT
 //
-// (FORMAT as OpenImageIO names it, EXTENSION of the mesh's file or -, MEMORY in bytes, PARENT the process id of the
-// caller) with these descriptors and no others:
+// for one file (FORMAT is a name of reader_rows.cpp, EXTENSION of the mesh's file or -, MEMORY in bytes, PARENT
+// the process id of the caller) with these descriptors and no others:
 //
-//     kResultDescriptor    a file in memory, empty: ReaderHeader at 0, the data at kReaderDataOffset
+//     kResultDescriptor    a file in memory, empty, which nobody can shorten: ReaderHeader at 0, the data at
+//                          kReaderDataOffset
 //     kInputDescriptor     decode: the picture file
 //                          encode: a file in memory, ReaderHeader at 0 (extent, channels, type), the texels at
 //                          kReaderDataOffset
 //                          mesh: the file, in memory
 //                          describe: an empty file in memory; the answer is in `sandboxed`, `landlock` and, as the
-//                          version of OpenImageIO, `reason`
-//     kProgressDescriptor  a pipe: one byte for each strip of rows that is in place; the pipe ends when the process is
-//                          gone
+//                          version of the decoders, `reason`
+//     kProgressDescriptor  a socket: one byte for each strip of rows that is in place; it ends when the process is gone
 //
 // Texels are interleaved, in native byte order, with rows from the top without padding: row j is at kReaderDataOffset +
 // j * row_bytes(). rows_done in the header grows as rows arrive, so that a consumer may follow. An encoded file,
 // or the GLB file that stands for a mesh, is `bytes` long.
 //
-// The reader must ask for room for its data: it writes the extent (encode and mesh: `bytes`) to the header and a byte
-// to the pipe. libtex then raises the process's limit on the size of files, which was kReaderDataOffset, and lowers the
-// limit on its address space by the same amount, so that MEMORY limits both together (reader_memory.h).
+// MEMORY limits the address space of the process. It reserves as much of that as its result is long, so that the limit
+// holds for both together. MEMORY also limits the result, in case a process that was taken over reserves nothing.
 //
 // The process writes the header, with state `working`, when it is ready. A process that ends before that has not seen
 // its input. It ends with status kNoRoom if even the header cannot be written.
-//
-// From the second file on, libtex spares the start. It starts
-//
-//     tex-reader zygote PARENT
-//
-// with kRequestsDescriptor, a socket of messages, and no other descriptor. This process loads OpenImageIO once and sees
-// no file. For each ReaderRequest it forks a reader, which continues as if it had just been started (reader_zygote.h).
 //
 // The reader is not trusted: everything that it hands over is checked as if it came from the file itself.
 
@@ -45,15 +38,17 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "formats/stored_samples.h"
+
 namespace tex {
 
 inline constexpr int kFirstDescriptor = 3;  // after the standard streams, which are /dev/null
 inline constexpr int kResultDescriptor = 3;
 inline constexpr int kInputDescriptor = 4;
 inline constexpr int kProgressDescriptor = 5;
-inline constexpr int kRequestsDescriptor = 3;  // of the zygote
+inline constexpr int kReaderArguments = 7;  // with the name of the program
 
-inline constexpr std::uint32_t kReaderMagic = 0x34786574;  // "tex4": changes with the layout below
+inline constexpr std::uint32_t kReaderMagic = 0x35786574;  // "tex5": changes with the layout below
 inline constexpr int kMaxReaderChannels = 64;
 inline constexpr std::size_t kReaderDataOffset = 8192;
 
@@ -95,41 +90,17 @@ struct ReaderHeader {
     std::uint64_t rows_done = 0;
     std::uint64_t bytes = 0;  // of an encoded file
     std::uint32_t has_no_data = 0;
-    std::uint32_t quality = 0;  // encode: of a JPEG, 1 to 100
-    double no_data = 0;         // samples of this value hold no data, as the file says
+    std::uint32_t quality = 0;      // encode: of a JPEG, 1 to 100
+    double no_data = 0;             // samples of this value hold no data, as the file says
+    std::uint32_t orientation = 1;  // 1 to 8, as in TIFF and EXIF; the rows have been turned accordingly
+    std::uint32_t unused = 0;
+    StoredSamples stored;
     char reason[1024] = {};
     char description[1024] = {};  // of the picture: text, cut off at this length
     char names[kMaxReaderChannels][64] = {};
 };
 
 static_assert(std::is_trivially_copyable_v<ReaderHeader> && sizeof(ReaderHeader) <= kReaderDataOffset);
-
-// What libtex asks of the zygote: a process for one job, with the arguments of the command line above. It comes with
-// four descriptors: a socket for ReaderNews, and the result, the input and the pipe for the process.
-struct ReaderRequest {
-    std::uint32_t magic = kReaderMagic;
-    std::int32_t seconds = 0;
-    std::int64_t max_texels = 0;
-    std::int64_t memory = 0;
-    char verb[16] = {};
-    char format[48] = {};
-};
-
-inline constexpr int kRequestDescriptors = 4;
-
-// The answers to a request. The first one comes at once: the id of the new process, from that process, before it does
-// anything else; or, from the zygote, the errno that fork() left. The second one says how the process ended. The zygote
-// sends it when the process has ended and libtex has shut down the socket for writing, which also ends a process that
-// still runs. Until then, the id stays that of the process.
-struct ReaderNews {
-    std::uint32_t magic = kReaderMagic;
-    std::int32_t error = 0;
-    std::int32_t process = 0;
-    std::int32_t signal = 0;
-    std::int32_t status = 0;
-};
-
-static_assert(std::is_trivially_copyable_v<ReaderRequest> && std::is_trivially_copyable_v<ReaderNews>);
 
 inline constexpr std::uint64_t row_bytes(const ReaderHeader& header) {
     return static_cast<std::uint64_t>(header.width) * static_cast<std::uint64_t>(header.channels) *

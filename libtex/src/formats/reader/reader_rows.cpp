@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -19,13 +20,14 @@
 #include "files/system_error.h"
 #include "formats/claims.h"
 #include "formats/normal_mark.h"
+#include "formats/reader/reader.h"
 #include "formats/reader/reader_process.h"
 #include "threads/guard.h"
 
 namespace tex {
 namespace {
 
-// The first bytes of a file type, and OpenImageIO's name for it.
+// The first bytes of a file type, and its name, which is that of OpenImageIO's format.
 struct Mark {
     std::string_view bytes;
     std::string_view format;
@@ -62,6 +64,9 @@ constexpr Mark kMarks[] = {
     {"FOR4"sv, "iff"},
     {"\x53\x80\xf6\x34"sv, "softimage"},
 };
+
+// The types that tex-reader decodes and encodes. tex-reader-oiio does the others.
+constexpr std::string_view kOfTexReader[] = {"tiff", "jpeg"};
 
 // A TGA begins directly with its header: length of the id, type of the palette (0, 1), type of the picture, palette,
 // origin, extent and depth.
@@ -178,7 +183,7 @@ std::vector<std::string> plane_names(const ReaderHeader& header) {
 // Checks every field of the header that later code relies on.
 bool plausible(const ReaderHeader& header) {
     return header.channels >= 1 && header.channels <= kMaxReaderChannels && header.type <= ReaderType::f32 &&
-           header.bits >= 1 && header.bits <= 8 * reader_type_bytes(header.type);
+           header.bits >= 1 && header.bits <= 8 * reader_type_bytes(header.type) && header.orientation <= 8;
 }
 
 // The file as a descriptor that another process can open again. A stream is first copied to memory.
@@ -241,7 +246,7 @@ Result<void> ReaderRows::start(const ReadOptions& options) {
     if (!result) return result.error();
     result_ = std::move(*result);
     Result<ReaderProcess> process =
-        ReaderProcess::start({file_.path(), "decode", *format, *input, result_.get()}, options);
+        ReaderProcess::start({program_for(*format), file_.path(), "decode", *format, *input, result_.get()}, options);
     if (!process) return process.error();
     process_ = std::move(*process);
     return {};
@@ -267,6 +272,8 @@ Result<void> ReaderRows::open(const ReadOptions& options) {
     const std::string_view text(header_.description, strnlen(header_.description, sizeof header_.description));
     describe_normals(std::string(mark_in_description(text)));
     describe_no_data(no_data_value());
+    if (!std::isfinite(header_.stored.scale) || !std::isfinite(header_.stored.offset)) return nonsense(file_.path());
+    describe_stored(header_.stored);
     return {};
 }
 
@@ -349,6 +356,11 @@ void ReaderRows::store(const std::byte* rows, int first, int end, Image& image) 
 }
 
 }  // namespace
+
+ReaderProgram program_for(std::string_view format) {
+    const bool own = std::find(std::begin(kOfTexReader), std::end(kOfTexReader), format) != std::end(kOfTexReader);
+    return own ? ReaderProgram::pictures : ReaderProgram::other_pictures;
+}
 
 Result<std::unique_ptr<RowSource>> open_reader_rows(InputFile& file, const ReadOptions& options) {
     return guarded([&]() -> Result<std::unique_ptr<RowSource>> {

@@ -36,14 +36,32 @@ std::string own_folder() {
     return folder.erase(folder.rfind('/'));
 }
 
-Result<std::string> find_program(const std::string& name) {
-    const std::string folder = own_folder();
-    for (const char* place : {"/../libexec/libtex/", "/../../libexec/libtex/", "/"}) {
-        std::string program = folder;
-        program.append(place).append(name);
-        if (!folder.empty() && access(program.c_str(), X_OK) == 0) return program;
+struct ProgramName {
+    const char* file;
+    const char* package;  // which has the program and nothing else; nullptr: a package with other programs
+};
+
+constexpr ProgramName kReader = {"tex-reader", nullptr};
+constexpr ProgramName kOiioReader = {"tex-reader-oiio", "libtex-reader-oiio"};
+constexpr ProgramName kMeshReader = {"tex-mesh-reader", nullptr};
+
+const ProgramName& name_of(ReaderProgram program) {
+    switch (program) {
+        case ReaderProgram::pictures: break;
+        case ReaderProgram::other_pictures: return kOiioReader;
+        case ReaderProgram::meshes: return kMeshReader;
     }
-    return Error{ErrorCode::io, {}, "the reader program " + name + " was not found beside libtex"};
+    return kReader;
+}
+
+Error absent(const ProgramName& name) {
+    const std::string file = name.file;
+    if (name.package == nullptr)
+        return {ErrorCode::io, {}, "the reader program " + file + " was not found beside libtex"};
+    return {ErrorCode::io,
+            {},
+            "files of this type are read and written by " + file + ", which is not installed: install the package " +
+                name.package};
 }
 
 // Attributes and file actions for a spawned process, freed together.
@@ -66,14 +84,20 @@ public:
 
 }  // namespace
 
-Result<std::string> find_reader(const ReadOptions& options) {
-    if (!options.reader.empty()) return options.reader;
-    return find_program("tex-reader");
-}
-
-Result<std::string> find_mesh_reader(const ReadOptions& options) {
-    if (options.reader.empty()) return find_program("tex-mesh-reader");
-    return options.reader.substr(0, options.reader.rfind('/') + 1) + "tex-mesh-reader";
+Result<std::string> find_reader(const ReadOptions& options, ReaderProgram program) {
+    const ProgramName& name = name_of(program);
+    if (!options.reader.empty()) {
+        if (program == ReaderProgram::pictures) return options.reader;
+        const std::string beside = options.reader.substr(0, options.reader.rfind('/') + 1) + name.file;
+        if (access(beside.c_str(), X_OK) == 0) return beside;
+        return absent(name);
+    }
+    const std::string folder = own_folder();
+    for (const char* place : {"/../libexec/libtex/", "/../../libexec/libtex/", "/"}) {
+        const std::string found = folder + place + name.file;
+        if (!folder.empty() && access(found.c_str(), X_OK) == 0) return found;
+    }
+    return absent(name);
 }
 
 int spawn_reader(const std::string& program, std::vector<std::string> arguments, std::span<const int> descriptors,

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "reader.h"
+#include "oiio.h"
 
 namespace tex::reader {
 namespace {
@@ -65,7 +65,7 @@ void describe(const OIIO::ImageSpec& spec, const NativeType& type, ReaderHeader&
     header.bits = static_cast<std::uint32_t>(bits >= 1 && bits <= container ? bits : container);
     const std::string description = spec.get_string_attribute("ImageDescription");
     std::strncpy(header.description, description.c_str(), sizeof header.description - 1);
-    for (int c = 0; c < spec.nchannels; ++c) {
+    for (int c = 0; c < std::min(spec.nchannels, kMaxReaderChannels); ++c) {
         const std::string& name = spec.channelnames[static_cast<std::size_t>(c)];
         std::strncpy(header.names[c], name.c_str(), sizeof header.names[c] - 1);
     }
@@ -109,7 +109,7 @@ bool refuse_picture(ReaderHeader& header, const std::string& message) {
 
 }  // namespace
 
-bool decode(const Task& task, ReaderHeader& header) {
+bool decode_picture(const Task& task, ReaderHeader& header) {
     const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(task.format);
     if (!input) return refuse(header, ErrorCode::unsupported, "OpenImageIO has no decoder for " + task.format);
     OIIO::ImageSpec config;
@@ -122,27 +122,9 @@ bool decode(const Task& task, ReaderHeader& header) {
     if (const std::string_view reason = unsupported_reason(task.format, spec); !reason.empty()) {
         return refuse(header, ErrorCode::unsupported, std::string(reason));
     }
-    if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1)
-        return refuse(header, ErrorCode::bad_data, "holds no texels");
-    if (spec.nchannels > kMaxReaderChannels) {
-        return refuse(header, ErrorCode::unsupported, std::to_string(spec.nchannels) + " channels");
-    }
-    if (std::int64_t{spec.width} * spec.height > task.max_texels) {
-        return refuse(header, ErrorCode::unsupported,
-                      std::to_string(spec.width) + "x" + std::to_string(spec.height) +
-                          " texels are more than the limit of " + std::to_string(task.max_texels));
-    }
     const NativeType type = native_type(spec);
     describe(spec, type, header);
-    if (task.format == "tiff") {
-        if (const std::optional<double> value = tiff_no_data()) {
-            header.has_no_data = 1;
-            header.no_data = *value;
-        }
-    }
-    put_header(header);
-    put_progress();
-    wait_for_room();
+    if (!begin_picture(task, header)) return false;
 
     const std::uint64_t bytes_of_row = row_bytes(header);
     const int rows = strip_rows(spec, bytes_of_row);
@@ -153,11 +135,7 @@ bool decode(const Task& task, ReaderHeader& header) {
         if (!read_strip(*input, spec, type.read_as, begin, end, strip.data()) || input->has_error()) {
             return refuse_picture(header, input->geterror());
         }
-        put_bytes(kReaderDataOffset + static_cast<std::uint64_t>(begin) * bytes_of_row, strip.data(),
-                  static_cast<std::uint64_t>(end - begin) * bytes_of_row);
-        header.rows_done = static_cast<std::uint64_t>(end);
-        put_header(header);
-        put_progress();
+        put_rows(header, strip.data(), end - begin);
     }
     return true;
 }

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <unistd.h>
-
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
@@ -10,24 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "reader.h"
+#include "oiio.h"
 
 namespace tex::reader {
 namespace {
 
 using OIIO::TypeDesc;
-
-bool read_input(std::uint64_t offset, void* to, std::uint64_t count) {
-    auto* at = static_cast<char*>(to);
-    while (count > 0) {
-        const ssize_t n = pread(kInputDescriptor, at, count, static_cast<off_t>(offset));
-        if (n <= 0) return false;
-        at += n;
-        offset += static_cast<std::uint64_t>(n);
-        count -= static_cast<std::uint64_t>(n);
-    }
-    return true;
-}
 
 TypeDesc type_of(ReaderType type) {
     switch (type) {
@@ -41,15 +27,13 @@ TypeDesc type_of(ReaderType type) {
 OIIO::ImageSpec spec_of(const ReaderHeader& picture) {
     OIIO::ImageSpec spec(picture.width, picture.height, picture.channels, type_of(picture.type));
     spec.attribute("oiio:UnassociatedAlpha", 1);  // alpha is data; RGB must not be divided by it
-    spec.attribute("DateTime", "");               // otherwise the TIFF writer uses the clock
     if (picture.description[0] != '\0') spec.attribute("ImageDescription", picture.description);
-    spec.attribute("jpeg:subsampling", "4:4:4");  // x and y of a normal are stored in the chroma
     return spec;
 }
 
 }  // namespace
 
-bool encode(const Task& task, ReaderHeader& header) {
+bool encode_picture(const Task& task, ReaderHeader& header) {
     ReaderHeader picture;
     if (!read_input(0, &picture, sizeof picture))
         return refuse(header, ErrorCode::bad_data, "no picture was handed over");
@@ -58,8 +42,7 @@ bool encode(const Task& task, ReaderHeader& header) {
 
     OIIO::Filesystem::IOVecOutput bytes;
     OIIO::ImageSpec spec = spec_of(picture);
-    const std::string jpeg = "jpeg:" + std::to_string(picture.quality);
-    spec.attribute("compression", task.format == "jpeg" ? jpeg : task.format == "tiff" ? "zip" : "none");
+    spec.attribute("compression", "none");
     if (!output->set_ioproxy(&bytes) || !output->open("picture." + task.format, spec)) {
         return refuse(header, ErrorCode::unsupported, output->geterror());
     }
@@ -75,15 +58,9 @@ bool encode(const Task& task, ReaderHeader& header) {
         if (!output->write_scanlines(begin, end, 0, spec.format, strip.data())) {
             return refuse(header, ErrorCode::unsupported, output->geterror());
         }
-        put_progress();
     }
     if (!output->close()) return refuse(header, ErrorCode::unsupported, output->geterror());
-    header.bytes = bytes.size();
-    put_header(header);
-    put_progress();
-    wait_for_room();
-    put_bytes(kReaderDataOffset, bytes.buffer().data(), bytes.size());
-    return true;
+    return put_file(header, bytes.buffer().data(), bytes.size());
 }
 
 }  // namespace tex::reader

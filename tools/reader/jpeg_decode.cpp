@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <jerror.h>
+#include <unistd.h>
+#include <cstdio>
+#include <cstring>
+
+#include <algorithm>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "decoders.h"
+#include "jpeg.h"
+
+namespace tex::reader {
+namespace {
+
+// Kinds of JPEG that libjpeg-turbo does not decode.
+constexpr int kUnsupported[] = {JERR_BAD_PRECISION, JERR_SOF_UNSUPPORTED, JERR_ARITH_NOTIMPL, JERR_CONVERSION_NOTIMPL,
+                                JERR_NOTIMPL};
+// Warnings that texels are missing or wrong. Others, as of bytes between two segments, do no harm.
+constexpr int kDamage[] = {JWRN_JPEG_EOF, JWRN_HIT_MARKER, JWRN_HUFF_BAD_CODE, JWRN_MUST_RESYNC};
+
+template <std::size_t N>
+bool is_one_of(const int (&codes)[N], int code) {
+    return std::find(std::begin(codes), std::end(codes), code) != std::end(codes);
+}
+
+[[noreturn]] void give_up(j_common_ptr codec) {
+    char text[JMSG_LENGTH_MAX] = {};
+    codec->err->format_message(codec, text);
+    const JpegJob& job = *static_cast<const JpegJob*>(codec->client_data);
+    if (codec->err->msg_code == JERR_OUT_OF_MEMORY) {
+        refuse_memory(job.header, job.task);
+    } else if (is_one_of(kUnsupported, codec->err->msg_code)) {
+        refuse(job.header, ErrorCode::unsupported, text);
+    } else {
+        refuse(job.header, ErrorCode::bad_data, std::string("damaged: ") + text);
+    }
+    _exit(0);
+}
+
+void judge_warning(j_common_ptr codec, int level) {
+    if (level < 0 && is_one_of(kDamage, codec->err->msg_code)) give_up(codec);
+}
+
+void be_silent(j_common_ptr /*codec*/) {}
+
+// The orientation in the first directory of EXIF data; 1 if there is none.
+std::uint32_t exif_orientation(std::string_view exif) {
+    constexpr std::string_view kMark("Exif\0\0", 6);
+    if (!exif.starts_with(kMark)) return 1;
+    exif.remove_prefix(kMark.size());
+    const bool big_endian = exif.starts_with("MM");
+    const auto number = [&](std::size_t at, std::size_t count) {
+        std::uint64_t value = 0;
+        if (at > exif.size() || count > exif.size() - at) return value;
+        for (std::size_t k = 0; k < count; ++k)
+            value = value << 8 | static_cast<unsigned char>(exif[big_endian ? at + k : at + count - 1 - k]);
+        return value;
+    };
+    constexpr std::uint64_t kTag = 0x0112, kShort = 3;
+    const std::size_t directory = number(4, 4);
+    for (std::size_t k = 0; k < number(directory, 2); ++k) {
+        const std::size_t entry = directory + 2 + 12 * k;
+        if (number(entry, 2) == kTag && number(entry + 2, 2) == kShort)
+            return static_cast<std::uint32_t>(number(entry + 8, 2));
+    }
+    return 1;
+}
+
+void read_markers(const jpeg_decompress_struct& codec, ReaderHeader& header) {
+    for (const jpeg_marker_struct* marker = codec.marker_list; marker != nullptr; marker = marker->next) {
+        const std::string_view data(reinterpret_cast<const char*>(marker->data), marker->data_length);
+        if (marker->marker == JPEG_COM && header.description[0] == '\0')
+            data.copy(header.description, sizeof header.description - 1);
+        if (marker->marker == JPEG_APP0 + 1 && header.orientation == 1) header.orientation = exif_orientation(data);
+    }
+}
+
+}  // namespace
+
+jpeg_error_mgr* handle_errors(jpeg_error_mgr& errors) {
+    jpeg_std_error(&errors);
+    errors.error_exit = give_up;
+    errors.emit_message = judge_warning;
+    errors.output_message = be_silent;
+    return &errors;
+}
+
+bool decode_jpeg(const Task& task, ReaderHeader& header) {
+    FILE* const file = std::fopen(kInputPath, "rbe");
+    if (file == nullptr) return refuse(header, ErrorCode::bad_data, "cannot be opened");
+    JpegJob job{task, header};
+    jpeg_error_mgr errors{};
+    jpeg_decompress_struct codec{};
+    codec.err = handle_errors(errors);
+    codec.client_data = &job;
+    jpeg_create_decompress(&codec);
+    jpeg_stdio_src(&codec, file);
+    constexpr unsigned kWholeMarker = 0xffff;
+    jpeg_save_markers(&codec, JPEG_COM, kWholeMarker);
+    jpeg_save_markers(&codec, JPEG_APP0 + 1, kWholeMarker);
+    jpeg_read_header(&codec, TRUE);
+    if (codec.jpeg_color_space == JCS_CMYK || codec.jpeg_color_space == JCS_YCCK)
+        return refuse(header, ErrorCode::unsupported, "CMYK pictures are not read");
+    jpeg_calc_output_dimensions(&codec);
+    header.width = static_cast<std::int32_t>(codec.image_width);
+    header.height = static_cast<std::int32_t>(codec.image_height);
+    header.channels = codec.output_components;
+    header.bits = 8;
+    name_channels(header);
+    read_markers(codec, header);
+    Canvas canvas(header);
+    if (!canvas.begin(task)) return false;
+    jpeg_start_decompress(&codec);
+    const std::size_t row = std::size_t{codec.output_width} * static_cast<std::size_t>(codec.output_components);
+    constexpr std::size_t kStrip = std::size_t{1} << 20;
+    std::vector<JSAMPLE> strip(row * std::clamp<std::size_t>(kStrip / row, 1, codec.output_height));
+    while (codec.output_scanline < codec.output_height) {
+        std::size_t held = 0;
+        for (; held + row <= strip.size() && codec.output_scanline < codec.output_height; held += row) {
+            JSAMPROW to = &strip[held];
+            jpeg_read_scanlines(&codec, &to, 1);
+        }
+        canvas.put(strip.data(), static_cast<int>(held / row));
+    }
+    jpeg_finish_decompress(&codec);
+    canvas.end();
+    return true;
+}
+
+}  // namespace tex::reader
