@@ -30,6 +30,22 @@ TEST_F(BuildNormals, MakesWhatTheCommandsMakeOneAfterTheOther) {
     EXPECT_FALSE(scratch_.has("out/art/wip"));
 }
 
+// A run of hours shows what it does: each line is printed when its texture is done, and a summary when the run ends.
+TEST_F(BuildNormals, JsonHasALineForEachTextureWhenItIsDoneAndASummary) {
+    const auto last = [](const Ran& ran) { return nlohmann::json::parse(lines_of(ran.out).back()); };
+    EXPECT_EQ(last(build()), nlohmann::json::parse(R"({"made":3,"cached":0,"current":0,"failed":0,"removed":0,
+                                                       "interrupted":false})"));
+    scratch_.write("art/wall_h.png", "damaged");
+    const auto summary = last(build());
+    EXPECT_EQ(summary["current"], 2);
+    EXPECT_EQ(summary["failed"], 1);
+    // The largest file is made first, so its line is the first one.
+    scratch_.add_sample("bricks.png", "art/z_h.png");
+    fs::remove(scratch_.path(".normals.toml.state"));
+    const Ran ran = build({"--threads", "1"});
+    EXPECT_EQ(nlohmann::json::parse(lines_of(ran.out).front())["input"], "art/z_h.png");
+}
+
 TEST_F(BuildNormals, MakesNothingTwice) {
     ASSERT_EQ(build().code, 0);
     const auto first = outputs();

@@ -48,7 +48,7 @@ protected:
         done_.clear();
         for (const std::string& line : lines_of(ran.out)) {
             const auto result = nlohmann::json::parse(line, nullptr, false);
-            if (result.is_discarded()) continue;
+            if (result.is_discarded() || !result.contains("input")) continue;
             done_[result.value("input", std::string())] = result.value("status", std::string("failed"));
         }
         return ran;

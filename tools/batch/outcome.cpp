@@ -8,6 +8,7 @@ namespace tex::cli {
 
 void Reporter::finish(std::size_t place, Outcome outcome) {
     const std::lock_guard lock(mutex_);
+    if (when_ == Printed::at_once) return report(outcome);
     waiting_[place] = std::move(outcome);
     for (; reported_ < waiting_.size() && waiting_[reported_]; ++reported_) {
         report(*waiting_[reported_]);

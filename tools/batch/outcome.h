@@ -38,9 +38,13 @@ struct Outcome {  // NOLINT(bugprone-exception-escape): the tool follows the noe
     std::vector<std::string> prerequisites;
 };
 
+// When outcomes are printed: in the order of the files, or as soon as each file is done.
+enum class Printed { in_order, at_once };
+
 class Reporter {
 public:
-    Reporter(Console& console, std::size_t count, bool json) : console_(console), waiting_(count), json_(json) {}
+    Reporter(Console& console, std::size_t count, bool json, Printed when = Printed::in_order)
+        : console_(console), waiting_(count), json_(json), when_(when) {}
 
     // Takes the outcome of the file at `place`. Prints it and all later outcomes that were waiting for it: errors and
     // warnings on standard error and, with --json, one line on standard output. Any thread may call this.
@@ -66,6 +70,7 @@ private:
     std::size_t reported_ = 0;
     std::size_t done_ = 0;
     bool json_;
+    Printed when_;
     std::atomic<bool> is_abandoned_{false};
     ExitCode exit_code_ = ExitCode::done;
     std::vector<Dependency> dependencies_;

@@ -33,7 +33,7 @@ public:
              const RunOptions& running, Console& console)
         : recipes_(recipes), work_(work), options_(options), running_(running), console_(console),
           contents_(options.root, state_.memos), judge_(state_, contents_, options.output_version),
-          reporter_(console, work.tasks.size(), running.json),
+          reporter_(console, work.tasks.size(), running.json, running.json ? Printed::at_once : Printed::in_order),
           files_(recipes, work.tasks, options.root, documents_of(options)), cache_(options.cache),
           failed_(work.tasks.size()), stale_(work.tasks.size()), results_(work.tasks.size()) {
         write_.sync = !options.no_sync;
@@ -75,6 +75,7 @@ private:
     [[nodiscard]] ExitCode write_depfile() const;
     [[nodiscard]] QueuedTask queued(const BuildTask& task) const;
     void advance(double& counted, double size, double fraction);
+    [[nodiscard]] ExitCode print_summary(bool is_interrupted);
     [[nodiscard]] std::string progress_words() const;
     [[nodiscard]] bool stopped() const { return !console_.host().interruption().empty() || reporter_.is_abandoned(); }
 

@@ -23,6 +23,7 @@
 #include "cli/text_file.h"
 #include "files/system_error.h"
 #include "options/files.h"
+#include "reports/json.h"
 #include "tree/build_run.h"
 
 namespace tex::cli {
@@ -252,6 +253,7 @@ ExitCode BuildRun::run() {
     if (!by.empty()) {
         console_.error(
             fmt::format("interrupted by {}; {} of {} files are done", by, finished_.load(), work_.tasks.size()));
+        if (running_.json) std::ignore = print_summary(true);
         host.end_interrupted();
         return ExitCode::io;
     }
@@ -260,7 +262,20 @@ ExitCode BuildRun::run() {
         for (const ReadyCommand& command : recipe.before()) command.converter->finish_steps(console_);
         for (const RecipeOutput& output : recipe.outputs()) output.last.converter->finish_steps(console_);
     }
-    if (running_.json || running_.quiet) return code;
+    return std::max(code, print_summary(false));
+}
+
+// Prints what happened to the textures: a line of JSON with --json, a line for people without.
+ExitCode BuildRun::print_summary(bool is_interrupted) {
+    if (running_.json) {
+        return console_.print(to_line({{"made", totals_.made.load()},
+                                       {"current", totals_.current.load()},
+                                       {"cached", totals_.cached.load()},
+                                       {"failed", totals_.failed.load()},
+                                       {"removed", totals_.pruned.load()},
+                                       {"interrupted", is_interrupted}}));
+    }
+    if (running_.quiet) return ExitCode::done;
     std::string summary = fmt::format("{} {}, {} up to date", totals_.made.load(),
                                       options_.dry_run ? "to make" : "made", totals_.current.load());
     if (cache_.is_used()) summary += fmt::format(", {} from the cache", totals_.cached.load());
@@ -268,7 +283,7 @@ ExitCode BuildRun::run() {
     if (totals_.failed > 0) summary += fmt::format(", {} failed", totals_.failed.load());
     if (totals_.pruned > 0)
         summary += fmt::format(", {} {}", totals_.pruned.load(), options_.dry_run ? "to remove" : "removed");
-    return std::max(code, console_.print(summary + "\n"));
+    return console_.print(summary + "\n");
 }
 
 ExitCode build(const std::vector<Recipe>& recipes, const WorkList& work, const BuildOptions& options,
