@@ -40,6 +40,21 @@ NativeType native_type(const OIIO::ImageSpec& spec) {
     return {TypeDesc::FLOAT, TypeDesc::FLOAT, ReaderType::f32};
 }
 
+// As TIFF numbers them.
+std::uint32_t kind_of(ReaderType type) {
+    switch (type) {
+        case ReaderType::u8:
+        case ReaderType::u16:
+        case ReaderType::u32: return 1;
+        case ReaderType::s8:
+        case ReaderType::s16:
+        case ReaderType::s32: return 2;
+        case ReaderType::f16:
+        case ReaderType::f32: break;
+    }
+    return 3;
+}
+
 // The reason why a picture is refused, or an empty view.
 std::string_view unsupported_reason(const std::string& format, const OIIO::ImageSpec& spec) {
     const std::string jpeg = spec.get_string_attribute("jpeg:ColorSpace");
@@ -135,10 +150,9 @@ bool decode(const Task& task, ReaderHeader& header) {
     const NativeType type = native_type(spec);
     describe(spec, type, header);
     if (task.format == "tiff") {
-        if (const std::optional<double> value = tiff_no_data()) {
-            header.has_no_data = 1;
-            header.no_data = *value;
-        }
+        read_tiff_tags(header);
+        header.stored.kind = kind_of(type.type);
+        header.stored.bits = header.bits;
     }
     put_header(header);
     put_progress();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads GDAL's tag GDAL_NODATA (42113) of a TIFF: the value of texels without data, as text. OpenImageIO does not
-// return this tag.
+// Reads the tags of GDAL and GeoTIFF in a TIFF that OpenImageIO does not return: GDAL_NODATA (42113), the value of
+// texels without data, as text, and GDAL_METADATA (42112), XML with the scale and the offset.
 
 #include <unistd.h>
 
@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -17,10 +18,12 @@
 namespace tex::reader {
 namespace {
 
-constexpr std::uint64_t kTag = 42113;
+constexpr std::uint64_t kGdalMetadata = 42112;
+constexpr std::uint64_t kGdalNoData = 42113;
+constexpr std::uint64_t kGeoTags[] = {33550, 33922, 34264, 34735};  // scale, tie points, transformation, keys
 constexpr std::uint64_t kAscii = 2;
 constexpr std::uint64_t kMostEntries = 4096;  // of a directory; more are not looked at
-constexpr std::uint64_t kMostText = 64;
+constexpr std::uint64_t kMostText = 65536;
 
 // The bytes of the input at `offset`, or fewer if it ends there.
 std::string bytes_at(std::uint64_t offset, std::uint64_t count) {
@@ -59,6 +62,13 @@ public:
         return {};
     }
 
+    [[nodiscard]] bool has(std::uint64_t tag) const {
+        for (std::size_t k = 0; k + entry_bytes() <= bytes_.size(); k += entry_bytes()) {
+            if (number(std::string_view(bytes_).substr(k, entry_bytes()), 0, 2) == tag) return true;
+        }
+        return false;
+    }
+
 private:
     [[nodiscard]] std::size_t entry_bytes() const { return big_tiff_ ? 20 : 12; }
 
@@ -78,19 +88,48 @@ private:
     std::string bytes_;  // the entries
 };
 
-}  // namespace
-
-std::optional<double> tiff_no_data() {
-    std::string text = Directory(bytes_at(0, 16)).text(kTag);
+// A finite number, with spaces around it.
+std::optional<double> number_of(std::string text) {
     text.resize(std::min(text.find('\0'), text.size()));
     const std::size_t first = text.find_first_not_of(" +");
     if (first == std::string::npos) return std::nullopt;
-    const std::size_t last = text.find_last_not_of(' ');
+    const char* const end = text.data() + text.find_last_not_of(' ') + 1;
     double value = 0;
-    const char* const end = text.data() + last + 1;
     const auto [stop, error] = std::from_chars(text.data() + first, end, value);
     if (error != std::errc() || stop != end || !std::isfinite(value)) return std::nullopt;
     return value;
+}
+
+// The number of GDAL's item with this role, for the first sample: <Item name="SCALE" sample="0" role="scale">2</Item>
+std::optional<double> item_of(std::string_view metadata, std::string_view role) {
+    for (std::size_t at = 0; (at = metadata.find("<Item ", at)) != std::string_view::npos; ++at) {
+        const std::size_t close = metadata.find('>', at);
+        const std::size_t end = metadata.find('<', close);
+        if (end == std::string_view::npos) return std::nullopt;
+        const std::string_view tag = metadata.substr(at, close - at);
+        const bool is_first = tag.find("sample=") == std::string_view::npos || tag.find("sample=\"0\"") != tag.npos;
+        if (is_first && tag.find("role=\"" + std::string(role) + "\"") != tag.npos)
+            return number_of(std::string(metadata.substr(close + 1, end - close - 1)));
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+void read_tiff_tags(ReaderHeader& header) {
+    const Directory directory(bytes_at(0, 16));
+    if (const std::optional<double> value = number_of(directory.text(kGdalNoData))) {
+        header.has_no_data = 1;
+        header.no_data = *value;
+    }
+    for (const std::uint64_t tag : kGeoTags) {
+        if (directory.has(tag)) header.stored.has_place = 1;
+    }
+    const std::string metadata = directory.text(kGdalMetadata);
+    const std::optional<double> scale = item_of(metadata, "scale"), offset = item_of(metadata, "offset");
+    header.stored.has_scale = scale || offset ? 1 : 0;
+    header.stored.scale = scale.value_or(1.0);
+    header.stored.offset = offset.value_or(0.0);
 }
 
 }  // namespace tex::reader

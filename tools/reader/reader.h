@@ -84,9 +84,9 @@ bool filter_calls();
 bool restrict_files_of_zygote();
 bool filter_calls_of_zygote();
 
-// The value that the input, a TIFF, names as that of texels without data (GDAL_NODATA), in units of its samples. None
-// if it names no finite number.
-std::optional<double> tiff_no_data();
+// Reads what the input, a TIFF, says about its samples: the value of texels without data (GDAL_NODATA), GDAL's scale
+// and offset, and whether the picture has a place on the Earth.
+void read_tiff_tags(ReaderHeader& header);
 
 // Both send their answer to kResultDescriptor. After a refusal they return false.
 bool decode(const Task& task, ReaderHeader& header);

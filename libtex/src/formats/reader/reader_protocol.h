@@ -45,6 +45,8 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "formats/stored_samples.h"
+
 namespace tex {
 
 inline constexpr int kFirstDescriptor = 3;  // after the standard streams, which are /dev/null
@@ -53,7 +55,7 @@ inline constexpr int kInputDescriptor = 4;
 inline constexpr int kProgressDescriptor = 5;
 inline constexpr int kRequestsDescriptor = 3;  // of the zygote
 
-inline constexpr std::uint32_t kReaderMagic = 0x34786574;  // "tex4": changes with the layout below
+inline constexpr std::uint32_t kReaderMagic = 0x35786574;  // "tex5": changes with the layout below
 inline constexpr int kMaxReaderChannels = 64;
 inline constexpr std::size_t kReaderDataOffset = 8192;
 
@@ -97,6 +99,7 @@ struct ReaderHeader {
     std::uint32_t has_no_data = 0;
     std::uint32_t quality = 0;  // encode: of a JPEG, 1 to 100
     double no_data = 0;         // samples of this value hold no data, as the file says
+    StoredSamples stored;
     char reason[1024] = {};
     char description[1024] = {};  // of the picture: text, cut off at this length
     char names[kMaxReaderChannels][64] = {};
