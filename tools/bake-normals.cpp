@@ -75,7 +75,7 @@ Result<void> BakeNormals::check(const std::vector<cli::Task>& tasks) {
 
 BakeFileOptions BakeNormals::options(cli::Job& job) const {
     BakeFileOptions options;
-    options.read = job.read_options;
+    options.read = reader_.heights.read_options(job);
     options.heights = reader_.heights.options;
     options.heights.wrap_x = wrap_.x;
     options.heights.wrap_y = wrap_.y;
@@ -116,7 +116,7 @@ void BakeNormals::warn_of_steep(cli::Job& job, std::int64_t steep_texels, Extent
 }
 
 cli::ExitCode BakeNormals::finish(cli::Console& console) {
-    reader_.warn_of_luma(console);
+    reader_.warn_of_files(console);
     return cli::ExitCode::done;
 }
 

@@ -58,6 +58,7 @@ TEX_PYTHON_WORDS(DecoderKind);
 TEX_PYTHON_WORDS(Effort);
 TEX_PYTHON_WORDS(Encoding);
 TEX_PYTHON_WORDS(ErrorCode);
+TEX_PYTHON_WORDS(FileValues);
 TEX_PYTHON_WORDS(Format);
 TEX_PYTHON_WORDS(GradientKernel);
 TEX_PYTHON_WORDS(HeightChannel);

@@ -33,6 +33,7 @@ void each_field(BakeOptions& o, F& f) {
 template <class F>
 void each_field(HeightOptions& o, F& f) {
     f("channel", o.channel);
+    f("channel_name", o.channel_name);
     f("no_data", o.no_data);
     f("fill_invalid", o.fill_invalid);
     f("invert", o.invert);
@@ -141,6 +142,9 @@ void check_placement(const L& layer) {
 template <class F>
 void each_field(ReadOptions& o, F& f) {
     f("max_texels", o.max_texels);
+    f("layer", o.layer);
+    f("values", o.values);
+    f("raw", o.raw);
     f("reader", o.reader);
     f("reader_memory", o.reader_memory);
     f("reader_timeout", o.reader_timeout);

@@ -50,6 +50,9 @@ py::dict dict_of_deband(const DebandReport& report) {
 void tell(const py::dict& facts, const HeightReport& report) {
     facts["luma_texels"] = report.luma_texels;
     facts["invalid_texels"] = report.invalid_texels;
+    facts["implausible_texels"] = report.implausible_texels;
+    facts["stored"] = report.stored;
+    facts["remark"] = report.remark;
     facts["deband"] = dict_of_deband(report.deband);
 }
 

@@ -111,6 +111,9 @@ py::object baked(Call& call, BakeFields& fields, Running& running) {
     py::dict facts = written(report);
     facts["luma_texels"] = report.heights.luma_texels;
     facts["invalid_texels"] = report.heights.invalid_texels;
+    facts["implausible_texels"] = report.heights.implausible_texels;
+    facts["stored"] = report.heights.stored;
+    facts["remark"] = report.heights.remark;
     facts["steep_texels"] = report.steep_texels;
     if (options.slopes) {
         py::dict slopes;

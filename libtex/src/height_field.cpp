@@ -78,9 +78,10 @@ Result<HeightField> height_field(const Image& image, const HeightOptions& option
     assert(!image.planes.empty() && image.planes.size() == image.names.size());
     return guarded([&]() -> Result<HeightField> {
         if (std::optional<Error> wrong = check_blur(options)) return std::move(*wrong);
-        const Result<HeightSource> source = find_height_source(image.names, options.channel);
+        const PictureFacts facts = facts_of(image);
+        const Result<HeightSource> source = find_height_source(facts, options);
         if (!source) return source.error();
-        const Result<HeightOptions> with = with_no_data(options, image.no_data, image.names, *source, nullptr);
+        const Result<HeightOptions> with = with_no_data(options, facts, *source, nullptr);
         if (!with) return with.error();
         const Extent extent = image.extent();
         HeightField field{Plane<float>(extent), 1.0f, 1.0f, options.wrap_x, options.wrap_y};
@@ -90,16 +91,13 @@ Result<HeightField> height_field(const Image& image, const HeightOptions& option
         const double filled = options.blur_sigma > 0.0f ? 0.5 : 1.0;
         const double smoothed = !debands ? taken : options.fill_invalid ? 0.4 : filled;
 
-        std::atomic<std::int64_t> luma_texels{0}, invalid_texels{0};
+        std::atomic<std::int64_t> luma_texels{0}, invalid_texels{0}, implausible_texels{0};
         const auto take = [&](int begin, int end) {
             HeightCounts all;
-            for (int j = begin; j < end; ++j) {
-                const HeightCounts counts = take_heights(image, *source, *with, j, field.height.row(j));
-                all.luma += counts.luma;
-                all.invalid += counts.invalid;
-            }
+            for (int j = begin; j < end; ++j) all += take_heights(image, *source, *with, j, field.height.row(j));
             luma_texels += all.luma;
             invalid_texels += all.invalid;
+            implausible_texels += all.implausible;
         };
         if (auto done = parallel_for(execution, extent.height, rows_per_strip(extent), take, {0.0, taken}); !done)
             return done.error();
@@ -120,7 +118,8 @@ Result<HeightField> height_field(const Image& image, const HeightOptions& option
             auto done = blur(field, static_cast<double>(options.blur_sigma), execution, {filled, 1.0});
             if (!done) return done.error();
         }
-        if (report != nullptr) *report = {luma_texels, invalid_texels, *deband};
+        if (report != nullptr)
+            *report = {luma_texels, invalid_texels, *deband, implausible_texels, image.stored, image.remark};
         return field;
     });
 }

@@ -13,7 +13,7 @@ Result<Extent> probe(const std::string& path, const ReadOptions& options) {
     return guarded([&]() -> Result<Extent> {
         Result<InputFile> file = InputFile::open(path);
         if (!file) return std::move(file).error();
-        if (codec_for(file->head()).magic.empty())
+        if (codec_for(*file, options).reader_name != nullptr)
             return Error{ErrorCode::unsupported, path, "only the reader process knows the extent of this type"};
         const auto rows = open_rows(*file, options);
         if (!rows) return rows.error().of(path);

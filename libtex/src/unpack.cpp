@@ -10,6 +10,7 @@
 #include "blocks/extent.h"
 #include "formats/level_planes.h"
 #include "kernels/unpack.h"
+#include "rows/channel_names.h"
 #include "rows/decode_rows.h"
 #include "rows/unpack_rows.h"
 #include "threads/guard.h"
@@ -127,9 +128,15 @@ Result<void> unpack_rows(const Reader& reader, const UnpackRule& rule, NormalMap
         span);
 }
 
-// The planes for R, G, B and A; null for planes that do not exist.
-std::array<const Plane<float>*, 4> planes_of(const Image& image) {
+// The planes for R, G, B and A; null for planes that do not exist. Errors: as normal_channels().
+Result<std::array<const Plane<float>*, 4>> planes_of(const Image& image) {
     std::array<const Plane<float>*, 4> planes = {};
+    const Result<NormalChannels> named = normal_channels(image.names);
+    if (!named) return named.error();
+    if (!named->channels.empty()) {
+        for (std::size_t c = 0; c < named->channels.size(); ++c) planes[c] = &image.planes[named->channels[c]];
+        return planes;
+    }
     const auto plane = [&](const char* name) {
         const int k = image.find(name);
         return k < 0 ? nullptr : &image.planes[static_cast<std::size_t>(k)];
@@ -183,7 +190,9 @@ Result<MipChain> unpack_levels(const Texture& texture, const UnpackOptions& opti
 }
 
 Result<NormalMap> unpack_image(const Image& image, const UnpackOptions& options, const Execution& execution) {
-    const std::array<const Plane<float>*, 4> planes = planes_of(image);
+    const Result<std::array<const Plane<float>*, 4>> found = planes_of(image);
+    if (!found) return found.error();
+    const std::array<const Plane<float>*, 4>& planes = *found;
     unsigned available = 0;
     for (unsigned c = 0; c < 4; ++c) available |= (planes[c] != nullptr ? 1u : 0u) << c;
     const Result<Sources> sources =

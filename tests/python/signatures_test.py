@@ -22,6 +22,7 @@ NOT_BOUND = {
     "allocate_rows": "memory of planes, which arrays keep",
     "apply_steps": "run('build-normals', ...) runs steps without files in between",
     "check_part": "MeshPart() checks, and parts cannot change",
+    "check_raw": "read_image(path, raw=...) checks its layout",
     "find_by_name": "words are the names",
     "is_fillable": "BadDataError of height_field() without fill_invalid",
     "name_of": "words are the names",

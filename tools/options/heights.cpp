@@ -98,7 +98,23 @@ void KernelOption::add(Command& command, std::string help) {
 }
 
 void HeightGroup::add(Command& command) {
-    command.choice(options.channel, "--channel", "C", kHeightChannelNames, "which channel holds the heights");
+    Row& channel = command.option("--channel", "C", "which channel holds the heights, also by its name in an EXR file",
+                                  [this](const std::string& text) {
+                                      const auto known = find_by_name(kHeightChannelNames, text);
+                                      if (text.empty()) throw UsageError("needs a value that is not empty");
+                                      options.channel = known.value_or(HeightChannel::automatic);
+                                      options.channel_name = known ? std::string() : text;
+                                  });
+    channel.words = words_of(kHeightChannelNames);
+    channel.completes = Completes::words;
+    channel.preset = name_of(kHeightChannelNames, options.channel);
+    command.choice(values, "--heights", "WHAT", kFileValuesNames, "what integers in the file become");
+    command.option("--raw", "LAYOUT", "the file is bare heights: [WxH,]TYPE[,SKIP], such as 1025x1025,u16le",
+                   [this](const std::string& text) {
+                       if (const auto sound = check_raw(text); !sound || text.empty())
+                           throw UsageError(sound ? "needs a value that is not empty" : sound.error().reason);
+                       raw = text;
+                   });
     command.flag(options.invert, "--invert", "white is low: h becomes 1 - h");
     command.choice(options.deband, "--deband", "WHEN", kDebandNames,
                    "regain the bits that rounding to 8 bits took away; see the manual page");
@@ -107,7 +123,7 @@ void HeightGroup::add(Command& command) {
     command.flag(options.fill_invalid, "--fill-invalid",
                  "replace NaN, infinite and no-data texels by the nearest valid one");
     command.option("--no-data", "V",
-                   "texels of exactly this value are invalid; none ignores the value that a TIFF names",
+                   "texels for which the file stores this value are invalid; none ignores the value that a TIFF names",
                    [this](const std::string& text) {
                        options.no_data = text == "none" ? std::numeric_limits<float>::quiet_NaN() : parse_float(text);
                    });
@@ -135,7 +151,9 @@ ChannelFile parse_channel_file(const std::string& text) {
 }
 
 Result<Plane<float>> read_channel(Job& job, const ChannelFile& source, const Execution& execution) {
-    auto image = read_image(source.file, job.read_options);
+    ReadOptions read = job.read_options;
+    read.values = FileValues::unit;
+    auto image = read_image(source.file, read);
     if (!image) return image.error();
     HeightOptions channel;
     channel.channel = source.channel;
@@ -152,6 +170,18 @@ Error HeightReader::with_remedy(const Error& error) {
 
 namespace {
 
+constexpr const char* kStoredText =
+    "heights are the numbers that the file stores, as it says; --heights unit makes their whole range 0 to 1";
+
+void note_implausible(Job& job, std::int64_t texels, HeightChannel channel) {
+    const auto name = name_of(kHeightChannelNames, channel);
+    if (channel != HeightChannel::rg16) {
+        return job.warn(
+            fmt::format("{} heights are below -12000 m or above 9000 m: is the picture really {}?", texels, name));
+    }
+    job.report["grey_texels"] = texels;
+}
+
 std::string luma_text(std::int64_t texels) {
     return fmt::format("R, G and B differ in {} texels: their luma is the height; --channel chooses another", texels);
 }
@@ -160,18 +190,25 @@ std::string luma_text(std::int64_t texels) {
 
 void HeightReader::note(Job& job, const HeightReport& report) {
     if (heights.options.deband != Deband::off) note_deband(job, report.deband, heights.options.deband);
-    if (report.luma_texels == 0) return;
-    job.remark(luma_text(report.luma_texels));
+    job.report["heights"] = name_of(kFileValuesNames, report.stored ? FileValues::stored : FileValues::unit);
+    if (!report.remark.empty()) job.warn(report.remark);
+    if (report.implausible_texels > 0) note_implausible(job, report.implausible_texels, heights.options.channel);
+    const bool chose_stored = report.stored && heights.values == FileValues::automatic;
+    if (chose_stored) job.remark(kStoredText);
+    if (report.luma_texels > 0) job.remark(luma_text(report.luma_texels));
     const std::lock_guard lock(mutex_);
-    // Files that are read in parallel arrive in any order. The alphabetically first one is named.
-    if (luma_files_++ == 0 || job.task.input < first_luma_file_) first_luma_file_ = job.task.input;
+    if (chose_stored) stored_.add(job.task.input);
+    if (report.luma_texels > 0) luma_.add(job.task.input);
     luma_texels_ += report.luma_texels;
 }
 
-void HeightReader::warn_of_luma(Console& console) const {
-    if (luma_files_ == 0) return;
-    const std::string more = luma_files_ > 1 ? fmt::format(" and {} more", luma_files_ - 1) : std::string();
-    console.warning(fmt::format("{}{}: {}", first_luma_file_, more, luma_text(luma_texels_)));
+std::string HeightReader::FileCount::text() const {
+    return files > 1 ? fmt::format("{} and {} more", first, files - 1) : first;
+}
+
+void HeightReader::warn_of_files(Console& console) const {
+    if (stored_.files > 0) console.warning(fmt::format("{}: {}", stored_.text(), kStoredText));
+    if (luma_.files > 0) console.warning(fmt::format("{}: {}", luma_.text(), luma_text(luma_texels_)));
 }
 
 }  // namespace tex::cli

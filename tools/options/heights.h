@@ -53,9 +53,18 @@ struct KernelOption {
     void add(Command& command, std::string help);
 };
 
-// --channel, --invert, --deband, --blur, --fill-invalid, --no-data.
+// --channel, --heights, --raw, --invert, --deband, --blur, --fill-invalid, --no-data.
 struct HeightGroup {
     HeightOptions options;
+    FileValues values = FileValues::automatic;
+    std::string raw;
+
+    [[nodiscard]] ReadOptions read_options(const Job& job) const {
+        ReadOptions read = job.read_options;
+        read.values = values;
+        read.raw = raw;
+        return read;
+    }
 
     void add(Command& command);
 };
@@ -84,13 +93,24 @@ public:
     // Counts the results of reading a job's heights. Any thread may call this.
     void note(Job& job, const HeightReport& report);
 
-    // Prints one warning for all files whose heights were guessed from colours.
-    void warn_of_luma(Console& console) const;
+    // Prints one warning for all files about which the same must be said.
+    void warn_of_files(Console& console) const;
 
 private:
+    // Files that are read in parallel arrive in any order. The alphabetically first one is named.
+    struct FileCount {
+        std::string first;
+        std::int64_t files = 0;
+
+        void add(const std::string& file) {
+            if (files++ == 0 || file < first) first = file;
+        }
+        [[nodiscard]] std::string text() const;
+    };
+
     std::mutex mutex_;
-    std::string first_luma_file_;
-    std::int64_t luma_files_ = 0, luma_texels_ = 0;
+    FileCount luma_, stored_;
+    std::int64_t luma_texels_ = 0;
 };
 
 }  // namespace tex::cli

@@ -18,13 +18,14 @@
 #pragma GCC visibility push(default)
 namespace tex {
 
-// File types that libtex writes, by extension: .dds .ktx2 .astc .png .exr .tif .tiff .tga .bmp .jpg .jpeg
-enum class Container { dds, ktx2, astc, png, exr, tiff, tga, bmp, jpeg };
+// File types that libtex writes, by extension: .dds .ktx2 .astc .png .exr .tif .tiff .tga .bmp .jpg .jpeg .r16 .r32
+enum class Container { dds, ktx2, astc, png, exr, tiff, tga, bmp, jpeg, r16, r32 };
 
 inline constexpr Named<Container> kContainerNames[] = {
     {Container::dds, "dds", ".dds"}, {Container::ktx2, "ktx2", ".ktx2"}, {Container::astc, "astc", ".astc"},
     {Container::png, "png", ".png"}, {Container::exr, "exr", ".exr"},    {Container::tiff, "tiff", ".tif, .tiff"},
     {Container::tga, "tga", ".tga"}, {Container::bmp, "bmp", ".bmp"},    {Container::jpeg, "jpeg", ".jpg, .jpeg"},
+    {Container::r16, "r16", ".r16"}, {Container::r32, "r32", ".r32"},
 };
 
 // The file type that the extension of `path` names (case does not matter); nullopt for any other extension.

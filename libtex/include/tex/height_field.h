@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include <tex/deband_options.h>
 #include <tex/execution.h>
@@ -71,6 +72,10 @@ enum class HeightChannel {
     luma,     // 0.2126 R + 0.7152 G + 0.0722 B (ITU-R BT.709), of the unchanged values
     average,  // (R + G + B) / 3
     max,      // the largest of R, G, B
+    // Heights in two or three bytes; the picture has 8 bits.
+    terrain_rgb,  // -10000 + 0.1 (65536 R + 256 G + B) metres (Mapbox)
+    terrarium,    // 256 R + G + B / 256 - 32768 metres (Mapzen)
+    rg16,         // 256 R + G, divided by 65535 unless ReadOptions::values is `stored`
 };
 
 inline constexpr Named<HeightChannel> kHeightChannelNames[] = {
@@ -83,12 +88,17 @@ inline constexpr Named<HeightChannel> kHeightChannelNames[] = {
     {HeightChannel::luma, "luma", "0.2126 R + 0.7152 G + 0.0722 B"},
     {HeightChannel::average, "average", "(R + G + B) / 3"},
     {HeightChannel::max, "max", "the largest of R, G and B"},
+    {HeightChannel::terrain_rgb, "terrain-rgb", "-10000 + 0.1 (65536 R + 256 G + B) metres"},
+    {HeightChannel::terrarium, "terrarium", "256 R + G + B / 256 - 32768 metres"},
+    {HeightChannel::rg16, "rg16", "256 R + G, heights of 16 bits in two channels"},
 };
 
 struct HeightOptions {
     HeightChannel channel = HeightChannel::automatic;
-    // Texels of exactly this value (after rounding to float) are invalid. None: Image::no_data, if the file names it.
-    // NaN: no value is.
+    std::string channel_name;  // the whole name of a channel, such as "height.Y", instead of `channel`
+    // Texels of exactly this value (after rounding to float) are invalid. It is the number that the file stores, before
+    // Image::scale and Image::offset; where integers are read as fractions of their range, the fraction will do too.
+    // None: Image::no_data, if the file names it. NaN: no value is.
     std::optional<float> no_data;
     bool fill_invalid = false;    // invalid texels take the value of the nearest valid one
     bool invert = false;          // h becomes 1 - h, for maps in which white is low
@@ -103,18 +113,26 @@ struct HeightReport {
     std::int64_t luma_texels = 0;     // texels for which `automatic` used luma because R, G, B differ
     std::int64_t invalid_texels = 0;  // NaN, infinite or no-data texels, all of which were filled
     DebandReport deband = {};         // all zeros if HeightOptions::deband is off
+    // With terrain_rgb and terrarium: texels lower than -12000 m or higher than 9000 m. With rg16: those with R = G, as
+    // all texels of a grey picture have.
+    std::int64_t implausible_texels = 0;
+    bool stored = false;  // as Image::stored
+    std::string remark;   // as Image::remark
 };
 
 // Makes a height field of strength 1 from a picture.
 //
-// Channel: see HeightChannel. A picture with planes R, G and B is coloured; a picture of any other single plane, or of
-// one plane and A, is grey. In an EXR file with other names, the only plane besides alpha holds the heights; if there
-// are several, the plane named "Y", "height", "displacement", "Z" or "depth" (any case) does. If fill_invalid is set,
-// invalid texels (NaN, infinite, equal to no_data) take the value of the nearest valid texel (Euclidean distance, wrap
-// respected, ties by the smallest row, then column). Blur: a Gaussian of radius ceil(3 sigma), weights normalised to
-// 1, with the field's wrap. Invalid texels tell deband() nothing about the heights.
+// Channel: see HeightChannel. A picture with planes R, G and B (or red, green and blue, in any case) is coloured; a
+// picture of any other single plane, or of one plane and A, is grey. In an EXR file with other names, the only plane
+// besides alpha, colours and vectors (X, Y, Z of one layer) holds the heights; if there are several, the plane named
+// "Y", "height", "displacement", "Z" or "depth", or a plane of a layer of this name, does. If there is none, the
+// colours of the only layer that has them count. If fill_invalid is set, invalid texels (NaN, infinite, equal to
+// no_data) take the value of the nearest valid texel (Euclidean distance, wrap respected, ties by the smallest row,
+// then column). Blur: a Gaussian of radius ceil(3 sigma), weights normalised to 1, with the field's wrap. Invalid
+// texels tell deband() nothing about the heights.
 //
-// Errors: bad_option  the picture lacks the channel (the reason lists its channels); blur_sigma out of range
+// Errors: bad_option  the picture lacks the channel (the reason lists its channels), or has not the 8 bits that
+//                     terrain_rgb, terrarium and rg16 need; blur_sigma out of range
 //         bad_data    invalid texels without fill_invalid (the reason names the column and row of the first texel, and
 //                     the count); or no valid texel at all
 //         out_of_memory, cancelled

@@ -138,7 +138,7 @@ enum class SampleKind { unorm, snorm, floating };
 // name ("R", "G", "B", "A" for colour and alpha, "Y" for grey; EXR channels keep theirs). The values are the raw
 // data of the file: no colour conversion, no multiplication by alpha. Unsigned integers of n bits are
 // divided by 2^n - 1 and so lie in [0, 1], signed ones by 2^(n-1) - 1 and lie in [-1, 1], floats are as stored and may
-// be infinite or NaN.
+// be infinite or NaN. The values may also be the numbers themselves: see `stored`.
 struct Image {
     std::vector<Plane<float>> planes;
     std::vector<std::string> names;
@@ -154,6 +154,14 @@ struct Image {
     std::string normal_mark;
     // The value of texels without data, if the file names one (GDAL_NODATA in TIFF).
     std::optional<float> no_data;
+
+    // Whether the values are the numbers that the file stores (ReadOptions::values), as scale * number + offset.
+    // `sample` is then floating.
+    bool stored = false;
+    double scale = 1.0;  // of GDAL, if the file states them
+    double offset = 0.0;
+
+    std::string remark;  // what the reader had to find out, such as the extent of a file without a header, or empty
 
     [[nodiscard]] Extent extent() const { return planes.empty() ? Extent{} : planes.front().extent(); }
     // The index of the plane called `name` (exact), or -1.

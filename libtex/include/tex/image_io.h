@@ -12,14 +12,39 @@
 #include <string>
 
 #include <tex/image.h>
+#include <tex/names.h>
 #include <tex/result.h>
 
 #pragma GCC visibility push(default)
 namespace tex {
 
+// What integers in a file become.
+enum class FileValues { automatic, stored, unit };
+
+inline constexpr Named<FileValues> kFileValuesNames[] = {
+    {FileValues::automatic, "auto", "as the file says"},
+    {FileValues::stored, "stored", "the numbers that the file stores, with GDAL's scale and offset"},
+    {FileValues::unit, "unit", "0 to 1 (signed: -1 to 1) for the whole range of the type"},
+};
+
 struct ReadOptions {
     // Files that claim more texels than this are refused (unsupported) before memory is allocated.
     std::int64_t max_texels = std::int64_t{1} << 30;
+
+    // The layer of an EXR file whose channels are read, by its name or the end of it: "Normal" for "ViewLayer.Normal".
+    // Empty: all channels. Other files have no layers: an error (bad_option).
+    std::string layer;
+
+    // What integers become in read_image() and bake_file(). read_texture() always takes `unit`. By itself, a picture
+    // without colours and vectors has the numbers that the file stores if they are quantities: TIFF with signed
+    // samples, samples of 32 bits, a place on the Earth (GeoTIFF) or GDAL's scale and offset; EXR with uint; signed raw
+    // heights.
+    FileValues values = FileValues::automatic;
+
+    // The layout of a file without a header, "[WxH,]TYPE[,SKIP]": TYPE is u8, or u16, s16 or f32 with le or be (u16le);
+    // SKIP is a number of bytes before the first texel. Without an extent, the picture is square. Empty: files called
+    // .r16 hold u16le, and files called .r32 hold f32le; all others begin with a header.
+    std::string raw;
 
     // The reader program, started for each file. Empty: the program that was installed (libexec/libtex/tex-reader) or
     // built beside libtex. tex-reader-oiio is in the same folder.
@@ -28,16 +53,20 @@ struct ReadOptions {
     int reader_timeout = 120;                            // seconds of wall-clock time
 };
 
+// Checks ReadOptions::raw. Errors: bad_option.
+[[nodiscard]] Result<void> check_raw(const std::string& layout);
+
 // Reads the base level of a picture with all its channels: raw values (see Image), unassociated alpha, top row first.
 // PNG: 1 to 16 bits, grey, RGB, alpha, palette (expanded), transparency (as A), interlaced; colour chunks (gAMA, sRGB,
 // iCCP, sBIT) change nothing. EXR: half, float and uint, scanline and tiled, mip-mapped, any channel names (R, G, B, A
-// come first, the others by name); the data window; the first part of a multi-part file. Deep data and subsampled
-// channels are unsupported. TIFF and JPEG are turned as their orientation (EXIF) says; x and y of a normal in them stay
-// as they are stored. `path` "-" reads standard input.
+// come first, the others by name), or those of one layer; the data window; the first part of a multi-part file. Deep
+// data and subsampled channels are unsupported. TIFF and JPEG are turned as their orientation (EXIF) says; x and y of a
+// normal in them stay as they are stored. `path` "-" reads standard input.
 //
 // Errors: io           cannot be opened or read; is a directory; the reader program cannot be started
 //         bad_data     empty, truncated, damaged; not a picture at all
 //         unsupported  valid, but of a type not handled; more texels than max_texels; a side above kMaxExtent
+//         bad_option   there is no such layer (the reason lists those that there are)
 //         out_of_memory
 // No file content makes this function crash or hang beyond reader_timeout. The memory that it uses stays in proportion
 // to the smaller of two sizes: the size that the file claims and the size that its bytes can hold.

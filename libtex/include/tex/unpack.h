@@ -43,10 +43,13 @@ namespace tex {
 [[nodiscard]] Result<MipChain> unpack(const Texture& texture, const UnpackOptions& options = {},
                                       const Execution& execution = {});
 
-// The normals of a picture. The swizzle names planes: R, G, B, A. In a picture without R, the plane Y is used for R, G
-// and B; in a picture with neither, the planes are R, G, B, A in their order. Without a swizzle in the options, x, y
-// and z are R, G and B, or the two planes of a picture are x and y. ValueRange::automatic: by Image::normal_encoding,
-// else as above.
+// The normals of a picture. The swizzle names planes: R, G, B, A. In a picture with planes of other names, R, G and B
+// are the planes red, green and blue, or X, Y and Z, or U and V, in any case and after the name of a layer ("N.R",
+// "ViewLayer.Normal.X"). If several layers have them, it is those without a layer, or else those of the layer called
+// normal. In a picture without any of these, the plane Y is used for R, G and B; without Y, the planes are R, G, B, A
+// in their order. Without a swizzle in the options, x, y and z are R, G and B, or the two planes of a picture are x and
+// y. ValueRange::automatic: by Image::normal_encoding, else as above. Errors: also bad_option if it is not clear which
+// layer holds the normals.
 [[nodiscard]] Result<NormalMap> unpack(const Image& image, const UnpackOptions& options = {},
                                        const Execution& execution = {});
 

@@ -16,6 +16,7 @@
 #include "formats/ktx2/ktx2.h"
 #include "formats/marks.h"
 #include "formats/png/png.h"
+#include "formats/raw/raw.h"
 #include "formats/reader/reader_rows.h"
 
 namespace tex {
@@ -45,7 +46,7 @@ bool is_unorm8_picture(Format format) { return is_unorm_picture(format) && forma
 
 bool is_unorm8_without_alpha(Format format) { return is_unorm8_picture(format) && format_info(format).channels != 4; }
 
-// The codecs of the reader process come last.
+// The codecs of the reader process come last, but for those without a magic.
 constexpr Codec kCodecs[] = {
     {.container = Container::dds,
      .magic = kDdsMagic,
@@ -81,6 +82,7 @@ constexpr Codec kCodecs[] = {
      .default_encoding = Encoding::half,
      .open_rows = open_exr_rows,
      .open_levels = open_exr_texture_rows,
+     .has_layers = true,
      .open_target = open_exr_target},
     {.container = Container::tiff,
      .holds = is_tiff,
@@ -96,6 +98,16 @@ constexpr Codec kCodecs[] = {
      .holds = is_unorm8_without_alpha,
      .open_rows = open_reader_rows,
      .reader_name = "jpeg"},
+    // Never found by their first bytes.
+    {.container = Container::r16,
+     .holds = [](Format format) { return format == Format::r16_unorm; },
+     .open_rows = open_raw,
+     .layout = raw_layout},
+    {.container = Container::r32,
+     .holds = [](Format format) { return format == Format::r32_float; },
+     .default_encoding = Encoding::float_,
+     .open_rows = open_raw,
+     .layout = raw_layout},
 };
 
 }  // namespace
@@ -120,12 +132,21 @@ Result<void> check_holds(const Codec& codec, Format format, const WriteOptions& 
                      std::string(name_of(kFormatNames, format))};
 }
 
+Result<void> check_layer(const Codec& codec, const ReadOptions& options) {
+    if (options.layer.empty() || codec.has_layers) return {};
+    return Error{ErrorCode::bad_option, {}, "a layer can be chosen only in an EXR file"};
+}
+
 const Codec& codec_for(std::span<const std::byte> head) {
     return *std::find_if(std::begin(kCodecs), std::end(kCodecs), [&](const Codec& codec) {
         if (codec.magic.empty()) return true;
         return head.size() >= codec.magic.size() &&
                std::memcmp(head.data(), codec.magic.data(), codec.magic.size()) == 0;
     });
+}
+
+const Codec& codec_for(const InputFile& file, const ReadOptions& options) {
+    return is_raw(file, options) ? codec_of(Container::r16) : codec_for(file.head());
 }
 
 }  // namespace tex

@@ -37,6 +37,7 @@ struct Codec {
     ParseTexture parse = nullptr;
     Result<std::unique_ptr<RowSource>> (*open_rows)(InputFile& file, const ReadOptions& options) = nullptr;
     Result<TextureRows> (*open_levels)(InputFile& file, const ReadOptions& options) = nullptr;
+    bool has_layers = false;     // ReadOptions::layer chooses one
     bool decodes_twice = false;  // decoding a file twice costs less than keeping its rows in memory
 
     // Writing. A file type sets `layout` if the place of every byte is known before the first texel; it then takes
@@ -55,7 +56,12 @@ struct Codec {
 // (options.zstd is out of range).
 [[nodiscard]] Result<void> check_holds(const Codec& codec, Format format, const WriteOptions& options);
 
+// Errors: bad_option (options.layer is set, and files of this type have no layers).
+[[nodiscard]] Result<void> check_layer(const Codec& codec, const ReadOptions& options);
+
 // The codec that reads a file beginning with `head`: the one with this magic, otherwise the reader's.
 [[nodiscard]] const Codec& codec_for(std::span<const std::byte> head);
+// The same for an open file, which may be of a type that has no magic: the options or its name then say what it is.
+[[nodiscard]] const Codec& codec_for(const InputFile& file, const ReadOptions& options);
 
 }  // namespace tex

@@ -11,6 +11,7 @@
 
 #include "formats/channels.h"
 #include "formats/normal_mark.h"
+#include "rows/channel_names.h"
 
 namespace tex {
 namespace {
@@ -28,21 +29,15 @@ Sample sample_of(SampleKind kind, int bits) {
     return {kind, exact ? 8 : 16};
 }
 
-// The plane for each channel, in the order of the channels.
-std::vector<std::size_t> planes_of(const std::vector<std::string>& names) {
+// The plane for each channel, in the order of the channels. Names that say nothing leave the order of the file. Errors:
+// as normal_channels().
+Result<std::vector<std::size_t>> planes_of(const std::vector<std::string>& names) {
+    Result<NormalChannels> named = normal_channels(names);
+    if (!named) return named.error();
+    if (!named->channels.empty()) return std::move(named->channels);
     std::vector<std::size_t> planes;
-    const auto find = [&](const char* name) { return std::find(names.begin(), names.end(), name); };
-    const auto add = [&](const char* name) {
-        if (const auto found = find(name); found != names.end())
-            planes.push_back(static_cast<std::size_t>(found - names.begin()));
-    };
-    if (find("R") != names.end()) {
-        for (const char* name : {"R", "G", "B", "A"}) add(name);
-    } else if (names.size() == 2 && find("Y") != names.end() && find("A") != names.end()) {
-        for (const char* name : {"Y", "Y", "Y", "A"}) add(name);
-    } else {
-        for (std::size_t k = 0; k < names.size(); ++k) planes.push_back(k);
-    }
+    for (std::size_t k = 0; k < names.size(); ++k) planes.push_back(k);
+    if (names.size() == 2 && names[0] == "Y" && is_alpha(names[1])) planes.insert(planes.begin(), 2, 0);
     return planes;
 }
 
@@ -81,11 +76,14 @@ void store_channel(const FormatInfo& info, const float* values, int count, std::
 
 Result<PictureTexture> picture_texture_of(const std::vector<std::string>& names, SampleKind sample, int bits) {
     PictureTexture picture;
-    picture.planes = planes_of(names);
+    Result<std::vector<std::size_t>> planes = planes_of(names);
+    if (!planes) return planes.error();
+    picture.planes = std::move(*planes);
     if (picture.planes.empty() || picture.planes.size() > 4) {
         return Error{ErrorCode::unsupported,
                      {},
-                     "a picture of " + std::to_string(picture.planes.size()) + " channels, none of them called R"};
+                     std::to_string(names.size()) +
+                         " channels, which are not called R, G, B or X, Y, Z; their names are " + list_of_names(names)};
     }
     const Sample stored = sample_of(sample, bits);
     picture.head.format = *format_of(stored.kind, stored.bits, static_cast<int>(picture.planes.size()));

@@ -9,6 +9,7 @@
 #include "blocks/extent.h"
 #include "formats/claims.h"
 #include "formats/codecs.h"
+#include "formats/file_values.h"
 #include "threads/guard.h"
 
 namespace tex {
@@ -20,6 +21,10 @@ Result<Image> RowSource::read_all() {
     image.normal_encoding = normal_encoding();
     image.normal_mark = normal_mark();
     image.no_data = no_data();
+    image.stored = has_numbers();
+    image.scale = scale();
+    image.offset = offset();
+    image.remark = remark();
     std::vector<std::byte> rows(row_bytes() * static_cast<std::size_t>(rows_together()));
     for (int j = 0; j < extent().height; j += rows_together()) {
         const int count = std::min(rows_together(), extent().height - j);
@@ -52,20 +57,21 @@ Result<void> RowSource::visit(const std::string& name, const TakeRows& take) {
 }
 
 Result<std::unique_ptr<RowSource>> open_rows(InputFile& file, const ReadOptions& options) {
-    const Codec& codec = codec_for(file.head());
+    const Codec& codec = codec_for(file, options);
+    if (const Result<void> fits = check_layer(codec, options); !fits) return fits.error().of(file.path());
     if (codec.open_rows == nullptr) {
         Result<TextureRows> texture = open_texture_rows(file, options);
         if (!texture) return texture.error();
-        return std::move(texture->levels.front());
+        return with_values(std::move(texture->levels.front()), options.values);
     }
     Result<std::unique_ptr<RowSource>> rows = codec.open_rows(file, options);
     if (!rows) return rows.error().of(file.path());
-    return rows;
+    return with_values(std::move(*rows), options.values);
 }
 
 Result<Image> read_image(InputFile& file, const ReadOptions& options) {
     return guarded([&]() -> Result<Image> {
-        if (codec_for(file.head()).parse != nullptr) {
+        if (codec_for(file, options).parse != nullptr && options.values != FileValues::stored) {
             const Result<Texture> texture = read_texture(file, options);
             if (!texture) return texture.error();
             return decode(*texture, 0);

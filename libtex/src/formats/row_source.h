@@ -39,8 +39,13 @@ public:
     [[nodiscard]] const std::string& normal_encoding() const { return normal_encoding_; }
     [[nodiscard]] const std::string& normal_mark() const { return normal_mark_; }
     [[nodiscard]] std::optional<float> no_data() const { return no_data_; }  // as in Image
-    // What the file says about its samples, if the reader process has decoded it: a GeoTIFF, for example, states units.
+    // What the file says about its samples: a GeoTIFF, for example, states units.
     [[nodiscard]] const StoredSamples& stored() const { return stored_; }
+    // As Image::stored, Image::scale and Image::offset.
+    [[nodiscard]] bool has_numbers() const { return has_numbers_; }
+    [[nodiscard]] const std::string& remark() const { return remark_; }  // as in Image
+    [[nodiscard]] double scale() const { return scale_; }
+    [[nodiscard]] double offset() const { return offset_; }
 
     // The number of rows that the file stores as one unit. decode() is cheapest if `first` is a multiple of this
     // number, and `count` either is a multiple too or reaches the last row.
@@ -51,6 +56,10 @@ public:
 
     // Limits reading to these planes; the contents of the other planes do not matter. Call this before rows are stored.
     virtual void choose_planes(const std::vector<bool>&) {}
+
+    // Makes store() and no_data() give the numbers that the file stores, exactly; false if this source cannot. Call
+    // this before rows are stored.
+    virtual bool store_numbers() { return false; }
 
     // decode() and store() may touch more rows than they make: up to the next multiple of this number.
     [[nodiscard]] virtual int block_rows() const { return kBlockEdge; }
@@ -98,6 +107,12 @@ protected:
     void describe_normals(std::string mark) { normal_mark_ = std::move(mark); }
     void describe_no_data(std::optional<float> value) { no_data_ = value; }
     void describe_stored(const StoredSamples& stored) { stored_ = stored; }
+    void describe_remark(std::string remark) { remark_ = std::move(remark); }
+    void describe_numbers(double scale, double offset) {
+        has_numbers_ = true;
+        scale_ = scale;
+        offset_ = offset;
+    }
 
 private:
     Extent extent_;
@@ -109,6 +124,9 @@ private:
     std::string normal_mark_;
     std::optional<float> no_data_;
     StoredSamples stored_;
+    bool has_numbers_ = false;
+    std::string remark_;
+    double scale_ = 1.0, offset_ = 0.0;
 };
 
 // Opens the picture in `file`, which must outlive the rows. Errors: those of read_image() that the header reveals.

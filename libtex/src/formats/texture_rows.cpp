@@ -50,6 +50,7 @@ Result<TextureRows> stored_rows(InputFile& file, const Codec& codec, const ReadO
 }
 
 Result<TextureRows> open_any(InputFile& file, const Codec& codec, const ReadOptions& options) {
+    if (const Result<void> fits = check_layer(codec, options); !fits) return fits.error().of(file.path());
     if (codec.parse != nullptr) return stored_rows(file, codec, options);
     if (codec.open_levels != nullptr) {
         Result<TextureRows> texture = codec.open_levels(file, options);
@@ -86,7 +87,8 @@ Result<Texture> read_all(Result<TextureRows> rows) {
 
 Result<Texture> read_texture(InputFile& file, const ReadOptions& options) {
     return guarded([&]() -> Result<Texture> {
-        const Codec& codec = codec_for(file.head());
+        const Codec& codec = codec_for(file, options);
+        if (const Result<void> fits = check_layer(codec, options); !fits) return fits.error().of(file.path());
         if (codec.parse != nullptr) {
             const Result<std::vector<std::byte>> bytes = file.read_rest(largest_file(options));
             if (!bytes) return bytes.error();
@@ -104,7 +106,7 @@ Result<Texture> read_texture(InputFile& file, const ReadOptions& options) {
 }
 
 Result<TextureRows> open_texture_rows(InputFile& file, const ReadOptions& options) {
-    return guarded([&]() -> Result<TextureRows> { return open_any(file, codec_for(file.head()), options); });
+    return guarded([&]() -> Result<TextureRows> { return open_any(file, codec_for(file, options), options); });
 }
 
 }  // namespace tex

@@ -12,6 +12,7 @@
 #include <OpenColorIO/OpenColorIO.h>
 
 #include "files/input_file.h"
+#include "rows/channel_names.h"
 #include "rows/math.h"
 
 namespace tex {
@@ -22,14 +23,10 @@ namespace OCIO = OCIO_NAMESPACE;
 // The planes that hold colour: R, G and B, or the one that is not alpha. Empty if there are none.
 std::vector<std::size_t> colour_planes(const std::vector<std::string>& names) {
     std::vector<std::size_t> planes;
-    for (const char* name : {"R", "G", "B"}) {
-        const auto at = std::find(names.begin(), names.end(), name);
-        if (at != names.end()) planes.push_back(static_cast<std::size_t>(at - names.begin()));
-    }
-    if (planes.size() == 3) return planes;
-    planes.clear();
+    const std::vector<ChannelGroup> groups = channel_groups(names);
+    if (const ChannelGroup* colours = colour_group(groups)) return colours->channels;
     for (std::size_t k = 0; k < names.size(); ++k) {
-        if (names[k] != "A") planes.push_back(k);
+        if (!is_alpha(names[k])) planes.push_back(k);
     }
     if (planes.size() > 1) planes.clear();
     return planes;

@@ -14,29 +14,53 @@ namespace tex {
 
 class LinearRows;
 
+// What a picture says about its values, as Image does.
+struct PictureFacts {
+    std::vector<std::string> names;
+    SampleKind sample = SampleKind::unorm;
+    int bits = 8;
+    bool stored = false;
+    double scale = 1.0, offset = 0.0;
+    std::optional<float> no_data;
+};
+
+[[nodiscard]] PictureFacts facts_of(const Image& image);
+
 // The source of heights: one unchanged plane, or a mixture of R, G and B.
 struct HeightSource {
     HeightChannel mixture = HeightChannel::automatic;
     int plane = -1;  // -1: use the planes red, green and blue
     int red = 0, green = 0, blue = 0;
+    bool has_numbers = false;  // the values are numbers, not fractions
 };
 
-// Finds the source among channels with these names. Errors: bad_option.
-Result<HeightSource> find_height_source(const std::vector<std::string>& names, HeightChannel channel);
+// Finds the source among the picture's channels. Errors: bad_option.
+Result<HeightSource> find_height_source(const PictureFacts& facts, const HeightOptions& options);
 
 // Returns nullopt if the sigma of the blur is in range, or else the error (bad_option).
 std::optional<Error> check_blur(const HeightOptions& options);
 
 // What was found in rows of heights.
 struct HeightCounts {
-    std::int64_t luma = 0;     // texels for which `automatic` took luma
-    std::int64_t invalid = 0;  // NaN, infinite or no-data texels, which are now NaN
+    std::int64_t luma = 0;         // texels for which `automatic` took luma
+    std::int64_t invalid = 0;      // NaN, infinite or no-data texels, which are now NaN
+    std::int64_t implausible = 0;  // as in HeightReport
+
+    HeightCounts& operator+=(const HeightCounts& other) {
+        luma += other.luma;
+        invalid += other.invalid;
+        implausible += other.implausible;
+        return *this;
+    }
 };
 
-// `options` with the no-data value of the picture, if it has one and the options do not say otherwise. `linear`
-// converts the picture's colours; it may be null.
-Result<HeightOptions> with_no_data(const HeightOptions& options, std::optional<float> no_data,
-                                   const std::vector<std::string>& names, const HeightSource& source,
+[[nodiscard]] inline HeightReport report_of(const HeightCounts& counts, const DebandReport& deband, bool stored) {
+    return {counts.luma, counts.invalid, deband, counts.implausible, stored, {}};
+}
+
+// `options` with the no-data value as take_heights() meets it: that of the options, or else that of the picture.
+// `linear` converts the picture's colours; it may be null.
+Result<HeightOptions> with_no_data(const HeightOptions& options, const PictureFacts& facts, const HeightSource& source,
                                    const LinearRows* linear);
 
 // Reads row j of a picture as heights, cleaned and inverted as the options say, but neither filled nor blurred.

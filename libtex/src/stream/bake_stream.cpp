@@ -54,8 +54,10 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
     if (const Result<void> done = writer.commit(); !done) return done.error();
     report.bytes = writer.file_bytes();
     report.rdo = writer.rdo();
-    const HeightCounts& counts = stage.counts();
-    report.heights = {heights->counts.luma + counts.luma, heights->counts.invalid + counts.invalid, heights->deband};
+    HeightCounts counts = heights->counts;
+    counts += stage.counts();
+    report.heights = report_of(counts, heights->deband, heights->stored);
+    report.heights.remark = heights->remark;
     report.slopes = slopes.range();
     report.steep_texels = slopes.steep_texels();
     return report;

@@ -62,8 +62,7 @@ Result<std::unique_ptr<RowSource>> fill_heights(RowSource& rows, const std::stri
         for (int k = 0; k < count; ++k) {
             const HeightCounts met = take_heights(image, source, options, k, heights.row(first + k));
             if (met.invalid > 0 && counts.invalid == 0) first_invalid = {first_nan(heights, first + k), first + k};
-            counts.luma += met.luma;
-            counts.invalid += met.invalid;
+            counts += met;
         }
         const double done = read_to * (first + count) / extent.height;
         if (execution.progress && !execution.progress(done)) return Error{ErrorCode::cancelled, {}, "cancelled"};

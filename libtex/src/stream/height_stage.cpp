@@ -122,9 +122,8 @@ void HeightStage::begin_with(const Image& last) {
 void HeightStage::put_row(const Image& rows, int k) {
     const std::shared_ptr<Plane<float>> row = heights_.make();
     const HeightCounts counts = take_heights(rows, source_, options_, k, row->row(0));
-    counts_.luma += counts.luma;
     if (counts.invalid > 0 && counts_.invalid == 0) take_invalid(row->row(0));
-    counts_.invalid += counts.invalid;
+    counts_ += counts;
     only_counts_ = only_counts_ || counts_.invalid > 0;
     const int j = row_++;
     if (!only_counts_ && j < extent_.height - known_) take_row(j, row);

@@ -63,9 +63,11 @@ public:
         if (!heights) return heights.error().of(input_);
         heights_.emplace(std::move(*heights));
         const Extent extent = heights_->rows->extent();
-        const auto make = [&](NormalSink sink) {
+        HeightReport before = report_of(heights_->counts, heights_->deband, heights_->stored);
+        before.remark = heights_->remark;
+        const auto make = [&, before](NormalSink sink) {
             auto stage = std::make_unique<CountedStage>(
-                report_.heights, HeightReport{heights_->counts.luma, heights_->counts.invalid, heights_->deband},
+                report_.heights, before,
                 std::make_unique<HeightStage>(extent, heights_->source, heights_->options, gradient,
                                               head_of(extent, options_), std::move(sink), std::move(heights_->last)));
             return stage;
@@ -87,8 +89,10 @@ private:
             : report_(report), before_(before), stage_(std::move(stage)) {}
         void put(const Image& rows, int count) override { stage_->put(rows, count); }
         [[nodiscard]] Result<void> check() const override {
-            report_ = {before_.luma_texels + stage_->counts().luma, before_.invalid_texels + stage_->counts().invalid,
-                       before_.deband};
+            HeightCounts counts = stage_->counts();
+            counts += {before_.luma_texels, before_.invalid_texels, before_.implausible_texels};
+            report_ = report_of(counts, before_.deband, before_.stored);
+            report_.remark = before_.remark;
             return stage_->check();
         }
 

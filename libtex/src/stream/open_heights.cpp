@@ -25,11 +25,15 @@ Result<void> prepare(const BakeFileOptions& options, Heights& heights) {
         heights.linear = std::move(*linear);
     }
     if (std::optional<Error> wrong = check_blur(options.heights)) return std::move(*wrong);
-    Result<HeightSource> source = find_height_source(rows.names(), options.heights.channel);
+    const PictureFacts facts{rows.names(), rows.sample(), rows.bits(),   rows.has_numbers(),
+                             rows.scale(), rows.offset(), rows.no_data()};
+    heights.stored = rows.has_numbers();
+    heights.remark = rows.remark();
+    Result<HeightSource> source = find_height_source(facts, options.heights);
     if (!source) return source.error();
     heights.source = *source;
-    Result<HeightOptions> with = with_no_data(options.heights, rows.no_data(), rows.names(), heights.source,
-                                              heights.linear ? &*heights.linear : nullptr);
+    Result<HeightOptions> with =
+        with_no_data(options.heights, facts, heights.source, heights.linear ? &*heights.linear : nullptr);
     if (!with) return with.error();
     heights.options = *with;
     return {};

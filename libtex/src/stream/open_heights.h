@@ -24,6 +24,8 @@ struct Heights {
     HeightOptions options;
     HeightCounts counts;  // found so far
     DebandReport deband;
+    bool stored = false;        // as Image::stored
+    std::string remark;         // as Image::remark
     std::optional<Image> last;  // the last rows, if they are needed first
 };
 

@@ -11,6 +11,7 @@
 #include <ImfPartType.h>
 
 #include "formats/claims.h"
+#include "rows/channel_names.h"
 
 namespace tex {
 namespace {
@@ -191,7 +192,7 @@ std::optional<std::uint64_t> check_attributes(ExrStream& stream) {
     return many_parts ? std::nullopt : std::optional(end);
 }
 
-std::vector<ExrChannel> channels_of(const Imf::Header& header) {
+Result<std::vector<ExrChannel>> channels_of(const Imf::Header& header, const std::string& layer) {
     std::vector<ExrChannel> channels;
     const Imf::ChannelList& list = header.channels();
     for (const char* name : {"R", "G", "B", "A"}) {
@@ -201,7 +202,19 @@ std::vector<ExrChannel> channels_of(const Imf::Header& header) {
         const std::string name = it.name();
         if (name != "R" && name != "G" && name != "B" && name != "A") channels.push_back({name, it.channel().type});
     }
-    return channels;
+    if (layer.empty()) return channels;
+    const Result<std::vector<std::size_t>> chosen = layer_channels(names_of(channels), layer);
+    if (!chosen) return chosen.error();
+    std::vector<ExrChannel> of_layer;
+    for (const std::size_t k : *chosen) of_layer.push_back(channels[k]);
+    return of_layer;
+}
+
+std::vector<std::string> names_of(const std::vector<ExrChannel>& channels) {
+    std::vector<std::string> names;
+    names.reserve(channels.size());
+    for (const ExrChannel& channel : channels) names.push_back(channel.name);
+    return names;
 }
 
 std::optional<Imf::TileDescription> tiles_of(const Imf::Header& header) {

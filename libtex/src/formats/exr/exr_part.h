@@ -72,8 +72,11 @@ struct ExrChannel {
     Imf::PixelType type = Imf::HALF;
 };
 
-// The channels of a part: R, G, B, A first, then the others by name.
-std::vector<ExrChannel> channels_of(const Imf::Header& header);
+// The channels of a part, or of one of its layers: R, G, B, A first, then the others by name. Errors: bad_option (the
+// part has no such layer).
+Result<std::vector<ExrChannel>> channels_of(const Imf::Header& header, const std::string& layer = {});
+
+std::vector<std::string> names_of(const std::vector<ExrChannel>& channels);
 
 // The tiles of a part that is stored in tiles. A part stored in scan lines may have the attribute `tiles` too. It then
 // means nothing, and OpenEXR does not check it: its sizes may be 0.

@@ -43,6 +43,10 @@ public:
     [[nodiscard]] bool is_random() const override { return true; }
     void choose_planes(const std::vector<bool>& wanted) override { wanted_ = wanted; }
     Result<void> decode(int first, int count, std::byte* rows) override;
+    bool store_numbers() override {
+        has_whole_numbers_ = true;
+        return true;
+    }
     void store(const std::byte* rows, int first, int end, Image& image) const override;
 
 private:
@@ -51,7 +55,8 @@ private:
     int rows_together_ = 1;
     std::vector<ExrPlane> planes_;
     std::vector<bool> wanted_;
-    Pool<ExrReader> readers_;  // shared by all levels
+    bool has_whole_numbers_ = false;  // uint stays what it is
+    Pool<ExrReader> readers_;         // shared by all levels
 };
 
 std::shared_ptr<ExrReader> take_reader(Pool<ExrReader>& readers, const InputFile& file) {
@@ -82,6 +87,8 @@ ExrRows::ExrRows(const InputFile& file, Pool<ExrReader> readers, ExrReader& read
         return std::all_of(channels.begin(), channels.end(),
                            [type](const ExrChannel& channel) { return channel.type == type; });
     };
+    if (std::any_of(channels.begin(), channels.end(), [](const ExrChannel& c) { return c.type == Imf::UINT; }))
+        describe_stored({.kind = 1, .bits = 32});
     const auto* text = header.findTypedAttribute<Imf::StringAttribute>(kNormalEncoding);
     describe_samples(all(Imf::UINT) ? SampleKind::unorm : SampleKind::floating, all(Imf::HALF) ? 16 : 32,
                      text == nullptr ? "" : text->value());
@@ -111,7 +118,7 @@ void ExrRows::store(const std::byte* rows, int first, int end, Image& image) con
             for (int i = 0; i < width; ++i) {
                 std::uint32_t code = 0;
                 std::memcpy(&code, from + sizeof code * static_cast<std::size_t>(i), sizeof code);
-                to[i] = static_cast<float>(static_cast<double>(code) / 4294967295.0);
+                to[i] = static_cast<float>(static_cast<double>(code) / (has_whole_numbers_ ? 1.0 : 4294967295.0));
             }
         }
     }
@@ -137,17 +144,18 @@ auto with_part(InputFile& file, const ReadOptions& options, const Body& body) {
 }  // namespace
 
 Result<std::unique_ptr<RowSource>> open_exr_rows(InputFile& file, const ReadOptions& options) {
-    return with_part(file, options,
-                     [&](Pool<ExrReader>& readers, ExrReader& reader, Extent) -> Result<std::unique_ptr<RowSource>> {
-                         return std::unique_ptr<RowSource>(
-                             std::make_unique<ExrRows>(file, readers, reader, channels_of(reader.header()), 0));
-                     });
+    return with_part(
+        file, options, [&](Pool<ExrReader>& readers, ExrReader& reader, Extent) -> Result<std::unique_ptr<RowSource>> {
+            const auto channels = channels_of(reader.header(), options.layer);
+            if (!channels) return channels.error();
+            return std::unique_ptr<RowSource>(std::make_unique<ExrRows>(file, readers, reader, *channels, 0));
+        });
 }
 
 Result<TextureRows> open_exr_texture_rows(InputFile& file, const ReadOptions& options) {
     return with_part(
         file, options, [&](Pool<ExrReader>& readers, ExrReader& reader, Extent base) -> Result<TextureRows> {
-            Result<ExrTexture> described = exr_texture_of(file.path(), reader.header(), base);
+            Result<ExrTexture> described = exr_texture_of(file.path(), reader.header(), base, options.layer);
             if (!described) return std::move(described).error();
             TextureRows texture;
             texture.head = std::move(described->head);

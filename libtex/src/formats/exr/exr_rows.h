@@ -16,7 +16,8 @@ namespace tex {
 
 // Opens an EXR file to be read as read_image() describes, a few rows at a time. Several threads may decode at once. The
 // picture is the data window, at its largest level; of several parts it is the first. Planes R, G, B and A come first,
-// then the others by name. Half and float are as stored, uint is divided by 2^32 - 1. `file` must outlive the rows.
+// then the others by name. Half and float are as stored, uint is divided by 2^32 - 1
+// or stays as it is after store_numbers(). `file` must outlive the rows.
 //
 // Errors: bad_data (with OpenEXR's reason), unsupported (deep data, subsampled channels, too large), io, out_of_memory.
 Result<std::unique_ptr<RowSource>> open_exr_rows(InputFile& file, const ReadOptions& options);

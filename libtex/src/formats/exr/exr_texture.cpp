@@ -5,27 +5,32 @@
 #include <algorithm>
 #include <optional>
 
-#include <ImfChannelList.h>
 #include <ImfStringAttribute.h>
 
 #include <tex/mip_chain.h>
 
 #include "formats/channels.h"
+#include "rows/channel_names.h"
 
 namespace tex {
 namespace {
 
-// The channels of a texture: R, G, B (and A) if they are present, otherwise all channels.
-Result<std::vector<ExrChannel>> texture_channels(const std::string& path, const Imf::Header& header) {
-    std::vector<ExrChannel> channels = channels_of(header);
-    const Imf::ChannelList& list = header.channels();
-    if (list.findChannel("R") && list.findChannel("G") && list.findChannel("B")) {
-        channels.resize(list.findChannel("A") ? 4 : 3);
-    } else if (channels.empty() || channels.size() > 4) {
-        return Error{ErrorCode::unsupported, path,
-                     std::to_string(channels.size()) + " channels, and not R, G and B among them"};
-    }
-    return channels;
+// The channels of a texture. A part with one channel needs no name that says what it holds, nor does alpha beside it.
+Result<std::vector<ExrChannel>> texture_channels(const std::string& path, const Imf::Header& header,
+                                                 const std::string& layer, std::vector<std::string>& remarks) {
+    Result<std::vector<ExrChannel>> all = channels_of(header, layer);
+    if (!all) return all.error().of(path);
+    const std::vector<std::string> names = names_of(*all);
+    const Result<NormalChannels> normals = normal_channels(names);
+    if (!normals) return normals.error().of(path);
+    if (!normals->remark.empty()) remarks.push_back(normals->remark);
+    std::vector<ExrChannel> channels;
+    for (const std::size_t k : normals->channels) channels.push_back((*all)[k]);
+    if (!channels.empty()) return channels;
+    const auto others = std::count_if(names.begin(), names.end(), [](const auto& name) { return !is_alpha(name); });
+    if (names.size() == 1 || (names.size() == 2 && others == 1)) return all;
+    return Error{ErrorCode::unsupported, path,
+                 "no channels are called R, G, B or X, Y, Z; its channels are " + list_of_names(names)};
 }
 
 void describe_normals(const Imf::Header& header, Texture& texture) {
@@ -59,10 +64,11 @@ int usable_levels(const Imf::Header& header, Extent base, std::vector<std::strin
 
 }  // namespace
 
-Result<ExrTexture> exr_texture_of(const std::string& path, const Imf::Header& header, Extent base) {
-    Result<std::vector<ExrChannel>> channels = texture_channels(path, header);
-    if (!channels) return std::move(channels).error();
+Result<ExrTexture> exr_texture_of(const std::string& path, const Imf::Header& header, Extent base,
+                                  const std::string& layer) {
     ExrTexture texture;
+    Result<std::vector<ExrChannel>> channels = texture_channels(path, header, layer, texture.head.remarks);
+    if (!channels) return std::move(channels).error();
     const bool half = std::all_of(channels->begin(), channels->end(),
                                   [](const ExrChannel& channel) { return channel.type == Imf::HALF; });
     texture.head.format = *format_of(SampleKind::floating, half ? 16 : 32, static_cast<int>(channels->size()));

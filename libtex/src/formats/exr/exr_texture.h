@@ -16,12 +16,15 @@
 namespace tex {
 
 struct ExrTexture {
-    std::vector<ExrChannel> channels;  // R, G, B (and A) if they are present, otherwise all channels
+    std::vector<ExrChannel> channels;  // in the order of the texture
     Texture head;                      // the texture without its levels
     int levels = 1;                    // number of levels that follow the rule of level_extent()
 };
 
-// Errors: unsupported (more than four channels, and R, G or B is missing). May throw std::bad_alloc.
-Result<ExrTexture> exr_texture_of(const std::string& path, const Imf::Header& header, Extent base);
+// The channels are those of normal_channels() (rows/channel_names.h), of the whole part or of one layer. Errors:
+// unsupported (several channels, and their names do not say what they hold), bad_option (the layer). May throw
+// std::bad_alloc.
+Result<ExrTexture> exr_texture_of(const std::string& path, const Imf::Header& header, Extent base,
+                                  const std::string& layer);
 
 }  // namespace tex

@@ -94,8 +94,9 @@ std::optional<std::string> format_of(std::span<const std::byte> head) {
 // How integers of one type become floats.
 struct Scale {
     SampleKind kind = SampleKind::unorm;
-    int bits = 8;   // the significant bits
-    int shift = 0;  // for unsigned integers: right shift from the container to the significant bits
+    int bits = 8;          // the significant bits
+    int shift = 0;         // for unsigned integers: right shift from the container to the significant bits
+    bool numbers = false;  // integers stay what they are
 };
 
 // Decoders widen integers of n bits to whole bytes, either by repeating bits or by rounding v (2^m - 1) / (2^n - 1). In
@@ -125,6 +126,8 @@ float to_float(T code, const Scale& scale) {
         return code;
     } else if constexpr (std::is_same_v<T, Imath::half>) {
         return static_cast<float>(code);
+    } else if (scale.numbers) {
+        return static_cast<float>(code >> scale.shift);
     } else if constexpr (std::is_signed_v<T>) {
         const double value = static_cast<double>(code) / static_cast<double>(std::numeric_limits<T>::max());
         return static_cast<float>(std::max(value, -1.0));
@@ -206,6 +209,11 @@ public:
     [[nodiscard]] bool can_peek() const override { return true; }
     Result<void> peek(int first, int count, std::byte* rows) override;
     Result<void> finish() override;
+    bool store_numbers() override {
+        scale_.numbers = true;
+        describe_no_data(no_data_value());
+        return true;
+    }
     void store(const std::byte* rows, int first, int end, Image& image) const override;
 
 private:

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "formats/file_values.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "rows/channel_names.h"
+
+namespace tex {
+namespace {
+
+// As TIFF numbers them.
+constexpr std::uint32_t kSigned = 2, kFloating = 3;
+
+// Whether the file says that its samples are quantities. Normals and colours are not, even if they are signed.
+bool states_quantities(const RowSource& rows) {
+    const StoredSamples& stored = rows.stored();
+    if (stored.kind == 0) return false;
+    const bool is_mixed = rows.sample() == SampleKind::floating && stored.kind != kFloating;
+    if (!is_mixed && !channel_groups(rows.names()).empty()) return false;
+    return stored.kind == kSigned || (stored.kind != kFloating && stored.bits == 32) || stored.has_place != 0 ||
+           stored.has_scale != 0;
+}
+
+// The rows of another source, as numbers.
+class NumberRows final : public RowSource {
+public:
+    explicit NumberRows(std::unique_ptr<RowSource> rows) : rows_(std::move(rows)) {
+        const StoredSamples& stored = rows_->stored();
+        const bool has_numbers = rows_->store_numbers();
+        if (!has_numbers && rows_->sample() != SampleKind::floating) {
+            const int bits = rows_->bits() - (rows_->sample() == SampleKind::snorm ? 1 : 0);
+            greatest_ = static_cast<double>((std::uint64_t{1} << bits) - 1);
+        }
+        if (stored.has_scale != 0) {
+            scale_ = stored.scale;
+            offset_ = stored.offset;
+        }
+        describe(rows_->extent(), rows_->names(), rows_->row_bytes());
+        describe_samples(SampleKind::floating, 32, rows_->normal_encoding());
+        describe_normals(rows_->normal_mark());
+        describe_stored(stored);
+        describe_numbers(scale_, offset_);
+        describe_remark(rows_->remark());
+        if (std::optional<float> value = rows_->no_data()) {
+            number(&*value, 1);
+            describe_no_data(value);
+        }
+    }
+
+    [[nodiscard]] int rows_together() const override { return rows_->rows_together(); }
+    [[nodiscard]] bool is_random() const override { return rows_->is_random(); }
+    void choose_planes(const std::vector<bool>& wanted) override { rows_->choose_planes(wanted); }
+    [[nodiscard]] int block_rows() const override { return rows_->block_rows(); }
+    Result<void> decode(int first, int count, std::byte* rows) override { return rows_->decode(first, count, rows); }
+    [[nodiscard]] bool can_peek() const override { return rows_->can_peek(); }
+    Result<void> peek(int first, int count, std::byte* rows) override { return rows_->peek(first, count, rows); }
+    Result<void> finish() override { return rows_->finish(); }
+    void store(const std::byte* rows, int first, int end, Image& image) const override {
+        rows_->store(rows, first, end, image);
+        if (greatest_ == 1.0 && scale_ == 1.0 && offset_ == 0.0) return;
+        for (Plane<float>& plane : image.planes) {
+            for (int j = first; j < end; ++j) number(plane.row(j), extent().width);
+        }
+    }
+
+private:
+    // A fraction of a whole number was rounded to float, so the number is found by rounding. Block formats have values
+    // between the codes.
+    void number(float* values, int count) const {
+        constexpr double kRounding = 0.01;
+        for (int i = 0; i < count; ++i) {
+            const double value = static_cast<double>(values[i]) * greatest_;
+            const double whole = std::floor(value + 0.5);
+            const bool is_whole = greatest_ != 1.0 && std::abs(value - whole) < kRounding;
+            values[i] = static_cast<float>((is_whole ? whole : value) * scale_ + offset_);
+        }
+    }
+
+    std::unique_ptr<RowSource> rows_;
+    double greatest_ = 1.0;  // the number whose fraction is 1
+    double scale_ = 1.0;
+    double offset_ = 0.0;
+};
+
+}  // namespace
+
+std::unique_ptr<RowSource> with_values(std::unique_ptr<RowSource> rows, FileValues values) {
+    const bool wanted = values == FileValues::stored || (values == FileValues::automatic && states_quantities(*rows));
+    const bool has_scale = rows->stored().has_scale != 0;
+    if (!wanted || (rows->stored().kind == kFloating && !has_scale)) return rows;
+    return std::make_unique<NumberRows>(std::move(rows));
+}
+
+}  // namespace tex
