@@ -68,6 +68,49 @@ TEST_F(AtomicFile, ReplacesAFileAndKeepsItsModeAndOwner) {
     EXPECT_EQ(files(), 1u);
 }
 
+TEST_F(AtomicFile, ReplacesALinkAndNotItsTargetIfAsked) {
+    std::ofstream(path("target")) << "stays";
+    std::filesystem::create_symlink("target", path("link"));
+    std::filesystem::create_symlink("nowhere", path("dangling"));
+    ASSERT_EQ(mkfifo(path("fifo").c_str(), 0600), 0);
+    std::filesystem::create_directory(path("folder"));
+    WriteOptions options;
+    options.follow_links = false;
+    for (const char* const name : {"link", "dangling", "fifo"}) {
+        ASSERT_TRUE(write_file(path(name), bytes_of("new"), options)) << name;
+        EXPECT_EQ(content(path(name)), "new");
+        EXPECT_TRUE(std::filesystem::is_regular_file(std::filesystem::symlink_status(path(name)))) << name;
+    }
+    EXPECT_EQ(content(path("target")), "stays");
+    EXPECT_FALSE(std::filesystem::exists(path("nowhere")));
+    EXPECT_FALSE(write_file(path("folder"), bytes_of("new"), options));
+    EXPECT_EQ(files(), 5u);
+}
+
+TEST_F(AtomicFile, AsksBeforeItReplacesAndSaysWhenItHas) {
+    std::ofstream(path("a")) << "old";
+    WriteOptions options;
+    std::string seen;
+    bool is_replaced = false;
+    options.before_replacing = [&](const std::string& name, const std::string& complete) -> Result<void> {
+        EXPECT_EQ(name, path("a"));
+        EXPECT_EQ(content(path("a")), "old");
+        seen = content(complete);
+        return Error{ErrorCode::io, name, "no"};
+    };
+    options.replaced = [&](const std::string& name) { is_replaced = content(name) == "new"; };
+    const Result<void> refused = write_file(path("a"), bytes_of("new"), options);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().reason, "no");
+    EXPECT_EQ(content(path("a")), "old");
+    EXPECT_EQ(seen, "new");
+    EXPECT_FALSE(is_replaced);
+    EXPECT_EQ(files(), 1u);
+    options.before_replacing = {};
+    ASSERT_TRUE(write_file(path("a"), bytes_of("new"), options));
+    EXPECT_TRUE(is_replaced);
+}
+
 TEST_F(AtomicFile, NoClobberKeepsWhatIsThere) {
     WriteOptions options;
     options.no_clobber = true;
