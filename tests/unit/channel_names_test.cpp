@@ -68,7 +68,7 @@ TEST(ChannelNames, ALayerIsFoundByItsWholeNameOrItsEnd) {
 
 TEST(ChannelNames, AListIsPlainTextAndShort) {
     EXPECT_EQ(list_of_names({"a\nb", "c"}), "ab, c");
-    EXPECT_EQ(list_of_names(Names(18, "c")).substr(44), ", c and 2 more");
+    EXPECT_EQ(list_of_names(Names(18, "c")).substr(44), " c and 2 more");
 }
 
 // The channels hold different values, so that an exchange shows.
