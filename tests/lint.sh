@@ -203,7 +203,7 @@ mapfile -t below_verbs < <(select_files '^libtex/src/(rows|kernels|blocks|surfac
 mapfile -t outside_color < <(printf '%s\n' "${library[@]}" | grep -v '/color\.' || true)
 mapfile -t outside_formats < <(printf '%s\n' "${library[@]}" | grep -v '/formats/' || true)
 mapfile -t outside_reader < <(select_files '^(libtex|tools)/.*\.(cpp|h)$' |
-    grep -v '^\(tools/reader\|libtex/oiio\)/' || true)
+    grep -v '^\(tools/oiio-reader\|libtex/oiio\)/' || true)
 ban '#include [<"]hwy/|\bHWY_|\bhwy::' 'only kernels/ knows Highway' "${outside_kernels[@]}"
 verbs='bake|blend|check|color|compare|convert|curvature|deband|heat_map|image_io|integrate|mesh_io|mesh_selection|mip'
 verbs+='|pack|pipeline|preview|probe|roughness|scale|sheet|source|tangents|unpack'

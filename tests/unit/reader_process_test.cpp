@@ -40,8 +40,8 @@ protected:
         chmod(options.reader.c_str(), 0755);
         const Result<Descriptor> input = memory_file({});
         const Result<Descriptor> result = memory_file({});
-        Result<ReaderProcess> process =
-            ReaderProcess::start({ReaderProgram::pictures, "file", "decode", "tiff", input->get(), result->get()}, options);
+        Result<ReaderProcess> process = ReaderProcess::start(
+            {ReaderProgram::pictures, "file", "decode", "tiff", input->get(), result->get()}, options);
         if (!process) return process.error();
         std::this_thread::sleep_for(wait);
         return process->finish();

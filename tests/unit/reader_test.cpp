@@ -162,7 +162,6 @@ TEST(Reader, TellsWhatATiffSaysAboutItsSamples) {
     ASSERT_TRUE(geo);
     const Result<std::unique_ptr<RowSource>> geo_rows = open_reader_rows(*geo, quick());
     ASSERT_TRUE(geo_rows) << geo_rows.error().message();
-    EXPECT_EQ((*geo_rows)->stored().has_place, 1u);
     EXPECT_EQ((*geo_rows)->stored().has_scale, 1u);
     EXPECT_NE((*geo_rows)->stored().scale, 1.0);
 }

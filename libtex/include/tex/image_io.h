@@ -2,9 +2,9 @@
 // image_io.h: reads pictures from files.
 //
 // The first bytes of a file, not its name, decide how it is read. PNG and EXR are decoded in this process, by libpng
-// and OpenEXR; DDS and KTX2 by libtex; TIFF by libtiff and JPEG by libjpeg-turbo (tex-reader), and everything else (TGA,
-// BMP, HDR, PSD ...) by OpenImageIO (tex-reader-oiio), in a separate process for each file, under limits of memory and
-// time. If such a decoder crashes or hangs, the result is an Error.
+// and OpenEXR; DDS and KTX2 by libtex. TIFF is decoded by libtiff and JPEG by libjpeg-turbo (tex-reader), everything
+// else (TGA, BMP, HDR, PSD ...) by OpenImageIO (tex-reader-oiio), in a separate process for each file, under limits of
+// memory and time. If such a decoder crashes or hangs, the result is an Error.
 
 #pragma once
 
@@ -81,8 +81,8 @@ struct ReaderInfo {
     bool calls_filtered = false;    // by seccomp: no network, no writing, no other programs
 };
 
-// Starts both reader programs once to query them, which takes a fifth of a second. Errors: as read_image(), if the process
-// does not run.
+// Starts both reader programs once to query them, which takes a fifth of a second. Errors: as read_image(), if
+// tex-reader does not run.
 [[nodiscard]] Result<ReaderInfo> reader_info(const ReadOptions& options = {});
 
 }  // namespace tex
