@@ -101,7 +101,8 @@ PackOptions ConvertNormals::packing(const SourceInfo& input, const cli::Task& ta
 Result<void> ConvertNormals::process(cli::Job& job) {
     // In tangent space, a wrong y gives a wrong result, whichever way green points in the output.
     const bool doubt_y = conversion_.spaces.from == Space::tangent;
-    auto source = normals.read(job, job.task.input, job.until(0.2), {true, false, {}, false, doubt_y});
+    const bool keep_length = conversion_.spaces.ignores_z();
+    auto source = normals.read(job, job.task.input, job.until(0.2), {true, false, {}, keep_length, doubt_y});
     if (!source) return source.error();
     cli::report_input(job, source->info);
     if (conversion_.spaces.from == Space::object && !holds_z(source->info.swizzle))

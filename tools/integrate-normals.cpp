@@ -66,7 +66,7 @@ IntegrateNormals::IntegrateNormals(const cli::ProgramRow& row) : NormalsConverte
                 [this](const std::string& text) {
                     least_response_ = cli::parse_double(text, {0.0, 1.0, false});
                 })
-        .preset = "0.1 for 8 bits, else 0.001";
+        .preset = "0.1 for 8 bits, else 0.001, or 0.003 for sobel5 and gaussian";
     stored_.add(command);
     command
         .choice(output.container, "--container", "TYPE", kContainerNames,

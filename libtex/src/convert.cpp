@@ -92,8 +92,9 @@ private:
     };
 
     void convert(Strip& strip, int i, int j, int row) {
-        const Vector3 from{static_cast<double>(map_.x.at(i, j)), static_cast<double>(map_.y.at(i, j)),
-                           static_cast<double>(map_.z.at(i, j))};
+        const Vector3 stored{static_cast<double>(map_.x.at(i, j)), static_cast<double>(map_.y.at(i, j)),
+                             static_cast<double>(map_.z.at(i, j))};
+        const Vector3 from = direction_ == Direction::to_object ? read_texel(space_.decoder, stored) : stored;
         const auto n = static_cast<std::size_t>(subsamples_);
         Sum all;
         for (std::size_t k = 0; k < n * n; ++k) {

@@ -22,7 +22,11 @@ constexpr int kBlocks = 12;
 
 struct Normal {
     double x, y, z;
-    Normal(double x_of, double y_of) : x(x_of), y(y_of), z(std::sqrt(1.0 - std::min(1.0, x * x + y * y))) {}
+    Normal(double x_of, double y_of) : x(x_of), y(y_of), z(std::sqrt(1.0 - std::min(1.0, x * x + y * y))) {
+        const double length = std::max(1.0, std::hypot(x, y));
+        x /= length;
+        y /= length;
+    }
     [[nodiscard]] double chord(const Normal& n) const {
         return (x - n.x) * (x - n.x) + (y - n.y) * (y - n.y) + (z - n.z) * (z - n.z);
     }

@@ -217,6 +217,28 @@ TEST(Convert, RefitsMapsToOtherTangentsAndDecoders) {
     EXPECT_EQ(larger->unmatched, larger->covered - smaller->covered);
 }
 
+// Godot rebuilds z, so that a stored z of another length changes nothing there, and much elsewhere.
+TEST(Convert, GodotIgnoresTheZOfTheMap) {
+    const Solid solid = torus();
+    const auto tangents = make_tangents(solid.part);
+    ASSERT_TRUE(tangents);
+    const NormalMap map = bumpy_map({96, 64});
+    NormalMap other = bumpy_map({96, 64});
+    for (int j = 0; j < 64; ++j) {
+        for (int i = 0; i < 96; ++i) other.z.at(i, j) *= 0.3f;
+    }
+    for (const auto& decoder : kDecoderNames) {
+        const TangentSpace space{solid.part, *tangents, 0, decoder.value};
+        const auto wanted = to_object_space(map, space), got = to_object_space(other, space);
+        ASSERT_TRUE(wanted && got);
+        const double most = angles_between(wanted->map, got->map, got->coverage).max;
+        if (decoder.value == Decoder::godot)
+            EXPECT_LT(most, 1e-4);
+        else
+            EXPECT_GT(most, 5.0) << decoder.name;
+    }
+}
+
 TEST(Convert, GivesTheSameBytesForEveryNumberOfThreads) {
     const Solid solid = smooth_cube();
     const auto tangents = make_tangents(solid.part);

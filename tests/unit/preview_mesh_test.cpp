@@ -83,6 +83,17 @@ TEST(PreviewMesh, SphereOfTrianglesLooksLikeTheSphereOfRays) {
     }
 }
 
+TEST(PreviewMesh, GodotIgnoresTheZOfTheMap) {
+    const MeshWithTangents mesh = quad();
+    const MipChain map = constant({4, 4}, 0.5f, 0.6f, std::sqrt(0.39f)), other = constant({4, 4}, 0.5f, 0.6f, 0.1f);
+    const auto drawn = [&](const MipChain& chain, Decoder decoder) {
+        const TangentSpace space = mesh.space(decoder);
+        return render_or_fail({.map = &chain, .mesh = &space}, from_the_front(Show::world_normals, 65));
+    };
+    EXPECT_EQ(difference(drawn(map, Decoder::godot), drawn(other, Decoder::godot)), 0);
+    EXPECT_GT(difference(drawn(map, Decoder::gltf), drawn(other, Decoder::gltf)), 20);
+}
+
 TEST(PreviewMesh, HasTheSameBytesForAnyNumberOfThreads) {
     const MeshWithTangents mesh = fine_sphere(12);
     const MipChain map = random_map({32, 16}, 5);

@@ -60,6 +60,10 @@ public:
     void add_input(Command& command);
 
     [[nodiscard]] bool has_mesh() const { return !mesh_.empty(); }
+    // Whether the engine that decodes the input ignores its z, so that x and y must be read as they are stored.
+    [[nodiscard]] bool ignores_z() const {
+        return from == Space::tangent && rebuilds_z(decoder_in_.value_or(decoder_));
+    }
 
     // --mesh and the options that choose its parts and tangents, as they were given and as a shell reads them: with
     // them, and with --decoder, another command decodes an input in the same way.

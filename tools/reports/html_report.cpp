@@ -226,7 +226,8 @@ std::string HtmlReport::mesh_data() const {
     Json json;
     json["decoders"] = Json::array();
     for (const auto& row : kDecoderNames)
-        json["decoders"].push_back({row.name, name_of(kDecoderKindNames, decoder_kind(row.value)), row.meaning});
+        json["decoders"].push_back(
+            {row.name, name_of(kDecoderKindNames, decoder_kind(row.value)), row.meaning, rebuilds_z(row.value)});
     json["meshes"] = Json::array();
     std::string bytes;
     for (const HtmlMesh* mesh : meshes) {

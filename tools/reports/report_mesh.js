@@ -29,6 +29,7 @@ void main() {
 // The numbers of `kind` are those of kDecoderKinds.
 const kMeshShader = kShading + `
 uniform highp int kind;
+uniform bool rebuildsZ;
 uniform sampler2D textureA;
 uniform Map a;
 uniform float bump;
@@ -55,7 +56,8 @@ void main() {
   float q = gl_FragCoord.w;
   vec2 p = uv * q;
   vec2 dx = (dFdx(p) - uv * dFdx(q)) / (q + dFdx(q)), dy = (dFdy(p) - uv * dFdy(q)) / (q + dFdy(q));
-  vec3 n = scaled(normalOf(a, read(a, filtered(dx, dy))), bump);
+  vec3 stored = read(a, filtered(dx, dy));
+  vec3 n = scaled(rebuildsZ ? withZ(stored.xy) : normalOf(a, stored), bump);
   vec3 t = tangentAcross, across = normalAcross;
   vec3 b = kind == 1 ? (sign < 0.0 ? -1.0 : 1.0) * cross(across, t) : binormalAcross;
   if (kind == 2) { t = unitOrSame(t); b = unitOrSame(b); across = unitOrSame(across); }
@@ -142,8 +144,8 @@ class MeshLighting {
     this.size = size;
   }
 
-  // Draws `scene` and copies it to the square `canvas`: {map, mesh, y, kind (a word of kDecoderKinds), view, bump,
-  // light: [x, y, z] in the world, point}. Returns what the GPU was given.
+  // Draws `scene` and copies it to the square `canvas`: {map, mesh, y, kind (a word of kDecoderKinds), rebuildsZ, view,
+  // bump, light: [x, y, z] in the world, point}. Returns what the GPU was given.
   async draw(canvas, scene) {
     const gl = this.gl, texture = await this.lighting.texture(scene.map);
     this.lighting.begin(canvas, this.program);
@@ -164,12 +166,13 @@ class MeshLighting {
     return texture;
   }
 
-  drawMesh(array, texture, {map, mesh, y, kind, view, bump, light, point}) {
+  drawMesh(array, texture, {map, mesh, y, kind, rebuildsZ, view, bump, light, point}) {
     const gl = this.gl, program = this.program, {vertices, triangles} = this.meshes[mesh];
     this.lighting.setMap(program, "a", 0, map, texture, y);
     this.lighting.setLight(program, light, point, view.eye);
     gl.uniformMatrix4fv(program.uniform("camera"), false, view.matrix);
     gl.uniform1i(program.uniform("kind"), kDecoderKinds.indexOf(kind));
+    gl.uniform1i(program.uniform("rebuildsZ"), rebuildsZ ? 1 : 0);
     gl.uniform1f(program.uniform("bump"), bump);
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.many);
     gl.clearColor(...kGround, 1);

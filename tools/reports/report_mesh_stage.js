@@ -73,8 +73,8 @@ class MeshStage extends Stage {
 
   paint() {
     const {map, number: mesh, yA: y, camera: view, bump, light, point} = this;
-    const [, kind] = this.page.decoders.find(([name]) => name === this.decoder);
-    return this.page.onMesh.draw(this.canvas, {map, mesh, y, kind, view, bump, light, point});
+    const [, kind, , rebuildsZ] = this.page.decoders.find(([name]) => name === this.decoder);
+    return this.page.onMesh.draw(this.canvas, {map, mesh, y, kind, rebuildsZ, view, bump, light, point});
   }
 
   tell() {

@@ -6,8 +6,10 @@
 //
 //     n = normalize(x T' + y B' + z N')
 //
+// where z is rebuilt from x and y if the engine does so (rebuilds_z()). For it, x and y must be those of the texture:
+// UnpackOptions::keep_length.
 // Engines differ in these vectors, so a map decodes to other normals than it was made for, unless both are the same.
-// to_tangent_space() is the exact inverse of to_object_space() for each decoder:
+// to_tangent_space() is the exact inverse of to_object_space() for each decoder, of unit vectors with z >= 0:
 //
 //     r0 = cross(B', N'), r1 = cross(N', T'), r2 = cross(T', B'), s = the sign of dot(T', r0)
 //     t = normalize(s (dot(n, r0), dot(n, r1), dot(n, r2)))

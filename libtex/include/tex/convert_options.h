@@ -21,7 +21,8 @@ namespace tex {
 //   normalized     as per vertex, but B is normalised at the corners, and T', B' and N' after interpolation
 //
 // Decoders of the same kind give the same vectors. Where engines differ in y, or in how exactly they store tangents,
-// the decoders here do not: Unreal reads maps with y down and stores tangents in 8 bits by default.
+// the decoders here do not: Unreal reads maps with y down and stores tangents in 8 bits by default. rebuilds_z() says
+// which ones ignore z.
 enum class DecoderKind { per_vertex, per_fragment, normalized };
 
 inline constexpr Named<DecoderKind> kDecoderKindNames[] = {
@@ -71,6 +72,9 @@ inline constexpr Named<Decoder> kDecoderNames[] = {
     }
     return DecoderKind::per_fragment;
 }
+
+// Whether the engine ignores the z of every texture, and takes sqrt(max(0, 1 - x^2 - y^2)) for it.
+[[nodiscard]] constexpr bool rebuilds_z(Decoder decoder) { return decoder == Decoder::godot; }
 
 // The tangent space of a map: a mesh with a tangent for each corner, and a decoder. Refers to the caller's objects.
 struct TangentSpace {

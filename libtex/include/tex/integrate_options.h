@@ -9,6 +9,12 @@
 #pragma GCC visibility push(default)
 namespace tex {
 
+// The least response that lets the heights of a float map come back as integrate.h promises. Kernels that smooth much
+// attenuate many frequencies, and the rounding of floats in all of them adds up.
+[[nodiscard]] constexpr float least_response_of(GradientKernel kernel) {
+    return kernel == GradientKernel::sobel5 || kernel == GradientKernel::gaussian ? 3e-3f : 1e-3f;
+}
+
 struct IntegrateOptions {
     BakeOptions bake;  // how slopes were measured
 
@@ -22,8 +28,9 @@ struct IntegrateOptions {
     // smaller z than 1/255 besides 0, and no slope above 127 to any use.
     float least_z = 1e-6f;
     // Frequencies at which the response of the kernel is below this fraction of a derivative's are left out: see
-    // integrate.h. Rounding to 8 bits is amplified up to its inverse: 0.1 keeps that out of sight.
-    float least_response = 1e-3f;
+    // integrate.h. Rounding to 8 bits is amplified up to its inverse: 0.1 keeps that out of sight. 0: that of
+    // least_response_of() the kernel.
+    float least_response = 0.0f;
     // The most solutions if one is not enough; they end before if heights change by less than 1e-5 of their range.
     int most_steps = 40;
 };

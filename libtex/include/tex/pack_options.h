@@ -66,8 +66,8 @@ inline constexpr Named<Metric> kMetricNames[] = {
 // holds a few of them, and the bytes are the same for every number of threads. Each band has its own lambda, the
 // greatest one found that keeps the promise.
 //
-// The promise concerns the angles between the normals of the source and those of the blocks, with z = sqrt(1 - min(1,
-// x^2 + y^2)) on both sides:
+// The promise concerns the angles between the normals of the source and those of the blocks, as compare() measures
+// them: on both sides, z = sqrt(1 - x^2 - y^2), or 0 where x^2 + y^2 is above 1, and then the vector is made unit.
 //
 //   mean     the mean angle of every band, and so of every level, exceeds that of the same encoding without
 //            optimisation by at most so many degrees

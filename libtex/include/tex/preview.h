@@ -35,7 +35,8 @@ struct PreviewScene {
     const TangentSpace* mesh = nullptr;
 
     // The texture stores only x and y (DXT5nm, BC5): z is reconstructed from the filtered x and y, as in the shader.
-    // Otherwise x, y and z are filtered, and the result is normalised.
+    // Otherwise x, y and z are filtered, and the result is normalised. If the mesh's decoder ignores z (rebuilds_z()),
+    // so does the picture.
     bool map_without_z = false;
     bool detail_without_z = false;
 };

@@ -128,14 +128,15 @@ float measure(const Normals& n, const Ends& x_ends, const Ends& y_ends, int* pai
         F least = hn::Set(d, 1e9f);
         F pair = hn::Zero(d);
         for (int b = 0; b < py.count; ++b) {
-            const F dy = hn::Sub(y, hn::Set(d, py.values[b]));
-            const F dyy = hn::Mul(dy, dy);
             for (int a = 0; a < px.count; ++a) {
                 const float mx = px.values[a];
                 const float my = py.values[b];
-                const F dx = hn::Sub(x, hn::Set(d, mx));
-                const F dz = hn::Sub(z, hn::Set(d, std::sqrt(1.0f - std::min(1.0f, mx * mx + my * my))));
-                const F chord = hn::Add(hn::Add(hn::Mul(dx, dx), dyy), hn::Mul(dz, dz));
+                const float flat = mx * mx + my * my;
+                const float factor = flat > 1.0f ? 1.0f / std::sqrt(flat) : 1.0f;  // readers make vectors unit
+                const F dx = hn::Sub(x, hn::Set(d, factor * mx));
+                const F dy = hn::Sub(y, hn::Set(d, factor * my));
+                const F dz = hn::Sub(z, hn::Set(d, std::sqrt(1.0f - std::min(1.0f, flat))));
+                const F chord = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
                 if (pairs != nullptr)
                     pair = hn::IfThenElse(hn::Lt(chord, least), hn::Set(d, static_cast<float>(a + 8 * b)), pair);
                 least = hn::Min(least, chord);
@@ -187,7 +188,11 @@ void improve_angles(const BlockRow& row, Encoding encoding, std::byte* blocks) {
             const float y = row.y[k / kBlockEdge][i];
             n.x[k] = std::clamp(row.x[k / kBlockEdge][i], -1.0f, 1.0f);
             n.y[k] = std::clamp(row.negate_y ? -y : y, -1.0f, 1.0f);
-            n.z[k] = std::sqrt(1.0f - std::min(1.0f, n.x[k] * n.x[k] + n.y[k] * n.y[k]));
+            const float flat = n.x[k] * n.x[k] + n.y[k] * n.y[k];
+            const float factor = 1.0f / std::sqrt(std::max(1.0f, flat));
+            n.x[k] *= factor;
+            n.y[k] *= factor;
+            n.z[k] = std::sqrt(1.0f - std::min(1.0f, flat));
             const bool inside = kBlockEdge * block + k % kBlockEdge < row.width && k / kBlockEdge < row.height;
             n.weight[k] = inside ? 1.0f : 0.0f;
         }

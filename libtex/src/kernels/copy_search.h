@@ -79,8 +79,8 @@ struct CopyCosts {
 };
 void add_cheapest(const CopyCosts& costs, int count, CheapCopies& cheapest);
 
-// The lengths of the chords |n - m| between 16 normals and the decoded components x and y, with z = sqrt(1 - min(1, x^2
-// + y^2)).
+// The lengths of the chords |n - m| between 16 unit normals and the decoded components x and y, as readers make normals
+// of them: (x, y, sqrt(1 - x^2 - y^2)), or the unit vector along (x, y, 0) where x^2 + y^2 is above 1.
 void block_chords(const float* const normals[3], const float x[16], const float y[16], float chords[16]);
 
 // For many candidates for one component of a block's texels: the sum of the chords that block_chords() computes, each

@@ -2,6 +2,7 @@
 
 #include "mesh/frames.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -62,6 +63,11 @@ Frame CornerFrames::at(const std::array<double, 3>& weights) const {
     }
     const double sign = weights[0] * signs_[0] + weights[1] * signs_[1] + weights[2] * signs_[2];
     return {t, (sign < 0.0 ? -1.0 : 1.0) * cross(n, t), n};
+}
+
+Vector3 read_texel(Decoder decoder, Vector3 t) {
+    if (!rebuilds_z(decoder)) return t;
+    return {t.x, t.y, std::sqrt(std::max(0.0, 1.0 - t.x * t.x - t.y * t.y))};
 }
 
 Vector3 decode(const Frame& frame, Vector3 t) {

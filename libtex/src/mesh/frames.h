@@ -41,6 +41,9 @@ private:
 // Whether both decoders make the same vectors.
 [[nodiscard]] bool same_vectors(Decoder a, Decoder b);
 
+// The texel t as the decoder reads it: see rebuilds_z().
+[[nodiscard]] Vector3 read_texel(Decoder decoder, Vector3 t);
+
 // n = normalize(x T' + y B' + z N'), or N' if that has no length.
 [[nodiscard]] Vector3 decode(const Frame& frame, Vector3 t);
 

@@ -10,6 +10,7 @@
 #include "preview/measures.h"
 #include "preview/mesh_body.h"
 #include "preview/shading.h"
+#include "preview/surfaces.h"
 
 namespace tex::render {
 namespace {
@@ -34,7 +35,7 @@ private:
 TexelAt unpacked(const Sampler& map, const PreviewScene& scene, const PreviewOptions& options) {
     return [&](double x, double y) {
         const Sample s = sample(map, {x / map.extent().width, 1.0 - y / map.extent().height}, {}, 1);
-        const Vec3 n = unpack_normal({s[0], s[1], s[2]}, scene.map_without_z, static_cast<double>(options.bump_scale),
+        const Vec3 n = unpack_normal({s[0], s[1], s[2]}, reconstructs_z(scene), static_cast<double>(options.bump_scale),
                                      options.scale_mode);
         return Vector3{n.x, n.y, n.z};
     };

@@ -95,7 +95,7 @@ Hit LitSurface::displaced(const Hit& hit, const Footprint& footprint) const {
 
 Vec3 LitSurface::tangent_normal(Vec2 uv, const Footprint& footprint) const {
     const int anisotropy = options_.anisotropy;
-    const Vec3 base = unpack_normal(vec(sample(textures_.map, uv, footprint, anisotropy)), scene_.map_without_z,
+    const Vec3 base = unpack_normal(vec(sample(textures_.map, uv, footprint, anisotropy)), reconstructs_z(scene_),
                                     static_cast<double>(options_.bump_scale), options_.scale_mode);
     if (textures_.detail.empty()) return base;
     const Sample fetched = sample(textures_.detail, detail_place(uv), detail_area(footprint), anisotropy);

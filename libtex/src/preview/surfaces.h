@@ -27,6 +27,11 @@ private:
     std::optional<Pyramid> albedo_, detail_albedo_, height_;
 };
 
+// Whether z of the map is reconstructed: the texture has none, or the mesh's decoder ignores it.
+[[nodiscard]] inline bool reconstructs_z(const PreviewScene& scene) {
+    return scene.map_without_z || (scene.mesh != nullptr && rebuilds_z(scene.mesh->decoder));
+}
+
 // The whole material with lighting.
 class LitSurface {
 public:

@@ -56,9 +56,11 @@ void add_block(const BlockRow& row, int index, RdoBand& band) {
         const int column = std::min(i, row.width - 1);
         const float x = clamped(row.x[j][column]);
         const float y = clamped(row.y[j][column]);
-        block.x[k] = x;
-        block.y[k] = row.negate_y ? -y : y;
-        block.z[k] = std::sqrt(1.0f - std::min(1.0f, x * x + y * y));
+        const float flat = x * x + y * y;
+        const float factor = 1.0f / std::sqrt(std::max(1.0f, flat));
+        block.x[k] = factor * x;
+        block.y[k] = factor * (row.negate_y ? -y : y);
+        block.z[k] = std::sqrt(1.0f - std::min(1.0f, flat));
         block.inside[k] = i < row.width && j < row.height ? 1.0f : 0.0f;
     }
     band.blocks.push_back(block);

@@ -26,6 +26,10 @@ AxisOperator operator_of(const SurfaceAxis& axis, int texels) {
     return {texels, axis.wrap != Wrap::repeat, axis.ratio};
 }
 
+float settled_response(const IntegrateOptions& options) {
+    return options.least_response > 0.0f ? options.least_response : least_response_of(options.bake.kernel);
+}
+
 struct Bounds {
     float low = std::numeric_limits<float>::max();
     float high = std::numeric_limits<float>::lowest();
@@ -44,7 +48,7 @@ Integrator::Integrator(const NormalMap& map, const IntegrateOptions& options)
     : map_(map), options_(options), extent_(map.extent()), gradient_(gradient_of(options.bake)),
       x_(axis_of(options.wrap_x, options.bumpiness_x, larger_bumpiness(options), extent_.width)),
       y_(axis_of(options.wrap_y, options.bumpiness_y, larger_bumpiness(options), extent_.height)),
-      solver_(gradient_, operator_of(x_, extent_.width), operator_of(y_, extent_.height), options.least_response) {
+      solver_(gradient_, operator_of(x_, extent_.width), operator_of(y_, extent_.height), settled_response(options)) {
     head_ = {x_.ratio, y_.ratio, options.wrap_x, options.wrap_y};
 }
 
