@@ -102,11 +102,11 @@ TEST(TaskQueue, StopsWhenItIsTold) {
 TEST(Cache, FindsDamagedEntries) {
     const Scratch scratch;
     Cache cache(scratch.path("cache"));
+    ASSERT_TRUE(cache.open(false));
     const Digest key = digest_of("key");
-    scratch.write("a", "contents");
     const WriteOptions write;
     EXPECT_TRUE(cache.fetch(key, scratch.path("b"), write)->empty());
-    ASSERT_TRUE(cache.store(key, scratch.path("a"), {scratch.path("a")}));
+    ASSERT_TRUE(cache.store(key, scratch.path("a"), {"contents"}));
     EXPECT_FALSE(cache.fetch(key, scratch.path("b"), write)->empty());
     EXPECT_EQ(scratch.read("b"), "contents");
     const std::string entry = "cache/" + key.hex().substr(0, 2) + "/" + key.hex();
@@ -126,9 +126,9 @@ TEST(Cache, FindsDamagedEntries) {
 TEST(Cache, RemovesWhatWasUsedLongestAgo) {
     const Scratch scratch;
     Cache cache(scratch.path("cache"));
-    scratch.write("a", std::string(1000, 'a'));
+    ASSERT_TRUE(cache.open(false));
     for (const char* name : {"1", "2", "3"}) {
-        ASSERT_TRUE(cache.store(digest_of(name), scratch.path("a"), {scratch.path("a")}));
+        ASSERT_TRUE(cache.store(digest_of(name), scratch.path("a"), {std::string(1000, 'a')}));
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
     EXPECT_FALSE(cache.fetch(digest_of("1"), scratch.path("b"), {})->empty());

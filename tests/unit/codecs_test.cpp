@@ -25,7 +25,8 @@ TEST(Codecs, HaveOneRowForEachContainer) {
         EXPECT_NE(codec.parse == nullptr, codec.open_rows == nullptr) << row.name;
         const int ways = (codec.layout != nullptr) + (codec.open_target != nullptr) + (codec.reader_name != nullptr);
         EXPECT_EQ(ways, 1) << row.name;
-        EXPECT_EQ(codec.magic.empty(), codec.reader_name != nullptr) << row.name;
+        const bool is_bare = row.value == Container::r16 || row.value == Container::r32;  // no header, so no magic
+        EXPECT_EQ(codec.magic.empty(), codec.reader_name != nullptr || is_bare) << row.name;
     }
 }
 

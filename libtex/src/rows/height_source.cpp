@@ -30,7 +30,7 @@ int grey_plane(const Names& names, const std::vector<ChannelGroup>& groups) {
     const auto is_grouped = [&](int k) {
         return std::any_of(groups.begin(), groups.end(), [&](const ChannelGroup& group) {
             const auto& channels = group.channels;
-            return channels.size() == 3 &&
+            return channels.size() >= 2 &&
                    std::find(channels.begin(), channels.end(), static_cast<std::size_t>(k)) != channels.end();
         });
     };

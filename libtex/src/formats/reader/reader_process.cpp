@@ -44,11 +44,11 @@ News last_news(int progress) {
         there -= static_cast<int>(n);
     }
     pollfd poll_for{progress, POLLIN, 0};
-    const bool has_ended = poll(&poll_for, 1, 0) > 0 && (poll_for.revents & (POLLHUP | POLLIN)) == POLLHUP;
+    const bool has_ended = poll(&poll_for, 1, 0) > 0 && (poll_for.revents & POLLHUP) != 0;
     return has_ended ? News::end : News::late;
 }
 
-// Waits for one of three events: a strip of rows is there; the pipe has ended, because every process that holds it is
+// Waits for one of three events: a strip of rows is there; the socket has ended, because every process that holds it is
 // gone; or the time is up.
 News wait_for_news(int progress, Clock::time_point deadline) {
     for (;;) {
