@@ -86,3 +86,13 @@ preset() {
     cmake --build --preset "$name" "${targets[@]}" && ctest --preset "$name" --output-junit "$results/$name.xml" "$@"
 }
 
+# Tests that judge real maps, exhaustive searches, and the longest comparisons of whole runs: their results are the same
+# in every build, because the bytes are. And tests that make the system fail: their results do not depend on the
+# compiler.
+# shellcheck disable=SC2034  # used by the scripts that source this file
+judgements='CheckData.FindsPlantedDamage|CheckData.FindsNoDamage|CheckData.TellsEveryKnownDirection|CheckThresholds'
+judgements+='|BakeData|IntegrateData|Efforts.NoneIsWorseThanACheaperOneOnRealMaps|EacSearch.FindsTheOptimum'
+judgements+='|PlainFit.IsNever|MeshFit.FindsWrongSpaces|RdoStream|RdoOption.FilesAreSmaller|BakeNormals.HoldingAllRows'
+judgements+='|Steps.Joined'
+# shellcheck disable=SC2034
+failures='Faults|HostileFiles'

@@ -3,7 +3,8 @@
 # nightly.sh: what takes too long for the gate (.ci/run), by hand: at the latest before an issue is called done.
 # NIGHTLY.md says when it last ran, on which commit, and with what result. The last line counts all tests.
 #
-#     tests/nightly.sh [STEP...]    all steps, or the named ones: long slurm arm64 tsan tidy fuzz package engines
+#     tests/nightly.sh [STEP...]    all steps, or the named ones: long commands slurm arm64 tsan tidy fuzz package
+#                                   engines
 #
 # FUZZ_SECONDS is the time for each fuzzer (default: 60).
 set -euo pipefail
@@ -21,12 +22,20 @@ release() {
     cmake --build --preset release
 }
 
-# The tests that the gate leaves out, and the drills at their full length.
+# The drills at their full length.
 long() {
     local status=0
-    ctest --preset release --output-junit "$results/long.xml" -L nightly || status=1
     script drills tests/build_drills.sh 100 || status=1
     script long_runs tests/long_runs.sh || status=1
+    return "$status"
+}
+
+# The commands and the Python module under the address sanitizer, and the bytes that commands make if the other compiler
+# has compiled them, on two instruction sets.
+commands() {
+    local status=0
+    preset asan "cli_tests tex_python" -L 'cli|python' -E "$judgements" || status=1
+    preset clang "" -L cli -R 'Matrix.*(SCALAR|AVX2)' || status=1
     return "$status"
 }
 
@@ -165,6 +174,7 @@ if command -v ccache >/dev/null; then export CMAKE_CXX_COMPILER_LAUNCHER=ccache;
 
 release
 step long long
+step commands commands
 step slurm slurm
 step arm64 arm64
 step tsan tsan

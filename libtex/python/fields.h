@@ -164,6 +164,7 @@ void each_field(WriteOptions& o, F& f) {
     f("jpeg_quality", o.jpeg_quality);
     f("sync", o.sync);
     f("no_clobber", o.no_clobber);
+    f("follow_links", o.follow_links);
     f("reader", o.reader);
 }
 
