@@ -121,7 +121,8 @@ for file in $(select_files '\.(cpp|h|sh|txt|md|in|mdoc)$|^\.ci/run$'); do
     esac
     [ "$lines" -le "$most" ] || complain "$file has $lines lines: more than $most"
 done
-mapfile -t written < <(select_files '\.(cpp|h|sh|md|in|mdoc|txt|json)$|^\.ci/run$' | grep -v '^tests/lint\.sh$\|^man/.*\.md$')
+mapfile -t written < <(select_files '\.(cpp|h|sh|md|in|mdoc|txt|json)$|^\.ci/run$' |
+    grep -v '^tests/lint\.sh$\|^man/.*\.md$')
 ban '\b(TODO|FIXME|XXX)\b' 'unfinished work' "${written[@]}"
 ban '[[:blank:]]+$' 'trailing blanks' "${written[@]}"
 ban $'\t' 'tabs' "${written[@]}"
@@ -253,7 +254,8 @@ markdown=$(mktemp -d)
 trap 'rm -rf "$manual" "$markdown"' EXIT
 tests/manual.sh "$markdown"
 for page in "$markdown"/*; do
-    cmp -s "$page" "man/$(basename "$page")" || complain "man/$(basename "$page") is not its template: run tests/manual.sh"
+    name=man/$(basename "$page")
+    cmp -s "$page" "$name" || complain "$name is not what its template gives: run tests/manual.sh"
 done
 # The pages refer to each other and are not installed, so that remark is ignored. Every other remark counts.
 # (One page at a time: in a longer output, lines of its two streams get into each other.)

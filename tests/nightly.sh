@@ -93,8 +93,8 @@ fuzz_one() {
     local name
     name=$(basename "$1" _fuzz)
     mkdir -p "build/fuzz/corpus/$name"
-    if "$1" -seed=1 -max_total_time="${FUZZ_SECONDS:-60}" -timeout=20 -rss_limit_mb=4096 -print_final_stats=1 -verbosity=0 \
-        -artifact_prefix="$results/$name-" "build/fuzz/corpus/$name" "tests/fuzz/corpus/$name" \
+    if "$1" -seed=1 -max_total_time="${FUZZ_SECONDS:-60}" -timeout=20 -rss_limit_mb=4096 -print_final_stats=1 \
+        -verbosity=0 -artifact_prefix="$results/$name-" "build/fuzz/corpus/$name" "tests/fuzz/corpus/$name" \
         >"$results/fuzz-$name.log" 2>&1; then
         echo "fuzz $name: $(sed -n 's/^stat::number_of_executed_units: *//p' "$results/fuzz-$name.log") inputs"
     else

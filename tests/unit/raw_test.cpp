@@ -14,7 +14,7 @@ namespace tex {
 namespace {
 
 Result<Image> read_raw(std::vector<std::byte> bytes, const std::string& layout, const std::string& name = "h.raw",
-                   FileValues values = FileValues::automatic) {
+                       FileValues values = FileValues::automatic) {
     Result<InputFile> file = InputFile::from_memory(name, std::move(bytes));
     if (!file) return file.error();
     ReadOptions options;
