@@ -57,8 +57,9 @@ no_oiio='/^lib\/OpenImageIO\//d; /tex-oiio/d'
 static_files='/^lib\/libtex\.so/d; $a lib/libtex.a'
 library_files=$no_python'; '$no_oiio'; /^bin\//d; /^libexec\//d; /^share\/doc\//!{/^share\//d}'
 
-# Compiles no object of libtex again: BUILD has them.
-reuse=(-DCMAKE_CXX_COMPILER_LAUNCHER="$here/reuse_objects.sh")
+# Compiles no object of libtex again: BUILD has them. Whether folders are compiled as one source decides their names.
+unity=$(sed -n 's/^CMAKE_UNITY_BUILD:[A-Z]*=//p' "$build/CMakeCache.txt")
+reuse=(-DCMAKE_CXX_COMPILER_LAUNCHER="$here/reuse_objects.sh" -DCMAKE_UNITY_BUILD="${unity:-OFF}")
 export TEX_OBJECTS=$build
 
 # without BUILD WORD...: CMake looked for no package whose name has one of the words.
