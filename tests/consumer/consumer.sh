@@ -267,7 +267,9 @@ packages)
         libopencolorio
     case $depends in *openimageio* | *assimp*) fail "the library needs the readers: $depends" ;; esac
     package libtex-dev 'libtex0 (= '
-    package libtex-tools 'libtex0 (= ' libopenimageio libassimp libseccomp2
+    package libtex-tools 'libtex0 (= ' libtiff6 libjpeg62-turbo libassimp libseccomp2
+    case $depends in *openimageio*) fail "the commands need OpenImageIO: $depends" ;; esac
+    package libtex-reader-oiio libopenimageio libseccomp2
     package python3-libtex 'libtex0 (= ' 'python3 (>= 3.11)' python3-numpy
     package libtex-oiio 'libtex0 (= ' libopenimageio
     replace_old_package
