@@ -203,8 +203,8 @@ class Round:
                     raise Failed(f"{what}: the input {name!r} was lost")
             elif name in self.ours:
                 continue
-            elif isinstance(was, str) and after.get(name) in outputs:
-                self.ours.add(name)  # a link with the name of an output became the output
+            elif isinstance(was, str) and (after.get(name) in outputs or name in self.documents):
+                self.ours.add(name)  # a link with the name of an output or a document became that
             elif after.get(name) != was:
                 raise Failed(f"{what}: {name!r} is not what it was")
         for name, now in after.items():
