@@ -208,6 +208,13 @@ void Maker::values() {
         colors.at(i, j, 2) = static_cast<unsigned char>(mortar ? 140 + shade : 45 + shade);
     }
     png("N214-not-a-normal-map", colors);
+    Codes unfilled = codes();
+    for (int j = 64; j < 128; ++j) {
+        for (int i = 80; i < 128; ++i) {
+            for (int c = 0; c < 3; ++c) unfilled.at(i, j, c) = 0;
+        }
+    }
+    png("N215-background", unfilled);
 }
 
 void Maker::damages() {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // bake-normals: height maps to normal maps.
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include <fmt/format.h>
@@ -21,6 +23,8 @@ public:
     explicit BakeNormals(const cli::ProgramRow& row);
 
 private:
+    void note_strength(cli::Job& job, const Strength& strength) const;
+    static void warn_of_flat(cli::Job& job, float usual_slope, const Strength& strength, Encoding encoding);
     static void warn_of_steep(cli::Job& job, std::int64_t steep_texels, Extent extent, Encoding encoding);
     [[nodiscard]] cli::OutputRules rules() const override;
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
@@ -29,7 +33,9 @@ private:
     [[nodiscard]] std::optional<Step> step(cli::Job& job) override { return options(job); }
     void note(cli::Job& job, const StepsReport& done) override {
         reader_.note(job, done.heights);
+        note_strength(job, done.strength);
         warn_of_steep(job, done.steep_texels, done.extent, done.pack.encoding);
+        warn_of_flat(job, done.usual_slope, done.strength, done.pack.encoding);
     }
     [[nodiscard]] Error with_remedy(const Error& error) const override { return cli::HeightReader::with_remedy(error); }
     [[nodiscard]] cli::ExitCode finish(cli::Console& console) override;
@@ -45,7 +51,7 @@ BakeNormals::BakeNormals(const cli::ProgramRow& row) : Converter(row) {
     command.usage("HEIGHT... --out-dir DIR [--name PATTERN]");
     command.input("HEIGHT...", "height maps; - is standard input");
     files.add(command);
-    reader_.strength.add(command);
+    reader_.strength.add(command, true);
     command.group("Heights and slopes");
     kernel_.add(command, "how slopes are measured");
     wrap_.add(command, "what lies beyond the border; two words set x and y separately");
@@ -81,6 +87,7 @@ BakeFileOptions BakeNormals::options(cli::Job& job) const {
     options.heights.wrap_y = wrap_.y;
     options.color = reader_.color.options();
     options.strength = [this](Extent extent) { return reader_.strength.strength(extent); };
+    options.auto_strength = reader_.strength.measured;
     options.bake = kernel_.bake;
     options.mip = mips_.options(mips_.levels_for(job.task), wrap_);
     constexpr bool kKnown = true;
@@ -99,7 +106,9 @@ Result<void> BakeNormals::process(cli::Job& job) {
     reader_.note(job, baked->heights);
     cli::wrote_levels(job, job.task.output, baked->levels);
     cli::report_texture(job, baked->extent, baked->levels, with.pack, baked->bytes, baked->rdo);
+    note_strength(job, baked->strength);
     warn_of_steep(job, baked->steep_texels, baked->extent, with.pack.encoding);
+    warn_of_flat(job, baked->usual_slope, baked->strength, with.pack.encoding);
     const SlopeRange& slopes = baked->slopes;
     job.report["slopes"] = {{"x", {slopes.min_x, slopes.max_x}}, {"y", {slopes.min_y, slopes.max_y}}};
     return {};
@@ -113,6 +122,28 @@ void BakeNormals::warn_of_steep(cli::Job& job, std::int64_t steep_texels, Extent
         "{} of {} texels are steeper than {} can hold, which stores all slopes above {:.{}f} alike; lower "
         "the strength, choose a deeper --format, or name the value of texels without data by --no-data",
         steep_texels, extent.texels(), name_of(kEncodingNames, encoding), steepest, steepest < 100.0f ? 1 : 0));
+}
+
+void BakeNormals::note_strength(cli::Job& job, const Strength& strength) const {
+    job.report["bumpiness"] = {strength.x, strength.y};
+    if (reader_.strength.measured && job.task.output != "-")
+        job.say(fmt::format("{}: --bumpiness auto is {}\n", job.task.input, strength.x));
+}
+
+// Of 8 bits: with more, faint slopes are kept.
+void BakeNormals::warn_of_flat(cli::Job& job, float usual_slope, const Strength& strength, Encoding encoding) {
+    constexpr double kFlatCodes = 4.0;
+    const FormatInfo info = format_info(encoding_info(encoding).format);
+    if (info.sample == SampleKind::floating || (!info.has_blocks() && info.bits > 8)) return;
+    const auto slope = static_cast<double>(usual_slope);
+    const double codes = 127.5 * slope / std::sqrt(1.0 + slope * slope);
+    if (codes >= kFlatCodes) return;
+    const double stronger = std::max(std::abs(strength.x), std::abs(strength.y));
+    if (slope == 0.0 || stronger == 0.0) return job.warn("flat: all slopes are 0");
+    job.warn(
+        fmt::format("nearly flat: 99 % of the slopes are below {:.1f} codes of 8 bits; see --bumpiness and "
+                    "--height-range: --bumpiness {:.3g} would use the range",
+                    std::max(0.1, codes), stronger / slope));
 }
 
 cli::ExitCode BakeNormals::finish(cli::Console& console) {

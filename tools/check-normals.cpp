@@ -2,6 +2,7 @@
 // check-normals: finds what is wrong with textures of normals.
 
 #include <algorithm>
+#include <chrono>
 #include <mutex>
 #include <utility>
 
@@ -31,7 +32,7 @@ private:
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] Result<void> process(cli::Job& job) override;
     [[nodiscard]] Result<CheckReport> check_one(const cli::Job& job, CheckOptions checks, const Execution& execution);
-    [[nodiscard]] Result<void> add_to_documents(cli::Job& job, const CheckReport& report, const cli::Demands& demands);
+    [[nodiscard]] Result<void> add_to_documents(cli::Job& job, const cli::JudgedReport& judged);
     [[nodiscard]] cli::ExitCode finish(cli::Console& console) override;
 
     cli::RuleOptions rules_;
@@ -59,11 +60,11 @@ CheckNormals::CheckNormals(const cli::ProgramRow& row) : Batch(row) {
     });
     files.add_inputs(command, [this] { return reads_nothing(); });
     running.add(command);
-    command.example("check-normals --require format=dxt5nm --require mips=full --require y=up art/**/*_n.dds",
+    command.example("check-normals --require format=dxt5nm --require mips=full --require y=up 'art/**/*_n.dds'",
                     "What a build requires of its normal maps.");
     command.example("check-normals --config checks.toml --sarif findings.sarif --junit findings.xml --files-from list",
                     "In continuous integration.");
-    command.example("check-normals art/**/*_n.dds --report report.html",
+    command.example("check-normals 'art/**/*_n.dds' --report report.html",
                     "A page with pictures, on which the light can be moved.");
     command.example("check-normals --baseline-write known.json old/*.dds",
                     "Accepts today's findings; --baseline known.json then reports only new ones.");
@@ -108,10 +109,13 @@ Result<CheckReport> CheckNormals::check_one(const cli::Job& job, CheckOptions ch
 Result<void> CheckNormals::process(cli::Job& job) {
     const Execution execution = job.until(documents_.has_page() ? 0.5 : 1.0);
     const cli::Demands& demands = rules_.demands_of(job.task.input);
+    const auto start = std::chrono::steady_clock::now();
     auto report = check_one(job, demands.checks, execution);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     if (!report) return report.error();
     if (report->error && report->error->code == ErrorCode::cancelled) return *report->error;
-    const int known = documents_.accept(*report);
+    std::vector<Finding> waived = documents_.accept(*report);
+    const auto known = static_cast<int>(waived.size());
     if (report->error) {
         if (report->findings.empty()) job.console.error(report->error->message());
         job.raise(cli::exit_code(report->error->code));
@@ -125,19 +129,25 @@ Result<void> CheckNormals::process(cli::Job& job) {
                 : cli::findings_text(*report, require) + cli::pair_text(*report) + cli::seams_text(*report));
     job.report = cli::findings_json(*report, require);
     if (known > 0) job.report["known"] = known;
-    if (auto added = add_to_documents(job, *report, demands); !added) return added;
-    const std::lock_guard lock(mutex_);
-    totals_.add(*report, known);
+    {
+        const std::lock_guard lock(mutex_);
+        totals_.add(*report, known);
+    }
+    if (auto added =
+            add_to_documents(job, {std::move(*report), require, demands.fail_on, std::move(waived), seconds.count()});
+        !added)
+        return added;
     return {};
 }
 
-Result<void> CheckNormals::add_to_documents(cli::Job& job, const CheckReport& report, const cli::Demands& demands) {
-    if (!mesh_.has_mesh() || !report.y_on_mesh) return documents_.add(job, report, demands, nullptr);
+Result<void> CheckNormals::add_to_documents(cli::Job& job, const cli::JudgedReport& judged) {
+    const CheckReport& report = judged.report;
+    if (!mesh_.has_mesh() || !report.y_on_mesh) return documents_.add(job, judged, nullptr);
     const auto space = mesh_.input(job.task.tile, job.read_options, {job.threads(), {}});
     if (!space) return space.error();
     const cli::MapOnMesh on_mesh{space->space(), *report.y_on_mesh, report.seams.has_value(), mesh_.input_arguments(),
                                  cli::shell_file(job.task.tile == 0 ? job.task.input : job.task.pattern)};
-    return documents_.add(job, report, demands, &on_mesh);
+    return documents_.add(job, judged, &on_mesh);
 }
 
 cli::ExitCode CheckNormals::finish(cli::Console& console) {

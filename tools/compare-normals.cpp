@@ -86,6 +86,7 @@ Result<cli::ExitCode> CompareNormals::compare_files(cli::Console& console) {
     if (!a) return a.error();
     const auto b = pair_.read_levels(names[1], 1, running_.read, console, running_.step(console, 0.3, 0.6, names[1]));
     if (!b) return b.error();
+    pair_.warn_of_doubts(names, console);
     const auto [first, end] = pair_.levels(*a, *b, names, console);
     cli::ExitCode code = cli::ExitCode::done, printed = code;
     std::vector<cli::ComparedLevel> levels;

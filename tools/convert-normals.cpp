@@ -102,7 +102,8 @@ Result<void> ConvertNormals::process(cli::Job& job) {
     // In tangent space, a wrong y gives a wrong result, whichever way green points in the output.
     const bool doubt_y = conversion_.spaces.from == Space::tangent;
     const bool keep_length = conversion_.spaces.ignores_z();
-    auto source = normals.read(job, job.task.input, job.until(0.2), {true, false, {}, keep_length, doubt_y});
+    auto source = normals.read(job, job.task.input, job.until(0.2),
+                               {true, false, {}, keep_length, doubt_y, conversion_.spaces.from == Space::object});
     if (!source) return source.error();
     cli::report_input(job, source->info);
     if (conversion_.spaces.from == Space::object && !holds_z(source->info.swizzle))

@@ -150,12 +150,12 @@ Result<void> IntegrateNormals::write_heights(cli::Job& job, std::vector<Integrat
     const Integration& base = levels.front();
     const Extent extent = base.field.height.extent();
     const float rise = high > low ? high - low : 1.0f;
+    const float bumpiness[] = {base.field.bumpiness_x * rise, base.field.bumpiness_y * rise};
     job.report["extent"] = {extent.width, extent.height};
     job.report["levels"] = levels.size();
     job.report["format"] = name_of(cli::kHeightFormatNames, format);
-    job.report["heights"] = {{"highest", base.highest},
-                             {"stored", {low, high}},
-                             {"bumpiness", {base.field.bumpiness_x * rise, base.field.bumpiness_y * rise}}};
+    job.report["heights"] = {
+        {"highest", base.highest}, {"stored", {low, high}}, {"bumpiness", {bumpiness[0], bumpiness[1]}}};
     job.report["unknown_texels"] = base.unused_texels;
     RoughnessChain chain;
     for (Integration& level : levels) {
@@ -169,6 +169,9 @@ Result<void> IntegrateNormals::write_heights(cli::Job& job, std::vector<Integrat
     if (!written) return written.error();
     if (cli::has_level(job.task.output)) job.report["output"] = job.outputs();
     job.report["bytes"] = written->bytes;
+    if (job.task.output != "-" && bumpiness[0] == bumpiness[1])
+        job.say(fmt::format("{}: bake-normals --bumpiness {} bakes the map back\n", cli::printable(job.task.output),
+                            bumpiness[0]));
     return {};
 }
 

@@ -48,7 +48,8 @@ PreviewNormals::PreviewNormals(const cli::ProgramRow& row) : NormalsConverter(ro
     sheet_.add(command, scene_);
     normals.add(command, false);
     scene_.add(command);
-    mesh_.add_input(command);
+    mesh_.add_input(command, true);
+    normals.warns_of_background = false;
     command.check([this] {
         sheet_.check_mesh(mesh_.has_mesh());
         const auto idle = command.given_of({"--shape", "--mirror"});
@@ -91,10 +92,21 @@ Result<void> PreviewNormals::check(const std::vector<cli::Task>& tasks) {
 
 Result<void> PreviewNormals::process(cli::Job& job) {
     const std::vector<std::string> names = job.task.inputs();
+    std::optional<cli::MeshSpace> mesh;
+    if (mesh_.has_mesh()) {
+        auto read = mesh_.input(job.task.tile, job.read_options, {job.threads(), {}});
+        if (!read) return read.error();
+        mesh = std::move(*read);
+        job.report["tangents"] = name_of(kTangentSourceNames, mesh->source());
+    }
     const PreviewOptions& preview = scene_.preview;
     const bool with_heights = scene_.needs_heights() || (scene_.height.empty() && sheet_.shows(Show::height));
-    const cli::Sampling sampling = {
-        {false, false, {}, !sheet_.is_difference(), true}, preview.wrap_x, preview.wrap_y, with_heights};
+    const bool is_object = mesh_.from == cli::Space::object;
+    const cli::Sampling sampling = {{false, false, {}, !sheet_.is_difference(), !is_object, is_object},
+                                    preview.wrap_x,
+                                    preview.wrap_y,
+                                    with_heights,
+                                    is_object ? &*mesh : nullptr};
     std::vector<cli::SampledMap> maps;
     for (const std::string& name : names) {
         const double share = static_cast<double>(maps.size() + 1) / static_cast<double>(names.size());
@@ -104,13 +116,6 @@ Result<void> PreviewNormals::process(cli::Job& job) {
     }
     auto with = scene_.read(job, normals, job.until(0.5));
     if (!with) return with.error();
-    std::optional<cli::MeshSpace> mesh;
-    if (mesh_.has_mesh()) {
-        auto read = mesh_.input(job.task.tile, job.read_options, {job.threads(), {}});
-        if (!read) return read.error();
-        mesh = std::move(*read);
-        job.report["tangents"] = name_of(kTangentSourceNames, mesh->source());
-    }
     const auto space = mesh ? std::optional<TangentSpace>(mesh->space()) : std::nullopt;
     with->mesh = space ? &*space : nullptr;
     const auto frames = sheet_.draw(names, maps, *with, job.until(0.95));

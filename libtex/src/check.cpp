@@ -110,20 +110,23 @@ bool has_more_data(const Stored& stored, const TexelCounts& counts) {
     return false;
 }
 
-// Floats are read in the same way as by unpack().
-bool is_signed(const Texture& texture, const Image& image, const Swizzle& swizzle) {
-    if (const std::optional<bool> known = is_unsigned(image.sample, range_of(texture.normal_encoding, {})))
-        return !*known;
-    const Result<Sources> sources = sources_of(swizzle, (1u << image.planes.size()) - 1);
-    if (!sources) return false;  // there are no vectors
-    const auto row = [&](int channel, int j) {
-        return channel < 0 ? nullptr : image.planes[static_cast<std::size_t>(channel)].row(j);
-    };
-    RangeEvidence evidence;
-    for (int j = 0; j < image.extent().height && !evidence.negative; ++j) {
-        evidence.add(weigh_row(row(sources->x, j), row(sources->y, j), row(sources->z, j), image.extent().width));
-    }
-    return !evidence.says_unsigned();
+// Finds the background, and counts again without it.
+Result<void> leave_out_background(Subject& subject) {
+    const TexelCounts& counts = subject.counts;
+    const double off = std::max(
+        {counts.share(Property::off_length), counts.share(Property::null_vector), counts.share(Property::beyond_unit)});
+    // Black and white that were normalised are unit vectors; a map with many of them leans.
+    constexpr double kLean = 0.02;
+    const double lean = std::max(std::abs(counts.mean_x), std::abs(counts.mean_y));
+    if (subject.constant || (off < kLeastBackground && lean < kLean)) return {};
+    auto background = find_background(subject.stored, subject.execution);
+    if (!background) return background.error();
+    subject.background = std::move(*background);
+    if (!subject.background) return {};
+    auto others = count_texels(subject.stored, subject.execution, &*subject.background);
+    if (!others) return others.error();
+    subject.counts = *others;
+    return {};
 }
 
 Result<void> measure(Subject& subject) {
@@ -134,7 +137,7 @@ Result<void> measure(Subject& subject) {
     subject.base = std::move(*image);
     const auto swizzle = guess_swizzle(subject.texture, subject.execution);
     if (!swizzle) return swizzle.error();
-    subject.stored = {&subject.base, *swizzle, is_signed(subject.texture, subject.base, *swizzle),
+    subject.stored = {&subject.base, *swizzle, stores_signed(subject.base, *swizzle, range_of(subject.texture.normal_encoding, {})),
                       format_info(subject.texture.format).has_blocks()};
     const Stored& stored = subject.stored;
     subject.has_vectors = stored.channel(Component::x) >= 0 && stored.channel(Component::y) >= 0;
@@ -143,12 +146,17 @@ Result<void> measure(Subject& subject) {
     if (!counts) return counts.error();
     subject.counts = *counts;
     subject.constant = same_everywhere(subject.counts, static_cast<int>(subject.base.planes.size()));
+    if (auto done = leave_out_background(subject); !done) return done;
     const Extent extent = stored.extent();
     subject.sampled_ok = !subject.constant && extent.width >= kLeastSide && extent.height >= kLeastSide;
     if (!subject.sampled_ok) return {};
     auto curl = measure_curl(stored, subject.execution);
     if (!curl) return curl.error();
     subject.curl = std::move(*curl);
+    // The rules ask how much of the map holds normals, of what ought to.
+    const auto texels = static_cast<double>(extent.texels());
+    subject.curl.usable =
+        std::min(1.0, subject.curl.usable * texels / std::max(1.0, static_cast<double>(subject.counts.texels)));
     subject.y.correlation = subject.curl.correlation;
     subject.y.confidence = subject.curl.confidence;
     subject.y.y = clear_y(subject.curl);

@@ -26,6 +26,8 @@ struct LastStep {
         if (!done) return done.error();
         report.pack = options.pack;
         report.heights = done->heights;
+        report.strength = done->strength;
+        report.usual_slope = done->usual_slope;
         report.steep_texels = done->steep_texels;
         return take(*done);
     }

@@ -2,6 +2,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <regex>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -170,7 +171,8 @@ TEST_F(CheckNormals, DocumentsDoNotDependOnThreads) {
         auto arguments = files;
         arguments.insert(arguments.end(), {"--threads", threads});
         const Ran ran = check(arguments);
-        return ran.out + scratch_.read("out.sarif") + scratch_.read("out.xml");
+        const std::string times = std::regex_replace(scratch_.read("out.xml"), std::regex("time=\"[0-9.]+\""), "");
+        return ran.out + scratch_.read("out.sarif") + times;
     };
     EXPECT_EQ(documents("1"), documents("4"));
 }

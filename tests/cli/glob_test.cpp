@@ -7,7 +7,7 @@
 #include "cli/glob.h"
 #include "cli/program.h"
 #include "cli/usage_error.h"
-#include "tree/find_files.h"
+#include "batch/find_files.h"
 
 namespace tex::cli {
 

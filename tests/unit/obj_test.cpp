@@ -83,8 +83,15 @@ TEST(Obj, RefusesDamageWithTheLine) {
     }
 }
 
+TEST(Obj, MayBeginWithAByteOrderMark) {
+    const auto mesh = parse_obj("\xEF\xBB\xBFv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    ASSERT_TRUE(mesh);
+    EXPECT_EQ(mesh->parts.at(0).positions.size(), 3u);
+}
+
 TEST(Obj, IsKnownByItsFirstKeyword) {
-    for (const char* text : {"v 1 2 3", "# comment", "\n\n  # comment\nvt 0 0", "mtllib a.mtl\n", "o thing"})
+    for (const char* text :
+         {"v 1 2 3", "# comment", "\n\n  # comment\nvt 0 0", "mtllib a.mtl\n", "o thing", "\xEF\xBB\xBFv 1 2 3"})
         EXPECT_TRUE(is_obj(text)) << text;
     for (const char* text : {"", "solid cube", "# comment\nply\n", "very", "{"}) EXPECT_FALSE(is_obj(text)) << text;
 }

@@ -3,6 +3,7 @@
 #include "cli/command.h"
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,6 +17,13 @@
 
 namespace tex::cli {
 namespace {
+
+// What other programs call some options.
+constexpr std::pair<std::string_view, std::string_view> kOtherNames[] = {
+    {"--strength", "--bumpiness"}, {"--intensity", "--bumpiness"}, {"--flip-y", "--y"},
+    {"--flip-green", "--y"},       {"--invert-y", "--y"},          {"--invert-green", "--y"},
+    {"--strength", "--scale"},     {"--flip-y", "--y-in"},         {"--invert-green", "--y-in"},
+};
 
 template <class Rows>
 auto* find_row(Rows& rows, std::string_view name) {
@@ -138,6 +146,10 @@ std::string Command::unknown_option(const std::string& name) const {
     std::vector<std::string> names;
     for (const Row& row : rows_) {
         if (!row.hidden) names.insert(names.end(), row.names.begin(), row.names.end());
+    }
+    for (const auto& [others, ours] : kOtherNames) {
+        if (others == name && std::find(names.begin(), names.end(), ours) != names.end())
+            return fmt::format("unknown option {}; here it is {}", printable(name), ours);
     }
     return fmt::format("unknown option {}{}", printable(name), did_you_mean(name, names));
 }

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "batch/find_files.h"
 #include "cli/text.h"
 #include "cli/text_file.h"
 #include "cli/usage_error.h"
@@ -134,6 +135,15 @@ void FileOptions::check_inputs(const Command& command) const {
 Result<std::vector<Input>> FileOptions::list_inputs(const Command& command) const {
     std::vector<Input> inputs;
     for (const std::string& input : command.inputs()) {
+        if (is_pattern(input)) {  // the shell left it as it is
+            auto files = files_matching(input);
+            if (!files) return files.error();
+            for (std::string& file : *files) inputs.push_back({std::move(file)});
+            continue;
+        }
+        if (input != "-" && is_folder(input))
+            return Error{ErrorCode::io, input,
+                         "is a folder; name its files: '" + (fs::path(input) / "*.png'").string()};
         auto files = inputs_of(input);
         if (!files) return files.error();
         std::move(files->begin(), files->end(), std::back_inserter(inputs));

@@ -53,10 +53,20 @@ std::vector<std::string> ColorGroup::files() const {
     return config.empty() || config.starts_with("ocio://") ? std::vector<std::string>() : std::vector{config};
 }
 
-void StrengthOptions::add(Command& command) {
+void StrengthOptions::add(Command& command, bool can_measure) {
     command.group("Strength (one of three)");
-    command.number(bumpiness, "--bumpiness", "B", {},
-                   "the height of value 1.0 in texels, as a shader measures it; negative: dents");
+    constexpr const char* kHelp = "the height of value 1.0 in texels, as a shader measures it; negative: dents";
+    if (can_measure) {
+        Row& row = command.option("--bumpiness", "B", kHelp, [this](const std::string& text) {
+            measured = text == "auto";
+            if (!measured) bumpiness = parse_float(text);
+        });
+        row.words = {{"auto", "what makes the 99th percentile of the slopes 45 degrees; it is printed"}};
+        row.preset = fmt::format("{}", bumpiness);
+        row.completes = Completes::words;
+    } else {
+        command.number(bumpiness, "--bumpiness", "B", {}, kHelp);
+    }
     command.option("--height-range", "R", "the height of value 1.0 in the unit of --size",
                    [this](const std::string& text) { height_range = parse_double(text); });
     command.option("--size", "W[xH]", "the width and height of the whole map; without H, texels are square",

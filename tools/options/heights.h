@@ -37,12 +37,14 @@ struct ColorGroup {
 // Strength: --bumpiness, --height-range with --size, --uv-height. At most one of the three.
 struct StrengthOptions {
     float bumpiness = HeightField{}.bumpiness_x;
+    bool measured = false;  // --bumpiness auto
     std::optional<double> height_range;
     double width = 0.0;
     double height = 0.0;
     std::optional<double> uv_height;
 
-    void add(Command& command);
+    // `can_measure`: --bumpiness takes the word auto.
+    void add(Command& command, bool can_measure = false);
     [[nodiscard]] Strength strength(Extent extent) const;
 };
 

@@ -80,6 +80,8 @@ void NormalsReader::add(Command& command, bool with_keep_length) {
         .preset = "yx in ATI2, else xy";
     command.choice(unpack.range, "--range", "R", kValueRangeNames, "how stored floats are read");
     command.flag(unpack.snap_flat, "--snap-flat", "read 127 and 128 of 8-bit files as 0");
+    command.flag(fills_background, "--fill-background",
+                 "fill black, grey or white around charts with the nearest normals");
     if (with_keep_length) command.flag(unpack.keep_length, "--keep-length", "do not normalise what is read");
 }
 
@@ -101,6 +103,8 @@ SourceOptions NormalsReader::options(const Job& job, const Reading& reading) con
     if (bc5_order) options.bc5_swizzle = *bc5_order == Bc5Order::xy ? kSwizzleXy : kSwizzleYx;
     options.r_or_a = rg_or_ag;
     options.doubt_y = reading.doubt_y;
+    options.inspect = !reading.object;
+    options.fill_background = fills_background;
     options.file_y_first = reading.is_detail && !reading.y;
     return options;
 }
@@ -112,6 +116,18 @@ void NormalsReader::note(Job& job, const std::string& path, const SourceInfo& in
         job.warn(fmt::format("green is taken to point {}, but the texels show the other direction; {} sets it",
                              name_of(kYAxisNames, info.y_axis),
                              path == job.task.input ? "--y-in" : "--y-in, or --detail-y-in for a detail,"),
+                 path);
+    }
+    if (info.object_space) {
+        job.warn(
+            "its vectors face all directions, as in object space, and are read as tangent space; "
+            "convert-normals --from object --mesh FILE converts it",
+            path);
+    }
+    if (info.background > 0.0 && warns_of_background) {
+        job.warn(fmt::format("{:.0f} % of its texels look like background (black, grey or white), which smaller levels and "
+                             "block compression mix into the charts; --fill-background fills it",
+                             std::max(1.0, 100.0 * info.background)),
                  path);
     }
     if (!info.guessed) return;

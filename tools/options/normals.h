@@ -37,6 +37,7 @@ struct Reading {
     std::optional<YAxis> y = {};  // overrides all of that
     std::optional<bool> keep_length = {};
     bool doubt_y = false;  // warn if y is assumed and the texels clearly show the other direction
+    bool object = false;   // the vectors are in object space
 };
 
 class NormalsReader {
@@ -46,6 +47,8 @@ public:
     std::optional<Bc5Order> bc5_order;
     UnpackOptions unpack;
     bool measures_y = false;  // the texels show which way green points
+    bool fills_background = false;
+    bool warns_of_background = true;  // where the output may mix it into the charts
 
     // `with_keep_length`: --keep-length is an option. Otherwise the command itself chooses.
     void add(Command& command, bool with_keep_length = true);

@@ -219,7 +219,18 @@ void report_texture(Job& job, Extent extent, int levels, const PackOptions& pack
                              {"most_growth", rdo->most_growth},
                              {"most_raised", rdo->most_raised}};
     }
-    if (job.task.engine != nullptr) job.report["for"] = job.task.engine->name;
+    const Engine* const engine = job.task.engine;
+    if (engine == nullptr) return;
+    job.report["for"] = engine->name;
+    // The preset of an importer that compresses, in a file that the engine would load as it is.
+    const bool is_odd = can_hold_blocks(job.task.container) && !can_hold_blocks(engine->container);
+    if (is_odd && pack.encoding == engine->format) {
+        job.warn(
+            fmt::format("--for {0} is meant for {1} files, which its importer compresses; this {2} file holds {3}, "
+                        "which is not compressed: name it {1}, or choose a --format",
+                        engine->name, extension_of(engine->container), extension_of(job.task.container),
+                        name_of(kEncodingNames, pack.encoding)));
+    }
 }
 
 }  // namespace tex::cli

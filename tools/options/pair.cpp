@@ -3,6 +3,7 @@
 #include "options/pair.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 #include <tex/tex.h>
@@ -49,11 +50,33 @@ Result<Texture> PairOptions::read(const std::string& path, int which, const Read
 
 Result<MipChain> PairOptions::read_levels(const std::string& path, int which, const ReadOptions& read_options,
                                           Console& console, const Execution& execution) {
-    const auto texture = read(path, which, read_options, console, execution);
-    if (!texture) return texture.error();
-    auto chain = unpack(*texture, {}, execution);
-    if (!chain) return chain.error().of(path);
-    return chain;
+    SourceOptions options;
+    options.read = read_options;
+    options.unpack.y_axis = y_[which];
+    options.doubt_y = options.inspect = true;
+    auto source = read_normals(path, options, false, execution);
+    if (!source) return source.error();
+    info_[which] = std::move(source->info);
+    const SourceInfo& info = info_[which];
+    if (info.guessed && warned_of_.insert(path).second)
+        warn(console, path, fmt::format("layout not stated; guessed {} from the texels", layout_name(info.swizzle)));
+    return std::move(source->chain);
+}
+
+void PairOptions::warn_of_doubts(const std::vector<std::string>& names, Console& console) {
+    const char* const options[] = {"--y-a", "--y-b"};
+    const bool differ = info_[0].y_doubtful != info_[1].y_doubtful;
+    for (std::size_t k = 0; k < 2; ++k) {
+        const SourceInfo& info = info_[k];
+        if (info.y_doubtful && differ) {
+            const char* const other = info.y_axis == YAxis::up ? "down" : "up";
+            warn(console, names[k],
+                 fmt::format("green is taken to point {}, but the texels show the other direction: {} {}",
+                             name_of(kYAxisNames, info.y_axis), options[k], other));
+        }
+        if (info.object_space && !info_[1 - k].object_space)
+            warn(console, names[k], "its vectors face all directions, as in object space");
+    }
 }
 
 std::pair<std::size_t, std::size_t> PairOptions::levels(const MipChain& a, const MipChain& b,

@@ -13,6 +13,7 @@
 #include <tex/compare.h>
 #include <tex/image_io.h>
 #include <tex/mip_chain.h>
+#include <tex/source.h>
 #include <tex/texture.h>
 
 #include "cli/command.h"
@@ -31,6 +32,10 @@ public:
                                        const Execution& execution);
     [[nodiscard]] Result<MipChain> read_levels(const std::string& path, int which, const ReadOptions& read,
                                                Console& console, const Execution& execution);
+
+    // Warns of maps that were read by read_levels() and seem to hold something else. If both are in doubt about y, they
+    // are compared in the same direction, and nothing is said.
+    void warn_of_doubts(const std::vector<std::string>& names, Console& console);
 
     // The first level that is compared, and the level after the last one. Warns if the maps differ in their number of
     // levels.
@@ -54,6 +59,7 @@ private:
     bool all_levels_ = false;
     std::optional<double> max_mean_, max_p999_, max_;  // degrees
     std::set<std::string> warned_of_;                  // files
+    SourceInfo info_[2];
     std::vector<FileWarning> warnings_;
 };
 

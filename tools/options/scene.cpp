@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 #include <tex/color.h>
+#include <tex/convert.h>
 #include <tex/image_io.h>
 #include <tex/mip.h>
 
@@ -234,6 +235,13 @@ Result<SampledMap> read_sampled_map(Job& job, const std::string& path, NormalsRe
     map.without_z =
         std::find(read->info.swizzle.begin(), read->info.swizzle.end(), Component::z) == read->info.swizzle.end();
     map.chain = std::move(read->chain);
+    if (sampling.from_object != nullptr) {
+        if (map.without_z) return Error{ErrorCode::bad_option, path, "stores no z, which object space needs"};
+        auto tangent = to_tangent_space(map.chain.levels.front(), sampling.from_object->space(), {}, execution);
+        if (!tangent) return tangent.error().of(path);
+        map.chain.levels.clear();
+        map.chain.levels.push_back(std::move(tangent->map));
+    }
     if (sampling.with_heights) {
         IntegrateOptions with = integrate_options_for(read->info);
         with.wrap_x = sampling.wrap_x;

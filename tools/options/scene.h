@@ -12,6 +12,7 @@
 #include "batch/job.h"
 #include "cli/command.h"
 #include "options/normals.h"
+#include "options/tangent_space.h"
 
 namespace tex::cli {
 
@@ -28,6 +29,7 @@ struct Sampling {
     Reading reading;  // keep_length is for pictures that show what is wrong with a map
     Wrap wrap_x = Wrap::repeat, wrap_y = Wrap::repeat;
     bool with_heights = false;
+    const MeshSpace* from_object = nullptr;  // the map is in object space, on this mesh
 };
 
 [[nodiscard]] Result<SampledMap> read_sampled_map(Job& job, const std::string& path, NormalsReader& normals,

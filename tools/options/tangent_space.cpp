@@ -55,9 +55,10 @@ void TangentSpaceOptions::add(Command& command) {
     command.check([this, &command] { check(command); });
 }
 
-void TangentSpaceOptions::add_input(Command& command) {
+void TangentSpaceOptions::add_input(Command& command, bool with_from) {
     add_mesh(command, "the mesh that the inputs are on: glTF, GLB, OBJ, FBX, PLY ...");
     add_parts(command);
+    if (with_from) command.choice(from, "--from", "SPACE", kSpaceNames, "the space of the inputs' vectors");
     add_decoder(command, "the engine that decodes the inputs");
     add_tangents(command);
     command.check([this, &command] { check_input(command); });
@@ -99,7 +100,8 @@ void TangentSpaceOptions::add_parts(Command& command) {
 void TangentSpaceOptions::check_input(const Command& command) const {
     if (mesh_ == "-") throw UsageError("--mesh: a mesh cannot come from standard input");
     if (has_mesh()) return;
-    const auto idle = command.given_of({"--material", "--primitive", "--node", "--uv-set", "--decoder", "--tangents"});
+    const auto idle =
+        command.given_of({"--material", "--primitive", "--node", "--uv-set", "--from", "--decoder", "--tangents"});
     if (!idle.empty()) throw UsageError(fmt::format("{} needs --mesh", idle.front()));
 }
 

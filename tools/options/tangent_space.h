@@ -56,8 +56,9 @@ public:
     Space to = Space::tangent;
 
     void add(Command& command);
-    // Without those of an output: --mesh, which may be left out, --decoder, --tangents, and the choice of parts.
-    void add_input(Command& command);
+    // Without those of an output: --mesh, which may be left out, --decoder, --tangents, the choice of parts, and
+    // --from.
+    void add_input(Command& command, bool with_from = false);
 
     [[nodiscard]] bool has_mesh() const { return !mesh_.empty(); }
     // Whether the engine that decodes the input ignores its z, so that x and y must be read as they are stored.

@@ -2,8 +2,10 @@
 
 #include "reports/baseline.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
+#include <iterator>
 #include <memory>
 
 #include <sys/stat.h>
@@ -90,18 +92,24 @@ Result<Baseline> Baseline::parse(const std::string& path, const std::string& tex
 }
 
 void Baseline::add(const CheckReport& report, const std::string& content) {
+    if (report.error) return;
     for (const Finding& finding : report.findings)
         insert({name_of_file(report.file), std::string(finding.rule->id), level_of(finding), content});
 }
 
-int Baseline::accept(CheckReport& report, const std::string& content) const {
-    if (report.error) return 0;  // a file that cannot be read is never right
+std::vector<Finding> Baseline::accept(CheckReport& report, const std::string& content) const {
+    if (report.error) return {};
     const std::string file = name_of_file(report.file);
-    return static_cast<int>(std::erase_if(report.findings, [&](const Finding& finding) {
+    const auto is_known = [&](const Finding& finding) {
         const std::string id(finding.rule->id);
         const int level = level_of(finding);
         return by_file_.count({file, id, level}) > 0 || by_content_.count({content, id, level}) > 0;
-    }));
+    };
+    const auto known = std::stable_partition(report.findings.begin(), report.findings.end(),
+                                             [&](const Finding& finding) { return !is_known(finding); });
+    std::vector<Finding> waived(std::make_move_iterator(known), std::make_move_iterator(report.findings.end()));
+    report.findings.erase(known, report.findings.end());
+    return waived;
 }
 
 std::string Baseline::text() const {

@@ -34,10 +34,11 @@ public:
     // The same from memory. `path` appears in messages. Errors: bad_data.
     [[nodiscard]] static Result<Baseline> parse(const std::string& path, const std::string& text);
 
-    // Adds the findings of the report to the known ones. `content` is that of its file, or empty.
+    // Adds the findings of the report to the known ones, unless the file could not be read. `content` is that of its
+    // file, or empty.
     void add(const CheckReport& report, const std::string& content);
-    // Removes known findings from the report. Returns their number.
-    int accept(CheckReport& report, const std::string& content) const;
+    // Removes known findings from the report, and returns them. Those of a file that cannot be read are never known.
+    [[nodiscard]] std::vector<Finding> accept(CheckReport& report, const std::string& content) const;
     [[nodiscard]] std::string text() const;
 
 private:

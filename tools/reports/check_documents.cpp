@@ -25,7 +25,8 @@ void CheckDocuments::add(Command& command) {
     add_file(junit_, "--junit", "write the findings as JUnit XML");
     command.flag(is_for_github_, "--github", "print the findings as GitHub's workflow commands: annotations");
     add_file(baseline_path_, "--baseline", "accept the findings that this file lists");
-    add_file(baseline_written_, "--baseline-write", "write such a file with all findings, and do not fail for them");
+    add_file(baseline_written_, "--baseline-write",
+             "write such a file with all findings, and do not fail for them; files that cannot be read still fail");
     add_file(depfile_, "--depfile", "write what the documents were made from, for Make and Ninja");
 }
 
@@ -64,24 +65,22 @@ Result<void> CheckDocuments::read() {
     return {};
 }
 
-int CheckDocuments::accept(CheckReport& report) {
+std::vector<Finding> CheckDocuments::accept(CheckReport& report) {
     const std::string content =
         report.findings.empty() || (!baseline_ && !writes_baseline()) ? std::string() : content_of(report.file);
     if (writes_baseline()) {
         const std::lock_guard lock(mutex_);
         new_baseline_.add(report, content);  // includes findings that --baseline accepts
     }
-    return baseline_ ? baseline_->accept(report, content) : 0;
+    return baseline_ ? baseline_->accept(report, content) : std::vector<Finding>();
 }
 
-Result<void> CheckDocuments::add(Job& job, const CheckReport& report, const Demands& demands, const MapOnMesh* mesh) {
+Result<void> CheckDocuments::add(Job& job, const JudgedReport& judged, const MapOnMesh* mesh) {
     if (has_page()) {
-        if (auto added = add_to_page(job, report, demands.checks.require, mesh); !added) return added;
+        if (auto added = add_to_page(job, judged.report, judged.require, mesh); !added) return added;
     }
     const std::lock_guard lock(mutex_);
-    if (!sarif_.empty() || !junit_.empty()) {
-        reports_.insert_or_assign(job.task.input, JudgedReport{report, demands.checks.require, demands.fail_on});
-    }
+    if (!sarif_.empty() || !junit_.empty()) reports_.insert_or_assign(job.task.input, judged);
     return {};
 }
 

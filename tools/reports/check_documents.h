@@ -37,12 +37,12 @@ public:
     // Reads the baseline. Errors: io, bad_data.
     [[nodiscard]] Result<void> read();
 
-    // Removes the findings that the baseline knows from the report. Returns their number. Any thread may call this.
-    [[nodiscard]] int accept(CheckReport& report);
+    // Removes the findings that the baseline knows from the report, and returns them. Any thread may call this.
+    [[nodiscard]] std::vector<Finding> accept(CheckReport& report);
 
     // Adds a file to the documents, with the mesh that it is on or null. Any thread may call this. Errors: those of
     // reading the file again for its pictures.
-    [[nodiscard]] Result<void> add(Job& job, const CheckReport& report, const Demands& demands, const MapOnMesh* mesh);
+    [[nodiscard]] Result<void> add(Job& job, const JudgedReport& judged, const MapOnMesh* mesh);
 
     // Writes all of them. `summary` is the first sentence of the page.
     [[nodiscard]] ExitCode write(Console& console, const std::string& summary) const;

@@ -30,7 +30,7 @@ Json region_json(const Region& region) {
 }  // namespace
 
 std::string findings_text(const CheckReport& report, const Requirements& require) {
-    std::string text;
+    std::string text, told;  // the command that was printed before
     for (const Finding& finding : report.findings) {
         const Rule& rule = *finding.rule;
         std::string_view sentence = rule.sentence;
@@ -38,7 +38,13 @@ std::string findings_text(const CheckReport& report, const Requirements& require
         text += fmt::format("{}: {} {} {}: {}: {}\n", printable(report.file), name_of(kSeverityNames, finding.severity),
                             rule.id, rule.name, sentence, printable(finding.message));
         const Fix fix = fix_of(finding, report, require);
-        if (!fix.text.empty()) text += fmt::format("    {}: {}\n", fix.is_command ? "fix" : "advice", fix.text);
+        if (fix.text.empty()) continue;
+        if (fix.is_command && fix.text == told) {
+            text += "    fix: the same command\n";
+            continue;
+        }
+        if (fix.is_command) told = fix.text;
+        text += fmt::format("    {}: {}\n", fix.is_command ? "fix" : "advice", fix.text);
     }
     return text;
 }

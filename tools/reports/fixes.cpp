@@ -2,8 +2,10 @@
 
 #include "reports/fixes.h"
 
+#include <algorithm>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 #include <tex/container.h>
@@ -27,12 +29,14 @@ std::optional<Encoding> same_encoding(Format format, const Swizzle& swizzle) {
     const bool xyz = is_at(0, Component::x) && is_at(1, Component::y) && is_at(2, Component::z);
     const bool ag = is_at(3, Component::x) && is_at(1, Component::y) && !is_at(2, Component::z);
     const bool xy = is_at(0, Component::x) && is_at(1, Component::y) && !is_at(2, Component::z);
+    const bool is_yx = is_at(0, Component::y) && is_at(1, Component::x) && !is_at(2, Component::z);
     const auto if_holds = [](bool holds, Encoding encoding) {
         return holds ? std::optional<Encoding>(encoding) : std::nullopt;
     };
     switch (format) {
         case Format::bc3_unorm: return if_holds(ag, Encoding::dxt5nm);
-        case Format::bc5_unorm: return if_holds(xy, Encoding::bc5);
+        // ATI2 holds y first; BC5 with x first says so in its header.
+        case Format::bc5_unorm: return if_holds(xy || is_yx, Encoding::bc5);
         case Format::bc5_snorm: return if_holds(xy, Encoding::bc5_snorm);
         case Format::eac_rg11_unorm: return if_holds(xy, Encoding::eac_rg11);
         case Format::eac_rg11_snorm: return if_holds(xy, Encoding::eac_rg11_snorm);
@@ -121,12 +125,75 @@ std::string levels_text(const Requirements& require) {
     return levels == 0 ? "all" : levels == 1 ? "none" : std::to_string(levels);
 }
 
+// Whether the command of a rule writes FIXED from FILE.
+bool is_command(const Rule& rule) { return rule.fix.find("-normals FILE") != std::string_view::npos; }
+
+// The command of a rule in parts. A file with one level needs no new ones where its background is filled.
+struct FixCommand {
+    std::string program;
+    std::vector<std::string> options;  // with their values, without --format and -o
+};
+
+FixCommand command_of(const Rule& rule, const CheckReport& report) {
+    FixCommand command;
+    for (const std::string& word : split(std::string(rule.fix), ' ')) {
+        if (command.program.empty())
+            command.program = word;
+        else if (word.starts_with("-"))
+            command.options.push_back(word);
+        else if (!command.options.empty())
+            command.options.back() += " " + word;
+    }
+    std::erase_if(command.options, [](const std::string& o) { return o.starts_with("--format ") || o == "-o FIXED"; });
+    if (rule.id == "N215" && report.levels == 1) command.program = "pack-normals";
+    return command;
+}
+
+constexpr std::string_view kKeepLength = "--keep-length";
+
+// Adds the options of `other`, which fixes another finding. Vectors keep their length only if both commands keep it.
+void join_commands(FixCommand& command, const FixCommand& other) {
+    if (other.program == "mip-normals") command.program = other.program;
+    const auto has = [&](std::string_view name) {
+        return std::any_of(command.options.begin(), command.options.end(), [&](const std::string& own) {
+            return std::string_view(own).substr(0, own.find(' ')) == name;
+        });
+    };
+    const bool keeps = std::find(other.options.begin(), other.options.end(), kKeepLength) != other.options.end();
+    if (!keeps) std::erase(command.options, kKeepLength);
+    for (const std::string& option : other.options) {
+        const std::string_view name = std::string_view(option).substr(0, option.find(' '));
+        if (name != kKeepLength && !has(name)) command.options.push_back(option);
+    }
+}
+
+// Whether one command can do this and other things: mip-normals does all that pack-normals does.
+bool can_be_joined(const Finding& finding, const CheckReport& report) {
+    if (!is_command(*finding.rule)) return false;
+    const std::string program = command_of(*finding.rule, report).program;
+    return (program == "pack-normals" || program == "mip-normals") && finding.rule->id != "N108";
+}
+
+// The findings that one command fixes, among them `finding`.
+std::vector<const Finding*> fixed_together(const Finding& finding, const CheckReport& report,
+                                           const Requirements& require) {
+    std::vector<const Finding*> together;
+    const auto target = target_of(finding.rule->id, report, require);
+    for (const Finding& other : report.findings) {
+        const bool is_same = &other == &finding;
+        if (!is_same && (!can_be_joined(finding, report) || !can_be_joined(other, report))) continue;
+        if (!is_same && !is_clear(other.rule->id, report, require)) continue;
+        const auto others = target_of(other.rule->id, report, require);
+        if (is_same || (target && others && target->encoding == others->encoding)) together.push_back(&other);
+    }
+    return together;
+}
+
 }  // namespace
 
 Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements& require) {
     const std::string_view id = finding.rule->id;
-    std::string fix(finding.rule->fix);
-    if (fix.find("-normals FILE") == std::string::npos) return {fix};
+    if (!is_command(*finding.rule)) return {std::string(finding.rule->fix)};
     if (id == "N108" && !require.encoding) return {"Store the file in the format that is required."};
     if (report.more_data) {
         return {
@@ -138,11 +205,23 @@ Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements
             "The texels do not show which way green points. Find that out first: if it is as required, only the "
             "statement is wrong."};
     }
-    const std::optional<Target> target = target_of(id, report, require);
+    const std::vector<const Finding*> together = fixed_together(finding, report, require);
+    FixCommand command;
+    std::optional<Target> target;
+    for (const Finding* each : together) {
+        const auto own = target_of(each->rule->id, report, require);
+        // A container that holds levels is the one for all.
+        if (!target || (own && can_hold_levels(own->container))) target = own;
+        const FixCommand step = command_of(*each->rule, report);
+        command.program.empty() ? void(command = step) : join_commands(command, step);
+    }
     if (!target) {
         return {fmt::format("No command writes {} with this layout. Correct the file in the program that made it.",
                             name_of(kFormatNames, report.format))};
     }
+    std::string fix = command.program + " FILE";
+    for (const std::string& option : command.options) fix += " " + option;
+    fix += " --format SAME -o FIXED";
     std::string same(name_of(kEncodingNames, target->encoding));
     if (format_info(encoding_info(target->encoding).format).has_blocks()) same += " --effort best";
     replace_word(fix, "SAME", same);

@@ -15,7 +15,7 @@ struct Fix {
 };
 
 // The command that fixes the finding in this file and keeps everything else: the container, the bits of each sample,
-// the levels. If no command can do that, a sentence.
+// the levels. Findings that one command can fix together get that same command. If no command can do it, a sentence.
 [[nodiscard]] Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements& require);
 
 }  // namespace tex::cli

@@ -41,7 +41,8 @@ std::string test_case(const JudgedReport& judged) {
     const auto fails = [&](const Finding& finding) { return finding.severity >= judged.fail_on; };
     std::erase_if(failing.findings, [&](const Finding& finding) { return !fails(finding); });
     std::erase_if(other.findings, fails);
-    std::string xml = fmt::format("    <testcase classname=\"check-normals\" name=\"{}\">\n", escaped(report.file));
+    std::string xml = fmt::format("    <testcase classname=\"check-normals\" name=\"{}\" time=\"{:.3f}\">\n",
+                                  escaped(report.file), judged.seconds);
     if (report.error) {
         xml += fmt::format("      <error type=\"{}\" message=\"{}\"/>\n", name_of(kErrorCodeNames, report.error->code),
                            escaped(report.error->reason));
@@ -68,10 +69,13 @@ std::string junit_text(const std::vector<JudgedReport>& reports) {
             return finding.severity >= judged.fail_on;
         });
     });
+    double seconds = 0.0;
+    for (const JudgedReport& judged : reports) seconds += judged.seconds;
     std::string xml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n";
     xml += fmt::format(
-        "  <testsuite name=\"check-normals\" tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"0\" time=\"0\">\n",
-        reports.size(), failures, errors);
+        "  <testsuite name=\"check-normals\" tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"0\" "
+        "time=\"{:.3f}\">\n",
+        reports.size(), failures, errors, seconds);
     for (const JudgedReport& judged : reports) xml += test_case(judged);
     return xml + "  </testsuite>\n</testsuites>\n";
 }

@@ -15,6 +15,8 @@ struct JudgedReport {
     CheckReport report;
     Requirements require;
     Severity fail_on = Severity::error;
+    std::vector<Finding> waived = {};  // by the baseline
+    double seconds = 0.0;              // that the check took
 };
 
 // One test case for each file: a failure with the findings at or above its `fail_on`; an error if the file could not be

@@ -89,8 +89,14 @@ std::string sarif_text(const std::vector<JudgedReport>& reports) {
     for (const Rule& rule : rules()) driver["rules"].push_back(rule_json(rule));
 
     Json results = Json::array(), notifications = Json::array();
-    for (const auto& [report, require, fail_on] : reports) {
-        for (const Finding& finding : report.findings) results.push_back(result_json(report, finding, require));
+    for (const JudgedReport& judged : reports) {
+        const CheckReport& report = judged.report;
+        for (const Finding& finding : report.findings) results.push_back(result_json(report, finding, judged.require));
+        for (const Finding& finding : judged.waived) {
+            Json result = result_json(report, finding, judged.require);
+            result["suppressions"] = {{{"kind", "external"}, {"justification", "listed in the baseline"}}};
+            results.push_back(std::move(result));
+        }
         if (!report.error || !report.findings.empty()) continue;
         Json notification;
         notification["level"] = "error";

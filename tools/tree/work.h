@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tree/find_files.h"
+#include "batch/find_files.h"
 #include "tree/recipe.h"
 
 namespace tex::cli {

@@ -50,6 +50,9 @@ struct BakeFileOptions {
     ColorOptions color;
     HeightOptions heights;                     // wrap_x and wrap_y also apply to the height field
     std::function<Strength(Extent)> strength;  // the bumpiness for a map of this extent; empty: 1. Must not throw
+    // The strength at which 99 % of the slopes are at most 1 (45 degrees), to three digits, instead of `strength`; 1 if
+    // all heights are equal. The file is read once more before, and heights are debanded and filled twice.
+    bool auto_strength = false;
     BakeOptions bake;
     MipOptions mip;
     PackOptions pack;
@@ -64,6 +67,8 @@ struct BakeFileReport {
     int levels = 1;
     std::size_t bytes = 0;  // of the output; the sum over all its files
     HeightReport heights;
+    Strength strength;              // with which it was baked
+    float usual_slope = 0.0f;       // the 99th percentile of the slopes of the base level, or of some rows of it
     SlopeRange slopes;              // zeros unless BakeFileOptions::slopes is set
     std::int64_t steep_texels = 0;  // of the base level: slopes above steepest_slope() of the encoding
     std::optional<RdoReport> rdo;   // of the first file whose blocks are optimised

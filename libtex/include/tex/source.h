@@ -25,9 +25,12 @@ struct SourceOptions {
     UnpackOptions unpack;
 
     std::optional<Swizzle> bc5_swizzle;  // of BC5 files, instead of their own; unpack.swizzle takes precedence
-    bool r_or_a = false;        // y is in G, and x in A if guess_swizzle() finds it there, else in R; unpack.swizzle
-                                // takes precedence
-    bool doubt_y = false;       // if neither the file nor the caller states y, measure it: SourceInfo::y_doubtful
+    bool r_or_a = false;           // y is in G, and x in A if guess_swizzle() finds it there, else in R; unpack.swizzle
+                                   // takes precedence
+    bool doubt_y = false;          // if neither the file nor the caller states y, measure it: SourceInfo::y_doubtful
+    bool inspect = false;          // look for signs that the texels hold something else: object_space, background
+    bool fill_background = false;  // black, grey or white around charts takes the nearest normals; smaller levels are
+                                   // left out, and the base level is held in memory
     bool measure_y = false;     // the texels of the base level decide about y, whatever the file or unpack.y_axis state
     bool file_y_first = false;  // the direction that a file states takes precedence over unpack.y_axis
 };
@@ -40,7 +43,9 @@ struct SourceInfo {
     YAxis y_axis = YAxis::up;  // with which it was read: the direction of y in the file
     bool y_known = false;      // y_axis comes from the file, the caller or the texels; otherwise it is assumed
     bool y_doubtful = false;   // it is assumed, and the texels clearly show the other direction
-    bool srgb = false;         // this and remarks: as in Texture
+    bool object_space = false;  // more than 5 % of the texels that were inspected point away from the surface
+    double background = 0.0;    // the share of those that are black, grey or white, if it is 1 % or more
+    bool srgb = false;          // this and remarks: as in Texture
     std::vector<std::string> remarks;
 };
 

@@ -29,7 +29,9 @@ struct StepsReport {
     std::size_t bytes = 0;          // of all outputs
     PackOptions pack;               // of `output`
     HeightReport heights;           // if the first step bakes
-    std::int64_t steep_texels = 0;  // as in BakeFileReport, if the only step bakes; maps of floats hold all slopes
+    Strength strength;              // as in BakeFileReport, if the first step bakes
+    float usual_slope = 0.0f;       // this and the next as in BakeFileReport, if the only step bakes
+    std::int64_t steep_texels = 0;  // maps of floats hold all slopes
     std::vector<MapRead> maps;
 };
 

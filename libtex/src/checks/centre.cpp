@@ -16,7 +16,7 @@ namespace {
 constexpr int kValueBins = 1024;
 constexpr float kBlack = 0.01f;
 
-double median_of(const Stored& stored, Component component) {
+double median_of(const Stored& stored, const Background* background, Component component) {
     const Plane<float>& x = stored.image->planes[static_cast<std::size_t>(stored.channel(Component::x))];
     const Plane<float>& y = stored.image->planes[static_cast<std::size_t>(stored.channel(Component::y))];
     const Plane<float>& plane = component == Component::x ? x : y;
@@ -26,6 +26,7 @@ double median_of(const Stored& stored, Component component) {
         for (int j = window.y; j < window.y + window.height; ++j) {
             for (int i = window.x; i < window.x + window.width; ++i) {
                 const float value = plane.at(i, j);
+                if (background != nullptr && background->holds(i, j)) continue;
                 if (!(std::max(x.at(i, j), y.at(i, j)) > kBlack) || !(value >= 0.0f && value <= 1.0f)) continue;
                 ++bins[static_cast<std::size_t>(value * static_cast<float>(kValueBins - 1))];
                 ++count;
@@ -42,8 +43,8 @@ double median_of(const Stored& stored, Component component) {
 
 double Centre::distance(double value) const { return std::max(std::abs(x - value), std::abs(y - value)); }
 
-Centre measure_centre(const Stored& stored) {
-    return {median_of(stored, Component::x), median_of(stored, Component::y)};
+Centre measure_centre(const Stored& stored, const Background* background) {
+    return {median_of(stored, background, Component::x), median_of(stored, background, Component::y)};
 }
 
 double srgb_encoded(double c) { return c <= 0.0031308 ? 12.92 * c : 1.055 * math::pow(c, 1.0 / 2.4) - 0.055; }

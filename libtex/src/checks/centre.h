@@ -3,18 +3,20 @@
 
 #pragma once
 
+#include "checks/background.h"
 #include "checks/stored.h"
 
 namespace tex {
 
 // Medians of the stored x and y over the sampled texels in which at least one of them is not black, so that the fill
-// outside UV islands does not count. Half, if all texels are black. Precondition: x and y are stored.
+// outside UV islands does not count; nor does the background, which may be null. Half, if no texel is left.
+// Precondition: x and y are stored.
 struct Centre {
     double x = 0.5, y = 0.5;
     // The larger of the distances of x and y from `value`.
     [[nodiscard]] double distance(double value) const;
 };
-Centre measure_centre(const Stored& stored);
+Centre measure_centre(const Stored& stored, const Background* background = nullptr);
 
 // IEC 61966-2-1:1999.
 double srgb_encoded(double c);

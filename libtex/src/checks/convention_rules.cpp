@@ -17,9 +17,10 @@ constexpr std::size_t kLeastNeighbours = 4;
 constexpr double kLeastEnergy = 0.25;  // of the energy of the median neighbourhood
 constexpr double kMixedShare = 0.08;   // of the clear neighbourhoods
 constexpr std::size_t kMixedRegions = 3;
-// Neighbourhoods with a smaller correlation are weak evidence, as those of UV islands are: more of them must disagree.
-constexpr double kClearCorrelation = 0.5;
-constexpr double kMixedShareSoftly = 0.25;
+// Maps from meshes with overhangs (chains, grips, glass) have slopes of no height field, and regions of either sign by
+// chance. There the correlations are small, or few regions are clear.
+constexpr double kClearCorrelation = 0.5;  // the median of the clear neighbourhoods
+constexpr double kClearShare = 0.5;        // of the neighbourhoods that have details
 
 struct Neighbourhood {
     const CurlRegion* centre = nullptr;
@@ -65,6 +66,7 @@ std::vector<Neighbourhood> neighbourhoods_of(const Curl& curl) {
 struct Votes {
     std::vector<Region> up, down;
     std::vector<double> correlations;  // of both, without signs
+    std::size_t all = 0;               // neighbourhoods that have details, clear or not
 
     [[nodiscard]] double median() {
         const auto middle = correlations.begin() + static_cast<std::ptrdiff_t>(correlations.size() / 2);
@@ -86,7 +88,9 @@ Votes votes_of(const Subject& subject) {
     Votes votes;
     for (const Neighbourhood& n : all) {
         const double correlation = n.sums.correlation();
-        if (n.regions < kLeastNeighbours || energy(n) <= least || std::abs(correlation) < kLeastCorrelation) continue;
+        if (n.regions < kLeastNeighbours || energy(n) <= least) continue;
+        ++votes.all;
+        if (std::abs(correlation) < kLeastCorrelation) continue;
         // If 0.8 of the evidence is on one side, |sum| / sum of magnitudes is 2 * 0.8 - 1.
         if (std::abs(n.agreeing) < (2.0 * kLeastAgreement - 1.0) * n.evidence) continue;
         const Rect& rect = n.centre->rect;
@@ -104,7 +108,8 @@ void check_mixed(const Subject& subject, Findings& findings) {
     const double all = static_cast<double>(votes.up.size() + votes.down.size());
     if (less.size() < kMixedRegions) return;
     const double share = static_cast<double>(less.size()) / all;
-    if (share < (votes.median() < kClearCorrelation ? kMixedShareSoftly : kMixedShare)) return;
+    if (share < kMixedShare || all < kClearShare * static_cast<double>(votes.all)) return;
+    if (votes.median() < kClearCorrelation) return;
     const YAxis y = up_is_less ? YAxis::up : YAxis::down;
     Finding& finding =
         findings.add("N402", std::to_string(less.size()) + " of " + decimal(all, 0) + " regions point " + direction(y) +
@@ -113,6 +118,15 @@ void check_mixed(const Subject& subject, Findings& findings) {
     finding.unit = "share";
     finding.confidence = subject.y.confidence;
     finding.regions = less;
+}
+
+// The first limit that the evidence misses.
+std::string undecided_by(const Curl& curl) {
+    if (curl.usable < kLeastUsable)
+        return "only " + percent(curl.usable) + " of them hold a usable normal, of at least " + percent(kLeastUsable);
+    if (std::abs(curl.correlation) < kLeastCorrelation)
+        return "the correlation is below " + decimal(kLeastCorrelation, 1);
+    return "the confidence is below " + decimal(kLeastConfidence, 2);
 }
 
 }  // namespace
@@ -128,7 +142,7 @@ void check_convention_rules(const Subject& subject, Findings& findings) {
         finding.confidence = subject.y.confidence;
     };
     const auto& require = subject.options.require;
-    if (require.y && !subject.y.y) add("N403", "the texels do not tell");
+    if (require.y && !subject.y.y) add("N403", "the texels do not show it: " + undecided_by(subject.curl));
     if (!subject.y.y) return;
     if (require.y && *subject.y.y != *require.y) {
         add("N401", "green points " + direction(*subject.y.y) + " instead of " + direction(*require.y));

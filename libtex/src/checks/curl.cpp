@@ -13,9 +13,6 @@ namespace {
 
 constexpr int kWideMap = 512;
 
-// What makes the direction of green clear.
-constexpr double kLeastConfidence = 0.99;
-
 // Length of a region's edge in texels: maps of 128 texels and above have 16 regions or more.
 int region_size(Extent extent) { return std::min(extent.width, extent.height) >= kWideMap ? 64 : 32; }
 
@@ -40,6 +37,26 @@ CurlSums sum_region(const Slopes& s, int x0, int y0, int x1, int y1) {
             sums.exchanged += static_cast<double>(v * px) * qy;
             sums.px_square += static_cast<double>(v * px) * px;
             sums.qy_square += static_cast<double>(v * qy) * qy;
+        }
+    }
+    return sums;
+}
+
+// Products of the changes of a slope to the right and upwards, summed over a square.
+struct ChangeSums {
+    double xx = 0.0, yy = 0.0, xy = 0.0;
+};
+
+ChangeSums sum_changes(const Plane<float>& s, int x, int y, int side) {
+    ChangeSums sums;
+    for (int j = y + 1; j + 1 < y + side; ++j) {
+        for (int i = x + 1; i + 1 < x + side; ++i) {
+            const double sx = static_cast<double>(s.at(i + 1, j)) - static_cast<double>(s.at(i - 1, j));
+            const double sy = static_cast<double>(s.at(i, j - 1)) - static_cast<double>(s.at(i, j + 1));
+            if (!(sx + sy == sx + sy)) continue;
+            sums.xx += sx * sx;
+            sums.yy += sy * sy;
+            sums.xy += sx * sy;
         }
     }
     return sums;
@@ -146,6 +163,26 @@ void CurlSums::add(const CurlSums& other) {
 
 double CurlSums::correlation() const { return ratio(cross, p_square, q_square); }
 double CurlSums::exchanged_correlation() const { return ratio(exchanged, px_square, qy_square); }
+
+double diagonal_share(const Stored& stored, int scale) {
+    constexpr int kSide = 16;  // texels of a region: so small that a structure has one direction in it
+    double along = 0.0, all = 0.0;
+    for (const Rect& window : sample_windows(stored.extent())) {
+        Slopes slopes = slopes_of(stored, window);
+        for (int k = 0; k < scale; ++k) slopes = halved(slopes);
+        const auto [width, height] = slopes.extent();
+        for (int y = 0; y + kSide <= height; y += kSide) {
+            for (int x = 0; x + kSide <= width; x += kSide) {
+                for (const Plane<float>* plane : {&slopes.p, &slopes.q}) {
+                    const ChangeSums sums = sum_changes(*plane, x, y, kSide);
+                    along += std::abs(sums.xy);
+                    all += std::sqrt(sums.xx * sums.yy);
+                }
+            }
+        }
+    }
+    return all > 0.0 ? along / all : 0.0;
+}
 
 Curl measure_curl(const Stored& stored) {
     const std::vector<Rect> windows = sample_windows(stored.extent());

@@ -21,7 +21,8 @@ namespace tex {
 
 inline constexpr float kSlopeJump = 0.5f;         // a change of slope over two texels that counts as a jump
 inline constexpr double kLeastCorrelation = 0.2;  // smaller ones prove nothing
-inline constexpr double kLeastUsable = 0.5;       // the share of texels that must hold a normal to prove anything
+inline constexpr double kLeastConfidence = 0.99;
+inline constexpr double kLeastUsable = 0.5;  // the share of texels that must hold a normal to prove anything
 
 // Sums over texels. All results are ratios of these sums.
 struct CurlSums {
@@ -66,6 +67,11 @@ Result<Curl> measure_curl(const Stored& stored, const Execution& execution);
 
 // The same for parts of a map of this extent; `slopes` returns the slopes of a part, once for each.
 Curl measure_curl(Extent extent, const std::vector<Rect>& windows, const std::function<Slopes(std::size_t)>& slopes);
+
+// How diagonal the structures are at a scale, from 0 (without a preferred direction, or along the axes) to 1 (lines at
+// 45 degrees, of either direction). Where they are diagonal, x and y have no curl either way: exchanging them mirrors
+// the structure onto itself.
+double diagonal_share(const Stored& stored, int scale);
 
 // Where green points, if that is clear.
 std::optional<YAxis> clear_y(const Curl& curl);

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <functional>
 #include <iterator>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "blocks/astc.h"
@@ -32,8 +34,9 @@ constexpr double kHalfAlphaShare = 0.01;
 constexpr double kExchangedMean = 0.4;
 constexpr double kExchangedZ = 0.2;
 constexpr double kExchangedLead = 0.1;
-constexpr double kExchangedLeast = 0.2;
+constexpr double kExchangedLeast = 0.4;
 constexpr double kExchangedConfidence = 0.99;
+constexpr double kMostDiagonal = 0.5;      // see diagonal_share()
 constexpr double kExchangedEnergy = 0.25;  // of products of two energies: the change across is half the change along
 
 // The mean of |length - 1| over every 7th sampled texel, after `restore` is applied to the stored values of x, y and z.
@@ -82,7 +85,9 @@ Result<void> measure_traces(const Subject& subject, bool wants_seam, Traces& tra
         });
         measures.emplace_back([&] { traces.lattice = measure_lattice(stored); });
     }
-    if (!stored.is_signed) measures.emplace_back([&] { traces.centre = measure_centre(stored); });
+    if (!stored.is_signed)
+        measures.emplace_back(
+            [&] { traces.centre = measure_centre(stored, subject.background ? &*subject.background : nullptr); });
     if (wants_seam) measures.emplace_back([&] { traces.seam = measure_seam(stored); });
     const Execution silent{subject.execution.threads, {}};
     return parallel_for(silent, static_cast<int>(measures.size()), 1,
@@ -137,6 +142,18 @@ void check_alpha(const Subject& subject, Findings& findings) {
     finding.confidence = 0.99;
 }
 
+// What happened to a map whose x and y fit each other only if exchanged: with y up, slopes that were exchanged agree,
+// and those of a picture turned by 90 degrees disagree; with y down it is the other way round.
+std::string exchange_text(const Subject& subject) {
+    const std::string exchanged = "x and y are exchanged";
+    const std::string turned = "the picture was turned by 90 degrees, but its vectors were not";
+    const bool agree = subject.curl.exchanged > 0.0;
+    std::optional<YAxis> y = subject.options.require.y;
+    if (!y && subject.texture.y_known) y = subject.texture.y_axis;
+    if (y) return (*y == YAxis::up) == agree ? exchanged : turned;
+    return (agree ? exchanged : turned) + ", if green points up; if it points down, " + (agree ? turned : exchanged);
+}
+
 void check_exchanged(const Subject& subject, Findings& findings) {
     const TexelCounts& counts = subject.counts;
     if (subject.stored.has_z() && std::max(counts.mean_x, counts.mean_y) > kExchangedMean &&
@@ -156,8 +173,9 @@ void check_exchanged(const Subject& subject, Findings& findings) {
     // exchange. A bowl, whose slopes do not change across at all, looks exactly like a saddle with exchanged channels.
     const CurlSums& sums = subject.curl.scale[subject.curl.best_scale];
     if (sums.p_square * sums.q_square < kExchangedEnergy * sums.px_square * sums.qy_square) return;
-    Finding& finding = findings.add("N308", "x and y agree better when exchanged (correlation " +
-                                                decimal(exchanged, 2) + " against " + decimal(as_stored, 2) + ")");
+    if (diagonal_share(subject.stored, subject.curl.best_scale) > kMostDiagonal) return;
+    Finding& finding = findings.add("N308", exchange_text(subject) + " (correlation " + decimal(exchanged, 2) +
+                                                " exchanged, " + decimal(as_stored, 2) + " as stored)");
     finding.figure = exchanged;
     finding.unit = "correlation";
     finding.confidence = subject.curl.exchanged_confidence;

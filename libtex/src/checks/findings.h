@@ -27,6 +27,7 @@ struct Subject {
     bool has_vectors = false;
     bool constant = false;    // all channels are constant
     bool sampled_ok = false;  // large and varied enough for statistics
+    std::optional<Background> background = {};
     TexelCounts counts = {};
     Curl curl = {};
     YEvidence y = {};  // what the curl shows

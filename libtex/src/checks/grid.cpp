@@ -17,6 +17,7 @@ namespace {
 // Blocks of half the size are as visible half-way between the borders as at the borders, and more than at the quarters.
 constexpr double kHalfStandsOut = 1.2;
 constexpr double kHalfAsMuch = 0.8;
+constexpr std::size_t kLeastBorders = 7;  // as 64 texels have: fewer stand out by chance
 
 // The mean steps of one window along one axis: steps[k] is the step between line k and line k + 1.
 std::vector<double> mean_steps(const Plane<float>& plane, Rect window, bool columns) {
@@ -51,7 +52,7 @@ double axis_ratio(const Plane<float>& plane, const std::vector<Rect>& windows, i
             if (phase == block / 4 || phase == 3 * block / 4) quarter_way.push_back(ratio);
         }
     }
-    if (at_borders.size() < 4) return 1.0;
+    if (at_borders.size() < kLeastBorders) return 1.0;
     const double usual = median(elsewhere), border = median(at_borders), half = median(half_way);
     if (half > kHalfStandsOut * median(quarter_way) && half > kHalfAsMuch * border) return 1.0;
     return usual > 0.0 ? border / usual : 1.0;
@@ -62,8 +63,8 @@ using Color = std::array<float, 3>;
 constexpr float kCode = 1.0f / 255.0f;
 constexpr float kContrast = 8.0f * kCode;  // between the ends of a palette: below it, rounding hides the others
 constexpr float kOffPalette = 1.5f * kCode;
-constexpr std::size_t kMostColors = 4;  // of a block of BC1 to BC3
-constexpr double kLeastBlocks = 64.0;   // fewer blocks give no reliable share
+constexpr std::size_t kMostColors = 4;    // of a block of BC1 to BC3
+constexpr double kBlocksForShare = 64.0;  // fewer blocks give no reliable share
 
 enum class Palette { unclear, fits, differs };
 
@@ -80,6 +81,21 @@ std::vector<Color> colors_of(const Image& image, std::size_t channels, int x, in
         }
     }
     return seen;
+}
+
+// Whether all rows of a block are equal, or all columns: four colours in four lines may be a ramp.
+bool has_one_direction(const Image& image, std::size_t channels, int x, int y) {
+    bool rows = true, columns = true;
+    for (std::size_t c = 0; c < channels; ++c) {
+        for (int j = 0; j < kBlockEdge; ++j) {
+            for (int i = 0; i < kBlockEdge; ++i) {
+                const float value = image.planes[c].at(x + i, y + j);
+                rows = rows && value == image.planes[c].at(x + i, y);
+                columns = columns && value == image.planes[c].at(x, y + j);
+            }
+        }
+    }
+    return rows || columns;
 }
 
 // Whether `color` lies one third, half or two thirds of the way from one end to the other.
@@ -102,6 +118,7 @@ float contrast(const Color& a, const Color& b) {
 // Whether the texels of a block form a palette: two colours and one or two evenly spaced between them. One or two
 // colours alone fit any palette.
 Palette palette_of(const Image& image, std::size_t channels, int x, int y) {
+    if (has_one_direction(image, channels, x, y)) return Palette::unclear;
     std::vector<Color> colors = colors_of(image, channels, x, y);
     if (colors.size() > kMostColors) return Palette::differs;
     if (colors.size() < 3) return Palette::unclear;
@@ -175,7 +192,7 @@ double grid_ratio(const Stored& stored, int block) {
 double palette_share(const Stored& stored) {
     // Blocks that straddle those of a codec, and, within a JPEG's blocks of 8x8, blocks across the middle.
     const double across = std::max(share_at(stored, 2, kBlockEdge, 1.0), share_at(stored, 2, 2 * kBlockEdge, 1.0));
-    return share_at(stored, 0, kBlockEdge, kLeastBlocks) - across;
+    return share_at(stored, 0, kBlockEdge, kBlocksForShare) - across;
 }
 
 }  // namespace tex

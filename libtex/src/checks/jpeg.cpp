@@ -27,6 +27,7 @@ constexpr int kCoarsest = 60;
 constexpr int kBins = 16;    // of a histogram, per unit
 constexpr int kRange = 512;  // larger magnitudes are rare
 constexpr std::size_t kAllBins = std::size_t{kRange} * kBins;
+constexpr int kLeastBlocks = 64;      // fewer fit a quantiser by chance
 constexpr int kBlocks = 8192;         // this many are enough
 constexpr double kLeastCount = 12.0;  // coefficients that are not rounded to 0
 constexpr std::size_t kLeastCoefficients = 3;
@@ -129,6 +130,7 @@ JpegTrace measure_jpeg(const Stored& stored, int offset) {
     const std::vector<Rect> windows = sample_windows(stored.extent());
     std::int64_t blocks = 0;
     for (const Rect& window : windows) blocks += std::int64_t{window.width / 8} * (window.height / 8);
+    if (blocks < kLeastBlocks) return {};
     const auto stride = static_cast<int>(std::max<std::int64_t>(1, blocks / kBlocks));
     std::array<Histogram, kCoefficients> histograms;
     histograms.fill(Histogram(kAllBins));

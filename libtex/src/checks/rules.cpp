@@ -72,7 +72,7 @@ constexpr Rule kRules[] = {
      "", "N201"},
     {"N203", "beyond-unit", values, warning, true, "x and y lie outside the unit circle.",
      "x^2 + y^2 is above 1 by more than two codes in more than 0.1 % of the texels of an encoding without z, so z "
-     "cannot be rebuilt. Areas outside the UV islands filled with black do this.",
+     "cannot be rebuilt.",
      "", "N207"},
     {"N204", "not-finite", values, error, true, "Texels are NaN or infinite.",
      "One such texel spreads through mip levels and bilinear filters.", "", "N201 N202 N203 N206 N207 N307"},
@@ -86,9 +86,10 @@ constexpr Rule kRules[] = {
      "The mean of the normals is more than 10 degrees off (0, 0, 1). A map over a flat surface has no lean; one "
      "channel was shifted, or the surface behind a bake was not flat.",
      "", ""},
-    {"N208", "biased-flat", values, note, true, "Flat texels are biased.",
+    {"N208", "biased-flat", values, note, false, "Flat texels are biased.",
      "8 bits have no exact zero: code 127 means -0.0039, code 128 +0.0039. A quarter of the map or more is flat, and "
-     "all of it leans the same way, by 0.32 degrees; blended as detail it tilts the base.",
+     "all of it leans the same way, by 0.32 degrees. Off by default, because nobody sees it; blended as detail, such a "
+     "map tilts the base.",
      "unpack-normals FILE --keep-length --snap-flat --level all --format SAME -o FIXED", ""},
     {"N209", "blue-not-z", values, warning, true, "Blue does not hold z.",
      "Blue is constant while x and y vary: the file has two components, and its third channel is a filler. Readers "
@@ -97,7 +98,8 @@ constexpr Rule kRules[] = {
     {"N210", "grey-picture", values, error, true, "The picture is grey.",
      "R, G and B are equal everywhere: this is a height or bump map, not a normal map.",
      "bake-normals FILE --bumpiness TEXELS --format SAME -o FIXED",
-     "N115 N201 N202 N203 N205 N206 N207 N208 N209 N213 N214 N301 N302 N303 N304 N305 N306 N308 N309 N310 N401 N402 "
+     "N115 N201 N202 N203 N205 N206 N207 N208 N209 N213 N214 N215 N301 N302 N303 N304 N305 N306 N308 N309 N310 N401 "
+     "N402 "
      "N403 N404 N501 N502 N503 N504"},
     {"N211", "dxt5nm-red", values, note, true, "R is not 255 in the layout of DXT5nm.",
      "Unity's shaders multiply R and A to read x from either; where R is not 255, x comes out too small (or 0). "
@@ -110,22 +112,29 @@ constexpr Rule kRules[] = {
     {"N213", "object-space", values, error, true, "The normals are not in tangent space.",
      "z points away from the surface in many texels and the vectors face all directions: an object-space or "
      "world-space map.",
-     "", "N115 N201 N202 N205 N207 N305 N310 N401 N402 N403 N404 N501 N502 N504"},
+     "", "N115 N201 N202 N205 N207 N215 N305 N310 N401 N402 N403 N404 N501 N502 N504"},
     {"N214", "not-a-normal-map", values, error, true, "The picture is no normal map.",
      "Nearly all texels are far from unit length and many point away from the surface: colours, not vectors.", "",
-     "N115 N201 N202 N205 N207 N213 N304 N305 N306 N310 N401 N402 N403 N404 N501 N502 N504"},
+     "N115 N201 N202 N205 N207 N213 N215 N304 N305 N306 N310 N401 N402 N403 N404 N501 N502 N504"},
+
+    {"N215", "background", values, warning, true, "The background is not filled.",
+     "A colour that is no normal (black, grey, white) fills areas around the charts. Filters and block compression mix "
+     "it into the charts beside it, and each smaller level mixes in twice as much: dark lines along the seams. The "
+     "other "
+     "rules leave it out.",
+     "mip-normals FILE --keep-length --fill-background --format SAME -o FIXED", ""},
 
     // -- damage -----------------------------------------------------------------------------------------------
     {"N301", "srgb-decoded", damage, error, true, "The map went through the sRGB curve: it is too dark.",
      "x and y centre on 0.21 instead of 0.5: somebody read the file as colour and stored linear values.", "",
-     "N201 N202 N203 N205 N206 N207 N213 N214 N305 N307 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504"},
+     "N201 N202 N203 N205 N206 N207 N213 N214 N215 N305 N307 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504"},
     {"N302", "srgb-encoded", damage, error, true, "The map went through the sRGB curve: it is too light.",
      "x and y centre on 0.74 instead of 0.5: linear values were stored as if they were colour.", "",
-     "N201 N202 N203 N205 N206 N207 N214 N305 N307 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504"},
+     "N201 N202 N203 N205 N206 N207 N214 N215 N305 N307 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504"},
     {"N303", "premultiplied", damage, error, true, "R, G and B were multiplied by alpha.",
      "No channel exceeds alpha, and dividing by it makes the vectors longer and even. Image libraries do this on "
      "reading unless told otherwise (OpenImageIO: oiio:UnassociatedAlpha).",
-     "", "N201 N202 N205 N207 N212 N213 N214 N301 N305 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504"},
+     "", "N201 N202 N205 N207 N212 N213 N214 N215 N301 N305 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504"},
     {"N304", "jpeg-blocks", damage, warning, true, "The map shows the 8x8 blocks of lossy JPEG.",
      "The cosine transform of aligned blocks is quantised as JPEG of about quality 65 or less does it, or steps stand "
      "out at every eighth column and row. Chroma subsampling halves the resolution of x; go back to a lossless source.",
@@ -133,18 +142,23 @@ constexpr Rule kRules[] = {
     {"N305", "banding", damage, warning, true, "The slopes lie on a lattice.",
      "The map was baked from heights of few values, 8 bits say: slopes take few values too, which shows as terraces in "
      "reflections. Bake "
-     "from 16 bits, or blur the heights.",
-     "Bake it again from heights of 16 bits or floats, or with --blur 1.", ""},
+     "from 16 bits, or smooth the steps of the heights.",
+     "Bake it again from heights of 16 bits or floats, or with --deband on.", ""},
     {"N306", "bc-blocks", damage, warning, true, "The map shows the 4x4 blocks of texture compression.",
      "Either an uncompressed file holds texels that were BC-compressed before, or the steps between the blocks of a "
      "compressed one are twice those inside. DXT1 and DXT5 with normals in R, G and B do this.",
      "Compress it again from its uncompressed source, as BC5 or DXT5nm.", "N201 N202 N304 N310"},
     {"N307", "seam", damage, error, false, "The map does not meet itself at its borders.",
      "The step across the border is larger than nearly all steps inside. Off unless tiles is required.", "", ""},
-    {"N308", "channels-exchanged", damage, error, true, "Two channels are exchanged.",
-     "Either another channel than the third holds z (blue, green, red order), or x and y changed places: the slopes "
-     "have curl as they stand and none when exchanged (so also where the order of BC5's blocks was mistaken).",
-     "", "N201 N202 N205 N207 N209 N213 N214 N401 N402 N403 N404"},
+    {"N308", "channels-exchanged", damage, error, true, "Two channels are exchanged, or the picture was turned.",
+     "Either another channel than the third holds z (blue, green, red order), or the slopes have curl as they stand "
+     "and "
+     "none when x and y are exchanged. Then the channels of x and y changed places (also where the order of BC5's "
+     "blocks was mistaken), or the picture was turned by 90 degrees while its vectors stayed. Maps whose structures "
+     "are diagonal (rope, braids) fit either way and are not judged.",
+     "If channels are exchanged, export the map again with x in red and y in green. If the picture was turned, turn it "
+     "back in an image editor; if bumps then look like dents, turn it by 180 degrees more.",
+     "N201 N202 N205 N207 N209 N213 N214 N215 N401 N402 N403 N404"},
     {"N309", "turned", damage, error, true, "The picture was turned, but its vectors were not.",
      "Its normals lean by the angle of the turn: what is lit from above on one side is lit from the left on the other. "
      "Image editors turn pictures so, and tools that pack atlases. Angles from 15 to 75 degrees are found in maps of "
@@ -152,9 +166,10 @@ constexpr Rule kRules[] = {
      "Turn the picture back. To turn a map with its vectors, blend it over a flat one with blend-normals --rotate.",
      "N308 N310 N401 N402 N403 N404"},
     {"N310", "no-surface", damage, note, true, "The slopes are those of no surface.",
-     "They have as much curl as noise has: x and y do not belong together. Noise was painted or stored instead of "
-     "normals, x and y come from different maps, or compression left nothing of faint bumps. Less curl than that is no "
-     "finding: intact maps from high-poly models have up to 40 %.",
+     "They have as much curl as noise has. Noise was painted or stored instead of "
+     "normals, or compression left nothing of faint bumps. Less curl than that is no finding: intact maps from "
+     "high-poly "
+     "models have up to 40 %.",
      "Bake the map again, or compress it less.", "N403"},
     {"N311", "wrong-sign", damage, error, true, "The file declares the wrong sign.",
      "Its texels are those of the signed format, and the header names the unsigned one, or the other way round. Then "
@@ -167,12 +182,18 @@ constexpr Rule kRules[] = {
     // -- convention -------------------------------------------------------------------------------------------
     {"N401", "wrong-y", convention, error, true, "Green points the other way than required.",
      "The slopes of a height field have no curl; here they have none only if y is turned. y=up is OpenGL, Unity, "
-     "Blender, glTF; y=down is DirectX, Unreal.",
+     "Blender, glTF; y=down is DirectX, Unreal. Decided if the correlation is 0.2 or more, the confidence 0.99 or "
+     "more, "
+     "and at least half of the texels hold normals.",
      "pack-normals FILE --keep-length --y-in MEASURED --y WANTED --format SAME -o FIXED", "N112 N404"},
     {"N402", "mixed-y", convention, error, true, "Green points up in one part of the map and down in another.",
-     "Maps of both conventions were pasted together.", "", "N310 N401 N403 N404"},
+     "Maps of both conventions were pasted together. Judged only where most regions show one direction clearly.", "",
+     "N310 N401 N403 N404"},
     {"N403", "y-undecidable", convention, note, true, "Which way green points cannot be told.",
-     "The map is flat, noise, or no height field. Reported where y is required.", "", ""},
+     "The map is flat, noise, or no height field, as many maps baked from high-poly meshes: the message names the "
+     "limit "
+     "of N401 that it misses. Reported where y is required.",
+     "Look at it with preview-normals, or state what its author says: --y-in up or --y-in down.", ""},
     {"N404", "y-contradicts-file", convention, error, true, "Green points the other way than the file declares.",
      "The file's own mark of y (KTX2, EXR) is not what the texels show.",
      "pack-normals FILE --keep-length --y-in MEASURED --y MEASURED --format SAME -o FIXED", ""},

@@ -6,8 +6,11 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include <tex/normal_map.h>
+
+#include "rows/unpack_rows.h"
 
 namespace tex {
 namespace {
@@ -71,6 +74,19 @@ std::vector<Rect> sample_windows(Extent extent, int size) {
         }
     }
     return windows;
+}
+
+bool stores_signed(const Image& image, const Swizzle& swizzle, ValueRange range) {
+    if (const std::optional<bool> known = is_unsigned(image.sample, range)) return !*known;
+    const Result<Sources> sources = sources_of(swizzle, (1u << image.planes.size()) - 1);
+    if (!sources) return false;  // there are no vectors
+    const auto row = [&](int channel, int j) {
+        return channel < 0 ? nullptr : image.planes[static_cast<std::size_t>(channel)].row(j);
+    };
+    RangeEvidence evidence;
+    for (int j = 0; j < image.extent().height && !evidence.negative; ++j)
+        evidence.add(weigh_row(row(sources->x, j), row(sources->y, j), row(sources->z, j), image.extent().width));
+    return !evidence.says_unsigned();
 }
 
 Slopes slopes_of(const Stored& stored, Rect window) {

@@ -30,6 +30,9 @@ struct Stored {
     }
 };
 
+// Whether the values of x, y and z are components, and not (n + 1) / 2: read as unpack() reads them in this range.
+bool stores_signed(const Image& image, const Swizzle& swizzle, ValueRange range);
+
 // The most by which texel blocks change a constant channel.
 inline constexpr float kBlockError = 4.0f / 255.0f;
 

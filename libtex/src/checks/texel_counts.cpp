@@ -55,6 +55,13 @@ struct RowView {
     bool one_in_red = false;
     bool alpha_free = false;
     float low_flat = 2.0f, high_flat = 2.0f;  // codes 127 and 128, if the format has them
+
+    // Precondition: there are three channels.
+    [[nodiscard]] bool is_grey(int i) const {
+        const float *r = channel[0], *g = channel[1], *b = channel[2];
+        const bool red_is = std::abs(r[i] - g[i]) <= kCodeAndHalf, blue_is = std::abs(g[i] - b[i]) <= kCodeAndHalf;
+        return red_is && blue_is;
+    }
 };
 
 // Where each VectorTrait is counted.
@@ -94,10 +101,7 @@ void count_colors(const RowView& view, int width, RowCounts& row) {
     if (view.alpha_free && row.low[3] < 1.0f)
         row.mark(Property::alpha_not_one, width, [alpha](int i) { return alpha[i] < 1.0f; });
     if (view.channels >= 3 && view.z != nullptr) {
-        row.mark(Property::grey, width, [r, g, b](int i) {
-            const bool red_is = std::abs(r[i] - g[i]) <= kCodeAndHalf, blue_is = std::abs(g[i] - b[i]) <= kCodeAndHalf;
-            return red_is && blue_is;
-        });
+        row.mark(Property::grey, width, [&view](int i) { return view.is_grey(i); });
     }
     if (!view.colors) return;
     const auto brightest = [r, g, b](int i) { return std::max(std::max(r[i], g[i]), b[i]); };
@@ -148,9 +152,36 @@ double correlation(double n, double a, double b, double aa, double bb, double ab
     return va > 1e-9 * n && vb > 1e-9 * n ? (ab - a * b / n) / std::sqrt(va * vb) : 0.0;
 }
 
-TexelCounts combine(const std::vector<RowCounts>& rows, Extent extent) {
+// Counts the vectors of row j without those of the background, which are NaN meanwhile.
+void count_others(const Background& background, int j, RowView view, int width, RowCounts& row) {
+    std::vector<float> x(view.x, view.x + width);
+    int masked = 0;
+    for (int i = 0; i < width; ++i) {
+        if (!background.holds(i, j)) continue;
+        x[static_cast<std::size_t>(i)] = std::numeric_limits<float>::quiet_NaN();
+        ++masked;
+    }
+    const float* const stored_x = view.x;
+    view.x = x.data();
+    count_vectors(view, width, row);
+    const auto not_finite = static_cast<std::size_t>(Property::not_finite);
+    row.count[not_finite] -= masked;
+    if (row.count[not_finite] == 0) return;
+    int& first = row.first[not_finite];
+    const auto is_finite = [&](int i) {
+        return std::isfinite(stored_x[i] + view.y[i] + (view.z != nullptr ? view.z[i] : 0.0f));
+    };
+    for (first = 0; first + 1 < width && is_finite(first);) ++first;
+}
+
+void leave_out_grey(const Background& background, int j, const RowView& view, int width, RowCounts& row) {
+    std::int64_t& grey = row.count[static_cast<std::size_t>(Property::grey)];
+    for (int i = 0; i < width && grey > 0; ++i) grey -= background.holds(i, j) && view.is_grey(i) ? 1 : 0;
+}
+
+TexelCounts combine(const std::vector<RowCounts>& rows, Extent extent, std::int64_t masked) {
     TexelCounts counts;
-    counts.texels = extent.texels();
+    counts.texels = extent.texels() - masked;
     RowCounts all;
     for (std::size_t j = 0; j < rows.size(); ++j) {
         const RowCounts& row = rows[j];
@@ -184,25 +215,29 @@ TexelCounts combine(const std::vector<RowCounts>& rows, Extent extent) {
     counts.max_length = all.max_length;
     counts.low = all.low;
     counts.high = all.high;
-    counts.alpha_correlation = correlation(static_cast<double>(counts.texels), all.a, all.m, all.aa, all.mm, all.am);
+    counts.alpha_correlation = correlation(static_cast<double>(extent.texels()), all.a, all.m, all.aa, all.mm, all.am);
     return counts;
 }
 
 }  // namespace
 
-Result<TexelCounts> count_texels(const Stored& stored, const Execution& execution) {
+Result<TexelCounts> count_texels(const Stored& stored, const Execution& execution, const Background* background) {
     const Extent extent = stored.extent();
     std::vector<RowCounts> rows(static_cast<std::size_t>(extent.height));
     const auto body = [&](int begin, int end) {
         for (int j = begin; j < end; ++j) {
             const RowView view = view_of(stored, j);
             RowCounts& row = rows[static_cast<std::size_t>(j)];
-            count_vectors(view, extent.width, row);
+            if (background == nullptr)
+                count_vectors(view, extent.width, row);
+            else
+                count_others(*background, j, view, extent.width, row);
             count_colors(view, extent.width, row);
+            if (background != nullptr) leave_out_grey(*background, j, view, extent.width, row);
         }
     };
     if (auto done = parallel_for(execution, extent.height, kRowsPerPiece, body); !done) return done.error();
-    return combine(rows, extent);
+    return combine(rows, extent, background == nullptr ? 0 : background->masked);
 }
 
 }  // namespace tex

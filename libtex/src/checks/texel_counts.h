@@ -9,6 +9,7 @@
 #include <tex/execution.h>
 #include <tex/result.h>
 
+#include "checks/background.h"
 #include "checks/stored.h"
 
 namespace tex {
@@ -48,7 +49,7 @@ enum class Property {
 inline constexpr int kPropertyCount = 12;
 
 struct TexelCounts {
-    std::int64_t texels = 0;
+    std::int64_t texels = 0;  // without the background
     std::array<Tally, kPropertyCount> tally{};
     // Means over finite texels. z and length use the stored z, or else the reconstructed one.
     std::int64_t finite = 0;
@@ -63,7 +64,9 @@ struct TexelCounts {
     }
 };
 
+// Leaves out the vectors of the background, which may be null; `low`, `high` and what concerns alpha have all texels.
 // Errors: cancelled, out_of_memory.
-Result<TexelCounts> count_texels(const Stored& stored, const Execution& execution);
+Result<TexelCounts> count_texels(const Stored& stored, const Execution& execution,
+                                 const Background* background = nullptr);
 
 }  // namespace tex

@@ -59,6 +59,22 @@ void check_lengths(const Subject& subject, Findings& findings) {
     }
 }
 
+void check_background(const Subject& subject, Findings& findings) {
+    if (!subject.background) return;
+    const Background& background = *subject.background;
+    const Extent extent = subject.stored.extent();
+    const double share = static_cast<double>(background.texels) / static_cast<double>(extent.texels());
+    Finding& finding = findings.add(
+        "N215", percent(share) + " of the texels are background: " + background_name(background, subject.stored) +
+                    ", which is no normal; the first at " + texel_text(background.column, background.row));
+    finding.figure = share;
+    finding.unit = "share";
+    finding.regions = {{0, background.column, background.row, 1, 1}};
+    finding.has_texel = true;
+    finding.column = background.column;
+    finding.row = background.row;
+}
+
 void check_means(const Subject& subject, Findings& findings) {
     const TexelCounts& counts = subject.counts;
     const double lean = std::sqrt(counts.mean_x * counts.mean_x + counts.mean_y * counts.mean_y);
@@ -127,6 +143,7 @@ void check_value_rules(const Subject& subject, Findings& findings) {
     if (subject.constant && subject.counts.texels > 1) {
         findings.add("N206", "every texel is the same as the first").unit = "";
     }
+    check_background(subject, findings);
     check_lengths(subject, findings);
     check_means(subject, findings);
     check_channels(subject, findings);

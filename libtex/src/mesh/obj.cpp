@@ -20,6 +20,12 @@ namespace {
 constexpr std::string_view kBlank = " \t\r\f\v";
 constexpr std::uint32_t kMissing = ~std::uint32_t{0};
 
+// Some editors begin UTF-8 with a byte order mark.
+std::string_view without_mark(std::string_view text) {
+    constexpr std::string_view kMark = "\xEF\xBB\xBF";
+    return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
+}
+
 // Takes the first word of a line off it.
 std::string_view take_word(std::string_view& line) {
     const std::size_t from = std::min(line.find_first_not_of(kBlank), line.size());
@@ -273,6 +279,7 @@ Result<Mesh> ObjReader::read(std::string_view text) {
 }  // namespace
 
 bool is_obj(std::string_view head) {
+    head = without_mark(head);
     for (;;) {
         const std::size_t first = head.find_first_not_of(" \t\r\n\f\v");
         if (first == std::string_view::npos) return false;
@@ -289,6 +296,6 @@ bool is_obj(std::string_view head) {
     return false;
 }
 
-Result<Mesh> parse_obj(std::string_view text) { return ObjReader().read(text); }
+Result<Mesh> parse_obj(std::string_view text) { return ObjReader().read(without_mark(text)); }
 
 }  // namespace tex

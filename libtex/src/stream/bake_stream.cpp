@@ -14,6 +14,7 @@
 #include "stream/open_heights.h"
 #include "stream/shared_writer.h"
 #include "stream/slope_collector.h"
+#include "stream/usual_slope.h"
 #include "threads/parallel.h"
 
 namespace tex {
@@ -21,6 +22,11 @@ namespace tex {
 Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, Container container,
                                    const BakeFileOptions& options, const Execution& execution,
                                    const StreamSizes& sizes) {
+    if (options.auto_strength) {
+        const Result<BakeFileOptions> measured = with_measured_strength(file, options, execution);
+        if (!measured) return measured.error();
+        return bake_stream(file, output, container, *measured, execution, sizes);
+    }
     // Progress: debanding and filling come before the rest of the work.
     const bool debands = options.heights.deband != Deband::off;
     const double filled = debands ? 0.7 : options.heights.fill_invalid ? 0.5 : 0.0;
@@ -43,8 +49,13 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
     RowStream stream(*heights->rows, file.path(), -first, first + report.levels, writer, onward, sizes);
     if (heights->linear) stream.convert([&](Image& rows, int count) { return heights->linear->convert(rows, count); });
     SlopeCollector slopes(steepest_slope(options.pack.encoding), options.slopes);
-    stream.watch([&slopes](const Strip& strip) {
-        if (strip.level == 0) slopes.add(strip.map, 0, strip.height);
+    UsualSlope usual(report.extent);
+    stream.watch([&](const Strip& strip) {
+        if (strip.level != 0) return;
+        slopes.add(strip.map, 0, strip.height);
+        for (int j = 0; j < strip.height; ++j) {
+            if (usual.wants(strip.first + j)) usual.add({strip.map.x.row(j), strip.map.y.row(j), strip.map.z.row(j)});
+        }
     });
     HeightStage stage(extent, heights->source, heights->options, gradient, head_of(extent, options), stream.sink(),
                       std::move(heights->last));
@@ -58,6 +69,9 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
     counts += stage.counts();
     report.heights = report_of(counts, heights->deband, heights->stored);
     report.heights.remark = heights->remark;
+    const HeightFieldHead head = head_of(extent, options);
+    report.strength = {head.bumpiness_x, head.bumpiness_y};
+    report.usual_slope = usual.slope();
     report.slopes = slopes.range();
     report.steep_texels = slopes.steep_texels();
     return report;

@@ -31,9 +31,9 @@ std::optional<RowsInStep> rows_in_step(Extent source, Extent result, const UvMap
 }
 
 ArrivingMap::ArrivingMap(const TextureRows& texture, Extent extent, const Sources& sources, const UnpackRule& rule,
-                         LayoutFinder* finder, YWitness* witness, const RowsInStep& step)
+                         LayoutFinder* finder, MapInspector* inspector, const RowsInStep& step)
     : extent_(extent), step_(step), shelf_(extent.height, 0, {step.head, 0, false}), rows_(extent.width, 3),
-      unpack_(texture, extent, sources, rule, std::nullopt, finder, witness, sink()) {}
+      unpack_(texture, extent, sources, rule, std::nullopt, finder, inspector, sink()) {}
 
 NormalSink ArrivingMap::sink() {
     return {[this](int) {

@@ -30,7 +30,7 @@ std::optional<RowsInStep> rows_in_step(Extent source, Extent result, const UvMap
 class ArrivingMap {
 public:
     ArrivingMap(const TextureRows& texture, Extent extent, const Sources& sources, const UnpackRule& rule,
-                LayoutFinder* finder, YWitness* witness, const RowsInStep& step);
+                LayoutFinder* finder, MapInspector* inspector, const RowsInStep& step);
     ArrivingMap(const ArrivingMap&) = delete;
     ArrivingMap& operator=(const ArrivingMap&) = delete;
 

@@ -83,7 +83,7 @@ Result<bool> BlendRun::run(const Execution& execution) {
     writer_ = std::move(*opened);
     if (const Result<void> streamed = stream(execution); !streamed) return streamed.error();
     if (!blending_.was_right()) return false;
-    blending_.judge_y(report_.source, report_.details);
+    blending_.judge(report_.source, report_.details);
     if (const Result<void> committed = writer_->commit(); !committed) return committed.error();
     report_.bytes = writer_->file_bytes();
     report_.rdo = writer_->rdo();

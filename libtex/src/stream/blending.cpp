@@ -103,17 +103,18 @@ std::vector<SourceInfo> Blending::details() const {
 Result<PlacedMap> Blending::place(Input& input, std::deque<ArrivingMap>& arriving, const Execution& execution) {
     if (!input.step) return place_chain(input.file.chain(), input.map, input.wrap_x, input.wrap_y, execution);
     MapFile& file = input.file;
-    input.witness.reset();
-    if (file.doubts_y()) input.witness.emplace(extent_);
+    input.inspector.reset();
+    if (auto inspector = inspector_for(file.options(), file.info(), extent_))
+        input.inspector.emplace(std::move(*inspector));
     ArrivingMap& map = arriving.emplace_back(file.texture(), extent_, file.sources(), file.rule(), file.finder(),
-                                             input.witness ? &*input.witness : nullptr, *input.step);
+                                             input.inspector ? &*input.inspector : nullptr, *input.step);
     return PlacedMap{nullptr, [&map](int j) { return map.row(j); }, extent_, input.map, input.wrap_x, input.wrap_y};
 }
 
-void Blending::judge_y(SourceInfo& base, std::vector<SourceInfo>& details) {
+void Blending::judge(SourceInfo& base, std::vector<SourceInfo>& details) {
     for (std::size_t k = 0; k < inputs_.size(); ++k) {
         SourceInfo& info = k == 0 ? base : details[k - 1];
-        if (inputs_[k].witness) info.y_doubtful = inputs_[k].witness->contradicts();
+        if (inputs_[k].inspector) inputs_[k].inspector->report(info);
     }
 }
 

@@ -15,8 +15,8 @@
 #include "stream/blend_stage.h"
 #include "stream/joined_rows.h"
 #include "stream/map_file.h"
+#include "stream/map_inspector.h"
 #include "stream/map_source.h"
-#include "stream/y_witness.h"
 
 namespace tex {
 
@@ -42,7 +42,7 @@ public:
     [[nodiscard]] const SourceInfo& source() { return base_.file.info(); }  // of the base
     [[nodiscard]] std::vector<SourceInfo> details() const;
     // Sets SourceInfo::y_doubtful of the base and of the details, after the last reading.
-    void judge_y(SourceInfo& base, std::vector<SourceInfo>& details);
+    void judge(SourceInfo& base, std::vector<SourceInfo>& details);
 
     // One reading of the maps: the rows of those that are read in step, and what makes normals of them.
     struct Reading {
@@ -67,7 +67,7 @@ private:
         Wrap wrap_x = Wrap::repeat;
         Wrap wrap_y = Wrap::repeat;
         std::optional<RowsInStep> step;  // empty: the whole map is held in memory
-        std::optional<YWitness> witness;
+        std::optional<MapInspector> inspector;
     };
     Result<void> settle(Input& input, const Execution& execution);
     Result<PlacedMap> place(Input& input, std::deque<ArrivingMap>& arriving, const Execution& execution);

@@ -12,6 +12,7 @@
 #include "stream/shared_writer.h"
 #include "stream/source_layout.h"
 #include "stream/unpack_stage.h"
+#include "stream/usual_slope.h"
 
 namespace tex {
 namespace {
@@ -57,19 +58,26 @@ public:
         if (!file) return file.error();
         heights_.reset();
         file_.emplace(std::move(*file));
+        if (options_.auto_strength) {
+            Result<BakeFileOptions> measured = with_measured_strength(*file_, options_, execution_);
+            if (!measured) return measured.error().of(input_);
+            options_ = std::move(*measured);
+        }
         const Gradient gradient = gradient_of(options_.bake);
         const Execution silent{execution_.threads, {}};
         Result<Heights> heights = open_heights(*file_, RowOrder::from_the_top, options_, gradient, silent);
         if (!heights) return heights.error().of(input_);
         heights_.emplace(std::move(*heights));
         const Extent extent = heights_->rows->extent();
+        const HeightFieldHead head = head_of(extent, options_);
+        report_.strength = {head.bumpiness_x, head.bumpiness_y};
         HeightReport before = report_of(heights_->counts, heights_->deband, heights_->stored);
         before.remark = heights_->remark;
-        const auto make = [&, before](NormalSink sink) {
+        const auto make = [&, before, head](NormalSink sink) {
             auto stage = std::make_unique<CountedStage>(
                 report_.heights, before,
-                std::make_unique<HeightStage>(extent, heights_->source, heights_->options, gradient,
-                                              head_of(extent, options_), std::move(sink), std::move(heights_->last)));
+                std::make_unique<HeightStage>(extent, heights_->source, heights_->options, gradient, head,
+                                              std::move(sink), std::move(heights_->last)));
             return stage;
         };
         MadeRows::Convert convert;
@@ -103,7 +111,7 @@ private:
     };
 
     const std::string& input_;
-    const BakeFileOptions& options_;
+    BakeFileOptions options_;
     const Execution& execution_;
     StepsReport& report_;
     std::optional<InputFile> file_;

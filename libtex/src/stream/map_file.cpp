@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "stream/filled_map.h"
 #include "stream/measured_y.h"
 #include "stream/normal_source.h"
 #include "stream/row_stream.h"
@@ -14,7 +15,8 @@ namespace tex {
 
 Result<void> MapFile::open_texture() {
     Result<TextureRows> opened = made_ != nullptr ? made_->open() : open_texture_rows(*file_, options_.read);
-    if (!opened) return opened.error();
+    if (options_.fill_background) opened = fill_background(std::move(opened), options_, {});
+    if (!opened) return opened.error().of(path_);
     texture_ = std::move(*opened);
     return {};
 }

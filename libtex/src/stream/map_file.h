@@ -47,8 +47,7 @@ public:
     [[nodiscard]] const SourceInfo& info() const { return info_; }  // after hold() or prepare()
     [[nodiscard]] const Sources& sources() const { return sources_; }
     [[nodiscard]] const UnpackRule& rule() const { return rule_; }
-    // Whether y is assumed, and to be measured.
-    [[nodiscard]] bool doubts_y() const { return options_.doubt_y && !info_.y_known; }
+    [[nodiscard]] const SourceOptions& options() const { return options_; }
     // Null if the layout does not depend on the texels.
     [[nodiscard]] LayoutFinder* finder() { return finder_ && finder_->depends_on_texels() ? &*finder_ : nullptr; }
 

@@ -3,8 +3,8 @@
 #include "stream/measured_y.h"
 
 #include "stream/map_file.h"
+#include "stream/map_inspector.h"
 #include "stream/unpack_stage.h"
-#include "stream/y_witness.h"
 
 namespace tex {
 
@@ -20,14 +20,14 @@ Result<SourceOptions> with_measured_y(MapSource& map, const SourceOptions& optio
     const Extent extent = rows.extent();
     NormalMap row(Extent{extent.width, 1});
     const NormalSink sink{[&row](int) { return NormalRow{row.x.row(0), row.y.row(0), row.z.row(0)}; }, [](int) {}};
-    YWitness witness(extent);
-    UnpackStage stage(file.texture(), extent, file.sources(), file.rule(), std::nullopt, nullptr, &witness, sink);
+    MapInspector inspector(extent);
+    UnpackStage stage(file.texture(), extent, file.sources(), file.rule(), std::nullopt, nullptr, &inspector, sink);
     const Result<void> seen = rows.visit(map.path(), [&stage](const Image& image, int, int count) {
         stage.put(image, count);
         return Result<void>();
     });
     if (!seen) return seen.error();
-    const std::optional<YAxis> shown = witness.y();
+    const std::optional<YAxis> shown = inspector.y();
     if (!shown) return undecided_y(map.path());
     as_up.unpack.y_axis = *shown;
     return as_up;

@@ -2,23 +2,18 @@
 
 #include "stream/normal_source.h"
 
+#include <optional>
 #include <utility>
 
 #include "formats/texture_rows.h"
+#include "rows/unpack_rows.h"
+#include "stream/filled_map.h"
+#include "stream/map_inspector.h"
 #include "stream/measured_y.h"
 #include "stream/source_layout.h"
-#include "stream/y_witness.h"
 
 namespace tex {
 namespace {
-
-Result<Swizzle> find_swizzle(const Texture& texture, const SourceOptions& options, const Execution& execution) {
-    if (const std::optional<Swizzle> known = known_swizzle(texture, options)) return *known;
-    const Execution silent{execution.threads, {}};
-    Result<Swizzle> guess = guess_swizzle(texture, silent);
-    if (!guess) return guess;
-    return guessed_swizzle(*guess, options);
-}
 
 // Turns normals that were unpacked with y up, whatever it is, so that their y points up.
 Result<void> turn_up(Source& source) {
@@ -42,18 +37,30 @@ Result<Source> unpack_source(Texture texture, const SourceOptions& options, bool
     if (const Result<void> fit = check_channels(texture); !fit) return fit.error();
     const Result<Swizzle> swizzle = find_swizzle(texture, options, execution);
     if (!swizzle) return swizzle.error();
+    std::optional<Image> filled;
+    if (options.fill_background) {
+        Result<Image> image = decode_filled(texture, *swizzle, options, execution);
+        if (!image) return image.error();
+        filled = std::move(*image);
+    }
     Source source;
     source.info = source_info(texture, *swizzle, options);
     UnpackOptions unpacking = unpack_options(source.info, options);
     if (options.measure_y) unpacking.y_axis = YAxis::up;
-    Result<MipChain> chain = unpack(texture, unpacking, execution);
-    if (!chain) return chain.error();
-    source.chain = std::move(*chain);
+    if (filled) {
+        unpacking.range = range_of(texture.normal_encoding, unpacking);
+        Result<NormalMap> map = unpack(*filled, unpacking, execution);
+        if (!map) return map.error();
+        source.chain.levels.push_back(std::move(*map));
+    } else {
+        Result<MipChain> chain = unpack(texture, unpacking, execution);
+        if (!chain) return chain.error();
+        source.chain = std::move(*chain);
+    }
     if (options.measure_y) {
         if (const Result<void> turned = turn_up(source); !turned) return turned.error();
-    } else if (options.doubt_y && !source.info.y_known) {
-        source.info.y_doubtful = shown_y(source.chain.levels.front()) == YAxis::down;
     }
+    inspect(source.chain.levels.front(), options, source.info);
     return source;
 }
 

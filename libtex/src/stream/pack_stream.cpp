@@ -11,8 +11,10 @@
 
 #include "formats/texture_rows.h"
 #include "rows/mip_rows.h"
+#include "stream/filled_map.h"
 #include "stream/layout_finder.h"
 #include "stream/level_stage.h"
+#include "stream/map_inspector.h"
 #include "stream/measured_y.h"
 #include "stream/own_roughness.h"
 #include "stream/shared_writer.h"
@@ -182,9 +184,8 @@ Result<void> Attempt::stream_level(std::size_t k, StripWriter& writer, const Exe
         rows(k).choose_planes(wanted);
     }
     RowStream stream(rows(k), input_, static_cast<int>(k - first_) - left_out_, levels, writer, execution, sizes_);
-    std::optional<YWitness> witness;
-    if (k == first_ && options_.source.doubt_y && !report_.source.y_known) witness.emplace(extent);
-    UnpackStage normals(texture_, extent, sources_, rule_, options_.scale, finder, witness ? &*witness : nullptr,
+    auto inspector = k == first_ ? inspector_for(options_.source, report_.source, extent) : std::nullopt;
+    UnpackStage normals(texture_, extent, sources_, rule_, options_.scale, finder, inspector ? &*inspector : nullptr,
                         stream.sink());
     constexpr int kFromTheTop = 0;
     LevelStage mips(extent, levels, kFromTheTop, counted_from_base(mip_.value_or(MipOptions()), left_out_),
@@ -197,7 +198,7 @@ Result<void> Attempt::stream_level(std::size_t k, StripWriter& writer, const Exe
     }
     Result<void> done = stream.run(normals, mips, roughness ? &*roughness : nullptr);
     if (done && finder != nullptr) correction_ = finder->correction();
-    if (done && witness) report_.source.y_doubtful = witness->contradicts();
+    if (done && inspector) inspector->report(report_.source);
     return done;
 }
 
@@ -254,6 +255,10 @@ Result<PackFileReport> pack_stream(MapSource& source, const std::string& output,
     Kept kept;
     while (true) {
         Result<TextureRows> texture = source.open();
+        if (options.source.fill_background) {
+            texture = fill_background(std::move(texture), options.source, execution);
+            if (!texture) return texture.error().of(source.path());
+        }
         if (!texture) return texture.error();
         Attempt attempt(*texture, source.path(), output, container, options, onward, sizes, known, kept);
         Result<std::optional<PackFileReport>> done = attempt.run();

@@ -2,6 +2,8 @@
 
 #include "stream/source_layout.h"
 
+#include <tex/swizzle.h>
+
 #include "rows/unpack_rows.h"
 
 namespace tex {
@@ -23,6 +25,14 @@ std::optional<Swizzle> known_swizzle(const Texture& head, const SourceOptions& o
 
 Swizzle guessed_swizzle(const Swizzle& guess, const SourceOptions& options) {
     return options.r_or_a && guess[3] != Component::x ? kSwizzleXy : guess;
+}
+
+Result<Swizzle> find_swizzle(const Texture& texture, const SourceOptions& options, const Execution& execution) {
+    if (const std::optional<Swizzle> known = known_swizzle(texture, options)) return *known;
+    const Execution silent{execution.threads, {}};
+    Result<Swizzle> guess = guess_swizzle(texture, silent);
+    if (!guess) return guess;
+    return guessed_swizzle(*guess, options);
 }
 
 SourceInfo source_info(const Texture& head, const Swizzle& swizzle, const SourceOptions& options) {

@@ -15,6 +15,9 @@ std::optional<Swizzle> known_swizzle(const Texture& head, const SourceOptions& o
 // The swizzle to use if guess_swizzle() has found `guess`.
 Swizzle guessed_swizzle(const Swizzle& guess, const SourceOptions& options);
 
+// known_swizzle(), or else what guess_swizzle() says. Errors: those of guess_swizzle().
+Result<Swizzle> find_swizzle(const Texture& texture, const SourceOptions& options, const Execution& execution);
+
 // What is known about a file whose normals have this swizzle. `head` needs no levels.
 SourceInfo source_info(const Texture& head, const Swizzle& swizzle, const SourceOptions& options);
 

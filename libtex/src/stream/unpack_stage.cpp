@@ -10,9 +10,10 @@
 namespace tex {
 
 UnpackStage::UnpackStage(const TextureRows& texture, Extent extent, const Sources& sources, const UnpackRule& rule,
-                         const std::optional<Scaling>& scale, LayoutFinder* finder, YWitness* witness, NormalSink sink)
+                         const std::optional<Scaling>& scale, LayoutFinder* finder, MapInspector* inspector,
+                         NormalSink sink)
     : texture_(texture), extent_(extent), sources_(sources), rule_(rule), scale_(scale), finder_(finder),
-      witness_(witness), sink_(std::move(sink)) {
+      inspector_(inspector), sink_(std::move(sink)) {
     if (texture.rounds) rounded_ = Plane<float>(Extent{extent.width, 4});
 }
 
@@ -34,7 +35,7 @@ void UnpackStage::put_row(const Image& rows, int k) {
     const NormalRow out = sink_.place(j);
     const float* const z = sources_.z < 0 ? nullptr : channels[sources_.z];
     unpack_row(channels[sources_.x], channels[sources_.y], z, rule_, extent_.width, out.x, out.y, out.z);
-    if (witness_ != nullptr) witness_->add_row(j, out);
+    if (inspector_ != nullptr) inspector_->add_row(j, out);
     if (scale_) scale_row(out, scale_->scale, scale_->mode, extent_.width, out);
     sink_.finish(j);
 }

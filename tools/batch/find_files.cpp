@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "tree/find_files.h"
+#include "batch/find_files.h"
 
 #include <algorithm>
 #include <cerrno>
 #include <memory>
+#include <optional>
+#include <string_view>
 #include <utility>
 
 #include <dirent.h>
@@ -14,6 +16,8 @@
 
 namespace tex::cli {
 namespace {
+
+constexpr const char* kWildcards = "*?[{";
 
 class Walk {
 public:
@@ -83,6 +87,31 @@ private:
 
 std::vector<FoundFile> find_files(const std::string& root, const FileSearch& search) {
     return Walk(root, search).run();
+}
+
+bool is_pattern(const std::string& name) {
+    struct stat status {};
+    return name.find_first_of(kWildcards) != std::string::npos && lstat(name.c_str(), &status) != 0;
+}
+
+Result<std::vector<std::string>> files_matching(const std::string& pattern) {
+    // The folder before the first part with a wildcard.
+    const std::size_t slash = pattern.rfind('/', pattern.find_first_of(kWildcards));
+    const std::string folder = slash == std::string::npos ? std::string() : pattern.substr(0, slash + 1);
+    const Glob glob(std::string_view(pattern).substr(folder.size()));
+    std::optional<Error> failed;
+    FileSearch search;
+    search.globs = {&glob};
+    search.skip = [](const std::string&) { return false; };
+    search.unreadable = [&](const std::string& path, const std::string& reason) {
+        if (!failed) failed = Error{ErrorCode::io, path, "cannot be read: " + reason};
+    };
+    std::vector<std::string> files;
+    for (const FoundFile& file : find_files(folder.size() > 1 ? folder.substr(0, slash) : folder, search))
+        files.push_back(folder + file.path);
+    if (files.empty() && !failed) return Error{ErrorCode::io, pattern, "no file matches this pattern"};
+    if (failed) return *failed;
+    return files;
 }
 
 }  // namespace tex::cli

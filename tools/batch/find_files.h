@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include <tex/result.h>
+
 #include "cli/glob.h"
 
 namespace tex::cli {
@@ -33,5 +35,12 @@ struct FileSearch {
 // The regular files below `root` (empty: the working directory) that match a pattern, sorted by path. Links to files
 // and folders are followed; a link to a folder that contains it is not.
 [[nodiscard]] std::vector<FoundFile> find_files(const std::string& root, const FileSearch& search);
+
+// Whether a shell would take the name of an input for a pattern, and no file has that name.
+[[nodiscard]] bool is_pattern(const std::string& name);
+
+// The files that match a pattern (cli/glob.h), sorted; its first parts may be absolute or "..". Errors: io: there is
+// none, or a folder cannot be read. Throws UsageError, as Glob.
+[[nodiscard]] Result<std::vector<std::string>> files_matching(const std::string& pattern);
 
 }  // namespace tex::cli

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Normals of surfaces given by a formula, whose y points up or down.
 
-#include "stream/y_witness.h"
+#include "stream/map_inspector.h"
 
 #include <cmath>
 #include <numbers>
@@ -30,14 +30,14 @@ NormalMap waves(Extent extent, double steepest, double sign) {
     return map;
 }
 
-TEST(YWitness, SeesTheDirectionOfGentleAndSteepSurfaces) {
+TEST(MapInspector, SeesTheDirectionOfGentleAndSteepSurfaces) {
     for (const double steepest : {0.05, 1.0, 6.0}) {
         EXPECT_EQ(shown_y(waves({96, 80}, steepest, 1.0)), YAxis::up) << steepest;
         EXPECT_EQ(shown_y(waves({96, 80}, steepest, -1.0)), YAxis::down) << steepest;
     }
 }
 
-TEST(YWitness, SmallAndFlatMapsShowNothing) {
+TEST(MapInspector, SmallAndFlatMapsShowNothing) {
     EXPECT_EQ(shown_y(waves({31, 96}, 1.0, -1.0)), std::nullopt);
     EXPECT_EQ(shown_y(waves({96, 96}, 0.0, -1.0)), std::nullopt);
 }

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// filled_map.h: a map whose background takes the normals of the charts beside it, as bakers do with "infinite padding".
+// That reaches over all rows, so the map is read to its end and is then itself a source of rows.
+
+#pragma once
+
+#include <tex/execution.h>
+#include <tex/result.h>
+#include <tex/source.h>
+
+#include "formats/texture_rows.h"
+
+namespace tex {
+
+// The channels of the base level, as decode() makes them. Where find_background() finds background, or texels mixed
+// with it, x, y and z become those of the nearest other texel. A map without background stays as it is, and gets a
+// remark. Errors: those of decode() and find_background().
+Result<Image> decode_filled(Texture& texture, const Swizzle& swizzle, const SourceOptions& options,
+                            const Execution& execution);
+
+// Reads the base level of `map`; smaller levels, which have mixed the background in, are left out, as
+// decode_filled() decodes it. Errors: that of opening; those of reading, of find_swizzle() and of decode_filled(). May
+// throw std::bad_alloc.
+Result<TextureRows> fill_background(Result<TextureRows> map, const SourceOptions& options, const Execution& execution);
+
+}  // namespace tex

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "stream/map_inspector.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "checks/curl.h"
+
+namespace tex {
+namespace {
+
+constexpr int kWindow = 128;
+constexpr int kLeastSide = 32;  // smaller maps show nothing
+constexpr float kBehindSurface = -0.1f;
+constexpr double kMostBehindSurface = 0.05;  // share of texels: more is object space
+constexpr double kLeastShown = 0.01;         // share of texels: less background is not worth a warning
+
+// Whether a vector is black, grey or white as unpack() reads them: all components equal, normalised (128 is not 0: grey
+// becomes (0.58, 0.58, 0.58)); without a stored z,
+// z is rebuilt, and x and y are shortened to the unit circle.
+bool is_shade(float x, float y, float z) {
+    constexpr float kSame = 0.02f, kLeast = 0.5f;
+    const float size = std::abs(x);
+    return size > kLeast && std::abs(x - y) < kSame && (std::abs(std::abs(z) - size) < kSame || std::abs(z) < kSame);
+}
+
+}  // namespace
+
+MapInspector::MapInspector(Extent extent, bool measures_y) : extent_(extent), measures_y_(measures_y) {
+    if (std::min(extent.width, extent.height) < kLeastSide) return;
+    windows_ = sample_windows(extent, kWindow);
+    if (!measures_y) return;
+    for (const Rect& window : windows_) {
+        const Extent size{window.width, window.height};
+        slopes_.push_back({Plane<float>(size), Plane<float>(size)});
+    }
+}
+
+void MapInspector::add_row(int j, const VectorRow& row) {
+    constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+    for (std::size_t k = 0; k < windows_.size(); ++k) {
+        const Rect& window = windows_[k];
+        if (j < window.y || j >= window.y + window.height) continue;
+        const float *const x = row.x + window.x, *const y = row.y + window.x, *const z = row.z + window.x;
+        texels_ += window.width;
+        for (int i = 0; i < window.width; ++i) {
+            const bool is_background = is_shade(x[i], y[i], z[i]);
+            background_ += is_background ? 1 : 0;
+            behind_ += !is_background && z[i] < kBehindSurface ? 1 : 0;
+        }
+        if (!measures_y_) continue;
+        float* const p = slopes_[k].p.row(j - window.y);
+        float* const q = slopes_[k].q.row(j - window.y);
+        for (int i = 0; i < window.width; ++i) {
+            const bool usable = z[i] >= kLeastZ;
+            p[i] = usable ? -x[i] / z[i] : kNone;
+            q[i] = usable ? -y[i] / z[i] : kNone;
+        }
+    }
+}
+
+std::optional<YAxis> MapInspector::y() {
+    if (windows_.empty()) return std::nullopt;
+    for (Slopes& slopes : slopes_) widen_holes(slopes);
+    return clear_y(measure_curl(extent_, windows_, [&](std::size_t k) { return std::move(slopes_[k]); }));
+}
+
+void MapInspector::report(SourceInfo& info) {
+    if (texels_ == 0) return;
+    const double background = static_cast<double>(background_) / static_cast<double>(texels_);
+    const auto others = static_cast<double>(texels_ - background_);
+    info.background = background >= kLeastShown ? background : 0.0;
+    info.object_space = static_cast<double>(behind_) > kMostBehindSurface * others;
+    info.y_doubtful = measures_y_ && !info.object_space && y() == YAxis::down;
+}
+
+std::optional<YAxis> shown_y(const NormalMap& map) {
+    MapInspector inspector(map.extent());
+    for (int j = 0; j < map.extent().height; ++j) inspector.add_row(j, {map.x.row(j), map.y.row(j), map.z.row(j)});
+    return inspector.y();
+}
+
+std::optional<MapInspector> inspector_for(const SourceOptions& options, const SourceInfo& info, Extent extent) {
+    const bool doubts_y = options.doubt_y && !info.y_known;
+    if (!options.inspect && !doubts_y) return std::nullopt;
+    return std::optional<MapInspector>(std::in_place, extent, doubts_y);
+}
+
+void inspect(const NormalMap& map, const SourceOptions& options, SourceInfo& info) {
+    std::optional<MapInspector> inspector = inspector_for(options, info, map.extent());
+    if (!inspector) return;
+    for (int j = 0; j < map.extent().height; ++j) inspector->add_row(j, {map.x.row(j), map.y.row(j), map.z.row(j)});
+    inspector->report(info);
+}
+
+}  // namespace tex

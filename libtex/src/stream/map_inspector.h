@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// map_inspector.h: looks at normals that pass by for signs that they are not what they were taken for.
+
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <tex/normal_map.h>
+#include <tex/source.h>
+
+#include "checks/stored.h"
+#include "kernels/normal_row.h"
+
+namespace tex {
+
+// Looks at parts of a map, at most 2^18 texels, and keeps their slopes if it measures y.
+class MapInspector {
+public:
+    explicit MapInspector(Extent extent, bool measures_y = true);
+
+    // Takes row j of the unpacked map, with y up according to the assumption. Each row comes once.
+    void add_row(int j, const VectorRow& row);
+
+    // Where y points, if the rows show it clearly. Call it once, after the last row. Precondition: it measures y.
+    [[nodiscard]] std::optional<YAxis> y();
+    // Sets what SourceInfo says about the texels. Call it once, after the last row.
+    void report(SourceInfo& info);
+
+private:
+    const Extent extent_;
+    const bool measures_y_;
+    std::vector<Rect> windows_;
+    std::vector<Slopes> slopes_;
+    std::int64_t texels_ = 0, background_ = 0, behind_ = 0;
+};
+
+// Where y of a whole map points.
+[[nodiscard]] std::optional<YAxis> shown_y(const NormalMap& map);
+
+// Inspects a whole map as the options say. Precondition: `info` knows whether y is assumed.
+void inspect(const NormalMap& map, const SourceOptions& options, SourceInfo& info);
+
+// Whether there is anything to inspect, and whether y is.
+[[nodiscard]] std::optional<MapInspector> inspector_for(const SourceOptions& options, const SourceInfo& info,
+                                                        Extent extent);
+
+}  // namespace tex

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "stream/usual_slope.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "stream/height_stage.h"
+#include "stream/open_heights.h"
+
+namespace tex {
+namespace {
+
+constexpr std::int64_t kEnoughTexels = std::int64_t{1} << 18;
+constexpr double kUsual = 0.99;
+// The leading bits of a positive float are its exponent and the first bits of its fraction: bins of the square of the
+// slope, of at most 1.6 % each, so 0.8 % of the slope.
+constexpr int kDroppedBits = 17;
+constexpr std::size_t kSlopeBinCount = std::size_t{1} << (31 - kDroppedBits);
+
+double rounded_to_three_digits(double value) {
+    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 2.0);
+    return std::round(value / unit) * unit;
+}
+
+}  // namespace
+
+UsualSlope::UsualSlope(Extent extent)
+    : width_(extent.width), stride_(static_cast<int>((extent.texels() + kEnoughTexels - 1) / kEnoughTexels)),
+      counts_(kSlopeBinCount) {}
+
+void UsualSlope::add(const VectorRow& row) {
+    const std::lock_guard lock(mutex_);
+    for (int i = 0; i < width_; ++i) {
+        const float z = std::max(row.z[i], 1e-16f);
+        const float square = (row.x[i] * row.x[i] + row.y[i] * row.y[i]) / (z * z);
+        ++counts_[std::min<std::size_t>(std::bit_cast<std::uint32_t>(square) >> kDroppedBits, kSlopeBinCount - 1)];
+    }
+}
+
+float UsualSlope::slope() const {
+    std::int64_t all = 0, below = 0;
+    for (const std::int64_t count : counts_) all += count;
+    std::size_t bin = 0;
+    while (bin + 1 < counts_.size() && static_cast<double>(below += counts_[bin]) < kUsual * static_cast<double>(all))
+        ++bin;
+    return bin == 0 ? 0.0f : std::sqrt(std::bit_cast<float>(static_cast<std::uint32_t>(bin) << kDroppedBits));
+}
+
+Result<Strength> measure_strength(InputFile& file, const BakeFileOptions& options, const Execution& execution) {
+    BakeFileOptions as_one = options;
+    as_one.strength = [](Extent) { return Strength{1.0f, 1.0f}; };
+    const Gradient gradient = gradient_of(options.bake);
+    const Execution silent{execution.threads, {}};
+    Result<Heights> heights = open_heights(file, RowOrder::any, as_one, gradient, silent);
+    if (!heights) return heights.error();
+    const Extent extent = heights->rows->extent();
+    UsualSlope usual(extent);
+    NormalMap row(Extent{extent.width, 1});
+    const VectorRow made{row.x.row(0), row.y.row(0), row.z.row(0)};
+    const NormalSink sink{[&row](int) {
+                              return NormalRow{row.x.row(0), row.y.row(0), row.z.row(0)};
+                          },
+                          [&](int j) {
+                              if (usual.wants(j)) usual.add(made);
+                          }};
+    HeightStage stage(extent, heights->source, heights->options, gradient, head_of(extent, as_one), sink,
+                      std::move(heights->last));
+    const auto put = [&](Image& rows, int, int count) -> Result<void> {
+        if (execution.progress && !execution.progress(0.0)) return Error{ErrorCode::cancelled, {}, "cancelled"};
+        if (heights->linear) {
+            if (Result<void> linear = heights->linear->convert(rows, count); !linear) return linear;
+        }
+        stage.put(rows, count);
+        return {};
+    };
+    if (const Result<void> read = heights->rows->visit(file.path(), put); !read) return read.error();
+    if (const Result<void> sound = stage.check(); !sound) return sound.error();
+    const auto slope = static_cast<double>(usual.slope());
+    if (!(slope > 0.0)) return Strength{};
+    const auto strength = static_cast<float>(rounded_to_three_digits(1.0 / slope));
+    return Strength{strength, strength};
+}
+
+Result<BakeFileOptions> with_measured_strength(InputFile& file, const BakeFileOptions& options,
+                                               const Execution& execution) {
+    if (!options.auto_strength) return options;
+    if (const Result<void> settled = file.settle(largest_file(options.read)); !settled) return settled.error();
+    const Result<Strength> strength = measure_strength(file, options, execution);
+    if (!strength) return strength.error();
+    if (const Result<void> again = file.rewind(); !again) return again.error();
+    BakeFileOptions measured = options;
+    measured.auto_strength = false;
+    measured.strength = [found = *strength](Extent) { return found; };
+    return measured;
+}
+
+}  // namespace tex

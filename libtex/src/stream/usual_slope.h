@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// usual_slope.h: the slope that 99 % of a map's texels stay below, and the strength that makes it 45 degrees.
+
+#pragma once
+
+#include <cstdint>
+#include <mutex>
+#include <vector>
+
+#include <tex/pipeline.h>
+
+#include "files/input_file.h"
+#include "kernels/normal_row.h"
+
+namespace tex {
+
+// Looks at some rows of a map, about 2^18 texels, in any order and from any thread. The result depends on neither.
+class UsualSlope {
+public:
+    explicit UsualSlope(Extent extent);
+
+    [[nodiscard]] bool wants(int row) const { return row % stride_ == 0; }
+    void add(const VectorRow& row);
+
+    // The 99th percentile, rise per texel along the steepest direction, to 1 %. To be called after all rows.
+    [[nodiscard]] float slope() const;
+
+private:
+    const int width_;
+    int stride_ = 1;
+    std::mutex mutex_;
+    std::vector<std::int64_t> counts_;  // of slopes, in bins of equal ratio
+};
+
+// The strength at which the usual slope of the picture's bake is 1, to three digits; 1 where all heights are equal. The
+// picture is read once, and can then be read again from its start. Errors: those of bake_file() that concern the
+// picture. May throw std::bad_alloc.
+Result<Strength> measure_strength(InputFile& file, const BakeFileOptions& options, const Execution& execution);
+
+// The options with BakeFileOptions::auto_strength replaced by the strength that it means.
+Result<BakeFileOptions> with_measured_strength(InputFile& file, const BakeFileOptions& options,
+                                               const Execution& execution);
+
+}  // namespace tex

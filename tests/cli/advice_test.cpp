@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+// What commands say where a user would otherwise find out too late: warnings, and commands that mend what they name.
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <tex/tex.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+
+namespace tex::cli {
+namespace {
+
+class Advice : public testing::Test {
+protected:
+    Advice() {
+        scratch_.add_sample("bricks.png", "bricks.png");
+        done("bake-normals", {"bricks.png", "-o", "up.png", "--bumpiness", "12"});
+        done("pack-normals", {"up.png", "-o", "down.png", "--y", "down"});
+    }
+    Ran done(const std::string& program, const std::vector<std::string>& arguments) {
+        const Ran ran = run(scratch_, program, arguments);
+        EXPECT_EQ(ran.code, 0) << ran.err;
+        return ran;
+    }
+    // Writes a picture without marks. `change` gets each texel's place and its three codes.
+    template <class Change>
+    void paint(const std::string& from, const std::string& to, const Change& change) {
+        auto texture = read_texture(scratch_.path(from));
+        ASSERT_TRUE(texture);
+        texture->swizzle_known = texture->y_known = false;
+        const Extent extent = texture->extent();
+        for (int k = 0; k < extent.texels(); ++k) {
+            auto* const codes = reinterpret_cast<unsigned char*>(&texture->levels[0].bytes[3 * std::size_t(k)]);
+            change(k % extent.width, k / extent.width, codes);
+        }
+        ASSERT_TRUE(write_texture(scratch_.path(to), *texture));
+    }
+    Scratch scratch_;
+};
+
+TEST_F(Advice, NearlyFlatBakesNameTheStrengthThatUsesTheRange) {
+    const Ran flat = done("bake-normals", {"bricks.png", "-o", "flat.png", "--bumpiness", "0.05"});
+    const std::size_t at = flat.err.find("nearly flat: 99 % of the slopes are below ");
+    ASSERT_NE(at, std::string::npos) << flat.err;
+    const std::size_t word = flat.err.find(": --bumpiness ", at);
+    ASSERT_NE(word, std::string::npos) << flat.err;
+    const std::string strength = flat.err.substr(word + 14, flat.err.find(' ', word + 14) - word - 14);
+    EXPECT_EQ(done("bake-normals", {"bricks.png", "-o", "steep.png", "--bumpiness", strength}).err, "");
+    const Ran deep = done("bake-normals", {"bricks.png", "-o", "deep.exr", "--bumpiness", "0.05"});
+    EXPECT_EQ(deep.err.find("nearly flat"), std::string::npos) << "floats keep faint slopes";
+
+    // The same figure, without asking twice; and 45 degrees is what it promises.
+    const Ran automatic =
+        done("bake-normals", {"bricks.png", "-o", "auto.exr", "--bumpiness", "auto", "--format", "float"});
+    ASSERT_TRUE(automatic.out.starts_with("bricks.png: --bumpiness auto is ")) << automatic.out;
+    const double found = std::stod(automatic.out.substr(automatic.out.rfind(' ')));
+    EXPECT_NEAR(found / std::stod(strength), 1.0, 0.02);
+    const auto source = read_normals(scratch_.path("auto.exr"));
+    ASSERT_TRUE(source);
+    const NormalMap& map = source->chain.levels[0];
+    std::int64_t steep = 0;
+    for (int k = 0; k < map.extent().texels(); ++k)
+        steep += map.z.at(k % map.extent().width, k / map.extent().width) < std::sqrt(0.5f) ? 1 : 0;
+    const double share = static_cast<double>(steep) / static_cast<double>(map.extent().texels());
+    EXPECT_GT(share, 0.005);
+    EXPECT_LT(share, 0.015);
+}
+
+TEST_F(Advice, AutomaticStrengthIsTheSameInABatchAndFromAPipe) {
+    done("bake-normals", {"bricks.png", "-o", "file.png", "--bumpiness", "auto"});
+    const Ran piped = shell(scratch_, "cat bricks.png | bake-normals - -o piped.png --bumpiness auto --threads 1");
+    EXPECT_EQ(piped.code, 0) << piped.err;
+    EXPECT_EQ(scratch_.read("file.png"), scratch_.read("piped.png"));
+    EXPECT_EQ(run(scratch_, "integrate-normals", {"up.png", "-o", "h.png", "--bumpiness", "auto"}).code, 2);
+}
+
+TEST_F(Advice, HeightsNameTheBakeThatMakesTheMapAgain) {
+    const Ran ran = done("integrate-normals", {"up.png", "-o", "h.exr"});
+    const std::size_t at = ran.out.find("h.exr: bake-normals --bumpiness ");
+    ASSERT_NE(at, std::string::npos) << ran.out;
+    const std::string strength = ran.out.substr(at + 32, ran.out.find(' ', at + 32) - at - 32);
+    done("bake-normals", {"h.exr", "-o", "again.png", "--bumpiness", strength});
+    EXPECT_EQ(done("compare-normals", {"up.png", "again.png", "--max-mean", "0.5"}).err, "");
+}
+
+TEST_F(Advice, ObjectSpaceIsDoubtedByEveryReader) {
+    paint("up.png", "object.png", [](int, int j, unsigned char* c) {
+        if (j % 2 == 0) c[2] = static_cast<unsigned char>(255 - c[2]);
+    });
+    const std::string doubt = "object.png: its vectors face all directions, as in object space";
+    for (const std::vector<std::string>& call :
+         std::vector<std::vector<std::string>>{{"pack-normals", "object.png", "-o", "o.dds"},
+                                               {"mip-normals", "object.png", "-o", "o.dds"},
+                                               {"scale-normals", "object.png", "-o", "o.png", "--scale", "2"},
+                                               {"unpack-normals", "object.png", "-o", "o.png"},
+                                               {"preview-normals", "object.png", "-o", "o.png"},
+                                               {"blend-normals", "up.png", "--detail", "object.png", "-o", "o.png"},
+                                               {"compare-normals", "up.png", "object.png"}}) {
+        const Ran ran = run(scratch_, call[0], {call.begin() + 1, call.end()});
+        EXPECT_NE(ran.err.find(doubt), std::string::npos) << call[0] << ": " << ran.err;
+        EXPECT_EQ(run(scratch_, "pack-normals", {"up.png", "-o", "o.dds"}).err, "");
+    }
+}
+
+TEST_F(Advice, ComparisonsDoubtGreen) {
+    paint("up.png", "gl.png", [](int, int, unsigned char*) {});
+    paint("down.png", "dx.png", [](int, int, unsigned char*) {});
+    const Ran ran = run(scratch_, "compare-normals", {"gl.png", "dx.png"});
+    EXPECT_NE(ran.err.find("dx.png: green is taken to point up, but the texels show the other direction: --y-b down"),
+              std::string::npos)
+        << ran.err;
+    EXPECT_EQ(done("compare-normals", {"gl.png", "dx.png", "--y-b", "down", "--max", "0.5"}).err, "");
+    EXPECT_EQ(done("compare-normals", {"dx.png", "dx.png", "--max", "0"}).err, "") << "both are in the same direction";
+}
+
+TEST_F(Advice, BackgroundIsFilled) {
+    const auto inside = [](int i, int j) { return (i - 60) * (i - 60) + (j - 64) * (j - 64) < 50 * 50; };
+    for (const int shade : {0, 128, 255}) {
+        paint("up.png", "chart.png", [&](int i, int j, unsigned char* c) {
+            if (!inside(i, j)) c[0] = c[1] = c[2] = static_cast<unsigned char>(shade);
+        });
+        const Ran plain = done("pack-normals", {"chart.png", "-o", "plain.dds", "--format", "rgb8"});
+        EXPECT_NE(plain.err.find("--fill-background fills it"), std::string::npos) << plain.err;
+        for (const char* type : {"filled.png", "filled.dds"}) {
+            const Ran ran = done("pack-normals", {"chart.png", "-o", type, "--format", "rgb8", "--fill-background"});
+            EXPECT_EQ(ran.err, "");
+            const auto before = read_normals(scratch_.path("up.png")), after = read_normals(scratch_.path(type));
+            ASSERT_TRUE(before && after);
+            const NormalMap &from = before->chain.levels[0], &to = after->chain.levels[0];
+            for (int k = 0; k < to.extent().texels(); ++k) {
+                const int i = k % to.extent().width, j = k / to.extent().width;
+                if (inside(i, j)) {
+                    ASSERT_NEAR(to.x.at(i, j), from.x.at(i, j), 0.01) << i << ", " << j;
+                    ASSERT_NEAR(to.y.at(i, j), from.y.at(i, j), 0.01) << i << ", " << j;
+                }
+                ASSERT_GT(to.z.at(i, j), 0.0f) << i << ", " << j;
+            }
+            // The nearest texel of a disc lies towards its centre.
+            EXPECT_NEAR(to.x.at(60 + 60, 64), from.x.at(60 + 49, 64), 0.01);
+        }
+    }
+    EXPECT_NE(
+        done("pack-normals", {"up.png", "-o", "o.dds", "--fill-background"}).err.find("has no background to fill"),
+        std::string::npos);
+}
+
+TEST_F(Advice, OneCommandFixesWhatItCan) {
+    paint("down.png", "bad.png", [](int i, int j, unsigned char* c) {  // green down, vectors too short, a background
+        for (int k = 0; k < 3; ++k) c[k] = static_cast<unsigned char>(128 + (c[k] - 128) * 85 / 100);
+        if (i < 60 && j < 60) c[0] = c[1] = c[2] = 0;
+    });
+    const Ran before = run(scratch_, "check-normals", {"bad.png", "--require", "y=up", "--json"});
+    const auto report = nlohmann::json::parse(before.out);
+    std::vector<std::string> ids;
+    for (const auto& finding : report["findings"]) ids.push_back(finding["id"]);
+    ASSERT_EQ(ids, (std::vector<std::string>{"N201", "N215", "N401"})) << before.out;
+    const std::string fix = report["findings"][0]["fix"];
+    for (const auto& finding : report["findings"]) EXPECT_EQ(finding["fix"], fix);
+    ASSERT_EQ(shell(scratch_, fix + " --quiet").code, 0) << fix;
+    const Ran after = run(scratch_, "check-normals", {"FIXED.png", "--require", "y=up", "--fail-on", "note"});
+    EXPECT_EQ(after.code, 0) << fix << "\n" << after.out;
+    EXPECT_EQ(run(scratch_, "check-normals", {"bad.png", "--require", "y=up"}).out.find(fix),
+              run(scratch_, "check-normals", {"bad.png", "--require", "y=up"}).out.rfind(fix))
+        << "it is printed once";
+}
+
+TEST_F(Advice, DebandingMendsBanding) {
+    const auto has_banding = [&](const std::string& file) {
+        return run(scratch_, "check-normals", {file, "--enable", "N305"}).out.find("N305") != std::string::npos;
+    };
+    scratch_.add_sample("waves.png", "waves.png");
+    ASSERT_EQ(shell(scratch_,
+                    "/usr/bin/python3 -c 'from PIL import Image as I; i = I.open(\"waves.png\").convert(\"I\"); "
+                    "i.point(lambda h: h / 257 if i.getextrema()[1] > 255 else h).convert(\"L\").save(\"w8.png\")'")
+                  .code,
+              0);
+    done("bake-normals", {"w8.png", "-o", "w8_n.png", "--bumpiness", "30"});
+    if (!has_banding("w8_n.png")) GTEST_SKIP() << "these heights show no steps";
+    done("bake-normals", {"w8.png", "-o", "w16_n.png", "--bumpiness", "30", "--deband", "on"});
+    EXPECT_FALSE(has_banding("w16_n.png"));
+}
+
+TEST_F(Advice, AnImportersPresetInAnEnginesFileIsDoubted) {
+    const Ran ran = done("pack-normals", {"up.png", "-o", "x.dds", "--for", "unity"});
+    EXPECT_NE(
+        ran.err.find("--for unity is meant for .png files, which its importer compresses; this .dds file holds rgb8"),
+        std::string::npos)
+        << ran.err;
+    EXPECT_EQ(done("pack-normals", {"up.png", "-o", "x.png", "--for", "unity"}).err, "");
+    EXPECT_EQ(done("pack-normals", {"up.png", "-o", "x.dds", "--for", "unity", "--format", "dxt5nm"}).err, "");
+}
+
+TEST_F(Advice, PatternsThatTheShellLeftAloneAreExpanded) {
+    ASSERT_EQ(shell(scratch_,
+                    "mkdir -p art/a/b && cp up.png art/x_n.png && cp up.png art/a/y_n.png && "
+                    "cp up.png art/a/b/z_n.png && cp up.png 'odd[1].png'")
+                  .code,
+              0);
+    EXPECT_NE(run(scratch_, "check-normals", {"art/**/*_n.png"}).out.find("3 files: "), std::string::npos);
+    EXPECT_NE(run(scratch_, "check-normals", {scratch_.path("art") + "/*/*_n.png"}).out.find("1 file: "),
+              std::string::npos);
+    EXPECT_NE(run(scratch_, "check-normals", {"odd[1].png"}).out.find("1 file: "), std::string::npos) << "it exists";
+    done("mip-normals", {"art/**/*_n.png", "--out-dir", "out"});
+    EXPECT_TRUE(scratch_.has("out/z_n.dds"));
+    const Ran none = run(scratch_, "check-normals", {"art/**/*_d.png"});
+    EXPECT_EQ(none.code, 3);
+    EXPECT_NE(none.err.find("art/**/*_d.png: no file matches this pattern"), std::string::npos) << none.err;
+}
+
+TEST_F(Advice, TheBaselineLeavesUnreadableFilesAndShowsWhatItWaives) {
+    scratch_.write("cut.png", "not a picture");
+    const Ran written =
+        run(scratch_, "check-normals", {"down.png", "cut.png", "--require", "y=up", "--baseline-write", "k"});
+    EXPECT_EQ(written.code, 4);
+    EXPECT_EQ(scratch_.read("k").find("cut.png"), std::string::npos);
+    EXPECT_EQ(run(scratch_, "check-normals", {"down.png", "cut.png", "--require", "y=up", "--baseline", "k"}).code, 4);
+    const Ran waived =
+        run(scratch_, "check-normals", {"down.png", "--require", "y=up", "--baseline", "k", "--sarif", "s"});
+    EXPECT_EQ(waived.code, 0) << waived.out;
+    const auto results = nlohmann::json::parse(scratch_.read("s"))["runs"][0]["results"];
+    ASSERT_GE(results.size(), 1u);
+    for (const auto& result : results) EXPECT_EQ(result["suppressions"][0]["kind"], "external");
+}
+
+}  // namespace
+}  // namespace tex::cli

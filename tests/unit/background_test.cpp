@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+// Maps with areas that no chart covers: the background is one finding, and the other rules judge the charts alone.
+
+#include "checks/background.h"
+
+#include <array>
+#include <cmath>
+#include <set>
+#include <string>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include <tex/bake.h>
+#include <tex/check.h>
+#include <tex/mip.h>
+#include <tex/pack.h>
+#include <tex/unpack.h>
+
+#include "reference/damage.h"
+
+namespace tex {
+namespace {
+
+constexpr Extent kExtent{192, 192};
+using Color = std::array<int, 3>;
+
+NormalMap waves() {
+    HeightField field{Plane<float>(kExtent), 14.0f, 14.0f, Wrap::repeat, Wrap::repeat};
+    const double tau = 2.0 * 3.14159265358979;
+    for (int j = 0; j < kExtent.height; ++j) {
+        for (int i = 0; i < kExtent.width; ++i) {
+            const double u = tau * i / kExtent.width, v = tau * j / kExtent.height;
+            field.height.at(i, j) = static_cast<float>(std::sin(3 * u + std::cos(2 * v)) * std::cos(4 * v) +
+                                                       0.5 * std::sin(7 * u + 5 * v) + 0.2 * std::sin(13 * u - 9 * v));
+        }
+    }
+    return std::move(*bake(field));
+}
+
+// Two charts: a disc, and a slanted strip.
+bool is_chart(int i, int j) {
+    const int x = i - 70, y = j - 80;
+    return x * x + y * y < 60 * 60 || std::abs(i + j / 3 - 210) < 24;
+}
+
+reference::Codes with_background(const NormalMap& map, const Color& color) {
+    reference::Codes codes = reference::codes_of(map);
+    for (int j = 0; j < kExtent.height; ++j) {
+        for (int i = 0; i < kExtent.width; ++i) {
+            if (is_chart(i, j)) continue;
+            for (int c = 0; c < 3; ++c)
+                codes.at(i, j, c) = static_cast<unsigned char>(color[static_cast<std::size_t>(c)]);
+        }
+    }
+    return codes;
+}
+
+double background_share() {
+    double outside = 0.0;
+    for (int j = 0; j < kExtent.height; ++j) {
+        for (int i = 0; i < kExtent.width; ++i) outside += is_chart(i, j) ? 0.0 : 1.0;
+    }
+    return outside / static_cast<double>(kExtent.texels());
+}
+
+CheckReport checked(const Texture& texture, const CheckOptions& options = {}) {
+    auto report = check("map", texture, options);
+    EXPECT_TRUE(report);
+    return std::move(*report);
+}
+
+std::set<std::string> ids(const CheckReport& report) {
+    std::set<std::string> found;
+    for (const Finding& finding : report.findings) found.emplace(finding.rule->id);
+    return found;
+}
+
+using Ids = std::set<std::string>;
+
+TEST(Background, IsTheOnlyFindingWhateverItsColor) {
+    const double share = background_share();
+    for (const auto& [color, name] : {std::pair{Color{0, 0, 0}, "black"}, std::pair{Color{128, 128, 128}, "grey"},
+                                      std::pair{Color{255, 255, 255}, "white"}, std::pair{Color{30, 200, 10}, "("}}) {
+        const CheckReport report = checked(reference::texture_of(with_background(waves(), color)));
+        ASSERT_EQ(ids(report), Ids{"N215"}) << name;
+        EXPECT_NEAR(report.findings[0].figure, share, 0.001);
+        EXPECT_NE(report.findings[0].message.find(std::string("background: ") + name), std::string::npos)
+            << report.findings[0].message;
+        EXPECT_EQ(report.y.y, YAxis::up) << "judged by the charts";
+    }
+}
+
+// Programs that normalise what they read turn black into (-0.58, -0.58), which encodings without z store as a normal.
+TEST(Background, IsFoundAfterItWasNormalisedAndCompressed) {
+    const Texture picture = reference::texture_of(with_background(waves(), {0, 0, 0}));
+    for (const Encoding encoding : {Encoding::bc5, Encoding::dxt5nm, Encoding::rgb8}) {
+        auto chain = unpack(picture);
+        ASSERT_TRUE(chain);
+        const auto mips = build_mip_chain(std::move(chain->levels[0]));
+        ASSERT_TRUE(mips);
+        const auto texture = pack(*mips, {encoding, YAxis::up, Effort::fast});
+        ASSERT_TRUE(texture);
+        EXPECT_EQ(ids(checked(*texture)), Ids{"N215"}) << name_of(kEncodingNames, encoding);
+    }
+}
+
+TEST(Background, FiltersMixItIntoItsNeighbours) {
+    const reference::Codes sharp = with_background(waves(), {0, 0, 0});
+    reference::Codes soft = sharp;
+    for (int j = 1; j < kExtent.height; ++j) {
+        for (int i = 1; i < kExtent.width; ++i) {
+            if (is_chart(i, j) == is_chart(i - 1, j - 1)) continue;
+            for (int c = 0; c < 3; ++c) {
+                soft.at(i, j, c) = static_cast<unsigned char>((sharp.at(i, j, c) + sharp.at(i - 1, j, c) +
+                                                               sharp.at(i, j - 1, c) + sharp.at(i - 1, j - 1, c) + 2) /
+                                                              4);
+            }
+        }
+    }
+    EXPECT_EQ(ids(checked(reference::texture_of(soft))), Ids{"N215"});
+}
+
+TEST(Background, ScatteredTexelsAreDamage) {
+    reference::Codes codes = reference::codes_of(waves());
+    for (int k = 0; k < kExtent.texels(); k += 37) {
+        for (int c = 0; c < 3; ++c) codes.at(k % kExtent.width, k / kExtent.width, c) = 128;
+    }
+    EXPECT_EQ(ids(checked(reference::texture_of(codes))), Ids{"N205"});
+}
+
+// What is wrong with the charts is still found.
+TEST(Background, HidesNoFaultOfTheCharts) {
+    CheckOptions up;
+    up.require.y = YAxis::up;
+    NormalMap map = waves();
+    for (int k = 0; k < kExtent.texels(); ++k) {
+        float& y = map.y.at(k % kExtent.width, k / kExtent.width);
+        y = -y;
+    }
+    EXPECT_EQ(ids(checked(reference::texture_of(with_background(map, {0, 0, 0})), up)), (Ids{"N215", "N401"}));
+    map = waves();
+    for (int k = 0; k < kExtent.texels(); ++k) std::swap(map.x.at(k % 192, k / 192), map.y.at(k % 192, k / 192));
+    EXPECT_EQ(ids(checked(reference::texture_of(with_background(map, {0, 0, 0})))), Ids{"N308"});
+    map = waves();  // in object space, half of the surface faces away
+    for (int j = 0; j < kExtent.height; j += 2) {
+        for (int i = 0; i < kExtent.width; ++i) map.z.at(i, j) = -map.z.at(i, j);
+    }
+    EXPECT_EQ(ids(checked(reference::texture_of(with_background(map, {0, 0, 0})))), Ids{"N213"});
+}
+
+TEST(Background, LeavesTheTextOfWhatIsUndecidedTrue) {
+    CheckOptions up;
+    up.require.y = YAxis::up;
+    NormalMap flat(kExtent);
+    for (int k = 0; k < kExtent.texels(); ++k) flat.z.at(k % kExtent.width, k / kExtent.width) = 1.0f;
+    const CheckReport report = checked(reference::texture_of(with_background(flat, {0, 0, 0})), up);
+    ASSERT_EQ(ids(report), (Ids{"N215", "N403"}));
+    EXPECT_NE(report.findings[1].message.find("the correlation is below 0.2 (correlation 0.00"), std::string::npos)
+        << report.findings[1].message;
+}
+
+}  // namespace
+}  // namespace tex
