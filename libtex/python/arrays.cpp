@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "finite.h"
+#include "gil.h"
 
 namespace tex::python {
 namespace {
@@ -185,17 +186,17 @@ Plane<float> plane_from(py::handle from, std::string_view name, bool finite) {
     const Strided texels = strided(array, 0);
     const bool shares =
         from.ptr() == array.ptr() && texels.column == 1 && texels.row >= extent.width && extent.width % kRowFloats == 0;
-    py::gil_scoped_release release;
     Plane<float> plane;
-    if (shares) {
-        // Kernels read whole vectors, which end with the row, and nothing writes.
-        plane = Plane<float>(extent, texels.row, std::shared_ptr<float>(Owner(), const_cast<float*>(texels.data)));
-    } else {
-        plane = Plane<float>(extent);
-        copy_to(plane, texels);
-    }
-    const bool sound = !finite || is_finite(plane.view());
-    py::gil_scoped_acquire acquire;
+    const bool sound = without_gil([&] {
+        if (shares) {
+            // Kernels read whole vectors, which end with the row, and nothing writes.
+            plane = Plane<float>(extent, texels.row, std::shared_ptr<float>(Owner(), const_cast<float*>(texels.data)));
+        } else {
+            plane = Plane<float>(extent);
+            copy_to(plane, texels);
+        }
+        return !finite || is_finite(plane.view());
+    });
     need_finite(sound, name, "; height_field() with fill_invalid=True replaces them in heights");
     return plane;
 }
@@ -210,21 +211,23 @@ NormalMap map_from(py::handle from, std::string_view name, Sharing sharing) {
                         array.strides(0) % static_cast<py::ssize_t>(kRowAlignment) == 0 &&
                         array.strides(2) % static_cast<py::ssize_t>(kRowAlignment) == 0 && array.strides(2) != 0;
     NormalMap map;
-    py::gil_scoped_release release;
-    if (!shares) map = NormalMap(extent);
-    bool finite = true;
-    Plane<float>* const planes[] = {&map.x, &map.y, &map.z};
-    for (const int c : {0, 1, 2}) {
-        Plane<float>& plane = *planes[c];
-        const Strided texels = strided(array, c);
-        if (shares) {
-            plane = Plane<float>(extent, texels.row, std::shared_ptr<float>(owner, const_cast<float*>(texels.data)));
-        } else {
-            copy_to(plane, texels);
+    const bool finite = without_gil([&] {
+        if (!shares) map = NormalMap(extent);
+        bool sound = true;
+        Plane<float>* const planes[] = {&map.x, &map.y, &map.z};
+        for (const int c : {0, 1, 2}) {
+            Plane<float>& plane = *planes[c];
+            const Strided texels = strided(array, c);
+            if (shares) {
+                plane =
+                    Plane<float>(extent, texels.row, std::shared_ptr<float>(owner, const_cast<float*>(texels.data)));
+            } else {
+                copy_to(plane, texels);
+            }
+            sound = sound && is_finite(plane.view());
         }
-        finite = finite && is_finite(plane.view());
-    }
-    py::gil_scoped_acquire acquire;
+        return sound;
+    });
     need_finite(finite, name);
     return map;
 }

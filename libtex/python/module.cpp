@@ -3,6 +3,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include "gil.h"
 #include "modules.h"
 #include "verb.h"
 
@@ -25,4 +26,5 @@ PYBIND11_MODULE(_tex, extension) {
     tex::python::add_pictures(module);
     tex::python::add_programs(module);
     module.stub("");
+    tex::python::stop_work_at_exit();
 }
