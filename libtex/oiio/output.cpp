@@ -4,6 +4,7 @@
 
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
+#include <OpenImageIO/strutil.h>
 
 #include <cstring>
 #include <utility>
@@ -45,9 +46,19 @@ bool is_unsigned_integer(const TypeDesc& type) { return !type.is_floating_point(
 
 Error mistake(const std::string& file, const std::string& reason) { return {ErrorCode::bad_option, file, reason}; }
 
+// Whether the picture comes from OpenImageIO's own reader of DDS, by the attributes that this reader alone leaves
+// together. It multiplies nothing by alpha, although it does not say so.
+bool is_of_dds_reader(const ImageSpec& spec) {
+    const std::string compression = spec.get_string_attribute("compression");
+    const bool is_dds = compression.empty() || OIIO::Strutil::starts_with(compression, "DXT") ||
+                        OIIO::Strutil::starts_with(compression, "BC") || OIIO::Strutil::starts_with(compression, "ATI");
+    return is_dds && !spec.get_string_attribute("textureformat").empty();
+}
+
 // Makes colours that were multiplied by their alpha what they were.
 void divide_by_alpha(const ImageSpec& spec, std::vector<std::byte>& bytes) {
     if (spec.alpha_channel != 3 || spec.nchannels != 4 || spec.get_int_attribute("oiio:UnassociatedAlpha") != 0) return;
+    if (is_of_dds_reader(spec)) return;
     ImageSpec plain(spec.width, spec.height, spec.nchannels, spec.format);
     OIIO::ImageBuf buffer(plain, bytes.data());
     OIIO::ImageBufAlgo::unpremult(buffer, buffer);
@@ -99,8 +110,10 @@ Result<void> Output::begin(const std::string& name, const ImageSpec& spec) {
         return mistake(name, "a " + std::string(name_of(kContainerNames, *container)) + " file cannot hold " +
                                  std::string(name_of(kEncodingNames, encoding)) +
                                  "; set the attribute tex:format to another encoding");
+    if (!can_hold_levels(*container) && !wanted->keep_levels && wanted->levels != 1)
+        return mistake(name, "this file type holds one level; set the attribute tex:mips to 1 or keep");
     const TypeDesc type = spec.format;
-    if (is_signed_integer(type)) wanted->pixels.range = ValueRange::signed_;
+    // Signed integers are read as floats are: they are colours, too, if a program has only changed the type.
     if (is_unsigned_integer(type)) wanted->pixels.range = ValueRange::unsigned_;
 
     pixels_ = {};
@@ -202,7 +215,14 @@ bool Output::close() {
 
 Result<MipChain> Output::levels() const {
     const Execution execution{threads(), {}};
-    Result<MipChain> sent = unpack(pixels_, wanted_.pixels, execution);
+    UnpackOptions how = wanted_.pixels;
+    // Stored channels, as of DXT5nm, look like a picture with alpha.
+    if (!how.swizzle && m_spec.nchannels == 4) {
+        const Result<Swizzle> swizzle = guess_swizzle(pixels_, execution);
+        if (!swizzle) return swizzle.error();
+        how.swizzle = *swizzle;
+    }
+    Result<MipChain> sent = unpack(pixels_, how, execution);
     if (!sent || wanted_.keep_levels) return sent;
     MipOptions options;
     options.levels = wanted_.levels;

@@ -107,8 +107,8 @@ void need_interpreter() {
 void stop_work_at_exit() {
     py::module_::import("atexit").attr("register")(py::cpp_function(&stop_all_work));
     // A child has no thread but its own, and maybe a lock that another one held.
-    py::module_::import("os").attr("register_at_fork")(
-        py::arg("after_in_child") = py::cpp_function([] { new (&works()) Works; }));
+    py::module_::import("os").attr("register_at_fork")(py::arg("after_in_child") =
+                                                           py::cpp_function([] { new (&works()) Works; }));
 }
 
 }  // namespace tex::python

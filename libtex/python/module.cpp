@@ -12,6 +12,7 @@ PYBIND11_MODULE(_tex, extension) {
     pybind11::options options;
     options.disable_function_signatures();
     tex::python::Module module(extension);
+    tex::python::add_images(module);
     tex::python::add_values(module);
     tex::python::add_formats(module);
     tex::python::add_heights(module);

@@ -57,8 +57,9 @@ py::object unpacked(Call& call, UnpackOptions& options, Running& running) {
 
 void add_packing(Module& module) {
     module.verb<PackKeywords, Running>(
-        "pack", {{"chain", "ArrayLike | Sequence[ArrayLike]"}, {"encoding", "str", "'dxt5nm'"}}, "Texture",
-        "`chain` is a list of levels, as build_mip_chain() returns it, or one array (height, width, 3).",
+        "pack", {{"chain", kChainSource}, {"encoding", "str", "'dxt5nm'"}}, "Texture",
+        "`chain` is a list of levels, as build_mip_chain() returns it, or one array (height, width, 3). A path, an "
+        "Image or a Texture stands for its normals.",
         [](Call& call, PackKeywords& options, Running& running) -> py::object {
             if (call.has("encoding")) options.encoding = Convert<Encoding>::from(call["encoding"], "encoding");
             check_rdo(options.rdo);
@@ -66,15 +67,16 @@ void add_packing(Module& module) {
             return object_of(running.run([&](const Execution& e) { return pack(chain, options, e); }));
         });
     module.verb<BlockKeywords, Running>(
-        "encode_blocks", {{"n", "ArrayLike"}, {"encoding", "str", "'dxt5nm'"}}, "bytes",
+        "encode_blocks", {{"n", kMapSource}, {"encoding", "str", "'dxt5nm'"}}, "bytes",
         "The blocks of one level, row by row from the top, as bytes for an engine's own container. `encoding` is "
         "'dxt5nm', 'bc5', 'bc5-snorm', 'eac-rg11' or 'eac-rg11-snorm'. Here the verb takes all threads, and memory for "
         "the result.",
         [](Call& call, BlockKeywords& options, Running& running) -> py::object {
             return encoded(call, options, running);
         });
+    module.overload({{"Texture", "list[NDArray[np.float32]]"}, {kPicture, "NDArray[np.float32]"}});
     module.verb<UnpackOptions, Running>(
-        "unpack", {{"source", "Texture | Image | ArrayLike"}}, "Any",
+        "unpack", {{"source", "Texture | ArrayLike | Image | str | PathLike[str]"}}, "Any",
         "Of a Texture: a list of arrays (height, width, 3), one for each level. Of an Image, or of an array (height, "
         "width, channels) of stored colours: one array.",
         unpacked);
