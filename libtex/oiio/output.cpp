@@ -4,7 +4,6 @@
 
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
-#include <OpenImageIO/strutil.h>
 
 #include <cstring>
 #include <utility>
@@ -46,19 +45,26 @@ bool is_unsigned_integer(const TypeDesc& type) { return !type.is_floating_point(
 
 Error mistake(const std::string& file, const std::string& reason) { return {ErrorCode::bad_option, file, reason}; }
 
-// Whether the picture comes from OpenImageIO's own reader of DDS, by the attributes that this reader alone leaves
-// together. It multiplies nothing by alpha, although it does not say so.
-bool is_of_dds_reader(const ImageSpec& spec) {
-    const std::string compression = spec.get_string_attribute("compression");
-    const bool is_dds = compression.empty() || OIIO::Strutil::starts_with(compression, "DXT") ||
-                        OIIO::Strutil::starts_with(compression, "BC") || OIIO::Strutil::starts_with(compression, "ATI");
-    return is_dds && !spec.get_string_attribute("textureformat").empty();
+// Whether a colour is larger than alpha, which no multiplied colour is.
+bool exceeds_alpha(const Image& image) {
+    const Extent extent = image.extent();
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) {
+            const float limit = image.planes[3].at(i, j) + 2.0f / 255.0f;  // they were rounded
+            for (std::size_t c = 0; c < 3; ++c) {
+                if (image.planes[c].at(i, j) > limit) return true;
+            }
+        }
+    }
+    return false;
+}
+
+bool has_alpha(const ImageSpec& spec) {
+    return spec.alpha_channel == 3 && spec.nchannels == 4 && spec.get_int_attribute("oiio:UnassociatedAlpha") == 0;
 }
 
 // Makes colours that were multiplied by their alpha what they were.
 void divide_by_alpha(const ImageSpec& spec, std::vector<std::byte>& bytes) {
-    if (spec.alpha_channel != 3 || spec.nchannels != 4 || spec.get_int_attribute("oiio:UnassociatedAlpha") != 0) return;
-    if (is_of_dds_reader(spec)) return;
     ImageSpec plain(spec.width, spec.height, spec.nchannels, spec.format);
     OIIO::ImageBuf buffer(plain, bytes.data());
     OIIO::ImageBufAlgo::unpremult(buffer, buffer);
@@ -196,11 +202,29 @@ bool Output::write_tile(int x, int y, int z, TypeDesc format, const void* data, 
     });
 }
 
+// Stored channels, as those of DXT5nm that OpenImageIO's own reader of DDS returns, look like a picture with alpha, but
+// what is in A is x, and nothing was multiplied by it.
+Result<bool> Output::is_multiplied_by_alpha() const {
+    if (!has_alpha(m_spec)) return false;
+    const Execution execution{threads(), {}};
+    const Result<Swizzle> swizzle = guess_swizzle(pixels_, execution);
+    if (!swizzle) return swizzle.error();
+    if (*swizzle == kSwizzleXyz) return true;
+    const Result<Image> channels = decode(pixels_, 0, execution);
+    if (!channels) return channels.error();
+    return !exceeds_alpha(*channels);
+}
+
 Result<void> Output::finish_level() {
     if (next_ != end_)
         return mistake(name_, "level " + std::to_string(pixels_.levels.size() - 1) + " has " + std::to_string(next_) +
                                   " of " + std::to_string(end_) + " scanlines or tiles; no file is written");
-    divide_by_alpha(m_spec, pixels_.levels.back().bytes);
+    if (pixels_.levels.size() == 1) {
+        const Result<bool> is_multiplied = is_multiplied_by_alpha();
+        if (!is_multiplied) return is_multiplied.error();
+        multiplied_ = *is_multiplied;
+    }
+    if (multiplied_) divide_by_alpha(m_spec, pixels_.levels.back().bytes);
     return {};
 }
 
@@ -216,7 +240,6 @@ bool Output::close() {
 Result<MipChain> Output::levels() const {
     const Execution execution{threads(), {}};
     UnpackOptions how = wanted_.pixels;
-    // Stored channels, as of DXT5nm, look like a picture with alpha.
     if (!how.swizzle && m_spec.nchannels == 4) {
         const Result<Swizzle> swizzle = guess_swizzle(pixels_, execution);
         if (!swizzle) return swizzle.error();
