@@ -263,7 +263,6 @@ Result<void> Output::finish() {
     const Execution execution{threads(), {}};
     Result<Texture> texture = pack(*chain, pack_options, execution);
     if (!texture) return Error{texture.error().code, name_, texture.error().reason};
-    if (!can_hold_levels(container_)) texture->levels.resize(1);
     return write_texture(name_, *texture, wanted_.write, execution);
 }
 

@@ -3,6 +3,8 @@
 
 import gc
 import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -61,6 +63,27 @@ def test_heights_of_every_layout_give_the_same_normals(layout):
 def test_heights_of_every_width_end_with_their_memory(width):
     heights = HEIGHTS[:7, :width]
     assert bytes_of(tex.bake(heights)) == bytes_of(tex.bake(heights.copy()))
+
+
+GUARDED = """
+import ctypes, mmap, sys
+import numpy as np, tex
+width, page = int(sys.argv[1]), mmap.PAGESIZE
+memory = mmap.mmap(-1, 2 * page)
+address = ctypes.addressof(ctypes.c_char.from_buffer(memory))
+assert ctypes.CDLL(None).mprotect(ctypes.c_void_p(address + page), page, 0) == 0
+heights = np.frombuffer(memory, np.float32, 3 * width, page - 12 * width).reshape(3, width)
+for kernel in ("central", "sobel5", "gaussian"):
+    tex.bake(heights, kernel=kernel)
+tex.encode_blocks(np.stack([heights, heights, heights + 1], axis=2))
+print("end")
+"""
+
+
+@pytest.mark.parametrize("width", [1, 15, 16, 17, 48, 63])
+def test_nothing_is_read_behind_an_array(width):
+    done = subprocess.run([sys.executable, "-c", GUARDED, str(width)], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (0, "end\n"), done.stderr
 
 
 @pytest.mark.parametrize("wrap", ["repeat", "clamp", "mirror"])

@@ -100,7 +100,7 @@ def test_check_raises_what_the_command_said(commands):
 
 def test_arguments_are_those_of_subprocess(commands):
     for wrong in ("w.png", b"w.png", Path("w.png"), None, 3, ["a", None], [3], [["a"]]):
-        with pytest.raises(TypeError):
+        with pytest.raises(TypeError, match="arguments: expected"):
             tex.run("bake-normals", wrong)
         if isinstance(wrong, list):
             with pytest.raises(TypeError):

@@ -47,7 +47,7 @@ def commands() -> list[str]:
 
 def _words(arguments, glob):
     """The arguments as bytes, with the files that patterns match."""
-    if isinstance(arguments, (str, bytes, _os.PathLike)):
+    if isinstance(arguments, (str, bytes, _os.PathLike)) or not isinstance(arguments, Iterable):
         raise TypeError(f"arguments: expected a list of texts and paths, got {type(arguments).__name__}")
     words = []
     for argument in arguments:
