@@ -172,6 +172,11 @@ Result<Wanted> wanted_of(const ImageSpec& spec) {
 }
 
 Result<Reading> reading_of(const ImageSpec& config) {
+    for (const OIIO::ParamValue& value : config.extra_attribs) {
+        const std::string name = value.name().string();
+        if (OIIO::Strutil::starts_with(name, "tex:") && name != "tex:unpack" && name != "tex:swizzle")
+            return mistake("there is no attribute " + name + " for reading; there are tex:unpack and tex:swizzle");
+    }
     Reading reading;
     std::string right;
     if (const std::string unpack = word_of(config, "tex:unpack"); !unpack.empty()) {
@@ -197,7 +202,10 @@ void describe(const Texture& texture, const std::optional<Swizzle>& pixels, Imag
         word("normalYAxis", name_of(kYAxisNames, texture.y_axis));
         mark += texture.y_axis == YAxis::up ? " +y" : " -y";
     }
-    if (pixels) word(kMark, mark);
+    if (pixels) {
+        word(kMark, mark);
+        word("ImageDescription", std::string(kMark) + " " + mark);  // which TIFF and JPEG keep
+    }
     std::string remarks;
     for (const std::string& remark : texture.remarks) remarks.append(remarks.empty() ? "" : "; ").append(remark);
     if (!remarks.empty()) word("tex:remarks", remarks);

@@ -45,9 +45,26 @@ bool is_unsigned_integer(const TypeDesc& type) { return !type.is_floating_point(
 
 Error mistake(const std::string& file, const std::string& reason) { return {ErrorCode::bad_option, file, reason}; }
 
+// Whether a colour is larger than alpha, which no multiplied colour is.
+bool exceeds_alpha(const Image& image) {
+    const Extent extent = image.extent();
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) {
+            const float limit = image.planes[3].at(i, j) + 2.0f / 255.0f;  // they were rounded
+            for (std::size_t c = 0; c < 3; ++c) {
+                if (image.planes[c].at(i, j) > limit) return true;
+            }
+        }
+    }
+    return false;
+}
+
+bool has_alpha(const ImageSpec& spec) {
+    return spec.alpha_channel == 3 && spec.nchannels == 4 && spec.get_int_attribute("oiio:UnassociatedAlpha") == 0;
+}
+
 // Makes colours that were multiplied by their alpha what they were.
 void divide_by_alpha(const ImageSpec& spec, std::vector<std::byte>& bytes) {
-    if (spec.alpha_channel != 3 || spec.nchannels != 4 || spec.get_int_attribute("oiio:UnassociatedAlpha") != 0) return;
     ImageSpec plain(spec.width, spec.height, spec.nchannels, spec.format);
     OIIO::ImageBuf buffer(plain, bytes.data());
     OIIO::ImageBufAlgo::unpremult(buffer, buffer);
@@ -99,8 +116,10 @@ Result<void> Output::begin(const std::string& name, const ImageSpec& spec) {
         return mistake(name, "a " + std::string(name_of(kContainerNames, *container)) + " file cannot hold " +
                                  std::string(name_of(kEncodingNames, encoding)) +
                                  "; set the attribute tex:format to another encoding");
+    if (!can_hold_levels(*container) && !wanted->keep_levels && wanted->levels != 1)
+        return mistake(name, "this file type holds one level; set the attribute tex:mips to 1 or keep");
     const TypeDesc type = spec.format;
-    if (is_signed_integer(type)) wanted->pixels.range = ValueRange::signed_;
+    // Signed integers are read as floats are: they are colours, too, if a program has only changed the type.
     if (is_unsigned_integer(type)) wanted->pixels.range = ValueRange::unsigned_;
 
     pixels_ = {};
@@ -183,11 +202,29 @@ bool Output::write_tile(int x, int y, int z, TypeDesc format, const void* data, 
     });
 }
 
+// Stored channels, as those of DXT5nm that OpenImageIO's own reader of DDS returns, look like a picture with alpha, but
+// what is in A is x, and nothing was multiplied by it.
+Result<bool> Output::is_multiplied_by_alpha() const {
+    if (!has_alpha(m_spec)) return false;
+    const Execution execution{threads(), {}};
+    const Result<Swizzle> swizzle = guess_swizzle(pixels_, execution);
+    if (!swizzle) return swizzle.error();
+    if (*swizzle == kSwizzleXyz) return true;
+    const Result<Image> channels = decode(pixels_, 0, execution);
+    if (!channels) return channels.error();
+    return !exceeds_alpha(*channels);
+}
+
 Result<void> Output::finish_level() {
     if (next_ != end_)
         return mistake(name_, "level " + std::to_string(pixels_.levels.size() - 1) + " has " + std::to_string(next_) +
                                   " of " + std::to_string(end_) + " scanlines or tiles; no file is written");
-    divide_by_alpha(m_spec, pixels_.levels.back().bytes);
+    if (pixels_.levels.size() == 1) {
+        const Result<bool> is_multiplied = is_multiplied_by_alpha();
+        if (!is_multiplied) return is_multiplied.error();
+        multiplied_ = *is_multiplied;
+    }
+    if (multiplied_) divide_by_alpha(m_spec, pixels_.levels.back().bytes);
     return {};
 }
 
@@ -202,7 +239,13 @@ bool Output::close() {
 
 Result<MipChain> Output::levels() const {
     const Execution execution{threads(), {}};
-    Result<MipChain> sent = unpack(pixels_, wanted_.pixels, execution);
+    UnpackOptions how = wanted_.pixels;
+    if (!how.swizzle && m_spec.nchannels == 4) {
+        const Result<Swizzle> swizzle = guess_swizzle(pixels_, execution);
+        if (!swizzle) return swizzle.error();
+        how.swizzle = *swizzle;
+    }
+    Result<MipChain> sent = unpack(pixels_, how, execution);
     if (!sent || wanted_.keep_levels) return sent;
     MipOptions options;
     options.levels = wanted_.levels;
@@ -220,7 +263,6 @@ Result<void> Output::finish() {
     const Execution execution{threads(), {}};
     Result<Texture> texture = pack(*chain, pack_options, execution);
     if (!texture) return Error{texture.error().code, name_, texture.error().reason};
-    if (!can_hold_levels(container_)) texture->levels.resize(1);
     return write_texture(name_, *texture, wanted_.write, execution);
 }
 

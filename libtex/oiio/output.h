@@ -35,6 +35,7 @@ public:
 private:
     [[nodiscard]] Result<void> begin(const std::string& name, const OIIO::ImageSpec& spec);
     [[nodiscard]] Result<void> add_level(const OIIO::ImageSpec& spec);
+    [[nodiscard]] Result<bool> is_multiplied_by_alpha() const;
     [[nodiscard]] Result<void> finish_level();
     [[nodiscard]] Result<MipChain> levels() const;
     [[nodiscard]] Result<void> finish();
@@ -46,9 +47,10 @@ private:
     std::string name_;
     Container container_ = Container::dds;
     Wanted wanted_;
-    Texture pixels_;         // as they were sent
-    std::int64_t next_ = 0;  // the number of the scanline or tile of this level that comes next
-    std::int64_t end_ = 0;   // the number of them
+    Texture pixels_;           // as they were sent
+    bool multiplied_ = false;  // by alpha
+    std::int64_t next_ = 0;    // the number of the scanline or tile of this level that comes next
+    std::int64_t end_ = 0;     // the number of them
 };
 
 }  // namespace tex::oiio

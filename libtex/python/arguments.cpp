@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <limits>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -47,10 +48,46 @@ std::int64_t integer_from(py::handle given, std::string_view name, std::int64_t 
 
 std::string text_from(py::handle given, std::string_view name) {
     if (!py::isinstance<py::str>(given)) raise_type(name, "str", given);
-    Py_ssize_t size = 0;
-    const char* const text = PyUnicode_AsUTF8AndSize(given.ptr(), &size);
-    if (text == nullptr) throw py::error_already_set();
-    return {text, static_cast<std::size_t>(size)};
+    const auto bytes = py::reinterpret_steal<py::bytes>(PyUnicode_EncodeFSDefault(given.ptr()));
+    if (!bytes) throw py::error_already_set();
+    return bytes;
+}
+
+bool is_path(py::handle given) {
+    return py::isinstance<py::str>(given) || py::isinstance<py::bytes>(given) || py::hasattr(given, "__fspath__");
+}
+
+py::str str_of(std::string_view text) {
+    const auto made = py::reinterpret_steal<py::str>(
+        PyUnicode_DecodeFSDefaultAndSize(text.data(), static_cast<Py_ssize_t>(text.size())));
+    if (!made) throw py::error_already_set();
+    return made;
+}
+
+py::list strs_of(const std::vector<std::string>& texts) {
+    py::list list;
+    for (const std::string& text : texts) list.append(str_of(text));
+    return list;
+}
+
+std::string did_you_mean(const std::string& name, const std::vector<std::string>& names) {
+    py::list all;
+    for (const std::string& each : names) all.append(str_of(each));
+    const py::list close = py::module_::import("difflib").attr("get_close_matches")(str_of(name), all, 1);
+    return close.empty() ? "" : fmt::format("; did you mean '{}'?", std::string(py::str(close[0])));
+}
+
+std::string_view kept_text(const std::string& text) {
+    static auto* const texts = new std::set<std::string>;
+    return *texts->insert(text).first;
+}
+
+std::string plain_word(std::string word) {
+    for (char& c : word) {
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+        if (c == '_') c = '-';
+    }
+    return word;
 }
 
 std::string path_from(py::handle given, std::string_view name) {

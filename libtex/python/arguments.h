@@ -34,6 +34,16 @@ std::int64_t integer_from(py::handle given, std::string_view name, std::int64_t 
 std::string text_from(py::handle given, std::string_view name);
 // A str or a path (os.PathLike).
 std::string path_from(py::handle given, std::string_view name);
+bool is_path(py::handle given);
+// A text of libtex as str. Its bytes need not be UTF-8: as Python reads names of files.
+py::str str_of(std::string_view text);
+py::list strs_of(const std::vector<std::string>& texts);
+// "; did you mean 'x'?" if one of `names` is like `name`, or empty.
+std::string did_you_mean(const std::string& name, const std::vector<std::string>& names);
+// The same text, which is never freed.
+std::string_view kept_text(const std::string& text);
+// "BC5_SNORM" as "bc5-snorm"
+std::string plain_word(std::string word);
 // Exactly `count` items of a sequence that is not a str.
 std::vector<py::object> items_from(py::handle given, std::string_view name, std::size_t count, std::string_view wanted);
 std::string shown_float(float value);
@@ -146,6 +156,7 @@ struct Convert<E> {
         if (!py::isinstance<py::str>(given)) raise_type(name, "one of the words " + words(), given);
         const std::string word = text_from(given, name);
         if (const std::optional<E> found = find_by_name(Words<E>::kRows, word)) return *found;
+        if (const std::optional<E> found = find_by_name(Words<E>::kRows, plain_word(word))) return *found;
         raise_value(name, shown_text(word) + " must be one of " + words());
     }
     static std::string shown(E value) { return shown_text(name_of(Words<E>::kRows, value)); }

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 
 #include "finite.h"
+#include "gil.h"
+#include "sources.h"
 
 namespace tex::python {
 namespace {
@@ -86,13 +88,7 @@ py::array floats_of(const py::array& array, std::string_view name, bool is_map) 
 }
 
 py::array array_from(py::handle from, std::string_view name, bool is_map) {
-    if (from.is_none()) raise_type(name, "an array", from);
-    const py::array array = py::array::ensure(from);
-    if (!array) {
-        PyErr_Clear();
-        raise_type(name, "an array", from);
-    }
-    return floats_of(array, name, is_map);
+    return floats_of(any_array_from(from, name), name, is_map);
 }
 
 // Plane `axis` of the last axis of an array of three axes, or the whole array of two.
@@ -121,6 +117,31 @@ void need_finite(bool finite, std::string_view name, const char* remedy = "") {
 }
 
 }  // namespace
+
+py::array any_array_from(py::handle from, std::string_view name, std::string_view wanted) {
+    if (from.is_none()) raise_type(name, wanted, from);
+    const py::module_ numpy = py::module_::import("numpy.ma");
+    if (py::isinstance(from, numpy.attr("MaskedArray")) && numpy.attr("is_masked")(from).cast<bool>()) {
+        throw py::type_error(
+            fmt::format("{}: some values are masked, and a mask would be lost; array.filled() replaces "
+                        "them. Of heights, height_field() with fill_invalid=True fills in NaN: "
+                        "array.astype('float32').filled(float('nan'))",
+                        name));
+    }
+    const py::array array = py::array::ensure(from);
+    if (!array) {
+        PyErr_Clear();
+        raise_type(name, wanted, from);
+    }
+    return array;
+}
+
+py::array array_as(const py::object& array, const py::object& dtype, const py::object& copy) {
+    const py::object own = array.attr("dtype");
+    const py::object wanted = dtype.is_none() ? own : py::module_::import("numpy").attr("dtype")(dtype);
+    if (copy.ptr() == Py_False && !wanted.equal(own)) throw py::value_error("these values need a copy");
+    return array.attr("astype")(wanted, py::arg("copy") = copy.ptr() == Py_True);
+}
 
 py::array view_of(PlaneView<float> plane, py::handle owner) {
     const Extent extent = plane.extent;
@@ -157,15 +178,17 @@ py::list arrays_of(MipChain chain) {
     return levels;
 }
 
-Image image_from(py::handle from, std::string_view name) {
-    const py::array given = py::array::ensure(from);
-    const py::array array = array_from(from, name, false);
+Image image_from(py::handle from, std::string_view name, const std::vector<std::string>& names) {
+    const py::array given = any_array_from(from, name);
+    const py::array array = floats_of(given, name, false);
     const py::ssize_t channels = array.ndim() == 3 ? array.shape(2) : 1;
-    if ((array.ndim() != 2 && array.ndim() != 3) || channels < 1 || channels > 4) {
+    if ((array.ndim() != 2 && array.ndim() != 3) || channels < 1 || (channels > 4 && names.empty())) {
         throw py::value_error(
             fmt::format("{}: expected an array of shape (height, width) or (height, width, 1 to 4), got {}", name,
                         shape_of(array)));
     }
+    need(names.empty() || names.size() == static_cast<std::size_t>(channels), "names",
+         fmt::format("there must be {}, one for each channel", channels));
     Image image;
     const char kind = given.dtype().kind();
     image.sample = kind == 'u' ? SampleKind::unorm : kind == 'i' ? SampleKind::snorm : SampleKind::floating;
@@ -174,7 +197,9 @@ Image image_from(py::handle from, std::string_view name) {
     for (py::ssize_t c = 0; c < channels; ++c) {
         image.planes.emplace_back(extent);
         copy_to(image.planes.back(), strided(array, c));
-        image.names.emplace_back(channels == 1 ? "Y" : std::string(1, "RGBA"[c]));
+        image.names.emplace_back(!names.empty()  ? names[static_cast<std::size_t>(c)]
+                                 : channels == 1 ? "Y"
+                                                 : std::string(1, "RGBA"[c]));
     }
     return image;
 }
@@ -185,22 +210,23 @@ Plane<float> plane_from(py::handle from, std::string_view name, bool finite) {
     const Strided texels = strided(array, 0);
     const bool shares =
         from.ptr() == array.ptr() && texels.column == 1 && texels.row >= extent.width && extent.width % kRowFloats == 0;
-    py::gil_scoped_release release;
     Plane<float> plane;
-    if (shares) {
-        // Kernels read whole vectors, which end with the row, and nothing writes.
-        plane = Plane<float>(extent, texels.row, std::shared_ptr<float>(Owner(), const_cast<float*>(texels.data)));
-    } else {
-        plane = Plane<float>(extent);
-        copy_to(plane, texels);
-    }
-    const bool sound = !finite || is_finite(plane.view());
-    py::gil_scoped_acquire acquire;
+    const bool sound = without_gil([&] {
+        if (shares) {
+            // Kernels read whole vectors, which end with the row, and nothing writes.
+            plane = Plane<float>(extent, texels.row, std::shared_ptr<float>(Owner(), const_cast<float*>(texels.data)));
+        } else {
+            plane = Plane<float>(extent);
+            copy_to(plane, texels);
+        }
+        return !finite || is_finite(plane.view());
+    });
     need_finite(sound, name, "; height_field() with fill_invalid=True replaces them in heights");
     return plane;
 }
 
 NormalMap map_from(py::handle from, std::string_view name, Sharing sharing) {
+    if (std::optional<MipChain> chain = chain_of_source(from, true)) return std::move(chain->levels.front());
     const py::array array = array_from(from, name, true);
     const Extent extent = extent_of(array, name, 3, "(height, width, 3)");
     const Owner owner = sharing == Sharing::reads ? owner_of(array) : nullptr;
@@ -210,26 +236,32 @@ NormalMap map_from(py::handle from, std::string_view name, Sharing sharing) {
                         array.strides(0) % static_cast<py::ssize_t>(kRowAlignment) == 0 &&
                         array.strides(2) % static_cast<py::ssize_t>(kRowAlignment) == 0 && array.strides(2) != 0;
     NormalMap map;
-    py::gil_scoped_release release;
-    if (!shares) map = NormalMap(extent);
-    bool finite = true;
-    Plane<float>* const planes[] = {&map.x, &map.y, &map.z};
-    for (const int c : {0, 1, 2}) {
-        Plane<float>& plane = *planes[c];
-        const Strided texels = strided(array, c);
-        if (shares) {
-            plane = Plane<float>(extent, texels.row, std::shared_ptr<float>(owner, const_cast<float*>(texels.data)));
-        } else {
-            copy_to(plane, texels);
+    const bool finite = without_gil([&] {
+        if (!shares) map = NormalMap(extent);
+        bool sound = true;
+        Plane<float>* const planes[] = {&map.x, &map.y, &map.z};
+        for (const int c : {0, 1, 2}) {
+            Plane<float>& plane = *planes[c];
+            const Strided texels = strided(array, c);
+            if (shares) {
+                plane =
+                    Plane<float>(extent, texels.row, std::shared_ptr<float>(owner, const_cast<float*>(texels.data)));
+            } else {
+                copy_to(plane, texels);
+            }
+            sound = sound && is_finite(plane.view());
         }
-        finite = finite && is_finite(plane.view());
-    }
-    py::gil_scoped_acquire acquire;
+        return sound;
+    });
     need_finite(finite, name);
+    const bool is_base = name.find('[') == std::string_view::npos || name.ends_with("[0]");  // others may be short
+    need(!is_base || !looks_like_colours(map), name,
+         "values from 0 to 1 look like colours, (n + 1) / 2; unpack() makes normals of them");
     return map;
 }
 
 MipChain chain_from(py::handle from, std::string_view name, Sharing sharing) {
+    if (std::optional<MipChain> chain = chain_of_source(from, false)) return std::move(*chain);
     MipChain chain;
     if (!py::isinstance<py::list>(from) && !py::isinstance<py::tuple>(from)) {
         chain.levels.push_back(map_from(from, name, sharing));

@@ -16,7 +16,9 @@
 
 #pragma once
 
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include <pybind11/numpy.h>
 #include <tex/tex.h>
@@ -27,7 +29,14 @@ namespace tex::python {
 
 // The types in stubs. tex/__init__.pyi defines them.
 inline constexpr const char* kArray = "NDArray[np.float32]";
-inline constexpr const char* kHeights = "ArrayLike | HeightField";
+inline constexpr const char* kHeights = "ArrayLike | HeightField | Image | str | PathLike[str]";
+inline constexpr const char* kMapSource = "ArrayLike | Image | Texture | str | PathLike[str]";
+inline constexpr const char* kChainSource = "ArrayLike | Sequence[ArrayLike] | Image | Texture | str | PathLike[str]";
+inline constexpr const char* kPicture = "ArrayLike | Image | str | PathLike[str]";
+inline constexpr const char* kArrayMethod = "(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]";
+
+// What __array__(dtype, copy) returns, of an array.
+[[nodiscard]] py::array array_as(const py::object& array, const py::object& dtype, const py::object& copy);
 
 [[nodiscard]] py::array array_of(Plane<float> plane);  // (height, width)
 [[nodiscard]] py::array array_of(NormalMap map);       // (height, width, 3)
@@ -40,9 +49,13 @@ inline constexpr const char* kHeights = "ArrayLike | HeightField";
 [[nodiscard]] Plane<float> plane_from(py::handle from, std::string_view name, bool finite = true);
 
 // A picture of an array (height, width) or (height, width, channels), with the channels Y, RG, RGB or RGBA. Copied.
-[[nodiscard]] Image image_from(py::handle from, std::string_view name);
+// Other names may be given, then for any number of channels.
+[[nodiscard]] Image image_from(py::handle from, std::string_view name, const std::vector<std::string>& names = {});
 
-// A map of an array (height, width, 3).
+// Any array. Raises TypeError if there is none, or if values are masked.
+[[nodiscard]] py::array any_array_from(py::handle from, std::string_view name, std::string_view wanted = "an array");
+
+// A map of an array (height, width, 3), or of what chain_of_source() takes.
 enum class Sharing { reads, writes };  // a verb that writes into the map gets a copy
 [[nodiscard]] NormalMap map_from(py::handle from, std::string_view name, Sharing sharing = Sharing::reads);
 

@@ -6,7 +6,9 @@
 
 #include "meshes.h"
 #include "modules.h"
+#include "pickling.h"
 #include "running.h"
+#include "sources.h"
 #include "values.h"
 
 namespace tex::python {
@@ -92,12 +94,17 @@ void read_checks(const Checking& given, Checks& checks) {
     }
 }
 
+// A report without a file that could be read has nothing to say.
+py::object sound(CheckReport report) {
+    if (report.error) raise(*report.error);
+    return py::cast(std::make_shared<CheckReport>(std::move(report)));
+}
+
 py::object checked_file(const py::object& path, Checking& given, ReadOptions& read, Running& running) {
     Checks checks;
     read_checks(given, checks);
     const std::string file = path_from(path, "path");
-    return py::cast(std::make_shared<CheckReport>(
-        running.run([&](const Execution& e) { return check_file(file, checks.options, read, e); })));
+    return sound(running.run([&](const Execution& e) { return check_file(file, checks.options, read, e); }));
 }
 
 void add_findings(Module& module) {
@@ -111,6 +118,7 @@ void add_findings(Module& module) {
                 [](const Region& r) {
                     return fmt::format("<tex.Region level {}: {}, {}, {} x {}>", r.level, r.x, r.y, r.width, r.height);
                 })
+        .copies()
         .finish();
     Class<Finding>(module, "Finding", "What is wrong, and where.")
         .property("id", "str", "The rule: 'N201'.", [](const Finding& f) { return std::string(f.rule->id); })
@@ -120,7 +128,7 @@ void add_findings(Module& module) {
                   [](const Finding& f) { return word_of(f.severity); })
         .property("level", "int", "The level of the first region; 0 if the finding concerns the whole file.",
                   [](const Finding& f) { return f.regions.empty() ? 0 : f.regions.front().level; })
-        .property("message", "str", "A sentence with its figures.", [](const Finding& f) { return f.message; })
+        .property("message", "str", "A sentence with its figures.", [](const Finding& f) { return str_of(f.message); })
         .property("figure", "float", "What was measured, in `unit`.", [](const Finding& f) { return f.figure; })
         .property("unit", "str", "'share', 'degrees', 'texels', 'ratio', ... or empty.",
                   [](const Finding& f) { return std::string(f.unit); })
@@ -135,9 +143,10 @@ void add_findings(Module& module) {
                   })
         .method("__repr__", "(self) -> str",
                 [](const Finding& f) {
-                    return fmt::format("<tex.Finding {} {}: {}>", f.rule->id, name_of(kSeverityNames, f.severity),
-                                       f.message);
+                    return str_of(fmt::format("<tex.Finding {} {}: {}>", f.rule->id,
+                                              name_of(kSeverityNames, f.severity), f.message));
                 })
+        .copies()
         .finish();
 }
 
@@ -172,12 +181,10 @@ py::object seams_of(const std::optional<SeamEvidence>& seams) {
 
 void add_report(Module& module) {
     Class<CheckReport>(module, "CheckReport", "The findings about a texture. Iterates over them.")
-        .property("file", "str", "The file's name.", [](const CheckReport& r) { return r.file; })
+        .property("file", "str", "The file's name.", [](const CheckReport& r) { return str_of(r.file); })
         .property("findings", "list[Finding]", "By rule, then level.", [](const CheckReport& r) { return r.findings; })
         .property("explained", "int", "Findings left out because another one explains them.",
                   [](const CheckReport& r) { return r.explained; })
-        .property("error", "Error | None", "Why the file could not be read or checked.",
-                  [](const CheckReport& r) { return r.error ? exception_of(*r.error) : py::none(); })
         .property("format", "str", "The format.", [](const CheckReport& r) { return word_of(r.format); })
         .property("swizzle", "str", "The layout that the file states or the texels suggest.",
                   [](const CheckReport& r) { return layout_name(r.swizzle); })
@@ -199,8 +206,9 @@ void add_report(Module& module) {
         .method("__len__", "(self) -> int", [](const CheckReport& r) { return r.findings.size(); })
         .method("__repr__", "(self) -> str",
                 [](const CheckReport& r) {
-                    return fmt::format("<tex.CheckReport {}: {} findings>", r.file, r.findings.size());
+                    return str_of(fmt::format("<tex.CheckReport {}: {} findings>", r.file, r.findings.size()));
                 })
+        .copies()
         .finish();
 }
 
@@ -223,21 +231,25 @@ void add_checks(Module& module) {
     add_findings(module);
     add_report(module);
     module.verb<Checking, ReadKeyword, Running>(
-        "check", {{"what", "Texture | str | PathLike[str]"}, {"file", "str", "''"}}, "CheckReport",
-        "Checks a Texture, which reports call `file`, or a file: check_file(). `require` is a dict of requirements, "
+        "check", {{"what", "Texture | str | PathLike[str] | Image | ArrayLike"}, {"file", "str", "''"}}, "CheckReport",
+        "Checks a Texture, which reports call `file`, or a file: check_file(). An Image, or an array (height, width, "
+        "channels), counts as a file of one level: integers are stored colours, and floats are colours or components "
+        "as in unpack(). Raises what reading raises, and CancelledError. `require` is a dict of requirements, "
         "{'y': 'up', 'mips': 'full', 'pow2': True}; `enable` and `disable` list rules by id or name; `severity` is a "
         "dict "
         "of rules and severities; `height` is the map's height map; `mesh` is the mesh that the map is on, from "
         "select_part(), and `decoder` the engine. Raises BadOptionError if a rule or a requirement "
         "does not exist.",
         [](Call& call, Checking& given, ReadKeyword& keyword, Running& running) -> py::object {
-            if (!py::isinstance<Texture>(call["what"])) return checked_file(call["what"], given, keyword.read, running);
+            const py::object what = call["what"];
+            if (is_path(what)) return checked_file(what, given, keyword.read, running);
             Checks checks;
             read_checks(given, checks);
-            const Texture& texture = texture_from(call["what"], "what");
+            std::optional<Texture> made;
+            if (!py::isinstance<Texture>(what)) made = texture_of(what, "what");
+            const Texture& texture = made ? *made : texture_from(what, "what");
             const std::string file = call.has("file") ? text_from(call["file"], "file") : "";
-            return py::cast(std::make_shared<CheckReport>(
-                running.run([&](const Execution& e) { return check(file, texture, checks.options, e); })));
+            return sound(running.run([&](const Execution& e) { return check(file, texture, checks.options, e); }));
         });
     module.verb<Checking, ReadKeyword, Running>(
         "check_file", {{"path", "str | PathLike[str]"}}, "CheckReport", "The arguments are those of check().",

@@ -8,6 +8,27 @@ from pathlib import Path
 DECLARATION = re.compile(r"^(?:\[\[nodiscard\]\] )?(?:constexpr |inline )*[A-Za-z_][\w:<>&*, ]*? [*&]?([a-z_0-9]+)\(")
 
 
+# Where the words of Python differ from those of C++.
+PYTHON = (
+    (r"\b\w+Options::(\w+)", r"\1"),
+    (r"\b(Texture|Image|HeightField|RoughnessFile|ReadOptions)::(\w+)", r"\1.\2"),
+    (r"\b[A-Z]\w+::automatic\b", "'auto'"),
+    (r"\b[A-Z]\w+::([a-z]\w*?)_?\b", lambda found: "'%s'" % found[1].replace("_", "-")),
+    (r"\boptions\.(\w+)", r"\1"),
+    (r"\b(\w+)\.size\(\)", r"len(\1)"),
+    (r"\bnullopt\b", "None"),
+    (r"\bnull\b", "None"),
+    (r"\b(Preconditions?) \(asserted\)", r"\1"),
+    (r"\b(bad|out)_(data|option|of_memory)\b", lambda found: found[0].replace("_", "-")),
+)
+
+
+def in_python(text):
+    for pattern, word in PYTHON:
+        text = re.sub(pattern, word, text)
+    return text
+
+
 def comments(header):
     """(function, comment) for each function that the header declares; overloads without a comment share the last."""
     comment, last = [], ""
@@ -18,7 +39,7 @@ def comments(header):
         found = DECLARATION.match(line)
         if found:
             last = "\n".join(comment) if comment else last
-            yield found.group(1), last
+            yield found.group(1), in_python(last)
         elif not line.strip():
             last = ""
         comment = []

@@ -6,13 +6,8 @@
 namespace tex::python {
 
 py::object exception_of(const Error& error) {
-    // Texts of files are bytes, which need not be UTF-8: as Python reads names of files.
-    const auto text = [](const std::string& bytes) {
-        return py::reinterpret_steal<py::object>(
-            PyUnicode_DecodeFSDefaultAndSize(bytes.data(), static_cast<Py_ssize_t>(bytes.size())));
-    };
     const py::object make = py::module_::import("tex._errors").attr("error_of");
-    return make(word_of(error.code), text(error.file), text(error.reason));
+    return make(word_of(error.code), str_of(error.file), str_of(error.reason));
 }
 
 void raise(const Error& error) {

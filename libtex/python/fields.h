@@ -148,6 +148,11 @@ void each_field(ReadOptions& o, F& f) {
     f("reader", o.reader);
     f("reader_memory", o.reader_memory);
     f("reader_timeout", o.reader_timeout);
+    if constexpr (requires { f.finish(std::string()); }) {  // they are read, not listed
+        need(o.max_texels >= 1, "max_texels", "must be 1 or more");
+        need(o.reader_memory >= 1, "reader_memory", "must be 1 byte or more");
+        need(o.reader_timeout >= 1, "reader_timeout", "must be 1 second or more");
+    }
 }
 
 template <class F>

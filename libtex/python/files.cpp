@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files: pictures, textures, and normals from either.
 
-#include <pybind11/stl.h>
-
 #include "modules.h"
 #include "running.h"
 #include "values.h"
@@ -14,15 +12,6 @@ constexpr const char* kPath = "str | PathLike[str]";
 
 // The container that a word or the extension of a path names.
 Container container_from(py::handle given) { return Convert<Container>::from(given, "container"); }
-
-// The bytes of any contiguous buffer.
-std::vector<std::byte> bytes_from(py::handle given, std::string_view name) {
-    if (PyObject_CheckBuffer(given.ptr()) == 0) raise_type(name, "bytes or another buffer", given);
-    const py::buffer_info info = py::reinterpret_borrow<py::buffer>(given).request();
-    need(PyBuffer_IsContiguous(info.view(), 'C') != 0, name, "must be contiguous");
-    const auto* const data = static_cast<const std::byte*>(info.ptr);
-    return {data, data + info.size * info.itemsize};
-}
 
 void add_reading(Module& module) {
     module.verb<ReadOptions>("read_image", {{"path", kPath}}, "Image", "A picture with all its channels, raw values.",
@@ -138,7 +127,7 @@ py::dict describe(const SourceInfo& info) {
     facts["y_known"] = info.y_known;
     facts["y_doubtful"] = info.y_doubtful;
     facts["srgb"] = info.srgb;
-    facts["remarks"] = py::cast(info.remarks);
+    facts["remarks"] = strs_of(info.remarks);
     return facts;
 }
 

@@ -2,6 +2,7 @@
 #include "finite.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <future>
@@ -47,6 +48,21 @@ bool is_finite(PlaneView<const float> plane) {
     bool finite = rows_are_finite(plane, 0, first_row(1));
     for (std::future<bool>& other : others) finite = other.get() && finite;
     return finite;
+}
+
+bool looks_like_colours(const NormalMap& map) {
+    double as_components = 0.0, as_colours = 0.0;  // the distances from unit length
+    const auto distance = [](float x, float y, float z) { return std::abs(std::sqrt(x * x + y * y + z * z) - 1.0f); };
+    const Extent extent = map.extent();
+    for (int j = 0; j < extent.height; ++j) {
+        const float *const x = map.x.row(j), *const y = map.y.row(j), *const z = map.z.row(j);
+        for (int i = 0; i < extent.width; ++i) {
+            if (x[i] < 0.0f || y[i] < 0.0f) return false;  // most maps end here, in their first rows
+            as_components += static_cast<double>(distance(x[i], y[i], z[i]));
+            as_colours += static_cast<double>(distance(2.0f * x[i] - 1.0f, 2.0f * y[i] - 1.0f, 2.0f * z[i] - 1.0f));
+        }
+    }
+    return as_components > 0.1 * static_cast<double>(extent.texels()) && as_colours < 0.5 * as_components;
 }
 
 }  // namespace tex::python

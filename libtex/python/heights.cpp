@@ -10,6 +10,11 @@
 namespace tex::python {
 namespace {
 
+// Most pictures are sRGB.
+struct FromColor : ColorOptions {
+    FromColor() { space = "sRGB"; }
+};
+
 void check(const HeightOptions& options) { need(options.blur_sigma >= 0.0f, "blur_sigma", "must be 0 or more"); }
 
 void add_strengths(Module& module) {
@@ -52,7 +57,7 @@ void tell(const py::dict& facts, const HeightReport& report) {
     facts["invalid_texels"] = report.invalid_texels;
     facts["implausible_texels"] = report.implausible_texels;
     facts["stored"] = report.stored;
-    facts["remark"] = report.remark;
+    facts["remark"] = str_of(report.remark);
     facts["deband"] = dict_of_deband(report.deband);
 }
 
@@ -71,7 +76,7 @@ py::object debanded(Call& call, Relief& relief, Running& running) {
 
 void add_heights(Module& module) {
     module.verb<HeightOptions, Running>(
-        "height_field", {{"image", "ArrayLike | Image"}, {"report", "dict[str, Any] | None", "None"}}, "HeightField",
+        "height_field", {{"image", kPicture}, {"report", "dict[str, Any] | None", "None"}}, "HeightField",
         "The heights of a picture, or of an array (height, width) or (height, width, channels), of which HeightChannel "
         "chooses one. `report` is a dict that gets the fields of HeightReport.",
         [](Call& call, HeightOptions& options, Running& running) -> py::object {
@@ -94,15 +99,16 @@ void add_heights(Module& module) {
                                  debanded);
     module.verb<Relief, BakeOptions, Running>(
         "bake", {{"height", kHeights}}, "NDArray[np.float32]",
-        "The normals of heights, an array (height, width, 3) of x, y and z. `height` is an array (height, width) or a "
-        "HeightField. bumpiness (1 for an array) and wrap ('repeat' for an array) are a value or a pair for x and y.",
+        "The normals of heights, an array (height, width, 3) of x, y and z. `height` is an array (height, width), a "
+        "HeightField, or a path or an Image, of which height_field() chooses the channel. bumpiness (1 for an array) "
+        "and wrap ('repeat' for an array) are a value or a pair for x and y.",
         [](Call& call, Relief& relief, BakeOptions& options, Running& running) -> py::object {
             need(options.gaussian_sigma > 0.0f && options.gaussian_sigma <= kMaxGaussianSigma, "gaussian_sigma",
                  "must be above 0 and at most 64");
             const HeightField field = field_from(call["height"], "height", relief, false);  // bake() checks
             return array_of(running.run([&](const Execution& e) { return bake(field, options, e); }));
         });
-    module.verb<Running>("slope_range", {{"n", "ArrayLike"}}, "dict[str, tuple[float, float]]",
+    module.verb<Running>("slope_range", {{"n", kMapSource}}, "dict[str, tuple[float, float]]",
                          "The range of slopes in a normal map, {'x': (least, greatest), 'y': (least, greatest)}: rise "
                          "per texel width to "
                          "the right (x) and upwards (y).",
@@ -115,25 +121,24 @@ void add_heights(Module& module) {
                              slopes["y"] = py::make_tuple(range.min_y, range.max_y);
                              return slopes;
                          });
-    module.verb<ColorOptions>("to_linear", {{"image", "ArrayLike | Image"}}, "Image",
-                              "A new picture with linear values. Without `config`, `space` is 'sRGB' or 'linear'.",
-                              [](Call& call, ColorOptions& options) -> py::object {
-                                  const Picture given(call["image"], "image");
-                                  Image image;
-                                  image.names = (*given).names;
-                                  image.sample = (*given).sample;
-                                  image.bits = (*given).bits;
-                                  image.normal_encoding = (*given).normal_encoding;
-                                  image.normal_mark = (*given).normal_mark;
-                                  image.no_data = (*given).no_data;
-                                  for (const Plane<float>& plane : (*given).planes)
-                                      image.planes.push_back(plane.clone());
-                                  value_of(without_gil([&] { return to_linear(image, options); }));
-                                  return object_of(std::move(image));
-                              });
+    module.verb<FromColor>("to_linear", {{"image", kPicture}}, "Image",
+                           "A new picture with linear values. Without `config`, `space` is 'sRGB' or 'linear'.",
+                           [](Call& call, FromColor& options) -> py::object {
+                               const Picture given(call["image"], "image");
+                               Image image;
+                               image.names = (*given).names;
+                               image.sample = (*given).sample;
+                               image.bits = (*given).bits;
+                               image.normal_encoding = (*given).normal_encoding;
+                               image.normal_mark = (*given).normal_mark;
+                               image.no_data = (*given).no_data;
+                               for (const Plane<float>& plane : (*given).planes) image.planes.push_back(plane.clone());
+                               value_of(without_gil([&] { return to_linear(image, options); }));
+                               return object_of(std::move(image));
+                           });
     module.verb<ColorOptions>("color_files", {}, "list[str]", "The files on which to_linear() depends.",
                               [](Call&, ColorOptions& options) -> py::object {
-                                  return py::cast(value_of(without_gil([&] { return color_files(options); })));
+                                  return strs_of(value_of(without_gil([&] { return color_files(options); })));
                               });
     add_strengths(module);
 }

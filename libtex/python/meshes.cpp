@@ -8,7 +8,9 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include "arrays.h"
 #include "modules.h"
+#include "pickling.h"
 #include "running.h"
 
 namespace tex::python {
@@ -31,7 +33,8 @@ py::array rows_of(const std::vector<T>& rows, py::handle owner) {
 
 template <class T>
 std::vector<T> rows_from(py::handle from, const std::string& name) {
-    const auto array = py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(from);
+    const auto array = py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(
+        any_array_from(from, name, "an array of numbers"));
     if (!array) {
         PyErr_Clear();
         raise_type(name, "an array of numbers", from);
@@ -81,17 +84,15 @@ std::vector<std::vector<Float2>> uv_sets_from(const py::object& from) {
     return sets;
 }
 
-MeshPart make_part(const py::object& positions, const py::object& indices, const py::object& normals,
-                   const py::object& uvs, const py::object& tangents, const py::object& v_axis,
-                   const std::string& name) {
+MeshPart make_part(Call& call) {
     MeshPart part;
-    part.name = name;
-    part.v_axis = Convert<YAxis>::from(v_axis, "v_axis");
-    part.positions = rows_from<Float3>(positions, "positions");
-    part.indices = indices_from(indices);
-    if (!normals.is_none()) part.normals = rows_from<Float3>(normals, "normals");
-    if (!tangents.is_none()) part.tangents = rows_from<Float4>(tangents, "tangents");
-    if (!uvs.is_none()) part.uvs = uv_sets_from(uvs);
+    if (call.has("name")) part.name = text_from(call["name"], "name");
+    if (call.has("v_axis")) part.v_axis = Convert<YAxis>::from(call["v_axis"], "v_axis");
+    part.positions = rows_from<Float3>(call["positions"], "positions");
+    part.indices = indices_from(call["indices"]);
+    if (call.has("normals")) part.normals = rows_from<Float3>(call["normals"], "normals");
+    if (call.has("tangents")) part.tangents = rows_from<Float4>(call["tangents"], "tangents");
+    if (call.has("uvs")) part.uvs = uv_sets_from(call["uvs"]);
     value_of(check_part(part));
     return part;
 }
@@ -119,14 +120,16 @@ py::object some_rows_of(const std::vector<T>& rows, py::handle owner) {
 
 void add_part(Module& module) {
     Class<MeshPart>(module, "MeshPart", "Triangles that share a material. Cannot change.")
-        .constructor(
-            "(self, positions: ArrayLike, indices: ArrayLike, *, normals: ArrayLike | None = None, "
-            "uvs: ArrayLike | Sequence[ArrayLike] | None = None, tangents: ArrayLike | None = None, "
-            "v_axis: str = 'up', name: str = '')",
-            py::init(&make_part), py::arg("positions"), py::arg("indices"), py::kw_only(),
-            py::arg("normals") = py::none(), py::arg("uvs") = py::none(), py::arg("tangents") = py::none(),
-            py::arg("v_axis") = "up", py::arg("name") = "")
-        .property("name", "str", "Of the mesh or object; may be empty.", [](const MeshPart& p) { return p.name; })
+        .constructor({{"positions", "ArrayLike"},
+                      {"indices", "ArrayLike"},
+                      {"normals", "ArrayLike | None", "None"},
+                      {"uvs", "ArrayLike | Sequence[ArrayLike] | None", "None"},
+                      {"tangents", "ArrayLike | None", "None"},
+                      {"v_axis", "str", "'up'"},
+                      {"name", "str", "''"}},
+                     2, make_part)
+        .property("name", "str", "Of the mesh or object; may be empty.",
+                  [](const MeshPart& p) { return str_of(p.name); })
         .property("mesh", "int", "Parts of the same mesh have the same number.",
                   [](const MeshPart& p) { return p.mesh; })
         .property("primitive", "int", "The number of the part in its mesh.",
@@ -147,8 +150,9 @@ void add_part(Module& module) {
                   [](const MeshPart& p) { return p.quads; })
         .method("__repr__", "(self) -> str",
                 [](const MeshPart& p) {
-                    return fmt::format("<tex.MeshPart {}: {} triangles>", shown_text(p.name), p.triangles());
+                    return str_of(fmt::format("<tex.MeshPart {}: {} triangles>", shown_text(p.name), p.triangles()));
                 })
+        .copies()
         .finish();
 }
 
@@ -163,8 +167,8 @@ py::list materials_of(const Mesh& mesh) {
     py::list materials;
     for (const MeshMaterial& material : mesh.materials) {
         py::dict facts;
-        facts["name"] = material.name;
-        facts["normal_map"] = material.normal_map;
+        facts["name"] = str_of(material.name);
+        facts["normal_map"] = str_of(material.normal_map);
         facts["uv_set"] = material.uv_set;
         facts["has_normal_map"] = material.has_normal_map;
         materials.append(facts);
@@ -176,7 +180,7 @@ py::list nodes_of(const Mesh& mesh) {
     py::list nodes;
     for (const MeshNode& node : mesh.nodes) {
         py::dict facts;
-        facts["name"] = node.name;
+        facts["name"] = str_of(node.name);
         facts["mesh"] = node.mesh;
         facts["to_scene"] = py::array_t<double>({3, 4}, node.to_scene.data());  // a copy
         nodes.append(facts);
@@ -186,13 +190,15 @@ py::list nodes_of(const Mesh& mesh) {
 
 void add_mesh(Module& module) {
     Class<Mesh>(module, "Mesh", "The contents of a mesh file, or parts that were made here.")
-        .constructor("(self, parts: Sequence[MeshPart])", py::init([](const py::sequence& given) {
+        .constructor({{"parts", "Sequence[MeshPart]"}}, 1,
+                     [](Call& call) {
+                         const py::object given = call["parts"];
+                         if (PySequence_Check(given.ptr()) == 0) raise_type("parts", "a list of MeshPart", given);
                          Mesh mesh;
                          for (const py::handle part : given) mesh.parts.push_back(part_from(part, "parts"));
                          need(!mesh.parts.empty(), "parts", "there is no part");
                          return mesh;
-                     }),
-                     py::arg("parts"))
+                     })
         .property("parts", "list[MeshPart]", "Each is stored once, however many nodes show it.", parts_of)
         .property("materials", "list[dict[str, Any]]", "The fields of MeshMaterial.", materials_of)
         .property("nodes", "list[dict[str, Any]]", "The fields of MeshNode; 'to_scene' is an array (3, 4).", nodes_of)
@@ -201,19 +207,19 @@ void add_mesh(Module& module) {
                     return fmt::format("<tex.Mesh: {} parts, {} materials, {} nodes>", mesh.parts.size(),
                                        mesh.materials.size(), mesh.nodes.size());
                 })
+        .copies()
         .finish();
     Class<SelectedPart>(module, "SelectedPart", "Joined parts that share a map, with a tangent for each corner.")
-        .constructor("(self, part: MeshPart, tangents: ArrayLike)",
-                     py::init([](const py::object& given, const py::object& tangents) {
+        .constructor({{"part", "MeshPart"}, {"tangents", "ArrayLike"}}, 2,
+                     [](Call& call) {
                          SelectedPart selected;
-                         selected.part = part_from(given, "part");
-                         selected.tangents = tangents_from(tangents, "tangents");
+                         selected.part = part_from(call["part"], "part");
+                         selected.tangents = tangents_from(call["tangents"], "tangents");
                          need(selected.tangents.size() == selected.part.indices.size(), "tangents",
                               fmt::format("there must be {}, one for each corner of a triangle, got {}",
                                           selected.part.indices.size(), selected.tangents.size()));
                          return selected;
-                     }),
-                     py::arg("part"), py::arg("tangents"))
+                     })
         .property("part", "MeshPart", "The parts, joined: one set of UVs.",
                   [](const py::object& self) {
                       return py::cast(self.cast<const SelectedPart&>().part,
@@ -227,6 +233,7 @@ void add_mesh(Module& module) {
                   [](const SelectedPart& s) { return s.has_normal_map; })
         .property("has_tangents", "bool", "Every part has stored tangents.",
                   [](const SelectedPart& s) { return s.has_tangents; })
+        .copies()
         .finish();
 }
 

@@ -3,6 +3,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include "gil.h"
 #include "modules.h"
 #include "verb.h"
 
@@ -11,6 +12,7 @@ PYBIND11_MODULE(_tex, extension) {
     pybind11::options options;
     options.disable_function_signatures();
     tex::python::Module module(extension);
+    tex::python::add_images(module);
     tex::python::add_values(module);
     tex::python::add_formats(module);
     tex::python::add_heights(module);
@@ -25,4 +27,5 @@ PYBIND11_MODULE(_tex, extension) {
     tex::python::add_pictures(module);
     tex::python::add_programs(module);
     module.stub("");
+    tex::python::stop_work_at_exit();
 }

@@ -8,6 +8,7 @@ namespace tex::python {
 class Module;
 
 void add_values(Module& module);
+void add_images(Module& module);
 void add_formats(Module& module);
 void add_heights(Module& module);
 void add_normals(Module& module);

@@ -14,7 +14,6 @@ namespace {
 
 constexpr const char* kMap = "NDArray[np.float32]";
 constexpr const char* kChain = "list[NDArray[np.float32]]";
-constexpr const char* kMapOrChain = "ArrayLike | Sequence[ArrayLike]";
 
 void check(const MipOptions& options) {
     need(options.levels >= 0, "levels", "must be 0, for all, or more");
@@ -76,7 +75,7 @@ py::object compared(Call& call, Running& running) {
 void add_roughness(Module& module) {
     module.verb<MipOptions, Running>(
         "build_roughness_chain",
-        {{"base", "ArrayLike"}, {"roughness", "ArrayLike | float"}, {"model", "str", "'toksvig'"}}, kChain,
+        {{"base", kMapSource}, {"roughness", "ArrayLike | float"}, {"model", "str", "'toksvig'"}}, kChain,
         "The roughness of every level, arrays (height, width). `roughness` is a map or one number.",
         [](Call& call, MipOptions& options, Running& running) -> py::object {
             check(options);
@@ -117,7 +116,7 @@ void add_roughness(Module& module) {
 
 void add_normals(Module& module) {
     module.verb<MipOptions, Running>(
-        "build_mip_chain", {{"base", "ArrayLike"}}, kChain,
+        "build_mip_chain", {{"base", kMapSource}}, kChain,
         "A list of arrays, one for each level. The first one shows the memory of `base` if that came from libtex.",
         [](Call& call, MipOptions& options, Running& running) -> py::object {
             check(options);
@@ -125,8 +124,9 @@ void add_normals(Module& module) {
             return arrays_of(
                 running.run([&](const Execution& e) { return build_mip_chain(std::move(base), options, e); }));
         });
+    module.overload({{"list[NDArray[np.float32]] | tuple[NDArray[np.float32], ...]", kChain}, {kMapSource, kMap}});
     module.verb<Running>(
-        "scale", {{"n", kMapOrChain}, {"scale", "float"}, {"mode", "str", "'slope'"}}, "Any",
+        "scale", {{"n", kChainSource}, {"scale", "float"}, {"mode", "str", "'slope'"}}, "Any",
         "Of an array (height, width, 3), or of every level of a list of them; returns the same. The argument is not "
         "changed.",
         [](Call& call, Running& running) -> py::object {
@@ -140,13 +140,13 @@ void add_normals(Module& module) {
             return arrays_of(std::move(chain));
         });
     module.verb<BlendOptions, Running>(
-        "blend", {{"base", kMapOrChain}, {"layers", "Sequence[dict[str, Any]]"}}, kMap,
+        "blend", {{"base", kChainSource}, {"layers", "Sequence[dict[str, Any]]"}}, kMap,
         "`layers` is a list of dicts: 'detail' is a normal map or a list of its levels; the other keys are the fields "
         "of "
         "Layer: 'scale', 'tiling', 'offset', 'rotation', 'wrap', 'strength' and 'mask', an array (height, width).",
         blended);
     module.verb<Running>(
-        "compare", {{"a", "ArrayLike"}, {"b", "ArrayLike"}}, "dict[str, Any]",
+        "compare", {{"a", kMapSource}, {"b", kMapSource}}, "dict[str, Any]",
         "A dict of the fields of AngularError, and 'degrees': the angle of each texel, an array (height, "
         "width).",
         compared);

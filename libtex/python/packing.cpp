@@ -32,22 +32,15 @@ void each_field(BlockKeywords& o, F& f) {
     f("metric", o.metric);
 }
 
-py::object encoded(Call& call, PackOptions& options) {
+// pack() makes the same bytes as encode_blocks(), on all threads, and can be stopped.
+py::object encoded(Call& call, PackOptions& options, Running& running) {
     if (call.has("encoding")) options.encoding = Convert<Encoding>::from(call["encoding"], "encoding");
     need(format_info(encoding_info(options.encoding).format).has_blocks(), "encoding",
          "must be one of 'dxt5nm', 'bc5', 'bc5-snorm', 'eac-rg11', 'eac-rg11-snorm'");
-    const NormalMap map = map_from(call["n"], "n");
-    const Extent extent = map.extent();
-    const EncodingInfo info = encoding_info(options.encoding);
-    const Extent block = format_info(info.format).block;
-    const auto across = static_cast<std::size_t>((extent.width + block.width - 1) / block.width);
-    const std::size_t pitch = across * format_info(info.format).block_bytes;
-    const auto size = static_cast<py::ssize_t>(level_bytes(info.format, extent));
-    auto bytes = py::reinterpret_steal<py::bytes>(PyBytes_FromStringAndSize(nullptr, size));
-    if (!bytes) throw py::error_already_set();
-    auto* const blocks = reinterpret_cast<std::byte*>(PyBytes_AsString(bytes.ptr()));
-    without_gil([&] { encode_blocks(map.x.view(), map.y.view(), options, blocks, pitch); });
-    return bytes;
+    MipChain chain;
+    chain.levels.push_back(map_from(call["n"], "n"));
+    const Texture texture = running.run([&](const Execution& e) { return pack(chain, options, e); });
+    return bytes_of(texture.levels.front().bytes);
 }
 
 py::object unpacked(Call& call, UnpackOptions& options, Running& running) {
@@ -64,21 +57,26 @@ py::object unpacked(Call& call, UnpackOptions& options, Running& running) {
 
 void add_packing(Module& module) {
     module.verb<PackKeywords, Running>(
-        "pack", {{"chain", "ArrayLike | Sequence[ArrayLike]"}, {"encoding", "str", "'dxt5nm'"}}, "Texture",
-        "`chain` is a list of levels, as build_mip_chain() returns it, or one array (height, width, 3).",
+        "pack", {{"chain", kChainSource}, {"encoding", "str", "'dxt5nm'"}}, "Texture",
+        "`chain` is a list of levels, as build_mip_chain() returns it, or one array (height, width, 3). A path, an "
+        "Image or a Texture stands for its normals.",
         [](Call& call, PackKeywords& options, Running& running) -> py::object {
             if (call.has("encoding")) options.encoding = Convert<Encoding>::from(call["encoding"], "encoding");
             check_rdo(options.rdo);
             const MipChain chain = chain_from(call["chain"], "chain");
             return object_of(running.run([&](const Execution& e) { return pack(chain, options, e); }));
         });
-    module.verb<BlockKeywords>(
-        "encode_blocks", {{"n", "ArrayLike"}, {"encoding", "str", "'dxt5nm'"}}, "bytes",
+    module.verb<BlockKeywords, Running>(
+        "encode_blocks", {{"n", kMapSource}, {"encoding", "str", "'dxt5nm'"}}, "bytes",
         "The blocks of one level, row by row from the top, as bytes for an engine's own container. `encoding` is "
-        "'dxt5nm', 'bc5', 'bc5-snorm', 'eac-rg11' or 'eac-rg11-snorm'. Runs on the caller's thread, without the GIL.",
-        [](Call& call, BlockKeywords& options) -> py::object { return encoded(call, options); });
+        "'dxt5nm', 'bc5', 'bc5-snorm', 'eac-rg11' or 'eac-rg11-snorm'. Here the verb takes all threads, and memory for "
+        "the result.",
+        [](Call& call, BlockKeywords& options, Running& running) -> py::object {
+            return encoded(call, options, running);
+        });
+    module.overload({{"Texture", "list[NDArray[np.float32]]"}, {kPicture, "NDArray[np.float32]"}});
     module.verb<UnpackOptions, Running>(
-        "unpack", {{"source", "Texture | Image | ArrayLike"}}, "Any",
+        "unpack", {{"source", "Texture | ArrayLike | Image | str | PathLike[str]"}}, "Any",
         "Of a Texture: a list of arrays (height, width, 3), one for each level. Of an Image, or of an array (height, "
         "width, channels) of stored colours: one array.",
         unpacked);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures of normal maps, and sheets of pictures.
 
+#include <cmath>
+
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
@@ -24,8 +26,8 @@ struct Scene {
 template <class F>
 void each_field(Scene& o, F& f) {
     f("detail_map", o.detail, "ArrayLike | Sequence[ArrayLike] | None");
-    f("albedo", o.albedo, "ArrayLike | Image | None");
-    f("detail_albedo", o.detail_albedo, "ArrayLike | Image | None");
+    f("albedo", o.albedo, "ArrayLike | Image | str | PathLike[str] | None");
+    f("detail_albedo", o.detail_albedo, "ArrayLike | Image | str | PathLike[str] | None");
     f("height_map", o.height_map, "ArrayLike | None");
     f("white", o.white);
     f("map_without_z", o.map_without_z);
@@ -34,7 +36,19 @@ void each_field(Scene& o, F& f) {
     f("decoder", o.decoder);
 }
 
+void check(const PreviewOptions& options) {
+    const auto finite = [](float value, const char* name) { need(std::isfinite(value), name, "must be finite"); };
+    finite(options.spin, "spin");
+    finite(options.bump_scale, "bump_scale");
+    finite(options.maximum, "maximum");
+    if (!options.camera) return;
+    finite(options.camera->yaw, "camera: yaw");
+    finite(options.camera->pitch, "camera: pitch");
+    finite(options.camera->field_of_view, "camera: field_of_view");
+}
+
 py::object previewed(Call& call, Scene& given, PreviewOptions& options, Running& running) {
+    check(options);
     const MipChain map = chain_from(call["n"], "n");
     MipChain detail;
     Plane<float> height;
@@ -74,7 +88,7 @@ std::vector<Panel> panels_from(py::handle given, const char* name) {
 }
 
 void add_sheets(Module& module) {
-    module.verb<>("picture_of", {{"image", "ArrayLike | Image"}}, "Texture", "", [](Call& call) -> py::object {
+    module.verb<>("picture_of", {{"image", kPicture}}, "Texture", "", [](Call& call) -> py::object {
         const Picture image(call["image"], "image");
         return object_of(value_of(without_gil([&] { return picture_of(*image); })));
     });
@@ -118,7 +132,7 @@ void add_sheets(Module& module) {
 
 void add_pictures(Module& module) {
     module.verb<Scene, PreviewOptions, Running>(
-        "preview", {{"n", "ArrayLike | Sequence[ArrayLike]"}}, "Texture",
+        "preview", {{"n", kChainSource}}, "Texture",
         "A picture (rgb8, one level) of a map, or of a list of its levels. Structures are dicts with the names of "
         "their fields: light={'x': 1.0}. `mesh` is what select_part() returns. encode_picture() makes a PNG of it, "
         "write_texture() a file.",

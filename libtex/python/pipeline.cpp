@@ -113,7 +113,7 @@ py::object baked(Call& call, BakeFields& fields, Running& running) {
     facts["invalid_texels"] = report.heights.invalid_texels;
     facts["implausible_texels"] = report.heights.implausible_texels;
     facts["stored"] = report.heights.stored;
-    facts["remark"] = report.heights.remark;
+    facts["remark"] = str_of(report.heights.remark);
     facts["steep_texels"] = report.steep_texels;
     if (options.slopes) {
         py::dict slopes;

@@ -17,7 +17,10 @@ namespace {
 // Keeps what a command prints, and can be stopped.
 class PythonHost : public cli::MemoryHost {
 public:
-    explicit PythonHost(const Execution& execution) : execution_(execution) {}
+    PythonHost(const Execution& execution, std::string out_name)
+        : execution_(execution), out_name_(std::move(out_name)) {}
+
+    [[nodiscard]] std::string out_name() const override { return out_name_; }
 
     // Any thread of the command asks. Progress is not known, so the fraction stays 0.
     [[nodiscard]] std::string_view interruption() const override {
@@ -26,14 +29,19 @@ public:
 
 private:
     const Execution& execution_;
+    const std::string out_name_;
 };
 
 const cli::ProgramRow& program_of(const std::string& name) {
     const cli::ProgramRow* const program = cli::find_program(name);
     if (program != nullptr) return *program;
     std::string names;
-    for (const cli::ProgramRow& row : cli::programs()) names += (names.empty() ? "" : ", ") + std::string(row.name);
-    raise_value("command", "'" + name + "' must be one of " + names);
+    std::vector<std::string> all;
+    for (const cli::ProgramRow& row : cli::programs()) {
+        names += (names.empty() ? "" : ", ") + std::string(row.name);
+        all.emplace_back(row.name);
+    }
+    raise_value("command", "'" + name + "' must be one of " + names + did_you_mean(name, all));
 }
 
 bool has_option(const std::string& name, const std::string& option) {
@@ -47,7 +55,8 @@ bool has_option(const std::string& name, const std::string& option) {
     return false;
 }
 
-py::tuple run_command(const std::string& name, const std::vector<std::string>& arguments) {
+// `out_name` is what "-" stands for as an output.
+py::tuple run_command(const std::string& name, const std::vector<std::string>& arguments, const std::string& out_name) {
     const cli::ProgramRow& program = program_of(name);
     std::vector<const char*> words;
     words.reserve(arguments.size());
@@ -58,7 +67,7 @@ py::tuple run_command(const std::string& name, const std::vector<std::string>& a
     };
     Running running;
     const Ran ran = running.run([&](const Execution& execution) -> Result<Ran> {
-        PythonHost host(execution);
+        PythonHost host(execution, out_name);
         const auto code = static_cast<int>(cli::run(program, words, host));
         return Ran{code, host.out(), host.err()};
     });

@@ -14,6 +14,7 @@
 #include <tex/execution.h>
 
 #include "errors.h"
+#include "gil.h"
 
 namespace tex::python {
 
@@ -23,30 +24,29 @@ struct Running {
     py::object progress = py::none();
 
     // The value of the Result that body(execution) returns. An exception of the callback, or KeyboardInterrupt, cancels
-    // the verb and is raised. The callback's last fraction is 1 if the verb has succeeded.
+    // the verb and is raised. The callback's first fraction is 0, and its last is 1 if the verb has succeeded. False is
+    // an answer at any of them.
     template <class Body>
     auto run(const Body& body) {
         std::optional<decltype(body(std::declval<const Execution&>()))> result;
         const double told = wait([&](const Execution& execution) { result.emplace(body(execution)); });
-        if (*result && told < 1.0 && !progress.is_none()) progress(1.0);
+        if (*result && told < 1.0 && !tell(1.0)) raise_cancelled();
         return value_of(std::move(*result));
     }
 
     // Calls `work` on another thread and returns when it has ended. Returns the last fraction that the callback got.
     double wait(const std::function<void(const Execution&)>& work) const;
+
+private:
+    // Whether the callback does not return False.
+    [[nodiscard]] bool tell(double fraction) const;
+    [[noreturn]] static void raise_cancelled();
 };
 
 template <class F>
 void each_field(Running& o, F& f) {
     f("threads", o.threads);
     f("progress", o.progress, "Callable[[float], object] | None");
-}
-
-// Verbs that take no Execution: the same without progress.
-template <class Body>
-auto without_gil(const Body& body) {
-    py::gil_scoped_release release;
-    return body();
 }
 
 }  // namespace tex::python

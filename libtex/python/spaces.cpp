@@ -86,7 +86,7 @@ void add_mesh_files(Module& module) {
     module.verb<MeshReadOptions>("mesh_files", {{"path", kMeshPath}}, "list[str]", "",
                                  [](Call& call, MeshReadOptions& options) -> py::object {
                                      const std::string path = path_from(call["path"], "path");
-                                     return py::cast(value_of(without_gil([&] { return mesh_files(path, options); })));
+                                     return strs_of(value_of(without_gil([&] { return mesh_files(path, options); })));
                                  });
 }
 
@@ -166,7 +166,7 @@ using Conversion = Result<ConvertedMap>(const NormalMap&, const TangentSpace&, c
 
 void add_conversion(Module& module, const char* name, Conversion* convert) {
     module.verb<DecoderKeyword, ConvertOptions, Running>(
-        name, {{"n", "ArrayLike"}, {"space", "SelectedPart"}}, "dict[str, Any]", kConverted,
+        name, {{"n", kMapSource}, {"space", "SelectedPart"}}, "dict[str, Any]", kConverted,
         [convert](Call& call, DecoderKeyword& keyword, ConvertOptions& options, Running& running) -> py::object {
             check(options);
             const NormalMap map = map_from(call["n"], "n");
@@ -183,7 +183,7 @@ void add_spaces(Module& module) {
     add_conversion(module, "to_object_space", to_object_space);
     add_conversion(module, "to_tangent_space", to_tangent_space);
     module.verb<TwoDecoders, ConvertOptions, Running>(
-        "refit", {{"n", "ArrayLike"}, {"source", "SelectedPart"}, {"target", "SelectedPart"}}, "dict[str, Any]",
+        "refit", {{"n", kMapSource}, {"source", "SelectedPart"}, {"target", "SelectedPart"}}, "dict[str, Any]",
         kConverted, [](Call& call, TwoDecoders& decoders, ConvertOptions& options, Running& running) -> py::object {
             check(options);
             const NormalMap map = map_from(call["n"], "n");

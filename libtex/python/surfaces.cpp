@@ -51,11 +51,11 @@ py::object bent(Call& call, CurvatureOptions& options, Running& running) {
 
 void add_surfaces(Module& module) {
     module.verb<BakeOptions, IntegrateOptions, Running>(
-        "integrate", {{"n", "ArrayLike"}}, "dict[str, Any]",
+        "integrate", {{"n", kMapSource}}, "dict[str, Any]",
         "A dict of the fields of Integration: 'height' and 'degrees' are arrays (height, width), and 'curl' has the "
         "fields of AngularError. bake(result['height'], bumpiness=..., wrap=...) gives the map back.",
         integrated);
-    module.verb<CurvatureOptions, Running>("curvature", {{"n", "ArrayLike"}}, "dict[str, Any]",
+    module.verb<CurvatureOptions, Running>("curvature", {{"n", kMapSource}}, "dict[str, Any]",
                                            "A dict of the fields of Curvature: 'values' is an array (height, width).",
                                            bent);
 }

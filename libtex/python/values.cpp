@@ -1,57 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "values.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include "errors.h"
+#include "finite.h"
+#include "gil.h"
 #include "modules.h"
+#include "pickling.h"
+#include "sources.h"
 
 namespace tex::python {
 namespace {
-
-// A picture owns its planes, so views of them keep the picture.
-py::list planes_of(const py::object& self) {
-    Image& image = self.cast<Image&>();
-    py::list planes;
-    for (Plane<float>& plane : image.planes) planes.append(view_of(plane.view(), self));
-    return planes;
-}
-
-py::object channel_of(const py::object& self, const std::string& name) {
-    Image& image = self.cast<Image&>();
-    const int plane = image.find(name);
-    if (plane < 0) throw py::key_error(name);
-    return view_of(image.planes[static_cast<std::size_t>(plane)].view(), self);
-}
-
-void add_image(Module& module) {
-    Class<Image>(module, "Image", "A picture as read from a file: planes of raw values, one for each channel.")
-        .property("planes", "list[NDArray[np.float32]]", "Arrays (height, width), in the order of the file.", planes_of)
-        .property("names", "list[str]", "The channels: R, G, B, A, or Y for grey; those of EXR files keep their names.",
-                  [](const Image& image) { return image.names; })
-        .property("extent", "tuple[int, int]", "(width, height) in texels.",
-                  [](const Image& image) { return tuple_of(image.extent()); })
-        .property("sample", "str", "How the file stored values: 'unorm', 'snorm' or 'float'.",
-                  [](const Image& image) { return word_of(image.sample); })
-        .property("bits", "int", "Significant bits of a sample in the file.",
-                  [](const Image& image) { return image.bits; })
-        .property("normal_encoding", "str", "The EXR attribute normalEncoding, or empty.",
-                  [](const Image& image) { return image.normal_encoding; })
-        .property("normal_mark", "str", "What a picture that libtex wrote states about its channels, or empty.",
-                  [](const Image& image) { return image.normal_mark; })
-        .property("no_data", "float | None", "The value of texels without data, if the file names one.",
-                  [](const Image& image) { return image.no_data; })
-        .method("__getitem__", "(self, channel: str) -> NDArray[np.float32]", channel_of)
-        .method("__repr__", "(self) -> str",
-                [](const Image& image) {
-                    std::string names;
-                    for (const std::string& name : image.names) names += (names.empty() ? "" : " ") + name;
-                    return fmt::format("<tex.Image {}x{} {}>", image.extent().width, image.extent().height, names);
-                })
-        .finish();
-}
 
 template <class T>
 py::object pair_of(T x, T y) {
@@ -59,19 +23,44 @@ py::object pair_of(T x, T y) {
     return py::make_tuple(x, y);
 }
 
+HeightField make_field(Call& call) {
+    Relief relief;
+    Reader fields(py::dict(py::arg("bumpiness") = call.has("bumpiness") ? call["bumpiness"] : py::float_(1.0),
+                           py::arg("wrap") = call.has("wrap") ? call["wrap"] : py::str("repeat")));
+    each_field(relief, fields);
+    HeightField field = field_from(call["height"], "height", relief);
+    field.height = field.height.clone();
+    return field;
+}
+
 void add_height_field(Module& module) {
     Class<HeightField>(module, "HeightField", "Heights, what lies beyond their border, and how steep they are.")
+        .constructor({{"height", kHeights},
+                      {"bumpiness", "float | tuple[float, float]", "1.0"},
+                      {"wrap", "str | tuple[str, str]", "'repeat'"}},
+                     3, make_field)
         .property("height", kArray, "The heights, (height, width); white is high.",
                   [](const py::object& self) { return view_of(self.cast<HeightField&>().height.view(), self); })
+        .property("shape", "tuple[int, int]", "(height, width), as of an array.",
+                  [](const HeightField& field) {
+                      return py::make_tuple(field.height.extent().height, field.height.extent().width);
+                  })
         .property("bumpiness", "tuple[float, float]", "The height of value 1.0 in texel widths, along x and y.",
                   [](const HeightField& field) { return py::make_tuple(field.bumpiness_x, field.bumpiness_y); })
         .property("wrap", "tuple[str, str]", "What lies beyond the border, along x and y.",
                   [](const HeightField& field) { return py::make_tuple(word_of(field.wrap_x), word_of(field.wrap_y)); })
+        .method(
+            "__array__", kArrayMethod,
+            [](const py::object& self, const py::object& dtype, const py::object& copy) {
+                return array_as(self.attr("height"), dtype, copy);
+            },
+            py::arg("dtype") = py::none(), py::arg("copy") = py::none())
         .method("__repr__", "(self) -> str",
                 [](const HeightField& field) {
                     const Extent extent = field.height.extent();
                     return fmt::format("<tex.HeightField {}x{}>", extent.width, extent.height);
                 })
+        .copies()
         .finish();
 }
 
@@ -89,40 +78,71 @@ py::list levels_of(const py::object& self) {
     return levels;
 }
 
-Texture make_texture(const std::string& format, const py::object& extent, const py::sequence& levels,
-                     const py::object& swizzle, const py::object& y_axis) {
+Texture make_texture(Call& call) {
     Texture texture;
-    texture.format = Convert<Format>::from(py::str(format), "format");
-    const Extent base = Convert<Extent>::from(extent, "extent");
+    texture.format = Convert<Format>::from(call["format"], "format");
+    const Extent base = Convert<Extent>::from(call["extent"], "extent");
     need(base.width >= 1 && base.height >= 1, "extent", "sides must be 1 texel or more");
-    need(levels.size() >= 1 && levels.size() <= static_cast<std::size_t>(level_count(base)), "levels",
+    const py::object levels = call["levels"];
+    if (PySequence_Check(levels.ptr()) == 0 || PyObject_CheckBuffer(levels.ptr()) != 0)
+        raise_type("levels", "a list of the bytes of each level", levels);
+    const std::size_t count = py::len(levels);
+    need(count >= 1 && count <= static_cast<std::size_t>(level_count(base)), "levels",
          fmt::format("there must be 1 to {} levels", level_count(base)));
-    for (std::size_t k = 0; k < levels.size(); ++k) {
+    for (std::size_t k = 0; k < count; ++k) {
+        const std::string name = fmt::format("levels[{}]", k);
         const Extent side = level_extent(base, static_cast<int>(k));
-        const py::buffer_info bytes = py::buffer(levels[k]).request();
-        const auto count = static_cast<std::size_t>(bytes.size * bytes.itemsize);
+        std::vector<std::byte> bytes = bytes_from(levels[py::int_(k)], name);
         const std::size_t wanted = level_bytes(texture.format, side);
-        if (count != wanted || PyBuffer_IsContiguous(bytes.view(), 'C') == 0) {
-            raise_value(fmt::format("levels[{}]", k),
-                        fmt::format("expected {} contiguous bytes, got {}", wanted, count));
-        }
-        const auto* const data = static_cast<const std::byte*>(bytes.ptr);
-        texture.levels.push_back({side, std::vector<std::byte>(data, data + count)});
+        need(bytes.size() == wanted, name, fmt::format("expected {} bytes, got {}", wanted, bytes.size()));
+        texture.levels.push_back({side, std::move(bytes)});
     }
-    texture.swizzle_known = !swizzle.is_none();
-    if (texture.swizzle_known) texture.swizzle = Convert<Swizzle>::from(swizzle, "swizzle");
-    texture.y_known = !y_axis.is_none();
-    if (texture.y_known) texture.y_axis = Convert<YAxis>::from(y_axis, "y_axis");
+    texture.swizzle_known = call.has("swizzle");
+    if (texture.swizzle_known) texture.swizzle = Convert<Swizzle>::from(call["swizzle"], "swizzle");
+    texture.y_known = call.has("y_axis");
+    if (texture.y_known) texture.y_axis = Convert<YAxis>::from(call["y_axis"], "y_axis");
     return texture;
+}
+
+// The largest level that a page shows at once, as a PNG; None if there is no picture of it.
+py::object shown_texture(const Texture& texture) {
+    constexpr int kLargestSide = 1024;
+    const auto is_small = [](const Level& level) {
+        return std::max(level.extent.width, level.extent.height) <= kLargestSide;
+    };
+    const auto level = std::find_if(texture.levels.begin(), texture.levels.end(), is_small);
+    const auto k = static_cast<int>(level == texture.levels.end() ? 0 : level - texture.levels.begin());
+    const auto png = without_gil([&]() -> Result<std::vector<std::byte>> {
+        if (texture.format == Format::rgb8_unorm && texture.levels.size() == 1) return encode_picture(texture);
+        if (format_info(texture.format).channels > 1) {
+            Texture shown;
+            shown.format = texture.format;
+            shown.swizzle = texture.swizzle;
+            shown.normal_encoding = texture.normal_encoding;
+            shown.levels.push_back(texture.levels[static_cast<std::size_t>(k)]);
+            if (const Result<MipChain> normals = unpack(shown)) {
+                PackOptions options;
+                options.encoding = Encoding::rgb8;
+                const Result<Texture> colours = pack(*normals, options);
+                if (colours) return encode_picture(*colours);
+            }
+        }
+        const Result<Image> channels = decode(texture, k);
+        if (!channels) return channels.error();
+        return png_of(*channels);
+    });
+    if (!png) return py::none();
+    return bytes_of(*png);
 }
 
 void add_texture(Module& module) {
     Class<Texture> texture(module, "Texture", "A packed texture: the bytes of its levels and their meaning.");
-    texture.constructor(
-        "(self, format: str, extent: tuple[int, int], levels: Sequence[Buffer], *, swizzle: str | None = None, "
-        "y_axis: str | None = None)",
-        py::init(&make_texture), py::arg("format"), py::arg("extent"), py::arg("levels"), py::kw_only(),
-        py::arg("swizzle") = py::none(), py::arg("y_axis") = py::none());
+    texture.constructor({{"format", "str"},
+                         {"extent", "tuple[int, int]"},
+                         {"levels", "Sequence[Buffer]"},
+                         {"swizzle", "str | None", "None"},
+                         {"y_axis", "str | None", "None"}},
+                        3, make_texture);
     texture
         .property("format", "str", "How texels are stored: 'bc3-unorm'.",
                   [](const Texture& self) { return word_of(self.format); })
@@ -139,17 +159,19 @@ void add_texture(Module& module) {
         .property("y_known", "bool", "The file states the direction of y.",
                   [](const Texture& self) { return self.y_known; })
         .property("normal_encoding", "str", "'signed' if floats are the components themselves, or empty.",
-                  [](const Texture& self) { return self.normal_encoding; })
+                  [](const Texture& self) { return str_of(self.normal_encoding); })
         .property("srgb", "bool", "The file declares its colours as sRGB.",
                   [](const Texture& self) { return self.srgb; })
         .property("remarks", "list[str]", "Faults that the reader ignored, one sentence each.",
-                  [](const Texture& self) { return self.remarks; })
+                  [](const Texture& self) { return strs_of(self.remarks); })
         .method("__repr__", "(self) -> str",
                 [](const Texture& self) {
                     return fmt::format("<tex.Texture {}x{} {}, {} {}>", self.extent().width, self.extent().height,
                                        name_of(kFormatNames, self.format), self.levels.size(),
                                        self.levels.size() == 1 ? "level" : "levels");
                 })
+        .method("_repr_png_", "(self) -> bytes | None", shown_texture)
+        .copies()
         .finish();
 }
 
@@ -157,6 +179,8 @@ template <class T>
 py::object make_object(T value) {
     return py::cast(std::make_shared<T>(std::move(value)));
 }
+
+constexpr const char* kUnsound = "some values are infinite or NaN";
 
 }  // namespace
 
@@ -172,6 +196,9 @@ HeightField field_from(py::handle from, std::string_view name, const Relief& rel
         field.bumpiness_y = given.bumpiness_y;
         field.wrap_x = given.wrap_x;
         field.wrap_y = given.wrap_y;
+        need(!finite || without_gil([&] { return is_finite(field.height.view()); }), name, kUnsound);
+    } else if (std::optional<HeightField> read = field_of_source(from)) {
+        field = std::move(*read);
     } else {
         field.height = plane_from(from, name, finite);
     }
@@ -183,9 +210,16 @@ HeightField field_from(py::handle from, std::string_view name, const Relief& rel
     return field;
 }
 
-Picture::Picture(py::handle from, std::string_view name)
-    : image_(py::isinstance<Image>(from) ? from.cast<std::shared_ptr<Image>>()
-                                         : std::make_shared<Image>(image_from(from, name))) {}
+Picture::Picture(py::handle from, std::string_view name) {
+    if (py::isinstance<Image>(from)) {
+        image_ = from.cast<std::shared_ptr<Image>>();
+    } else if (is_path(from)) {
+        const std::string path = path_from(from, name);
+        image_ = std::make_shared<Image>(value_of(without_gil([&] { return read_image(path); })));
+    } else {
+        image_ = std::make_shared<Image>(image_from(from, name));
+    }
+}
 
 const Texture& texture_from(py::handle from, std::string_view name) {
     if (!py::isinstance<Texture>(from)) raise_type(name, "tex.Texture", from);
@@ -209,12 +243,20 @@ void need_picture(const Texture& texture, std::string_view name) {
          "must be a picture of the format 'rgb8-unorm' with one level, as preview() makes it");
 }
 
+// The bytes of any contiguous buffer.
+std::vector<std::byte> bytes_from(py::handle given, std::string_view name) {
+    if (PyObject_CheckBuffer(given.ptr()) == 0) raise_type(name, "bytes or another buffer", given);
+    const py::buffer_info info = py::reinterpret_borrow<py::buffer>(given).request();
+    need(PyBuffer_IsContiguous(info.view(), 'C') != 0, name, "must be contiguous");
+    const auto* const data = static_cast<const std::byte*>(info.ptr);
+    return {data, data + info.size * info.itemsize};
+}
+
 py::bytes bytes_of(const std::vector<std::byte>& bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 void add_values(Module& module) {
-    add_image(module);
     add_height_field(module);
     add_texture(module);
 }

@@ -13,12 +13,12 @@
 
 namespace tex::python {
 
-// The field that bake() reads: a HeightField, or an array with bumpiness 1 that repeats; `relief` takes precedence.
-// `finite`: whether an array is checked for NaN and infinities.
+// The field that bake() reads: a HeightField, or an array, a path or an Image with bumpiness 1 that repeats; `relief`
+// takes precedence. `finite`: whether it is checked for NaN and infinities.
 [[nodiscard]] HeightField field_from(py::handle from, std::string_view name, const Relief& relief = {},
                                      bool finite = true);
 
-// An Image, or an array.
+// An Image, an array, or a path that read_image() reads.
 class Picture {
 public:
     Picture(py::handle from, std::string_view name);
@@ -42,6 +42,9 @@ private:
 // Raises ValueError unless it is a picture as preview() makes it: rgb8, one level.
 void need_picture(const Texture& texture, std::string_view name);
 
+[[nodiscard]] std::vector<std::byte> bytes_from(py::handle given, std::string_view name);
+// A PNG of the channels R, G and B, or of the first one in grey.
+[[nodiscard]] Result<std::vector<std::byte>> png_of(const Image& image);
 py::bytes bytes_of(const std::vector<std::byte>& bytes);
 
 }  // namespace tex::python

@@ -56,17 +56,18 @@ std::string wrapped(std::string_view text) {
 void Reader::finish(const std::string& function) const {
     if (keywords_.empty()) return;
     const std::string name = py::str((*keywords_.begin()).first);
-    throw py::type_error(fmt::format("{} got an unexpected argument '{}'", function, name));
+    throw py::type_error(
+        fmt::format("{} got an unexpected argument '{}'{}", function, name, did_you_mean(name, names_)));
 }
 
 py::object Reader::take(const char* name) { return keywords_.attr("pop")(name); }
 
 Call::Call(const char* function, const std::vector<Parameter>& parameters, const py::args& given,
-           const py::dict& keywords)
+           const py::dict& keywords, std::size_t positional)
     : parameters_(parameters) {
-    if (given.size() > parameters.size()) {
+    if (given.size() > positional) {
         throw py::type_error(fmt::format("{}() takes {} positional arguments, got {}; options are given by name",
-                                         function, parameters.size(), given.size()));
+                                         function, positional, given.size()));
     }
     for (std::size_t k = 0; k < parameters.size(); ++k) {
         const Parameter& parameter = parameters[k];
@@ -91,6 +92,23 @@ py::object Call::operator[](std::string_view name) const {
     throw std::logic_error(fmt::format("no parameter {}", name));
 }
 
+std::string Lister::define_dict(const std::type_info& type, const std::vector<Parameter>& fields) {
+    std::string name = type.name();
+    py::detail::clean_type_id(name);
+    name = "_" + name.substr(name.rfind(':') + 1);
+    const std::string head = "class " + name + "(TypedDict, total=False):\n";
+    if (stubs().find(head) != std::string::npos) return name;
+    std::string text = head;
+    for (const Parameter& field : fields) text += fmt::format("    {}: {}\n", field.name, field.type);
+    stubs() = text + "\n" + stubs();
+    return name;
+}
+
+std::string Module::signature(const std::string& first, const std::vector<Parameter>& positional,
+                              const std::vector<Parameter>& keywords) {
+    return "(" + first + ", " + signature_of(positional, keywords, true).substr(1);
+}
+
 void Module::stub(const std::string& text) {
     stubs() += text + "\n";
     module_.attr("_stubs") = stubs();
@@ -98,7 +116,13 @@ void Module::stub(const std::string& text) {
 
 std::string Module::describe(const char* name, const std::vector<Parameter>& positional,
                              const std::vector<Parameter>& keywords, const char* returns, const char* notes) {
-    stubs() += fmt::format("def {}{} -> {}: ...\n", name, signature_of(positional, keywords, true), returns);
+    if (overloads_.empty())
+        stubs() += fmt::format("def {}{} -> {}: ...\n", name, signature_of(positional, keywords, true), returns);
+    for (const auto& [given, returned] : overloads_) {
+        std::vector<Parameter> typed = positional;
+        typed.front().type = given;
+        stubs() += fmt::format("@overload\ndef {}{} -> {}: ...\n", name, signature_of(typed, keywords, true), returned);
+    }
     std::string doc = fmt::format("{}{}\n--\n\n{}", name, signature_of(positional, keywords, false), wrapped(notes));
     if (const HeaderComment* const comment = header_comment(name))
         doc += fmt::format("{}From tex/{}:\n\n{}", *notes != '\0' ? "\n\n" : "", comment->header, comment->text);

@@ -13,6 +13,7 @@
 #include <string>
 #include <tuple>
 #include <type_traits>
+#include <typeinfo>
 #include <utility>
 #include <vector>
 
@@ -31,15 +32,18 @@ struct Parameter {
 // Reads fields from keywords and takes those that it has read out of the dict.
 class Reader {
 public:
-    explicit Reader(py::dict keywords) : keywords_(std::move(keywords)) {}
+    // Some keywords may be names of arguments that are read elsewhere.
+    explicit Reader(py::dict keywords, const std::vector<Parameter>& others = {}) : keywords_(std::move(keywords)) {
+        for (const Parameter& other : others) names_.push_back(other.name);
+    }
 
     template <class T>
     void operator()(const char* name, T& field, const char* = nullptr) {
-        if (keywords_.contains(name)) read(name, take(name), field);
+        if (has(name)) read(name, take(name), field);
     }
     template <class T>
     void operator()(const char* name, Axes<T> field, const char* = nullptr) {
-        if (!keywords_.contains(name)) return;
+        if (!has(name)) return;
         const py::object given = take(name);
         if (py::isinstance<py::tuple>(given) || py::isinstance<py::list>(given)) {
             const std::vector<py::object> items = items_from(given, name, 2, "a value or a pair (x, y)");
@@ -57,8 +61,13 @@ private:
     template <class T>
     static void read(const char* name, const py::object& given, T& field);
     py::object take(const char* name);
+    bool has(const char* name) {
+        names_.emplace_back(name);
+        return keywords_.contains(name);
+    }
 
     py::dict keywords_;
+    std::vector<std::string> names_;  // that fields have
 };
 
 // A structure whose fields each_field() lists.
@@ -100,9 +109,9 @@ public:
     template <class T>
     void operator()(const char* name, T& field, const char* type = nullptr) {
         if constexpr (Fielded<T>) {
-            list(name, type, "dict[str, Any]", "{}");
+            list(name, type, dict_type<T>(), "{}");
         } else if constexpr (IsOptional<T>::value) {
-            list(name, type, "dict[str, Any] | None", "None");
+            list(name, type, dict_type<typename T::value_type>() + " | None", "None");
         } else {
             list(name, type, Convert<T>::type(), Convert<T>::shown(field));
         }
@@ -116,6 +125,16 @@ public:
     std::vector<Parameter> parameters;
 
 private:
+    // The name of a TypedDict of the fields of T. The stubs define it.
+    template <class T>
+    static std::string dict_type() {
+        T fields;
+        Lister inner;
+        each_field(fields, inner);
+        return define_dict(typeid(T), inner.parameters);
+    }
+    static std::string define_dict(const std::type_info& type, const std::vector<Parameter>& fields);
+
     void list(const char* name, const char* type, const std::string& usual, const std::string& preset) {
         parameters.push_back({name, type != nullptr ? type : usual, preset});
     }
@@ -124,8 +143,9 @@ private:
 // The positional arguments of one call.
 class Call {
 public:
+    // `positional`: how many may be given without their names.
     Call(const char* function, const std::vector<Parameter>& parameters, const py::args& given,
-         const py::dict& keywords);
+         const py::dict& keywords, std::size_t positional);
 
     // The argument called `name`; None if it has a preset and was not given.
     [[nodiscard]] py::object operator[](std::string_view name) const;
@@ -147,11 +167,12 @@ public:
         [[maybe_unused]] const auto list = [&lister](auto options) { each_field(options, lister); };
         (list(Options{}), ...);
         const std::string doc = describe(name, positional, lister.parameters, returns, notes);
+        overloads_.clear();
         const auto invoke = [name, positional = std::move(positional), body = std::move(body)](
                                 const py::args& given, const py::kwargs& keywords) -> py::object {
             const py::dict left = py::reinterpret_steal<py::dict>(PyDict_Copy(keywords.ptr()));
-            Call call(name, positional, given, left);
-            Reader reader(left);
+            Call call(name, positional, given, left, positional.size());
+            Reader reader(left, positional);
             std::tuple<Options...> options;
             std::apply([&reader](auto&... each) { (each_field(each, reader), ...); }, options);
             reader.finish(std::string(name) + "()");
@@ -160,25 +181,45 @@ public:
         module_.def(name, invoke, doc.c_str());
     }
 
+    // The return type of the next verb depends on its first argument: pairs of types, as the stubs show them.
+    void overload(std::vector<std::pair<std::string, std::string>> types) { overloads_ = std::move(types); }
+
     // Adds `text`, a declaration, to the stubs.
     void stub(const std::string& text);
+    // "(self, a: int, *, b: int = 3)"
+    static std::string signature(const std::string& first, const std::vector<Parameter>& positional,
+                                 const std::vector<Parameter>& keywords);
     [[nodiscard]] py::module_& module() { return module_; }
 
 private:
     // Adds the function's stub. Returns its docstring, which begins with the signature for inspect.signature().
-    static std::string describe(const char* name, const std::vector<Parameter>& positional,
-                                const std::vector<Parameter>& keywords, const char* returns, const char* notes);
+    std::string describe(const char* name, const std::vector<Parameter>& positional,
+                         const std::vector<Parameter>& keywords, const char* returns, const char* notes);
 
     py::module_& module_;
+    std::vector<std::pair<std::string, std::string>> overloads_;
 };
 
-// A class whose attributes are read-only, with its stub: call finish() last.
+// What pickling.h makes of an object and back.
+template <class T>
+py::tuple saved_parts(const T& value);
+template <class T>
+T loaded_parts(const py::object& parts);
+
+// A class whose attributes are read-only, with its stub: call finish() last. There are no objects without a value:
+// __new__() makes whole ones, or raises TypeError.
 template <class T>
 class Class {
 public:
     Class(Module& module, const char* name, const char* doc)
-        : module_(module), class_(module.module(), name, doc),
-          stub_(std::string("class ") + name + ":\n    \"\"\"" + doc + "\"\"\"\n") {}
+        : module_(module), name_(name), class_(module.module(), name, doc, py::is_final()),
+          stub_(std::string("@final\nclass ") + name + ":\n    \"\"\"" + doc + "\"\"\"\n") {
+        made_by([name](const py::args&, const py::kwargs&) -> py::object {
+            throw py::type_error(std::string("tex.") + name + " has no constructor");
+        });
+        class_.attr("__init__") =
+            py::cpp_function([](const py::object&, const py::args&, const py::kwargs&) {}, py::is_method(class_));
+    }
 
     template <class Get>
     Class& property(const char* name, const char* type, const char* doc, Get get) {
@@ -194,18 +235,45 @@ public:
         stub_ += std::string("    def ") + name + signature + ": ...\n";
         return *this;
     }
-    // A constructor: py::init() and its arguments.
-    template <class Init, class... More>
-    Class& constructor(const char* signature, Init&& init, More&&... more) {
-        class_.def(std::forward<Init>(init), std::forward<More>(more)...);
-        stub_ += std::string("    def __init__") + signature + " -> None: ...\n";
+    // A constructor: make(call) returns a T. `positional` of the parameters may be given without their names.
+    template <class Make>
+    Class& constructor(std::vector<Parameter> parameters, std::size_t positional, Make make) {
+        const auto split = parameters.begin() + static_cast<std::ptrdiff_t>(positional);
+        stub_ += "    def __init__" +
+                 Module::signature("self", {parameters.begin(), split}, {split, parameters.end()}) + " -> None: ...\n";
+        made_by([name = name_, parameters = std::move(parameters), positional, make = std::move(make)](
+                    const py::args& given, const py::kwargs& keywords) -> py::object {
+            const py::dict left = py::reinterpret_steal<py::dict>(PyDict_Copy(keywords.ptr()));
+            Call call(name, parameters, given, left, positional);
+            Reader(left, parameters).finish(std::string(name) + "()");
+            return py::cast(std::make_shared<T>(make(call)));
+        });
+        return *this;
+    }
+    // Lets pickle and copy make copies.
+    Class& copies() {
+        const std::string restore = std::string("_restore_") + name_;
+        module_.module().def(restore.c_str(),
+                             [](const py::object& parts) { return std::make_shared<T>(loaded_parts<T>(parts)); });
+        class_.def("__reduce__", [name = name_](const T& self) {
+            return py::make_tuple(py::module_::import("tex._pickling").attr("restore"),
+                                  py::make_tuple(name, saved_parts(self)));
+        });
         return *this;
     }
     // Adds the stub, which is complete now.
     void finish() { module_.stub(stub_); }
 
 private:
+    template <class Make>
+    void made_by(Make make) {
+        class_.attr("__new__") = py::staticmethod(
+            py::cpp_function([make = std::move(make)](const py::object&, const py::args& given,
+                                                      const py::kwargs& keywords) { return make(given, keywords); }));
+    }
+
     Module& module_;
+    const char* name_;
     py::class_<T, std::shared_ptr<T>> class_;
     std::string stub_;
 };

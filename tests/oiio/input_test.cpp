@@ -167,6 +167,19 @@ TEST_F(OiioInput, ErrorsNameTheFileAndTheReason) {
     EXPECT_FALSE(input->seek_subimage(0, 0));
 }
 
+TEST_F(OiioInput, MisspeltAttributesAreErrors) {
+    const std::string path = file("x.dds", {16, 16}, {Encoding::dxt5nm});
+    for (const char* const name : {"tex:unpak", "tex:y", "tex:format"}) {
+        OIIO::ImageSpec spec, config;
+        config.attribute("oiio:UnassociatedAlpha", 1);
+        config.attribute(name, "x");
+        const auto input = new_input();
+        EXPECT_FALSE(input->open(path, spec, config)) << name;
+        EXPECT_EQ(input->geterror(),
+                  path + ": there is no attribute " + name + " for reading; there are tex:unpack and tex:swizzle");
+    }
+}
+
 // The reader refuses what libtex refuses, with the same words, and returns all pixels of the others.
 TEST_F(OiioInput, HostileFilesAreRefusedAsByTheLibrary) {
     int read = 0, refused = 0;

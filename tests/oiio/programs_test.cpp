@@ -80,6 +80,7 @@ TEST_F(OiioPrograms, AttributesAreTheOptionsOfTheCommands) {
         {"--attrib normalYAxis down", "--y-in down", "dds"},
         {"--attrib normalYAxis down --attrib tex:y up", "--y-in down --y up", "ktx2"},
         {"--attrib tex:mips all", "--mips all", "dds"},
+        {"--attrib tex:mips 1", "--mips none", "astc"},
         {"--attrib tex:mips 3 --attrib tex:format bc5", "--mips 3 --format bc5", "ktx2"},
         {"--attrib tex:dds-header dx10", "--dds-header dx10", "dds"},
         {"--attrib tex:dds-mark 1", "--dds-mark", "dds"},
@@ -184,6 +185,49 @@ TEST_F(OiioPrograms, MaketxWritesLevels) {
     }
 }
 
+// OpenImageIO's own reader of DDS returns the stored channels. What is in A is x, and nothing was multiplied by it.
+TEST_F(OiioPrograms, StoredChannelsOfOpenImageIOsReaderAreNormals) {
+    add_maps();
+    std::string theirs = "oiiotool", ours;
+    for (const std::string format : {"dxt5nm", "ag8", "rgba8", "rgb8", "bc5"}) {
+        theirs += " x-" + format + ".dds -o y-" + format + ".ktx2";
+        ours += " && compare-normals x-" + format + ".dds y-" + format + ".ktx2 --max-mean 1.5";
+    }
+    bake_each_encoding();
+    go(theirs + ours);
+}
+
+// A program that only changes the type of a picture of colours does not make components of them.
+TEST_F(OiioPrograms, SignedIntegersAreColours) {
+    add_maps();
+    std::string theirs = "oiiotool", ours;
+    for (const std::string type : {"int8", "int16", "int32"}) {
+        theirs += " n.png -d " + type + " --attrib tex:format rgb16 -o " + type + ".ktx2";
+        ours += " && compare-normals n.png " + type + ".ktx2 --max-mean 0.6";
+    }
+    go(theirs + ours);
+}
+
+TEST_F(OiioPrograms, YTravelsThroughTiffAndJpeg) {
+    add_maps();
+    go("bake-normals waves.png -o x.dds --bumpiness 12 --no-sync --y down --mips none");
+    for (const std::string type : {"tif", "jpg", "png"}) {
+        go("oiiotool x.dds.tex -o x." + type + " && oiiotool x." + type +
+           " -o y.dds && "
+           "compare-normals x.dds y.dds --max-mean 3 && compare-normals x.dds x." +
+           type + " --max-mean 3");
+        const auto copy = read_texture(scratch_.path("y.dds"));
+        ASSERT_TRUE(copy);
+        EXPECT_TRUE(copy->y_known && copy->y_axis == YAxis::down) << type;
+    }
+}
+
+TEST_F(OiioPrograms, MaketxReadsDdsThroughALink) {
+    add_maps();
+    go("bake-normals waves.png -o x.dds --bumpiness 12 --no-sync && ln -s x.dds x.dds.tex && "
+       "maketx x.dds.tex -o t.dds && compare-normals x.dds t.dds --max-mean 1.5");
+}
+
 TEST_F(OiioPrograms, ErrorsAreReportedAndNoFileIsLeft) {
     add_maps();
     const auto error = [&](const std::string& script) {
@@ -197,6 +241,8 @@ TEST_F(OiioPrograms, ErrorsAreReportedAndNoFileIsLeft) {
     EXPECT_NE(error("oiiotool n.png --ch R -o x.dds").find("2 to 4 channels, not 1"), std::string::npos);
     EXPECT_NE(error("oiiotool n.png -o none/x.dds").find("none/x.dds"), std::string::npos);
     EXPECT_NE(error("oiiotool none.dds.tex -o x.png").find("none.dds"), std::string::npos);
+    EXPECT_NE(error("oiiotool n.png --attrib tex:mips all -o x.astc").find("holds one level"), std::string::npos);
+    EXPECT_FALSE(scratch_.has("x.astc"));
     EXPECT_FALSE(scratch_.has("x.dds"));
     EXPECT_FALSE(scratch_.has("x.png"));
 }

@@ -3,6 +3,8 @@
 
 import gc
 import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -63,6 +65,27 @@ def test_heights_of_every_width_end_with_their_memory(width):
     assert bytes_of(tex.bake(heights)) == bytes_of(tex.bake(heights.copy()))
 
 
+GUARDED = """
+import ctypes, mmap, sys
+import numpy as np, tex
+width, page = int(sys.argv[1]), mmap.PAGESIZE
+memory = mmap.mmap(-1, 2 * page)
+address = ctypes.addressof(ctypes.c_char.from_buffer(memory))
+assert ctypes.CDLL(None).mprotect(ctypes.c_void_p(address + page), page, 0) == 0
+heights = np.frombuffer(memory, np.float32, 3 * width, page - 12 * width).reshape(3, width)
+for kernel in ("central", "sobel5", "gaussian"):
+    tex.bake(heights, kernel=kernel)
+tex.encode_blocks(np.stack([heights, heights, heights + 1], axis=2))
+print("end")
+"""
+
+
+@pytest.mark.parametrize("width", [1, 15, 16, 17, 48, 63])
+def test_nothing_is_read_behind_an_array(width):
+    done = subprocess.run([sys.executable, "-c", GUARDED, str(width)], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (0, "end\n"), done.stderr
+
+
 @pytest.mark.parametrize("wrap", ["repeat", "clamp", "mirror"])
 def test_shared_heights_give_the_normals_of_copied_ones(wrap):
     shared, copied = HEIGHTS, np.asfortranarray(HEIGHTS)
@@ -107,6 +130,11 @@ def test_values_must_be_finite(value):
         tex.bake(heights)
     with pytest.raises(ValueError, match="height: some values are infinite or NaN"):
         tex.deband(heights)
+    field = tex.height_field(HEIGHTS)
+    field.height[-1, -1] = value
+    for call in (tex.deband, lambda field: tex.check(tex.pack(tex.bake(HEIGHTS)), height=field)):
+        with pytest.raises(ValueError, match="height: some values are infinite or NaN"):
+            call(field)
     normals = tex.bake(HEIGHTS)
     normals[3, 5, 2] = value
     for call in (tex.pack, tex.build_mip_chain, tex.encode_blocks, tex.slope_range, lambda n: tex.compare(n, n)):
@@ -124,7 +152,7 @@ def test_every_row_of_a_large_array_is_examined(row):
         tex.bake(heights)
 
 
-@pytest.mark.parametrize("wrong", [None, "n.png", 3, {}, np.zeros((4, 4), np.float32), np.zeros((4, 4, 4), np.float32)])
+@pytest.mark.parametrize("wrong", [None, 3, {}, np.zeros((4, 4), np.float32), np.zeros((4, 4, 4), np.float32)])
 def test_maps_must_be_maps(wrong):
     with pytest.raises((TypeError, ValueError), match="^(base|chain|n|a)"):
         tex.build_mip_chain(wrong)
@@ -133,6 +161,31 @@ def test_maps_must_be_maps(wrong):
 def test_stored_colours_are_no_normals():
     with pytest.raises(TypeError, match=r"unpack\(\) makes normals"):
         tex.pack(np.zeros((4, 4, 3), np.uint8))
+    normals = tex.bake(HEIGHTS, bumpiness=8)
+    colours = np.asarray(normals) * 0.5 + 0.5
+    for call in (tex.pack, tex.encode_blocks, tex.build_mip_chain, lambda n: tex.compare(n, n),
+                 lambda n: tex.scale([n], 2)):
+        for given in (colours, colours.astype(np.float64), np.full((3, 5, 3), (0.5, 0.5, 1.0))):
+            with pytest.raises(ValueError, match=r"look like colours, \(n \+ 1\) / 2; unpack\(\) makes normals"):
+                call(given)
+    again = tex.unpack(colours, range="unsigned")
+    assert tex.compare(again, normals)["max"] < 0.1
+    ramp = np.broadcast_to(np.linspace(1, 0, 64, dtype=np.float32), (64, 64))  # x and y are 0 or more everywhere
+    slopes = tex.bake(ramp + ramp.T[::-1], bumpiness=20, wrap="clamp")
+    for sound in (slopes, np.float32([[[0, 0, 1]]]), slopes * 0.93, np.float32([[[1, 0, 0], [0, 1, 0]]])):
+        assert tex.pack(sound).levels
+
+
+def test_masks_are_not_dropped():
+    masked = np.ma.masked_greater(HEIGHTS, 0.5)
+    normals = np.ma.masked_greater(tex.bake(HEIGHTS), 0.5)
+    for call, given in ((tex.bake, masked), (tex.height_field, masked), (tex.Image, masked), (tex.pack, normals),
+                        (tex.MeshPart, normals[0])):
+        with pytest.raises(TypeError, match="some values are masked"):
+            call(given, [[0, 1, 2]]) if call is tex.MeshPart else call(given)
+    field = tex.height_field(masked.filled(np.nan), fill_invalid=True)
+    assert np.isfinite(field.height).all()
+    assert np.array_equal(tex.bake(np.ma.array(HEIGHTS)), tex.bake(HEIGHTS))
 
 
 def test_chains_have_the_extents_of_levels():
@@ -205,8 +258,10 @@ def test_textures_are_made_from_buffers():
     for data in (bytes(texture.levels[0]), bytearray(texture.levels[0]), np.frombuffer(texture.levels[0], np.uint8)):
         again = tex.Texture("rgb8-unorm", (64, 48), [data], swizzle="rgb", y_axis="up")
         assert tex.encode_file(again, "dds") == tex.encode_file(texture, "dds")
-    with pytest.raises(ValueError, match=r"levels\[0\]: expected 9216 contiguous bytes, got 9"):
+    with pytest.raises(ValueError, match=r"levels\[0\]: expected 9216 bytes, got 9"):
         tex.Texture("rgb8-unorm", (64, 48), [b"123456789"])
+    with pytest.raises(ValueError, match=r"levels\[0\]: must be contiguous"):
+        tex.Texture("rgb8-unorm", (64, 48), [np.zeros(18432, np.uint8)[::2]])
     with pytest.raises(ValueError, match="extent"):
         tex.Texture("rgb8-unorm", (0, 48), [b""])
 

@@ -42,6 +42,34 @@ def test_false_cancels():
     assert caught.value.code == "cancelled"
 
 
+@pytest.mark.parametrize("answer", [False, np.False_], ids=["bool", "numpy"])
+def test_every_report_cancels(answer):
+    n = tex.bake(LARGE[:1024, :1024])
+    dxt = tex.decode_file(tex.encode_file(tex.Texture("rgba8-unorm", (1024, 1024), [bytes(4 << 20)]), "dds"))
+    for call in (
+        lambda **how: tex.slope_range(n, **how),
+        lambda **how: tex.height_field(LARGE, deband="on", **how),
+        lambda **how: tex.deband(LARGE, **how),
+        lambda **how: tex.guess_swizzle(dxt, **how),
+        lambda **how: tex.encode_blocks(n, effort="best", **how),
+        lambda **how: tex.bake(LARGE[:8, :8], **how),
+    ):
+        fractions = []
+        assert call(progress=fractions.append) is not None and fractions[0] == 0 and fractions[-1] == 1
+        for at in {0, len(fractions) // 2, len(fractions) - 1}:
+            told = []
+
+            def progress(fraction):
+                told.append(fraction)
+                return answer if fraction >= fractions[at] else None
+
+            with pytest.raises(tex.CancelledError):
+                call(progress=progress)
+            assert told[-1] >= fractions[at]
+    for other in (None, 0, True, np.True_, ""):
+        assert tex.bake(LARGE, progress=lambda fraction: other) is not None
+
+
 def test_an_exception_of_the_callback_cancels_and_is_raised():
     def progress(fraction):
         raise LookupError(f"at {fraction}")
@@ -71,7 +99,8 @@ while True:
 """
 
 
-@pytest.mark.parametrize("call", ["tex.pack(n, effort='best', metric='angle')", "tex.run('bake-normals', ['{}', '-o', "
+@pytest.mark.parametrize("call", ["tex.pack(n, effort='best', metric='angle')",
+                         "tex.encode_blocks(n, effort='best', metric='angle')", "tex.run('bake-normals', ['{}', '-o', "
                          "'/dev/null', '--container', 'dds', '--effort', 'best', '--metric', 'angle'])"])
 def test_control_c_cancels(call):
     code = LOOP.format(call.format(SAMPLES / "bricks.png"))

@@ -149,7 +149,7 @@ def test_stubs_have_the_signatures_of_the_module():
 
 
 def test_stubs_have_the_attributes_of_the_classes():
-    classes = {node.name: node for node in stub().body if isinstance(node, ast.ClassDef)}
+    classes = {node.name: node for node in stub().body if isinstance(node, ast.ClassDef) and node.name[0] != "_"}
     assert set(classes) == {n for n in tex.__all__ if inspect.isclass(getattr(tex, n)) and getattr(tex, n).__module__ == "tex._tex"}
     for name, node in classes.items():
         members = {each.name for each in node.body if isinstance(each, ast.FunctionDef)}
@@ -168,8 +168,25 @@ def test_stubs_use_known_names():
             known.add(node.name)
         elif isinstance(node, ast.Assign):
             known |= {target.id for target in node.targets}
-    used = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+    used = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)}
     assert used - known <= {"__version__"}
+
+
+def test_nested_options_and_results_have_types():
+    text = (Path(tex.__file__).parent / "__init__.pyi").read_text(encoding="utf-8")
+    assert re.search(r"^def bake_file\(.* mip: _MipOptions = {}, pack: _PackFields", text, re.MULTILINE)
+    dicts = {node.name: node for node in ast.parse(text).body if isinstance(node, ast.ClassDef) and node.name[0] == "_"}
+    assert {each.target.id for each in dicts["_MipOptions"].body} == set(
+        inspect.signature(tex.build_mip_chain).parameters) - {"base", "threads", "progress"}
+    for name in ("scale", "unpack"):
+        found = re.findall(rf"^@overload\ndef {name}\((.*)\) -> (.*): \.\.\.$", text, re.MULTILINE)
+        assert [returned.startswith("list[") for _, returned in found] == [True, False]
+
+
+@pytest.mark.parametrize("name", verbs())
+def test_docstrings_speak_python(name):
+    doc = inspect.getdoc(getattr(tex, name))
+    assert not re.search(r"::|\bnull|nullopt|\(asserted\)|\boptions\.\w|\.size\(\)|bad_|out_of_memory", doc)
 
 
 FLAT = np.float32([[[0, 0, 1]]])
@@ -180,12 +197,21 @@ def test_arguments_are_checked():
         (lambda: tex.bake(), "needs the argument 'height'"),
         (lambda: tex.bake([[0.0]], 3), "takes 1 positional"),
         (lambda: tex.bake([[0.0]], height=[[0.0]]), "two values for 'height'"),
-        (lambda: tex.bake([[0.0]], kernels="x"), "unexpected argument 'kernels'"),
+        (lambda: tex.bake([[0.0]], kernels="x"), "unexpected argument 'kernels'; did you mean 'kernel'?"),
+        (lambda: tex.pack(FLAT, efort="best"), "unexpected argument 'efort'; did you mean 'effort'?"),
+        (lambda: tex.pack(FLAT, chian=1), "unexpected argument 'chian'; did you mean 'chain'?"),
+        (lambda: tex.pack(FLAT, nonsense=1), "unexpected argument 'nonsense'"),
+        (lambda: tex.Texture(), "Texture() needs the argument 'format'"),
+        (lambda: tex.Texture(3, 4, 5), "format: expected one of the words"),
+        (lambda: tex.Texture("bc5-unorm", (4, 4), b"0" * 16), "levels: expected a list of the bytes of each level"),
+        (lambda: tex.Texture("bc5-unorm", (4, 4), [], "bc5"), "takes 3 positional arguments, got 4"),
+        (lambda: tex.Texture("bc5-unorm", (4, 4), [], swizle=1), "did you mean 'swizzle'?"),
+        (lambda: tex.Mesh(3), "parts: expected a list of MeshPart"),
         (lambda: tex.bake([[0.0]], kernel=1), "kernel: expected one of the words"),
         (lambda: tex.bake([[0.0]], gaussian_sigma="1"), "gaussian_sigma: expected a number"),
         (lambda: tex.height_field([[0.0]], invert=1), "invert: expected bool"),
         (lambda: tex.bake_file("a", "b.dds", mip=3), "mip: expected a dict"),
-        (lambda: tex.bake_file("a", "b.dds", mip={"filters": 1}), "mip got an unexpected argument 'filters'"),
+        (lambda: tex.bake_file("a", "b.dds", mip={"filters": 1}), "mip got an unexpected argument 'filters'; did you mean 'filter'?"),
         (lambda: tex.read_image(3), "path: expected str or os.PathLike"),
         (lambda: tex.preview(FLAT, ambient=3), "ambient: expected three numbers"),
     ):
@@ -206,7 +232,23 @@ def test_arguments_are_checked():
         (lambda: tex.blend(FLAT, [{}]), "layers[0]: needs 'detail'"),
         (lambda: tex.encode_picture(tex.pack(FLAT)), "picture: must be a picture"),
         (lambda: tex.read_image("a\0b"), "embedded null byte"),
+        (lambda: tex.read_image("a", max_texels=-5), "max_texels: must be 1 or more"),
+        (lambda: tex.bake_file("a", "b.dds", read={"max_texels": 0}), "max_texels: must be 1 or more"),
+        (lambda: tex.preview(FLAT, spin=float("nan")), "spin: must be finite"),
+        (lambda: tex.preview(FLAT, camera={"yaw": float("nan")}), "camera: yaw: must be finite"),
         (lambda: tex.strength_from_world((0, 0), 1, 0), "width: must be above 0"),
     ):
         with pytest.raises(ValueError, match=re.escape(text)):
             call()
+
+
+def test_words_may_be_written_as_others_do():
+    assert tex.pack(FLAT, "BC5").format == tex.pack(FLAT, "bc5").format == "bc5-unorm"
+    assert tex.Texture("BC5_UNORM", (4, 4), [bytes(16)]).format == "bc5-unorm"
+    assert np.array_equal(tex.bake([[0.0, 1.0]], wrap="Clamp"), tex.bake([[0.0, 1.0]], wrap="clamp"))
+
+
+def test_defaults_work():
+    image = tex.Image(np.uint8([[0, 128, 255]]))
+    assert np.allclose(tex.to_linear(image)["Y"], tex.to_linear(image, space="sRGB")["Y"])
+    assert tex.to_linear(image)["Y"][0, 1] < 0.25

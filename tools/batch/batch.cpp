@@ -74,7 +74,10 @@ private:
             tasks_.size() == 1 ? task.input : fmt::format("{} of {} files", finished_.load(), tasks_.size()));
     }
 
-    Outcome outcome_of(const Task& task) {
+    Outcome outcome_of(const Task& planned) {
+        std::optional<Task> renamed;
+        if (planned.output == "-") renamed.emplace(planned).output = console_.host().out_name();
+        const Task& task = renamed ? *renamed : planned;
         double counted = 0.0;  // the part of this file that done_ includes
         Job job(task, console_, running_.read, write_, running_.threads, [&](double fraction) {
             if (shows_progress_) advance(task, counted, fraction);
@@ -102,7 +105,7 @@ private:
         outcome.has_levels = has_level(task.output);
         // The library cannot tell a full disk from a reader that closed the pipe. It is not an error if a reader closes
         // the pipe because it has read enough.
-        outcome.is_silent = outcome.error && task.output == "-" && console_.host().out_is_abandoned();
+        outcome.is_silent = outcome.error && planned.output == "-" && console_.host().out_is_abandoned();
         done_ += 1.0 - counted;
         ++finished_;
         return outcome;

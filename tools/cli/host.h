@@ -2,7 +2,7 @@
 // host.h: the environment in which a program runs: where its output goes, and who may stop it. main() runs a program
 // with the standard streams and signals of the process. Other callers use a MemoryHost or their own host.
 //
-// The file name "-" means a standard stream of the process in every host.
+// As an input, "-" means standard input of the process in every host.
 
 #pragma once
 
@@ -21,6 +21,9 @@ public:
     [[nodiscard]] virtual bool write_out(std::string_view text) = 0;
     // Writes `text` to standard error in one piece. Failure is ignored, because there is nowhere to report it.
     virtual void write_err(std::string_view text) = 0;
+
+    // The file that an output called "-" goes to.
+    [[nodiscard]] virtual std::string out_name() const { return "-"; }
 
     [[nodiscard]] virtual bool out_is_terminal() const { return false; }
     [[nodiscard]] virtual bool out_is_abandoned() const { return false; }  // nobody reads standard output any more

@@ -4,7 +4,7 @@
 // main(), tests and any other code call run(), as often as they like and from several threads at once. Each run has its
 // own object, which keeps nothing for the next run. Runs share only what belongs to the process: its working directory,
 // its environment, TBB's threads (--threads N also limits other runs that work at the same time), and the standard
-// streams behind "-".
+// input behind "-".
 //
 // tools/<verb>-normals.cpp ends with the line that adds its command to the table:
 //

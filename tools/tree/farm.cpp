@@ -116,11 +116,12 @@ ExitCode Farm::write_plan(const FarmPlan& head, const std::vector<Recipe>& recip
         console.error(fmt::format("{}: {}", printable(task.input), task.refusal));
         code = ExitCode::data;
     }
+    if (plan_path_ == "-") return std::max(code, console.print(plan.text()));
     if (const auto written = write_document(plan_path_, plan.text()); !written) {
         console.error(written.error().message());
         return exit_code(written.error().code);
     }
-    if (running.json || running.quiet || plan_path_ == "-") return code;
+    if (running.json || running.quiet) return code;
     const auto texels = std::accumulate(plan.costs.begin(), plan.costs.end(), std::int64_t{0});
     return std::max(code, console.print(fmt::format("{} textures, {:.1f} Mtexel\n", plan.tasks.size(),
                                                     static_cast<double>(texels) / 1e6)));

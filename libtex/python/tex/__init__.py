@@ -3,7 +3,7 @@
 
     import tex
 
-    field = tex.height_field(tex.read_image("rock.png"))
+    field = tex.read_heights("rock.png")                    # the channel that holds heights
     n = tex.bake(field, bumpiness=12)                       # (height, width, 3): x, y up, z
     chain = tex.build_mip_chain(n)                          # a list of such arrays
     tex.write_texture("rock.dds", tex.pack(chain, "dxt5nm", effort="best"))
@@ -18,13 +18,15 @@ Arrays. Heights are (height, width), maps (height, width, 3): x to the right, y 
 (numpy.ascontiguousarray(n) has x, y, z side by side). Arguments are 32-bit floats. Maps that come from libtex are not
 copied, nor are heights whose rows are contiguous and a multiple of 16 texels long; other layouts are copied. Floats of
 16 and 64 bits are converted. Heights may be uint8 or uint16, too: 255 or 65535 is 1.0. Extents are (width, height).
+Where a verb takes heights or a map, it takes a path, an Image or (of a map) a Texture, too: tex.pack("rock_n.png").
+numpy.asarray(image) joins the channels of an Image, and Image(array, names) makes one. All objects can be pickled.
 
 Options are given by name and are the fields of the headers' structures. What has a value for x and one for y is a value
 for both, or a pair: wrap="repeat", wrap=("repeat", "clamp"). Choices are the words of the commands.
 
 Every verb on whole images takes threads=0, the largest number of threads (0: one for each processor), and
-progress=callable. The callable gets the fraction done, on the caller's thread, and cancels if it returns False or
-raises. Ctrl-C cancels, too. Verbs run without the GIL. The bytes are the same for every number of threads.
+progress=callable. The callable gets the fraction done, from 0 to 1, on the caller's thread, and cancels if it returns
+False or raises. Ctrl-C cancels, too. Verbs run without the GIL. The bytes are the same for every number of threads.
 
 Errors are exceptions of the class Error, with code, file and reason. A wrong argument is a TypeError or ValueError.
 
@@ -41,7 +43,8 @@ from tex._errors import (
     UnsupportedError,
 )
 from tex import _tex
-from tex._run import Ran, commands, run
+from tex._heights import read_heights
+from tex._run import Ran, RunError, commands, run
 
 _verbs = {name: value for name, value in vars(_tex).items() if not name.startswith("_")}
 globals().update(_verbs)
@@ -49,6 +52,6 @@ globals().update(_verbs)
 __version__ = _tex.version()
 __all__ = sorted(
     [*_verbs, "BadDataError", "BadOptionError", "CancelledError", "Error", "IoError", "OutOfMemoryError", "Ran"]
-    + ["UnsupportedError", "commands", "run"]
+    + ["RunError", "UnsupportedError", "commands", "read_heights", "run"]
 )
 del _verbs

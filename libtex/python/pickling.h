@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+// pickling.h: the classes as tuples of Python values, for pickle and copy.
+//
+// each_part() lists the members of a structure once; Saver and Loader go through the list.
+
+#pragma once
+
+#include <array>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include <tex/tex.h>
+
+#include "arguments.h"
+
+namespace tex::python {
+
+class Saver {
+public:
+    template <class T>
+    void operator()(const T& part) {
+        parts_.append(saved(part));
+    }
+    [[nodiscard]] py::tuple parts() const { return parts_; }
+
+    template <class T>
+    static py::object saved(const T& value);
+
+private:
+    static py::bytes bytes_of(const void* data, std::size_t count) { return {static_cast<const char*>(data), count}; }
+    py::list parts_;
+};
+
+class Loader {
+public:
+    explicit Loader(const py::handle& parts) : parts_(py::reinterpret_borrow<py::object>(parts)) {
+        need(py::isinstance<py::tuple>(parts), "pickle", "damaged");
+    }
+    template <class T>
+    void operator()(T& part) {
+        load(parts_[py::int_(next_++)], part);
+    }
+
+    template <class T>
+    static void load(const py::object& from, T& value);
+
+private:
+    // Raises ValueError unless `from` is bytes, a multiple of `step` of them.
+    static std::string bytes_from(const py::object& from, std::size_t step) {
+        need(py::isinstance<py::bytes>(from), "pickle", "damaged");
+        std::string bytes = py::reinterpret_borrow<py::bytes>(from);
+        need(bytes.size() % step == 0, "pickle", "damaged");
+        return bytes;
+    }
+    py::object parts_;
+    std::size_t next_ = 0;
+};
+
+template <class T>
+concept Parted = requires(T& value, Loader& loader) {
+    each_part(value, loader);
+};
+
+template <class T>
+struct IsVector : std::false_type {};
+template <class T>
+struct IsVector<std::vector<T>> : std::true_type {};
+template <class T>
+struct IsMaybe : std::false_type {};
+template <class T>
+struct IsMaybe<std::optional<T>> : std::true_type {};
+
+template <class T>
+py::object Saver::saved(const T& value) {
+    if constexpr (Parted<T>) {
+        Saver inner;
+        each_part(const_cast<T&>(value), inner);
+        return inner.parts();
+    } else if constexpr (std::is_same_v<T, std::string>) {
+        return bytes_of(value.data(), value.size());
+    } else if constexpr (std::is_same_v<T, Plane<float>>) {
+        Saver rows;
+        rows(value.extent());
+        const std::size_t count = static_cast<std::size_t>(value.extent().width) * sizeof(float);
+        std::string bytes;
+        for (int j = 0; j < value.extent().height; ++j)
+            bytes.append(reinterpret_cast<const char*>(value.row(j)), count);
+        rows(bytes);
+        return rows.parts();
+    } else if constexpr (IsMaybe<T>::value) {
+        if (!value) return py::none();
+        return py::make_tuple(saved(*value));
+    } else if constexpr (IsVector<T>::value) {
+        using Each = typename T::value_type;
+        if constexpr (!Parted<Each> && std::is_trivially_copyable_v<Each>) {
+            return bytes_of(value.data(), value.size() * sizeof(Each));
+        } else {
+            Saver inner;
+            for (const auto& each : value) inner(each);
+            return inner.parts();
+        }
+    } else {
+        static_assert(std::is_trivially_copyable_v<T>);
+        return bytes_of(&value, sizeof value);
+    }
+}
+
+template <class T>
+void Loader::load(const py::object& from, T& value) {
+    if constexpr (Parted<T>) {
+        Loader inner(from);
+        each_part(value, inner);
+    } else if constexpr (std::is_same_v<T, std::string>) {
+        value = bytes_from(from, 1);
+    } else if constexpr (std::is_same_v<T, Plane<float>>) {
+        Loader inner(from);
+        Extent extent;
+        std::string bytes;
+        inner(extent);
+        inner(bytes);
+        const std::size_t count = static_cast<std::size_t>(extent.width) * sizeof(float);
+        need(extent.width >= 1 && extent.height >= 1 && extent.width <= kMaxExtent && extent.height <= kMaxExtent &&
+                 bytes.size() == count * static_cast<std::size_t>(extent.height),
+             "pickle", "damaged");
+        value = Plane<float>(extent);
+        for (int j = 0; j < extent.height; ++j)
+            std::memcpy(value.row(j), bytes.data() + static_cast<std::size_t>(j) * count, count);
+    } else if constexpr (IsMaybe<T>::value) {
+        value.reset();
+        if (!from.is_none()) load(py::object(from[py::int_(0)]), value.emplace());
+    } else if constexpr (IsVector<T>::value) {
+        using Each = typename T::value_type;
+        if constexpr (!Parted<Each> && std::is_trivially_copyable_v<Each>) {
+            const std::string bytes = bytes_from(from, sizeof(Each));
+            value.resize(bytes.size() / sizeof(Each));
+            if (!bytes.empty()) std::memcpy(static_cast<void*>(value.data()), bytes.data(), bytes.size());
+        } else {
+            Loader inner(from);
+            value.clear();
+            for (std::size_t k = 0; k < py::len(from); ++k) inner(value.emplace_back());
+        }
+    } else {
+        const std::string bytes = bytes_from(from, sizeof(T));
+        need(bytes.size() == sizeof(T), "pickle", "damaged");
+        std::memcpy(static_cast<void*>(&value), bytes.data(), sizeof(T));
+    }
+}
+
+template <class F>
+void each_part(Image& o, F& f) {
+    f(o.planes);
+    f(o.names);
+    f(o.sample);
+    f(o.bits);
+    f(o.normal_encoding);
+    f(o.normal_mark);
+    f(o.no_data);
+    f(o.stored);
+    f(o.scale);
+    f(o.offset);
+    f(o.remark);
+}
+
+template <class F>
+void each_part(HeightField& o, F& f) {
+    f(o.height);
+    f(o.bumpiness_x);
+    f(o.bumpiness_y);
+    f(o.wrap_x);
+    f(o.wrap_y);
+}
+
+template <class F>
+void each_part(Level& o, F& f) {
+    f(o.extent);
+    f(o.bytes);
+}
+
+template <class F>
+void each_part(Texture& o, F& f) {
+    f(o.format);
+    f(o.levels);
+    f(o.swizzle);
+    f(o.swizzle_known);
+    f(o.y_axis);
+    f(o.y_known);
+    f(o.normal_encoding);
+    f(o.srgb);
+    f(o.remarks);
+}
+
+template <class F>
+void each_part(MeshPart& o, F& f) {
+    f(o.name);
+    f(o.mesh);
+    f(o.primitive);
+    f(o.material);
+    f(o.v_axis);
+    f(o.positions);
+    f(o.normals);
+    f(o.tangents);
+    f(o.uvs);
+    f(o.indices);
+    f(o.quads);
+}
+
+template <class F>
+void each_part(MeshMaterial& o, F& f) {
+    f(o.name);
+    f(o.normal_map);
+    f(o.uv_set);
+    f(o.has_normal_map);
+}
+
+template <class F>
+void each_part(MeshNode& o, F& f) {
+    f(o.name);
+    f(o.mesh);
+    f(o.to_scene);
+}
+
+template <class F>
+void each_part(Mesh& o, F& f) {
+    f(o.parts);
+    f(o.materials);
+    f(o.nodes);
+}
+
+template <class F>
+void each_part(SelectedPart& o, F& f) {
+    f(o.part);
+    f(o.tangents);
+    f(o.source);
+    f(o.has_normal_map);
+    f(o.has_tangents);
+}
+
+// A rule is its id, and a unit a word of the rule table's kind: both outlive the findings.
+template <class F>
+void each_part(Finding& o, F& f) {
+    std::string id = o.rule != nullptr ? std::string(o.rule->id) : "", unit(o.unit);
+    f(id);
+    f(unit);
+    if constexpr (std::is_same_v<F, Loader>) {
+        o.rule = find_rule(id);
+        need(o.rule != nullptr, "pickle", "there is no rule " + id);
+        o.unit = kept_text(unit);
+    }
+    f(o.severity);
+    f(o.message);
+    f(o.figure);
+    f(o.confidence);
+    f(o.regions);
+    f(o.has_texel);
+    f(o.column);
+    f(o.row);
+}
+
+template <class F>
+void each_part(CheckReport& o, F& f) {
+    f(o.file);
+    f(o.findings);
+    f(o.explained);
+    f(o.format);
+    f(o.swizzle);
+    f(o.extent);
+    f(o.levels);
+    f(o.more_data);
+    f(o.y);
+    f(o.pair);
+    f(o.seams);
+    f(o.y_on_mesh);
+}
+
+template <class T>
+py::tuple saved_parts(const T& value) {
+    return Saver::saved(value);
+}
+
+template <class T>
+T loaded_parts(const py::object& parts) {
+    T value;
+    Loader::load(parts, value);
+    return value;
+}
+
+}  // namespace tex::python
