@@ -28,6 +28,7 @@ struct Outcome {  // NOLINT(bugprone-exception-escape): the tool follows the noe
     bool is_bug = false;      // the error is a bug in the program
     bool is_silent = false;   // no message is printed for the error
     bool has_levels = false;  // each level has its own output
+    bool is_joint = false;    // `input` is one of several: warnings name the file that they are about, and no other
     Json report;
     std::string text;                   // for standard output, unless --json is given
     ExitCode code = ExitCode::done;     // what the command found, apart from `error`
