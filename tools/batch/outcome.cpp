@@ -16,6 +16,13 @@ void Reporter::finish(std::size_t place, Outcome outcome) {
     }
 }
 
+void Reporter::report_waiting() {
+    const std::lock_guard lock(mutex_);
+    for (; reported_ < waiting_.size(); ++reported_) {
+        if (waiting_[reported_]) report(*waiting_[reported_]);
+    }
+}
+
 void Reporter::report(const Outcome& outcome) {
     for (const FileWarning& warning : outcome.warnings) {
         const bool names_input = !outcome.is_joint && warning.file != outcome.input;

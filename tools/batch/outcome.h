@@ -51,6 +51,9 @@ public:
     // warnings on standard error and, with --json, one line on standard output. Any thread may call this.
     void finish(std::size_t place, Outcome outcome);
 
+    // Prints the outcomes that still wait for others, because the run stopped before those files.
+    void report_waiting();
+
     // True if standard output can no longer be written; the run may then stop.
     [[nodiscard]] bool is_abandoned() const { return is_abandoned_; }
 

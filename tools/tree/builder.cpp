@@ -274,6 +274,7 @@ ExitCode BuildRun::run() {
     host.begin();
     read_state();
     run_tasks();
+    if (is_full_) reporter_.report_waiting();
     ExitCode code = reporter_.exit_code();
     for (const std::string& folder : work_.unreadable) {
         console_.error(folder);
