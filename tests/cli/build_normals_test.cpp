@@ -110,8 +110,8 @@ TEST_F(BuildNormals, SaysWhichSettingOrFileHasChanged) {
         const Ran ran = build(options);
         EXPECT_EQ(ran.code, 0) << ran.err;
         for (const std::string& line : lines_of(ran.out)) {
-            auto json = nlohmann::json::parse(line);
-            if (json.contains("input")) lines[json["input"]] = std::move(json);
+            const auto json = nlohmann::json::parse(line);
+            if (json.contains("input")) lines[json["input"].get<std::string>()] = json;
         }
     };
     rebuild({});
@@ -132,7 +132,7 @@ TEST_F(BuildNormals, SaysWhichSettingOrFileHasChanged) {
     edit("{ mip = {} }", "{ mip = { fade = \"2,4\" } }");
     rebuild({"--dry-run"});
     EXPECT_EQ(lines["art/wall_h.png"]["why"],
-              "strength: 1 (default) to 0.5; fade: default to 2,4; tiling: 5 to 1,1 (default)");
+              "strength: default to 0.5; fade: default to 2,4; tiling: 5 to 1,1 (default)");
     edit("{ bake = { bumpiness = 4 } }", "{ bake = { bumpiness = 4 } }, { scale = { scale = 2 } }");
     rebuild({});
     EXPECT_NE(
