@@ -374,7 +374,7 @@ TEST_F(PreviewNormals, RefusesMisuse) {
             "the output height.png is the input height.png");
     refuses({"bricks.dds", "small.png.dds", "-o", "small.png.dds"}, "is the input");
     refuses({"missing.dds", "-o", "x.png"}, "missing.dds: no such file", 3);
-    refuses({"bricks.dds", "missing.dds", "-o", "x.png"}, "missing.dds: no such file", 3);
+    refuses({"bricks.dds", "missing.dds", "-o", "x.png", "--split"}, "missing.dds: no such file", 3);
     refuses({"height.png", "-o", "x.png"}, "height.png: ", 4);
 }
 

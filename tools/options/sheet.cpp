@@ -133,8 +133,9 @@ Result<Texture> SheetOptions::draw_frame(const std::vector<std::string>& names, 
                     panel.picture = std::move(*picture);
                     continue;
                 }
+                const bool names_another = !picture.error().file.empty();  // the mesh, which all maps share
                 const Error error = picture.error().of(names[k]);
-                if (!can_leave_out(error, maps.size())) return error;
+                if (names_another || !can_leave_out(error, maps.size())) return error;
                 maps[k] = error;
             }
             panel.note = maps[k].error().reason;
