@@ -2,6 +2,8 @@
 // blend-normals: adds detail normals to base normals.
 
 #include <algorithm>
+#include <cstdint>
+#include <memory>
 #include <optional>
 
 #include <tex/tex.h>
@@ -43,6 +45,7 @@ private:
     [[nodiscard]] std::optional<Step> step(cli::Job& job) override { return options(job); }
 
     BlendOptions blend_;
+    std::shared_ptr<SharedMaps> shared_;  // if several bases get the same details
     cli::LayerOptions layers_;
     cli::WrapOptions wrap_;
     cli::MipChainOptions mips_;
@@ -90,6 +93,8 @@ Result<void> BlendNormals::check(const std::vector<cli::Task>& tasks) {
     const std::size_t count = details_of(tasks.front()).size();
     if (count == 0) throw cli::UsageError("no detail: give BASE DETAIL... -o FILE, or --detail FILE");
     layers_.check(count);
+    constexpr std::int64_t kMostShared = std::int64_t{1} << 30;  // bytes
+    if (tasks.size() > 1) shared_ = share_maps(kMostShared);
     return {};
 }
 
@@ -97,6 +102,7 @@ BlendFileOptions BlendNormals::options(cli::Job& job) const {
     BlendFileOptions options;
     options.source = normals.options(job, {false, false, {}, {}, true});
     options.layers = layers_.layers(job, details_of(job.task), normals);
+    options.shared = job.shared_maps ? job.shared_maps : shared_;
     options.blend = blend_;
     options.blend.wrap_x = wrap_.x;
     options.blend.wrap_y = wrap_.y;

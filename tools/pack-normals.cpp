@@ -4,6 +4,7 @@
 #include <tex/tex.h>
 
 #include "batch/repack.h"
+#include "cli/usage_error.h"
 #include "options/mips.h"
 
 namespace {
@@ -19,17 +20,23 @@ private:
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] PackFileOptions options(cli::Job& job) const override;
 
+    bool normalize_ = false;
     cli::WrapOptions wrap_;
     cli::MipChainOptions mips_;
 };
 
 PackNormals::PackNormals(const cli::ProgramRow& row) : Repacker(row) {
     add_files("normal maps; - is standard input");
+    command.flag(normalize_, "--normalize", "make vectors unit also where that changes codes that could stay");
     output.add(command, cli::default_encodings(), "as in the input");
     output.add_engines(command);
     mips_.add(command, true, "keep");
     wrap_.add(command, "what lies beyond the border of levels that are built; two words set x and y separately");
     running.add(command);
+    command.check([this] {
+        if (normalize_ && normals.unpack.keep_length)
+            throw cli::UsageError("--normalize and --keep-length exclude each other");
+    });
     command.example("pack-normals bricks_n.png -o bricks.dds --mips all", "DXT5nm with all levels.");
     command.example("pack-normals bricks.dds -o bricks_bc5.ktx2 --format bc5", "Another encoding, the same levels.");
     command.example("pack-normals directx/*.png --out-dir opengl --format rgb8 --y-in down --y up",
@@ -47,6 +54,7 @@ PackFileOptions PackNormals::options(cli::Job& job) const {
     if (!mips_.keep && (mips_.levels || job.task.engine != nullptr))
         options.mip = mips_.options(mips_.levels_for(job.task), wrap_);
     options.max_side = mips_.mip.max_side;
+    options.keep_codes = !normalize_;
     return options;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // preview-normals: draws normal maps under a light, also on a mesh, and in false colours.
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,6 +11,7 @@
 
 #include "batch/name_pattern.h"
 #include "batch/repack.h"
+#include "cli/exit_code.h"
 #include "cli/usage_error.h"
 #include "options/scene.h"
 #include "options/sheet.h"
@@ -19,6 +21,10 @@ namespace {
 
 using namespace tex;
 
+bool can_show_any(const cli::SheetOptions::Maps& maps) {
+    return std::any_of(maps.begin(), maps.end(), [](const auto& map) { return map.has_value(); });
+}
+
 class PreviewNormals : public cli::NormalsConverter {
 public:
     explicit PreviewNormals(const cli::ProgramRow& row);
@@ -27,6 +33,8 @@ private:
     [[nodiscard]] cli::OutputRules rules() const override { return {Container::png, Container::png, true, sources()}; }
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] Result<void> process(cli::Job& job) override;
+
+    [[nodiscard]] static Result<void> leave_out(cli::Job& job, const cli::SheetOptions::Maps& maps);
 
     // The files besides the maps.
     [[nodiscard]] std::vector<std::string> sources() const;
@@ -90,6 +98,19 @@ Result<void> PreviewNormals::check(const std::vector<cli::Task>& tasks) {
     return mesh ? Result<void>() : mesh.error();
 }
 
+// Reports the maps that a sheet does without. If there are no others, returns the error of the last one.
+Result<void> PreviewNormals::leave_out(cli::Job& job, const cli::SheetOptions::Maps& maps) {
+    const bool is_empty = !can_show_any(maps);
+    for (const Result<cli::SampledMap>& map : maps) {
+        if (map) continue;
+        if (is_empty && &map == &maps.back()) return map.error();
+        job.console.error(map.error().message());
+        job.raise(cli::exit_code(map.error().code));
+        job.report["failed"].push_back(cli::error_json(map.error(), {}));
+    }
+    return {};
+}
+
 Result<void> PreviewNormals::process(cli::Job& job) {
     const std::vector<std::string> names = job.task.inputs();
     std::optional<cli::MeshSpace> mesh;
@@ -107,19 +128,21 @@ Result<void> PreviewNormals::process(cli::Job& job) {
                                     preview.wrap_y,
                                     with_heights,
                                     is_object ? &*mesh : nullptr};
-    std::vector<cli::SampledMap> maps;
+    cli::SheetOptions::Maps maps;
     for (const std::string& name : names) {
         const double share = static_cast<double>(maps.size() + 1) / static_cast<double>(names.size());
         auto map = cli::read_sampled_map(job, name, normals, sampling, job.until(0.4 * share));
-        if (!map) return map.error();
-        maps.push_back(std::move(*map));
+        if (!map && !sheet_.can_leave_out(map.error(), names.size())) return map.error();
+        maps.push_back(map ? std::move(map) : map.error().of(name));
     }
+    if (!can_show_any(maps)) return leave_out(job, maps);
     auto with = scene_.read(job, normals, job.until(0.5));
     if (!with) return with.error();
     const auto space = mesh ? std::optional<TangentSpace>(mesh->space()) : std::nullopt;
     with->mesh = space ? &*space : nullptr;
     const auto frames = sheet_.draw(names, maps, *with, job.until(0.95));
     if (!frames) return frames.error();
+    if (const auto left_out = leave_out(job, maps); !left_out) return left_out;
     const Texture& first = frames->front();
     const auto bytes = sheet_.is_animated()
                            ? encode_animation(*frames)

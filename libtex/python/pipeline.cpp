@@ -136,6 +136,7 @@ void each_field(RepackFields& o, F& f) {
     f("scale", o.file.scale);
     f("mip", o.file.mip);
     f("max_side", o.file.max_side);
+    f("keep_codes", o.file.keep_codes);
     f("pack", o.pack);
     f("write", o.file.write);
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <numeric>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "formats/png/apng.h"
@@ -20,12 +21,42 @@ using render::Canvas;
 
 constexpr std::size_t kPaletteSize = 256;  // of a PNG
 constexpr int kGap = 8;
+constexpr render::Code kEmptyCell{54, 57, 63};
 constexpr int kCaption = 14;  // height of a line of the caption, times the scale of the letters
 
 int columns_for(std::size_t count) {
     int columns = 1;
     while (static_cast<std::size_t>(columns) * static_cast<std::size_t>(columns) < count) ++columns;
     return columns;
+}
+
+// The size of empty cells.
+Extent largest_picture(const std::vector<Panel>& panels) {
+    constexpr Extent kIfThereIsNone{320, 320};
+    Extent largest{0, 0};
+    for (const Panel& panel : panels) {
+        if (panel.picture.levels.empty()) continue;
+        largest.width = std::max(largest.width, panel.picture.extent().width);
+        largest.height = std::max(largest.height, panel.picture.extent().height);
+    }
+    return largest.width > 0 ? largest : kIfThereIsNone;
+}
+
+// Writes words into a cell, in as many lines as it has room for.
+void draw_note(Canvas& canvas, int x, int y, Extent cell, int scale, std::string_view words) {
+    const int margin = 2 * kGap, advance = (render::kGlyphHeight + 4) * scale, width = cell.width - 2 * margin;
+    canvas.fill(x, y, cell, kEmptyCell);
+    std::string line;
+    for (int top = y + margin; !words.empty() && top + advance <= y + cell.height; top += advance) {
+        for (line.clear(); !words.empty();) {
+            const std::size_t end = std::min(words.find(' '), words.size());
+            const std::string longer = (line.empty() ? line : line + ' ') + std::string(words.substr(0, end));
+            if (!line.empty() && render::text_width(longer, scale) > width) break;
+            line = longer;
+            words.remove_prefix(std::min(end + 1, words.size()));
+        }
+        canvas.text(x + margin, top, scale, render::fitted(line, scale, width));
+    }
 }
 
 bool without_captions(const std::vector<Panel>& panels) {
@@ -87,9 +118,13 @@ Result<Texture> contact_sheet(const std::vector<Panel>& panels, int columns) {
         if (columns <= 0) columns = columns_for(panels.size());
         columns = std::min(columns, static_cast<int>(panels.size()));
         const int rows = (static_cast<int>(panels.size()) + columns - 1) / columns;
+        const Extent empty = largest_picture(panels);
+        const auto extent_of = [&](const Panel& panel) {
+            return panel.picture.levels.empty() ? empty : panel.picture.extent();
+        };
         std::vector<int> widths(static_cast<std::size_t>(columns)), heights(static_cast<std::size_t>(rows));
         for (std::size_t k = 0; k < panels.size(); ++k) {
-            const Extent extent = panels[k].picture.extent();
+            const Extent extent = extent_of(panels[k]);
             int& width = widths[k % static_cast<std::size_t>(columns)];
             int& height = heights[k / static_cast<std::size_t>(columns)];
             width = std::max(width, extent.width);
@@ -108,9 +143,13 @@ Result<Texture> contact_sheet(const std::vector<Panel>& panels, int columns) {
                 if (k >= panels.size()) break;
                 const Panel& panel = panels[k];
                 const int width = widths[static_cast<std::size_t>(column)];
-                canvas.draw(x, y, panel.picture.levels.front());
-                canvas.text(x, y + panel.picture.extent().height + 4 * scale, scale,
-                            render::fitted(panel.caption, scale, width));
+                const Extent extent = extent_of(panel);
+                if (panel.picture.levels.empty()) {
+                    draw_note(canvas, x, y, extent, scale, panel.note);
+                } else {
+                    canvas.draw(x, y, panel.picture.levels.front());
+                }
+                canvas.text(x, y + extent.height + 4 * scale, scale, render::fitted(panel.caption, scale, width));
                 x += width + kGap;
             }
             y += heights[static_cast<std::size_t>(row)] + caption + kGap;

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <cstring>
+#include <string>
+
 #include <gtest/gtest.h>
 #include <tex/tex.h>
 #include <nlohmann/json.hpp>
@@ -95,6 +98,40 @@ TEST_F(BlendNormals, OneDetailGoesOnManyBases) {
     EXPECT_TRUE(scratch_.read("out/base.dds") == scratch_.read("single.dds"));
     EXPECT_EQ(scratch_.read("d"),
               "out/base.dds: \\\n  base.exr \\\n  detail.exr\nout/other.dds: \\\n  other.exr \\\n  detail.exr\n");
+}
+
+// A detail is read and filtered once. One as large as the base, whose rows could be read in step, is no exception.
+TEST_F(BlendNormals, ManyBasesShareWhatIsReadOfTheirDetails) {
+    const Ran ready =
+        shell(scratch_,
+              "set -e; mkdir in; bake-normals bricks.png -o in/large.exr --bumpiness 2 --format half\n"
+              "mip-normals in/large.exr -o in/1.exr --max-size 64 --mips none --format half\n"
+              "for k in $(seq 2 12); do cp in/1.exr in/$k.exr; done\n"
+              "convert waves.png -resize '512x512!' big.png; convert waves.png -resize '16x16!' tiny.png\n"
+              "for k in big tiny; do bake-normals $k.png -o ${k}_n.png --bumpiness 4; done\n");
+    ASSERT_EQ(ready.code, 0) << ready.err;
+    // Calls of the system for each base after the first two.
+    const auto calls_each = [&](const std::string& detail) {
+        int counts[2] = {};
+        for (int k = 0; k < 2; ++k) {
+            scratch_.write("calls", std::string(sizeof(int), '\0'));
+            const Ran ran = shell(scratch_, std::string("rm -rf out; LD_PRELOAD=" TEX_BINARY_DIR "/faults.so ") +
+                                                "TEX_FAULT_COUNT=calls blend-normals " +
+                                                (k == 0 ? "in/[12].exr" : "in/[1-9].exr in/1?.exr") + " --detail " +
+                                                detail + " --out-dir out --threads 1 --no-sync --quiet");
+            EXPECT_EQ(ran.code, 0) << ran.err;
+            std::memcpy(&counts[k], scratch_.read("calls").data(), sizeof(int));
+        }
+        return (counts[1] - counts[0]) / 10.0;
+    };
+    EXPECT_EQ(calls_each("big_n.png"), calls_each("tiny_n.png"));
+    for (const std::string options : {"--tiling 2", "--tiling 1", "--tiling 0.5 --detail-wrap mirror", "--tiling 9"}) {
+        const std::string details = " --detail big_n.png --detail detail.exr --no-sync --quiet " + options;
+        const Ran ran = shell(scratch_, "set -e; rm -rf out; blend-normals in/*.exr --out-dir out" + details +
+                                            "\nfor k in 7 large; do blend-normals in/$k.exr -o one.exr" + details +
+                                            "; cmp one.exr out/$k.exr; done");
+        EXPECT_EQ(ran.code, 0) << options << ran.out << ran.err;
+    }
 }
 
 TEST_F(BlendNormals, WhatADetailSaysOfItsYCountsBeforeThatOfTheBase) {

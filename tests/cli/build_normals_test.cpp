@@ -6,6 +6,7 @@
 #include <map>
 #include <thread>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -33,8 +34,8 @@ TEST_F(BuildNormals, MakesWhatTheCommandsMakeOneAfterTheOther) {
 // A run of hours shows what it does: each line is printed when its texture is done, and a summary when the run ends.
 TEST_F(BuildNormals, JsonHasALineForEachTextureWhenItIsDoneAndASummary) {
     const auto last = [](const Ran& ran) { return nlohmann::json::parse(lines_of(ran.out).back()); };
-    EXPECT_EQ(last(build()), nlohmann::json::parse(R"({"made":3,"cached":0,"current":0,"failed":0,"removed":0,
-                                                       "interrupted":false})"));
+    EXPECT_EQ(last(build()), nlohmann::json::parse(R"({"made":3,"cached":0,"current":0,"failed":0,"untried":0,
+                                                       "removed":0,"interrupted":false})"));
     scratch_.write("art/wall_h.png", "damaged");
     const auto summary = last(build());
     EXPECT_EQ(summary["current"], 2);
@@ -100,6 +101,76 @@ TEST_F(BuildNormals, AnEditOfOneRuleMakesItsMatches) {
     ASSERT_EQ(build().code, 0);
     EXPECT_TRUE(scratch_.has("out/art/wall_h.exr"));
     EXPECT_EQ(fs::last_write_time(scratch_.path("out/art/wall_n.dds")), before);
+}
+
+TEST_F(BuildNormals, SaysWhichSettingOrFileHasChanged) {
+    std::map<std::string, nlohmann::json> lines;
+    const auto rebuild = [&](const std::vector<std::string>& options) {
+        lines.clear();
+        const Ran ran = build(options);
+        EXPECT_EQ(ran.code, 0) << ran.err;
+        for (const std::string& line : lines_of(ran.out)) {
+            const auto json = nlohmann::json::parse(line);
+            if (json.contains("input")) lines[json["input"].get<std::string>()] = json;
+        }
+    };
+    rebuild({});
+    EXPECT_EQ(lines["art/wall_h.png"]["why"], "is new");
+    EXPECT_FALSE(lines["art/wall_h.png"].contains("changes"));
+    std::string manifest = kManifest;
+    const auto edit = [&](const std::string& from, const std::string& to) {
+        manifest.replace(manifest.find(from), from.size(), to);
+        scratch_.write("normals.toml", manifest);
+    };
+    edit("tiling = 3", "tiling = 5");
+    rebuild({});
+    EXPECT_EQ(lines["art/wall_h.png"]["why"], "tiling: 3 to 5");
+    EXPECT_EQ(lines["art/wall_h.png"]["changes"],
+              nlohmann::json::parse(R"([{"setting":"blend tiling","from":"3","to":"5"}])"));
+    // An option that comes, one that goes, and one more step.
+    edit("tiling = 5", "strength = 0.5");
+    edit("{ mip = {} }", "{ mip = { fade = \"2,4\" } }");
+    rebuild({"--dry-run"});
+    EXPECT_EQ(lines["art/wall_h.png"]["why"],
+              "strength: default to 0.5; fade: default to 2,4; tiling: 5 to 1,1 (default)");
+    edit("{ bake = { bumpiness = 4 } }", "{ bake = { bumpiness = 4 } }, { scale = { scale = 2 } }");
+    rebuild({});
+    EXPECT_NE(
+        lines["art/wall_h.png"]["why"].get<std::string>().find("steps: bake, blend, mip to bake, scale, blend, mip"),
+        std::string::npos);
+    // A file that many textures read, and an input.
+    fs::remove(scratch_.path("shared/grain.png"));
+    scratch_.add_sample("hemisphere.png", "shared/grain.png");
+    rebuild({});
+    EXPECT_EQ(lines["shared/grain.png"]["why"], "shared/grain.png changed");
+    EXPECT_EQ(lines["art/wall_h.png"]["why"], "out/shared/grain.dds changed");
+    EXPECT_EQ(lines["art/wall_h.png"]["changes"], nlohmann::json::parse(R"([{"file":"out/shared/grain.dds"}])"));
+}
+
+TEST_F(BuildNormals, AFullDiskIsReportedOnce) {
+    for (int k = 0; k < 12; ++k) scratch_.add_sample("ramp.png", fmt::format("art/more{}_h.png", k));
+    Setting setting;
+    setting.environment = {"LD_PRELOAD=" TEX_BINARY_DIR "/faults.so", "TEX_FAULT_FULL=3"};
+    for (const char* output : {"--json", "--threads=4"}) {
+        fs::remove_all(scratch_.path("out"));
+        fs::remove(scratch_.path(".normals.toml.state"));
+        const Ran ran = run(scratch_, "build-normals", {"--no-sync", output}, setting);
+        EXPECT_EQ(ran.code, 3);
+        std::vector<std::string> errors;
+        for (const std::string& line : lines_of(ran.err)) {
+            if (line.find("error: ") != std::string::npos) errors.push_back(line);
+        }
+        ASSERT_EQ(errors.size(), 2u) << ran.err;
+        EXPECT_NE(errors[0].find("no space left on the disk"), std::string::npos);
+        EXPECT_NE(errors[1].find("no space is left, so the run stops here; "), std::string::npos);
+        EXPECT_NE(errors[1].find(" of 15 files are done"), std::string::npos);
+        if (std::string_view(output) != "--json") continue;
+        const auto summary = nlohmann::json::parse(lines_of(ran.out).back());
+        EXPECT_GT(summary["untried"], 5);
+        EXPECT_EQ(summary["untried"].get<int>() + summary["made"].get<int>() + summary["failed"].get<int>(), 15);
+    }
+    ASSERT_EQ(build().code, 0);
+    EXPECT_EQ(outputs().size(), 1u + 2u * 14u);
 }
 
 TEST_F(BuildNormals, LostAndChangedOutputsAreMadeAgain) {
@@ -194,6 +265,10 @@ TEST_F(BuildNormals, MistakesAreFoundBeforeAnythingIsWritten) {
          "two outputs of art/wall_h.png are one file, art/wall_h.dds; give each a name"},
         {"[[rule]]\nmatch = \"art/*.png\"\nsteps = [ { bake = {} }, { blend = { detail = \"art/wall_h.dds\" } } ]\n",
          "line 2, column 1: rules need each other's outputs: rule 1 needs 1"},
+        {rule + "out-dir = \"../x\"\n",
+         "line 5, column 11: out-dir: ../x leads out of the folder of the manifest; --root sets another folder"},
+        {"[defaults]\nout-dir = \"a/../../x\"\n" + rule, "line 3, column 11: out-dir: a/../../x leads out"},
+        {rule + "name = \"../{stem}.dds\"\n", "name: ../name.dds leads out of the folder of the manifest"},
     };
     for (const auto& mistake : mistakes) {
         scratch_.write("normals.toml", "version = 1\n" + mistake.text);
@@ -202,6 +277,7 @@ TEST_F(BuildNormals, MistakesAreFoundBeforeAnythingIsWritten) {
         EXPECT_EQ(ran.code, 2);
         EXPECT_NE(ran.err.find(std::string("build-normals: error: normals.toml: ")), std::string::npos) << ran.err;
         EXPECT_NE(ran.err.find(mistake.error), std::string::npos) << ran.err;
+        EXPECT_EQ(lines_of(ran.err).size(), 1u) << ran.err;
         EXPECT_EQ(scratch_.list(), before);
     }
     EXPECT_EQ(build({"none.toml"}).code, 3);
@@ -218,6 +294,15 @@ TEST_F(BuildNormals, ExplainPrintsTheRuleAndTheCommandLines) {
     EXPECT_EQ(run(scratch_, "build-normals", {"--explain", "out/art/wall_n.dds"}).out, ran.out);
     EXPECT_EQ(run(scratch_, "build-normals", {"--explain", "other.png"}).code, 2);
     EXPECT_FALSE(scratch_.has("out"));
+    // A file that is made by one rule and read by another; one that is only read.
+    const std::string grain = run(scratch_, "build-normals", {"--explain", "out/shared/grain.dds"}).out;
+    EXPECT_TRUE(grain.starts_with("shared/grain.png: rule 1 (line 4)")) << grain;
+    const std::string reader = ": read by rule 2 (line 7) for 2 textures, match art/**/*_h.{png,tif}\n";
+    EXPECT_TRUE(grain.ends_with("\nout/shared/grain.dds" + reader)) << grain;
+    std::string manifest = kManifest;
+    manifest.replace(manifest.find("out/shared/grain.dds"), 20, "./mask.png");
+    scratch_.write("normals.toml", manifest);
+    EXPECT_EQ(run(scratch_, "build-normals", {"--explain", "mask.png"}).out, "mask.png" + reader);
 }
 
 TEST_F(BuildNormals, PathsAreRelativeToTheManifest) {

@@ -21,6 +21,8 @@ BuildState some_state() {
     state.memos["a\tb\n%.png"] = memo;
     state.memos["\xff'.png"] = memo;
     state.outputs["out/a.dds"] = {"a\nb.png", digest_of("s"), digest_of("i"), {{"out/a\t.dds", digest_of("o")}}};
+    state.outputs["out/b.dds"] = {"b", digest_of("s"), digest_of("i"), {}, {{"b\n", digest_of("b")}}};
+    state.settings[digest_of("s")] = {{"blend tiling", "8\t%"}, {"bake no-data", ""}};
     state.outputs["none"] = {"x", {}, {}, {}};
     return state;
 }
@@ -31,6 +33,7 @@ TEST(BuildState, SurvivesTheFile) {
     const BuildState state = some_state();
     const BuildState read = BuildState::parse(state.text());
     EXPECT_EQ(read.outputs, state.outputs);
+    EXPECT_EQ(read.settings, state.settings);
     ASSERT_EQ(read.memos.size(), 2u);
     EXPECT_EQ(read.memos.at("a\tb\n%.png").stamp, state.memos.at("a\tb\n%.png").stamp);
     EXPECT_EQ(read.memos.at("\xff'.png").digest, digest_of("a"));

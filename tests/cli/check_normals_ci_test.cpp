@@ -64,7 +64,12 @@ TEST_F(CheckNormalsCi, HookRefusesWhatIsStaged) {
     bake("art/a_n.dds", "down");
     const Ran refused = shell(scratch_, "git add art && git commit -qm wrong");
     EXPECT_NE(refused.code, 0);
-    EXPECT_NE((refused.out + refused.err).find("N401"), std::string::npos) << refused.out << refused.err;
+    const std::string said = "\n" + refused.out + refused.err;
+    EXPECT_NE(said.find("N401"), std::string::npos) << said;
+    // The names that the user knows, in messages and in commands.
+    EXPECT_EQ(said.find("/tmp"), std::string::npos) << said;
+    EXPECT_NE(said.find("\nart/a_n.dds"), std::string::npos) << said;
+    EXPECT_NE(said.find("pack-normals art/a_n.dds "), std::string::npos) << said;
     EXPECT_EQ(shell(scratch_, "git reset -q && echo text > readme && git add readme && git commit -qm 'no maps'").code,
               0);
 }

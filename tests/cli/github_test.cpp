@@ -32,7 +32,9 @@ TEST_F(Github, HasALineForEachFinding) {
         << ran.out;
     EXPECT_TRUE(lines[1].starts_with("::error file=art/up.dds,title=N401 wrong-y::Green points the other way "))
         << ran.out;
-    EXPECT_NE(lines[1].find("%0AFix: pack-normals ./art/up.dds --keep-length "), std::string::npos) << ran.out;
+    EXPECT_NE(lines[1].find("%0AFix: mip-normals ./art/up.dds --keep-length --mips 3 --y-in up --y down "),
+              std::string::npos)
+        << ran.out;
     EXPECT_EQ(lines[2], "1 file: 1 error, 1 warning, 0 notes");
     EXPECT_NE(check("art/up.dds --require y=down --severity N401=note").out.find("::notice file=art/up.dds,"),
               std::string::npos);

@@ -3,6 +3,7 @@
 // programs.
 
 #include <csignal>
+#include <regex>
 #include <string>
 #include <thread>
 #include <vector>
@@ -70,7 +71,9 @@ protected:
     [[nodiscard]] std::string result_of(const Line& line, const std::string& folder, int code, const std::string& out,
                                         const std::string& err) const {
         std::string text = fmt::format("{}\n{}\n{}", code, without_seconds(out), err);
-        for (const std::string& name : line.outputs) text += "\n" + scratch_.read(folder + "/" + name);
+        for (const std::string& name : line.outputs) {
+            text += "\n" + std::regex_replace(scratch_.read(folder + "/" + name), std::regex("time=\"[0-9.]+\""), "");
+        }
         return replaced(text, scratch_.path(folder), "OUT");
     }
 

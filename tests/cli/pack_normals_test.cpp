@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
 #include <tex/tex.h>
 #include <nlohmann/json.hpp>
@@ -129,6 +133,83 @@ TEST_F(PackNormals, FlippingTwiceGivesTheSameWhereLengthsAreKept) {
     does("pack-normals", {"down.png", "-o", "again.png", "--y-in", "down", "--y", "up", "--keep-length"});
     EXPECT_FALSE(scratch_.read("down.png") == scratch_.read("up.png"));
     EXPECT_TRUE(scratch_.read("up.png") == scratch_.read("again.png"));
+}
+
+// The texels of a picture as ImageMagick reads them: R, G and B in turn.
+std::vector<std::uint16_t> codes_of(const Scratch& scratch, const std::string& name, int bits) {
+    const Ran ran = shell(scratch, "convert '" + name + "' -depth " + std::to_string(bits) + " -endian LSB rgb:codes");
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    const std::string bytes = scratch.read("codes");
+    std::vector<std::uint16_t> codes;
+    for (std::size_t k = 0; k < bytes.size(); k += bits == 8 ? 1 : 2) {
+        const auto byte = [&](std::size_t at) { return static_cast<unsigned>(static_cast<unsigned char>(bytes[at])); };
+        codes.push_back(static_cast<std::uint16_t>(bits == 8 ? byte(k) : byte(k) + 256 * byte(k + 1)));
+    }
+    return codes;
+}
+
+// A shader flips green by 1 - g, and so does every converter from DirectX to OpenGL.
+TEST_F(PackNormals, FlippingGreenKeepsAllOtherCodes) {
+    for (const int bits : {8, 16}) {
+        // Every code of green, and vectors of any length.
+        Texture texture;
+        texture.format = bits == 8 ? Format::rgb8_unorm : Format::rgb16_unorm;
+        texture.levels.push_back({{256, 256}, {}});
+        for (unsigned k = 0; k < 65536; ++k) {
+            for (const unsigned code : {k * 40503 >> 3, k, k * 25173 >> 5}) {
+                if (bits == 16) texture.levels.front().bytes.push_back(static_cast<std::byte>(code));
+                texture.levels.front().bytes.push_back(static_cast<std::byte>(bits == 16 ? code >> 8 : code));
+            }
+        }
+        ASSERT_TRUE(write_texture(scratch_.path("a.png"), texture));
+        const unsigned top = bits == 8 ? 255 : 65535;
+        const auto before = codes_of(scratch_, "a.png", bits);
+        const std::string format = bits == 8 ? "rgb8" : "rgb16";
+        for (const std::string way : {"a.png -o b.png", "a.png -o b.dds", "b.dds -o c.png --y-in up"}) {
+            SCOPED_TRACE(way);
+            const bool is_back = way.starts_with("b");
+            const Ran ran = shell(scratch_, "pack-normals " + way + (is_back ? "" : " --y-in down") +
+                                                (is_back ? " --y down" : " --y up") + " --no-sync --format " + format +
+                                                (is_back ? " && mv c.png b.png" : ""));
+            ASSERT_EQ(ran.code, 0) << ran.err;
+            if (way.ends_with("dds")) continue;
+            auto expected = before;
+            for (std::size_t k = 1; k < expected.size() && !is_back; k += 3)
+                expected[k] = static_cast<std::uint16_t>(top - expected[k]);
+            EXPECT_TRUE(codes_of(scratch_, "b.png", bits) == expected);
+        }
+        does("pack-normals", {"a.png", "-o", "unit.png", "--y-in", "down", "--y", "up", "--normalize"});
+        EXPECT_FALSE(codes_of(scratch_, "unit.png", bits) == before);
+    }
+    // Only where the codes can stay: blocks, other depths and built levels get unit vectors, as with --normalize.
+    for (const std::string options :
+         {"-o x.dds --format dxt5nm", "-o x.dds --format rg16", "-o x.exr", "-o x.dds --format rgb16 --mips all"}) {
+        const Ran ran = shell(scratch_, "pack-normals a.png --no-sync " + options +
+                                            " && mv x.* 1 && pack-normals a.png --normalize --no-sync " + options +
+                                            " && cmp x.* 1 && rm x.*");
+        EXPECT_EQ(ran.code, 0) << options << ran.out << ran.err;
+    }
+    const Ran both = go("pack-normals", {"a.png", "-o", "x.png", "--normalize", "--keep-length"});
+    EXPECT_EQ(both.code, 2);
+}
+
+// The outputs of a rule come from one reading, but each has the bytes that it has alone.
+TEST_F(PackNormals, OutputsThatAreMadeTogetherKeepTheirOwnCodes) {
+    ASSERT_EQ(shell(scratch_,
+                    "convert -size 64x64 -seed 1 xc: +noise Random -type TrueColor -depth 8 -strip a_n.png && "
+                    "printf 'version = 1\n[[rule]]\nmatch = \"a_n.png\"\nsteps = [ { pack = {} } ]\n"
+                    "outputs = [ { name = \"o/rgb.png\", y = \"down\" }, { name = \"o/bc5.dds\", format = "
+                    "\"bc5\" }, { name = \"o/f.exr\" } ]\n' > normals.toml && build-normals --no-sync")
+                  .code,
+              0);
+    does("pack-normals", {"a_n.png", "-o", "rgb.png", "--y", "down"});
+    does("pack-normals", {"a_n.png", "-o", "bc5.dds", "--format", "bc5"});
+    does("pack-normals", {"a_n.png", "-o", "f.exr"});
+    for (const std::string name : {"rgb.png", "bc5.dds", "f.exr"})
+        EXPECT_TRUE(scratch_.read("o/" + name) == scratch_.read(name)) << name;
+    auto codes = codes_of(scratch_, "a_n.png", 8);
+    for (std::size_t k = 1; k < codes.size(); k += 3) codes[k] = static_cast<std::uint16_t>(255 - codes[k]);
+    EXPECT_TRUE(codes_of(scratch_, "o/rgb.png", 8) == codes);
 }
 
 TEST_F(PackNormals, LayoutsWithoutAMarkAreToldFromTheirTexels) {

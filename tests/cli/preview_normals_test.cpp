@@ -85,6 +85,47 @@ TEST_F(PreviewNormals, PutsMapsInRowsOfASheet) {
     EXPECT_EQ(extent_of("bare.png"), (Extent{50 + 16, 2 * 50 + 24}));
 }
 
+TEST_F(PreviewNormals, ASheetDoesWithoutADamagedMap) {
+    scratch_.write("cut.dds", scratch_.read("bricks.dds").substr(0, 3000));
+    const Ran ran = preview({"bricks.dds", "cut.dds", "none.png", "small.png.dds", "-o", "sheet.png", "--show",
+                             "lit,normals", "--size", "50", "--json"});
+    EXPECT_EQ(ran.code, 4) << "the highest";
+    const auto lines = lines_of(ran.err);
+    ASSERT_EQ(lines.size(), 2u) << ran.err;
+    EXPECT_TRUE(lines[0].starts_with("preview-normals: error: cut.dds: truncated")) << ran.err;
+    EXPECT_EQ(lines[1], "preview-normals: error: none.png: no such file or directory");
+    EXPECT_EQ(extent_of("sheet.png"), (Extent{2 * 50 + 3 * 8, 4 * (50 + 14) + 5 * 8}));
+    const auto report = nlohmann::json::parse(ran.out);
+    EXPECT_EQ(report["failed"][0]["file"], "cut.dds");
+    EXPECT_EQ(report["failed"][1]["code"], "io");
+    EXPECT_EQ(report["maps"].size(), 4u);
+    // The other maps are shown as without it.
+    ASSERT_EQ(preview({"bricks.dds", "small.png.dds", "-o", "two.png", "--show", "lit,normals", "--size", "50"}).code,
+              0);
+    const Ran same = shell(scratch_,
+                           "for y in 'sheet 0' 'two 0' 'sheet 216' 'two 72'; do set -- $y;"
+                           "convert $1.png -crop 124x72+0+$2 +repage rgb:- | sha256sum; done | uniq | wc -l");
+    EXPECT_EQ(same.out, "2\n") << same.err;
+    // Without any map there is no sheet; two halves need both.
+    const Ran none = preview({"cut.dds", "none.png", "-o", "no.png"});
+    EXPECT_EQ(none.code, 4);
+    EXPECT_EQ(lines_of(none.err).size(), 2u) << none.err;
+    EXPECT_FALSE(scratch_.has("no.png"));
+    EXPECT_EQ(preview({"bricks.dds", "cut.dds", "-o", "no.png", "--split"}).code, 4);
+    EXPECT_FALSE(scratch_.has("no.png"));
+}
+
+TEST_F(PreviewNormals, WarningsOnASheetNameTheirFile) {
+    bake("height.png", "down.png", "down");
+    bake("height.png", "up.png");
+    remove_marks(scratch_, "down.png");
+    remove_marks(scratch_, "up.png");
+    const Ran ran = preview({"up.png", "down.png", "-o", "sheet.png", "--size", "50"});
+    EXPECT_EQ(ran.code, 0);
+    EXPECT_TRUE(ran.err.starts_with("preview-normals: warning: down.png: green is taken to point up")) << ran.err;
+    EXPECT_EQ(lines_of(ran.err).size(), 1u) << ran.err;
+}
+
 TEST_F(PreviewNormals, MakesAPictureOfEachMapInAFolder) {
     const Ran ran = preview({"bricks.dds", "small.png.dds", "--out-dir", "out", "--size", "40", "--depfile", "d"});
     ASSERT_EQ(ran.code, 0) << ran.err;
@@ -143,7 +184,7 @@ TEST_F(PreviewNormals, ReadsMapsAsTheOtherCommandsDo) {
     EXPECT_EQ(bytes({"xy.dds", "--bc5-order", "xy"}), xy);
     EXPECT_NE(bytes({"xy.dds", "--bc5-order", "yx"}), xy);
     bake_as("n.exr", "half");
-    EXPECT_NE(bytes({"n.exr", "--range", "unsigned"}), bytes({"n.exr"}));
+    EXPECT_NE(bytes({"n.exr", "--range", "unsigned"}, "as in object space"), bytes({"n.exr"}));
     bake_as("rgb.png", "rgb8");
     EXPECT_NE(bytes({"rgb.png", "--snap-flat", "--show", "tilt"}), bytes({"rgb.png", "--show", "tilt"}));
     // A detail is read in the same way.
@@ -333,7 +374,7 @@ TEST_F(PreviewNormals, RefusesMisuse) {
             "the output height.png is the input height.png");
     refuses({"bricks.dds", "small.png.dds", "-o", "small.png.dds"}, "is the input");
     refuses({"missing.dds", "-o", "x.png"}, "missing.dds: no such file", 3);
-    refuses({"bricks.dds", "missing.dds", "-o", "x.png"}, "missing.dds: no such file", 3);
+    refuses({"bricks.dds", "missing.dds", "-o", "x.png", "--split"}, "missing.dds: no such file", 3);
     refuses({"height.png", "-o", "x.png"}, "height.png: ", 4);
 }
 

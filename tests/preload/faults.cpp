@@ -8,6 +8,7 @@
 //     TEX_FAULT_KILL=1         SIGKILL instead
 //     TEX_FAULT_SHORTEN=FILE   instead, FILE loses its second half before the call
 //     TEX_FAULT_REPLACE=FILE   instead, the file TEX_FAULT_BY takes the name of FILE before the call
+//     TEX_FAULT_FULL=N         the disk is full after N calls of pwrite(): all others find no space
 //     TEX_FAULT_NO_TMPFILE=1   the file system has no nameless files
 //     TEX_FAULT_THREADS=N      only the first N threads can be started
 //
@@ -38,6 +39,7 @@ struct Plan {
     bool kill = false;
     bool no_tmpfile = false;
     int threads = -1;  // any number
+    int full = -1;     // never
     const char* shorten = nullptr;
     const char* replace = nullptr;
     const char* by = nullptr;
@@ -70,6 +72,7 @@ Plan make_plan() {
     plan.kill = number("TEX_FAULT_KILL", 0) != 0;
     plan.no_tmpfile = number("TEX_FAULT_NO_TMPFILE", 0) != 0;
     plan.threads = number("TEX_FAULT_THREADS", -1);
+    plan.full = number("TEX_FAULT_FULL", -1);
     plan.shorten = getenv("TEX_FAULT_SHORTEN");
     plan.replace = getenv("TEX_FAULT_REPLACE");
     plan.by = getenv("TEX_FAULT_BY");
@@ -123,6 +126,15 @@ int open_file(int folder, const char* path, int flags, mode_t mode) {
     return static_cast<int>(call(SYS_openat, folder, path, flags, mode));
 }
 
+long write_at(int fd, const void* data, size_t count, off_t at) {
+    static std::atomic<int> written{0};
+    if (plan().full >= 0 && written++ >= plan().full) {
+        errno = ENOSPC;
+        return -1;
+    }
+    return call(SYS_pwrite64, fd, data, count, at);
+}
+
 mode_t mode_of(int flags, va_list list) {
     return (flags & O_CREAT) != 0 || (flags & __O_TMPFILE) == __O_TMPFILE ? va_arg(list, mode_t) : 0;
 }
@@ -173,12 +185,8 @@ TEX_CALL(ssize_t, __pread64_chk, int fd, void* data, size_t count, off_t at, siz
     return call(SYS_pread64, fd, data, count, at);
 }
 TEX_CALL(ssize_t, write, int fd, const void* data, size_t count) { return call(SYS_write, fd, data, count); }
-TEX_CALL(ssize_t, pwrite, int fd, const void* data, size_t count, off_t at) {
-    return call(SYS_pwrite64, fd, data, count, at);
-}
-TEX_CALL(ssize_t, pwrite64, int fd, const void* data, size_t count, off_t at) {
-    return call(SYS_pwrite64, fd, data, count, at);
-}
+TEX_CALL(ssize_t, pwrite, int fd, const void* data, size_t count, off_t at) { return write_at(fd, data, count, at); }
+TEX_CALL(ssize_t, pwrite64, int fd, const void* data, size_t count, off_t at) { return write_at(fd, data, count, at); }
 
 TEX_CALL(int, ftruncate, int fd, off_t size) { return static_cast<int>(call(SYS_ftruncate, fd, size)); }
 TEX_CALL(int, ftruncate64, int fd, off_t size) { return static_cast<int>(call(SYS_ftruncate, fd, size)); }

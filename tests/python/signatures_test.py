@@ -32,6 +32,7 @@ NOT_BOUND = {
     "reconstruct_z": "a formula for one texel, for numpy: sqrt(1 - clip(x * x + y * y, 0, 1))",
     "reconstruct_z_approximate": "the same, for comparison",
     "remove_unfinished_files": "for handlers of signals, which Python calls later",
+    "share_maps": "run('blend-normals', ...) shares details between many bases",
     "stretch_heights": "for numpy: (heights - low) / (high - low)",
     "to_string": "layouts are words",
     "validate": "check() validates its arguments",

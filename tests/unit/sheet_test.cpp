@@ -32,6 +32,27 @@ TEST(ContactSheet, PutsPanelsInRowsOfEqualColumns) {
     EXPECT_EQ(none.error().code, ErrorCode::bad_option);
 }
 
+TEST(ContactSheet, AnEmptyCellHoldsItsNote) {
+    std::vector<Panel> panels = {{plain_picture({90, 60}, {1, 1, 1}), "good"}, {{}, "bad", "is damaged at its end"}};
+    const auto sheet = contact_sheet(panels, 2);
+    ASSERT_TRUE(sheet);
+    EXPECT_EQ(sheet->extent(), (Extent{2 * 90 + 24, 60 + 14 + 16}));
+    const auto letters = [](const Texture& picture, int top, int bottom) {
+        int count = 0;
+        for (int y = top; y < bottom; ++y) {
+            for (int x = 106; x < 196; ++x) count += code_at(picture, x, y) == kInk ? 1 : 0;
+        }
+        return count;
+    };
+    EXPECT_GT(letters(*sheet, 8, 68), 50) << "the note, in several lines";
+    panels[1].note.clear();
+    EXPECT_EQ(letters(*contact_sheet(panels, 2), 8, 68), 0);
+    EXPECT_EQ(contact_sheet({{{}, "", "nothing"}})->extent(), (Extent{320 + 16, 320 + 16}));
+    panels[0].picture = plain_picture({4, 4}, {1, 1, 1});
+    panels[1].note = "a cell that has no room";
+    EXPECT_TRUE(contact_sheet(panels, 2));
+}
+
 TEST(EncodePicture, TakesTheFewestChannels) {
     const auto color_type = [](const std::vector<std::byte>& png) { return std::to_integer<int>(png[25]); };
     Texture picture = plain_picture({20, 10}, {7, 7, 7});

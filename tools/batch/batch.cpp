@@ -45,7 +45,7 @@ public:
         const std::size_t most = std::min({tasks_.size(), kMostFilesAtOnce, allowed});
         const int workers = std::min(threads, static_cast<int>(most));
         const auto work = [this](int) {
-            for (std::size_t k = next_++; k < tasks_.size() && !stopped(); k = next_++)
+            for (std::size_t k = next_++; k < tasks_.size() && !stopped() && !is_full_; k = next_++)
                 reporter_.finish(k, outcome_of(tasks_[k]));
         };
         if (workers <= 1) {
@@ -61,6 +61,7 @@ public:
     }
 
     [[nodiscard]] const Reporter& reporter() const { return reporter_; }
+    [[nodiscard]] bool is_full() const { return is_full_; }
 
 private:
     [[nodiscard]] bool stopped() const { return !console_.host().interruption().empty() || reporter_.is_abandoned(); }
@@ -103,9 +104,11 @@ private:
         outcome.outputs = job.outputs();
         outcome.prerequisites = task.prerequisites();
         outcome.has_levels = has_level(task.output);
+        outcome.is_joint = !task.joined.empty();
         // The library cannot tell a full disk from a reader that closed the pipe. It is not an error if a reader closes
         // the pipe because it has read enough.
         outcome.is_silent = outcome.error && planned.output == "-" && console_.host().out_is_abandoned();
+        if (outcome.error && outcome.error->no_space && is_full_.exchange(true)) outcome.is_silent = true;
         done_ += 1.0 - counted;
         ++finished_;
         return outcome;
@@ -147,6 +150,7 @@ private:
     std::atomic<std::size_t> next_{0};
     std::atomic<std::size_t> finished_{0};
     std::atomic<double> done_{0.0};
+    std::atomic<bool> is_full_{false};  // an output found no space; all others would fail in the same way
 };
 
 ExitCode code_of(const Result<void>& result, Console& console) {
@@ -197,6 +201,10 @@ ExitCode Batch::run_tasks(const std::vector<Task>& tasks, Console& console) {
         console.error(fmt::format("interrupted by {}; {} of {} files are done", by, reporter.done(), tasks.size()));
         host.end_interrupted();
         return ExitCode::io;
+    }
+    if (runner.is_full() && tasks.size() > 1) {
+        console.error(fmt::format("no space is left, so the run stops here; {} of {} files are done", reporter.done(),
+                                  tasks.size()));
     }
     ExitCode code = std::max(finish(console), reporter.exit_code());
     if (!files.depfile.empty()) {

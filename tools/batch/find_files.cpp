@@ -91,7 +91,11 @@ std::vector<FoundFile> find_files(const std::string& root, const FileSearch& sea
 
 bool is_pattern(const std::string& name) {
     struct stat status {};
-    return name.find_first_of(kWildcards) != std::string::npos && lstat(name.c_str(), &status) != 0;
+    const std::size_t first = name.find_first_of(kWildcards);
+    if (first == std::string::npos || lstat(name.c_str(), &status) == 0) return false;
+    // A bracket without its end is a letter, as in a shell.
+    return name[first] == '*' || name[first] == '?' ||
+           name.find(name[first] == '[' ? ']' : '}', first) != std::string::npos;
 }
 
 Result<std::vector<std::string>> files_matching(const std::string& pattern) {

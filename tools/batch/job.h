@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <tex/container.h>
 #include <tex/execution.h>
+#include <tex/pipeline.h>
 
 #include "batch/task.h"
 #include "cli/console.h"
@@ -31,7 +33,8 @@ public:
     Console& console;
     const ReadOptions& read_options;
     const WriteOptions& write_options;
-    Json report;  // what --json prints about this file, besides input and output
+    Json report;                              // what --json prints about this file, besides input and output
+    std::shared_ptr<SharedMaps> shared_maps;  // detail maps that many jobs blend; null: each job reads its own
 
     // The Execution for the next verb. The verb's progress counts as the job's progress from the end of the previous
     // step to `fraction`.

@@ -16,10 +16,18 @@ void Reporter::finish(std::size_t place, Outcome outcome) {
     }
 }
 
+void Reporter::report_waiting() {
+    const std::lock_guard lock(mutex_);
+    for (; reported_ < waiting_.size(); ++reported_) {
+        if (waiting_[reported_]) report(*waiting_[reported_]);
+    }
+}
+
 void Reporter::report(const Outcome& outcome) {
     for (const FileWarning& warning : outcome.warnings) {
-        const std::string prefix = warning.file == outcome.input ? "" : warning.file + ": ";
-        console_.warning(fmt::format("{}: {}{}", outcome.input, prefix, warning.message));
+        const bool names_input = !outcome.is_joint && warning.file != outcome.input;
+        const std::string prefix = names_input ? outcome.input + ": " : "";
+        console_.warning(fmt::format("{}{}: {}", prefix, warning.file, warning.message));
     }
     if (outcome.error) {
         if (outcome.error->code == ErrorCode::cancelled) return;

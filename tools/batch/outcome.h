@@ -28,6 +28,7 @@ struct Outcome {  // NOLINT(bugprone-exception-escape): the tool follows the noe
     bool is_bug = false;      // the error is a bug in the program
     bool is_silent = false;   // no message is printed for the error
     bool has_levels = false;  // each level has its own output
+    bool is_joint = false;    // `input` is one of several: warnings name the file that they are about, and no other
     Json report;
     std::string text;                   // for standard output, unless --json is given
     ExitCode code = ExitCode::done;     // what the command found, apart from `error`
@@ -49,6 +50,9 @@ public:
     // Takes the outcome of the file at `place`. Prints it and all later outcomes that were waiting for it: errors and
     // warnings on standard error and, with --json, one line on standard output. Any thread may call this.
     void finish(std::size_t place, Outcome outcome);
+
+    // Prints the outcomes that still wait for others, because the run stopped before those files.
+    void report_waiting();
 
     // True if standard output can no longer be written; the run may then stop.
     [[nodiscard]] bool is_abandoned() const { return is_abandoned_; }

@@ -51,7 +51,8 @@ Result<void> create_folders_of(const std::string& file) {
 }
 
 Error no_folder_error(const std::string& folder, const std::error_code& error) {
-    return {ErrorCode::io, folder, "cannot create this folder: " + system_reason(error.value())};
+    return {ErrorCode::io, folder, "cannot create this folder: " + system_reason(error.value()),
+            is_no_space(error.value())};
 }
 
 std::optional<std::string> path_below(const std::string& folder, const std::string& path) {

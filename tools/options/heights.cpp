@@ -139,13 +139,13 @@ void HeightGroup::add(Command& command) {
                    });
 }
 
-void note_deband(Job& job, const DebandReport& report, Deband when) {
+void note_deband(Job& job, const DebandReport& report, Deband when, const std::string& file) {
     job.report["deband"] = {{"applied", report.applied},
                             {"step", report.step},
                             {"codes", report.codes},
                             {"terrace_texels", report.terrace_texels}};
     if (when == Deband::on && !report.applied)
-        job.warn("--deband on changes nothing: the heights lie on no common steps coarser than 12 bits");
+        job.warn("--deband on changes nothing: the heights lie on no common steps coarser than 12 bits", file);
 }
 
 ChannelFile parse_channel_file(const std::string& text) {

@@ -72,7 +72,7 @@ struct HeightGroup {
 };
 
 // Writes into the job's report what debanding found. Who asked for it and does not get it is told why.
-void note_deband(Job& job, const DebandReport& report, Deband when);
+void note_deband(Job& job, const DebandReport& report, Deband when, const std::string& file = {});
 
 // FILE[:CHANNEL]: one channel of a picture, for a mask or a roughness map.
 struct ChannelFile {

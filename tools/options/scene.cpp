@@ -289,7 +289,7 @@ Result<SceneFiles> SceneOptions::read(Job& job, NormalsReader& normals, const Ex
         HeightReport found;
         auto field = height_field(*image, options, execution, &found);
         if (!field) return field.error().of(height);
-        if (deband != Deband::off) note_deband(job, found.deband, deband);
+        if (deband != Deband::off) note_deband(job, found.deband, deband, height);
         files.height = std::move(field->height);
     }
     return files;

@@ -110,20 +110,35 @@ Result<Texture> SheetOptions::draw_difference(const std::string& name, const Nor
     return picture_of(*map);
 }
 
-Result<Texture> SheetOptions::draw_frame(const std::vector<std::string>& names, const std::vector<SampledMap>& maps,
-                                         const SceneFiles& with, PreviewOptions options,
-                                         const Execution& execution) const {
+bool SheetOptions::can_leave_out(const Error& error, std::size_t maps) const {
+    return maps > 1 && !split_ && !difference_ && error.code != ErrorCode::out_of_memory &&
+           error.code != ErrorCode::cancelled;
+}
+
+Result<Texture> SheetOptions::draw_frame(const std::vector<std::string>& names, Maps& maps, const SceneFiles& with,
+                                         PreviewOptions options, const Execution& execution) const {
     if (options.size == Extent{} && !split_ && (maps.size() * shows_.size() > 1 || difference_))
         options.size = {kPanelSize, 0};
     std::vector<Panel> panels;
     for (std::size_t k = 0; k < maps.size(); ++k) {
         for (const Show show : shows_) {
-            options.show = show;
-            options.parallax.amount = scene_->parallax_on(maps[k]);
-            auto picture =
-                preview(with.with(maps[k]), options, step(execution, panels.size(), maps.size() * shows_.size()));
-            if (!picture) return picture.error().of(names[k]);
-            panels.push_back({std::move(*picture), caption(names, k, show)});
+            Panel& panel = panels.emplace_back();
+            panel.caption = caption(names, k, show);
+            if (maps[k]) {
+                options.show = show;
+                options.parallax.amount = scene_->parallax_on(*maps[k]);
+                const Execution part = step(execution, panels.size() - 1, maps.size() * shows_.size());
+                auto picture = preview(with.with(*maps[k]), options, part);
+                if (picture) {
+                    panel.picture = std::move(*picture);
+                    continue;
+                }
+                const bool names_another = !picture.error().file.empty();  // the mesh, which all maps share
+                const Error error = picture.error().of(names[k]);
+                if (names_another || !can_leave_out(error, maps.size())) return error;
+                maps[k] = error;
+            }
+            panel.note = maps[k].error().reason;
         }
     }
     if (split_) {
@@ -136,7 +151,8 @@ Result<Texture> SheetOptions::draw_frame(const std::vector<std::string>& names, 
         panels = std::move(halves);
     }
     if (difference_) {
-        auto angles = draw_difference(names[1], maps[0].chain.levels.front(), maps[1].chain.levels.front(), execution);
+        auto angles =
+            draw_difference(names[1], maps[0]->chain.levels.front(), maps[1]->chain.levels.front(), execution);
         if (!angles) return angles.error();
         panels.push_back({std::move(*angles), no_captions_ ? "" : "difference, degrees"});
     }
@@ -145,9 +161,8 @@ Result<Texture> SheetOptions::draw_frame(const std::vector<std::string>& names, 
     return contact_sheet(panels, row);
 }
 
-Result<std::vector<Texture>> SheetOptions::draw(const std::vector<std::string>& names,
-                                                const std::vector<SampledMap>& maps, const SceneFiles& with,
-                                                const Execution& execution) const {
+Result<std::vector<Texture>> SheetOptions::draw(const std::vector<std::string>& names, Maps& maps,
+                                                const SceneFiles& with, const Execution& execution) const {
     std::vector<Texture> frames;
     const int count = std::max(1, turntable_);
     for (int k = 0; k < count; ++k) {

@@ -31,17 +31,22 @@ public:
     // Throws UsageError if a picture needs a mesh, and there is none.
     void check_mesh(bool has_mesh) const;
 
-    // Draws the frames of the picture: one, unless it is animated. `maps` are the maps of the files `names`; `with`
-    // holds the other files of the scene. Errors: those of the verbs.
-    [[nodiscard]] Result<std::vector<Texture>> draw(const std::vector<std::string>& names,
-                                                    const std::vector<SampledMap>& maps, const SceneFiles& with,
-                                                    const Execution& execution) const;
+    // The maps of a picture, or why one cannot be shown.
+    using Maps = std::vector<Result<SampledMap>>;
+
+    // Whether a sheet of so many maps can do without one for which this is the reason.
+    [[nodiscard]] bool can_leave_out(const Error& error, std::size_t maps) const;
+
+    // Draws the frames of the picture: one, unless it is animated. `maps` are the maps of the files `names`, one of
+    // which can be shown; one that cannot be drawn becomes its error. `with` holds the other files of the scene.
+    // Errors: those of the verbs.
+    [[nodiscard]] Result<std::vector<Texture>> draw(const std::vector<std::string>& names, Maps& maps,
+                                                    const SceneFiles& with, const Execution& execution) const;
 
 private:
     void add_shows(Command& command);
-    [[nodiscard]] Result<Texture> draw_frame(const std::vector<std::string>& names, const std::vector<SampledMap>& maps,
-                                             const SceneFiles& with, PreviewOptions options,
-                                             const Execution& execution) const;
+    [[nodiscard]] Result<Texture> draw_frame(const std::vector<std::string>& names, Maps& maps, const SceneFiles& with,
+                                             PreviewOptions options, const Execution& execution) const;
     [[nodiscard]] Result<Texture> draw_difference(const std::string& name, const NormalMap& a, const NormalMap& b,
                                                   const Execution& execution) const;
     [[nodiscard]] std::string caption(const std::vector<std::string>& names, std::size_t map, Show show) const;

@@ -151,7 +151,8 @@ FixCommand command_of(const Rule& rule, const CheckReport& report) {
 
 constexpr std::string_view kKeepLength = "--keep-length";
 
-// Adds the options of `other`, which fixes another finding. Vectors keep their length only if both commands keep it.
+// Adds the options of `other`, which fixes another finding. Vectors keep their length only if both commands keep it;
+// without that word, mip-normals makes them unit vectors, and pack-normals does so if it is told.
 void join_commands(FixCommand& command, const FixCommand& other) {
     if (other.program == "mip-normals") command.program = other.program;
     const auto has = [&](std::string_view name) {
@@ -165,6 +166,7 @@ void join_commands(FixCommand& command, const FixCommand& other) {
         const std::string_view name = std::string_view(option).substr(0, option.find(' '));
         if (name != kKeepLength && !has(name)) command.options.push_back(option);
     }
+    if (command.program == "mip-normals") std::erase(command.options, "--normalize");
 }
 
 // Whether one command can do this and other things: mip-normals does all that pack-normals does.

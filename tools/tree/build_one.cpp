@@ -57,7 +57,7 @@ Error BuildRun::with_remedy(const Error& error, const std::string& output) const
     struct stat status {};
     const bool is_read_only = error.code == ErrorCode::io && stat(output.c_str(), &status) == 0 &&
                               (status.st_mode & (S_IWUSR | S_IWGRP | S_IWOTH)) == 0;
-    if (!is_read_only) return error;
+    if (!is_read_only || error.no_space) return error;
     return {error.code, error.file, error.reason + "; make it writable (chmod u+w, p4 edit) or remove it"};
 }
 
@@ -77,6 +77,7 @@ Result<Made> BuildRun::make(const BuildTask& task, const std::vector<Stale>& sta
                               advance(counted, static_cast<double>(task.size), fraction);
                               return !stopped();
                           }};
+    if (shares_[task.recipe]) settings.shared = shared_;
     if (recipe.check().compares()) settings.source = in_memory();
     if (!std::all_of(waiting.begin(), waiting.end(), [](const MemoryFile& file) { return file.is_open(); }))
         return Error{ErrorCode::out_of_memory, {}, system_reason(errno)};
@@ -112,7 +113,8 @@ Result<void> BuildRun::fetch(const BuildTask& task, Judgement& judgement, Placem
         const std::string& output = task.outputs[stale.index];
         const std::string path = contents_.path(output);
         if (auto created = create_folders_of(path); !created) return created;
-        const auto found = cache_.fetch(key_of(stale.settings, judgement.inputs), path, placement.watched(write_));
+        const auto found =
+            cache_.fetch(key_of(stale.settings, judgement.inputs.digest), path, placement.watched(write_));
         if (!found) return with_remedy(found.error(), path);
         if (found->empty()) {
             left.push_back(std::move(stale));
@@ -130,7 +132,7 @@ std::string BuildRun::name_of_path(const std::string& path) const {
 }
 
 // Records an output that is in its place.
-void BuildRun::record(const BuildTask& task, const Stale& made, const Digest& inputs,
+void BuildRun::record(const BuildTask& task, const Stale& made, const Inputs& inputs,
                       const std::vector<std::string>& paths, const Placement& placement, Outcome& outcome) {
     PlacedFiles files;
     for (const std::string& path : paths) {
@@ -191,7 +193,7 @@ Result<bool> BuildRun::are_unchanged(const BuildTask& task, const std::vector<st
     if (task.needs.empty()) return true;
     const Result<Judgement> now = judge_.judge(task, recipes_[task.recipe]);
     if (!now) return now.error();
-    return now->inputs == inputs;
+    return now->inputs.digest == inputs;
 }
 
 // Makes what is stale, unless the cache has it. Returns false if something that it is made from was replaced meanwhile:
@@ -199,7 +201,7 @@ Result<bool> BuildRun::are_unchanged(const BuildTask& task, const std::vector<st
 Result<bool> BuildRun::make_stale(const BuildTask& task, Judgement judgement,
                                   const std::vector<std::optional<FileStamp>>& stamps, double& counted,
                                   Outcome& outcome) {
-    const auto is_unchanged = [&] { return are_unchanged(task, stamps, judgement.inputs); };
+    const auto is_unchanged = [&] { return are_unchanged(task, stamps, judgement.inputs.digest); };
     Placement fetched(files_, is_unchanged);
     const Result<void> done = fetch(task, judgement, fetched, outcome);
     if (fetched.met_change()) return false;
@@ -244,8 +246,9 @@ Result<bool> BuildRun::make_stale(const BuildTask& task, Judgement judgement,
 }
 
 // Puts an output into the cache, unless another program has replaced it.
-void BuildRun::store(const BuildTask& task, const Stale& made, const Digest& inputs,
+void BuildRun::store(const BuildTask& task, const Stale& made, const Inputs& inputs,
                      const std::vector<std::string>& paths, const Placement& placement, Outcome& outcome) {
+    if (cache_is_full_) return;
     std::vector<std::string> contents;
     for (const std::string& path : paths) {
         auto bytes = read_text_file(path);
@@ -253,8 +256,10 @@ void BuildRun::store(const BuildTask& task, const Stale& made, const Digest& inp
         if (!bytes || placed == placement.placed().end() || digest_of(*bytes) != placed->second.digest) return;
         contents.push_back(std::move(*bytes));
     }
-    const auto stored = cache_.store(key_of(made.settings, inputs), task.outputs[made.index], contents);
-    if (!stored) outcome.warnings.push_back({task.input, "the cache does not take it: " + stored.error().message()});
+    const auto stored = cache_.store(key_of(made.settings, inputs.digest), task.outputs[made.index], contents);
+    if (stored || (stored.error().no_space && cache_is_full_.exchange(true))) return;
+    outcome.warnings.push_back({task.input, "the cache does not take it: " + stored.error().message() +
+                                                (cache_is_full_ ? "; nothing else is put there" : "")});
 }
 
 // A texture that needs `name` fails in the same way as that did.
@@ -296,7 +301,9 @@ Result<void> BuildRun::bring_up_to_date(std::size_t index, Outcome& outcome) {
             outcome.report["status"] = "current";
             return {};
         }
-        outcome.report["why"] = judged->stale.front().why;
+        const Stale& first = judged->stale.front();
+        outcome.report["why"] = first.why;
+        if (!first.changes.empty()) outcome.report["changes"] = json_of(first.changes);
         if (options_.dry_run) {
             stale_[index] = true;
             list_stale(task, judged->stale, outcome);

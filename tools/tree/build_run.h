@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -50,6 +51,8 @@ private:
     void save_state(BuildState::Memos memos_of);
     void save_now_and_then();
     void run_tasks();
+    std::int64_t share_details(std::int64_t memory);
+    void give_up_rest();
     void work_on(TaskQueue& queue);
     Outcome outcome_of(std::size_t index);
     Result<void> fail_with(ExitCode cause, const BuildTask& task, const std::string& name, Outcome& outcome);
@@ -61,10 +64,10 @@ private:
                                const Digest& inputs);
     Result<void> fetch(const BuildTask& task, Judgement& judgement, Placement& placement, Outcome& outcome);
     [[nodiscard]] std::string name_of_path(const std::string& path) const;
-    void record(const BuildTask& task, const Stale& made, const Digest& inputs, const std::vector<std::string>& paths,
+    void record(const BuildTask& task, const Stale& made, const Inputs& inputs, const std::vector<std::string>& paths,
                 const Placement& placement, Outcome& outcome);
     void record_parts(const BuildTask& task, const Placement& placement);
-    void store(const BuildTask& task, const Stale& made, const Digest& inputs, const std::vector<std::string>& paths,
+    void store(const BuildTask& task, const Stale& made, const Inputs& inputs, const std::vector<std::string>& paths,
                const Placement& placement, Outcome& outcome);
     void list_stale(const BuildTask& task, const std::vector<Stale>& stale, Outcome& outcome);
     Result<Made> make(const BuildTask& task, const std::vector<Stale>& stale, const WriteOptions& write,
@@ -94,6 +97,10 @@ private:
     std::vector<std::atomic<ExitCode>> failed_;  // how, or ExitCode::done
     std::vector<std::atomic<bool>> stale_;       // in a dry run
     std::vector<BuildResult> results_;
+    std::shared_ptr<SharedMaps> shared_;      // of the recipes in shares_
+    std::vector<bool> shares_;                // whether files of the recipe are read for several textures
+    std::atomic<bool> is_full_{false};        // no space is left for outputs,
+    std::atomic<bool> cache_is_full_{false};  // or for entries of the cache
     BuildTotals totals_;
     bool lost_names_ = false;  // outputs were removed from the state
     std::atomic<std::size_t> finished_{0};

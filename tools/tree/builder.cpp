@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <map>
 #include <optional>
 #include <system_error>
 #include <thread>
@@ -118,6 +119,10 @@ void BuildRun::work_on(TaskQueue& queue) {
         while (const auto index = queue.take()) {
             Outcome outcome = outcome_of(*index);
             queue.finish(*index);
+            if (outcome.error && outcome.error->no_space) {
+                outcome.is_silent = is_full_.exchange(true);  // the first one speaks for all
+                queue.stop();
+            }
             results_[*index] = {outcome.error ? "failed" : outcome.report.value("status", std::string()),
                                 outcome.error ? std::optional(outcome.error->of(outcome.input)) : std::nullopt,
                                 outcome.seconds};
@@ -132,6 +137,35 @@ void BuildRun::work_on(TaskQueue& queue) {
     }
 }
 
+// Detail maps that several textures blend are kept for all of them, in a part of the memory. Returns the rest.
+std::int64_t BuildRun::share_details(std::int64_t memory) {
+    std::map<std::string, int> readers;
+    for (const BuildTask& task : work_.tasks) {
+        for (const std::string& file : recipes_[task.recipe].files()) ++readers[file];
+    }
+    bool shares = false;
+    for (const Recipe& recipe : recipes_) {
+        const std::vector<std::string>& files = recipe.files();
+        const auto is_shared = [&](const std::string& file) { return readers[file] > 1; };
+        shares_.push_back(std::any_of(files.begin(), files.end(), is_shared));
+        shares = shares || shares_.back();
+    }
+    if (!shares) return memory;
+    shared_ = share_maps(memory / 4);
+    return memory - memory / 4;
+}
+
+// The disk is full. Notes that the textures which were not tried have failed for the same reason.
+void BuildRun::give_up_rest() {
+    for (std::size_t k = 0; k < work_.tasks.size(); ++k) {
+        if (!results_[k].status.empty()) continue;
+        failed_[k] = ExitCode::io;
+        results_[k] = {"failed", Error{ErrorCode::io, work_.tasks[k].input, "was not tried: the disk is full", true}};
+    }
+    console_.error(fmt::format("no space is left, so the run stops here; {} of {} files are done",
+                               totals_.made + totals_.current + totals_.cached, work_.tasks.size()));
+}
+
 void BuildRun::run_tasks() {
     std::vector<QueuedTask> tasks;
     all_bytes_ = 1.0;
@@ -141,7 +175,7 @@ void BuildRun::run_tasks() {
     }
     std::int64_t memory = options_.memory;
     if (memory == 0) memory = static_cast<std::int64_t>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGESIZE) / 2;
-    TaskQueue queue(std::move(tasks), memory);
+    TaskQueue queue(std::move(tasks), share_details(memory));
     const int threads = running_.threads > 0 ? running_.threads : tbb::info::default_concurrency();
     const std::size_t workers = std::min({static_cast<std::size_t>(threads), kMostFilesAtOnce, work_.tasks.size()});
     // The workers are threads of their own: a worker of TBB that waits for a task could be the one that the task needs.
@@ -240,12 +274,14 @@ ExitCode BuildRun::run() {
     host.begin();
     read_state();
     run_tasks();
+    if (is_full_) reporter_.report_waiting();
     ExitCode code = reporter_.exit_code();
     for (const std::string& folder : work_.unreadable) {
         console_.error(folder);
         code = std::max(code, ExitCode::io);
     }
     const std::string_view by = host.interruption();
+    if (is_full_ && by.empty()) give_up_rest();
     if (by.empty() && options_.prune && !options_.is_part && work_.unreadable.empty()) prune();
     save_state(BuildState::Memos::used);
     if (by.empty()) code = std::max(code, write_depfile());
@@ -272,6 +308,7 @@ ExitCode BuildRun::print_summary(bool is_interrupted) {
                                        {"current", totals_.current.load()},
                                        {"cached", totals_.cached.load()},
                                        {"failed", totals_.failed.load()},
+                                       {"untried", work_.tasks.size() - finished_.load()},
                                        {"removed", totals_.pruned.load()},
                                        {"interrupted", is_interrupted}}));
     }
@@ -281,6 +318,7 @@ ExitCode BuildRun::print_summary(bool is_interrupted) {
     if (cache_.is_used()) summary += fmt::format(", {} from the cache", totals_.cached.load());
     if (cache_.damaged() > 0) summary += fmt::format(" ({} damaged entries repaired)", cache_.damaged());
     if (totals_.failed > 0) summary += fmt::format(", {} failed", totals_.failed.load());
+    if (is_full_) summary += fmt::format(", {} not tried", work_.tasks.size() - finished_.load());
     if (totals_.pruned > 0)
         summary += fmt::format(", {} {}", totals_.pruned.load(), options_.dry_run ? "to remove" : "removed");
     return console_.print(summary + "\n");

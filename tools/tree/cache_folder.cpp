@@ -116,7 +116,8 @@ Result<void> write_in(int fd, const std::string& folder, const std::string& name
     options.sync = false;  // a damaged entry is found when it is read
     options.follow_links = false;
     const Result<void> written = write_text_file(path_in(fd, name), text, options);
-    return written ? written : Error{written.error().code, folder + "/" + name, written.error().reason};
+    return written ? written
+                   : Error{written.error().code, folder + "/" + name, written.error().reason, written.error().no_space};
 }
 
 // Whether the folder holds nothing but the marks that another process is making now.

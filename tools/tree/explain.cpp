@@ -45,6 +45,43 @@ std::string settings_text(const StepSettings& step, const OutputSettings* output
     return text;
 }
 
+// By which rules the file is read, and for how many textures.
+std::string readers_text(const std::string& name, const std::vector<Recipe>& recipes, const WorkList& work) {
+    std::string text;
+    for (std::size_t k = 0; k < recipes.size(); ++k) {
+        const std::vector<std::string>& files = recipes[k].files();
+        const auto is_it = [&](const std::string& file) {
+            return std::filesystem::path(file).lexically_normal().string() == name;
+        };
+        if (std::none_of(files.begin(), files.end(), is_it)) continue;
+        const auto count = std::count_if(work.tasks.begin(), work.tasks.end(),
+                                         [k](const BuildTask& task) { return task.recipe == k; });
+        text += fmt::format("{}: read by rule {} (line {}) for {} texture{}, match {}\n", printable(name),
+                            recipes[k].number(), recipes[k].rule().place.line, count, count == 1 ? "" : "s",
+                            printable(join(recipes[k].rule().match)));
+    }
+    return text;
+}
+
+std::string task_text(const BuildTask& task, const Recipe& recipe) {
+    const RuleSettings& rule = recipe.rule();
+    std::string text = fmt::format("{}: rule {} (line {}), match {}\n", printable(task.input), recipe.number(),
+                                   rule.place.line, printable(join(rule.match)));
+    if (!task.refusal.empty()) text += "  cannot be made: " + task.refusal + "\n";
+    for (std::size_t k = 0; k + 1 < rule.steps.size(); ++k) {
+        text += fmt::format("  {}:\n", rule.steps[k].command);
+        text += settings_text(rule.steps[k], nullptr, recipe.before()[k].program->command);
+    }
+    for (const std::string& needed : recipe.files()) text += fmt::format("  reads {}\n", printable(needed));
+    for (std::size_t k = 0; k < task.outputs.size(); ++k) {
+        text += fmt::format("  {} for {}:\n", rule.steps.back().command, printable(with_level(task.outputs[k], 0)));
+        text += settings_text(rule.steps.back(), &rule.outputs[k], recipe.outputs()[k].last.program->command);
+        text += "  the same by hand:\n";
+        for (const std::string& line : recipe.command_lines(task.input, k)) text += "    " + line + "\n";
+    }
+    return text;
+}
+
 }  // namespace
 
 std::string explanation_of(const std::string& file, const std::vector<Recipe>& recipes, const WorkList& work) {
@@ -53,24 +90,10 @@ std::string explanation_of(const std::string& file, const std::vector<Recipe>& r
         return candidate.input == name ||
                std::find(candidate.outputs.begin(), candidate.outputs.end(), name) != candidate.outputs.end();
     });
-    if (task == work.tasks.end())
-        throw UsageError(fmt::format("--explain: no rule matches or makes {}", printable(name)));
-    const Recipe& recipe = recipes[task->recipe];
-    const RuleSettings& rule = recipe.rule();
-    std::string text = fmt::format("{}: rule {} (line {}), match {}\n", printable(task->input), recipe.number(),
-                                   rule.place.line, printable(join(rule.match)));
-    if (!task->refusal.empty()) text += "  cannot be made: " + task->refusal + "\n";
-    for (std::size_t k = 0; k + 1 < rule.steps.size(); ++k) {
-        text += fmt::format("  {}:\n", rule.steps[k].command);
-        text += settings_text(rule.steps[k], nullptr, recipe.before()[k].program->command);
-    }
-    for (const std::string& needed : recipe.files()) text += fmt::format("  reads {}\n", printable(needed));
-    for (std::size_t k = 0; k < task->outputs.size(); ++k) {
-        text += fmt::format("  {} for {}:\n", rule.steps.back().command, printable(with_level(task->outputs[k], 0)));
-        text += settings_text(rule.steps.back(), &rule.outputs[k], recipe.outputs()[k].last.program->command);
-        text += "  the same by hand:\n";
-        for (const std::string& line : recipe.command_lines(task->input, k)) text += "    " + line + "\n";
-    }
+    std::string text;
+    if (task != work.tasks.end()) text = task_text(*task, recipes[task->recipe]);
+    text += readers_text(name, recipes, work);
+    if (text.empty()) throw UsageError(fmt::format("--explain: no rule matches, makes or reads {}", printable(name)));
     return text;
 }
 

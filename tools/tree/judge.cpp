@@ -28,35 +28,59 @@ Result<Judgement> Judge::judge(const BuildTask& task, const Recipe& recipe) {
         const Result<Digest> digest = contents_.digest(file);
         if (!digest) return digest.error();
         inputs.add(digest->bytes.data(), digest->bytes.size());
+        judgement.inputs.files.emplace_back(file, *digest);
     }
-    judgement.inputs = inputs.finish();
+    judgement.inputs.digest = inputs.finish();
     // The extension may decide which format an output has by default.
     const std::string extension = std::filesystem::path(task.input).extension().string();
     for (std::size_t k = 0; k < task.outputs.size(); ++k) {
         const Digest settings =
             digest_of(fmt::format("libtex {}\n{}\n{}", version_, extension, recipe.outputs()[k].settings));
-        std::string why = why_stale(task.outputs[k], settings, judgement.inputs);
-        if (!why.empty()) judgement.stale.push_back({k, settings, std::move(why)});
+        Stale stale{k, settings, {}};
+        stale.named = recipe.outputs()[k].named;
+        stale.named.emplace_back("output-version", fmt::format("{}", version_));
+        stale.named.emplace_back("input", extension);
+        if (find_why(task.outputs[k], recipe, judgement.inputs, stale)) judgement.stale.push_back(std::move(stale));
     }
     return judgement;
 }
 
-std::string Judge::why_stale(const std::string& output, const Digest& settings, const Digest& inputs) {
+// Finds out why an output must be made. Returns false if it is up to date.
+bool Judge::find_why(const std::string& output, const Recipe& recipe, const Inputs& inputs, Stale& stale) {
     OutputRecord record;
+    NamedValues before;
     {
         const std::lock_guard lock(mutex_);
         const auto found = state_.outputs.find(output);
-        if (found == state_.outputs.end()) return "is new";
+        if (found == state_.outputs.end()) {
+            stale.why = "is new";
+            return true;
+        }
         record = found->second;
+        const auto named = state_.settings.find(record.settings);
+        if (record.settings != stale.settings && named != state_.settings.end()) before = named->second;
     }
-    if (record.settings != settings) return "its settings have changed";
-    if (record.inputs != inputs) return "what it is made from has changed";
-    for (const auto& [file, digest] : record.files) {
-        const Result<Digest> now = contents_.digest(file);
-        if (!now) return fmt::format("{} is missing", printable(file));
-        if (*now != digest) return fmt::format("{} was changed by something else", printable(file));
+    if (record.settings != stale.settings) {
+        const auto preset = [&](const std::string& name) { return recipe.preset_of(name); };
+        if (!before.empty()) stale.changes = changed_settings(before, stale.named, preset);
+        if (stale.changes.empty()) stale.why = "its settings have changed";
     }
-    return {};
+    if (record.inputs != inputs.digest) {
+        std::vector<Change> files;
+        if (!record.from.empty()) files = changed_files(record.from, inputs.files);
+        if (files.empty() && stale.why.empty()) stale.why = "what it is made from has changed";
+        stale.changes.insert(stale.changes.end(), files.begin(), files.end());
+    }
+    if (!stale.changes.empty()) stale.why = words_of(stale.changes);
+    for (auto file = record.files.begin(); file != record.files.end() && stale.why.empty(); ++file) {
+        const Result<Digest> now = contents_.digest(file->first);
+        if (!now) {
+            stale.why = fmt::format("{} is missing", printable(file->first));
+        } else if (*now != file->second) {
+            stale.why = fmt::format("{} was changed by something else", printable(file->first));
+        }
+    }
+    return !stale.why.empty();
 }
 
 void Judge::remember(const PlacedFiles& files) {
@@ -65,16 +89,17 @@ void Judge::remember(const PlacedFiles& files) {
     }
 }
 
-void Judge::record(const BuildTask& task, const Stale& made, const Digest& inputs, const PlacedFiles& files) {
+void Judge::record(const BuildTask& task, const Stale& made, const Inputs& inputs, const PlacedFiles& files) {
     remember(files);
     const std::lock_guard lock(mutex_);
     OutputRecord& record = state_.outputs[task.outputs[made.index]];
-    const OutputRecord before = std::exchange(record, {task.input, made.settings, inputs, {}});
+    const OutputRecord before = std::exchange(record, {task.input, made.settings, inputs.digest, {}, inputs.files});
+    state_.settings[made.settings] = made.named;
     for (const auto& [name, file] : files) record.files.emplace_back(name, file.digest);
     for (const auto& old : before.files) {
         const auto has_name = [&](const auto& file) { return file.first == old.first; };
         if (std::none_of(files.begin(), files.end(), has_name))
-            state_.outputs[old.first] = {before.input, before.settings, before.inputs, {old}};
+            state_.outputs[old.first] = {before.input, before.settings, before.inputs, {old}, before.from};
     }
     changed_ = true;
 }
@@ -85,6 +110,7 @@ void Judge::record_part(const BuildTask& task, const std::string& output, const 
     OutputRecord& record = state_.outputs[output];
     record.input = task.input;
     record.inputs = {};
+    record.from = {};
     for (const auto& [name, file] : files) {
         const auto known = std::find_if(record.files.begin(), record.files.end(),
                                         [name = name](const auto& other) { return other.first == name; });

@@ -20,11 +20,19 @@ namespace tex::cli {
 struct Stale {
     std::size_t index = 0;  // in the recipe
     Digest settings;
-    std::string why;  // "its settings have changed"
+    std::string why;                   // "tiling: 8 to 6"
+    std::vector<Change> changes = {};  // if they are known
+    NamedValues named = {};            // the settings, for people
+};
+
+// The contents of all files that the outputs are made from.
+struct Inputs {
+    Digest digest;
+    NamedDigests files;
 };
 
 struct Judgement {
-    Digest inputs;  // of the contents of all files that the outputs are made from
+    Inputs inputs;
     std::vector<Stale> stale;
 };
 
@@ -40,7 +48,7 @@ public:
     [[nodiscard]] Result<Judgement> judge(const BuildTask& task, const Recipe& recipe);
     // Records an output that is in its place. Files that it had before, such as levels that it has no more, become
     // outputs that no rule makes.
-    void record(const BuildTask& task, const Stale& made, const Digest& inputs, const PlacedFiles& files);
+    void record(const BuildTask& task, const Stale& made, const Inputs& inputs, const PlacedFiles& files);
     // Records files of an output that is not complete: they are ours, and it is not up to date.
     void record_part(const BuildTask& task, const std::string& output, const PlacedFiles& files);
     [[nodiscard]] bool has_changed() const { return changed_; }
@@ -49,7 +57,7 @@ public:
 
 private:
     void remember(const PlacedFiles& files);
-    [[nodiscard]] std::string why_stale(const std::string& output, const Digest& settings, const Digest& inputs);
+    [[nodiscard]] bool find_why(const std::string& output, const Recipe& recipe, const Inputs& inputs, Stale& stale);
 
     std::mutex mutex_;  // guards state_.outputs
     BuildState& state_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
@@ -43,6 +44,7 @@ private:
     }
     void check_keys(const toml::table& table, const std::vector<std::string>& known) const;
     [[nodiscard]] std::string string_of(const toml::node& node, const std::string& what) const;
+    [[nodiscard]] std::string folder_of(const toml::node& node) const;
     [[nodiscard]] std::vector<std::string> patterns_of(const toml::node& node, const std::string& what) const;
     [[nodiscard]] const toml::table& table_of(const toml::node& node, const std::string& what) const;
     [[nodiscard]] const toml::array& array_of(const toml::node& node, const std::string& what) const;
@@ -73,6 +75,17 @@ std::string ManifestReader::string_of(const toml::node& node, const std::string&
     if (!node.is_string() || node.as_string()->get().empty()) fail(node, what + " must be a string that is not empty");
     if (node.as_string()->get().find('\0') != std::string::npos) fail(node, what + " holds a NUL character");
     return node.as_string()->get();
+}
+
+// The value of out-dir.
+std::string ManifestReader::folder_of(const toml::node& node) const {
+    std::string folder = string_of(node, "out-dir");
+    if (*std::filesystem::path(folder).lexically_normal().begin() == "..") {
+        fail(node, fmt::format("out-dir: {} leads out of the folder of the manifest; --root sets another folder, and "
+                               "an absolute path is not bound to it",
+                               printable(folder)));
+    }
+    return folder;
 }
 
 const toml::table& ManifestReader::table_of(const toml::node& node, const std::string& what) const {
@@ -195,7 +208,7 @@ void ManifestReader::read_defaults(const toml::table& table) {
     check_keys(table, known);
     for (const auto& [key, node] : table) {
         if (key.str() == "out-dir") {
-            defaults_.out_dir = string_of(node, "out-dir");
+            defaults_.out_dir = folder_of(node);
         } else if (key.str() == "name") {
             defaults_.name = string_of(node, "name");
         } else if (key.str() == "outputs") {
@@ -220,7 +233,7 @@ RuleSettings ManifestReader::rule_of(const toml::table& table) const {
     if (rule.match.empty()) fail(*match, "match is an empty list");
     if (const toml::node* node = table.get("exclude")) rule.exclude = patterns_of(*node, "exclude");
     rule.out_dir = defaults_.out_dir;
-    if (const toml::node* node = table.get("out-dir")) rule.out_dir = string_of(*node, "out-dir");
+    if (const toml::node* node = table.get("out-dir")) rule.out_dir = folder_of(*node);
     const toml::node* steps = table.get("steps");
     if (steps == nullptr) fail(table, "the rule has no steps: steps = [ { bake = {} } ]");
     for (const toml::node& step : array_of(*steps, "steps")) rule.steps.push_back(step_of(step));

@@ -194,7 +194,8 @@ void Recipe::add_output(const OutputSettings& output, Console& console) {
     const bool names_engine = name->uses("engine");
     if (check_->is_given() && has_level(out))
         fail_at(manifest_.path, output.place, "check needs all levels in one file");
-    RecipeOutput made{ready(rule_.steps.back(), &output, true, out, console), std::move(*name), {}, output.place};
+    check_folder(*name, out, output.place);
+    RecipeOutput made{ready(rule_.steps.back(), &output, true, out, console), std::move(*name), {}, {}, output.place};
     if (names_engine && made.last.converter->output_for_task().engine == nullptr)
         fail_at(manifest_.path, output.place, "name: {engine} needs the key for");
     const std::size_t last = rule_.steps.size() - 1;
@@ -209,6 +210,7 @@ void Recipe::add_output(const OutputSettings& output, Console& console) {
     const Task task = made.last.converter->task_for("input", out);
     made.settings += fmt::format("{} {}\n", name_of(kContainerNames, task.container), has_level(out) ? "levels" : "");
     made.settings += check_->text();
+    made.named = named_settings(made.last, task);
     if (outputs_.empty()) {
         const auto add_files = [this](const Task& of) {
             for (const std::string& file : of.prerequisites()) {
@@ -220,6 +222,53 @@ void Recipe::add_output(const OutputSettings& output, Console& console) {
         add_files(task);
     }
     outputs_.push_back(std::move(made));
+}
+
+// An output that leads out of the root whatever its input is called is a mistake in the manifest.
+void Recipe::check_folder(const NamePattern& name, const std::string& out, const Place& place) const {
+    const fs::path whole = (fs::path(rule_.out_dir) / fs::path(out).relative_path()).lexically_normal();
+    if (!name.uses("dir") && *whole.begin() == "..") {
+        fail_at(manifest_.path, place,
+                fmt::format("name: {} leads out of the folder of the manifest", printable(whole.string())));
+    }
+}
+
+NamedValues Recipe::named_settings(const ReadyCommand& last, const Task& task) const {
+    NamedValues named;
+    std::vector<std::string> steps;
+    for (std::size_t k = 0; k < rule_.steps.size(); ++k) {
+        const std::string& step = rule_.steps[k].command;
+        const auto earlier = std::count(steps.begin(), steps.end(), step);
+        const std::string prefix = earlier == 0 ? step : fmt::format("{} {}", step, earlier + 1);
+        steps.push_back(step);
+        for (const std::string& argument : k < before_.size() ? before_[k].arguments : last.arguments) {
+            const auto [option, value] = cut(argument, '=');
+            const std::string name = prefix + " " + option.substr(2);
+            const std::string shown = argument.size() > option.size() ? value : "true";
+            if (!named.empty() && named.back().first == name) {
+                named.back().second += ", " + shown;
+            } else {
+                named.emplace_back(name, shown);
+            }
+        }
+    }
+    named.emplace_back("steps", join(steps, ", "));
+    named.emplace_back("type", name_of(kContainerNames, task.container));
+    named.emplace_back("levels", has_level(task.output) ? "a file for each" : "in one file");
+    for (const OptionSetting& setting : rule_.check)
+        named.emplace_back("check." + setting.key, join(setting.values, ", "));
+    return named;
+}
+
+std::string Recipe::preset_of(const std::string& name) const {
+    const std::string step = cut(name, ' ').first;
+    for (std::size_t k = 0; k < rule_.steps.size(); ++k) {
+        const ReadyCommand& command = k < before_.size() ? before_[k] : outputs_.front().last;
+        const Command& table = command.program->command;
+        const Row* const row = row_of(table, name.substr(name.rfind(' ') + 1), groups_of(table));
+        if (rule_.steps[k].command == step && row != nullptr) return row->value.empty() ? "false" : row->preset;
+    }
+    return {};
 }
 
 std::string Recipe::output_name(const std::string& input, std::size_t index) const {

@@ -15,6 +15,7 @@
 #include "cli/console.h"
 #include "cli/glob.h"
 #include "cli/programs.h"
+#include "tree/changes.h"
 #include "tree/manifest.h"
 #include "tree/texture_check.h"
 
@@ -35,6 +36,7 @@ struct RecipeOutput {
     ReadyCommand last;     // the last step, with the settings of this output
     NamePattern name;      // below out_dir
     std::string settings;  // what its bytes depend on, besides the contents of files
+    NamedValues named;     // the same for people
     Place place;
 };
 
@@ -64,6 +66,8 @@ public:
 
     // The files that options name and every output depends on, relative to the root.
     [[nodiscard]] const std::vector<std::string>& files() const { return files_; }
+    // The value that a setting of RecipeOutput::named has if it is not given, in the words of --help; may be empty.
+    [[nodiscard]] std::string preset_of(const std::string& name) const;
     // The command lines that do the same, one for each step, for people.
     [[nodiscard]] std::vector<std::string> command_lines(const std::string& input, std::size_t output) const;
 
@@ -75,6 +79,8 @@ private:
     [[nodiscard]] std::string with_root(const std::string& argument, const Command& command) const;
     void check_order(const StepSettings& step, const ReadyCommand& command, std::size_t index, Console& console) const;
     void add_output(const OutputSettings& output, Console& console);
+    void check_folder(const NamePattern& name, const std::string& out, const Place& place) const;
+    [[nodiscard]] NamedValues named_settings(const ReadyCommand& last, const Task& task) const;
 
     const Manifest& manifest_;
     const RuleSettings& rule_;

@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <charconv>
 #include <chrono>
+#include <set>
 #include <string_view>
 
 #include <fcntl.h>
@@ -32,11 +33,20 @@ void add_name(std::string& text, std::string_view name) {
     }
 }
 
+void add_digests(std::string& text, const NamedDigests& list) {
+    text += fmt::format("\t{}", list.size());
+    for (const auto& [name, digest] : list) {
+        text += fmt::format("\t{}\t", digest.hex());
+        add_name(text, name);
+    }
+}
+
 class Fields {
 public:
     explicit Fields(std::string_view line) : rest_(line) {}
 
     [[nodiscard]] bool ok() const { return ok_; }
+    [[nodiscard]] bool has_more() const { return !done_; }
     std::string_view next() {
         const std::size_t end = rest_.find('\t');
         const std::string_view field = rest_.substr(0, end);
@@ -75,6 +85,16 @@ public:
         return name;
     }
 
+    NamedDigests digests() {
+        NamedDigests list;
+        const auto count = number<std::size_t>();
+        for (std::size_t k = 0; k < count && ok_; ++k) {
+            const Digest sum = digest();
+            list.emplace_back(name(), sum);
+        }
+        return list;
+    }
+
 private:
     std::string_view rest_;
     bool ok_ = true;
@@ -95,17 +115,22 @@ bool read_line(std::string_view line, BuildState& state) {
         state.memos[fields.name()] = memo;
         return fields.ok();
     }
+    if (kind == "settings") {
+        NamedValues& values = state.settings[fields.digest()];
+        while (fields.ok() && fields.has_more()) {
+            std::string name = fields.name();
+            values.emplace_back(std::move(name), fields.name());
+        }
+        return fields.ok();
+    }
     if (kind != "made") return false;
     OutputRecord record;
     record.settings = fields.digest();
     record.inputs = fields.digest();
     record.input = fields.name();
     std::string output = fields.name();
-    const auto count = fields.number<std::size_t>();
-    for (std::size_t k = 0; k < count && fields.ok(); ++k) {
-        const Digest digest = fields.digest();
-        record.files.emplace_back(fields.name(), digest);
-    }
+    record.files = fields.digests();
+    if (fields.has_more()) record.from = fields.digests();
     state.outputs[std::move(output)] = std::move(record);
     return fields.ok();
 }
@@ -142,15 +167,25 @@ std::string BuildState::text(Memos memos_of) const {
         add_name(text, name);
         text += '\n';
     }
+    std::set<Digest> used;
     for (const auto& [output, record] : outputs) {
         text += fmt::format("made\t{}\t{}\t", record.settings.hex(), record.inputs.hex());
         add_name(text, record.input);
         text += '\t';
         add_name(text, output);
-        text += fmt::format("\t{}", record.files.size());
-        for (const auto& [name, digest] : record.files) {
-            text += fmt::format("\t{}\t", digest.hex());
-            add_name(text, name);
+        add_digests(text, record.files);
+        if (!record.from.empty()) add_digests(text, record.from);
+        text += '\n';
+        used.insert(record.settings);
+    }
+    for (const auto& [digest, values] : settings) {
+        if (!used.contains(digest)) continue;
+        text += "settings\t" + digest.hex();
+        for (const auto& [name, value] : values) {
+            for (const std::string* const field : {&name, &value}) {
+                text += '\t';
+                add_name(text, *field);
+            }
         }
         text += '\n';
     }

@@ -16,6 +16,7 @@
 
 #include <tex/result.h>
 
+#include "tree/changes.h"
 #include "tree/sha256.h"
 
 namespace tex::cli {
@@ -46,7 +47,8 @@ struct OutputRecord {
     std::string input;
     Digest settings;
     Digest inputs;
-    std::vector<std::pair<std::string, Digest>> files;  // several if each level has its own
+    NamedDigests files;      // several if each level has its own
+    NamedDigests from = {};  // what it was made from; `inputs` is their digest
 
     friend bool operator==(const OutputRecord&, const OutputRecord&) = default;
 };
@@ -55,6 +57,7 @@ struct OutputRecord {
 struct BuildState {
     std::unordered_map<std::string, Memo> memos;
     std::map<std::string, OutputRecord> outputs;  // by the name that the recipe gives, which may hold kLevelMark
+    std::map<Digest, NamedValues> settings;       // what OutputRecord::settings stands for, for people
 
     // The memos to write: a run that comes to its end has used all that it will need again.
     enum class Memos { used, all };

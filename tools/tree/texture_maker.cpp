@@ -19,8 +19,10 @@ public:
 
     Job& add(Task task) {
         tasks_.push_back(std::move(task));
-        return jobs_.emplace_back(tasks_.back(), console_, settings_.running.read, settings_.write,
-                                  settings_.running.threads, settings_.advance);
+        Job& job = jobs_.emplace_back(tasks_.back(), console_, settings_.running.read, settings_.write,
+                                      settings_.running.threads, settings_.advance);
+        job.shared_maps = settings_.shared;
+        return job;
     }
     void add_warnings(Made& made) const {
         for (const Job& job : jobs_) {

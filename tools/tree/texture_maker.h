@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ struct MakeSettings {
     WriteOptions write;
     std::function<bool(double fraction)> advance;  // returns false if the work must stop
     std::string source = {};                       // if not empty, the normals before packing go here, as EXR
+    std::shared_ptr<SharedMaps> shared = {};       // as Job::shared_maps
 };
 
 // What was made.

@@ -51,6 +51,8 @@ struct ReadOptions {
     std::string reader;
     std::int64_t reader_memory = std::int64_t{4} << 30;  // bytes: its address space, with its result
     int reader_timeout = 120;                            // seconds of wall-clock time
+
+    friend bool operator==(const ReadOptions&, const ReadOptions&) = default;
 };
 
 // Checks ReadOptions::raw. Errors: bad_option.

@@ -9,7 +9,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -121,6 +123,10 @@ struct PackFileOptions {
     // As MipOptions::max_side, if `mip` is not set: larger levels of the source are left out. If it has none that is
     // small enough, one is built from its base level, or from `level`.
     int max_side = 0;
+    // Codes stay as they are, apart from those of y if it is flipped, in each output that has the format of the source,
+    // or, if neither has blocks, its sample kind and bits and a channel for z if the source has one. Vectors are not
+    // made unit there, as if UnpackOptions::keep_length were set. Not if a level is built or `scale` is set.
+    bool keep_codes = false;
 
     // Returns how the output is packed, given the properties of the source. Empty: default_encoding() of the container,
     // with y as in the source. Must not throw. If the swizzle depends on the texels, it may be called more than once;
@@ -181,6 +187,14 @@ struct LayerFile {
     [[nodiscard]] Layer layer() const;
 };
 
+// Detail maps in memory, for calls of blend_file() that blend the same ones. Each is read, and its levels are built,
+// once, unless its file changes meanwhile.
+class SharedMaps;
+
+// Maps that would make all of them together take more than `most_bytes` are not kept: each call reads them again. Any
+// thread may use the maps. May throw std::bad_alloc.
+[[nodiscard]] std::shared_ptr<SharedMaps> share_maps(std::int64_t most_bytes);
+
 // What blend_file() does: read_normals() of all maps, blend(), build_mip_chain(), pack(), write_texture().
 struct BlendFileOptions {
     SourceOptions source;  // of the base
@@ -193,6 +207,8 @@ struct BlendFileOptions {
     WriteOptions write;
     LevelNames level_names;      // as in BakeFileOptions
     std::vector<MoreFile> more;  // as in BakeFileOptions
+
+    std::shared_ptr<SharedMaps> shared;  // where the maps of the layers are kept; null: nowhere
 };
 
 struct BlendFileReport {
@@ -209,9 +225,9 @@ struct BlendFileReport {
 // `container`. One of the input maps may be "-", standard input.
 //
 // The base is read row by row, and so are the details that have the result's extent and are not rotated, tiled or moved
-// up or down. The other details are held as whole maps, because any row of the result may need any of their rows.
-// Interlaced PNGs and masks are also held whole. If a layout depends on the texels, it is assumed as pack_file()
-// describes. TIFF, TGA, BMP and JPEG are encoded as whole pictures.
+// up or down, unless `shared` has room for them. The other details are held as whole maps, because any row of the
+// result may need any of their rows. Interlaced PNGs and masks are also held whole. If a layout depends on the texels,
+// it is assumed as pack_file() describes. TIFF, TGA, BMP and JPEG are encoded as whole pictures.
 //
 // The output appears whole or not at all; files for each level appear as bake_file() describes. Output to standard
 // output or a FIFO is held in memory until it is complete.

@@ -42,12 +42,15 @@ struct Error {
     ErrorCode code = ErrorCode::io;
     std::string file;
     std::string reason;
+    bool no_space = false;  // with io: the disk or the quota that the file counts towards is full
 
     // "FILE: reason", or just the reason if no file is named.
     [[nodiscard]] std::string message() const { return file.empty() ? reason : file + ": " + reason; }
 
     // The same error for the file `path`, unless the error already names a file.
-    [[nodiscard]] Error of(const std::string& path) const { return {code, file.empty() ? path : file, reason}; }
+    [[nodiscard]] Error of(const std::string& path) const {
+        return {code, file.empty() ? path : file, reason, no_space};
+    }
 };
 
 // A value or an Error. Test it, then use value() or error(). Asking for the one that is absent is a programming error

@@ -27,13 +27,14 @@ namespace tex {
 
 // A picture with a caption: a part of a sheet.
 struct Panel {
-    Texture picture;
-    std::string caption;  // printable ASCII; other bytes show as a box; if it is too long, its middle is left out
+    Texture picture;        // without a level: an empty cell
+    std::string caption;    // printable ASCII; other bytes show as a box; if it is too long, its middle is left out
+    std::string note = {};  // written into an empty cell: why it is empty
 };
 
 // Panels in rows of `columns` (0: about as many rows as columns) on a dark background, each with its caption below.
-// Cells are as large as the largest panel of their column and row. Errors: bad_option (the list is empty),
-// out_of_memory.
+// Cells are as large as the largest panel of their column and row; empty ones are as large as the largest picture of
+// the sheet, or 320x320. Errors: bad_option (the list is empty), out_of_memory.
 [[nodiscard]] Result<Texture> contact_sheet(const std::vector<Panel>& panels, int columns = 0);
 
 // The left half of `left` and the right half of `right`, with a line between them and both captions. Errors: bad_option

@@ -32,6 +32,8 @@ struct UnpackOptions {
     bool snap_flat = false;                    // 8-bit unorm values from 127/255 to 128/255 are 0, not -+0.0039
     bool keep_length = false;                  // do not normalise vectors, to pack them again without loss
     bool keep_invalid = false;                 // vectors that are not finite become NaN, not (0, 0, 1)
+
+    friend bool operator==(const UnpackOptions&, const UnpackOptions&) = default;
 };
 
 }  // namespace tex

@@ -65,7 +65,7 @@ constexpr Rule kRules[] = {
     {"N201", "not-unit-length", values, note, true, "Vectors are not of unit length.",
      "More than 5 % of the vectors are shorter or longer than 1 by more than two codes of 8 bits. Shaders that do not "
      "normalise light them wrongly. Filters and blends without renormalisation do this, painting too.",
-     "pack-normals FILE --format SAME -o FIXED", ""},
+     "pack-normals FILE --normalize --format SAME -o FIXED", ""},
     {"N202", "z-below-zero", values, warning, true, "Vectors point into the surface.",
      "z is below zero by more than two codes. Encodings that rebuild z cannot hold that, and lighting from the front "
      "turns black.",
@@ -79,7 +79,7 @@ constexpr Rule kRules[] = {
     {"N205", "null-vector", values, error, true, "Vectors point nowhere.",
      "They are shorter than 0.1: middle grey, where a mask or a border was painted into the map. Normalising them "
      "gives NaN in a shader.",
-     "pack-normals FILE --format SAME -o FIXED", "N201"},
+     "pack-normals FILE --normalize --format SAME -o FIXED", "N201"},
     {"N206", "constant", values, note, true, "All texels are the same.",
      "A placeholder or a failed bake: a texture of 1x1 would do.", "", "N201 N207 N208 N209 N305 N403"},
     {"N207", "leaning", values, warning, true, "The map leans as a whole.",
@@ -94,7 +94,7 @@ constexpr Rule kRules[] = {
     {"N209", "blue-not-z", values, warning, true, "Blue does not hold z.",
      "Blue is constant while x and y vary: the file has two components, and its third channel is a filler. Readers "
      "that do not rebuild z get bent normals.",
-     "pack-normals FILE --swizzle rg --format SAME -o FIXED", "N115 N201 N202 N205 N213 N214"},
+     "pack-normals FILE --normalize --swizzle rg --format SAME -o FIXED", "N115 N201 N202 N205 N213 N214"},
     {"N210", "grey-picture", values, error, true, "The picture is grey.",
      "R, G and B are equal everywhere: this is a height or bump map, not a normal map.",
      "bake-normals FILE --bumpiness TEXELS --format SAME -o FIXED",
@@ -175,9 +175,8 @@ constexpr Rule kRules[] = {
      "Its texels are those of the signed format, and the header names the unsigned one, or the other way round. Then "
      "flat texels point outwards along a diagonal.",
      "Write the file again, or its header alone, with the format that the message names.",
-     "N201 N202 N203 N205 N206 N207 N208 N213 N214 N301 N302 N305 N306 N307 N308 N309 N310 N401 N402 N403 N404 N501 "
-     "N502 "
-     "N503 N504"},
+     "N201 N202 N203 N205 N206 N207 N208 N213 N214 N215 N301 N302 N305 N306 N307 N308 N309 N310 N401 N402 N403 "
+     "N404 N501 N502 N503 N504"},
 
     // -- convention -------------------------------------------------------------------------------------------
     {"N401", "wrong-y", convention, error, true, "Green points the other way than required.",

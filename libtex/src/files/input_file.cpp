@@ -62,6 +62,14 @@ void Descriptor::reset() {
     fd_ = -1;
 }
 
+std::optional<FileVersion> FileVersion::of(const std::string& path) {
+    struct stat status {};
+    if (stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
+    const auto nanoseconds = [](const timespec& time) { return std::int64_t{time.tv_sec} * 1000000000 + time.tv_nsec; };
+    return FileVersion{status.st_dev, status.st_ino, status.st_size, nanoseconds(status.st_mtim),
+                       nanoseconds(status.st_ctim)};
+}
+
 Result<InputFile> InputFile::open(const std::string& path) {
     return guarded([&]() -> Result<InputFile> {
         InputFile file;

@@ -10,7 +10,8 @@ Error system_error(const std::string& file, int number, const char* doing) {
     const bool exhausted = number == ENOMEM || number == EMFILE || number == ENFILE;
     std::string reason = doing;
     if (!reason.empty()) reason += ": ";
-    return {exhausted ? ErrorCode::out_of_memory : ErrorCode::io, file, reason + system_reason(number)};
+    return {exhausted ? ErrorCode::out_of_memory : ErrorCode::io, file, reason + system_reason(number),
+            is_no_space(number)};
 }
 
 }  // namespace tex

@@ -32,6 +32,9 @@ inline std::string system_reason(int number) {
     return reason;
 }
 
+// As Error::no_space.
+inline bool is_no_space(int number) { return number == ENOSPC || number == EDQUOT; }
+
 // An Error for `file`: out_of_memory if the system ran out of memory or descriptors (ENOMEM, EMFILE, ENFILE), otherwise
 // io. If `doing` is not empty, the reason begins with it: "cannot be renamed: permission denied".
 Error system_error(const std::string& file, int number, const char* doing = "");

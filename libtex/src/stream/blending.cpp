@@ -30,6 +30,20 @@ Result<void> Blending::settle(Input& input, const Execution& execution) {
     return input.step ? Result<void>() : input.file.hold(false, execution);
 }
 
+Result<void> Blending::open_detail(Input& input, const LayerFile& layer, const Layer& placed,
+                                   const Execution& execution) {
+    if (options_.shared) {
+        auto held = options_.shared->get(layer.input, layer.source, {input.map, input.wrap_x, input.wrap_y}, execution);
+        if (!held) return held.error();
+        input.shared = std::move(*held);
+        if (input.shared) return {};
+    }
+    if (lies_flat(placed)) {
+        if (Result<void> opened = input.file.open(); !opened) return opened;
+    }
+    return settle(input, execution);
+}
+
 Result<void> Blending::open(const Execution& execution) {
     const Execution silent{execution.threads, {}};
     if (Result<void> opened = base_.file.open(); !opened) return opened;
@@ -52,10 +66,7 @@ Result<void> Blending::open(const Execution& execution) {
         input.map = uv_map_of(placed, extent_);
         input.wrap_x = placed.wrap_x;
         input.wrap_y = placed.wrap_y;
-        if (lies_flat(placed)) {
-            if (Result<void> opened = input.file.open(); !opened) return opened;
-        }
-        if (Result<void> settled = settle(input, silent); !settled) return settled;
+        if (Result<void> opened = open_detail(input, layer, placed, silent); !opened) return opened;
         if (!layer.mask) continue;
         Result<Plane<float>> mask = layer.mask();
         if (!mask) return mask.error();
@@ -96,11 +107,15 @@ bool Blending::was_right() {
 
 std::vector<SourceInfo> Blending::details() const {
     std::vector<SourceInfo> details;
-    for (std::size_t k = 1; k < inputs_.size(); ++k) details.push_back(inputs_[k].file.info());
+    for (std::size_t k = 1; k < inputs_.size(); ++k) {
+        const Input& input = inputs_[k];
+        details.push_back(input.shared ? input.shared->info : input.file.info());
+    }
     return details;
 }
 
 Result<PlacedMap> Blending::place(Input& input, std::deque<ArrivingMap>& arriving, const Execution& execution) {
+    if (input.shared) return placed_on(input.shared->chain, input.map, input.wrap_x, input.wrap_y);
     if (!input.step) return place_chain(input.file.chain(), input.map, input.wrap_x, input.wrap_y, execution);
     MapFile& file = input.file;
     input.inspector.reset();

@@ -17,6 +17,7 @@
 #include "stream/map_file.h"
 #include "stream/map_inspector.h"
 #include "stream/map_source.h"
+#include "stream/shared_maps.h"
 
 namespace tex {
 
@@ -66,10 +67,12 @@ private:
         UvMap map;
         Wrap wrap_x = Wrap::repeat;
         Wrap wrap_y = Wrap::repeat;
-        std::optional<RowsInStep> step;  // empty: the whole map is held in memory
+        std::optional<RowsInStep> step;         // empty: the whole map is held in memory,
+        std::shared_ptr<const HeldMap> shared;  // here, if other blends hold it, too
         std::optional<MapInspector> inspector;
     };
     Result<void> settle(Input& input, const Execution& execution);
+    Result<void> open_detail(Input& input, const LayerFile& layer, const Layer& placed, const Execution& execution);
     Result<PlacedMap> place(Input& input, std::deque<ArrivingMap>& arriving, const Execution& execution);
 
     const BlendFileOptions& options_;

@@ -48,6 +48,7 @@ public:
 private:
     Result<void> prepare();
     void choose_level();
+    void settle_lengths(SampleKind sample, int bits);
     Result<void> look_at_base_level();
     [[nodiscard]] Result<std::optional<OwnRoughness>> own_roughness() const;
     Result<std::unique_ptr<StripWriter>> open_writer() const;
@@ -74,8 +75,18 @@ private:
     std::size_t first_ = 0;  // the level that becomes the base level
     std::size_t end_ = 1;    // the end of the levels that are read
     int left_out_ = 0;       // levels that are built and not written
+    std::vector<FileTarget> targets_;
     PackFileReport report_;
 };
+
+// Whether a file of this encoding can have the codes of a file of `format`, whose z is stored or not.
+bool can_keep_codes(Format format, bool has_z, Encoding encoding) {
+    const auto [to, swizzle] = encoding_info(encoding);
+    const bool keeps_z = !has_z || std::find(swizzle.begin(), swizzle.end(), Component::z) != swizzle.end();
+    const FormatInfo a = format_info(format), b = format_info(to);
+    if (a.has_blocks() || b.has_blocks()) return format == to && keeps_z;
+    return a.sample == b.sample && a.bits == b.bits && keeps_z;
+}
 
 // Finds out what to read and what to write. Errors: those of options that do not fit the file.
 Result<void> Attempt::prepare() {
@@ -102,9 +113,31 @@ Result<void> Attempt::prepare() {
     if (mip_) left_out_ = first_level(*mip_, base);
     report_.extent = level_extent(base, left_out_);
     report_.pack = packing_for(options_.pack, container_, report_.source);
+    targets_.push_back({{output_, options_.level_names}, container_, report_.pack, options_.write});
+    add_targets(options_.more, report_.source, targets_);
+    settle_lengths(info.sample, info.bits);
     report_.levels = static_cast<int>(end_ - first_);
     if (mip_ && holds) report_.levels = levels_to_build(*mip_, base);
     return {};
+}
+
+// Decides which outputs get vectors of unit length. If some do not, rows are read as they are.
+void Attempt::settle_lengths(SampleKind sample, int bits) {
+    if (!options_.keep_codes || rule_.keep_length || mip_ || options_.scale) return;
+    const bool has_z = sources_.z >= 0;
+    UnpackOptions unit = options_.source.unpack;
+    unit.snap_flat = false;
+    UnpackRule again = rule_of(unit, sample, bits, YAxis::up);
+    again.is_unsigned = false;
+    for (FileTarget& target : targets_) {
+        if (can_keep_codes(report_.source.format, has_z, target.pack.encoding)) {
+            rule_.keep_length = true;
+        } else {
+            target.unit = UnitRule{again, has_z};
+        }
+    }
+    if (rule_.keep_length) return;
+    for (FileTarget& target : targets_) target.unit.reset();
 }
 
 // Finds the first level that is small enough. If the source has none, one is built.
@@ -157,9 +190,7 @@ Result<std::optional<OwnRoughness>> Attempt::own_roughness() const {
 }
 
 Result<std::unique_ptr<StripWriter>> Attempt::open_writer() const {
-    std::vector<FileTarget> targets = {{{output_, options_.level_names}, container_, report_.pack, options_.write}};
-    add_targets(options_.more, report_.source, targets);
-    Result<std::unique_ptr<StripWriter>> normals = open_targets(targets, report_.extent, report_.levels);
+    Result<std::unique_ptr<StripWriter>> normals = open_targets(targets_, report_.extent, report_.levels);
     if (!normals || !options_.roughness) return normals;
     const RoughnessFile& file = *options_.roughness;
     const StripPacking rough = packing_of(file, report_.extent, roughness_levels());

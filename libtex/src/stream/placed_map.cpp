@@ -10,11 +10,23 @@
 
 namespace tex {
 
-Result<PlacedMap> place_chain(MipChain& chain, const UvMap& map, Wrap wrap_x, Wrap wrap_y, const Execution& execution) {
+int levels_needed(const MipChain& chain, const UvMap& map) {
     const Extent extent = chain.levels.front().extent();
-    const double wanted = level_wanted(map, extent);
-    const int levels = std::min(level_count(extent), static_cast<int>(std::ceil(wanted)) + 1);
-    if (chain.levels.size() == 1 && levels > 1) {
+    if (chain.levels.size() > 1) return 1;
+    return std::min(level_count(extent), static_cast<int>(std::ceil(level_wanted(map, extent))) + 1);
+}
+
+PlacedMap placed_on(const MipChain& chain, const UvMap& map, Wrap wrap_x, Wrap wrap_y) {
+    const Extent extent = chain.levels.front().extent();
+    const double level = std::min(level_wanted(map, extent), static_cast<double>(chain.levels.size() - 1));
+    PlacedMap placed{&chain, {}, extent, map, wrap_x, wrap_y};
+    placed.level = static_cast<std::size_t>(level);
+    placed.mix = static_cast<float>(level - std::floor(level));
+    return placed;
+}
+
+Result<PlacedMap> place_chain(MipChain& chain, const UvMap& map, Wrap wrap_x, Wrap wrap_y, const Execution& execution) {
+    if (const int levels = levels_needed(chain, map); levels > 1) {
         MipOptions options;
         options.levels = levels;
         options.wrap_x = wrap_x;
@@ -24,11 +36,7 @@ Result<PlacedMap> place_chain(MipChain& chain, const UvMap& map, Wrap wrap_x, Wr
         if (!built) return built.error();
         chain = std::move(*built);
     }
-    const double level = std::min(wanted, static_cast<double>(chain.levels.size() - 1));
-    PlacedMap placed{&chain, {}, extent, map, wrap_x, wrap_y};
-    placed.level = static_cast<std::size_t>(level);
-    placed.mix = static_cast<float>(level - std::floor(level));
-    return placed;
+    return placed_on(chain, map, wrap_x, wrap_y);
 }
 
 }  // namespace tex

@@ -54,6 +54,20 @@ private:
     std::optional<RdoReport> rdo_;
 };
 
+// Gives vectors unit length before they are packed: in a copy, because the strip goes to other files, too.
+void pack_units(StripPacking& packing, const UnitRule& unit) {
+    packing.pack = [unit, pack = std::move(packing.pack)](const Strip& strip, std::byte* out) {
+        const NormalMap& from = strip.map;
+        Strip units{strip.content, strip.level, strip.first, strip.height, strip.filled, NormalMap(from.extent()), {}};
+        NormalMap& to = units.map;
+        for (int j = 0; j < strip.height; ++j) {
+            unpack_row(from.x.row(j), from.y.row(j), unit.has_z ? from.z.row(j) : nullptr, unit.rule,
+                       from.extent().width, to.x.row(j), to.y.row(j), to.z.row(j));
+        }
+        pack(units, out);
+    };
+}
+
 }  // namespace
 
 PackOptions packing_for(const std::function<PackOptions(const SourceInfo&)>& pack, Container container,
@@ -92,8 +106,10 @@ Result<std::unique_ptr<StripWriter>> open_targets(const std::vector<FileTarget>&
     for (const FileTarget& target : targets) {
         int held = holds_levels(target.container, target.names.of_level) ? levels : 1;
         if (target.levels > 0) held = std::min(held, target.levels);
+        StripPacking packing = packing_of(target.pack, extent, held);
+        if (target.unit) pack_units(packing, *target.unit);
         Result<std::unique_ptr<StripWriter>> writer =
-            StripWriter::open(target.names, target.container, packing_of(target.pack, extent, held), target.write);
+            StripWriter::open(target.names, target.container, std::move(packing), target.write);
         if (!writer || targets.size() == 1) return writer;
         members.push_back({std::move(*writer), held});
     }

@@ -4,14 +4,22 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <tex/pipeline.h>
 
+#include "kernels/unpack.h"
 #include "stream/strip_writer.h"
 
 namespace tex {
+
+// How stored vectors get unit length.
+struct UnitRule {
+    UnpackRule rule;
+    bool has_z = true;  // z was stored
+};
 
 // A file that normals go to. What it refers to must outlive it.
 struct FileTarget {
@@ -19,7 +27,8 @@ struct FileTarget {
     Container container;
     PackOptions pack;
     const WriteOptions& write;
-    int levels = 0;  // as in MoreFile
+    int levels = 0;                     // as in MoreFile
+    std::optional<UnitRule> unit = {};  // set: the rows hold vectors as they are stored, and get unit length here
 };
 
 // Adds the files of `more`. `source` describes the normals.
