@@ -106,7 +106,7 @@ TEST_F(BuildNormalsFarm, APlanListsTexturesWithTheirCosts) {
     const auto head = nlohmann::json::parse(lines[0]);
     EXPECT_EQ(head["plan"], 1);
     EXPECT_EQ(head["tool"], TEX_VERSION);
-    EXPECT_EQ(head["output-version"], 1);
+    EXPECT_EQ(head["output-version"], 2);
     EXPECT_EQ(head["manifest"], "normals.toml");
     EXPECT_EQ(head["textures"], 9);
     EXPECT_EQ(head["manifest-sha256"].get<std::string>().size(), 64u);

@@ -390,7 +390,7 @@ TEST_F(BuildNormals, OutputVersionCanBePinned) {
     scratch_.write("normals.toml", std::string("output-version = 999\n") + kManifest);
     const Ran ran = build();
     EXPECT_EQ(ran.code, 2);
-    EXPECT_NE(ran.err.find("output-version = 999, but this program makes version 1"), std::string::npos) << ran.err;
+    EXPECT_NE(ran.err.find("output-version = 999, but this program makes version 2"), std::string::npos) << ran.err;
 }
 
 }  // namespace tex::cli

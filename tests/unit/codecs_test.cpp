@@ -26,7 +26,7 @@ TEST(Codecs, HaveOneRowForEachContainer) {
         const int ways = (codec.layout != nullptr) + (codec.open_target != nullptr) + (codec.reader_name != nullptr);
         EXPECT_EQ(ways, 1) << row.name;
         const bool is_bare = row.value == Container::r16 || row.value == Container::r32;  // no header, so no magic
-        EXPECT_EQ(codec.magic.empty(), codec.reader_name != nullptr || is_bare) << row.name;
+        EXPECT_EQ(codec.magic.empty(), codec.reader_name != nullptr || codec.claims != nullptr || is_bare) << row.name;
     }
 }
 
@@ -40,7 +40,16 @@ TEST(Codecs, AreChosenByTheFirstBytes) {
         EXPECT_NE(codec_for(bytes_of(cut)).reader_name, nullptr) << row.name;
     }
     EXPECT_NE(codec_for({}).reader_name, nullptr);
-    EXPECT_NE(codec_for(bytes_of("BM")).reader_name, nullptr);
+    EXPECT_NE(codec_for(bytes_of("B")).reader_name, nullptr);
+    // A TGA has no magic, but a header that can be told from others: colours of 24 bits, 1 x 1.
+    const std::string_view tga("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\x18\0", 18);
+    EXPECT_EQ(codec_for(bytes_of(tga)).container, Container::tga);
+    EXPECT_NE(codec_for(bytes_of(tga.substr(0, 17))).reader_name, nullptr);
+    for (const std::size_t field : {1, 2, 16}) {
+        std::string other(tga);
+        other[field] = '\7';
+        EXPECT_NE(codec_for(bytes_of(other)).reader_name, nullptr) << field;
+    }
 }
 
 TEST(Codecs, FilesBeginWithTheMagicOfTheirRow) {

@@ -188,25 +188,6 @@ TEST(Reader, RefusesMoreTexelsThanTheLimit) {
     EXPECT_FALSE(read(tiff.make()));
 }
 
-TEST(Reader, TgaRowsComeFromTheTop) {
-    for (const bool from_top : {false, true}) {
-        Bytes tga;
-        put(tga, 0x030000, 4);  // no id, no palette, grey, then five bytes for the missing palette
-        put(tga, 0, 4);
-        put(tga, 0, 4);
-        put(tga, 1, 2);
-        put(tga, 2, 2);
-        put(tga, 8, 1);
-        put(tga, from_top ? 0x20 : 0, 1);
-        put(tga, 10, 1);
-        put(tga, 20, 1);
-        const Result<Image> image = read(tga);
-        ASSERT_TRUE(image) << image.error().message();
-        EXPECT_EQ(image->planes[0].at(0, 0), (from_top ? 10 : 20) / 255.0f);
-        EXPECT_EQ(image->names, (std::vector<std::string>{"Y"}));
-    }
-}
-
 TEST(Reader, KeepsToItsMemoryLimit) {
     TiffMaker tiff{20'000, 20'000};
     tiff.data = raw<std::uint8_t>({0});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tex-reader-oiio: decodes and encodes pictures with OpenImageIO for libtex, which starts it. Do not run it by hand,
+// tex-reader-oiio: decodes pictures with OpenImageIO for libtex, which starts it. Do not run it by hand,
 // except
 //
 //     tex-reader-oiio --version  prints OpenImageIO's version, and whether the kernel supports the restriction of files
@@ -22,10 +22,9 @@ void calm_openimageio() {
     OIIO::attribute("limits:channels", kMaxReaderChannels);
 }
 
-bool read_or_write(const Task& task, ReaderHeader& header) {
+bool decode_or_describe(const Task& task, ReaderHeader& header) {
     calm_openimageio();
     if (task.verb == "decode") return decode_picture(task, header);
-    if (task.verb == "encode") return encode_picture(task, header);
     std::strncpy(header.reason, OIIO_VERSION_STRING, sizeof header.reason - 1);
     return true;
 }
@@ -44,5 +43,5 @@ void restrict_early(int argc, char** /*argv*/, char** /*environment*/) {
 
 int main(int argc, char** argv) {
     return tex::reader::run_program("tex-reader-oiio", "OpenImageIO " OIIO_VERSION_STRING, argc, argv,
-                                    tex::reader::read_or_write);
+                                    tex::reader::decode_or_describe);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// oiio.h: tex-reader-oiio, which decodes with OpenImageIO what tex-reader does not know, and encodes TGA and BMP.
+// oiio.h: tex-reader-oiio, which decodes with OpenImageIO what neither libtex nor tex-reader knows.
 
 #pragma once
 
@@ -8,6 +8,5 @@
 namespace tex::reader {
 
 bool decode_picture(const Task& task, ReaderHeader& header);
-bool encode_picture(const Task& task, ReaderHeader& header);
 
 }  // namespace tex::reader

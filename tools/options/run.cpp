@@ -15,7 +15,7 @@ void RunOptions::add(Command& command) {
         .preset = count_text(read.max_texels);
     command.text(read.layer, "--layer", "NAME", "read this layer of EXR files, such as Normal of ViewLayer.Normal.X");
     command
-        .option("--reader-memory", "BYTES", "memory limit of the process that reads TIFF, TGA, JPEG and the like",
+        .option("--reader-memory", "BYTES", "memory limit of the process that reads TIFF, JPEG and the like",
                 count(read.reader_memory))
         .preset = count_text(read.reader_memory);
     command.number(read.reader_timeout, "--reader-timeout", "SECONDS", 1, 86400, "time limit of that process");

@@ -39,7 +39,7 @@ struct BuildOptions {
 };
 
 // The version of the bytes that this program makes. It changes when an output changes with the same settings.
-inline constexpr int kOutputVersion = 1;
+inline constexpr int kOutputVersion = 2;
 
 // Makes what is not up to date. Prints a summary; with --json, also a line for each texture as soon as it is done.
 // Throws UsageError, and writes nothing, if a file that is written is also read, or is written twice.

@@ -68,7 +68,7 @@ struct WriteOptions {
     bool no_clobber = false;   // do not replace an existing file; report an error (io)
     bool follow_links = true;  // write the file that a symbolic link leads to; false replaces the link itself, and a
                                // FIFO or device that has the name
-    ReadOptions reader;        // the reader process also encodes TIFF, TGA, BMP and JPEG
+    ReadOptions reader;        // the reader process also encodes TIFF and JPEG
     // Called when a file is complete, before it takes its place at `path`. Until the call returns, its bytes can be
     // read from the file `complete`. If this returns an error, the old file stays, and the error is returned. Not
     // called for standard output, FIFOs and devices.

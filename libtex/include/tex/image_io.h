@@ -2,8 +2,8 @@
 // image_io.h: reads pictures from files.
 //
 // The first bytes of a file, not its name, decide how it is read. PNG and EXR are decoded in this process, by libpng
-// and OpenEXR; DDS and KTX2 by libtex. TIFF is decoded by libtiff and JPEG by libjpeg-turbo (tex-reader), everything
-// else (TGA, BMP, HDR, PSD ...) by OpenImageIO (tex-reader-oiio), in a separate process for each file, under limits of
+// and OpenEXR; DDS, KTX2, TGA and BMP by libtex. TIFF is decoded by libtiff and JPEG by libjpeg-turbo (tex-reader),
+// everything else (HDR, PSD ...) by OpenImageIO (tex-reader-oiio), in a separate process for each file, under limits of
 // memory and time. If such a decoder crashes or hangs, the result is an Error.
 
 #pragma once

@@ -82,11 +82,11 @@ struct BakeFileReport {
 //   an interlaced PNG   all rows, as they are decoded
 //   fill_invalid        all heights, and for each the row of its nearest valid neighbour: 8 bytes a texel
 //   deband              all heights, and what deband() needs besides: 13 bytes a texel
-//   TIFF, TGA ... out   all packed texels: the reader process encodes whole pictures
+//   TIFF, JPEG out      all packed texels: the reader process encodes whole pictures
 //   EXR out             compressed tiles of smaller levels, until the base level is done: up to 4 MB, and the rest in a
 //                       file without a name in the folder of the output
 // PNG and EXR are written from the top. If the heights repeat from bottom to top, the last rows are therefore decoded
-// first: a PNG is decoded twice; the reader process holds all rows of a TIFF, TGA, JPEG ... as the file stores them. A
+// first: a PNG is decoded twice; the reader process holds all rows of a TIFF, JPEG ... as the file stores them. A
 // picture that can hold only one level gets the base level.
 //
 // The output appears whole or not at all, see write_file(). If there is a file for each level, no file appears before
@@ -227,7 +227,7 @@ struct BlendFileReport {
 // The base is read row by row, and so are the details that have the result's extent and are not rotated, tiled or moved
 // up or down, unless `shared` has room for them. The other details are held as whole maps, because any row of the
 // result may need any of their rows. Interlaced PNGs and masks are also held whole. If a layout depends on the texels,
-// it is assumed as pack_file() describes. TIFF, TGA, BMP and JPEG are encoded as whole pictures.
+// it is assumed as pack_file() describes. TIFF and JPEG are encoded as whole pictures.
 //
 // The output appears whole or not at all; files for each level appear as bake_file() describes. Output to standard
 // output or a FIFO is held in memory until it is complete.

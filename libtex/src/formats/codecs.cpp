@@ -9,6 +9,7 @@
 
 #include "blocks/astc.h"
 #include "formats/astc/astc_file.h"
+#include "formats/bmp/bmp.h"
 #include "formats/dds/dds.h"
 #include "formats/exr/exr.h"
 #include "formats/exr/exr_rows.h"
@@ -18,6 +19,7 @@
 #include "formats/png/png.h"
 #include "formats/raw/raw.h"
 #include "formats/reader/reader_rows.h"
+#include "formats/tga/tga.h"
 
 namespace tex {
 namespace {
@@ -73,7 +75,6 @@ constexpr Codec kCodecs[] = {
      .magic = kPngMagic,
      .holds = is_unorm_picture,
      .open_rows = open_png,
-     .decodes_twice = true,
      .open_target = open_png_target},
     {.container = Container::exr,
      .magic = kExrMagic,
@@ -84,16 +85,21 @@ constexpr Codec kCodecs[] = {
      .open_levels = open_exr_texture_rows,
      .has_layers = true,
      .open_target = open_exr_target},
+    {.container = Container::bmp,
+     .magic = kBmpMagic,
+     .holds = is_unorm8_without_alpha,
+     .open_rows = open_bmp,
+     .open_target = open_bmp_target},
+    {.container = Container::tga,
+     .claims = may_be_tga,
+     .holds = is_unorm8_picture,
+     .open_rows = open_tga,
+     .open_target = open_tga_target},
     {.container = Container::tiff,
      .holds = is_tiff,
      .default_encoding = Encoding::rgb16,
      .open_rows = open_reader_rows,
      .reader_name = "tiff"},
-    {.container = Container::tga, .holds = is_unorm8_picture, .open_rows = open_reader_rows, .reader_name = "targa"},
-    {.container = Container::bmp,
-     .holds = is_unorm8_without_alpha,
-     .open_rows = open_reader_rows,
-     .reader_name = "bmp"},
     {.container = Container::jpeg,
      .holds = is_unorm8_without_alpha,
      .open_rows = open_reader_rows,
@@ -139,6 +145,7 @@ Result<void> check_layer(const Codec& codec, const ReadOptions& options) {
 
 const Codec& codec_for(std::span<const std::byte> head) {
     return *std::find_if(std::begin(kCodecs), std::end(kCodecs), [&](const Codec& codec) {
+        if (codec.claims != nullptr) return codec.claims(head);
         if (codec.magic.empty()) return true;
         return head.size() >= codec.magic.size() &&
                std::memcmp(head.data(), codec.magic.data(), codec.magic.size()) == 0;

@@ -26,6 +26,7 @@ struct Codec {
     Container container;
     std::string_view magic =
         {};  // the first bytes of every such file; empty: the reader process recognises and decodes it
+    bool (*claims)(std::span<const std::byte> head) = nullptr;  // of a type without a magic that libtex decodes
 
     // What the file type can hold.
     bool (*holds)(Format format);
@@ -38,7 +39,6 @@ struct Codec {
     Result<std::unique_ptr<RowSource>> (*open_rows)(InputFile& file, const ReadOptions& options) = nullptr;
     Result<TextureRows> (*open_levels)(InputFile& file, const ReadOptions& options) = nullptr;
     bool has_layers = false;     // ReadOptions::layer chooses one
-    bool decodes_twice = false;  // decoding a file twice costs less than keeping its rows in memory
 
     // Writing. A file type sets `layout` if the place of every byte is known before the first texel; it then takes
     // strips in any order. It sets `open_target` if it takes rows in their order. If the reader process encodes the
@@ -59,7 +59,7 @@ struct Codec {
 // Errors: bad_option (options.layer is set, and files of this type have no layers).
 [[nodiscard]] Result<void> check_layer(const Codec& codec, const ReadOptions& options);
 
-// The codec that reads a file beginning with `head`: the one with this magic, otherwise the reader's.
+// The codec that reads a file beginning with `head`: the one with this magic or that claims it, otherwise the reader's.
 [[nodiscard]] const Codec& codec_for(std::span<const std::byte> head);
 // The same for an open file, which may be of a type that has no magic: the options or its name then say what it is.
 [[nodiscard]] const Codec& codec_for(const InputFile& file, const ReadOptions& options);

@@ -41,7 +41,6 @@ constexpr Mark kMarks[] = {
     {"II+\0"sv, "tiff"},
     {"MM\0+"sv, "tiff"},
     {"\xff\xd8\xff"sv, "jpeg"},
-    {"BM"sv, "bmp"},
     {"#?RADIANCE"sv, "hdr"},
     {"#?RGBE"sv, "hdr"},
     {"8BPS"sv, "psd"},
@@ -68,26 +67,11 @@ constexpr Mark kMarks[] = {
 // The types that tex-reader decodes and encodes. tex-reader-oiio does the others.
 constexpr std::string_view kOfTexReader[] = {"tiff", "jpeg"};
 
-// A TGA begins directly with its header: length of the id, type of the palette (0, 1), type of the picture, palette,
-// origin, extent and depth.
-bool may_be_tga(std::span<const std::byte> head) {
-    constexpr std::size_t kHeader = 18;
-    if (head.size() < kHeader) return false;
-    const auto at = [&](std::size_t k) { return static_cast<int>(head[k]); };
-    const auto one_of = [](int v, std::initializer_list<int> list) {
-        return std::find(list.begin(), list.end(), v) != list.end();
-    };
-    const bool palette = at(1) == 1 && one_of(at(7), {15, 16, 24, 32});
-    return (at(1) == 0 || palette) && one_of(at(2), {1, 2, 3, 9, 10, 11}) && one_of(at(16), {8, 15, 16, 24, 32}) &&
-           (at(12) | at(13)) != 0 && (at(14) | at(15)) != 0;
-}
-
 std::optional<std::string> format_of(std::span<const std::byte> head) {
     const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
     for (const Mark& mark : kMarks) {
         if (text.starts_with(mark.bytes)) return std::string(mark.format);
     }
-    if (may_be_tga(head)) return "targa";
     return std::nullopt;
 }
 

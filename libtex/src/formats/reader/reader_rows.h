@@ -14,8 +14,8 @@
 namespace tex {
 
 // Starts the reader process on a file, which must outlive the rows. The process ends with the rows. The file's first
-// bytes choose the decoder: TIFF, JPEG, BMP, HDR, PSD, GIF, WebP, PNM, SGI, JPEG 2000, DPX, Cineon, IFF, Softimage PIC.
-// A TGA has no magic number and is recognised by a plausible header alone. Raw values, unassociated alpha, the first
+// bytes choose the decoder: TIFF, JPEG, HDR, PSD, GIF, WebP, PNM, SGI, JPEG 2000, DPX, Cineon, IFF, Softimage PIC.
+// Raw values, unassociated alpha, the first
 // picture of several; orientation tags change nothing. Integers of fewer bits than their container (12-bit TIFF) are
 // converted back to code / (2^n - 1). Such pictures are read to the end first, because only all values together show
 // how the bits were widened.
