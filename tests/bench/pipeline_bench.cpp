@@ -20,6 +20,7 @@
 #include <cstring>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 #include <thread>
 
@@ -250,8 +251,8 @@ void print_many(const Bench& b) {
     }
 }
 
-// A thousand normal maps of the same texels, which the reader process decodes or encodes, against PNG. The processor
-// time of its processes is not that of the command.
+// A thousand normal maps of the same texels in other file types, against PNG. The reader process decodes and encodes
+// TIFF and JPEG; the processor time of its processes is not that of the command.
 void print_many_kinds(const Bench& b) {
     Command heights;
     for (int k = 0; k < 1000; ++k) heights.push_back(b.file("many_8/" + std::to_string(k) + ".png"));
@@ -279,9 +280,10 @@ void print_many_kinds(const Bench& b) {
     };
     const std::string memory = "/dev/shm/pipeline_bench";
     std::filesystem::create_directories(memory);
-    for (const std::string kind : {"tif", "tga", "jpg", "bmp"}) {
+    for (const auto& [kind, most] :
+         std::map<std::string, double>{{"tif", 4.0}, {"tga", 1.3}, {"jpg", 4.0}, {"bmp", 1.3}}) {
         b.row("1000 " + kind + " of 256x256, fast, --no-sync, into " + memory + "; baseline: the same as PNG",
-              pack(kind), pack("png"), 4.0);
+              pack(kind), pack("png"), most);
     }
     for (const std::string kind : {"tif", "tga", "jpg"}) {
         b.row("1000 PNGs of 256x256 into " + kind + "; baseline: into PNG", bake_as(kind, memory),
