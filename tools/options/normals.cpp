@@ -125,8 +125,8 @@ void NormalsReader::note(Job& job, const std::string& path, const SourceInfo& in
             path);
     }
     if (info.background > 0.0 && warns_of_background) {
-        job.warn(fmt::format("{:.0f} % of its texels look like background (black, grey or white), which smaller levels and "
-                             "block compression mix into the charts; --fill-background fills it",
+        job.warn(fmt::format("{:.0f} % of its texels look like background (black, grey or white), which smaller levels "
+                             "and block compression mix into the charts; --fill-background fills it",
                              std::max(1.0, 100.0 * info.background)),
                  path);
     }

@@ -37,7 +37,7 @@ struct BmpHeader {
 
     // Of a row that is not compressed; rows begin at multiples of four bytes.
     [[nodiscard]] std::size_t row_bytes() const { return (static_cast<std::size_t>(extent.width) * depth_() + 7) / 8; }
-    [[nodiscard]] std::size_t stride() const { return (row_bytes() + 3) / 4 * 4; }
+    [[nodiscard]] std::size_t stride() const { return (row_bytes() + 3) & ~std::size_t{3}; }
 
 private:
     [[nodiscard]] std::size_t depth_() const { return static_cast<std::size_t>(depth); }
