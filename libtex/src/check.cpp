@@ -137,7 +137,8 @@ Result<void> measure(Subject& subject) {
     subject.base = std::move(*image);
     const auto swizzle = guess_swizzle(subject.texture, subject.execution);
     if (!swizzle) return swizzle.error();
-    subject.stored = {&subject.base, *swizzle, stores_signed(subject.base, *swizzle, range_of(subject.texture.normal_encoding, {})),
+    subject.stored = {&subject.base, *swizzle,
+                      stores_signed(subject.base, *swizzle, range_of(subject.texture.normal_encoding, {})),
                       format_info(subject.texture.format).has_blocks()};
     const Stored& stored = subject.stored;
     subject.has_vectors = stored.channel(Component::x) >= 0 && stored.channel(Component::y) >= 0;

@@ -46,9 +46,9 @@ struct FileOptions {
     // Adds --files-from alone, for commands that only read. Inputs may be missing if `needless` returns true.
     void add_inputs(Command& command, std::function<bool()> needless = {});
 
-    // The inputs of the command line, where <UDIM> stands for tiles and patterns that the shell left alone for files, and
-    // of --files-from. Errors: the list cannot be read; there is no such file or tile. Throws UsageError if there is no input at all, unless allow_empty is set: a list that a
-    // script made wrongly must not pass for success.
+    // The inputs of the command line, where <UDIM> stands for tiles and patterns that the shell left alone for files,
+    // and of --files-from. Errors: the list cannot be read; there is no such file or tile. Throws UsageError if there
+    // is no input at all, unless allow_empty is set: a list that a script made wrongly must not pass for success.
     [[nodiscard]] Result<std::vector<Input>> list_inputs(const Command& command) const;
 
     // The fields of a name for this input. {dir} is relative to --root if that option is given. Throws UsageError if
