@@ -36,8 +36,7 @@ Result<std::unique_ptr<RowSource>> open_tga(InputFile& file, const ReadOptions& 
 
 // Writes the base level of a texture in an 8-bit unorm format of one, three or four channels: uncompressed, rows from
 // the bottom, which all programs read, and with an extension area. Errors: unsupported (the extent, another format),
-// those of
-// WriteBytes.
+// those of WriteBytes.
 Result<std::unique_ptr<RowTarget>> open_tga_target(const TextureHead& head, WriteBytes write);
 
 }  // namespace tex
