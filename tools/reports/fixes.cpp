@@ -128,7 +128,7 @@ std::string levels_text(const Requirements& require) {
 // Whether the command of a rule writes FIXED from FILE.
 bool is_command(const Rule& rule) { return rule.fix.find("-normals FILE") != std::string_view::npos; }
 
-// The command of a rule in parts. A file with one level needs no new ones where its background is filled.
+// The command of a rule in parts. Where the background is filled, the smaller levels are built again.
 struct FixCommand {
     std::string program;
     std::vector<std::string> options;  // with their values, without --format and -o
@@ -145,7 +145,7 @@ FixCommand command_of(const Rule& rule, const CheckReport& report) {
             command.options.back() += " " + word;
     }
     std::erase_if(command.options, [](const std::string& o) { return o.starts_with("--format ") || o == "-o FIXED"; });
-    if (rule.id == "N215" && report.levels == 1) command.program = "pack-normals";
+    if (rule.id == "N215" && report.levels > 1) command.program = "mip-normals";
     return command;
 }
 

@@ -122,7 +122,7 @@ constexpr Rule kRules[] = {
      "it into the charts beside it, and each smaller level mixes in twice as much: dark lines along the seams. The "
      "other "
      "rules leave it out.",
-     "mip-normals FILE --keep-length --fill-background --format SAME -o FIXED", ""},
+     "pack-normals FILE --keep-length --fill-background --format SAME -o FIXED", ""},
 
     // -- damage -----------------------------------------------------------------------------------------------
     {"N301", "srgb-decoded", damage, error, true, "The map went through the sRGB curve: it is too dark.",
