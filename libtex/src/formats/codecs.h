@@ -38,7 +38,7 @@ struct Codec {
     ParseTexture parse = nullptr;
     Result<std::unique_ptr<RowSource>> (*open_rows)(InputFile& file, const ReadOptions& options) = nullptr;
     Result<TextureRows> (*open_levels)(InputFile& file, const ReadOptions& options) = nullptr;
-    bool has_layers = false;     // ReadOptions::layer chooses one
+    bool has_layers = false;  // ReadOptions::layer chooses one
 
     // Writing. A file type sets `layout` if the place of every byte is known before the first texel; it then takes
     // strips in any order. It sets `open_target` if it takes rows in their order. If the reader process encodes the
