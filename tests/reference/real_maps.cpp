@@ -51,7 +51,7 @@ const std::vector<RealMap>& real_maps() {
         {"normal/detail_pmndrs_0008.jpg", kUp, measured, true, false},
         {"dds/torque_TP_Ryder_DXT5nm_256_mips9_nvtt.dds", kUp, measured, true, false},
         {"dds/torque_Grenade2_DXT5nm_GGGR_512_mips10.dds", kUp, measured, true, false},
-        {"dds/torque_rock_DXT5nm_GGGR_256_mips9.dds", std::nullopt, measured, false, false},
+        {"dds/torque_rock_DXT5nm_GGGR_256_mips9.dds", kDown, measured, false, false},
         {"dds/urho_Stone_DXT5_xGxR_1024_mips11.dds", kUp, measured, true, true},
         {"dds/fieldstone_ATI2_512_mips10.dds", kDown, measured, true, true},
         {"dds/amd_RedLetters_1k_normal_ATI2_A2XY.dds", kUp, measured, true, false},

@@ -164,12 +164,12 @@ void CurlSums::add(const CurlSums& other) {
 double CurlSums::correlation() const { return ratio(cross, p_square, q_square); }
 double CurlSums::exchanged_correlation() const { return ratio(exchanged, px_square, qy_square); }
 
-double diagonal_share(const Stored& stored, int scale) {
+double diagonal_share(const Stored& stored) {
     constexpr int kSide = 16;  // texels of a region: so small that a structure has one direction in it
     double along = 0.0, all = 0.0;
     for (const Rect& window : sample_windows(stored.extent())) {
         Slopes slopes = slopes_of(stored, window);
-        for (int k = 0; k < scale; ++k) slopes = halved(slopes);
+        slopes = halved(halved(slopes));
         const auto [width, height] = slopes.extent();
         for (int y = 0; y + kSide <= height; y += kSide) {
             for (int x = 0; x + kSide <= width; x += kSide) {

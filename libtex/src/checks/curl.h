@@ -68,10 +68,10 @@ Result<Curl> measure_curl(const Stored& stored, const Execution& execution);
 // The same for parts of a map of this extent; `slopes` returns the slopes of a part, once for each.
 Curl measure_curl(Extent extent, const std::vector<Rect>& windows, const std::function<Slopes(std::size_t)>& slopes);
 
-// How diagonal the structures are at a scale, from 0 (without a preferred direction, or along the axes) to 1 (lines at
-// 45 degrees, of either direction). Where they are diagonal, x and y have no curl either way: exchanging them mirrors
-// the structure onto itself.
-double diagonal_share(const Stored& stored, int scale);
+// How diagonal the structures are, at a quarter of the resolution, from 0 (without a preferred direction, or along the
+// axes) to 1 (lines at 45 degrees, of either direction). Where they are diagonal, x and y have no curl either way:
+// exchanging them mirrors the structure onto itself.
+double diagonal_share(const Stored& stored);
 
 // Where green points, if that is clear.
 std::optional<YAxis> clear_y(const Curl& curl);

@@ -64,6 +64,7 @@ constexpr float kCode = 1.0f / 255.0f;
 constexpr float kContrast = 8.0f * kCode;  // between the ends of a palette: below it, rounding hides the others
 constexpr float kOffPalette = 1.5f * kCode;
 constexpr std::size_t kMostColors = 4;    // of a block of BC1 to BC3
+constexpr double kLinesAlone = 0.9;       // of the blocks: the map varies along one axis, where any ramp is a palette
 constexpr double kBlocksForShare = 64.0;  // fewer blocks give no reliable share
 
 enum class Palette { unclear, fits, differs };
@@ -118,7 +119,6 @@ float contrast(const Color& a, const Color& b) {
 // Whether the texels of a block form a palette: two colours and one or two evenly spaced between them. One or two
 // colours alone fit any palette.
 Palette palette_of(const Image& image, std::size_t channels, int x, int y) {
-    if (has_one_direction(image, channels, x, y)) return Palette::unclear;
     std::vector<Color> colors = colors_of(image, channels, x, y);
     if (colors.size() > kMostColors) return Palette::differs;
     if (colors.size() < 3) return Palette::unclear;
@@ -139,7 +139,7 @@ Palette palette_of(const Image& image, std::size_t channels, int x, int y) {
 // count.
 double share_at(const Stored& stored, int offset, int pitch, double least) {
     const std::size_t channels = std::min<std::size_t>(stored.image->planes.size(), 3);
-    double fits = 0.0, all = 0.0;
+    double fits = 0.0, all = 0.0, lines = 0.0;
     for (const Rect& window : sample_windows(stored.extent())) {
         for (int y = offset; y + kBlockEdge <= window.height; y += pitch) {
             for (int x = offset; x + kBlockEdge <= window.width; x += pitch) {
@@ -147,9 +147,11 @@ double share_at(const Stored& stored, int offset, int pitch, double least) {
                 if (palette == Palette::unclear) continue;
                 all += 1.0;
                 if (palette == Palette::fits) fits += 1.0;
+                lines += has_one_direction(*stored.image, channels, window.x + x, window.y + y) ? 1.0 : 0.0;
             }
         }
     }
+    if (lines > kLinesAlone * all) return 0.0;
     return all >= least ? fits / all : 0.0;
 }
 

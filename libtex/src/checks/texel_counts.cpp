@@ -182,6 +182,7 @@ void leave_out_grey(const Background& background, int j, const RowView& view, in
 TexelCounts combine(const std::vector<RowCounts>& rows, Extent extent, std::int64_t masked) {
     TexelCounts counts;
     counts.texels = extent.texels() - masked;
+    counts.all = extent.texels();
     RowCounts all;
     for (std::size_t j = 0; j < rows.size(); ++j) {
         const RowCounts& row = rows[j];

@@ -50,6 +50,7 @@ inline constexpr int kPropertyCount = 12;
 
 struct TexelCounts {
     std::int64_t texels = 0;  // without the background
+    std::int64_t all = 0;     // with it
     std::array<Tally, kPropertyCount> tally{};
     // Means over finite texels. z and length use the stored z, or else the reconstructed one.
     std::int64_t finite = 0;
@@ -60,7 +61,9 @@ struct TexelCounts {
 
     [[nodiscard]] const Tally& operator[](Property p) const { return tally[static_cast<std::size_t>(p)]; }
     [[nodiscard]] double share(Property p) const {
-        return texels > 0 ? static_cast<double>((*this)[p].count) / static_cast<double>(texels) : 0.0;
+        const bool of_all = p == Property::red_not_one || p == Property::alpha_not_one || p == Property::above_alpha;
+        const std::int64_t among = of_all ? all : texels;
+        return among > 0 ? static_cast<double>((*this)[p].count) / static_cast<double>(among) : 0.0;
     }
 };
 

@@ -23,7 +23,9 @@ constexpr double kLeastShown = 0.01;         // share of texels: less background
 // z is rebuilt, and x and y are shortened to the unit circle.
 bool is_shade(float x, float y, float z) {
     constexpr float kSame = 0.02f, kLeast = 0.5f;
+    constexpr float kNoDirection = 0.1f;  // of grey, if lengths are kept
     const float size = std::abs(x);
+    if (std::max(size, std::max(std::abs(y), std::abs(z))) < kNoDirection) return true;
     return size > kLeast && std::abs(x - y) < kSame && (std::abs(std::abs(z) - size) < kSame || std::abs(z) < kSame);
 }
 
