@@ -142,9 +142,6 @@ Result<std::vector<Input>> FileOptions::list_inputs(const Command& command) cons
             for (std::string& file : *files) inputs.push_back({std::move(file)});
             continue;
         }
-        if (input != "-" && is_folder(input))
-            return Error{ErrorCode::io, input,
-                         "is a folder; name its files: '" + (fs::path(input) / "*.png'").string()};
         auto files = inputs_of(input);
         if (!files) return files.error();
         std::move(files->begin(), files->end(), std::back_inserter(inputs));

@@ -80,7 +80,7 @@ Result<InputFile> InputFile::open(const std::string& path) {
 
         struct stat status {};
         if (fstat(file.fd_.get(), &status) != 0) return system_error(path, errno);
-        if (S_ISDIR(status.st_mode)) return Error{ErrorCode::io, path, "is a directory"};
+        if (S_ISDIR(status.st_mode)) return Error{ErrorCode::io, path, "is a directory; name its files"};
         // /dev/zero has no end, and a disk is not a picture. A user who connects standard input to a terminal or
         // /dev/null does so on purpose.
         if (path != "-" && (S_ISBLK(status.st_mode) || S_ISCHR(status.st_mode)) && path != "/dev/stdin") {
