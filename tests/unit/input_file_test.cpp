@@ -93,7 +93,7 @@ TEST_F(InputFileTest, HeadDoesNotConsume) {
 
 TEST_F(InputFileTest, RefusesWhatIsNoFileInPlainWords) {
     EXPECT_EQ(read_whole_file(folder_ + "/missing").error().reason, "no such file or directory");
-    EXPECT_EQ(read_whole_file(folder_).error().reason, "is a directory");
+    EXPECT_EQ(read_whole_file(folder_).error().reason, "is a directory; name its files");
     EXPECT_EQ(read_whole_file("/dev/zero").error().reason, "is a device, not a file");
     EXPECT_EQ(read_whole_file(make("empty", "")).error().code, ErrorCode::bad_data);
     EXPECT_EQ(read_whole_file(std::string("a\0b", 3)).error().code, ErrorCode::io);
