@@ -63,9 +63,8 @@ using Color = std::array<float, 3>;
 constexpr float kCode = 1.0f / 255.0f;
 constexpr float kContrast = 8.0f * kCode;  // between the ends of a palette: below it, rounding hides the others
 constexpr float kOffPalette = 1.5f * kCode;
-constexpr std::size_t kMostColors = 4;    // of a block of BC1 to BC3
-constexpr double kLinesAlone = 0.9;       // of the blocks: the map varies along one axis, where any ramp is a palette
-constexpr double kBlocksForShare = 64.0;  // fewer blocks give no reliable share
+constexpr std::size_t kMostColors = 4;  // of a block of BC1 to BC3
+constexpr double kLeastBlocks = 64.0;   // fewer blocks give no reliable share
 
 enum class Palette { unclear, fits, differs };
 
@@ -82,21 +81,6 @@ std::vector<Color> colors_of(const Image& image, std::size_t channels, int x, in
         }
     }
     return seen;
-}
-
-// Whether all rows of a block are equal, or all columns: four colours in four lines may be a ramp.
-bool has_one_direction(const Image& image, std::size_t channels, int x, int y) {
-    bool rows = true, columns = true;
-    for (std::size_t c = 0; c < channels; ++c) {
-        for (int j = 0; j < kBlockEdge; ++j) {
-            for (int i = 0; i < kBlockEdge; ++i) {
-                const float value = image.planes[c].at(x + i, y + j);
-                rows = rows && value == image.planes[c].at(x + i, y);
-                columns = columns && value == image.planes[c].at(x, y + j);
-            }
-        }
-    }
-    return rows || columns;
 }
 
 // Whether `color` lies one third, half or two thirds of the way from one end to the other.
@@ -139,7 +123,7 @@ Palette palette_of(const Image& image, std::size_t channels, int x, int y) {
 // count.
 double share_at(const Stored& stored, int offset, int pitch, double least) {
     const std::size_t channels = std::min<std::size_t>(stored.image->planes.size(), 3);
-    double fits = 0.0, all = 0.0, lines = 0.0;
+    double fits = 0.0, all = 0.0;
     for (const Rect& window : sample_windows(stored.extent())) {
         for (int y = offset; y + kBlockEdge <= window.height; y += pitch) {
             for (int x = offset; x + kBlockEdge <= window.width; x += pitch) {
@@ -147,11 +131,9 @@ double share_at(const Stored& stored, int offset, int pitch, double least) {
                 if (palette == Palette::unclear) continue;
                 all += 1.0;
                 if (palette == Palette::fits) fits += 1.0;
-                lines += has_one_direction(*stored.image, channels, window.x + x, window.y + y) ? 1.0 : 0.0;
             }
         }
     }
-    if (lines > kLinesAlone * all) return 0.0;
     return all >= least ? fits / all : 0.0;
 }
 
@@ -194,7 +176,7 @@ double grid_ratio(const Stored& stored, int block) {
 double palette_share(const Stored& stored) {
     // Blocks that straddle those of a codec, and, within a JPEG's blocks of 8x8, blocks across the middle.
     const double across = std::max(share_at(stored, 2, kBlockEdge, 1.0), share_at(stored, 2, 2 * kBlockEdge, 1.0));
-    return share_at(stored, 0, kBlockEdge, kBlocksForShare) - across;
+    return share_at(stored, 0, kBlockEdge, kLeastBlocks) - across;
 }
 
 }  // namespace tex
