@@ -63,8 +63,8 @@ using Color = std::array<float, 3>;
 constexpr float kCode = 1.0f / 255.0f;
 constexpr float kContrast = 8.0f * kCode;  // between the ends of a palette: below it, rounding hides the others
 constexpr float kOffPalette = 1.5f * kCode;
-constexpr std::size_t kMostColors = 4;  // of a block of BC1 to BC3
-constexpr double kLeastBlocks = 64.0;   // fewer blocks give no reliable share
+constexpr std::size_t kMostColors = 4;    // of a block of BC1 to BC3
+constexpr double kBlocksForShare = 64.0;  // fewer blocks give no reliable share
 
 enum class Palette { unclear, fits, differs };
 
@@ -176,7 +176,7 @@ double grid_ratio(const Stored& stored, int block) {
 double palette_share(const Stored& stored) {
     // Blocks that straddle those of a codec, and, within a JPEG's blocks of 8x8, blocks across the middle.
     const double across = std::max(share_at(stored, 2, kBlockEdge, 1.0), share_at(stored, 2, 2 * kBlockEdge, 1.0));
-    return share_at(stored, 0, kBlockEdge, kLeastBlocks) - across;
+    return share_at(stored, 0, kBlockEdge, kBlocksForShare) - across;
 }
 
 }  // namespace tex
