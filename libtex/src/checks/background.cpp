@@ -91,7 +91,8 @@ bool mark_value(const StoredVectors& map, Extent extent, Background& background)
     const auto near = [](float a, float b) { return std::abs(a - b) <= kSame; };
     const auto& value = background.value;
     for (int j = 0; j < extent.height; ++j) {
-        std::uint8_t* const mask = background.mask.data() + static_cast<std::size_t>(j) * extent.width;
+        std::uint8_t* const mask =
+            background.mask.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(extent.width);
         for (int i = 0; i < extent.width; ++i) {
             const StoredVector v = map.at(i, j);
             if (!near(v.x, value[0]) || !near(v.y, value[1]) || !near(v.z, value[2])) continue;
@@ -108,7 +109,8 @@ bool mark_value(const StoredVectors& map, Extent extent, Background& background)
 Result<void> mark_mixtures(const StoredVectors& map, Extent extent, int reach, const Execution& execution,
                            Background& background) {
     const auto at = [&](int i, int j) -> std::uint8_t& {
-        return background.mask[static_cast<std::size_t>(j) * extent.width + static_cast<std::size_t>(i)];
+        return background
+            .mask[static_cast<std::size_t>(j) * static_cast<std::size_t>(extent.width) + static_cast<std::size_t>(i)];
     };
     const auto is_near = [&](int i, int j) {
         for (int y = std::max(0, j - reach); y <= std::min(extent.height - 1, j + reach); ++y) {
