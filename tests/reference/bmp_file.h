@@ -60,7 +60,7 @@ private:
                 const std::uint32_t value = texel(i, row_of(k));
                 for (int b = 0; b < std::max(depth / 8, 1); ++b) {
                     const auto at = static_cast<std::size_t>(i * depth / 8 + b);
-                    row[at] |= depth < 8 ? value << (8 - depth - i * depth % 8) : value >> (8 * b) & 0xff;
+                    row[at] |= depth < 8 ? value << std::max(8 - depth - i * depth % 8, 0) : value >> (8 * b) & 0xff;
                 }
             }
             for (const std::uint32_t byte : row) put_number(bytes, byte, 1);

@@ -17,7 +17,7 @@ namespace {
 using reference::BmpFile;
 using reference::FileBytes;
 
-std::uint32_t noise(int i, int j) { return static_cast<std::uint32_t>((i / 2 + j * 3) * 2654435761u) ^ 0x5a5a5a5a; }
+std::uint32_t noise(int i, int j) { return (static_cast<std::uint32_t>(i / 2 + j * 3) * 2654435761u) ^ 0x5a5a5a5a; }
 
 Result<Image> read_bmp(const FileBytes& bytes) {
     Result<InputFile> file = InputFile::from_memory("a.bmp", bytes);

@@ -45,7 +45,7 @@ TEST(Codecs, AreChosenByTheFirstBytes) {
     const std::string_view tga("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\x18\0", 18);
     EXPECT_EQ(codec_for(bytes_of(tga)).container, Container::tga);
     EXPECT_NE(codec_for(bytes_of(tga.substr(0, 17))).reader_name, nullptr);
-    for (const std::size_t field : {1, 2, 16}) {
+    for (const std::size_t field : {1u, 2u, 16u}) {
         std::string other(tga);
         other[field] = '\7';
         EXPECT_NE(codec_for(bytes_of(other)).reader_name, nullptr) << field;
