@@ -19,7 +19,7 @@ using tex::reference::BmpFile;
 using tex::reference::FileBytes;
 using tex::reference::TgaFile;
 
-std::uint32_t texel(int i, int j) { return static_cast<std::uint32_t>((i / 2 + j * 3) * 2654435761u) ^ 0x7c3a5a96; }
+std::uint32_t texel(int i, int j) { return (static_cast<std::uint32_t>(i / 2 + j * 3) * 2654435761u) ^ 0x7c3a5a96; }
 
 std::string write(const std::string& name, const FileBytes& bytes) {
     const std::string path = peers::scratch_path(name);

@@ -23,7 +23,7 @@ using reference::FileBytes;
 using reference::TgaFile;
 
 // Runs and lone texels; in rows of 5 some runs cross their ends.
-std::uint32_t seed(int i, int j) { return static_cast<std::uint32_t>((i / 2 + j * 3) * 2654435761u) >> 4; }
+std::uint32_t seed(int i, int j) { return (static_cast<std::uint32_t>(i / 2 + j * 3) * 2654435761u) >> 4; }
 
 Result<Image> read_tga(const FileBytes& bytes) {
     Result<InputFile> file = InputFile::from_memory("a.tga", bytes);
