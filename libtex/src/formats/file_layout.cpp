@@ -2,6 +2,7 @@
 
 #include "formats/file_layout.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -77,7 +78,7 @@ void rearrange_texels(Format format, Rearrange rearrange, const std::byte* sourc
 
 std::vector<std::byte> assemble(const Texture& texture, const FileLayout& layout) {
     std::vector<std::byte> file(layout.size);
-    std::memcpy(file.data(), layout.head.data(), layout.head.size());
+    std::copy(layout.head.begin(), layout.head.end(), file.begin());
     const std::size_t block_bytes = format_info(texture.format).block_bytes;
     for (std::size_t k = 0; k < layout.levels.size(); ++k) {
         const std::vector<std::byte>& bytes = texture.levels[k].bytes;
