@@ -55,9 +55,9 @@ std::vector<std::string> ColorGroup::files() const {
 
 void StrengthOptions::add(Command& command, bool can_measure) {
     command.group("Strength (one of three)");
-    constexpr const char* kHelp = "the height of value 1.0 in texels, as a shader measures it; negative: dents";
+    const std::string help = "the height of value 1.0 in texels, as a shader measures it; negative: dents";
     if (can_measure) {
-        Row& row = command.option("--bumpiness", "B", kHelp, [this](const std::string& text) {
+        Row& row = command.option("--bumpiness", "B", help + "; or a word", [this](const std::string& text) {
             measured = text == "auto";
             if (!measured) bumpiness = parse_float(text);
         });
@@ -65,7 +65,7 @@ void StrengthOptions::add(Command& command, bool can_measure) {
         row.preset = fmt::format("{}", bumpiness);
         row.completes = Completes::words;
     } else {
-        command.number(bumpiness, "--bumpiness", "B", {}, kHelp);
+        command.number(bumpiness, "--bumpiness", "B", {}, help);
     }
     command.option("--height-range", "R", "the height of value 1.0 in the unit of --size",
                    [this](const std::string& text) { height_range = parse_double(text); });

@@ -80,8 +80,7 @@ void NormalsReader::add(Command& command, bool with_keep_length) {
         .preset = "yx in ATI2, else xy";
     command.choice(unpack.range, "--range", "R", kValueRangeNames, "how stored floats are read");
     command.flag(unpack.snap_flat, "--snap-flat", "read 127 and 128 of 8-bit files as 0");
-    command.flag(fills_background, "--fill-background",
-                 "fill black, grey or white around charts with the nearest normals");
+    command.flag(fills_background, "--fill-background", "fill the background around charts with the nearest normals");
     if (with_keep_length) command.flag(unpack.keep_length, "--keep-length", "do not normalise what is read");
 }
 

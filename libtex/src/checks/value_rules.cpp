@@ -24,6 +24,13 @@ constexpr double kLeanDegrees = 10.0;
 constexpr float kVaries = 0.05f;     // of a stored channel: more than its rounding
 constexpr float kSteepRange = 0.4f;  // of x or y as stored: z would vary by 10 codes
 
+void set_texel(Finding& finding, int column, int row) {
+    finding.regions = {{0, column, row, 1, 1}};
+    finding.has_texel = true;
+    finding.column = column;
+    finding.row = row;
+}
+
 Finding& add_counted(const Subject& subject, Findings& findings, std::string_view id, Property property,
                      const std::string& what) {
     const Tally& tally = subject.counts[property];
@@ -32,10 +39,7 @@ Finding& add_counted(const Subject& subject, Findings& findings, std::string_vie
         id, percent(share) + " of the texels" + what + ", the first at " + texel_text(tally.column, tally.row));
     finding.figure = share;
     finding.unit = "share";
-    finding.regions = {{0, tally.column, tally.row, 1, 1}};
-    finding.has_texel = true;
-    finding.column = tally.column;
-    finding.row = tally.row;
+    set_texel(finding, tally.column, tally.row);
     return finding;
 }
 
@@ -69,10 +73,7 @@ void check_background(const Subject& subject, Findings& findings) {
                     ", which is no normal; the first at " + texel_text(background.column, background.row));
     finding.figure = share;
     finding.unit = "share";
-    finding.regions = {{0, background.column, background.row, 1, 1}};
-    finding.has_texel = true;
-    finding.column = background.column;
-    finding.row = background.row;
+    set_texel(finding, background.column, background.row);
 }
 
 void check_means(const Subject& subject, Findings& findings) {

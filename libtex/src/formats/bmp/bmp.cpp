@@ -37,7 +37,7 @@ public:
 private:
     [[nodiscard]] std::size_t width() const { return static_cast<std::size_t>(header_.extent.width); }
     Result<void> read_stored(int first, int count, std::vector<std::uint8_t>& stored) const;
-    // Makes codes of a stored row. False if an index is none of the palette.
+    // Makes codes of a stored row. False if an index is beyond the palette.
     bool expand(const std::uint8_t* stored, std::uint8_t* out) const;
     bool expand_indices(const std::uint8_t* stored, std::uint8_t* out) const;
     template <class Code>

@@ -49,7 +49,7 @@ private:
     }
     Result<void> find_packets();
     Result<void> read_stored(int first, int count, std::vector<std::byte>& stored) const;
-    // Makes codes of a stored row. False if an index is none of the palette.
+    // Makes codes of a stored row. False if an index is beyond the palette.
     bool expand(const std::byte* stored, std::uint8_t* out) const;
     bool expand_indices(const std::byte* stored, std::uint8_t* out) const;
 
