@@ -6,7 +6,9 @@
 
 #include <malloc.h>
 
+#include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <random>
 
 #include <ImfCompression.h>
@@ -19,21 +21,28 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 
+constexpr Imf::Compression kOwn[] = {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION,
+                                     Imf::ZIP_COMPRESSION};
+
 TEST(ExrChunk, RunsAreCounted) {
     const Bytes bytes = {std::byte{9}, std::byte{1}, std::byte{0xfd},
                          std::byte{1}, std::byte{2}, std::byte{3}};  // 10 times 1, then 3 bytes
-    EXPECT_TRUE(chunk_is_whole(Imf::RLE_COMPRESSION, bytes, 13));
-    EXPECT_FALSE(chunk_is_whole(Imf::RLE_COMPRESSION, bytes, 14));
+    ChunkDecoder decoder;
+    EXPECT_EQ(decoder.texels(Imf::RLE_COMPRESSION, bytes, 13, 13).size(), 13u);
+    EXPECT_EQ(decoder.texels(Imf::RLE_COMPRESSION, bytes, 12, 13).size(), 12u);
+    EXPECT_TRUE(decoder.texels(Imf::RLE_COMPRESSION, bytes, 14, 14).empty());
+    EXPECT_TRUE(decoder.texels(Imf::RLE_COMPRESSION, bytes, 12, 12).empty()) << "more than the texels of a chunk";
+    EXPECT_TRUE(decoder.texels(Imf::RLE_COMPRESSION, std::span(bytes).first(5), 13, 13).empty());
 }
 
 TEST(ExrChunk, EmptyOnesAreNeverWhole) {
     const Bytes stored(8);
-    for (int k = 0; k < Imf::NUM_COMPRESSION_METHODS; ++k) {
-        const auto compression = static_cast<Imf::Compression>(k);
-        EXPECT_FALSE(chunk_is_whole(compression, {}, 8)) << k;
-        EXPECT_TRUE(chunk_is_whole(compression, stored, 8)) << k;
+    ChunkDecoder decoder;
+    for (const Imf::Compression compression : kOwn) {
+        EXPECT_TRUE(decoder.texels(compression, {}, 8, 8).empty()) << compression;
+        EXPECT_EQ(decoder.texels(compression, stored, 8, 8).size(), 8u) << compression;
     }
-    EXPECT_FALSE(chunk_is_whole(Imf::NO_COMPRESSION, std::span(stored).first(7), 8));
+    EXPECT_TRUE(decoder.texels(Imf::NO_COMPRESSION, std::span(stored).first(7), 8, 8).empty());
 }
 
 // The result of reading a file with these bytes while new memory is filled with `poison` (the C library's M_PERTURB).
@@ -61,7 +70,8 @@ TEST(ExrChunk, DamagedFilesReadTheSameWhateverMemoryHeldBefore) {
     for (int k = 0; k < Imf::NUM_COMPRESSION_METHODS; ++k) {
         for (const bool tiled : {false, true}) {
             const Bytes sound = exr_file({37, 41}, {"G", "R", "B"}, Imf::HALF, static_cast<Imf::Compression>(k), tiled);
-            for (int round = 0; round < 120; ++round) {
+            const bool own = std::find(std::begin(kOwn), std::end(kOwn), k) != std::end(kOwn);
+            for (int round = 0; round < (own ? 120 : 8); ++round) {  // the others start a process
                 Bytes bytes = sound;
                 // Chunks with a different length or different bytes; the header stays.
                 constexpr std::size_t kHeader = 300;

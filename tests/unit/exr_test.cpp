@@ -148,6 +148,65 @@ TEST(Exr, OfSeveralPartsReadsTheFirst) {
     EXPECT_EQ(image->planes[0].at(3, 2), 0.75f);
 }
 
+// Parts of 40 x 37 texels, whose chunks are mixed. Channel c of part k holds 100 k + 10 c + line / 8.
+Bytes parts_file(const std::vector<std::string>& names, const std::vector<std::vector<std::string>>& channels,
+                 Imf::Compression compression) {
+    constexpr int kWidth = 40, kHeight = 37;
+    std::vector<Imf::Header> headers(names.size(), Imf::Header(kWidth, kHeight));
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        headers[k].setName(names[k]);
+        headers[k].setType(Imf::SCANLINEIMAGE);
+        headers[k].compression() = compression;
+        for (const std::string& name : channels[k]) headers[k].channels().insert(name, Imf::Channel(Imf::FLOAT));
+    }
+    Bytes bytes;
+    ExrSink sink(bytes);
+    Imf::MultiPartOutputFile file(sink, headers.data(), static_cast<int>(headers.size()));
+    for (int line = 0; line < kHeight; ++line) {
+        for (std::size_t k = 0; k < names.size(); ++k) {
+            Imf::FrameBuffer buffer;
+            std::vector<std::vector<float>> values;
+            for (std::size_t c = 0; c < channels[k].size(); ++c) {
+                const auto base = static_cast<float>(100 * k + 10 * c);
+                values.emplace_back(kWidth, base + 0.125f * static_cast<float>(line));
+                buffer.insert(channels[k][c],
+                              Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.back().data()), 4, 0));
+            }
+            Imf::OutputPart part(file, static_cast<int>(k));
+            part.setFrameBuffer(buffer);
+            part.writePixels(1);
+        }
+    }
+    return bytes;
+}
+
+// As Nuke and Blender write them: the name of the part is that of the layer, or the channels have it too.
+TEST(Exr, LayersMayBeParts) {
+    for (const Imf::Compression compression : {Imf::ZIP_COMPRESSION, Imf::NO_COMPRESSION, Imf::PIZ_COMPRESSION}) {
+        for (const std::string prefix : {"", "normal."}) {
+            SCOPED_TRACE(testing::Message() << compression << " " << prefix);
+            const std::vector<std::string> normal = {prefix + "X", prefix + "Y", prefix + "Z"};
+            const Bytes bytes =
+                parts_file({"beauty", "normal", "depth"}, {{"B", "G", "R"}, normal, {"depth.Z"}}, compression);
+            ReadOptions options;
+            options.layer = "normal";
+            const Result<Image> image = read(bytes, options);
+            ASSERT_TRUE(image) << image.error().message();
+            ASSERT_EQ(image->names, normal);
+            EXPECT_EQ(image->planes[1].at(39, 36), 110.0f + 36 * 0.125f);
+            options.layer = "depth";
+            const Result<Image> depth = read(bytes, options);
+            ASSERT_TRUE(depth) << depth.error().message();
+            EXPECT_EQ(depth->planes[0].at(0, 8), 201.0f);
+            options.layer = "specular";
+            const Result<Image> none = read(bytes, options);
+            ASSERT_FALSE(none);
+            EXPECT_EQ(none.error().reason,
+                      "the picture has no layer \"specular\"; its layers are beauty, normal, depth");
+        }
+    }
+}
+
 TEST(Exr, EveryTruncationIsDamage) {
     for (const bool tiled : {false, true}) {
         const Bytes whole = exr_file({37, 21}, {"R", "G", "B"}, Imf::HALF, Imf::ZIP_COMPRESSION, tiled);

@@ -18,6 +18,7 @@ static_assert(kInputDescriptor == 4);
 
 bool decode_tiff(const Task& task, ReaderHeader& header);
 bool decode_jpeg(const Task& task, ReaderHeader& header);
+bool decode_exr(const Task& task, ReaderHeader& header);  // answers with an uncompressed EXR file
 bool encode_tiff(const Task& task, ReaderHeader& header);
 bool encode_jpeg(const Task& task, ReaderHeader& header);
 

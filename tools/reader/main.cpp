@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// tex-reader: decodes and encodes TIFF and JPEG for libtex, which starts it. Do not run it by hand, except
+// tex-reader: decodes and encodes TIFF and JPEG, and decodes EXR, for libtex, which starts it. Do not run it by hand, except
 //
 //     tex-reader --version      prints the versions of the decoders, and whether the kernel supports the restriction of
 //                               files and the filter of system calls
@@ -26,13 +26,15 @@ struct Decoder {
 constexpr Decoder kDecoders[] = {
     {"tiff", decode_tiff, encode_tiff},
     {"jpeg", decode_jpeg, encode_jpeg},
+    {"exr", decode_exr, nullptr},
 };
 
 bool read_or_write(const Task& task, ReaderHeader& header) {
     if (task.verb == "describe") return true;
+    const std::string_view format = std::string_view(task.format).substr(0, task.format.find('/'));
     for (const Decoder& decoder : kDecoders) {
-        if (decoder.format == task.format)
-            return (task.verb == "encode" ? decoder.encode : decoder.decode)(task, header);
+        const auto work = task.verb == "encode" ? decoder.encode : decoder.decode;
+        if (decoder.format == format && work != nullptr) return work(task, header);
     }
     return refuse(header, ErrorCode::unsupported, "tex-reader does not know the type " + task.format);
 }

@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include "files/system_error.h"
 #include "threads/guard.h"
@@ -94,12 +95,31 @@ Result<InputFile> InputFile::open(const std::string& path) {
                 file.size_ = std::max<std::int64_t>(0, status.st_size - at);
             }
         }
+        if (Result<void> head = file.read_head(); !head) return head.error();
+        return file;
+    });
+}
 
-        std::byte head[kHeadBytes];
-        const Result<std::size_t> got = file.read(head, kHeadBytes);
-        if (!got) return got.error();
-        if (*got == 0) return Error{ErrorCode::bad_data, path, "is empty"};
-        file.head_.assign(head, head + *got);
+Result<void> InputFile::read_head() {
+    std::byte head[kHeadBytes];
+    const Result<std::size_t> got = read(head, kHeadBytes);
+    if (!got) return got.error();
+    if (*got == 0) return Error{ErrorCode::bad_data, path_, "is empty"};
+    head_.assign(head, head + *got);
+    return {};
+}
+
+Result<InputFile> InputFile::from_descriptor(const std::string& name, Descriptor fd, std::int64_t start) {
+    return guarded([&]() -> Result<InputFile> {
+        InputFile file;
+        file.path_ = name;
+        file.fd_ = std::move(fd);
+        file.start_ = start;
+        struct stat status {};
+        if (fstat(file.fd_.get(), &status) != 0 || lseek(file.fd_.get(), start, SEEK_SET) < 0)
+            return system_error(name, errno);
+        file.size_ = std::max<std::int64_t>(0, status.st_size - start);
+        if (Result<void> head = file.read_head(); !head) return head.error();
         return file;
     });
 }

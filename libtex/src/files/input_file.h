@@ -60,6 +60,10 @@ public:
     // Opens bytes that are already in memory; error messages call them `name`. Errors: bad_data (empty), out_of_memory.
     static Result<InputFile> from_memory(const std::string& name, std::vector<std::byte> bytes);
 
+    // A file that is already open, from the byte `start` on; error messages call it `name`. Errors: io, bad_data
+    // (empty).
+    static Result<InputFile> from_descriptor(const std::string& name, Descriptor fd, std::int64_t start);
+
     [[nodiscard]] const std::string& path() const { return path_; }  // as the caller gave it
     // The size in bytes of a regular file when it was opened; nullopt if only the end of the stream reveals the size.
     [[nodiscard]] std::optional<std::int64_t> size() const { return size_; }
@@ -85,6 +89,7 @@ public:
 
 private:
     InputFile() = default;
+    Result<void> read_head();
 
     std::string path_;
     Descriptor fd_;

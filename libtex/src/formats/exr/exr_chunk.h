@@ -1,24 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
-// exr_chunk.h: whether the compressed bytes of a chunk (some scan lines, or a tile) hold all its texels.
-//
-// OpenEXR 3.1 accepts a chunk that decodes to fewer bytes than its texels need. It leaves the previous contents of the
-// memory in the other texels.
+// exr_chunk.h: decodes chunks (some scan lines, or a tile) of an EXR file.
 
 #pragma once
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include <ImfCompression.h>
 
+#include "formats/exr/exr_zip.h"
+
 namespace tex {
 
-// The number of scan lines in a chunk of a scanline file (the last chunk may have fewer).
+// Whether ChunkDecoder knows the compression: none, RLE, ZIPS and ZIP. tex-reader decodes the others.
+[[nodiscard]] bool is_decoded_here(Imf::Compression compression);
+
+// The number of scan lines in a chunk of these compressions (the last chunk may have fewer).
 [[nodiscard]] int chunk_lines(Imf::Compression compression);
 
-// Whether a chunk decodes to at least `wanted` bytes, for compressions that OpenEXR does not check itself. OpenEXR
-// checks PXR24, PIZ and B44, except chunks without a byte. `Unzipper` (exr_zip.h) checks ZIP, and dwa_is_whole() checks
-// DWA; this function returns true for both.
-[[nodiscard]] bool chunk_is_whole(Imf::Compression compression, std::span<const std::byte> chunk, std::size_t wanted);
+class ChunkDecoder {
+public:
+    // Decodes a chunk to its texels, `wanted` bytes in the order of the file: line by line, and in each line the
+    // channels by name. The result is valid until the next call, and no longer than `chunk`. It is empty if the chunk
+    // is damaged or holds fewer bytes. A chunk from which nothing is cut off has `most` bytes. Throws std::bad_alloc.
+    // Precondition: is_decoded_here(compression).
+    std::span<const std::byte> texels(Imf::Compression compression, std::span<const std::byte> chunk,
+                                      std::size_t wanted, std::size_t most);
+
+    std::vector<std::byte> bytes;  // for the caller, who may keep a chunk in it
+
+private:
+    std::span<const std::byte> unrolled(std::span<const std::byte> chunk, std::size_t wanted, std::size_t most);
+
+    Unzipper unzipper_;
+    std::vector<std::byte> runs_, texels_;
+};
 
 }  // namespace tex

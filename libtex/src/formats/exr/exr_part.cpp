@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cstring>
 #include <string_view>
+#include <utility>
 
 #include <Iex.h>
 #include <ImfChannelList.h>
+#include <ImfMultiPartInputFile.h>
 #include <ImfPartType.h>
 
 #include "formats/claims.h"
@@ -134,6 +136,24 @@ private:
     ExrStream& stream_;
 };
 
+// Walks the attributes of all headers, then goes back to the beginning. Without this check, OpenEXR would allocate as
+// much memory as an attribute claims before it finds that the file does not hold it. Returns where the headers end.
+// Throws Iex::InputExc.
+std::uint64_t check_attributes(ExrStream& stream) {
+    constexpr std::int32_t kManyParts = 0x1000;
+    HeaderWalk walk(stream);
+    walk.integer();  // the magic number
+    const bool many_parts = (walk.integer() & kManyParts) != 0;
+    do {
+        int attributes = 0;
+        for (; !walk.text().empty(); ++attributes) walk.attribute();
+        if (attributes == 0) break;
+    } while (many_parts);
+    const std::uint64_t end = stream.tellg();
+    stream.seekg(0);
+    return end;
+}
+
 }  // namespace
 
 // OpenEXR puts its own introduction ('Cannot read image file "NAME". ') before every reason, sometimes twice. It is
@@ -152,8 +172,6 @@ ExrStream::ExrStream(const InputFile& file)
 
 bool ExrStream::read(char data[], int count) {
     const auto n = static_cast<std::size_t>(count);
-    last_ = std::span(reinterpret_cast<const std::byte*>(data), count < 0 ? 0 : n);
-    last_place_ = at_;
     if (count < 0 || n > size_ || at_ > size_ - n) throw Iex::InputExc("the file ends too early");
     if (at_ >= buffered_from_ && at_ + n <= buffered_from_ + buffered_) {
         std::memcpy(data, buffer_.data() + (at_ - buffered_from_), n);
@@ -177,22 +195,34 @@ void ExrStream::fetch(std::byte* to, std::uint64_t at, std::size_t n) {
     if (!got || *got < n) throw Iex::InputExc("the file ends too early");
 }
 
-std::optional<std::uint64_t> check_attributes(ExrStream& stream) {
-    constexpr std::int32_t kManyParts = 0x1000;
-    HeaderWalk walk(stream);
-    walk.integer();  // the magic number
-    const bool many_parts = (walk.integer() & kManyParts) != 0;
-    do {
-        int attributes = 0;
-        for (; !walk.text().empty(); ++attributes) walk.attribute();
-        if (attributes == 0) break;
-    } while (many_parts);
-    const std::uint64_t end = stream.tellg();
-    stream.seekg(0);
-    return many_parts ? std::nullopt : std::optional(end);
+Result<ExrHeaders> ExrHeaders::read(const InputFile& file) {
+    ExrStream stream(file);
+    try {
+        ExrHeaders headers;
+        std::uint64_t table = check_attributes(stream);
+        constexpr int kNoThreads = 0;
+        constexpr bool kKeepTable = false;  // a file whose table would have to be guessed is damaged
+        const Imf::MultiPartInputFile exr(stream, kNoThreads, kKeepTable);
+        for (int part = 0; part < exr.parts(); ++part) {
+            headers.headers_.push_back(exr.header(part));
+            headers.tables_.push_back(table);
+            if (exr.header(part).hasChunkCount())
+                table += sizeof table * static_cast<std::uint64_t>(std::max(0, exr.header(part).chunkCount()));
+        }
+        return headers;
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& thrown) {
+        if (stream.failure()) return *stream.failure();
+        return exr_error(file.path(), thrown);
+    }
 }
 
-Result<std::vector<ExrChannel>> channels_of(const Imf::Header& header, const std::string& layer) {
+std::size_t value_bytes(Imf::PixelType type) {
+    return type == Imf::HALF ? sizeof(std::uint16_t) : sizeof(std::uint32_t);
+}
+
+std::vector<ExrChannel> channels_of(const Imf::Header& header) {
     std::vector<ExrChannel> channels;
     const Imf::ChannelList& list = header.channels();
     for (const char* name : {"R", "G", "B", "A"}) {
@@ -202,12 +232,29 @@ Result<std::vector<ExrChannel>> channels_of(const Imf::Header& header, const std
         const std::string name = it.name();
         if (name != "R" && name != "G" && name != "B" && name != "A") channels.push_back({name, it.channel().type});
     }
-    if (layer.empty()) return channels;
-    const Result<std::vector<std::size_t>> chosen = layer_channels(names_of(channels), layer);
+    return channels;
+}
+
+Result<ExrLayer> find_layer(const ExrHeaders& headers, const std::string& name) {
+    if (name.empty()) return ExrLayer{0, channels_of(headers[0])};
+    std::vector<std::string> names;  // of the channels of all parts
+    std::vector<std::pair<int, ExrChannel>> channels;
+    for (int part = 0; part < headers.count(); ++part) {
+        const std::string part_name = headers[part].hasName() ? headers[part].name() + "." : std::string();
+        for (const ExrChannel& channel : channels_of(headers[part])) {
+            const bool is_complete = headers.count() == 1 || channel.name.starts_with(part_name);
+            names.push_back(is_complete ? channel.name : part_name + channel.name);
+            channels.emplace_back(part, channel);
+        }
+    }
+    const Result<std::vector<std::size_t>> chosen = layer_channels(names, name);
     if (!chosen) return chosen.error();
-    std::vector<ExrChannel> of_layer;
-    for (const std::size_t k : *chosen) of_layer.push_back(channels[k]);
-    return of_layer;
+    ExrLayer layer;
+    layer.part = channels[chosen->front()].first;
+    for (const std::size_t k : *chosen) {
+        if (channels[k].first == layer.part) layer.channels.push_back(channels[k].second);
+    }
+    return layer;
 }
 
 std::vector<std::string> names_of(const std::vector<ExrChannel>& channels) {
@@ -242,7 +289,7 @@ Result<Extent> check_header(const std::string& path, const Imf::Header& header, 
             keep_plain_text(name);
             return Error{ErrorCode::unsupported, path, "the channel " + name + " is subsampled"};
         }
-        texel_bytes += channel.type == Imf::HALF ? 2 : 4;
+        texel_bytes += static_cast<std::int64_t>(value_bytes(channel.type));
     }
     const double decoded = static_cast<double>(extent->texels()) * static_cast<double>(texel_bytes);
     const Result<void> claim = check_claim(path, *extent, decoded, file_size, best_ratio(header.compression()));

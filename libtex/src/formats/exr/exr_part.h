@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// exr_part.h: the header of the first part of an EXR file, which is checked before it is used.
+// exr_part.h: the headers of an EXR file, which are checked before they are used.
 
 #pragma once
 
@@ -41,10 +41,6 @@ public:
     void seekg(std::uint64_t at) override { at_ = at; }
     [[nodiscard]] std::uint64_t size() const { return size_; }
 
-    // Where the last read() put its bytes, and where in the file they began.
-    [[nodiscard]] std::span<const std::byte> last_read() const { return last_; }
-    [[nodiscard]] std::uint64_t last_place() const { return last_place_; }
-
     // The system's error, if reading failed for another reason than the format.
     [[nodiscard]] const std::optional<Error>& failure() const { return failure_; }
 
@@ -57,26 +53,47 @@ private:
     std::vector<std::byte> buffer_;
     std::uint64_t buffered_from_ = 0;
     std::size_t buffered_ = 0;
-    std::span<const std::byte> last_;
-    std::uint64_t last_place_ = 0;
     std::optional<Error> failure_;
 };
 
-// Walks the attributes of all headers, then goes back to the beginning. Without this check, OpenEXR would allocate as
-// much memory as an attribute claims before it finds that the file does not hold it. Returns where the table of chunks
-// begins, if the file has one part. Throws Iex::InputExc.
-std::optional<std::uint64_t> check_attributes(ExrStream& stream);
+// The headers of all parts. A file that is not in several parts has one.
+class ExrHeaders {
+public:
+    // Throws std::bad_alloc. Errors: bad_data, io.
+    static Result<ExrHeaders> read(const InputFile& file);
+
+    [[nodiscard]] int count() const { return static_cast<int>(headers_.size()); }
+    [[nodiscard]] const Imf::Header& operator[](int part) const { return headers_[static_cast<std::size_t>(part)]; }
+    // Where the part's table of chunks begins.
+    [[nodiscard]] std::uint64_t table(int part) const { return tables_[static_cast<std::size_t>(part)]; }
+
+private:
+    std::vector<Imf::Header> headers_;
+    std::vector<std::uint64_t> tables_;
+};
 
 struct ExrChannel {
     std::string name;
     Imf::PixelType type = Imf::HALF;
 };
 
-// The channels of a part, or of one of its layers: R, G, B, A first, then the others by name. Errors: bad_option (the
-// part has no such layer).
-Result<std::vector<ExrChannel>> channels_of(const Imf::Header& header, const std::string& layer = {});
+// Bytes of a value: 2 or 4.
+std::size_t value_bytes(Imf::PixelType type);
+
+// The channels of a part: R, G, B, A first, then the others by name.
+std::vector<ExrChannel> channels_of(const Imf::Header& header);
 
 std::vector<std::string> names_of(const std::vector<ExrChannel>& channels);
+
+// What is read of a file: some or all channels of a part.
+struct ExrLayer {
+    int part = 0;
+    std::vector<ExrChannel> channels;
+};
+
+// The channels of the layer with this name, or, without a name, all of the first part. A part's name counts as the
+// beginning of its layers' names. Errors: bad_option (there is no such layer, or several).
+Result<ExrLayer> find_layer(const ExrHeaders& headers, const std::string& name);
 
 // The tiles of a part that is stored in tiles. A part stored in scan lines may have the attribute `tiles` too. It then
 // means nothing, and OpenEXR does not check it: its sizes may be 0.

@@ -4,204 +4,172 @@
 
 #include <algorithm>
 #include <cstring>
+#include <memory>
+#include <utility>
 
-#include <Iex.h>
 #include <ImfChannelList.h>
-
-#include "formats/exr/exr_chunk.h"
-#include "formats/exr/exr_dwa.h"
 
 namespace tex {
 namespace {
 
-std::size_t value_bytes(Imf::PixelType type) {
-    return type == Imf::HALF ? sizeof(std::uint16_t) : sizeof(std::uint32_t);
-}
+std::size_t size_of(Extent extent, std::size_t each) { return static_cast<std::size_t>(extent.texels()) * each; }
 
-// Bytes of a texel, over all channels.
-std::size_t texel_bytes(const Imf::Header& header) {
+// Bytes of a texel in the channels before this one. In a line of a chunk, whose channels are sorted by name, those of
+// all texels lie before the first value of the channel.
+std::size_t bytes_before(const Imf::Header& header, const std::string& name) {
     std::size_t bytes = 0;
-    for (auto it = header.channels().begin(); it != header.channels().end(); ++it)
+    for (auto it = header.channels().begin(); it != header.channels().end() && it.name() != name; ++it)
         bytes += value_bytes(it.channel().type);
     return bytes;
 }
 
-bool is_zip(const Imf::Header& header) {
-    return header.compression() == Imf::ZIP_COMPRESSION || header.compression() == Imf::ZIPS_COMPRESSION;
+// The side of a level: halved, and rounded up or down.
+int side_of(int base, int level, Imf::LevelRoundingMode rounding) {
+    const int more = rounding == Imf::ROUND_UP && (base & ((1 << level) - 1)) != 0 ? 1 : 0;
+    return std::max(1, (base >> level) + more);
 }
 
-std::size_t size_of(int width, int height, std::size_t each) {
-    return static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * each;
-}
-
-int width_of(const Imath::Box2i& window) { return window.max.x - window.min.x + 1; }
-
-// The chunks of scan lines that hold lines [first, last].
-struct Chunks {
-    Chunks(const Imf::Header& header, int first, int last)
-        : window(header.dataWindow()), lines(chunk_lines(header.compression())), begin((first - window.min.y) / lines),
-          end((last - window.min.y) / lines + 1) {}
-    [[nodiscard]] int first_line(int chunk) const { return window.min.y + chunk * lines; }
-    [[nodiscard]] int last_line(int chunk) const { return std::min(first_line(chunk) + lines - 1, window.max.y); }
-
-    Imath::Box2i window;
-    int lines = 1;
-    int begin = 0;
-    int end = 0;
-};
-
-// The frame buffer into which OpenEXR writes `count` lines from line `top` of `window`.
-Imf::FrameBuffer buffer_of(const Imath::Box2i& window, int top, int count, const ExrTarget& target) {
-    Imf::FrameBuffer buffer;
-    for (const ExrPlane& plane : target.planes) {
-        buffer.insert(plane.channel.name.c_str(),
-                      Imf::Slice::Make(plane.channel.type, target.rows + plane.offset, {window.min.x, top},
-                                       width_of(window), count, value_bytes(plane.channel.type), target.row_bytes));
-    }
-    return buffer;
+int level_count_of(Extent base, const Imf::TileDescription& tiles) {
+    if (tiles.mode != Imf::MIPMAP_LEVELS) return 1;
+    int levels = 1;
+    while (side_of(std::max(base.width, base.height), levels - 1, tiles.roundingMode) > 1) ++levels;
+    return levels;
 }
 
 }  // namespace
 
-const Imf::Header& ExrReader::header() {
-    if (!exr_) {
-        table_ = check_attributes(stream_);
-        constexpr int kNoThreads = 0;
-        constexpr bool kKeepTable = false;  // a file whose table would have to be guessed is damaged
-        exr_.emplace(stream_, kNoThreads, kKeepTable);
-    }
-    return exr_->header(0);
+Extent ExrReader::Level::chunk_extent(int i, int j) const {
+    return {std::min(chunk.width, extent.width - i * chunk.width),
+            std::min(chunk.height, extent.height - j * chunk.height)};
 }
 
-void ExrReader::open_part() {
-    if (tiles_ || lines_) return;
-    tiles_of(header()) ? void(tiles_.emplace(*exr_, 0)) : void(lines_.emplace(*exr_, 0));
+Error ExrReader::damaged(const char* reason) const {
+    return {ErrorCode::bad_data, file_->path(), std::string("damaged EXR: ") + reason};
 }
 
-Imath::Box2i ExrReader::window(int level) {
-    if (level == 0) return header().dataWindow();
-    open_part();
-    return tiles_->dataWindowForLevel(level, level);
+Result<std::shared_ptr<ExrReader>> ExrReader::open(const InputFile& file, const ExrHeaders& headers, int part) {
+    const std::optional<std::int32_t> number = headers.count() > 1 ? std::optional(part) : std::nullopt;
+    std::shared_ptr<ExrReader> reader(new ExrReader(headers[part], number));
+    reader->file_ = &file;
+    reader->find_levels();
+    if (const Result<void> read = reader->read_table(headers.table(part)); !read) return read.error();
+    return reader;
 }
 
-void ExrReader::read(int level, int first, int count, const ExrTarget& target) {
-    open_part();
-    const Imath::Box2i all = window(level);
-    if (lines_) {
-        const int top = all.min.y + first;
-        return is_zip(header()) ? unzip_lines(top, top + count - 1, target) : read_lines(top, top + count - 1, target);
-    }
-    // OpenEXR can only write whole tiles to the buffer.
-    const auto tile = static_cast<int>(tiles_->tileYSize());
-    const int begin = first / tile * tile;
-    const int end = std::min(((first + count - 1) / tile + 1) * tile, all.max.y - all.min.y + 1);
-    if (begin == first && end == first + count) return read_tiles(level, begin, end, target);
-    std::vector<std::byte> rows(target.row_bytes * static_cast<std::size_t>(end - begin));
-    read_tiles(level, begin, end, {target.planes, rows.data(), target.row_bytes});
-    std::memcpy(target.rows, rows.data() + target.row_bytes * static_cast<std::size_t>(first - begin),
-                target.row_bytes * static_cast<std::size_t>(count));
+Result<std::shared_ptr<ExrReader>> ExrReader::open(InputFile file, const ExrHeaders& headers) {
+    Result<std::shared_ptr<ExrReader>> reader = open(file, headers, 0);
+    if (!reader) return reader;
+    (*reader)->kept_ = std::move(file);
+    (*reader)->file_ = &*(*reader)->kept_;
+    return reader;
 }
 
-// OpenEXR trusts the line order that the header states. If that is from the bottom, and the chunk below was read last,
-// it reads on from there and does not look at the table. If the header is wrong, the lines could then be read or not,
-// depending on what was read before. A new reader always looks at the table first.
-void ExrReader::begin_lines(int begin, int end) {
-    if (header().lineOrder() != Imf::INCREASING_Y && begin == last_chunk_ - 1) {
-        lines_.reset();
-        exr_.reset();
-        stream_.seekg(0);
-        open_part();
-    }
-    last_chunk_ = end - 1;
-}
-
-void ExrReader::read_lines(int first, int last, const ExrTarget& target) {
-    const Chunks chunks(header(), first, last);
-    begin_lines(chunks.begin, chunks.end);
-    lines_->setFrameBuffer(buffer_of(chunks.window, first, last - first + 1, target));
-    for (int chunk = chunks.begin; chunk < chunks.end; ++chunk) {
-        const int begin = chunks.first_line(chunk);
-        const int end = chunks.last_line(chunk);
-        lines_->readPixels(std::max(begin, first), std::min(end, last));
-        check_place(chunk);
-        check_chunk(width_of(chunks.window), end - begin + 1);
-    }
-}
-
-void ExrReader::unzip_lines(int first, int last, const ExrTarget& target) {
-    const Chunks chunks(header(), first, last);
-    const int width = width_of(chunks.window);
-    const std::size_t pitch = size_of(width, 1, texel_bytes(header()));
-    begin_lines(chunks.begin, chunks.end);
-    for (int chunk = chunks.begin; chunk < chunks.end; ++chunk) {
-        const int begin = chunks.first_line(chunk);
-        const int end = chunks.last_line(chunk);
-        const char* bytes = nullptr;
-        int size = 0;
-        lines_->rawPixelData(begin, bytes, size);
-        check_place(chunk);
-        const std::span<const std::byte> packed(reinterpret_cast<const std::byte*>(bytes),
-                                                static_cast<std::size_t>(size));
-        const auto texels = unzipper_.texels(packed, pitch * static_cast<std::size_t>(end - begin + 1),
-                                             pitch * static_cast<std::size_t>(chunks.lines));
-        if (texels.empty()) throw Iex::InputExc("a chunk is damaged or ends too early");
-        std::size_t offset = 0;  // of a channel in a line
-        for (auto it = header().channels().begin(); it != header().channels().end(); ++it) {
-            const std::size_t channel = size_of(width, 1, value_bytes(it.channel().type));
-            const auto plane = std::find_if(target.planes.begin(), target.planes.end(),
-                                            [&](const ExrPlane& p) { return p.channel.name == it.name(); });
-            for (int line = std::max(begin, first); plane != target.planes.end() && line <= std::min(end, last);
-                 ++line) {
-                std::memcpy(target.rows + static_cast<std::size_t>(line - first) * target.row_bytes + plane->offset,
-                            texels.data() + static_cast<std::size_t>(line - begin) * pitch + offset, channel);
-            }
-            offset += channel;
+void ExrReader::find_levels() {
+    for (auto it = header_.channels().begin(); it != header_.channels().end(); ++it)
+        texel_bytes_ += value_bytes(it.channel().type);
+    const Imath::Box2i& window = header_.dataWindow();
+    const Extent base{window.max.x - window.min.x + 1, window.max.y - window.min.y + 1};
+    const std::optional<Imf::TileDescription> tiles = tiles_of(header_);
+    has_tiles_ = tiles.has_value();
+    std::size_t chunks = 0;
+    for (int k = 0; k < (tiles ? level_count_of(base, *tiles) : 1); ++k) {
+        Level level;
+        level.extent = base;
+        level.chunk = {base.width, chunk_lines(header_.compression())};
+        if (tiles) {
+            level.extent = {side_of(base.width, k, tiles->roundingMode), side_of(base.height, k, tiles->roundingMode)};
+            level.chunk = {static_cast<int>(tiles->xSize), static_cast<int>(tiles->ySize)};
         }
+        const auto parts = [](int a, int b) { return a / b + (a % b != 0 ? 1 : 0); };
+        level.across = parts(level.extent.width, level.chunk.width);
+        level.first = chunks;
+        chunks += static_cast<std::size_t>(level.across) *
+                  static_cast<std::size_t>(parts(level.extent.height, level.chunk.height));
+        levels_.push_back(level);
     }
+    chunks_ = chunks;
 }
 
-void ExrReader::read_tiles(int level, int begin, int end, const ExrTarget& target) {
-    const Imath::Box2i all = window(level);
-    const auto height = static_cast<int>(tiles_->tileYSize());
-    tiles_->setFrameBuffer(buffer_of(all, all.min.y + begin, end - begin, target));
-    for (int j = begin / height; j * height < end; ++j) {
-        for (int i = 0; i < tiles_->numXTiles(level); ++i) {
-            tiles_->readTile(i, j, level, level);
-            const Imath::Box2i tile = tiles_->dataWindowForTile(i, j, level, level);
-            check_chunk(width_of(tile), tile.max.y - tile.min.y + 1);
-        }
-    }
+int ExrReader::rows_together(int level) const {
+    const Level& of = levels_[static_cast<std::size_t>(level)];
+    return std::min(of.chunk.height, of.extent.height);
 }
 
-// In a file of one part, OpenEXR uses the table only if the requested lines do not follow those that it read last. The
-// result must not depend on that, so the table is always checked.
-void ExrReader::check_place(int chunk) const {
-    if (!table_) return;
-    constexpr std::uint64_t kChunkHead = 8;  // number of the first line, and size
-    std::uint64_t place = 0;
-    const std::uint64_t entry = *table_ + sizeof place * static_cast<std::uint64_t>(chunk);
+Result<void> ExrReader::read_table(std::uint64_t place) {
+    const auto size = static_cast<std::uint64_t>(*file_->size());
+    if (place > size || chunks_ > (size - place) / sizeof(std::uint64_t)) return damaged("the file ends too early");
+    table_.resize(chunks_);
+    const std::size_t bytes = chunks_ * sizeof(std::uint64_t);
     const Result<std::size_t> got =
-        file_.read_at(static_cast<std::int64_t>(entry), reinterpret_cast<std::byte*>(&place), sizeof place);
-    if (!got || *got < sizeof place || place + kChunkHead != stream_.last_place())
-        throw Iex::InputExc("the table of chunks does not say where they are");
+        file_->read_at(static_cast<std::int64_t>(place), reinterpret_cast<std::byte*>(table_.data()), bytes);
+    if (!got) return got.error();
+    if (*got < bytes) return damaged("the file ends too early");
+    return {};
 }
 
-// OpenEXR reads the bytes of a chunk with a single call, which is its last, so the stream still holds them.
-void ExrReader::check_chunk(int width, int height) {
-    const std::size_t texel = texel_bytes(header());
-    const std::size_t wanted = size_of(width, height, texel);
-    const Imf::Compression compression = header().compression();
-    const bool is_dwa = compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION;
-    bool whole = chunk_is_whole(compression, stream_.last_read(), wanted);
-    if (whole && is_dwa && stream_.last_read().size() < wanted)
-        whole = dwa_is_whole(stream_.last_read(), width, height, header().channels());
-    if (whole && is_zip(header())) {
-        const std::size_t most =
-            tiles_ ? size_of(static_cast<int>(tiles_->tileXSize()), static_cast<int>(tiles_->tileYSize()), texel)
-                   : wanted;
-        whole = !unzipper_.texels(stream_.last_read(), wanted, most).empty();
+// A chunk begins with the number of the part, if there are several; then the number of its first line, or the places of
+// the tile and of the level, each across and down; then its size in bytes. All are 32-bit integers.
+Result<void> ExrReader::read_chunk(int level, int i, int j, ChunkDecoder& decoder) const {
+    const Level& of = levels_[static_cast<std::size_t>(level)];
+    std::vector<std::int32_t> expected;
+    if (part_) expected.push_back(*part_);
+    if (has_tiles_)
+        expected.insert(expected.end(), {i, j, level, level});
+    else
+        expected.push_back(header_.dataWindow().min.y + j * of.chunk.height);
+    std::vector<std::int32_t> head(expected.size() + 1);
+    const std::size_t head_bytes = head.size() * sizeof head[0];
+
+    const auto size = static_cast<std::uint64_t>(*file_->size());
+    const std::uint64_t place = table_[of.first + static_cast<std::size_t>(j) * static_cast<std::size_t>(of.across) +
+                                       static_cast<std::size_t>(i)];
+    if (place > size || head_bytes > size - place) return damaged("the file ends too early");
+    const auto read = [&](std::uint64_t at, std::byte* to, std::size_t count) -> Result<void> {
+        const Result<std::size_t> got = file_->read_at(static_cast<std::int64_t>(at), to, count);
+        if (!got) return got.error();
+        if (*got < count) return damaged("the file ends too early");
+        return {};
+    };
+    if (Result<void> done = read(place, reinterpret_cast<std::byte*>(head.data()), head_bytes); !done) return done;
+    if (!std::equal(expected.begin(), expected.end(), head.begin()))
+        return damaged("the table of chunks does not say where they are");
+    const auto count = static_cast<std::uint64_t>(static_cast<std::uint32_t>(head.back()));
+    if (count > size_of(of.chunk, texel_bytes_)) return damaged("a chunk is larger than its texels");
+    if (count > size - place - head_bytes) return damaged("the file ends too early");
+    decoder.bytes.resize(count);
+    return read(place + head_bytes, decoder.bytes.data(), count);
+}
+
+Result<void> ExrReader::read(int level, int first, int count, const ExrTarget& target) {
+    const Level& of = levels_[static_cast<std::size_t>(level)];
+    const std::shared_ptr<ChunkDecoder> decoder = decoders_.take([] { return std::make_unique<ChunkDecoder>(); });
+    for (int j = first / of.chunk.height; j * of.chunk.height < first + count; ++j) {
+        for (int i = 0; i < of.across; ++i) {
+            if (Result<void> done = read_chunk(level, i, j, *decoder); !done) return done;
+            const Extent extent = of.chunk_extent(i, j);
+            const std::span<const std::byte> texels = decoder->texels(
+                header_.compression(), decoder->bytes, size_of(extent, texel_bytes_), size_of(of.chunk, texel_bytes_));
+            if (texels.empty()) return damaged("a chunk is damaged or ends too early");
+            store(texels.data(), extent, i * of.chunk.width, j * of.chunk.height - first, count, target);
+        }
     }
-    if (!whole) throw Iex::InputExc("a chunk ends too early");
+    return {};
+}
+
+// Stores the lines of a chunk that are among the `count` rows of the target. `left` and `top` are the place of the
+// chunk in the target.
+void ExrReader::store(const std::byte* texels, Extent extent, int left, int top, int count,
+                      const ExrTarget& target) const {
+    const auto width = static_cast<std::size_t>(extent.width);
+    for (const ExrPlane& plane : target.planes) {
+        const std::size_t each = value_bytes(plane.channel.type);
+        const std::byte* const values = texels + bytes_before(header_, plane.channel.name) * width;
+        std::byte* const to = target.rows + plane.offset + static_cast<std::size_t>(left) * each;
+        for (int line = std::max(0, -top); line < std::min(extent.height, count - top); ++line) {
+            std::memcpy(to + static_cast<std::size_t>(top + line) * target.row_bytes,
+                        values + static_cast<std::size_t>(line) * width * texel_bytes_, width * each);
+        }
+    }
 }
 
 }  // namespace tex

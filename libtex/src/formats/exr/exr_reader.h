@@ -1,23 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// exr_reader.h: reads rows of texels of the first part of an EXR file. Only one thread at a time may use an OpenEXR
-// object, so each thread has its own reader.
+// exr_reader.h: reads rows of texels of one part of an EXR file. OpenEXR reads the header; the table of chunks and the
+// chunks themselves are read here, so that several threads can read at once and every claim is checked.
 
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include <ImfFrameBuffer.h>
-#include <ImfInputPart.h>
-#include <ImfMultiPartInputFile.h>
-#include <ImfTiledInputPart.h>
+#include <ImfHeader.h>
+
+#include <tex/image.h>
+#include <tex/result.h>
 
 #include "files/input_file.h"
+#include "formats/exr/exr_chunk.h"
 #include "formats/exr/exr_part.h"
-#include "formats/exr/exr_zip.h"
+#include "threads/pool.h"
 
 namespace tex {
 
@@ -34,47 +36,51 @@ struct ExrTarget {
     std::size_t row_bytes = 0;
 };
 
-// All functions except the constructor throw std::bad_alloc and what OpenEXR throws. They also throw if a chunk does
-// not hold all of its texels.
 class ExrReader {
 public:
-    explicit ExrReader(const InputFile& file) : file_(file), stream_(file) {}
+    // Reads the table of chunks of part `part`. Throws std::bad_alloc. Errors: bad_data, io. Preconditions: the header
+    // has been checked, because it determines how much memory is allocated; is_decoded_here(its compression).
+    static Result<std::shared_ptr<ExrReader>> open(const InputFile& file, const ExrHeaders& headers, int part);
+    // The same for a file of one part, which the reader keeps.
+    static Result<std::shared_ptr<ExrReader>> open(InputFile file, const ExrHeaders& headers);
 
-    // The header. It is read when this is first called.
-    const Imf::Header& header();
+    [[nodiscard]] const Imf::Header& header() const { return header_; }
+    [[nodiscard]] Extent extent(int level) const { return levels_[static_cast<std::size_t>(level)].extent; }
+    // The rows of a chunk.
+    [[nodiscard]] int rows_together(int level) const;
 
-    // The data window of a level, in the file's coordinates. Precondition: as read().
-    Imath::Box2i window(int level);
-
-    // Reads rows [first, first + count) of a level. Preconditions: the header has been checked, because it determines
-    // how much memory is allocated; the level exists.
-    void read(int level, int first, int count, const ExrTarget& target);
-
-    // The system's error, if reading failed for another reason than the format.
-    [[nodiscard]] const std::optional<Error>& failure() const { return stream_.failure(); }
+    // Reads rows [first, first + count) of a level that the file has (of ripmaps, only level 0). Any thread may call
+    // this. Throws std::bad_alloc. Errors: bad_data, io.
+    Result<void> read(int level, int first, int count, const ExrTarget& target);
 
 private:
-    void open_part();
-    // To be called before the lines of chunk `begin` are read, and those that follow up to chunk `end` - 1.
-    void begin_lines(int begin, int end);
-    // Lines are in the file's coordinates.
-    void read_lines(int first, int last, const ExrTarget& target);
-    void unzip_lines(int first, int last, const ExrTarget& target);
-    // Reads rows [begin, end) of a level, whole tiles.
-    void read_tiles(int level, int begin, int end, const ExrTarget& target);
-    // Checks that the chunk read last holds `width` x `height` texels.
-    void check_chunk(int width, int height);
-    // Checks that the chunk read last is at the place that the table of chunks states.
-    void check_place(int chunk) const;
+    // The chunks of a level: tiles, or groups of scan lines over the whole width.
+    struct Level {
+        Extent extent;
+        Extent chunk;           // of a chunk from which nothing is cut off
+        int across = 1;         // chunks side by side
+        std::size_t first = 0;  // of its chunks in the table
+        [[nodiscard]] Extent chunk_extent(int i, int j) const;
+    };
 
-    const InputFile& file_;
-    ExrStream stream_;
-    std::optional<std::uint64_t> table_;  // where the table of chunks begins, in a file of one part
-    std::optional<Imf::MultiPartInputFile> exr_;
-    std::optional<Imf::InputPart> lines_;
-    int last_chunk_ = 0;  // of the lines that were read last
-    std::optional<Imf::TiledInputPart> tiles_;
-    Unzipper unzipper_;
+    ExrReader(const Imf::Header& header, std::optional<std::int32_t> part) : header_(header), part_(part) {}
+    void find_levels();
+    [[nodiscard]] Error damaged(const char* reason) const;
+    Result<void> read_table(std::uint64_t place);
+    // Reads chunk (i, j) of a level to decoder.bytes.
+    Result<void> read_chunk(int level, int i, int j, ChunkDecoder& decoder) const;
+    void store(const std::byte* texels, Extent extent, int left, int top, int count, const ExrTarget& target) const;
+
+    Imf::Header header_;
+    std::optional<std::int32_t> part_;  // the number that begins each chunk in a file of several parts
+    std::optional<InputFile> kept_;
+    const InputFile* file_ = nullptr;
+    bool has_tiles_ = false;
+    std::size_t texel_bytes_ = 0;  // over all channels
+    std::vector<Level> levels_;
+    std::size_t chunks_ = 0;            // of all levels
+    std::vector<std::uint64_t> table_;  // where each chunk begins
+    Pool<ChunkDecoder> decoders_;
 };
 
 }  // namespace tex

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cstring>
+#include <memory>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include <ImfStringAttribute.h>
@@ -12,37 +15,24 @@
 #include "formats/exr/exr_part.h"
 #include "formats/exr/exr_reader.h"
 #include "formats/exr/exr_texture.h"
+#include "formats/reader/reader.h"
 #include "kernels/samples.h"
 #include "threads/guard.h"
-#include "threads/pool.h"
 
 namespace tex {
 namespace {
 
-// Runs body(), which returns a Result and may throw what OpenEXR throws. body() reads with `reader`.
-template <class Body>
-auto with_reader(const InputFile& file, const ExrReader& reader, const Body& body) -> decltype(body()) {
-    try {
-        return body();
-    } catch (const std::bad_alloc&) {
-        throw;
-    } catch (const std::exception& thrown) {
-        if (reader.failure()) return *reader.failure();
-        return exr_error(file.path(), thrown);
-    }
-}
-
 class ExrRows final : public RowSource {
 public:
-    // Rows of a level. `reader`, one of `readers`, describes the level. Throws what OpenEXR throws. Precondition: the
-    // header has been checked.
-    ExrRows(const InputFile& file, Pool<ExrReader> readers, ExrReader& reader, const std::vector<ExrChannel>& channels,
-            int level);
+    // Rows of a level.
+    ExrRows(std::shared_ptr<ExrReader> reader, const std::vector<ExrChannel>& channels, int level);
 
-    [[nodiscard]] int rows_together() const override { return rows_together_; }
+    [[nodiscard]] int rows_together() const override { return reader_->rows_together(level_); }
     [[nodiscard]] bool is_random() const override { return true; }
     void choose_planes(const std::vector<bool>& wanted) override { wanted_ = wanted; }
-    Result<void> decode(int first, int count, std::byte* rows) override;
+    Result<void> decode(int first, int count, std::byte* rows) override {
+        return reader_->read(level_, first, count, {planes_, rows, row_bytes()});
+    }
     bool store_numbers() override {
         has_whole_numbers_ = true;
         return true;
@@ -50,33 +40,21 @@ public:
     void store(const std::byte* rows, int first, int end, Image& image) const override;
 
 private:
-    const InputFile& file_;
+    const std::shared_ptr<ExrReader> reader_;  // shared by all levels
     const int level_;
-    int rows_together_ = 1;
     std::vector<ExrPlane> planes_;
     std::vector<bool> wanted_;
     bool has_whole_numbers_ = false;  // uint stays what it is
-    Pool<ExrReader> readers_;         // shared by all levels
 };
 
-std::shared_ptr<ExrReader> take_reader(Pool<ExrReader>& readers, const InputFile& file) {
-    return readers.take([&file] { return std::make_unique<ExrReader>(file); });
-}
-
-ExrRows::ExrRows(const InputFile& file, Pool<ExrReader> readers, ExrReader& reader,
-                 const std::vector<ExrChannel>& channels, int level)
-    : file_(file), level_(level), readers_(std::move(readers)) {
-    const Imf::Header& header = reader.header();
-    const Imath::Box2i window = reader.window(level);
-    const Extent extent{window.max.x - window.min.x + 1, window.max.y - window.min.y + 1};
-    const std::optional<Imf::TileDescription> tiles = tiles_of(header);
-    rows_together_ = tiles ? static_cast<int>(tiles->ySize) : chunk_lines(header.compression());
-    rows_together_ = std::min(rows_together_, extent.height);
+ExrRows::ExrRows(std::shared_ptr<ExrReader> reader, const std::vector<ExrChannel>& channels, int level)
+    : reader_(std::move(reader)), level_(level) {
+    const Extent extent = reader_->extent(level);
     std::vector<std::string> names;
     std::size_t bytes = 0;
     for (const ExrChannel& channel : channels) {
         constexpr std::size_t kAlignment = 16;
-        const std::size_t size = static_cast<std::size_t>(extent.width) * (channel.type == Imf::HALF ? 2 : 4);
+        const std::size_t size = static_cast<std::size_t>(extent.width) * value_bytes(channel.type);
         names.push_back(channel.name);
         planes_.push_back({channel, bytes});
         bytes += (size + kAlignment - 1) / kAlignment * kAlignment;
@@ -89,17 +67,9 @@ ExrRows::ExrRows(const InputFile& file, Pool<ExrReader> readers, ExrReader& read
     };
     if (std::any_of(channels.begin(), channels.end(), [](const ExrChannel& c) { return c.type == Imf::UINT; }))
         describe_stored({.kind = 1, .bits = 32});
-    const auto* text = header.findTypedAttribute<Imf::StringAttribute>(kNormalEncoding);
+    const auto* text = reader_->header().findTypedAttribute<Imf::StringAttribute>(kNormalEncoding);
     describe_samples(all(Imf::UINT) ? SampleKind::unorm : SampleKind::floating, all(Imf::HALF) ? 16 : 32,
                      text == nullptr ? "" : text->value());
-}
-
-Result<void> ExrRows::decode(int first, int count, std::byte* rows) {
-    const std::shared_ptr<ExrReader> reader = take_reader(readers_, file_);
-    return with_reader(file_, *reader, [&]() -> Result<void> {
-        reader->read(level_, first, count, {planes_, rows, row_bytes()});
-        return {};
-    });
 }
 
 void ExrRows::store(const std::byte* rows, int first, int end, Image& image) const {
@@ -124,47 +94,73 @@ void ExrRows::store(const std::byte* rows, int first, int end, Image& image) con
     }
 }
 
-// Opens the first part and runs body(readers, reader, base). The reader has read the header, and is the first to
-// decode.
-template <class Body>
-auto with_part(InputFile& file, const ReadOptions& options, const Body& body) {
-    using Opened = decltype(body(std::declval<Pool<ExrReader>&>(), std::declval<ExrReader&>(), Extent()));
-    return guarded([&]() -> Opened {
-        if (const Result<void> settled = file.settle(largest_file(options)); !settled) return settled.error();
-        Pool<ExrReader> readers;
-        const std::shared_ptr<ExrReader> reader = take_reader(readers, file);
-        return with_reader(file, *reader, [&]() -> Opened {
-            const Result<Extent> base = check_header(file.path(), reader->header(), *file.size(), options);
-            if (!base) return base.error();
-            return body(readers, *reader, *base);
-        });
-    });
+// A part that is ready to be read, and the channels that are wanted of it.
+struct OpenedPart {
+    Imf::Header header;  // as the file has it
+    std::shared_ptr<ExrReader> reader;
+    std::vector<ExrChannel> channels;
+};
+
+// Whether a decoded part is what its header announced: it has the same texels and, if any are used, the same levels.
+bool is_same_picture(const Imf::Header& decoded, const Imf::Header& announced) {
+    if (decoded.dataWindow() != announced.dataWindow() || !(decoded.channels() == announced.channels())) return false;
+    const std::optional<Imf::TileDescription> tiles = tiles_of(announced);
+    if (!tiles || tiles->mode != Imf::MIPMAP_LEVELS) return true;
+    const std::optional<Imf::TileDescription> its_tiles = tiles_of(decoded);
+    return its_tiles && *its_tiles == *tiles;
+}
+
+Result<std::shared_ptr<ExrReader>> open_part(InputFile& file, const ExrHeaders& headers, int part,
+                                             const ReadOptions& options) {
+    if (Result<Extent> base = check_header(file.path(), headers[part], *file.size(), options); !base)
+        return std::move(base).error();
+    if (is_decoded_here(headers[part].compression())) return ExrReader::open(file, headers, part);
+    Result<InputFile> decoded = decode_with_reader(file, "exr/" + std::to_string(part), options);
+    if (!decoded) return std::move(decoded).error();
+    const Result<ExrHeaders> plain = ExrHeaders::read(*decoded);
+    if (!plain) return plain.error();
+    const Result<Extent> base = check_header(file.path(), (*plain)[0], *decoded->size(), options);
+    if (!base) return base.error();
+    if (!is_decoded_here((*plain)[0].compression()) || !is_same_picture((*plain)[0], headers[part]))
+        return Error{ErrorCode::bad_data, file.path(), "damaged EXR: the decoder returned another picture"};
+    return ExrReader::open(std::move(*decoded), *plain);
+}
+
+Result<OpenedPart> open_layer(InputFile& file, const ReadOptions& options) {
+    if (Result<void> settled = file.settle(largest_file(options)); !settled) return std::move(settled).error();
+    const Result<ExrHeaders> headers = ExrHeaders::read(file);
+    if (!headers) return headers.error();
+    Result<ExrLayer> layer = find_layer(*headers, options.layer);
+    if (!layer) return std::move(layer).error();
+    Result<std::shared_ptr<ExrReader>> reader = open_part(file, *headers, layer->part, options);
+    if (!reader) return std::move(reader).error();
+    return OpenedPart{(*headers)[layer->part], std::move(*reader), std::move(layer->channels)};
 }
 
 }  // namespace
 
 Result<std::unique_ptr<RowSource>> open_exr_rows(InputFile& file, const ReadOptions& options) {
-    return with_part(
-        file, options, [&](Pool<ExrReader>& readers, ExrReader& reader, Extent) -> Result<std::unique_ptr<RowSource>> {
-            const auto channels = channels_of(reader.header(), options.layer);
-            if (!channels) return channels.error();
-            return std::unique_ptr<RowSource>(std::make_unique<ExrRows>(file, readers, reader, *channels, 0));
-        });
+    return guarded([&]() -> Result<std::unique_ptr<RowSource>> {
+        Result<OpenedPart> opened = open_layer(file, options);
+        if (!opened) return std::move(opened).error();
+        return std::unique_ptr<RowSource>(std::make_unique<ExrRows>(opened->reader, opened->channels, 0));
+    });
 }
 
 Result<TextureRows> open_exr_texture_rows(InputFile& file, const ReadOptions& options) {
-    return with_part(
-        file, options, [&](Pool<ExrReader>& readers, ExrReader& reader, Extent base) -> Result<TextureRows> {
-            Result<ExrTexture> described = exr_texture_of(file.path(), reader.header(), base, options.layer);
-            if (!described) return std::move(described).error();
-            TextureRows texture;
-            texture.head = std::move(described->head);
-            for (int level = 0; level < described->levels; ++level) {
-                texture.levels.push_back(std::make_unique<ExrRows>(file, readers, reader, described->channels, level));
-            }
-            texture.take_planes_in_order();
-            return texture;
-        });
+    return guarded([&]() -> Result<TextureRows> {
+        const Result<OpenedPart> opened = open_layer(file, options);
+        if (!opened) return opened.error();
+        Result<ExrTexture> described =
+            exr_texture_of(file.path(), opened->header, opened->reader->extent(0), opened->channels);
+        if (!described) return std::move(described).error();
+        TextureRows texture;
+        texture.head = std::move(described->head);
+        for (int level = 0; level < described->levels; ++level)
+            texture.levels.push_back(std::make_unique<ExrRows>(opened->reader, described->channels, level));
+        texture.take_planes_in_order();
+        return texture;
+    });
 }
 
 }  // namespace tex

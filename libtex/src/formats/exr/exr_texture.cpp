@@ -16,16 +16,14 @@ namespace tex {
 namespace {
 
 // The channels of a texture. A part with one channel needs no name that says what it holds, nor does alpha beside it.
-Result<std::vector<ExrChannel>> texture_channels(const std::string& path, const Imf::Header& header,
-                                                 const std::string& layer, std::vector<std::string>& remarks) {
-    Result<std::vector<ExrChannel>> all = channels_of(header, layer);
-    if (!all) return all.error().of(path);
-    const std::vector<std::string> names = names_of(*all);
+Result<std::vector<ExrChannel>> texture_channels(const std::string& path, const std::vector<ExrChannel>& all,
+                                                 std::vector<std::string>& remarks) {
+    const std::vector<std::string> names = names_of(all);
     const Result<NormalChannels> normals = normal_channels(names);
     if (!normals) return normals.error().of(path);
     if (!normals->remark.empty()) remarks.push_back(normals->remark);
     std::vector<ExrChannel> channels;
-    for (const std::size_t k : normals->channels) channels.push_back((*all)[k]);
+    for (const std::size_t k : normals->channels) channels.push_back(all[k]);
     if (!channels.empty()) return channels;
     const auto others = std::count_if(names.begin(), names.end(), [](const auto& name) { return !is_alpha(name); });
     if (names.size() == 1 || (names.size() == 2 && others == 1)) return all;
@@ -65,9 +63,9 @@ int usable_levels(const Imf::Header& header, Extent base, std::vector<std::strin
 }  // namespace
 
 Result<ExrTexture> exr_texture_of(const std::string& path, const Imf::Header& header, Extent base,
-                                  const std::string& layer) {
+                                  const std::vector<ExrChannel>& all) {
     ExrTexture texture;
-    Result<std::vector<ExrChannel>> channels = texture_channels(path, header, layer, texture.head.remarks);
+    Result<std::vector<ExrChannel>> channels = texture_channels(path, all, texture.head.remarks);
     if (!channels) return std::move(channels).error();
     const bool half = std::all_of(channels->begin(), channels->end(),
                                   [](const ExrChannel& channel) { return channel.type == Imf::HALF; });

@@ -21,10 +21,9 @@ struct ExrTexture {
     int levels = 1;                    // number of levels that follow the rule of level_extent()
 };
 
-// The channels are those of normal_channels() (rows/channel_names.h), of the whole part or of one layer. Errors:
-// unsupported (several channels, and their names do not say what they hold), bad_option (the layer). May throw
-// std::bad_alloc.
+// The channels are those of normal_channels() (rows/channel_names.h) among `all`, channels of the part. Errors:
+// unsupported (several channels, and their names do not say what they hold). May throw std::bad_alloc.
 Result<ExrTexture> exr_texture_of(const std::string& path, const Imf::Header& header, Extent base,
-                                  const std::string& layer);
+                                  const std::vector<ExrChannel>& all);
 
 }  // namespace tex

@@ -59,6 +59,22 @@ Result<ReaderInfo> reader_info(const ReadOptions& options) {
     });
 }
 
+Result<InputFile> decode_with_reader(InputFile& file, const std::string& format, const ReadOptions& options) {
+    return guarded([&]() -> Result<InputFile> {
+        if (file.size()) {
+            if (const Result<void> rewound = file.rewind(); !rewound) return rewound.error();
+        }
+        Descriptor copy;
+        const Result<int> input = descriptor_of(file, options, copy);
+        if (!input) return input.error();
+        Result<Descriptor> result = memory_file(file.path());
+        if (!result) return std::move(result).error();
+        const ReaderJob job{program_for(format), file.path(), "decode", format, *input, result->get()};
+        if (const Result<ReaderHeader> reply = run_reader(job, options); !reply) return reply.error();
+        return InputFile::from_descriptor(file.path(), std::move(*result), kReaderDataOffset);
+    });
+}
+
 Result<ReaderPicture> ReaderPicture::open(Container container, const TextureHead& head, const WriteOptions& options) {
     const FormatInfo info = format_info(head.format);
     const Codec& codec = codec_of(container);

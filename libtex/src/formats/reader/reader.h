@@ -48,6 +48,10 @@ private:
 Result<std::vector<std::byte>> encode_with_reader(const Texture& texture, Container container,
                                                   const WriteOptions& options);
 
+// Makes a file that libtex can read of one that it does not decode itself. "exr/PART": part PART of an EXR file, with
+// its channels and levels, uncompressed. The result is not to be trusted. Errors: those of ReaderProcess.
+Result<InputFile> decode_with_reader(InputFile& file, const std::string& format, const ReadOptions& options);
+
 // The program that decodes and encodes pictures of this format, a name of reader_rows.cpp.
 ReaderProgram program_for(std::string_view format);
 

@@ -159,6 +159,17 @@ bool write_exactly(int fd, std::uint64_t offset, std::span<const std::byte> byte
     return true;
 }
 
+Result<int> descriptor_of(InputFile& file, const ReadOptions& options, Descriptor& copy) {
+    if (const std::optional<int> whole = file.whole_file()) return *whole;
+    const Result<std::vector<std::byte>> bytes = file.read_rest(std::min(largest_file(options), options.reader_memory));
+    if (!bytes) return bytes.error();
+    Result<Descriptor> memory = memory_file(file.path());
+    if (!memory) return memory.error();
+    if (!write_exactly(memory->get(), 0, *bytes)) return system_error(file.path(), errno, "a file in memory");
+    copy = std::move(*memory);
+    return copy.get();
+}
+
 Result<Descriptor> memory_file(const std::string& path) {
     Descriptor file(memfd_create("libtex", MFD_CLOEXEC | MFD_ALLOW_SEALING));
     if (!file || fcntl(file.get(), F_ADD_SEALS, F_SEAL_SHRINK) != 0)

@@ -26,6 +26,10 @@ Result<Descriptor> memory_file(const std::string& path);
 bool read_exactly(int fd, std::uint64_t offset, std::byte* to, std::size_t count);
 bool write_exactly(int fd, std::uint64_t offset, std::span<const std::byte> bytes);
 
+// The file as a descriptor that another process can open again. A stream is first copied to memory, which `copy` then
+// owns. Errors: as InputFile::read_rest().
+Result<int> descriptor_of(InputFile& file, const ReadOptions& options, Descriptor& copy);
+
 // The bytes that a process has handed over at kReaderDataOffset. Errors: bad_data (they are not there).
 Result<std::vector<std::byte>> answered_bytes(const std::string& path, int result, const ReaderHeader& header);
 

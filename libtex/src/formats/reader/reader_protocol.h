@@ -7,8 +7,8 @@
 //     tex-reader-oiio  decode|encode|describe FORMAT MAX_TEXELS MEMORY SECONDS PARENT
 //     tex-mesh-reader  mesh EXTENSION MAX_TEXELS MEMORY SECONDS PARENT
 //
-// for one file (FORMAT is a name of reader_rows.cpp, EXTENSION of the mesh's file or -, MEMORY in bytes, PARENT
-// the process id of the caller) with these descriptors and no others:
+// for one file (FORMAT is a name of reader_rows.cpp, or exr/PART with the number of a part, EXTENSION of the mesh's
+// file or -, MEMORY in bytes, PARENT the process id of the caller) with these descriptors and no others:
 //
 //     kResultDescriptor    a file in memory, empty, which nobody can shorten: ReaderHeader at 0, the data at
 //                          kReaderDataOffset
@@ -22,7 +22,7 @@
 //
 // Texels are interleaved, in native byte order, with rows from the top without padding: row j is at kReaderDataOffset +
 // j * row_bytes(). rows_done in the header grows as rows arrive, so that a consumer may follow. An encoded file,
-// or the GLB file that stands for a mesh, is `bytes` long.
+// the GLB file that stands for a mesh, or the uncompressed file that stands for a part of an EXR file is `bytes` long.
 //
 // MEMORY limits the address space of the process. It reserves as much of that as its result is long, so that the limit
 // holds for both together. MEMORY also limits the result, in case a process that was taken over reserves nothing.

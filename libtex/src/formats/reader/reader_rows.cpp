@@ -65,7 +65,7 @@ constexpr Mark kMarks[] = {
 };
 
 // The types that tex-reader decodes and encodes. tex-reader-oiio does the others.
-constexpr std::string_view kOfTexReader[] = {"tiff", "jpeg"};
+constexpr std::string_view kOfTexReader[] = {"tiff", "jpeg", "exr"};
 
 std::optional<std::string> format_of(std::span<const std::byte> head) {
     const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
@@ -173,15 +173,6 @@ bool plausible(const ReaderHeader& header) {
            header.bits >= 1 && header.bits <= 8 * reader_type_bytes(header.type) && header.orientation <= 8;
 }
 
-// The file as a descriptor that another process can open again. A stream is first copied to memory.
-Result<Descriptor> copy_to_memory(InputFile& file, const ReadOptions& options) {
-    const Result<std::vector<std::byte>> bytes = file.read_rest(std::min(largest_file(options), options.reader_memory));
-    if (!bytes) return bytes.error();
-    Result<Descriptor> memory = memory_file(file.path());
-    if (memory && !write_exactly(memory->get(), 0, *bytes)) return system_error(file.path(), errno, "a file in memory");
-    return memory;
-}
-
 class ReaderRows final : public RowSource {
 public:
     explicit ReaderRows(InputFile& file) : file_(file) {}
@@ -227,13 +218,8 @@ Result<void> ReaderRows::start(const ReadOptions& options) {
     if (!format && is_ktx1(file_.head()))
         return Error{ErrorCode::unsupported, file_.path(), "a KTX file of version 1: only version 2 is read"};
     if (!format) return Error{ErrorCode::bad_data, file_.path(), "not a picture, or of a type that is not supported"};
-    std::optional<int> input = file_.whole_file();
-    if (!input) {
-        Result<Descriptor> copy = copy_to_memory(file_, options);
-        if (!copy) return copy.error();
-        memory_ = std::move(*copy);
-        input = memory_.get();
-    }
+    const Result<int> input = descriptor_of(file_, options, memory_);
+    if (!input) return input.error();
     Result<Descriptor> result = memory_file(file_.path());
     if (!result) return result.error();
     result_ = std::move(*result);
@@ -350,7 +336,8 @@ void ReaderRows::store(const std::byte* rows, int first, int end, Image& image) 
 }  // namespace
 
 ReaderProgram program_for(std::string_view format) {
-    const bool own = std::find(std::begin(kOfTexReader), std::end(kOfTexReader), format) != std::end(kOfTexReader);
+    const std::string_view name = format.substr(0, format.find('/'));
+    const bool own = std::find(std::begin(kOfTexReader), std::end(kOfTexReader), name) != std::end(kOfTexReader);
     return own ? ReaderProgram::pictures : ReaderProgram::other_pictures;
 }
 
