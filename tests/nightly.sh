@@ -3,8 +3,8 @@
 # nightly.sh: what takes too long for the gate (.ci/run), by hand: at the latest before an issue is called done.
 # NIGHTLY.md says when it last ran, on which commit, and with what result. The last line counts all tests.
 #
-#     tests/nightly.sh [STEP...]    all steps, or the named ones: long commands slurm arm64 tsan tidy fuzz package
-#                                   engines
+#     tests/nightly.sh [STEP...]    all steps, or the named ones: long scalar commands slurm arm64 tsan tidy fuzz
+#                                   package engines
 #
 # FUZZ_SECONDS is the time for each fuzzer (default: 60).
 set -euo pipefail
@@ -22,12 +22,19 @@ release() {
     cmake --build --preset release
 }
 
-# The drills at their full length.
+# The tests that the gate leaves out, and the drills at their full length.
 long() {
     local status=0
+    ctest --preset release --output-junit "$results/longest.xml" -R "$longest" || status=1
     script drills tests/build_drills.sh 100 || status=1
     script long_runs tests/long_runs.sh || status=1
     return "$status"
+}
+
+# Repeats the release's tests of the library, with kernels of one lane.
+scalar() {
+    LD_PRELOAD="$PWD/build/release/target.so" TEX_TARGET=SCALAR \
+        ctest --preset release --output-junit "$results/scalar.xml" -L unit -E "$judgements|$failures|Reader|Target"
 }
 
 # The commands and the Python module under the address sanitizer, and the bytes that commands make if the other compiler
@@ -174,6 +181,7 @@ if command -v ccache >/dev/null; then export CMAKE_CXX_COMPILER_LAUNCHER=ccache;
 
 release
 step long long
+step scalar scalar
 step commands commands
 step slurm slurm
 step arm64 arm64
