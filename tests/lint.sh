@@ -46,6 +46,14 @@ for name in $(printf '%s\n' "${files[@]}" | cut -d/ -f1 | sort -u); do
     case $top in *" $name "*) ;; *) complain "$name does not belong at the top level" ;; esac
 done
 
+# -- folders include each other in one direction --------------------------------------------------------------
+if graph=$(tests/graph.sh 2>&1); then
+    diff <(sed -n '/^batch: /,/^```/p' CONTRIBUTING.md | sed '$d') - <<<"$graph" >&2 ||
+        complain 'the graph of folders in CONTRIBUTING.md is not that of tests/graph.sh'
+else
+    complain "folders include each other in a circle"$'\n'"$graph"
+fi
+
 # -- one type for each name ------------------------------------------------------------------------------------
 # Tests are linked with the library of the tools, in one namespace, so a linker would mix up types of one name.
 types() { grep -hoE '^(class|struct) [A-Z][A-Za-z0-9]+' -- "$@" | cut -d' ' -f2 | sort -u; }

@@ -9,10 +9,11 @@
 #include <tex/tex.h>
 
 #include "batch/batch.h"
-#include "batch/repack.h"
+#include "cli/text.h"
 #include "cli/usage_error.h"
 #include "options/heights.h"
 #include "options/mips.h"
+#include "tasks/written_levels.h"
 
 namespace {
 
@@ -86,7 +87,8 @@ BakeFileOptions BakeNormals::options(cli::Job& job) const {
     options.heights.wrap_x = wrap_.x;
     options.heights.wrap_y = wrap_.y;
     options.color = reader_.color.options();
-    options.strength = [this](Extent extent) { return reader_.strength.strength(extent); };
+    if (reader_.strength.is_given)
+        options.strength = [this](Extent extent) { return reader_.strength.strength(extent); };
     options.auto_strength = reader_.strength.measured;
     options.bake = kernel_.bake;
     options.mip = mips_.options(mips_.levels_for(job.task), wrap_);
@@ -107,6 +109,9 @@ Result<void> BakeNormals::process(cli::Job& job) {
     cli::wrote_levels(job, job.task.output, baked->levels);
     cli::report_texture(job, baked->extent, baked->levels, with.pack, baked->bytes, baked->rdo);
     note_strength(job, baked->strength);
+    if (baked->is_stated && job.task.output != "-")
+        job.say(
+            fmt::format("{}: --bumpiness {}, as the file states\n", cli::printable(job.task.input), baked->strength.x));
     warn_of_steep(job, baked->steep_texels, baked->extent, with.pack.encoding);
     warn_of_flat(job, baked->usual_slope, baked->strength, with.pack.encoding);
     const SlopeRange& slopes = baked->slopes;

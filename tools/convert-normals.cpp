@@ -12,6 +12,7 @@
 #include "cli/usage_error.h"
 #include "options/conversion.h"
 #include "options/mips.h"
+#include "tasks/written_levels.h"
 
 namespace {
 

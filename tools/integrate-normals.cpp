@@ -13,11 +13,12 @@
 #include <fmt/format.h>
 #include <tex/tex.h>
 
-#include "batch/name_pattern.h"
 #include "batch/repack.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "options/surface.h"
+#include "tasks/name_pattern.h"
+#include "tasks/written_levels.h"
 
 namespace {
 
@@ -164,6 +165,8 @@ Result<void> IntegrateNormals::write_heights(cli::Job& job, std::vector<Integrat
     }
     auto texture = pack_roughness(chain, format, Effort::normal, job.until(0.9));
     if (!texture) return texture.error();
+    texture->bumpiness_x = bumpiness[0];
+    texture->bumpiness_y = bumpiness[1];
     chain.levels.clear();
     const auto written = cli::write_levels(job, std::move(*texture), job.write_options);
     if (!written) return written.error();

@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 #include <tex/tex.h>
 
-#include "batch/name_pattern.h"
 #include "batch/repack.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "options/mips.h"
 #include "options/roughness.h"
+#include "tasks/name_pattern.h"
 
 namespace {
 

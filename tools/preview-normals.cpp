@@ -9,13 +9,13 @@
 
 #include <tex/tex.h>
 
-#include "batch/name_pattern.h"
 #include "batch/repack.h"
 #include "cli/exit_code.h"
 #include "cli/usage_error.h"
 #include "options/scene.h"
 #include "options/sheet.h"
 #include "options/tangent_space.h"
+#include "tasks/name_pattern.h"
 
 namespace {
 

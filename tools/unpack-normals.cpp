@@ -6,10 +6,10 @@
 #include <fmt/format.h>
 #include <tex/tex.h>
 
-#include "batch/name_pattern.h"
 #include "batch/repack.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "tasks/name_pattern.h"
 
 namespace {
 

@@ -75,12 +75,6 @@ void each_rdo_field(RdoOptions& o, F& f) {
     f("rdo_window", o.window);
 }
 
-inline void check_rdo(const RdoOptions& o) {
-    need(o.mean >= 0.0f && o.mean <= 180.0f, "rdo_mean", "must be from 0 to 180");
-    need(o.max >= 0.0f && o.max <= 180.0f, "rdo_max", "must be from 0 to 180");
-    need(o.window >= kLeastRdoWindow && o.window <= kMostRdoWindow, "rdo_window", "must be from 64 to 1048576");
-}
-
 template <class F>
 void each_field(PackOptions& o, F& f) {
     f("encoding", o.encoding);
@@ -125,18 +119,6 @@ void each_placement(L& o, F& f) {
     f("rotation", o.rotation);
     f("wrap", axes(o.wrap_x, o.wrap_y));
     f("strength", o.strength);
-}
-
-// Raises ValueError for a place that blend() does not accept.
-template <class L>
-void check_placement(const L& layer) {
-    const auto is_tiling = [](float tiling) { return tiling > 0.0f && tiling <= kMaxTiling; };
-    need(std::abs(layer.scale) <= kMaxScale, "scale", "must be at most 1e6 in magnitude");
-    need(is_tiling(layer.tiling_x) && is_tiling(layer.tiling_y), "tiling", "must be above 0 and at most 4096");
-    need(std::abs(layer.offset_x) <= kMaxTiling && std::abs(layer.offset_y) <= kMaxTiling, "offset",
-         "must be at most 4096 in magnitude");
-    need(std::isfinite(layer.rotation), "rotation", "must be finite");
-    need(layer.strength >= 0.0f && layer.strength <= 1.0f, "strength", "must be from 0 to 1");
 }
 
 template <class F>

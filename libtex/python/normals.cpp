@@ -15,17 +15,6 @@ namespace {
 constexpr const char* kMap = "NDArray[np.float32]";
 constexpr const char* kChain = "list[NDArray[np.float32]]";
 
-void check(const MipOptions& options) {
-    need(options.levels >= 0, "levels", "must be 0, for all, or more");
-    need(options.max_side >= 0, "max_side", "must be 0, for no limit, or more");
-    need(!options.any_z || (options.domain == MipDomain::vector && !options.fade), "any_z",
-         "needs the domain 'vector' and no fade");
-}
-
-void check_scale(float scale, const char* name) {
-    need(std::abs(scale) <= kMaxScale, name, "must be at most 1e6 in magnitude");
-}
-
 // A map, or a number for all of it.
 Plane<float> roughness_from(py::handle given) {
     if (!py::isinstance<py::float_>(given) && !py::isinstance<py::int_>(given)) return plane_from(given, "roughness");
@@ -46,12 +35,10 @@ Layer layer_from(py::handle given, const std::string& name) {
     Reader reader(fields);
     each_placement(layer, reader);
     reader.finish(name);
-    check_placement(layer);
     return layer;
 }
 
 py::object blended(Call& call, BlendOptions& options, Running& running) {
-    check_scale(options.base_scale, "base_scale");
     need((options.extent.width == 0) == (options.extent.height == 0), "extent", "both sides or neither must be 0");
     MipChain base = chain_from(call["base"], "base");
     std::vector<Layer> layers;
@@ -78,7 +65,6 @@ void add_roughness(Module& module) {
         {{"base", kMapSource}, {"roughness", "ArrayLike | float"}, {"model", "str", "'toksvig'"}}, kChain,
         "The roughness of every level, arrays (height, width). `roughness` is a map or one number.",
         [](Call& call, MipOptions& options, Running& running) -> py::object {
-            check(options);
             const NormalMap base = map_from(call["base"], "base");
             const Plane<float> roughness = roughness_from(call["roughness"]);
             const auto model =
@@ -119,7 +105,6 @@ void add_normals(Module& module) {
         "build_mip_chain", {{"base", kMapSource}}, kChain,
         "A list of arrays, one for each level. The first one shows the memory of `base` if that came from libtex.",
         [](Call& call, MipOptions& options, Running& running) -> py::object {
-            check(options);
             NormalMap base = map_from(call["base"], "base");
             return arrays_of(
                 running.run([&](const Execution& e) { return build_mip_chain(std::move(base), options, e); }));
@@ -131,7 +116,6 @@ void add_normals(Module& module) {
         "changed.",
         [](Call& call, Running& running) -> py::object {
             const float by = Convert<float>::from(call["scale"], "scale");
-            check_scale(by, "scale");
             const auto mode = call.has("mode") ? Convert<ScaleMode>::from(call["mode"], "mode") : ScaleMode::slope;
             MipChain chain = chain_from(call["n"], "n", Sharing::writes);
             chain = running.run([&](const Execution& e) { return scale(std::move(chain), by, mode, e); });

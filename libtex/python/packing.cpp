@@ -62,7 +62,6 @@ void add_packing(Module& module) {
         "Image or a Texture stands for its normals.",
         [](Call& call, PackKeywords& options, Running& running) -> py::object {
             if (call.has("encoding")) options.encoding = Convert<Encoding>::from(call["encoding"], "encoding");
-            check_rdo(options.rdo);
             const MipChain chain = chain_from(call["chain"], "chain");
             return object_of(running.run([&](const Execution& e) { return pack(chain, options, e); }));
         });

@@ -68,13 +68,6 @@ py::dict written(const Report& report) {
     return facts;
 }
 
-void check(const MipOptions& options) {
-    need(options.levels >= 0, "mip", "levels must be 0, for all, or more");
-    need(options.max_side >= 0, "mip", "max_side must be 0, for no limit, or more");
-    need(!options.any_z || (options.domain == MipDomain::vector && !options.fade), "mip",
-         "any_z needs the domain 'vector' and no fade");
-}
-
 struct BakeFields {
     float bumpiness_x = 1.0f, bumpiness_y = 1.0f;
     BakeFileOptions file;
@@ -99,8 +92,6 @@ py::object baked(Call& call, BakeFields& fields, Running& running) {
     need(std::isfinite(fields.bumpiness_x) && std::isfinite(fields.bumpiness_y), "bumpiness", "must be finite");
     need(options.bake.gaussian_sigma > 0.0f && options.bake.gaussian_sigma <= kMaxGaussianSigma, "bake",
          "gaussian_sigma must be above 0 and at most 64");
-    check(options.mip);
-    check_rdo(fields.pack.rdo);
     const std::string input = path_from(call["input"], "input");
     const Output output = output_of(call);
     const Strength strength{fields.bumpiness_x, fields.bumpiness_y};
@@ -143,11 +134,6 @@ void each_field(RepackFields& o, F& f) {
 
 py::object repacked(Call& call, RepackFields& fields, Running& running) {
     PackFileOptions& options = fields.file;
-    need(!options.level || *options.level >= 0, "level", "must be 0 or more");
-    need(!options.scale || std::abs(options.scale->scale) <= kMaxScale, "scale", "must be at most 1e6 in magnitude");
-    need(options.max_side >= 0, "max_side", "must be 0, for no limit, or more");
-    if (options.mip) check(*options.mip);
-    check_rdo(fields.pack.rdo);
     const std::string input = path_from(call["input"], "input");
     const Output output = output_of(call);
     options.pack = pack_by(fields.pack, output.container);
@@ -184,17 +170,13 @@ LayerFile layer_from(py::handle given, const std::string& name) {
     reader("source", layer.source);
     each_placement(layer, reader);
     reader.finish(name);
-    check_placement(layer);
     return layer;
 }
 
 py::object blended(Call& call, BlendFields& fields, Running& running) {
     BlendFileOptions& options = fields.file;
-    need(std::abs(options.blend.base_scale) <= kMaxScale, "blend", "base_scale must be at most 1e6 in magnitude");
     need((options.blend.extent.width == 0) == (options.blend.extent.height == 0), "blend",
          "both sides of extent or neither must be 0");
-    check(options.mip);
-    check_rdo(fields.pack.rdo);
     const py::object layers = call["layers"];
     if (!py::isinstance<py::list>(layers) && !py::isinstance<py::tuple>(layers))
         raise_type("layers", "a list of dicts", layers);

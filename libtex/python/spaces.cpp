@@ -135,11 +135,6 @@ void add_parts(Module& module) {
                   });
 }
 
-void check(const ConvertOptions& options) {
-    need(options.padding >= 0, "padding", "must be 0 or more");
-    need(options.subsamples >= 1 && options.subsamples <= kMaxSubsamples, "subsamples", "must be from 1 to 8");
-}
-
 py::dict dict_of(ConvertedMap converted) {
     const Extent extent = converted.coverage.extent();
     py::array_t<std::uint8_t> coverage({py::ssize_t{extent.height}, py::ssize_t{extent.width}});
@@ -168,7 +163,6 @@ void add_conversion(Module& module, const char* name, Conversion* convert) {
     module.verb<DecoderKeyword, ConvertOptions, Running>(
         name, {{"n", kMapSource}, {"space", "SelectedPart"}}, "dict[str, Any]", kConverted,
         [convert](Call& call, DecoderKeyword& keyword, ConvertOptions& options, Running& running) -> py::object {
-            check(options);
             const NormalMap map = map_from(call["n"], "n");
             const TangentSpace space = space_of(selected_from(call["space"], "space"), keyword.decoder);
             return dict_of(running.run([&](const Execution& e) { return convert(map, space, options, e); }));
@@ -185,7 +179,6 @@ void add_spaces(Module& module) {
     module.verb<TwoDecoders, ConvertOptions, Running>(
         "refit", {{"n", kMapSource}, {"source", "SelectedPart"}, {"target", "SelectedPart"}}, "dict[str, Any]",
         kConverted, [](Call& call, TwoDecoders& decoders, ConvertOptions& options, Running& running) -> py::object {
-            check(options);
             const NormalMap map = map_from(call["n"], "n");
             const TangentSpace source = space_of(selected_from(call["source"], "source"), decoders.source);
             const TangentSpace target = space_of(selected_from(call["target"], "target"), decoders.target);

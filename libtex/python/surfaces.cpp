@@ -10,20 +10,8 @@
 namespace tex::python {
 namespace {
 
-void check(const IntegrateOptions& options) {
-    const auto is_strength = [](float b) { return std::abs(b) >= 1e-20f && std::abs(b) <= 1e20f; };
-    need(is_strength(options.bumpiness_x) && is_strength(options.bumpiness_y), "bumpiness",
-         "must be from 1e-20 to 1e20 in magnitude");
-    need(options.bake.gaussian_sigma > 0.0f && options.bake.gaussian_sigma <= kMaxGaussianSigma, "gaussian_sigma",
-         "must be above 0 and at most 64");
-    need(options.least_z > 0.0f && options.least_z <= 1.0f, "least_z", "must be above 0 and at most 1");
-    need(options.least_response >= 0.0f, "least_response", "must be 0 or more");
-    need(options.most_steps >= 1, "most_steps", "must be 1 or more");
-}
-
 py::object integrated(Call& call, BakeOptions& bake, IntegrateOptions& options, Running& running) {
     options.bake = bake;
-    check(options);
     const NormalMap map = map_from(call["n"], "n");
     Integration found = running.run([&](const Execution& e) { return integrate(map, options, e); });
     py::dict result;

@@ -5,25 +5,31 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cassert>
 #include <cmath>
 #include <limits>
 
 #include "kernels/bake.h"
 #include "rows/bake_rows.h"
+#include "rows/usable.h"
 #include "stream/slope_collector.h"
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
 namespace tex {
 
+Result<void> validate(const BakeOptions& options) {
+    const bool in_range = options.gaussian_sigma > 0.0f && options.gaussian_sigma <= kMaxGaussianSigma;
+    if (options.kernel != GradientKernel::gaussian || in_range) return {};
+    return bad_option("gaussian_sigma: must be above 0 and at most 64");
+}
+
 Result<NormalMap> bake(const HeightField& field, const BakeOptions& options, const Execution& execution) {
     const Extent extent = field.height.extent();
-    assert(extent.width >= 1 && extent.width <= kMaxExtent && extent.height >= 1 && extent.height <= kMaxExtent);
-    assert(std::isfinite(field.bumpiness_x) && std::isfinite(field.bumpiness_y));
-    assert(options.kernel != GradientKernel::gaussian ||
-           (options.gaussian_sigma > 0.0f && options.gaussian_sigma <= kMaxGaussianSigma));
     return guarded([&]() -> Result<NormalMap> {
+        if (auto usable = check_usable(extent, "the height field"); !usable) return usable.error();
+        if (auto valid = validate(options); !valid) return valid.error();
+        if (!std::isfinite(field.bumpiness_x) || !std::isfinite(field.bumpiness_y))
+            return bad_option("bumpiness: must be finite");
         NormalMap map(extent);
         const Gradient gradient = gradient_of(options);
         std::atomic<bool> finite = true;

@@ -4,25 +4,17 @@
 #include <tex/blend.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <utility>
 
 #include "rows/blend_rows.h"
+#include "rows/usable.h"
 #include "stream/placed_map.h"
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
 namespace tex {
 namespace {
-
-[[maybe_unused]] bool in_range(const Layer& layer) {
-    const auto tiling = [](float t) { return t > 0.0f && t <= kMaxTiling; };
-    const auto offset = [](float o) { return std::abs(o) <= kMaxTiling; };
-    return !layer.detail.levels.empty() && std::abs(layer.scale) <= kMaxScale && tiling(layer.tiling_x) &&
-           tiling(layer.tiling_y) && offset(layer.offset_x) && offset(layer.offset_y) &&
-           std::isfinite(layer.rotation) && layer.strength >= 0.0f && layer.strength <= 1.0f;
-}
 
 Result<NormalMap> blend_layers(MipChain& base, std::vector<Layer>& layers, const BlendOptions& options,
                                const Execution& execution) {
@@ -49,11 +41,36 @@ Result<NormalMap> blend_layers(MipChain& base, std::vector<Layer>& layers, const
 
 }  // namespace
 
+Result<void> validate(const BlendOptions& options) {
+    if (!(std::abs(options.base_scale) <= kMaxScale)) return bad_option("base_scale: must be at most 1e6 in magnitude");
+    if (options.extent == Extent{}) return {};
+    return check_usable(options.extent, "extent");
+}
+
+Result<void> validate(const Layer& layer) {
+    const auto is_tiling = [](float tiling) { return tiling > 0.0f && tiling <= kMaxTiling; };
+    const auto is_offset = [](float offset) { return std::abs(offset) <= kMaxTiling; };
+    if (!(std::abs(layer.scale) <= kMaxScale)) return bad_option("scale: must be at most 1e6 in magnitude");
+    if (!is_tiling(layer.tiling_x) || !is_tiling(layer.tiling_y))
+        return bad_option("tiling: must be above 0 and at most 4096");
+    if (!is_offset(layer.offset_x) || !is_offset(layer.offset_y))
+        return bad_option("offset: must be at most 4096 in magnitude");
+    if (!std::isfinite(layer.rotation)) return bad_option("rotation: must be finite");
+    if (!(layer.strength >= 0.0f && layer.strength <= 1.0f)) return bad_option("strength: must be from 0 to 1");
+    return {};
+}
+
 Result<NormalMap> blend(MipChain base, std::vector<Layer> layers, const BlendOptions& options,
                         const Execution& execution) {
-    assert(!base.levels.empty() && std::abs(options.base_scale) <= kMaxScale);
-    assert(std::all_of(layers.begin(), layers.end(), in_range));
-    return guarded([&] { return blend_layers(base, layers, options, execution); });
+    return guarded([&]() -> Result<NormalMap> {
+        if (auto usable = check_usable(base); !usable) return usable.error();
+        if (auto valid = validate(options); !valid) return valid.error();
+        for (const Layer& layer : layers) {
+            if (auto usable = check_usable(layer.detail); !usable) return usable.error();
+            if (auto valid = validate(layer); !valid) return valid.error();
+        }
+        return blend_layers(base, layers, options, execution);
+    });
 }
 
 }  // namespace tex

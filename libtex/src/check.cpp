@@ -3,7 +3,6 @@
 #include <tex/check.h>
 
 #include <algorithm>
-#include <cassert>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -24,17 +23,15 @@
 #include "checks/rules.h"
 #include "checks/sign_rules.h"
 #include "checks/value_rules.h"
-#include "formats/ktx2/ktx2.h"
 #include "formats/level_planes.h"
 #include "rows/unpack_rows.h"
+#include "rows/usable.h"
 #include "threads/guard.h"
 
 namespace tex {
 namespace {
 
 constexpr int kLeastSide = 32;  // in texels; smaller maps get no statistics
-
-Error bad_option(std::string reason) { return {ErrorCode::bad_option, {}, std::move(reason)}; }
 
 // Parses `text`, which must be a whole number from 1 to kMaxExtent and nothing else.
 std::optional<int> parse_count(std::string_view text) {
@@ -219,8 +216,8 @@ Result<void> validate(const CheckOptions& options) {
 
 Result<CheckReport> check(const std::string& file, const Texture& texture, const CheckOptions& options,
                           const Execution& execution) {
-    assert(!texture.levels.empty());
     return guarded([&]() -> Result<CheckReport> {
+        if (auto usable = check_usable(texture); !usable) return usable.error();
         if (auto valid = validate(options); !valid) return valid.error();
         Subject subject{.texture = texture, .options = options, .execution = execution, .file = file};
         if (auto done = measure(subject); !done) return done.error();
@@ -268,7 +265,7 @@ Result<CheckReport> check_file(const std::string& path, const CheckOptions& opti
         report.error = texture.error();
         if (report.error->code == ErrorCode::bad_data || report.error->code == ErrorCode::unsupported) {
             Findings findings(options);
-            const bool uastc = report.error->reason == kUastcWithoutAlpha;
+            const bool uastc = report.error->detail == ErrorDetail::uastc_without_alpha;
             findings.add(uastc ? "N114" : "N101", report.error->reason);
             report.findings = findings.take(report.explained);
         }

@@ -2,11 +2,11 @@
 
 #include <tex/compare.h>
 
-#include <cassert>
 #include <cstddef>
 #include <vector>
 
 #include "kernels/angle.h"
+#include "rows/usable.h"
 #include "stream/angle_summary.h"
 #include "threads/guard.h"
 #include "threads/parallel.h"
@@ -15,8 +15,11 @@ namespace tex {
 namespace {}  // namespace
 
 Result<Comparison> compare(const NormalMap& a, const NormalMap& b, const Execution& execution) {
-    assert(a.extent() == b.extent() && a.extent().width > 0 && a.extent().height > 0);
     return guarded([&]() -> Result<Comparison> {
+        for (const NormalMap* map : {&a, &b}) {
+            if (auto usable = check_usable(*map); !usable) return usable.error();
+        }
+        if (a.extent() != b.extent()) return bad_option("the maps have different extents");
         const Extent extent = a.extent();
         Comparison comparison;
         comparison.degrees = Plane<float>(extent);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cassert>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -12,7 +11,8 @@
 
 #include "mesh/coverage.h"
 #include "mesh/frames.h"
-#include "stream/nearest.h"
+#include "rows/usable.h"
+#include "surface/nearest.h"
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
@@ -160,9 +160,10 @@ Result<void> pad(ConvertedMap& result, std::int64_t width, const Execution& exec
 Result<ConvertedMap> convert(const NormalMap& map, const TangentSpace& space, Direction direction,
                              const ConvertOptions& options, const Execution& execution) {
     const int padding = options.padding, subsamples = options.subsamples;
-    assert(check_part(space.part) && map.extent().texels() > 0 && padding >= 0);
-    assert(subsamples >= 1 && subsamples <= kMaxSubsamples);
     return guarded([&]() -> Result<ConvertedMap> {
+        if (auto usable = check_usable(map); !usable) return usable.error();
+        if (auto valid = validate(options); !valid) return valid.error();
+        if (auto sound = check_part(space.part); !sound) return sound.error().of(space.file);
         if (const auto checked = check_space(space); !checked) return checked.error().of(space.file);
         const int gutter = direction == Direction::to_object ? std::min(kGutter, padding) : 0;
         const Extent extent{map.extent().width * subsamples, map.extent().height * subsamples};
@@ -185,6 +186,13 @@ Result<ConvertedMap> convert(const NormalMap& map, const TangentSpace& space, Di
 }
 
 }  // namespace
+
+Result<void> validate(const ConvertOptions& options) {
+    if (options.padding < 0) return bad_option("padding: must be 0 or more");
+    if (options.subsamples < 1 || options.subsamples > kMaxSubsamples)
+        return bad_option("subsamples: must be from 1 to 8");
+    return {};
+}
 
 Result<ConvertedMap> to_object_space(const NormalMap& map, const TangentSpace& space, const ConvertOptions& options,
                                      const Execution& execution) {

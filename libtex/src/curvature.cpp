@@ -4,13 +4,13 @@
 #include <tex/curvature.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "kernels/stored.h"
 #include "rows/curvature_rows.h"
+#include "rows/usable.h"
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
@@ -55,8 +55,10 @@ Result<Curvature> measured(const NormalMap& map, const CurvatureOptions& options
 }  // namespace
 
 Result<Curvature> curvature(const NormalMap& map, const CurvatureOptions& options, const Execution& execution) {
-    assert(!map.x.empty() && map.extent().width <= kMaxExtent && map.extent().height <= kMaxExtent);
-    return guarded([&] { return measured(map, options, execution); });
+    return guarded([&]() -> Result<Curvature> {
+        if (auto usable = check_usable(map); !usable) return usable.error();
+        return measured(map, options, execution);
+    });
 }
 
 }  // namespace tex

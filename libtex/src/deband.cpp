@@ -3,17 +3,17 @@
 
 #include <tex/deband.h>
 
-#include <cassert>
-
+#include "rows/usable.h"
 #include "surface/debander.h"
 #include "threads/guard.h"
 
 namespace tex {
 
 Result<DebandReport> deband(HeightField& field, Deband when, const Execution& execution) {
-    assert(!field.height.empty() && field.height.extent().width <= kMaxExtent);
-    assert(field.height.extent().height <= kMaxExtent);
-    return guarded([&] { return deband_heights(field.height, field.wrap_x, field.wrap_y, when, execution, {}); });
+    return guarded([&]() -> Result<DebandReport> {
+        if (auto usable = check_usable(field.height.extent(), "the height field"); !usable) return usable.error();
+        return deband_heights(field.height, field.wrap_x, field.wrap_y, when, execution, {});
+    });
 }
 
 }  // namespace tex

@@ -3,11 +3,11 @@
 #include <tex/heat_map.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cstddef>
 
 #include "preview/colormap.h"
 #include "preview/legend.h"
+#include "rows/usable.h"
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
@@ -30,8 +30,10 @@ void copy(const Level& picture, Image& image, int top) {
 }  // namespace
 
 Result<Image> heat_map(const Plane<float>& degrees, double full_scale, const Execution& execution) {
-    assert(!degrees.empty() && full_scale > 0.0 && full_scale <= 180.0);
     return guarded([&]() -> Result<Image> {
+        if (auto usable = check_usable(degrees.extent(), "the map"); !usable) return usable.error();
+        if (!(full_scale > 0.0 && full_scale <= 180.0))
+            return bad_option("full_scale: must be above 0 and at most 180");
         const Extent map = degrees.extent();
         const Extent extent{std::max(map.width, kHeatMapLeastWidth), map.height + kHeatMapLegendRows};
         Image image;

@@ -14,8 +14,9 @@
 
 #include "rows/blur.h"
 #include "rows/height_source.h"
-#include "stream/nearest.h"
+#include "rows/usable.h"
 #include "surface/debander.h"
+#include "surface/nearest.h"
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
@@ -75,8 +76,8 @@ Strength strength_from_uv(Extent extent, double r) {
 
 Result<HeightField> height_field(const Image& image, const HeightOptions& options, const Execution& execution,
                                  HeightReport* report) {
-    assert(!image.planes.empty() && image.planes.size() == image.names.size());
     return guarded([&]() -> Result<HeightField> {
+        if (auto usable = check_usable(image); !usable) return usable.error();
         if (std::optional<Error> wrong = check_blur(options)) return std::move(*wrong);
         const PictureFacts facts = facts_of(image);
         const Result<HeightSource> source = find_height_source(facts, options);

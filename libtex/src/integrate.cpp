@@ -4,7 +4,6 @@
 #include <tex/integrate.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -15,6 +14,7 @@
 #include "kernels/slopes.h"
 #include "kernels/stored.h"
 #include "rows/bake_rows.h"
+#include "rows/usable.h"
 #include "stream/angle_summary.h"
 #include "surface/integrator.h"
 #include "threads/guard.h"
@@ -83,12 +83,24 @@ Result<void> measure_curl(const NormalMap& map, const BakeOptions& bake, Integra
 
 }  // namespace
 
+Result<void> validate(const IntegrateOptions& options) {
+    if (auto valid = validate(options.bake); !valid) return valid;
+    for (const float bumpiness : {options.bumpiness_x, options.bumpiness_y}) {
+        if (!(std::abs(bumpiness) >= 1e-20f && std::abs(bumpiness) <= 1e20f))
+            return bad_option("bumpiness: must be from 1e-20 to 1e20 in magnitude");
+    }
+    if (!(options.least_z > 0.0f && options.least_z <= 1.0f))
+        return bad_option("least_z: must be above 0 and at most 1");
+    if (!(options.least_response >= 0.0f && options.least_response <= 1.0f))
+        return bad_option("least_response: must be from 0 to 1");
+    if (options.most_steps < 1) return bad_option("most_steps: must be 1 or more");
+    return {};
+}
+
 Result<Integration> integrate(const NormalMap& map, const IntegrateOptions& options, const Execution& execution) {
-    assert(!map.x.empty() && map.extent().width <= kMaxExtent && map.extent().height <= kMaxExtent);
-    assert(std::abs(options.bumpiness_x) >= 1e-20f && std::abs(options.bumpiness_x) <= 1e20f);
-    assert(std::abs(options.bumpiness_y) >= 1e-20f && std::abs(options.bumpiness_y) <= 1e20f);
-    assert(options.least_z > 0.0f && options.least_z <= 1.0f);
     return guarded([&]() -> Result<Integration> {
+        if (auto usable = check_usable(map); !usable) return usable.error();
+        if (auto valid = validate(options); !valid) return valid.error();
         Integration result;
         result.field.bumpiness_x = options.bumpiness_x;
         result.field.bumpiness_y = options.bumpiness_y;
@@ -111,7 +123,7 @@ Result<Integration> integrate(const NormalMap& map, const IntegrateOptions& opti
 }
 
 void stretch_heights(Plane<float>& heights, float low, float high, const Execution& execution) {
-    assert(!heights.empty());
+    if (heights.empty()) return;
     const Extent extent = heights.extent();
     const float factor = high > low ? 1.0f / (high - low) : 0.0f;
     const auto body = [&](int begin, int end) {

@@ -2,7 +2,6 @@
 
 #include <tex/mesh.h>
 
-#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -122,8 +121,8 @@ Result<void> check_part(const MeshPart& part) {
 }
 
 Result<MeshPart> in_scene(MeshPart part, const MeshNode& node) {
-    assert(check_part(part));
     return guarded([&]() -> Result<MeshPart> {
+        if (auto sound = check_part(part); !sound) return sound.error();
         if (const auto done = transform(part, node); !done) return done.error();
         return std::move(part);
     });

@@ -3,7 +3,6 @@
 #include <tex/mesh_selection.h>
 
 #include <algorithm>
-#include <cassert>
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
@@ -11,12 +10,15 @@
 
 #include <tex/tangents.h>
 
+#include "rows/usable.h"
 #include "threads/guard.h"
 
 namespace tex {
 namespace {
 
-Error unfit(std::string reason) { return {ErrorCode::bad_option, {}, std::move(reason)}; }
+Error unfit(std::string reason, ErrorDetail detail = ErrorDetail::none) {
+    return {ErrorCode::bad_option, {}, std::move(reason), detail};
+}
 
 std::string quoted(const std::string& name) { return '"' + name + '"'; }
 
@@ -96,7 +98,9 @@ Result<void> choose_parts(const Mesh& mesh, const MeshSelection& selection, Choi
         std::string name = material_name(mesh, part->material);
         if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
     }
-    if (names.size() > 1) return unfit("has " + std::to_string(names.size()) + " materials: " + listed(names));
+    if (names.size() > 1)
+        return unfit("has " + std::to_string(names.size()) + " materials: " + listed(names),
+                     ErrorDetail::several_materials);
     return {};
 }
 
@@ -118,7 +122,8 @@ Result<void> choose_attributes(const Mesh& mesh, const MeshSelection& selection,
         if (part->normals.empty()) return unfit(name + "has no normals, which tangent space needs");
         if (part->tangents.empty()) {
             all_have_tangents = false;
-            if (selection.tangents == TangentSource::file) return unfit(name + "has no tangents; make them");
+            if (selection.tangents == TangentSource::file)
+                return unfit(name + "has no tangents; make them", ErrorDetail::no_tangents);
         }
     }
     choice.has_tangents = all_have_tangents;
@@ -220,8 +225,9 @@ Result<SelectedPart> select_part(const Mesh& mesh, const MeshSelection& selectio
 }
 
 Result<SelectedPart> in_tile(const SelectedPart& selected, int tile) {
-    assert(check_part(selected.part) && tile >= 1001);
     return guarded([&]() -> Result<SelectedPart> {
+        if (auto sound = check_part(selected.part); !sound) return sound.error();
+        if (tile < 1001) return bad_option("tile: must be 1001 or more");
         SelectedPart cut = selected;
         MeshPart& part = cut.part;
         std::vector<std::uint32_t> kept;  // triangles

@@ -8,7 +8,6 @@
 #include <tex/mip.h>
 
 #include <algorithm>
-#include <cassert>
 #include <utility>
 #include <vector>
 
@@ -16,6 +15,7 @@
 #include "rows/axis_filter.h"
 #include "rows/border.h"
 #include "rows/mip_rows.h"
+#include "rows/usable.h"
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
@@ -150,11 +150,20 @@ Result<void> make_levels(const std::vector<Halving>& steps, const Execution& exe
 
 }  // namespace
 
+Result<void> validate(const MipOptions& options) {
+    if (options.levels < 0) return bad_option("levels: must be 0, for all, or more");
+    if (options.max_side < 0) return bad_option("max_side: must be 0, for no limit, or more");
+    if (options.fade && (options.fade->first < 0 || options.fade->first >= options.fade->last))
+        return bad_option("fade: first must be 0 or more, and less than last");
+    if (options.any_z && (options.domain != MipDomain::vector || options.fade))
+        return bad_option("any_z: needs the domain vector and no fade");
+    return {};
+}
+
 Result<MipChain> build_mip_chain(NormalMap base, const MipOptions& options, const Execution& execution) {
-    assert(!base.x.empty() && options.levels >= 0 && options.max_side >= 0);
-    assert(!options.fade || (options.fade->first >= 0 && options.fade->first < options.fade->last));
-    assert(!options.any_z || (options.domain == MipDomain::vector && !options.fade));
     return guarded([&]() -> Result<MipChain> {
+        if (auto usable = check_usable(base); !usable) return usable.error();
+        if (auto valid = validate(options); !valid) return valid.error();
         const Extent extent = base.extent();
         const int first = first_level(options, extent);
         const int count = first + levels_to_build(options, extent);

@@ -11,6 +11,7 @@
 #include "kernels/encode.h"
 #include "rows/pack_rows.h"
 #include "rows/rdo_rows.h"
+#include "rows/usable.h"
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
@@ -36,7 +37,6 @@ Result<Texture> pack_chain(const MipChain& chain, const PackOptions& options, co
     for (std::size_t level = 0; level < chain.levels.size(); ++level) {
         const NormalMap& map = chain.levels[level];
         const Extent extent = map.extent();
-        assert(extent == level_extent(chain.levels[0].extent(), static_cast<int>(level)));
         Level packed;
         packed.extent = extent;
         packed.bytes.resize(level_bytes(texture.format, extent));
@@ -62,9 +62,19 @@ Result<Texture> pack_chain(const MipChain& chain, const PackOptions& options, co
 
 }  // namespace
 
+Result<void> validate(const PackOptions& options) {
+    const RdoOptions& rdo = options.rdo;
+    if (!(rdo.mean >= 0.0f && rdo.mean <= 180.0f)) return bad_option("rdo.mean: must be from 0 to 180");
+    if (!(rdo.max >= 0.0f && rdo.max <= 180.0f)) return bad_option("rdo.max: must be from 0 to 180");
+    if (rdo.window < kLeastRdoWindow || rdo.window > kMostRdoWindow)
+        return bad_option("rdo.window: must be from 64 to 1048576");
+    return {};
+}
+
 Result<Texture> pack(const MipChain& chain, const PackOptions& options, const Execution& execution, RdoReport* rdo) {
-    assert(!chain.levels.empty());
     return guarded([&]() -> Result<Texture> {
+        if (auto usable = check_usable(chain); !usable) return usable.error();
+        if (auto valid = validate(options); !valid) return valid.error();
         RdoTally tally;
         Result<Texture> texture = pack_chain(chain, options, execution, &tally);
         if (texture && rdo != nullptr && is_optimised(options)) *rdo = tally.report();

@@ -3,9 +3,8 @@
 
 #include <tex/pipeline.h>
 
-#include <cassert>
-
 #include "files/input_file.h"
+#include "rows/usable.h"
 #include "stream/bake_stream.h"
 #include "stream/blend_stream.h"
 #include "stream/pack_stream.h"
@@ -13,9 +12,33 @@
 
 namespace tex {
 
+Result<void> validate(const BakeFileOptions& options) {
+    if (auto valid = validate(options.bake); !valid) return valid;
+    if (auto valid = validate(options.mip); !valid) return valid;
+    return validate(options.pack);
+}
+
+Result<void> validate(const PackFileOptions& options) {
+    if (options.level && *options.level < 0) return bad_option("level: must be 0 or more");
+    if (options.scale && !(std::abs(options.scale->scale) <= kMaxScale))
+        return bad_option("scale: must be at most 1e6 in magnitude");
+    if (options.max_side < 0) return bad_option("max_side: must be 0, for no limit, or more");
+    if (options.roughness && !options.mip) return bad_option("roughness: needs mip");
+    return options.mip ? validate(*options.mip) : Result<void>();
+}
+
+Result<void> validate(const BlendFileOptions& options) {
+    for (const LayerFile& layer : options.layers) {
+        if (auto valid = validate(layer.layer()); !valid) return valid;
+    }
+    if (auto valid = validate(options.blend); !valid) return valid;
+    return validate(options.mip);
+}
+
 Result<BakeFileReport> bake_file(const std::string& input, const std::string& output, Container container,
                                  const BakeFileOptions& options, const Execution& execution) {
     return guarded([&]() -> Result<BakeFileReport> {
+        if (auto valid = validate(options); !valid) return valid.error();
         Result<InputFile> file = InputFile::open(input);
         if (!file) return file.error();
         return bake_stream(*file, output, container, options, execution);
@@ -24,9 +47,8 @@ Result<BakeFileReport> bake_file(const std::string& input, const std::string& ou
 
 Result<PackFileReport> pack_file(const std::string& input, const std::string& output, Container container,
                                  const PackFileOptions& options, const Execution& execution) {
-    assert(!options.level || *options.level >= 0);
-    assert(!options.roughness || options.mip);
     return guarded([&]() -> Result<PackFileReport> {
+        if (auto valid = validate(options); !valid) return valid.error();
         Result<InputFile> file = InputFile::open(input);
         if (!file) return file.error();
         return pack_stream(*file, output, container, options, execution);
@@ -39,7 +61,10 @@ Layer LayerFile::layer() const {
 
 Result<BlendFileReport> blend_file(const std::string& input, const std::string& output, Container container,
                                    const BlendFileOptions& options, const Execution& execution) {
-    return guarded([&] { return blend_stream(input, output, container, options, execution); });
+    return guarded([&]() -> Result<BlendFileReport> {
+        if (auto valid = validate(options); !valid) return valid.error();
+        return blend_stream(input, output, container, options, execution);
+    });
 }
 
 }  // namespace tex

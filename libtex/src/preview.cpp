@@ -3,7 +3,6 @@
 #include <tex/preview.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -18,6 +17,7 @@
 #include "preview/mesh_shows.h"
 #include "preview/progress.h"
 #include "preview/surfaces.h"
+#include "rows/usable.h"
 #include "threads/guard.h"
 
 namespace tex {
@@ -245,8 +245,9 @@ Result<Texture> show(const Job& job) {
 }  // namespace
 
 Result<Texture> preview(const PreviewScene& scene, const PreviewOptions& options, const Execution& execution) {
-    assert(scene.map != nullptr && !scene.map->levels.empty());
     return guarded([&]() -> Result<Texture> {
+        if (scene.map == nullptr) return bad("there is no map to show");
+        if (auto usable = check_usable(*scene.map); !usable) return usable.error();
         if (const auto sound = check_light(options); !sound) return sound.error();
         if (const auto sound = check_geometry(options); !sound) return sound.error();
         if (!(scene.white > 0.0f) || !finite({scene.white})) return bad("the height of white must be above 0");
@@ -255,7 +256,7 @@ Result<Texture> preview(const PreviewScene& scene, const PreviewOptions& options
             if (is_of_mesh(options.show)) return bad("there is no mesh to show");
             return show({scene, options, execution, stage(options, nullptr, map, size_of(options, map))});
         }
-        assert(check_part(scene.mesh->part));
+        if (auto sound = check_part(scene.mesh->part); !sound) return sound.error().of(scene.mesh->file);
         if (const auto sound = check_space(*scene.mesh); !sound) return sound.error().of(scene.mesh->file);
         const MeshBody mesh(*scene.mesh);
         PreviewOptions of_mesh = options;

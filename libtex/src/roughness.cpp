@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <utility>
 #include <vector>
 
@@ -14,6 +13,7 @@
 #include "kernels/roughness.h"
 #include "rows/mip_rows.h"
 #include "rows/roughness_rows.h"
+#include "rows/usable.h"
 #include "stream/own_roughness.h"
 #include "threads/guard.h"
 #include "threads/parallel.h"
@@ -120,15 +120,19 @@ Result<Texture> pack_chain(const RoughnessChain& chain, Format format, Effort ef
 
 Result<RoughnessChain> build_roughness_chain(const NormalMap& base, const Plane<float>& roughness, RoughnessModel model,
                                              const MipOptions& options, const Execution& execution) {
-    assert(!base.x.empty() && !roughness.empty() && options.levels >= 0 && options.max_side >= 0);
-    return guarded([&] { return build_chain(base, roughness, model, options, execution); });
+    return guarded([&]() -> Result<RoughnessChain> {
+        if (auto usable = check_usable(base); !usable) return usable.error();
+        if (auto usable = check_usable(roughness.extent(), "the roughness map"); !usable) return usable.error();
+        if (auto valid = validate(options); !valid) return valid.error();
+        return build_chain(base, roughness, model, options, execution);
+    });
 }
 
 Result<Texture> pack_roughness(const RoughnessChain& chain, Format format, Effort effort, const Execution& execution) {
     constexpr Format kFormats[] = {Format::bc4_unorm, Format::eac_r11_unorm, Format::r8_unorm,
                                    Format::r16_unorm, Format::r16_float,     Format::r32_float};
-    assert(!chain.levels.empty());
     return guarded([&]() -> Result<Texture> {
+        if (chain.levels.empty()) return bad_option("the chain has no level");
         if (std::find(std::begin(kFormats), std::end(kFormats), format) == std::end(kFormats)) {
             return Error{
                 ErrorCode::bad_option,

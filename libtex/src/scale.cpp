@@ -3,11 +3,11 @@
 #include <tex/scale.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <utility>
 
 #include "kernels/scale.h"
+#include "rows/usable.h"
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
@@ -28,21 +28,26 @@ Result<void> scale_rows(NormalMap& map, float scale, ScaleMode mode, const Execu
         span);
 }
 
-[[maybe_unused]] bool is_scale(float scale) { return std::abs(scale) <= kMaxScale; }  // false for NaN
+Result<void> check_scale(float scale) {
+    if (std::abs(scale) <= kMaxScale) return {};  // not for NaN
+    return bad_option("scale: must be at most 1e6 in magnitude");
+}
 
 }  // namespace
 
 Result<NormalMap> scale(NormalMap map, float scale, ScaleMode mode, const Execution& execution) {
-    assert(is_scale(scale));
     return guarded([&]() -> Result<NormalMap> {
+        if (auto usable = check_usable(map); !usable) return usable.error();
+        if (auto valid = check_scale(scale); !valid) return valid.error();
         if (const auto scaled = scale_rows(map, scale, mode, execution, {}); !scaled) return scaled.error();
         return std::move(map);
     });
 }
 
 Result<MipChain> scale(MipChain chain, float scale, ScaleMode mode, const Execution& execution) {
-    assert(is_scale(scale));
     return guarded([&]() -> Result<MipChain> {
+        if (auto usable = check_usable(chain); !usable) return usable.error();
+        if (auto valid = check_scale(scale); !valid) return valid.error();
         double texels = 0.0;
         for (const NormalMap& level : chain.levels) texels += static_cast<double>(level.extent().texels());
         double done = 0.0;

@@ -3,8 +3,7 @@
 
 #include <tex/steps.h>
 
-#include <cassert>
-
+#include "rows/usable.h"
 #include "stream/blend_stream.h"
 #include "stream/made_map.h"
 #include "stream/pack_stream.h"
@@ -62,15 +61,24 @@ private:
 
 }  // namespace
 
+Result<void> validate(const std::vector<Step>& steps) {
+    if (steps.empty()) return bad_option("steps: there must be at least one");
+    for (std::size_t k = 0; k < steps.size(); ++k) {
+        const auto of_step = [](const auto& options) { return validate(options); };
+        if (auto valid = std::visit(of_step, steps[k]); !valid) return valid;
+        if (k > 0 && std::holds_alternative<BakeFileOptions>(steps[k]))
+            return bad_option("steps: only the first one can bake");
+        const auto* pack = std::get_if<PackFileOptions>(&steps[k]);
+        if (k + 1 < steps.size() && pack != nullptr && (pack->mip || pack->roughness))
+            return bad_option("steps: only the last one can build levels or write roughness");
+    }
+    return {};
+}
+
 Result<StepsReport> apply_steps(const std::string& input, const std::vector<Step>& steps, const std::string& output,
                                 Container container, const Execution& execution) {
-    assert(!steps.empty());
-    for (std::size_t k = 0; k < steps.size(); ++k) {
-        assert(k == 0 || !std::holds_alternative<BakeFileOptions>(steps[k]));
-        [[maybe_unused]] const auto* pack = std::get_if<PackFileOptions>(&steps[k]);
-        assert(k + 1 == steps.size() || pack == nullptr || (!pack->mip && !pack->roughness));
-    }
     return guarded([&]() -> Result<StepsReport> {
+        if (auto valid = validate(steps); !valid) return valid.error();
         StepsReport report;
         const std::unique_ptr<MapSource> map = made_map(input, steps, steps.size() - 1, execution, report);
         const LastStep last{map.get(), input, output, container, execution, report};

@@ -2,7 +2,6 @@
 
 #include <tex/tangents.h>
 
-#include <cassert>
 #include <string>
 #include <utility>
 
@@ -26,8 +25,8 @@ Result<std::vector<Float4>> tangents_of(const MeshPart& part, TangentMethod meth
 
 Result<std::vector<Float4>> make_tangents(const MeshPart& part, TangentMethod method, int uv_set,
                                           const Execution& execution) {
-    assert(check_part(part));
     return guarded([&]() -> Result<std::vector<Float4>> {
+        if (auto sound = check_part(part); !sound) return sound.error();
         if (part.normals.empty()) return Error{ErrorCode::bad_option, {}, "the mesh has no normals"};
         if (uv_set < 0 || static_cast<std::size_t>(uv_set) >= part.uvs.size()) {
             return Error{

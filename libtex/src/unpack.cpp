@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cassert>
 
 #include "blocks/extent.h"
 #include "formats/level_planes.h"
@@ -13,6 +12,7 @@
 #include "rows/channel_names.h"
 #include "rows/decode_rows.h"
 #include "rows/unpack_rows.h"
+#include "rows/usable.h"
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
@@ -151,17 +151,6 @@ Result<std::array<const Plane<float>*, 4>> planes_of(const Image& image) {
     return planes;
 }
 
-#ifndef NDEBUG
-bool is_whole(const Texture& texture) {
-    for (std::size_t k = 0; k < texture.levels.size(); ++k) {
-        const Level& level = texture.levels[k];
-        if (level.extent != level_extent(texture.extent(), static_cast<int>(k))) return false;
-        if (level.bytes.size() != level_bytes(texture.format, level.extent)) return false;
-    }
-    return !texture.levels.empty();
-}
-#endif
-
 Result<MipChain> unpack_levels(const Texture& texture, const UnpackOptions& options, const Execution& execution) {
     const FormatInfo info = format_info(texture.format);
     const Result<Sources> sources = sources_of(options.swizzle.value_or(texture.swizzle), (1u << info.channels) - 1);
@@ -213,20 +202,29 @@ Result<NormalMap> unpack_image(const Image& image, const UnpackOptions& options,
 }  // namespace
 
 Result<Image> decode(const Texture& texture, int level, const Execution& execution) {
-    assert(level >= 0 && static_cast<std::size_t>(level) < texture.levels.size());
-    const Level& chosen = texture.levels[static_cast<std::size_t>(level)];
-    assert(chosen.bytes.size() == level_bytes(texture.format, chosen.extent));
-    return guarded([&] { return decode_planes(texture, chosen, {}, execution); });
+    return guarded([&]() -> Result<Image> {
+        if (level < 0 || static_cast<std::size_t>(level) >= texture.levels.size())
+            return bad_option("level: the texture has no level " + std::to_string(level));
+        const Level& chosen = texture.levels[static_cast<std::size_t>(level)];
+        if (auto usable = check_usable(chosen.extent, "the level"); !usable) return usable.error();
+        if (chosen.bytes.size() != level_bytes(texture.format, chosen.extent))
+            return bad_option("the level does not have the bytes of its format and extent");
+        return decode_planes(texture, chosen, {}, execution);
+    });
 }
 
 Result<MipChain> unpack(const Texture& texture, const UnpackOptions& options, const Execution& execution) {
-    assert(is_whole(texture));
-    return guarded([&] { return unpack_levels(texture, options, execution); });
+    return guarded([&]() -> Result<MipChain> {
+        if (auto usable = check_usable(texture); !usable) return usable.error();
+        return unpack_levels(texture, options, execution);
+    });
 }
 
 Result<NormalMap> unpack(const Image& image, const UnpackOptions& options, const Execution& execution) {
-    assert(!image.planes.empty());
-    return guarded([&] { return unpack_image(image, options, execution); });
+    return guarded([&]() -> Result<NormalMap> {
+        if (auto usable = check_usable(image); !usable) return usable.error();
+        return unpack_image(image, options, execution);
+    });
 }
 
 }  // namespace tex

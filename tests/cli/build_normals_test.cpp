@@ -305,6 +305,27 @@ TEST_F(BuildNormals, ExplainPrintsTheRuleAndTheCommandLines) {
     EXPECT_EQ(run(scratch_, "build-normals", {"--explain", "mask.png"}).out, "mask.png" + reader);
 }
 
+// A default means nothing beside a setting that is used instead. An output with a file for each level is found by each.
+TEST_F(BuildNormals, ExplainKnowsWhatReplacesADefaultAndTheFilesOfLevels) {
+    scratch_.write("normals.toml", R"(version = 1
+[defaults]
+out-dir = "out"
+[[rule]]
+match = "art/wall_h.png"
+name = "w_{level}.png"
+steps = [ { bake = { height-range = 0.05, size = 2 } }, { mip = {} } ]
+)");
+    const std::string text = run(scratch_, "build-normals", {"--explain", "art/wall_h.png"}).out;
+    EXPECT_NE(text.find("height-range = 0.05  (line 7)"), std::string::npos) << text;
+    EXPECT_EQ(text.find("bumpiness = "), std::string::npos) << text;
+    EXPECT_EQ(run(scratch_, "build-normals", {"--explain", "out/w_0.png"}).out, text);
+    EXPECT_EQ(run(scratch_, "build-normals", {"--explain", "out/w_3.png"}).out, text);
+    ASSERT_EQ(build({"--plan", "plan.jsonl"}).code, 0);
+    EXPECT_NE(scratch_.read("plan.jsonl").find(R"("outputs":["out/w_{level}.png"])"), std::string::npos);
+    ASSERT_EQ(build({"--plan", "plan.jsonl", "--shard", "0/1", "--report", "r.jsonl"}).code, 0);
+    EXPECT_TRUE(scratch_.has("out/w_3.png"));
+}
+
 TEST_F(BuildNormals, PathsAreRelativeToTheManifest) {
     const Scratch elsewhere;
     const Ran ran = run(elsewhere, "build-normals", {scratch_.path("normals.toml"), "--no-sync", "--quiet"});

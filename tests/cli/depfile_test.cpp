@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "batch/depfile.h"
 #include "cli/program.h"
+#include "tasks/depfile.h"
 
 namespace tex::cli {
 

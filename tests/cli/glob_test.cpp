@@ -4,10 +4,10 @@
 
 #include <filesystem>
 
-#include "batch/find_files.h"
 #include "cli/glob.h"
 #include "cli/program.h"
 #include "cli/usage_error.h"
+#include "tasks/find_files.h"
 
 namespace tex::cli {
 

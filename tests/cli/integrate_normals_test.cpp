@@ -131,6 +131,32 @@ TEST_F(IntegrateNormals, SixteenBitsAreStretchedAndTheReportSaysHowToUndoIt) {
     EXPECT_EQ(run(scratch_, "compare-normals", {"n.exr", "again.exr", "--max", "0.1"}).code, 0);
 }
 
+// What a user would otherwise copy from one command line to the next. Options that are given win.
+TEST_F(IntegrateNormals, FilesStateTheStrengthThatBakesThemBack) {
+    does("bake-normals", {"waves.png", "-o", "n.png", "--bumpiness", "6", "--format", "rgb16"});
+    for (const std::string name : {"h.png", "h.exr", "h.tif", "h.ktx2"}) {
+        SCOPED_TRACE(name);
+        const auto report = report_of({"n.png", "-o", name});
+        const std::string strength = fmt::format("{}", report["heights"]["bumpiness"][0].get<float>());
+        does("bake-normals", {name, "-o", "given.png", "--bumpiness", strength});
+        const Ran ran = go("bake-normals", {name, "-o", "stated.png"});
+        EXPECT_EQ(ran.out, fmt::format("{}: --bumpiness {}, as the file states\n", name, strength)) << ran.err;
+        EXPECT_EQ(scratch_.read("stated.png"), scratch_.read("given.png"));
+        does("bake-normals", {name, "-o", "one.png", "--bumpiness", "1"});
+        EXPECT_NE(scratch_.read("one.png"), scratch_.read("given.png"));
+        EXPECT_NE(go("bake-normals", {name, "-o", "auto.png", "--bumpiness", "auto"}).out.find("auto is"),
+                  std::string::npos);
+    }
+    // A step of a manifest reads it, too.
+    scratch_.write("normals.toml",
+                   "version = 1\n[[rule]]\nmatch = \"h.png\"\nname = \"made.png\"\n"
+                   "steps = [ { bake = {} }, { mip = { format = \"rgb8\" } } ]\n");
+    does("build-normals", {});
+    does("bake-normals", {"h.png", "-o", "direct.exr", "--format", "float"});
+    does("mip-normals", {"direct.exr", "-o", "by_hand.png", "--format", "rgb8"});
+    EXPECT_EQ(scratch_.read("made.png"), scratch_.read("by_hand.png"));
+}
+
 TEST_F(IntegrateNormals, HeightsAreStoredAsAsked) {
     does("bake-normals", {"waves.png", "-o", "n.exr", "--format", "float", "--bumpiness", "8"});
     const double highest = report_of({"n.exr", "-o", "raw.exr", "--bumpiness", "8"})["heights"]["highest"];

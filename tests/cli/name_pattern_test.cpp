@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "batch/name_pattern.h"
 #include "cli/usage_error.h"
+#include "tasks/name_pattern.h"
 
 namespace tex::cli {
 

@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "batch/name_pattern.h"
 #include "cli/usage_error.h"
+#include "tasks/name_pattern.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string text(reinterpret_cast<const char*>(data), size);

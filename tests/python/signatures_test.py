@@ -24,7 +24,6 @@ NOT_BOUND = {
     "check_part": "MeshPart() checks, and parts cannot change",
     "check_raw": "read_image(path, raw=...) checks its layout",
     "find_by_name": "words are the names",
-    "is_fillable": "BadDataError of height_field() without fill_invalid",
     "least_response_of": "integrate() takes it by default",
     "name_of": "words are the names",
     "padded_stride": "memory of planes, which arrays keep",

@@ -24,6 +24,7 @@
 
 #include <tex/mip_chain.h>
 
+#include "reference/exr_file.h"
 #include "unit/exr_files.h"
 
 namespace tex {
@@ -282,6 +283,19 @@ TEST(Exr, RefusesAttributesWhoseSizeIsNotTheirValuesOwn) {
         ASSERT_FALSE(image) << size;
         EXPECT_NE(image.error().reason.find("has a wrong size"), std::string::npos) << image.error().reason;
     }
+}
+
+// Crashes programs that ask OpenEXR for the views of a file (CVE-2026-61555).
+TEST(Exr, AnEmptyListOfViewsDoesNoHarm) {
+    const Bytes sound = exr_file({5, 4}, {"B", "G", "R"}, Imf::HALF, Imf::ZIP_COMPRESSION);
+    auto parsed = reference::parse_exr({reinterpret_cast<const char*>(sound.data()), sound.size()});
+    ASSERT_TRUE(parsed);
+    parsed->parts[0].push_back({"multiView", "stringvector", ""});
+    const std::string text = reference::write_exr(*parsed);
+    const auto* bytes = reinterpret_cast<const std::byte*>(text.data());
+    const Result<Image> image = read({bytes, bytes + text.size()});
+    ASSERT_TRUE(image) << image.error().message();
+    EXPECT_EQ(image->planes[0].at(4, 3), exr_value(4, 3, 2));
 }
 
 TEST(Exr, RefusesMoreTexelsThanTheLimit) {

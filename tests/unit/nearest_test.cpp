@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "stream/nearest.h"
+#include "surface/nearest.h"
 
 #include <tex/height_field.h>
 

@@ -176,7 +176,7 @@ TEST_F(NoData, MakesHeightsInvalidUnlessTheOptionsSayOtherwise) {
     const auto refused = height_field(image, options);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().reason, "1 height is NaN, infinite or no-data, the first at column 2, row 0");
-    EXPECT_TRUE(is_fillable(refused.error()));
+    EXPECT_EQ(refused.error().detail, ErrorDetail::missing_heights);
     options.fill_invalid = true;
     HeightReport report;
     const auto filled = height_field(image, options, {}, &report);

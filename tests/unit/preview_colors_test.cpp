@@ -185,6 +185,8 @@ TEST(PreviewCanvas, DrawsLettersAndCutsWhatDoesNotFit) {
     EXPECT_LE(text_width(fitted("a_rather_long_name_of_a_wall_dxt5nm.dds", 2, 201), 2), 201);
     EXPECT_EQ(fitted("normal", 2, 10), "");
     EXPECT_EQ(text_width("normal", 1), 35);
+    EXPECT_EQ(text_width("w\u00e4nde", 1), text_width("wande", 1)) << "a letter of two bytes is one box";
+    EXPECT_EQ(fitted("w\u00e4\u00e4\u00e4\u00e4\u00e4nde", 1, 36), "w\u00e4..de");
 }
 
 }  // namespace

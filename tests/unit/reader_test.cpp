@@ -118,6 +118,26 @@ TEST(Reader, OrientationTurnsThePicture) {
     }
 }
 
+// Radiance files state the order of rows and columns: "+Y" is from the bottom.
+TEST(Reader, RadiancePicturesFromTheBottomAreTurned) {
+    const auto picture = [](const std::string& order) {
+        std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" + order + " 2 +X 3\n";
+        for (int k = 0; k < 6; ++k)
+            text += {static_cast<char>(128), static_cast<char>(16 * k), 0, static_cast<char>(129)};
+        const auto* const bytes = reinterpret_cast<const std::byte*>(text.data());
+        return read({bytes, bytes + text.size()});
+    };
+    const Result<Image> plain = picture("-Y");
+    const Result<Image> turned = picture("+Y");
+    ASSERT_TRUE(plain && turned);
+    EXPECT_EQ(plain->remark, "");
+    EXPECT_EQ(turned->remark, "the picture was turned or mirrored, as its orientation (4) says");
+    for (int k = 0; k < 6; ++k) {
+        EXPECT_EQ(plain->planes[1].at(k % 3, k / 3), static_cast<float>(k) / 8.0f);
+        EXPECT_EQ(turned->planes[1].at(k % 3, 1 - k / 3), static_cast<float>(k) / 8.0f);
+    }
+}
+
 TEST(Reader, OddKindsOfSamplesKeepTheirValues) {
     TiffMaker tiff{2, 1};
     tiff.bits = 12;

@@ -16,12 +16,12 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
-#include "batch/depfile.h"
-#include "batch/name_pattern.h"
-#include "batch/outcome.h"
 #include "batch/up_to_date.h"
 #include "cli/text_file.h"
 #include "cli/usage_error.h"
+#include "tasks/depfile.h"
+#include "tasks/name_pattern.h"
+#include "tasks/outcome.h"
 #include "threads/fork_join.h"
 
 namespace tex::cli {
@@ -108,7 +108,8 @@ private:
         // The library cannot tell a full disk from a reader that closed the pipe. It is not an error if a reader closes
         // the pipe because it has read enough.
         outcome.is_silent = outcome.error && planned.output == "-" && console_.host().out_is_abandoned();
-        if (outcome.error && outcome.error->no_space && is_full_.exchange(true)) outcome.is_silent = true;
+        if (outcome.error && outcome.error->detail == ErrorDetail::no_space && is_full_.exchange(true))
+            outcome.is_silent = true;
         done_ += 1.0 - counted;
         ++finished_;
         return outcome;

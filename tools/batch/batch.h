@@ -16,12 +16,12 @@
 
 #include <tex/steps.h>
 
-#include "batch/job.h"
 #include "batch/plan.h"
 #include "cli/programs.h"
 #include "options/files.h"
 #include "options/output.h"
 #include "options/run.h"
+#include "tasks/job.h"
 
 namespace tex::cli {
 

@@ -9,11 +9,12 @@
 
 #include <fmt/format.h>
 
-#include "batch/collisions.h"
-#include "batch/depfile.h"
-#include "batch/name_pattern.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "tasks/collisions.h"
+#include "tasks/depfile.h"
+#include "tasks/folders.h"
+#include "tasks/name_pattern.h"
 
 namespace tex::cli {
 namespace {

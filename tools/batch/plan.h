@@ -10,10 +10,10 @@
 
 #include <tex/container.h>
 
-#include "batch/task.h"
-#include "batch/udim.h"
 #include "options/files.h"
 #include "options/output.h"
+#include "tasks/task.h"
+#include "tasks/udim.h"
 
 namespace tex::cli {
 

@@ -8,7 +8,7 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 
-#include "batch/name_pattern.h"
+#include "tasks/name_pattern.h"
 
 namespace tex::cli {
 namespace {

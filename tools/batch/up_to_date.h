@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "batch/task.h"
+#include "tasks/task.h"
 
 namespace tex::cli {
 

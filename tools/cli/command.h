@@ -49,12 +49,13 @@ template <class E, std::size_t N>
 enum class Completes { nothing, words, files, directories };
 
 struct Row {
-    std::string group;               // heading in the help
-    std::vector<std::string> names;  // "-o", "--output"
-    std::string value;               // placeholder of the value: "FILE"; empty for a flag
-    std::string help;                // a clause without a final full stop; `words` and `preset` are added to it
-    std::string preset;              // the default as a user would type it, or empty
-    std::vector<Word> words;         // the words that the option accepts
+    std::string group;                // heading in the help
+    std::vector<std::string> names;   // "-o", "--output"
+    std::string value;                // placeholder of the value: "FILE"; empty for a flag
+    std::string help;                 // a clause without a final full stop; `words` and `preset` are added to it
+    std::string preset;               // the default as a user would type it, or empty
+    std::vector<Word> words;          // the words that the option accepts
+    std::vector<std::string> rivals;  // options ("--size") that are used instead of it: its default then means nothing
     Completes completes = Completes::nothing;
     bool hidden = false;      // left out of the help
     bool repeatable = false;  // may be given more than once

@@ -6,7 +6,7 @@
 #include <tbb/version.h>
 #include <tex/tex.h>
 
-#include "reports/json.h"
+#include "cli/json.h"
 
 namespace tex::cli {
 namespace {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "canvas.h"
 #include "oiio.h"
 
 namespace tex::reader {
@@ -63,6 +64,7 @@ void describe(const OIIO::ImageSpec& spec, const NativeType& type, ReaderHeader&
     const int container = static_cast<int>(8 * reader_type_bytes(type.type));
     const int bits = spec.get_int_attribute("oiio:BitsPerSample", container);
     header.bits = static_cast<std::uint32_t>(bits >= 1 && bits <= container ? bits : container);
+    header.orientation = static_cast<std::uint32_t>(spec.get_int_attribute("Orientation", 1));
     const std::string description = spec.get_string_attribute("ImageDescription");
     std::strncpy(header.description, description.c_str(), sizeof header.description - 1);
     for (int c = 0; c < std::min(spec.nchannels, kMaxReaderChannels); ++c) {
@@ -124,9 +126,10 @@ bool decode_picture(const Task& task, ReaderHeader& header) {
     }
     const NativeType type = native_type(spec);
     describe(spec, type, header);
-    if (!begin_picture(task, header)) return false;
-
     const std::uint64_t bytes_of_row = row_bytes(header);
+    Canvas canvas(header);
+    if (!canvas.begin(task)) return false;
+
     const int rows = strip_rows(spec, bytes_of_row);
     std::vector<std::byte> strip(bytes_of_row * static_cast<std::uint64_t>(std::min(rows, spec.height)));
     for (int begin = 0; begin < spec.height; begin += rows) {
@@ -135,8 +138,9 @@ bool decode_picture(const Task& task, ReaderHeader& header) {
         if (!read_strip(*input, spec, type.read_as, begin, end, strip.data()) || input->has_error()) {
             return refuse_picture(header, input->geterror());
         }
-        put_rows(header, strip.data(), end - begin);
+        canvas.put(strip.data(), end - begin);
     }
+    canvas.end();
     return true;
 }
 

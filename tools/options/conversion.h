@@ -7,9 +7,9 @@
 
 #include <tex/convert.h>
 
-#include "batch/job.h"
 #include "cli/command.h"
 #include "options/tangent_space.h"
+#include "tasks/job.h"
 
 namespace tex::cli {
 

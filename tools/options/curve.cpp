@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "batch/collisions.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "tasks/collisions.h"
 
 namespace tex::cli {
 

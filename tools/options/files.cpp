@@ -12,58 +12,20 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "batch/find_files.h"
 #include "cli/text.h"
 #include "cli/text_file.h"
 #include "cli/usage_error.h"
 #include "files/system_error.h"
 #include "files/through_file.h"
+#include "tasks/find_files.h"
+#include "tasks/folders.h"
 
 namespace tex::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::optional<std::string> relative_below(const fs::path& folder, const fs::path& path) {
-    const fs::path relative = path.lexically_relative(folder);
-    if (relative.empty() || *relative.begin() == "..") return std::nullopt;
-    return relative.string();
-}
-
-// Without a slash at its end.
-fs::path absolute_path(const std::string& path) {
-    fs::path whole = fs::absolute(path.empty() ? "." : path).lexically_normal();
-    return whole.has_filename() ? whole : whole.parent_path();
-}
-
 }  // namespace
-
-bool is_folder(const std::string& path) {
-    std::error_code error;
-    return path.ends_with('/') || fs::is_directory(path, error);
-}
-
-Result<void> create_folders_of(const std::string& file) {
-    const fs::path folder = fs::path(file).parent_path();
-    std::error_code error;
-    if (!folder.empty()) fs::create_directories(folder, error);
-    return error ? Result<void>(no_folder_error(folder.string(), error)) : Result<void>();
-}
-
-Error no_folder_error(const std::string& folder, const std::error_code& error) {
-    return {ErrorCode::io, folder, "cannot create this folder: " + system_reason(error.value()),
-            is_no_space(error.value())};
-}
-
-std::optional<std::string> path_below(const std::string& folder, const std::string& path) {
-    const fs::path of_folder = absolute_path(folder), of_path = absolute_path(path);
-    if (auto relative = relative_below(of_folder, of_path)) return relative;
-    std::error_code error;
-    const fs::path real_folder = fs::weakly_canonical(of_folder, error);
-    const fs::path named = fs::weakly_canonical(of_path.parent_path(), error) / of_path.filename();
-    if (auto relative = relative_below(real_folder, named)) return relative;
-    return relative_below(real_folder, fs::weakly_canonical(of_path, error));
-}
 
 void FileOptions::add(Command& command, bool joins) {
     command.group("Files");

@@ -4,30 +4,14 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <string>
-#include <system_error>
 #include <vector>
 
-#include <tex/result.h>
-
-#include "batch/name_pattern.h"
-#include "batch/udim.h"
 #include "cli/command.h"
+#include "tasks/name_pattern.h"
+#include "tasks/udim.h"
 
 namespace tex::cli {
-
-// Whether `path` can only be a folder: it is one, or ends in a slash.
-[[nodiscard]] bool is_folder(const std::string& path);
-
-// Creates the folders above `file` that are not there. Errors: io.
-[[nodiscard]] Result<void> create_folders_of(const std::string& file);
-
-[[nodiscard]] Error no_folder_error(const std::string& folder, const std::error_code& error);
-
-// `path` relative to `folder` (empty: the working directory), if it is there: by name or, if names do not show it,
-// through links. The folder itself is ".".
-[[nodiscard]] std::optional<std::string> path_below(const std::string& folder, const std::string& path);
 
 struct FileOptions {
     std::string output;  // "-" for standard output, whichever of its names was given

@@ -56,16 +56,18 @@ std::vector<std::string> ColorGroup::files() const {
 void StrengthOptions::add(Command& command, bool can_measure) {
     command.group("Strength (one of three)");
     const std::string help = "the height of value 1.0 in texels, as a shader measures it; negative: dents";
+    const std::vector<std::string> rivals = {"--height-range", "--uv-height"};
     if (can_measure) {
         Row& row = command.option("--bumpiness", "B", help + "; or a word", [this](const std::string& text) {
             measured = text == "auto";
             if (!measured) bumpiness = parse_float(text);
         });
         row.words = {{"auto", "what makes the 99th percentile of the slopes 45 degrees; it is printed"}};
-        row.preset = fmt::format("{}", bumpiness);
+        row.preset = fmt::format("as the file states, else {}", bumpiness);
         row.completes = Completes::words;
+        row.rivals = rivals;
     } else {
-        command.number(bumpiness, "--bumpiness", "B", {}, help);
+        command.number(bumpiness, "--bumpiness", "B", {}, help).rivals = rivals;
     }
     command.option("--height-range", "R", "the height of value 1.0 in the unit of --size",
                    [this](const std::string& text) { height_range = parse_double(text); });
@@ -79,6 +81,7 @@ void StrengthOptions::add(Command& command, bool can_measure) {
                    [this](const std::string& text) { uv_height = parse_double(text); });
     command.check([this, &command] {
         const std::vector<std::string> several = command.given_of({"--bumpiness", "--height-range", "--uv-height"});
+        is_given = !several.empty();
         if (several.size() > 1) throw UsageError(join(several, " and ") + " contradict each other: give one");
         if (command.given("--size") && !height_range) throw UsageError("--size does nothing without --height-range");
         if (height_range && !command.given("--size")) throw UsageError("--height-range needs --size");
@@ -174,7 +177,7 @@ Result<Plane<float>> read_channel(Job& job, const ChannelFile& source, const Exe
 }
 
 Error HeightReader::with_remedy(const Error& error) {
-    if (!is_fillable(error)) return error;
+    if (error.detail != ErrorDetail::missing_heights) return error;
     return {error.code, error.file, error.reason + "; --fill-invalid fills in the nearest valid ones"};
 }
 

@@ -13,8 +13,8 @@
 #include <tex/color.h>
 #include <tex/height_field.h>
 
-#include "batch/job.h"
 #include "cli/command.h"
+#include "tasks/job.h"
 
 namespace tex::cli {
 
@@ -38,6 +38,7 @@ struct ColorGroup {
 struct StrengthOptions {
     float bumpiness = HeightField{}.bumpiness_x;
     bool measured = false;  // --bumpiness auto
+    bool is_given = false;  // any of the options
     std::optional<double> height_range;
     double width = 0.0;
     double height = 0.0;

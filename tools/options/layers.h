@@ -10,10 +10,10 @@
 
 #include <tex/pipeline.h>
 
-#include "batch/job.h"
 #include "cli/command.h"
 #include "options/heights.h"
 #include "options/normals.h"
+#include "tasks/job.h"
 
 namespace tex::cli {
 

@@ -9,9 +9,9 @@
 #include <tex/roughness.h>
 #include <tex/sheet.h>
 
-#include "batch/name_pattern.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "tasks/name_pattern.h"
 
 namespace tex::cli {
 

@@ -10,9 +10,9 @@
 #include <tex/execution.h>
 #include <tex/image.h>
 
-#include "batch/job.h"
 #include "cli/command.h"
 #include "options/files.h"
+#include "tasks/job.h"
 
 namespace tex::cli {
 

@@ -8,10 +8,10 @@
 
 #include <fmt/format.h>
 
-#include "batch/name_pattern.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
-#include "options/engines.h"
+#include "tasks/engines.h"
+#include "tasks/name_pattern.h"
 
 namespace tex::cli {
 

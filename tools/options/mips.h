@@ -11,8 +11,8 @@
 #include <tex/height_field.h>
 #include <tex/mip.h>
 
-#include "batch/task.h"
 #include "cli/command.h"
+#include "tasks/task.h"
 
 namespace tex::cli {
 

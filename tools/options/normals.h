@@ -11,8 +11,8 @@
 #include <tex/container.h>
 #include <tex/source.h>
 
-#include "batch/job.h"
 #include "cli/command.h"
+#include "tasks/job.h"
 
 namespace tex::cli {
 

@@ -11,10 +11,11 @@
 
 #include <fmt/format.h>
 
-#include "batch/job.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "cli/value.h"
+#include "tasks/job.h"
+#include "tasks/name_pattern.h"
 
 namespace tex::cli {
 namespace {
@@ -72,13 +73,6 @@ std::string default_encodings() {
             text += fmt::format("{}{} in {}", text.empty() ? "" : "; ", encoding.name, join(containers));
     }
     return text;
-}
-
-std::string extension_of(Container container) {
-    for (const Named<Container>& row : kContainerNames) {
-        if (row.value == container) return cut(row.meaning, ',').first;
-    }
-    return {};
 }
 
 void OutputOptions::add(Command& command, std::string format_default, std::string y_default,

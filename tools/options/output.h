@@ -10,9 +10,9 @@
 #include <tex/container.h>
 #include <tex/pack.h>
 
-#include "batch/name_pattern.h"
 #include "cli/command.h"
-#include "options/engines.h"
+#include "tasks/engines.h"
+#include "tasks/name_pattern.h"
 
 namespace tex::cli {
 
@@ -71,9 +71,6 @@ private:
 
 // The library's default encoding for each container: "dxt5nm in dds, ktx2; rgb8 in png, tga, ...".
 [[nodiscard]] std::string default_encodings();
-
-// The first extension of a container: ".dds" for Container::dds.
-[[nodiscard]] std::string extension_of(Container container);
 
 // Puts extent, levels, format, y and bytes into the job's report, and what optimisation has done, if there was any.
 void report_texture(Job& job, Extent extent, int levels, const PackOptions& pack, std::size_t bytes,

@@ -17,7 +17,7 @@
 #include <tex/texture.h>
 
 #include "cli/command.h"
-#include "reports/json.h"
+#include "cli/json.h"
 
 namespace tex::cli {
 

@@ -7,12 +7,12 @@
 
 #include <fmt/format.h>
 
-#include "batch/name_pattern.h"
-#include "batch/repack.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "cli/value.h"
-#include "options/engines.h"
+#include "tasks/engines.h"
+#include "tasks/name_pattern.h"
+#include "tasks/written_levels.h"
 
 namespace tex::cli {
 namespace {

@@ -10,10 +10,10 @@
 #include <tex/pipeline.h>
 #include <tex/roughness.h>
 
-#include "batch/job.h"
 #include "cli/command.h"
 #include "options/files.h"
 #include "options/heights.h"
+#include "tasks/job.h"
 
 namespace tex::cli {
 

@@ -12,6 +12,7 @@
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "options/files.h"
+#include "tasks/folders.h"
 
 namespace tex::cli {
 namespace {

@@ -10,10 +10,10 @@
 #include <tex/check.h>
 #include <tex/height_field.h>
 
-#include "batch/task.h"
 #include "cli/command.h"
 #include "options/check_config.h"
-#include "options/engines.h"
+#include "tasks/engines.h"
+#include "tasks/task.h"
 
 namespace tex::cli {
 

@@ -9,10 +9,10 @@
 
 #include <tex/preview.h>
 
-#include "batch/job.h"
 #include "cli/command.h"
 #include "options/normals.h"
 #include "options/tangent_space.h"
+#include "tasks/job.h"
 
 namespace tex::cli {
 

@@ -9,9 +9,9 @@
 #include <fmt/format.h>
 #include <tex/tex.h>
 
-#include "batch/name_pattern.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "tasks/name_pattern.h"
 
 namespace tex::cli {
 namespace {

@@ -9,9 +9,9 @@
 
 #include <tex/preview.h>
 
-#include "batch/task.h"
 #include "cli/command.h"
 #include "options/scene.h"
+#include "tasks/task.h"
 
 namespace tex::cli {
 

@@ -11,11 +11,11 @@
 #include <tex/integrate.h>
 #include <tex/source.h>
 
-#include "batch/job.h"
 #include "cli/command.h"
 #include "options/heights.h"
 #include "options/maps.h"
 #include "options/mips.h"
+#include "tasks/job.h"
 
 namespace tex::cli {
 

@@ -27,11 +27,10 @@ std::vector<std::string> files_of(const std::string& mesh) {
 
 // The option that avoids an error of select_part().
 Error with_option(const Error& error) {
-    if (error.code != ErrorCode::bad_option) return error;
-    std::string reason = error.reason;
-    if (reason.find(" materials: ") != std::string::npos) reason += "; --material chooses one";
-    if (reason.find("has no tangents") != std::string::npos) reason += " with --tangents mikktspace";
-    return {error.code, error.file, reason};
+    Error with = error;
+    if (error.detail == ErrorDetail::several_materials) with.reason += "; --material chooses one";
+    if (error.detail == ErrorDetail::no_tangents) with.reason += " with --tangents mikktspace";
+    return with;
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <cstring>
 #include <utility>
 
-#include "decoders.h"
+#include "canvas.h"
 
 namespace tex::reader {
 namespace {
@@ -47,12 +47,6 @@ void Canvas::end() {
         }
         put_rows(header_, row.data(), 1);
     }
-}
-
-void name_channels(ReaderHeader& header) {
-    const std::string_view names = header.channels < 3 ? "YA" : "RGBA";
-    for (std::size_t c = 0; c < static_cast<std::size_t>(header.channels) && c < names.size(); ++c)
-        header.names[c][0] = names[c];
 }
 
 }  // namespace tex::reader

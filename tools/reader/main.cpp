@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// tex-reader: decodes and encodes TIFF and JPEG, and decodes EXR, for libtex, which starts it. Do not run it by hand, except
+// tex-reader: decodes and encodes TIFF and JPEG, and decodes EXR, for libtex, which starts it. Do not run it by hand,
+// except
 //
 //     tex-reader --version      prints the versions of the decoders, and whether the kernel supports the restriction of
 //                               files and the filter of system calls

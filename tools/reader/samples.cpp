@@ -124,4 +124,10 @@ void unpack(const Samples& samples, const std::byte* row, std::size_t count, std
     for (std::size_t k = 0; k < count; ++k) put_sample(code_at(row, samples.bits, k), samples, to + k * step * bytes);
 }
 
+void name_channels(ReaderHeader& header) {
+    const std::string_view names = header.channels < 3 ? "YA" : "RGBA";
+    for (std::size_t c = 0; c < static_cast<std::size_t>(header.channels) && c < names.size(); ++c)
+        header.names[c][0] = names[c];
+}
+
 }  // namespace tex::reader

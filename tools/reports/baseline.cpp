@@ -12,9 +12,9 @@
 
 #include <fmt/format.h>
 
+#include "cli/json.h"
 #include "cli/text.h"
 #include "cli/text_file.h"
-#include "reports/json.h"
 
 namespace tex::cli {
 namespace {

@@ -7,11 +7,11 @@
 
 #include <tex/container.h>
 
-#include "batch/depfile.h"
 #include "cli/text_file.h"
 #include "cli/usage_error.h"
 #include "reports/html_map.h"
 #include "reports/sarif.h"
+#include "tasks/depfile.h"
 
 namespace tex::cli {
 

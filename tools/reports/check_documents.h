@@ -11,13 +11,13 @@
 
 #include <tex/check.h>
 
-#include "batch/collisions.h"
-#include "batch/job.h"
 #include "cli/command.h"
 #include "options/rules.h"
 #include "reports/baseline.h"
 #include "reports/html_report.h"
 #include "reports/junit.h"
+#include "tasks/collisions.h"
+#include "tasks/job.h"
 
 namespace tex::cli {
 

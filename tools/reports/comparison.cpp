@@ -10,12 +10,12 @@
 #include <tex/heat_map.h>
 #include <tex/sheet.h>
 
-#include "batch/collisions.h"
-#include "batch/depfile.h"
+#include "cli/json.h"
 #include "cli/text.h"
 #include "cli/text_file.h"
 #include "cli/usage_error.h"
-#include "reports/json.h"
+#include "tasks/collisions.h"
+#include "tasks/depfile.h"
 
 namespace tex::cli {
 namespace {

@@ -10,8 +10,8 @@
 #include <tex/compare.h>
 
 #include "cli/command.h"
+#include "cli/json.h"
 #include "reports/html_report.h"
-#include "reports/json.h"
 
 namespace tex::cli {
 

@@ -7,7 +7,7 @@
 #include <tex/pack.h>
 #include <tex/unpack.h>
 
-#include "reports/json.h"
+#include "cli/json.h"
 
 namespace tex::cli {
 

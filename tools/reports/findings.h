@@ -7,7 +7,7 @@
 
 #include <tex/check.h>
 
-#include "reports/json.h"
+#include "cli/json.h"
 
 namespace tex::cli {
 

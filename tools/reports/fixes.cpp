@@ -12,6 +12,7 @@
 
 #include "cli/text.h"
 #include "options/output.h"
+#include "tasks/name_pattern.h"
 
 namespace tex::cli {
 namespace {

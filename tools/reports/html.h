@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "reports/json.h"
+#include "cli/json.h"
 
 namespace tex::cli {
 

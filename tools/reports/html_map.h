@@ -14,8 +14,8 @@
 #include <tex/result.h>
 #include <tex/texture.h>
 
+#include "cli/json.h"
 #include "reports/html_mesh.h"
-#include "reports/json.h"
 
 namespace tex::cli {
 

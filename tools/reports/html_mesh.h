@@ -10,7 +10,7 @@
 
 #include <tex/convert_options.h>
 
-#include "reports/json.h"
+#include "cli/json.h"
 
 namespace tex::cli {
 

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 #include <tex/tex.h>
 
+#include "cli/json.h"
 #include "reports/fixes.h"
-#include "reports/json.h"
 
 namespace tex::cli {
 namespace {

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "batch/collisions.h"
+#include "tasks/collisions.h"
 
 #include <algorithm>
 #include <iterator>
 
 #include <fmt/format.h>
 
-#include "batch/file_table.h"
-#include "batch/name_pattern.h"
-#include "batch/task.h"
 #include "cli/text.h"
 #include "cli/text_file.h"
 #include "cli/usage_error.h"
-#include "options/engines.h"
-#include "options/files.h"
+#include "tasks/engines.h"
+#include "tasks/file_table.h"
+#include "tasks/folders.h"
+#include "tasks/name_pattern.h"
+#include "tasks/task.h"
 
 namespace tex::cli {
 namespace {

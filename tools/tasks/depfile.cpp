@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "batch/depfile.h"
+#include "tasks/depfile.h"
 
 #include <algorithm>
 
 #include <fmt/format.h>
 
-#include "batch/task.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "tasks/task.h"
 
 namespace tex::cli {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "options/engines.h"
+#include "tasks/engines.h"
 
 #include <algorithm>
 
@@ -8,7 +8,7 @@
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
-#include "options/output.h"
+#include "tasks/name_pattern.h"
 
 namespace tex::cli {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "batch/file_table.h"
+#include "tasks/file_table.h"
 
 #include <filesystem>
 #include <system_error>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "batch/find_files.h"
+#include "tasks/find_files.h"
 
 #include <algorithm>
 #include <cerrno>

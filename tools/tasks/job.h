@@ -14,10 +14,10 @@
 #include <tex/execution.h>
 #include <tex/pipeline.h>
 
-#include "batch/task.h"
 #include "cli/console.h"
 #include "cli/exit_code.h"
-#include "reports/json.h"
+#include "cli/json.h"
+#include "tasks/task.h"
 
 namespace tex::cli {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "batch/name_pattern.h"
+#include "tasks/name_pattern.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -13,6 +13,8 @@
 
 namespace tex::cli {
 namespace {
+
+constexpr std::string_view kLevelField = "{level}";
 
 const std::vector<std::string>& known_fields() {
     static const std::vector<std::string> fields = {"dir", "stem", "ext", "level", "format", "engine", "type"};
@@ -50,6 +52,13 @@ NameFields name_fields(const std::string& path) {
     return {dir.empty() ? "." : dir, parts.stem().string(), parts.extension().string(), ""};
 }
 
+std::string extension_of(Container container) {
+    for (const Named<Container>& row : kContainerNames) {
+        if (row.value == container) return cut(row.meaning, ',').first;
+    }
+    return {};
+}
+
 std::string with_level(const std::string& name, int level) {
     std::string result;
     for (const char c : name) {
@@ -63,6 +72,17 @@ std::string with_level(const std::string& name, int level) {
 }
 
 bool has_level(const std::string& name) { return name.find(kLevelMark) != std::string::npos; }
+
+std::string written_name(std::string name) {
+    if (const std::size_t at = name.find(kLevelMark); at != std::string::npos) name.replace(at, 1, kLevelField);
+    return name;
+}
+
+std::string marked_name(std::string name) {
+    if (const std::size_t at = name.find(kLevelField); at != std::string::npos)
+        name.replace(at, kLevelField.size(), 1, kLevelMark);
+    return name;
+}
 
 std::vector<std::string> with_all_levels(const std::string& name) {
     const int levels = has_level(name) ? level_count({kMaxExtent, 1}) : 1;

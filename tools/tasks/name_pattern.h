@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include <tex/container.h>
+
 namespace tex::cli {
 
 // The values of the fields. {ext} includes the dot; {dir} is "." for a name without a folder.
@@ -24,11 +26,17 @@ struct NameFields {
 // The dir, stem and ext of a path. The stem of "-" is "stdin".
 [[nodiscard]] NameFields name_fields(const std::string& path);
 
+// The first extension of a container: ".dds" for Container::dds.
+[[nodiscard]] std::string extension_of(Container container);
+
 // Marks the place of the level in a name that is built before the number of levels is known. No file name can contain
 // it.
 inline constexpr char kLevelMark = '\0';
 [[nodiscard]] std::string with_level(const std::string& name, int level);
 [[nodiscard]] bool has_level(const std::string& name);
+// The name with {level} in place of the mark, for files that people read, and back.
+[[nodiscard]] std::string written_name(std::string name);
+[[nodiscard]] std::string marked_name(std::string name);
 // The names of all files that an output may have: one for each level of the largest extent, or the name itself.
 [[nodiscard]] std::vector<std::string> with_all_levels(const std::string& name);
 

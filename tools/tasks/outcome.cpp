@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "batch/outcome.h"
+#include "tasks/outcome.h"
 
 #include <fmt/format.h>
 

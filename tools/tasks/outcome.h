@@ -13,10 +13,10 @@
 
 #include <tex/result.h>
 
-#include "batch/depfile.h"
 #include "cli/console.h"
 #include "cli/exit_code.h"
-#include "reports/json.h"
+#include "cli/json.h"
+#include "tasks/depfile.h"
 
 namespace tex::cli {
 

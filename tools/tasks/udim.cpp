@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "batch/udim.h"
+#include "tasks/udim.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -14,10 +14,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "batch/name_pattern.h"
 #include "cli/text.h"
 #include "cli/text_file.h"
 #include "files/system_error.h"
+#include "tasks/folders.h"
+#include "tasks/name_pattern.h"
 #include "tree/build_run.h"
 
 namespace tex::cli {
@@ -57,7 +58,7 @@ Error BuildRun::with_remedy(const Error& error, const std::string& output) const
     struct stat status {};
     const bool is_read_only = error.code == ErrorCode::io && stat(output.c_str(), &status) == 0 &&
                               (status.st_mode & (S_IWUSR | S_IWGRP | S_IWOTH)) == 0;
-    if (!is_read_only || error.no_space) return error;
+    if (!is_read_only || error.detail == ErrorDetail::no_space) return error;
     return {error.code, error.file, error.reason + "; make it writable (chmod u+w, p4 edit) or remove it"};
 }
 
@@ -257,7 +258,7 @@ void BuildRun::store(const BuildTask& task, const Stale& made, const Inputs& inp
         contents.push_back(std::move(*bytes));
     }
     const auto stored = cache_.store(key_of(made.settings, inputs.digest), task.outputs[made.index], contents);
-    if (stored || (stored.error().no_space && cache_is_full_.exchange(true))) return;
+    if (stored || (stored.error().detail == ErrorDetail::no_space && cache_is_full_.exchange(true))) return;
     outcome.warnings.push_back({task.input, "the cache does not take it: " + stored.error().message() +
                                                 (cache_is_full_ ? "; nothing else is put there" : "")});
 }
@@ -274,7 +275,7 @@ Result<void> BuildRun::fail_with(ExitCode cause, const BuildTask& task, const st
     return {};
 }
 
-Result<void> BuildRun::bring_up_to_date(std::size_t index, Outcome& outcome) {
+Result<void> BuildRun::bring_up_to_date(std::size_t index, double& counted, Outcome& outcome) {
     const BuildTask& task = work_.tasks[index];
     const Recipe& recipe = recipes_[task.recipe];
     outcome.report["rule"] = recipe.number();
@@ -290,7 +291,6 @@ Result<void> BuildRun::bring_up_to_date(std::size_t index, Outcome& outcome) {
         list_stale(task, all, outcome);
         return {};
     }
-    double counted = 0.0;
     constexpr int kMostAttempts = 3;
     for (int attempt = 1; attempt <= kMostAttempts; ++attempt) {
         const auto stamps = stamps_of(task);
@@ -327,9 +327,10 @@ Outcome BuildRun::outcome_of(std::size_t index) {
     Outcome outcome;
     outcome.input = task.input;
     outcome.has_levels = true;  // a list of outputs
+    double counted = 0.0;       // the part of this file that the progress includes
     const auto start = std::chrono::steady_clock::now();
     try {
-        if (const auto done = bring_up_to_date(index, outcome); !done) outcome.error = done.error();
+        if (const auto done = bring_up_to_date(index, counted, outcome); !done) outcome.error = done.error();
     } catch (const std::bad_alloc&) {
         outcome.error = Error{ErrorCode::out_of_memory, {}, "out of memory"};
     } catch (const std::exception& exception) {
@@ -341,6 +342,7 @@ Outcome BuildRun::outcome_of(std::size_t index) {
         ++totals_.failed;
     }
     outcome.seconds = std::chrono::duration<float>(std::chrono::steady_clock::now() - start).count();
+    done_bytes_ += (1.0 - counted) * static_cast<double>(task.size);
     ++finished_;
     return outcome;
 }

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "batch/outcome.h"
+#include "tasks/outcome.h"
 #include "tree/builder.h"
 #include "tree/cache.h"
 #include "tree/judge.h"
@@ -56,7 +56,7 @@ private:
     void work_on(TaskQueue& queue);
     Outcome outcome_of(std::size_t index);
     Result<void> fail_with(ExitCode cause, const BuildTask& task, const std::string& name, Outcome& outcome);
-    Result<void> bring_up_to_date(std::size_t index, Outcome& outcome);
+    Result<void> bring_up_to_date(std::size_t index, double& counted, Outcome& outcome);
     Result<bool> make_stale(const BuildTask& task, Judgement judgement,
                             const std::vector<std::optional<FileStamp>>& stamps, double& counted, Outcome& outcome);
     [[nodiscard]] std::vector<std::optional<FileStamp>> stamps_of(const BuildTask& task) const;

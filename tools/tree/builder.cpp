@@ -19,12 +19,13 @@
 #include <tex/container.h>
 #include <unistd.h>
 
-#include "batch/depfile.h"
+#include "cli/json.h"
 #include "cli/text.h"
 #include "cli/text_file.h"
 #include "files/system_error.h"
 #include "options/files.h"
-#include "reports/json.h"
+#include "tasks/depfile.h"
+#include "tasks/folders.h"
 #include "tree/build_run.h"
 
 namespace tex::cli {
@@ -119,7 +120,7 @@ void BuildRun::work_on(TaskQueue& queue) {
         while (const auto index = queue.take()) {
             Outcome outcome = outcome_of(*index);
             queue.finish(*index);
-            if (outcome.error && outcome.error->no_space) {
+            if (outcome.error && outcome.error->detail == ErrorDetail::no_space) {
                 outcome.is_silent = is_full_.exchange(true);  // the first one speaks for all
                 queue.stop();
             }
@@ -160,7 +161,8 @@ void BuildRun::give_up_rest() {
     for (std::size_t k = 0; k < work_.tasks.size(); ++k) {
         if (!results_[k].status.empty()) continue;
         failed_[k] = ExitCode::io;
-        results_[k] = {"failed", Error{ErrorCode::io, work_.tasks[k].input, "was not tried: the disk is full", true}};
+        results_[k] = {"failed", Error{ErrorCode::io, work_.tasks[k].input, "was not tried: the disk is full",
+                                       ErrorDetail::no_space}};
     }
     console_.error(fmt::format("no space is left, so the run stops here; {} of {} files are done",
                                totals_.made + totals_.current + totals_.cached, work_.tasks.size()));

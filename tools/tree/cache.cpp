@@ -9,8 +9,8 @@
 
 #include <fmt/format.h>
 
-#include "batch/name_pattern.h"
 #include "cli/text_file.h"
+#include "tasks/name_pattern.h"
 #include "tree/cache_folder.h"
 
 namespace tex::cli {

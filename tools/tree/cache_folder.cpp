@@ -22,6 +22,7 @@
 #include "cli/usage_error.h"
 #include "files/system_error.h"
 #include "options/files.h"
+#include "tasks/folders.h"
 
 namespace tex::cli {
 namespace {
@@ -117,7 +118,7 @@ Result<void> write_in(int fd, const std::string& folder, const std::string& name
     options.follow_links = false;
     const Result<void> written = write_text_file(path_in(fd, name), text, options);
     return written ? written
-                   : Error{written.error().code, folder + "/" + name, written.error().reason, written.error().no_space};
+                   : Error{written.error().code, folder + "/" + name, written.error().reason, written.error().detail};
 }
 
 // Whether the folder holds nothing but the marks that another process is making now.

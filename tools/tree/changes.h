@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "reports/json.h"
+#include "cli/json.h"
 #include "tree/sha256.h"
 
 namespace tex::cli {

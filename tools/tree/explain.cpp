@@ -9,6 +9,7 @@
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "tasks/name_pattern.h"
 
 namespace tex::cli {
 namespace {
@@ -21,6 +22,13 @@ const OptionSetting* find_setting(const Settings& settings, const std::string& k
 
 std::string value_text(const OptionSetting& setting) {
     return setting.is_flag ? (setting.is_on ? "true" : "false") : join(setting.values, ", ");
+}
+
+// Whether the step sets an option that is used instead of this one.
+bool has_rival(const StepSettings& step, const Row& row) {
+    return std::any_of(row.rivals.begin(), row.rivals.end(), [&](const std::string& rival) {
+        return find_setting(step.settings, rival.substr(2)) != nullptr;
+    });
 }
 
 // One line for each option of a step that has a value.
@@ -38,7 +46,7 @@ std::string settings_text(const StepSettings& step, const OutputSettings* output
         if (setting != nullptr) {
             text += fmt::format("    {} = {}  ({}line {})\n", key, printable(value_text(*setting)), from,
                                 setting->place.line);
-        } else if (!row.preset.empty() && (output != nullptr || row.group != "Output")) {
+        } else if (!row.preset.empty() && (output != nullptr || row.group != "Output") && !has_rival(step, row)) {
             text += fmt::format("    {} = {}  (default of {})\n", key, row.preset, command.name());
         }
     }
@@ -88,7 +96,10 @@ std::string explanation_of(const std::string& file, const std::vector<Recipe>& r
     const std::string name = std::filesystem::path(file).lexically_normal().string();
     const auto task = std::find_if(work.tasks.begin(), work.tasks.end(), [&](const BuildTask& candidate) {
         return candidate.input == name ||
-               std::find(candidate.outputs.begin(), candidate.outputs.end(), name) != candidate.outputs.end();
+               std::any_of(candidate.outputs.begin(), candidate.outputs.end(), [&](const std::string& output) {
+                   const std::vector<std::string> files = with_all_levels(output);
+                   return std::find(files.begin(), files.end(), name) != files.end();
+               });
     });
     std::string text;
     if (task != work.tasks.end()) text = task_text(*task, recipes[task->recipe]);

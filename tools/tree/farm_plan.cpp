@@ -15,6 +15,7 @@
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "cli/value.h"
+#include "tasks/name_pattern.h"
 #include "tree/json_line.h"
 
 namespace tex::cli {
@@ -32,7 +33,7 @@ BuildTask read_task(const JsonLine& line, std::int64_t& cost) {
     BuildTask task;
     task.input = line.name("input");
     task.recipe = static_cast<std::size_t>(line.number("rule", 1, 1 << 20)) - 1;
-    task.outputs = line.names("outputs");
+    for (const std::string& output : line.names("outputs")) task.outputs.push_back(marked_name(output));
     task.size = line.number("bytes", 0, kMost);
     cost = line.number("cost", 1, kMost);
     if (line.has("error")) task.refusal = line.text("error");
@@ -103,9 +104,11 @@ std::string FarmPlan::text() const {
     std::string text = to_line(head);
     for (std::size_t k = 0; k < tasks.size(); ++k) {
         const BuildTask& task = tasks[k];
+        std::vector<std::string> outputs;
+        for (const std::string& output : task.outputs) outputs.push_back(written_name(output));
         Json line = {{"input", name_json(task.input)},
                      {"rule", task.recipe + 1},
-                     {"outputs", names_json(task.outputs)},
+                     {"outputs", names_json(outputs)},
                      {"bytes", task.size},
                      {"cost", costs[k]}};
         if (!task.needs.empty()) {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "reports/json.h"
+#include "cli/json.h"
 #include "tree/sha256.h"
 
 namespace tex::cli {

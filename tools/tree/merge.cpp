@@ -14,10 +14,10 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include "cli/json.h"
 #include "cli/text.h"
 #include "cli/text_file.h"
 #include "cli/usage_error.h"
-#include "reports/json.h"
 #include "tree/json_line.h"
 #include "tree/shard_report.h"
 

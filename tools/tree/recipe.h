@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "batch/batch.h"
-#include "batch/name_pattern.h"
 #include "cli/console.h"
 #include "cli/glob.h"
 #include "cli/programs.h"
+#include "tasks/name_pattern.h"
 #include "tree/changes.h"
 #include "tree/manifest.h"
 #include "tree/texture_check.h"

@@ -7,10 +7,10 @@
 
 #include <fmt/format.h>
 
-#include "batch/name_pattern.h"
 #include "cli/text.h"
 #include "cli/text_file.h"
 #include "cli/usage_error.h"
+#include "tasks/name_pattern.h"
 #include "tree/state.h"
 
 namespace tex::cli {

@@ -8,8 +8,8 @@
 
 #include <tex/result.h>
 
-#include "batch/collisions.h"
-#include "batch/file_table.h"
+#include "tasks/collisions.h"
+#include "tasks/file_table.h"
 #include "tree/recipe.h"
 #include "tree/work.h"
 

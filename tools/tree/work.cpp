@@ -9,10 +9,10 @@
 
 #include <fmt/format.h>
 
-#include "batch/file_table.h"
-#include "batch/name_pattern.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "tasks/file_table.h"
+#include "tasks/name_pattern.h"
 #include "tree/state.h"
 
 namespace tex::cli {

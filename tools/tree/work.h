@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "batch/find_files.h"
+#include "tasks/find_files.h"
 #include "tree/recipe.h"
 
 namespace tex::cli {

@@ -22,8 +22,10 @@ namespace tex {
 // z > 0. Only if bumpiness is above 2^40 (or HeightOptions::blur_sigma above 0) are heights beyond +-1e34 limited to
 // that first.
 //
-// Preconditions (asserted): 1 <= width, height <= kMaxExtent; finite bumpiness; gaussian_sigma in range.
-// Errors: bad_data if a height is NaN or infinite (height_field() replaces or refuses them), out_of_memory, cancelled.
+// Errors: bad_option  the field has no texels, or more than kMaxExtent in a direction; bumpiness is not finite; as
+//                     validate(options)
+//         bad_data    a height is NaN or infinite (height_field() replaces or refuses them)
+//         out_of_memory, cancelled
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] Result<NormalMap> bake(const HeightField& field, const BakeOptions& options = {},
                                      const Execution& execution = {});

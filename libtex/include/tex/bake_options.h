@@ -4,6 +4,7 @@
 #pragma once
 
 #include <tex/names.h>
+#include <tex/result.h>
 
 #pragma GCC visibility push(default)
 namespace tex {
@@ -39,6 +40,9 @@ struct BakeOptions {
     GradientKernel kernel = GradientKernel::central;
     float gaussian_sigma = 1.0f;  // texels, above 0 and at most kMaxGaussianSigma; only gaussian reads it
 };
+
+// Whether every option is in its range. The verbs call it first. Errors: bad_option, which names the option.
+[[nodiscard]] Result<void> validate(const BakeOptions& options);
 
 }  // namespace tex
 #pragma GCC visibility pop

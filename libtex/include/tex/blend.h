@@ -23,8 +23,9 @@ namespace tex {
 //
 // The result is one level. Build its mip levels from it; do not blend level by level.
 //
-// Preconditions (asserted): chains are not empty; numbers are in the ranges above; masks are finite.
-// Errors: out_of_memory, cancelled.
+// Precondition: masks are finite.
+// Errors: bad_option (a chain has no level, or levels of other extents than those of level_extent(); as validate()),
+//         out_of_memory, cancelled
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] Result<NormalMap> blend(MipChain base, std::vector<Layer> layers, const BlendOptions& options = {},
                                       const Execution& execution = {});

@@ -7,6 +7,7 @@
 #include <tex/image.h>
 #include <tex/mip_chain.h>
 #include <tex/names.h>
+#include <tex/result.h>
 #include <tex/scale.h>
 
 #pragma GCC visibility push(default)
@@ -68,6 +69,11 @@ struct BlendOptions {
     Extent extent;                                      // of the result; 0x0: the base's
     Wrap wrap_x = Wrap::repeat, wrap_y = Wrap::repeat;  // of the base, if the result has another extent
 };
+
+// Whether every number is in its range; not whether the layer has a map. The verbs call it first. Errors: bad_option,
+// which names the option.
+[[nodiscard]] Result<void> validate(const BlendOptions& options);
+[[nodiscard]] Result<void> validate(const Layer& layer);
 
 }  // namespace tex
 #pragma GCC visibility pop

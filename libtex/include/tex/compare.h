@@ -25,8 +25,7 @@ struct Comparison {
 // equal vectors are exactly 0 degrees apart. The error is below 0.0001 degrees up to 170 degrees, and below 0.03
 // degrees beyond.
 //
-// Preconditions (asserted): both maps have the same extent, at least 1x1.
-// Errors: out_of_memory, cancelled.
+// Errors: bad_option (the maps have no texels, or different extents), out_of_memory, cancelled.
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] Result<Comparison> compare(const NormalMap& a, const NormalMap& b, const Execution& execution = {});
 

@@ -62,10 +62,10 @@ struct ConvertedMap {
 // beyond -1. All others are copies of the nearest texel. A map in object space often has no valid texels outside of its
 // charts, so to_tangent_space() reads none of them: its border consists of copies alone.
 //
-// Preconditions (asserted): check_part(space.part) succeeds; the map is not empty; padding >= 0; subsamples are 1 to
-// kMaxSubsamples.
-// Errors: bad_option   no normals, no such set of UVs, not as many tangents as corners; no triangle covers a texel
-//         unsupported  UVs beyond a million; a triangle covers more than 16 repeats of the map, or more than 2^22
+// Errors: bad_data     check_part(space.part) fails
+//         bad_option   the map has no texels; as validate(options); no normals, no such set of UVs, not as many
+//         tangents as corners; no triangle covers a texel unsupported  UVs beyond a million; a triangle covers more
+//         than 16 repeats of the map, or more than 2^22
 //                      texels, in one direction
 //         out_of_memory, cancelled
 // The same bytes for every number of threads, processor and compiler.
@@ -81,7 +81,7 @@ struct ConvertedMap {
 // version of the mesh with the same UVs. to_object_space() with `from`, padded, then to_tangent_space() with `to`.
 // The counts are those of the second step. If charts share texels, the first triangle of each mesh decides.
 //
-// Preconditions, errors and memory: as above, with two maps in memory besides `map`.
+// Errors and memory: as above, with two maps in memory besides `map`.
 [[nodiscard]] Result<ConvertedMap> refit(const NormalMap& map, const TangentSpace& from, const TangentSpace& to,
                                          const ConvertOptions& options = {}, const Execution& execution = {});
 

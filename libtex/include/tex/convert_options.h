@@ -8,6 +8,7 @@
 
 #include <tex/mesh.h>
 #include <tex/names.h>
+#include <tex/result.h>
 
 #pragma GCC visibility push(default)
 namespace tex {
@@ -95,6 +96,9 @@ struct ConvertOptions {
     int padding = kPadAll;  // the width in texels of the border around each chart, 0 or more
     int subsamples = 1;     // of a texel, in each direction, 1 to kMaxSubsamples
 };
+
+// Whether every option is in its range. The verbs call it first. Errors: bad_option, which names the option.
+[[nodiscard]] Result<void> validate(const ConvertOptions& options);
 
 }  // namespace tex
 #pragma GCC visibility pop

@@ -48,8 +48,7 @@ struct Curvature {
 // Texels with z below 1e-6 count as flat in `divergence`, which cannot have their slopes; so do, in both, texels with a
 // component that is NaN or infinite.
 //
-// Preconditions (asserted): the map is not empty, of at most kMaxExtent.
-// Errors: out_of_memory, cancelled.
+// Errors: bad_option (the map has no texels, or more than kMaxExtent in a direction), out_of_memory, cancelled.
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] Result<Curvature> curvature(const NormalMap& map, const CurvatureOptions& options = {},
                                           const Execution& execution = {});

@@ -41,8 +41,8 @@ namespace tex {
 // Texels that are NaN have no bounds and stay NaN; the field bends through them. Wraps are those of the field; with
 // Wrap::clamp, slopes continue. Every height depends on all others. Memory: 9 bytes for each texel besides the field.
 //
-// Preconditions (asserted): the field is not empty, of at most kMaxExtent.
-// Errors: out_of_memory, cancelled; the heights are then lost.
+// Errors: bad_option (the field has no texels, or more than kMaxExtent in a direction); out_of_memory, cancelled: the
+//         heights are then lost
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] Result<DebandReport> deband(HeightField& field, Deband when = Deband::on,
                                           const Execution& execution = {});

@@ -20,15 +20,15 @@ inline constexpr int kHeatMapLeastWidth = 128;
 // A legend of kHeatMapLegendRows rows is below the map: the colours from 0 on the left to full_scale on the right, with
 // the values at both ends. If a map is narrower than kHeatMapLeastWidth, the rest of the picture is black.
 //
-// Preconditions (asserted): `degrees` is not empty and has no NaN; 0 < full_scale <= 180.
-// Errors: out_of_memory, cancelled.
+// Precondition: `degrees` has no NaN.
+// Errors: bad_option (`degrees` has no texels; full_scale is not above 0 and at most 180), out_of_memory, cancelled.
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] Result<Image> heat_map(const Plane<float>& degrees, double full_scale, const Execution& execution = {});
 
 // The angles for a smaller picture. The longer side is divided into at most `side` cells; each cell holds its largest
 // angle, so that none is lost. Cells are square and span a whole number of texels, except those at the right and lower
 // border.
-// Precondition: `degrees` is not empty, side >= 1. Errors: out_of_memory.
+// Errors: bad_option (`degrees` has no texels; side is below 1), out_of_memory.
 [[nodiscard]] Result<Plane<float>> largest_of_cells(const Plane<float>& degrees, int side);
 
 }  // namespace tex

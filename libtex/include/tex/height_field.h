@@ -140,9 +140,5 @@ struct HeightReport {
 [[nodiscard]] Result<HeightField> height_field(const Image& image, const HeightOptions& options,
                                                const Execution& execution = {}, HeightReport* report = nullptr);
 
-// Whether `error`, from height_field() or bake_file(), reports invalid texels that fill_invalid would replace: some
-// texels are invalid, but not all.
-[[nodiscard]] bool is_fillable(const Error& error);
-
 }  // namespace tex
 #pragma GCC visibility pop

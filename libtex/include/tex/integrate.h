@@ -62,9 +62,8 @@ struct Integration {
 // the map, 16 if several solutions are needed, and for each thread 128 bytes for each texel of the longer side (512 for
 // prime factors above 5).
 //
-// Preconditions (asserted): the map is not empty, of at most kMaxExtent; bumpiness is
-// from 1e-20 to 1e20 or from -1e20 to -1e-20; gaussian_sigma in range; 0 < least_z <= 1.
-// Errors: bad_data  z is below 0 in more than one of sixteen texels, as in object space; no texel has a usable slope
+// Errors: bad_option  the map has no texels, or more than kMaxExtent in a direction; as validate(options)
+//         bad_data  z is below 0 in more than one of sixteen texels, as in object space; no texel has a usable slope
 //         out_of_memory, cancelled
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] Result<Integration> integrate(const NormalMap& map, const IntegrateOptions& options = {},

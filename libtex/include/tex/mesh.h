@@ -97,8 +97,8 @@ inline constexpr std::size_t kMaxTriangles = std::size_t{1} << 28;
 // triangle's second and third corner change places, so that corners stay counter-clockwise, and w changes its sign
 // (glTF 2.0, 3.7.4; Unity's odd negative scale). The quads of mirrored parts are forgotten.
 //
-// Preconditions (asserted): check_part(part) succeeds.
-// Errors: bad_data (the matrix is not invertible or not finite, or coordinates become infinite), out_of_memory.
+// Errors: bad_data (check_part(part) fails; the matrix is not invertible or not finite, or coordinates become
+// infinite), out_of_memory.
 [[nodiscard]] Result<MeshPart> in_scene(MeshPart part, const MeshNode& node);
 
 }  // namespace tex

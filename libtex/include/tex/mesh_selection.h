@@ -57,8 +57,8 @@ struct SelectedPart {
 // The triangles whose UVs have their centre in a UDIM tile, with their tangents. Tile 1001 + u + 10 v is the square
 // from (u, v) to (u + 1, v + 1), where v points up and u is 0 to 9 (Foundry, Mari).
 //
-// Preconditions (asserted): check_part(selected.part) succeeds; tile is 1001 or more.
-// Errors: bad_option (no triangle is there), out_of_memory.
+// Errors: bad_data (check_part(selected.part) fails), bad_option (tile is below 1001; no triangle is there),
+//         out_of_memory
 [[nodiscard]] Result<SelectedPart> in_tile(const SelectedPart& selected, int tile);
 
 }  // namespace tex

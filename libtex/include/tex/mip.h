@@ -20,9 +20,7 @@ namespace tex {
 // becomes (0, 0, 1). The base level is stored as given: t is 0 there. With
 // options.max_side, levels[0] may be a smaller level.
 //
-// Preconditions (asserted): `base` is not empty; fade as described; levels, max_side >= 0; with any_z, the domain
-// is vector and there is no fade.
-// Errors: out_of_memory, cancelled.
+// Errors: bad_option (the map has no texels; as validate(options)), out_of_memory, cancelled.
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] Result<MipChain> build_mip_chain(NormalMap base, const MipOptions& options = {},
                                                const Execution& execution = {});

@@ -7,6 +7,7 @@
 
 #include <tex/height_field.h>
 #include <tex/names.h>
+#include <tex/result.h>
 
 #pragma GCC visibility push(default)
 namespace tex {
@@ -46,7 +47,7 @@ inline constexpr Named<MipDomain> kMipDomainNames[] = {
 };
 
 // Fading out (Unity's "Fadeout Mip Maps"): level k moves to flat, (0, 0, 1), by t = clamp((k - first) / (last - first),
-// 0, 1). Level `last` and all smaller levels are flat. Precondition: 0 <= first < last.
+// 0, 1). Level `last` and all smaller levels are flat. 0 <= first < last.
 struct Fade {
     int first = 1;
     int last = 3;
@@ -62,8 +63,12 @@ struct MipOptions {
     // The longest side of levels[0] in texels; 0: no limit. Larger levels are made, as smaller ones come from them, and
     // left out. `levels` and `fade` count from the first level that is kept.
     int max_side = 0;
-    bool any_z = false;  // z may be negative, as in object space; else a z below 0 becomes 0
+    // z may be negative, as in object space; else a z below 0 becomes 0. Needs the domain vector and no fade.
+    bool any_z = false;
 };
+
+// Whether every option is in its range. The verbs call it first. Errors: bad_option, which names the option.
+[[nodiscard]] Result<void> validate(const MipOptions& options);
 
 }  // namespace tex
 #pragma GCC visibility pop

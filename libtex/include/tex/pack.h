@@ -26,9 +26,9 @@ namespace tex {
 // PackOptions::rdo optimises blocks for compression. If `rdo` is not null, it then gets what that has done; otherwise,
 // and if an error occurs, it stays as it is.
 //
-// Preconditions (asserted): the chain has at least one level, each level has the extent of level_extent(), and
-// components are finite.
-// Errors: out_of_memory, cancelled.
+// Precondition: components are finite.
+// Errors: bad_option (the chain has no level, or levels of other extents than those of level_extent(); as
+//         validate(options)), out_of_memory, cancelled
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] Result<Texture> pack(const MipChain& chain, const PackOptions& options = {},
                                    const Execution& execution = {}, RdoReport* rdo = nullptr);

@@ -6,6 +6,7 @@
 #include <tex/format.h>
 #include <tex/names.h>
 #include <tex/normal_map.h>
+#include <tex/result.h>
 
 #pragma GCC visibility push(default)
 namespace tex {
@@ -101,6 +102,9 @@ struct PackOptions {
     bool y_known = true;  // whether the texture states y_axis; false if that is only an assumption about the source
     RdoOptions rdo = {};
 };
+
+// Whether every option is in its range. The verbs call it first. Errors: bad_option, which names the option.
+[[nodiscard]] Result<void> validate(const PackOptions& options);
 
 }  // namespace tex
 #pragma GCC visibility pop

@@ -50,8 +50,10 @@ struct MoreFile {
 struct BakeFileOptions {
     ReadOptions read;
     ColorOptions color;
-    HeightOptions heights;                     // wrap_x and wrap_y also apply to the height field
-    std::function<Strength(Extent)> strength;  // the bumpiness for a map of this extent; empty: 1. Must not throw
+    HeightOptions heights;  // wrap_x and wrap_y also apply to the height field
+    // The bumpiness for a map of this extent. Empty: what the file of heights states, as those of integrate-normals do,
+    // or 1. Must not throw.
+    std::function<Strength(Extent)> strength;
     // The strength at which 99 % of the slopes are at most 1 (45 degrees), to three digits, instead of `strength`; 1 if
     // all heights are equal. The file is read once more before, and heights are debanded and filled twice.
     bool auto_strength = false;
@@ -64,12 +66,16 @@ struct BakeFileOptions {
     bool slopes = false;         // whether BakeFileReport::slopes is computed
 };
 
+// Whether every option is in its range. bake_file() calls it first. Errors: bad_option, which names the option.
+[[nodiscard]] Result<void> validate(const BakeFileOptions& options);
+
 struct BakeFileReport {
     Extent extent;  // of the base level
     int levels = 1;
     std::size_t bytes = 0;  // of the output; the sum over all its files
     HeightReport heights;
     Strength strength;              // with which it was baked
+    bool is_stated = false;         // the file states this strength
     float usual_slope = 0.0f;       // the 99th percentile of the slopes of the base level, or of some rows of it
     SlopeRange slopes;              // zeros unless BakeFileOptions::slopes is set
     std::int64_t steep_texels = 0;  // of the base level: slopes above steepest_slope() of the encoding
@@ -93,7 +99,6 @@ struct BakeFileReport {
 // all rows are done. The files then appear one after the other; if one fails, those after it do not appear. Output to
 // standard output or a FIFO is held in memory until it is complete.
 //
-// Preconditions (asserted): as those of the verbs.
 // Errors: those of the verbs. `file` is empty if the error concerns the heights and not a file. If there are several
 // errors (a damaged picture, a missing directory), any one of them may be reported. The bytes are the same for every
 // number of threads.
@@ -138,6 +143,9 @@ struct PackFileOptions {
     std::optional<RoughnessFile> roughness;  // only if `mip` is set
 };
 
+// Whether every option is in its range. pack_file() calls it first. Errors: bad_option, which names the option.
+[[nodiscard]] Result<void> validate(const PackFileOptions& options);
+
 struct PackFileReport {
     Extent extent;  // of the base level that was written
     int levels = 1;
@@ -163,7 +171,6 @@ struct PackFileReport {
 // The output appears whole or not at all; files for each level appear as bake_file() describes. Output to standard
 // output or a FIFO is held in memory until it is complete.
 //
-// Preconditions (asserted): as those of the verbs.
 // Errors: those of the verbs; bad_option if the source lacks the requested level. If there are several errors, any one
 // of them may be reported. The bytes are the same for every number of threads.
 [[nodiscard]] Result<PackFileReport> pack_file(const std::string& input, const std::string& output, Container container,
@@ -211,6 +218,9 @@ struct BlendFileOptions {
     std::shared_ptr<SharedMaps> shared;  // where the maps of the layers are kept; null: nowhere
 };
 
+// Whether every option is in its range. blend_file() calls it first. Errors: bad_option, which names the option.
+[[nodiscard]] Result<void> validate(const BlendFileOptions& options);
+
 struct BlendFileReport {
     Extent extent;  // of the base level
     int levels = 1;
@@ -232,7 +242,6 @@ struct BlendFileReport {
 // The output appears whole or not at all; files for each level appear as bake_file() describes. Output to standard
 // output or a FIFO is held in memory until it is complete.
 //
-// Preconditions (asserted): as those of the verbs.
 // Errors: those of the verbs. If there are several errors, any one of them may be reported. The bytes are the same for
 // every number of threads.
 [[nodiscard]] Result<BlendFileReport> blend_file(const std::string& input, const std::string& output,

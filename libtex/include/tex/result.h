@@ -36,21 +36,29 @@ inline constexpr Named<ErrorCode> kErrorCodeNames[] = {
     {ErrorCode::cancelled, "cancelled", "cancelled"},
 };
 
+// What a program may act on, beyond the kind of failure.
+enum class ErrorDetail {
+    none,
+    no_space,             // io: the disk, or the quota that the file counts towards, is full
+    missing_heights,      // bad_data: some heights are missing, but not all (HeightOptions::fill_invalid fills them)
+    uastc_without_alpha,  // unsupported: a KTX2 file without the channel that y is transcoded from
+    several_materials,    // bad_option: MeshSelection::material must choose one
+    no_tangents,          // bad_option: the mesh has no tangents of its own (TangentSource)
+};
+
 // A failure. `file` is the path concerned, as the caller gave it, or empty if no file is involved; `reason` is one
 // clause without a final full stop ("truncated: level 3 wants 64 bytes, 12 are left").
 struct Error {
     ErrorCode code = ErrorCode::io;
     std::string file;
     std::string reason;
-    bool no_space = false;  // with io: the disk or the quota that the file counts towards is full
+    ErrorDetail detail = ErrorDetail::none;
 
     // "FILE: reason", or just the reason if no file is named.
     [[nodiscard]] std::string message() const { return file.empty() ? reason : file + ": " + reason; }
 
     // The same error for the file `path`, unless the error already names a file.
-    [[nodiscard]] Error of(const std::string& path) const {
-        return {code, file.empty() ? path : file, reason, no_space};
-    }
+    [[nodiscard]] Error of(const std::string& path) const { return {code, file.empty() ? path : file, reason, detail}; }
 };
 
 // A value or an Error. Test it, then use value() or error(). Asking for the one that is absent is a programming error

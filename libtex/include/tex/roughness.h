@@ -69,9 +69,8 @@ struct RoughnessChain {
 // has no effect: flat levels lack the detail of their vectors too. If 1 - m^2 is below 2^-20, which is a difference of
 // 0.06 degrees, it is the rounding of floats and counts as 0.
 //
-// Preconditions (asserted): `base` is not empty, and its vectors have unit length (shorter ones count as averages);
-// `roughness` is not empty; options as in build_mip_chain().
-// Errors: out_of_memory, cancelled.
+// Precondition: vectors have unit length (shorter ones count as averages).
+// Errors: bad_option (`base` or `roughness` has no texels; as validate(options)), out_of_memory, cancelled.
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] Result<RoughnessChain> build_roughness_chain(const NormalMap& base, const Plane<float>& roughness,
                                                            RoughnessModel model = RoughnessModel::toksvig,

@@ -33,8 +33,9 @@ struct Scaling {
 //
 // Each level of a chain is scaled on its own.
 //
-// Preconditions (asserted): `scale` is finite, at most kMaxScale in magnitude; normals have unit length.
-// Errors: out_of_memory, cancelled.
+// Precondition: normals have unit length.
+// Errors: bad_option (a map has no texels; `scale` is not finite, or above kMaxScale in magnitude), out_of_memory,
+//         cancelled
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] Result<NormalMap> scale(NormalMap map, float scale, ScaleMode mode = ScaleMode::slope,
                                       const Execution& execution = {});

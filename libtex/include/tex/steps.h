@@ -35,6 +35,10 @@ struct StepsReport {
     std::vector<MapRead> maps;
 };
 
+// Whether there is a step, only the first one bakes, none before the last builds levels or writes roughness, and the
+// options of each are in their ranges. Errors: bad_option.
+[[nodiscard]] Result<void> validate(const std::vector<Step>& steps);
+
 // Applies `steps` one after the other: the first to the file `input`, each further one to the result of the one before.
 // The last one writes `output`, and the files of its option `more`. The bytes are the same as if each step before the
 // last had written a file of floats (EXR, Encoding::float_) that the next one reads.
@@ -44,9 +48,7 @@ struct StepsReport {
 // bake_file(), pack_file() and blend_file() say for each. If the layout of a file depends on its texels, a step before
 // the last reads the file once more.
 //
-// Preconditions (asserted): there is at least one step; only the first bakes; those before the last build no levels
-// and write no roughness; those of the three functions.
-// Errors: those of the three functions.
+// Errors: bad_option (as validate(steps)), and those of the three functions.
 [[nodiscard]] Result<StepsReport> apply_steps(const std::string& input, const std::vector<Step>& steps,
                                               const std::string& output, Container container,
                                               const Execution& execution = {});

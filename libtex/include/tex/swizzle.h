@@ -39,8 +39,7 @@ inline constexpr Named<Swizzle> kSwizzleNames[] = {
 //
 // A texture without x or y in its own swizzle (one channel) keeps it; unpack() then reports what is missing.
 //
-// Precondition (asserted): there is a base level. Errors: out_of_memory, cancelled. The same result for every number of
-// threads.
+// Errors: as decode() of the base level. The same result for every number of threads.
 [[nodiscard]] Result<Swizzle> guess_swizzle(const Texture& texture, const Execution& execution = {});
 
 }  // namespace tex

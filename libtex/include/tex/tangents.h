@@ -42,8 +42,8 @@ inline constexpr int kMaxFan = 4096;
 // length; corners for which the method finds no direction have (1, 0, 0). w is as described in mesh.h.
 // Vertices whose corners have different tangents must be split before the tangents become an attribute of vertices.
 //
-// Preconditions (asserted): check_part(part) succeeds.
-// Errors: bad_option   the part has no normals or no such set of UVs
+// Errors: bad_data     check_part(part) fails
+//         bad_option   the part has no normals or no such set of UVs
 //         unsupported  more than kMaxFan triangles meet at one vertex, as explained there
 //         out_of_memory, cancelled
 // The same bytes for every number of threads, processor and compiler.

@@ -39,6 +39,14 @@ struct Texture {
     // The file declares its colours as sRGB. That is a mistake for normals; the bytes are used as they are.
     bool srgb = false;
 
+    // Of heights: the strengths with which bake() makes the normals again from which they were integrated. 0: not
+    // known.
+    float bumpiness_x = 0.0f, bumpiness_y = 0.0f;
+
+    // The orientation that the file states, 1 to 8, as in TIFF and EXIF. The texels have been turned accordingly; the
+    // vectors in them are as they are stored.
+    int orientation = 1;
+
     // Faults that the reader ignored ("mip count says 3, the data end after 2"), one sentence each.
     std::vector<std::string> remarks;
 

@@ -17,8 +17,7 @@ namespace tex {
 // these rules, not by those of a particular GPU: 5- and 6-bit endpoints are widened to 8 bits by bit replication,
 // palettes interpolate with exact thirds, fifths and sevenths, and nothing is rounded. The lowest snorm code is -1 too.
 //
-// Precondition (asserted): 0 <= level < levels.size(), and the level has level_bytes() bytes.
-// Errors: out_of_memory, cancelled.
+// Errors: bad_option (there is no such level, or it does not have level_bytes() bytes), out_of_memory, cancelled.
 [[nodiscard]] Result<Image> decode(const Texture& texture, int level, const Execution& execution = {});
 
 // The normals of every level of a texture. unorm values become n = 2 c - 1; y is negated if it points down in the
@@ -36,8 +35,8 @@ namespace tex {
 //
 // If several channels of the swizzle hold a component, it is read from the first of them.
 //
-// Precondition (asserted): every level has the extent of level_extent() and level_bytes() bytes; there is a base level.
-// Errors: bad_option  the swizzle lacks x or y, or has one of them in a channel that the format lacks
+// Errors: bad_option  the swizzle lacks x or y, or has one of them in a channel that the format lacks; there is no
+//                     level, or one without the extent of level_extent() or level_bytes() bytes
 //         out_of_memory, cancelled
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] Result<MipChain> unpack(const Texture& texture, const UnpackOptions& options = {},

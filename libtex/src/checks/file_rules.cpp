@@ -130,6 +130,8 @@ void check_file_rules(const Subject& subject, Findings& findings) {
     for (const std::string& remark : texture.remarks) {
         findings.add(remark.find(kTrailing) != std::string::npos ? "N104" : "N102", remark);
     }
+    if (texture.orientation != 1)
+        findings.add("N116", "the orientation is " + std::to_string(texture.orientation) + " instead of 1");
     check_format(texture, subject.stored.swizzle, require, findings);
     check_levels(texture, require, findings);
     check_extent(texture, require, findings);

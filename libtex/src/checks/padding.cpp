@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "checks/thresholds.h"
-#include "stream/nearest.h"
+#include "surface/nearest.h"
 #include "threads/guard.h"
 
 namespace tex {

@@ -60,6 +60,11 @@ constexpr Rule kRules[] = {
      "there. Compressed as colours, a map has y = 1 everywhere for such a shader, and three components share the bits "
      "of two. Compress its source again if you have it; compressing the file again loses a little.",
      "pack-normals FILE --format SAME -o FIXED", "N211"},
+    {"N116", "turned-by-tag", file, warning, true, "The file asks its readers to turn or mirror the picture.",
+     "Cameras and scanners state an orientation (TIFF, EXIF) instead of turning the texels. Some programs follow it, "
+     "others show the texels as they are stored, so a map does not lie on the mesh as it did where it was painted. The "
+     "commands follow it, vectors stay as they are stored, and what they write has no orientation.",
+     "pack-normals FILE --keep-length --format SAME -o FIXED", ""},
 
     // -- the vectors ------------------------------------------------------------------------------------------
     {"N201", "not-unit-length", values, note, true, "Vectors are not of unit length.",

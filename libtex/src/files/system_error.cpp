@@ -11,7 +11,7 @@ Error system_error(const std::string& file, int number, const char* doing) {
     std::string reason = doing;
     if (!reason.empty()) reason += ": ";
     return {exhausted ? ErrorCode::out_of_memory : ErrorCode::io, file, reason + system_reason(number),
-            is_no_space(number)};
+            is_no_space(number) ? ErrorDetail::no_space : ErrorDetail::none};
 }
 
 }  // namespace tex

@@ -32,7 +32,7 @@ inline std::string system_reason(int number) {
     return reason;
 }
 
-// As Error::no_space.
+// Whether this error means that the disk is full (ErrorDetail::no_space).
 inline bool is_no_space(int number) { return number == ENOSPC || number == EDQUOT; }
 
 // An Error for `file`: out_of_memory if the system ran out of memory or descriptors (ENOMEM, EMFILE, ENFILE), otherwise

@@ -33,6 +33,8 @@ TextureHead head_of(const Texture& texture) {
     head.swizzle_known = texture.swizzle_known;
     head.y_axis = texture.y_axis;
     head.y_known = texture.y_known;
+    head.bumpiness_x = texture.bumpiness_x;
+    head.bumpiness_y = texture.bumpiness_y;
     return head;
 }
 

@@ -22,6 +22,7 @@ struct TextureHead {
     bool swizzle_known = false;
     YAxis y_axis = YAxis::up;
     bool y_known = false;
+    float bumpiness_x = 0.0f, bumpiness_y = 0.0f;
 };
 
 [[nodiscard]] TextureHead head_of(const Texture& texture);

@@ -41,10 +41,12 @@ public:
         }
         describe(rows_->extent(), rows_->names(), rows_->row_bytes());
         describe_samples(SampleKind::floating, 32, rows_->normal_encoding());
-        describe_normals(rows_->normal_mark());
+        describe_mark(rows_->normal_mark());
+        if (rows_->strength()) describe_heights(*rows_->strength());
         describe_stored(stored);
         describe_numbers(scale_, offset_);
         describe_remark(rows_->remark());
+        describe_orientation(rows_->orientation());
         if (std::optional<float> value = rows_->no_data()) {
             number(&*value, 1);
             describe_no_data(value);

@@ -3,7 +3,10 @@
 #include "formats/normal_mark.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <optional>
+#include <system_error>
 
 #include <tex/swizzle.h>
 
@@ -14,6 +17,22 @@ namespace {
 
 constexpr std::string_view kUp = "+y";
 constexpr std::string_view kDown = "-y";
+constexpr std::string_view kHeights = "heights ";
+
+// The shortest digits that give these numbers again.
+std::string heights_mark(float x, float y) {
+    std::string mark(kHeights);
+    const auto add = [&](float value) {
+        char digits[32];
+        const auto end = std::to_chars(digits, digits + sizeof digits, value);
+        mark.append(digits, end.ptr);
+    };
+    add(x);
+    if (x == y) return mark;
+    mark += ' ';
+    add(y);
+    return mark;
+}
 
 static_assert([] {
     std::size_t longest = 0;
@@ -50,6 +69,7 @@ bool fits(const Swizzle& swizzle, Format format) {
 }  // namespace
 
 std::string normal_mark(const TextureHead& head) {
+    if (head.bumpiness_x != 0.0f) return heights_mark(head.bumpiness_x, head.bumpiness_y);
     if (!head.swizzle_known) return {};
     std::string mark = layout_name(head.swizzle);
     if (head.y_known) mark.append(" ").append(head.y_axis == YAxis::up ? kUp : kDown);
@@ -74,9 +94,31 @@ bool apply_normal_mark(std::string_view mark, Texture& texture) {
 
 bool apply_found_mark(std::string_view mark, Texture& texture) {
     if (mark.empty()) return false;
+    if (const std::optional<Strength> strength = strength_in_mark(mark)) {
+        texture.bumpiness_x = strength->x;
+        texture.bumpiness_y = strength->y;
+        return false;
+    }
     if (apply_normal_mark(mark, texture)) return true;
     texture.remarks.emplace_back("the mark libtex.normal was not understood");
     return false;
+}
+
+std::optional<Strength> strength_in_mark(std::string_view mark) {
+    if (!mark.starts_with(kHeights)) return std::nullopt;
+    float values[2] = {};
+    const char* at = mark.data() + kHeights.size();
+    const char* const end = mark.data() + mark.size();
+    int count = 0;
+    for (; count < 2 && at < end; ++count) {
+        if (count > 0 && *at++ != ' ') return std::nullopt;
+        const auto [next, error] = std::from_chars(at, end, values[count]);
+        const float size = std::abs(values[count]);
+        if (error != std::errc() || !(size >= 1e-20f && size <= 1e20f)) return std::nullopt;
+        at = next;
+    }
+    if (count == 0 || at != end) return std::nullopt;
+    return Strength{values[0], values[count - 1]};
 }
 
 std::string description_of(std::string_view mark) {

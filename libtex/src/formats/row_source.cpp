@@ -3,6 +3,7 @@
 #include "formats/row_source.h"
 
 #include <algorithm>
+#include <string>
 
 #include <tex/unpack.h>
 
@@ -10,9 +11,19 @@
 #include "formats/claims.h"
 #include "formats/codecs.h"
 #include "formats/file_values.h"
+#include "formats/normal_mark.h"
 #include "threads/guard.h"
 
 namespace tex {
+
+std::string orientation_text(int orientation) {
+    return "the picture was turned or mirrored, as its orientation (" + std::to_string(orientation) + ") says";
+}
+
+void RowSource::describe_mark(std::string mark) {
+    strength_ = strength_in_mark(mark);
+    if (!strength_) normal_mark_ = std::move(mark);
+}
 
 Result<Image> RowSource::read_all() {
     Image image = make_image(extent(), names());

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include <tex/height_field.h>
 #include <tex/image.h>
 #include <tex/image_io.h>
 #include <tex/result.h>
@@ -23,6 +24,9 @@
 #include "formats/stored_samples.h"
 
 namespace tex {
+
+// What a picture's orientation, which is not 1, means for it, as a sentence.
+std::string orientation_text(int orientation);
 
 class RowSource {
 public:
@@ -44,6 +48,9 @@ public:
     // As Image::stored, Image::scale and Image::offset.
     [[nodiscard]] bool has_numbers() const { return has_numbers_; }
     [[nodiscard]] const std::string& remark() const { return remark_; }  // as in Image
+    // Of heights: the strength that the file states (Texture::bumpiness_x).
+    [[nodiscard]] std::optional<Strength> strength() const { return strength_; }
+    [[nodiscard]] int orientation() const { return orientation_; }  // as in Texture
     [[nodiscard]] double scale() const { return scale_; }
     [[nodiscard]] double offset() const { return offset_; }
 
@@ -104,10 +111,16 @@ protected:
         normal_encoding_ = std::move(normal_encoding);
     }
 
-    void describe_normals(std::string mark) { normal_mark_ = std::move(mark); }
+    // A mark of heights is no mark of normals.
+    void describe_mark(std::string mark);
+    void describe_heights(const Strength& strength) { strength_ = strength; }
     void describe_no_data(std::optional<float> value) { no_data_ = value; }
     void describe_stored(const StoredSamples& stored) { stored_ = stored; }
     void describe_remark(std::string remark) { remark_ = std::move(remark); }
+    void describe_orientation(int orientation) {
+        orientation_ = orientation;
+        if (orientation != 1) remark_ = orientation_text(orientation);
+    }
     void describe_numbers(double scale, double offset) {
         has_numbers_ = true;
         scale_ = scale;
@@ -126,6 +139,8 @@ private:
     StoredSamples stored_;
     bool has_numbers_ = false;
     std::string remark_;
+    int orientation_ = 1;
+    std::optional<Strength> strength_;
     double scale_ = 1.0, offset_ = 0.0;
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 #include <utility>
+#include <vector>
 
 namespace tex::render {
 namespace {
@@ -52,6 +53,7 @@ void Canvas::draw_columns(int x, int y, const Level& picture, int from, int to) 
 
 void Canvas::text(int x, int y, int scale, std::string_view words, Code color) {
     for (const char c : words) {
+        if (continues_letter(c)) continue;  // the font has ASCII alone: every other letter is one box
         const std::uint8_t* rows = glyph(c);
         for (int j = 0; j < kGlyphHeight; ++j) {
             for (int i = 0; i < kGlyphWidth; ++i) {
@@ -77,9 +79,13 @@ std::string fitted(std::string_view words, int scale, int width) {
     constexpr std::string_view kCut = "..";
     const int letters = (width / scale + 1) / kGlyphAdvance - static_cast<int>(kCut.size());
     if (letters < 1) return {};
+    std::vector<std::size_t> begins;  // of the letters
+    for (std::size_t k = 0; k < words.size(); ++k) {
+        if (!continues_letter(words[k])) begins.push_back(k);
+    }
     const std::size_t first = static_cast<std::size_t>(letters) / 2;
     const std::size_t last = static_cast<std::size_t>(letters) - first;
-    return std::string(words.substr(0, first)).append(kCut).append(words.substr(words.size() - last));
+    return std::string(words.substr(0, begins[first])).append(kCut).append(words.substr(begins[begins.size() - last]));
 }
 
 }  // namespace tex::render

@@ -37,9 +37,14 @@ private:
     Level level_;
 };
 
-// The width of a line of text in pixels.
+// Whether this byte of UTF-8 belongs to the letter before it.
+[[nodiscard]] constexpr bool continues_letter(char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; }
+
+// The width of a line of text (UTF-8) in pixels.
 [[nodiscard]] constexpr int text_width(std::string_view words, int scale) {
-    return words.empty() ? 0 : (static_cast<int>(words.size()) * kGlyphAdvance - 1) * scale;
+    int letters = 0;
+    for (const char c : words) letters += continues_letter(c) ? 0 : 1;
+    return words.empty() ? 0 : (letters * kGlyphAdvance - 1) * scale;
 }
 
 // Returns the words, shortened to fit into `width` pixels if necessary. The letters that are cut out are replaced by

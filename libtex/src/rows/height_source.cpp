@@ -15,8 +15,6 @@
 namespace tex {
 namespace {
 
-constexpr std::string_view kTheFirst = ", the first at column ";  // the first invalid height
-
 // The greatest HeightOptions::blur_sigma.
 constexpr float kMaxBlurSigma = 256.0f;
 
@@ -205,11 +203,8 @@ Error invalid_heights(std::int64_t invalid, int column, int row, Extent extent, 
     return {ErrorCode::bad_data,
             {},
             std::to_string(invalid) + (invalid == 1 ? " height is " : " heights are ") + kinds +
-                std::string(kTheFirst) + std::to_string(column) + ", row " + std::to_string(row)};
-}
-
-bool is_fillable(const Error& error) {
-    return error.code == ErrorCode::bad_data && error.reason.find(kTheFirst) != std::string::npos;
+                ", the first at column " + std::to_string(column) + ", row " + std::to_string(row),
+            ErrorDetail::missing_heights};
 }
 
 }  // namespace tex

@@ -57,8 +57,8 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
             if (usual.wants(strip.first + j)) usual.add({strip.map.x.row(j), strip.map.y.row(j), strip.map.z.row(j)});
         }
     });
-    HeightStage stage(extent, heights->source, heights->options, gradient, head_of(extent, options), stream.sink(),
-                      std::move(heights->last));
+    HeightStage stage(extent, heights->source, heights->options, gradient, head_of(extent, options, heights->stated),
+                      stream.sink(), std::move(heights->last));
     LevelStage levels(extent, first + report.levels, stage.start(), counted_from_base(options.mip, first),
                       stream.strips());
     if (const Result<void> done = stream.run(stage, levels); !done) return done.error();
@@ -69,8 +69,9 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
     counts += stage.counts();
     report.heights = report_of(counts, heights->deband, heights->stored);
     report.heights.remark = heights->remark;
-    const HeightFieldHead head = head_of(extent, options);
+    const HeightFieldHead head = head_of(extent, options, heights->stated);
     report.strength = {head.bumpiness_x, head.bumpiness_y};
+    report.is_stated = !options.strength && heights->stated;
     report.usual_slope = usual.slope();
     report.slopes = slopes.range();
     report.steep_texels = slopes.steep_texels();

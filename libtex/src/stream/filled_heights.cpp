@@ -7,8 +7,8 @@
 #include <cstring>
 #include <utility>
 
-#include "stream/nearest.h"
 #include "surface/debander.h"
+#include "surface/nearest.h"
 
 namespace tex {
 namespace {

@@ -13,8 +13,8 @@
 #include "checks/background.h"
 #include "formats/row_source.h"
 #include "rows/unpack_rows.h"
-#include "stream/nearest.h"
 #include "stream/source_layout.h"
+#include "surface/nearest.h"
 
 namespace tex {
 namespace {

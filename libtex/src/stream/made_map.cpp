@@ -69,7 +69,7 @@ public:
         if (!heights) return heights.error().of(input_);
         heights_.emplace(std::move(*heights));
         const Extent extent = heights_->rows->extent();
-        const HeightFieldHead head = head_of(extent, options_);
+        const HeightFieldHead head = head_of(extent, options_, heights_->stated);
         report_.strength = {head.bumpiness_x, head.bumpiness_y};
         HeightReport before = report_of(heights_->counts, heights_->deband, heights_->stored);
         before.remark = heights_->remark;

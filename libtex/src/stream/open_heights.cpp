@@ -29,6 +29,7 @@ Result<void> prepare(const BakeFileOptions& options, Heights& heights) {
                              rows.scale(), rows.offset(), rows.no_data()};
     heights.stored = rows.has_numbers();
     heights.remark = rows.remark();
+    heights.stated = rows.strength();
     Result<HeightSource> source = find_height_source(facts, options.heights);
     if (!source) return source.error();
     heights.source = *source;
@@ -69,8 +70,8 @@ Result<void> find_last_rows(InputFile& file, const BakeFileOptions& options, con
 
 }  // namespace
 
-HeightFieldHead head_of(Extent extent, const BakeFileOptions& options) {
-    const Strength strength = options.strength ? options.strength(extent) : Strength();
+HeightFieldHead head_of(Extent extent, const BakeFileOptions& options, const std::optional<Strength>& stated) {
+    const Strength strength = options.strength ? options.strength(extent) : stated.value_or(Strength());
     return {strength.x, strength.y, options.heights.wrap_x, options.heights.wrap_y};
 }
 

@@ -24,9 +24,10 @@ struct Heights {
     HeightOptions options;
     HeightCounts counts;  // found so far
     DebandReport deband;
-    bool stored = false;        // as Image::stored
-    std::string remark;         // as Image::remark
-    std::optional<Image> last;  // the last rows, if they are needed first
+    bool stored = false;             // as Image::stored
+    std::string remark;              // as Image::remark
+    std::optional<Strength> stated;  // the strength that the file states
+    std::optional<Image> last;       // the last rows, if they are needed first
 };
 
 enum class RowOrder { any, from_the_top };
@@ -37,7 +38,7 @@ enum class RowOrder { any, from_the_top };
 Result<Heights> open_heights(InputFile& file, RowOrder order, const BakeFileOptions& options, const Gradient& gradient,
                              const Execution& execution);
 
-// The strength and the borders of a height field of this extent.
-HeightFieldHead head_of(Extent extent, const BakeFileOptions& options);
+// The strength and the borders of a height field of this extent, whose file may state a strength.
+HeightFieldHead head_of(Extent extent, const BakeFileOptions& options, const std::optional<Strength>& stated);
 
 }  // namespace tex

@@ -66,7 +66,7 @@ Result<Strength> measure_strength(InputFile& file, const BakeFileOptions& option
                           [&](int j) {
                               if (usual.wants(j)) usual.add(made);
                           }};
-    HeightStage stage(extent, heights->source, heights->options, gradient, head_of(extent, as_one), sink,
+    HeightStage stage(extent, heights->source, heights->options, gradient, head_of(extent, as_one, {}), sink,
                       std::move(heights->last));
     const auto put = [&](Image& rows, int, int count) -> Result<void> {
         if (execution.progress && !execution.progress(0.0)) return Error{ErrorCode::cancelled, {}, "cancelled"};

@@ -75,7 +75,7 @@ std::optional<DdsPixelFormat> legacy_pixel_format(const TextureHead& head) {
 void write_reserved(ByteWriter& writer, const TextureHead& head) {
     const std::string mark = normal_mark(head);
     const std::size_t end = writer.size() + kReservedWords * sizeof(std::uint32_t);
-    if (!mark.empty()) {
+    if (!mark.empty() && mark.size() <= kLongestNormalMark) {
         writer.zeros(kMarkWord * sizeof(std::uint32_t));
         writer.text(kMarkTag);
         writer.text(mark);

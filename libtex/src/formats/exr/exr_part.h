@@ -27,6 +27,7 @@ namespace tex {
 // libtex's own attributes.
 inline constexpr const char* kNormalEncoding = "normalEncoding";
 inline constexpr const char* kNormalYAxis = "normalYAxis";
+inline constexpr const char* kHeightBumpiness = "heightBumpiness";  // of heights: Texture::bumpiness_x and y
 
 // An exception of OpenEXR, as bad_data.
 Error exr_error(const std::string& path, const std::exception& thrown);

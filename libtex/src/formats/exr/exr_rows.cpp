@@ -10,6 +10,7 @@
 #include <utility>
 
 #include <ImfStringAttribute.h>
+#include <ImfVecAttribute.h>
 
 #include "formats/exr/exr_chunk.h"
 #include "formats/exr/exr_part.h"
@@ -67,6 +68,8 @@ ExrRows::ExrRows(std::shared_ptr<ExrReader> reader, const std::vector<ExrChannel
     };
     if (std::any_of(channels.begin(), channels.end(), [](const ExrChannel& c) { return c.type == Imf::UINT; }))
         describe_stored({.kind = 1, .bits = 32});
+    if (const auto* bumpiness = reader_->header().findTypedAttribute<Imf::V2fAttribute>(kHeightBumpiness))
+        describe_heights({bumpiness->value().x, bumpiness->value().y});
     const auto* text = reader_->header().findTypedAttribute<Imf::StringAttribute>(kNormalEncoding);
     describe_samples(all(Imf::UINT) ? SampleKind::unorm : SampleKind::floating, all(Imf::HALF) ? 16 : 32,
                      text == nullptr ? "" : text->value());

@@ -31,7 +31,7 @@ Result<std::vector<ExrChannel>> texture_channels(const std::string& path, const 
                  "no channels are called R, G, B or X, Y, Z; its channels are " + list_of_names(names)};
 }
 
-void describe_normals(const Imf::Header& header, Texture& texture) {
+void describe_mark(const Imf::Header& header, Texture& texture) {
     texture.swizzle = likely_swizzle(texture.format);
     if (const auto* text = header.findTypedAttribute<Imf::StringAttribute>(kNormalEncoding)) {
         texture.normal_encoding = text->value();
@@ -70,7 +70,7 @@ Result<ExrTexture> exr_texture_of(const std::string& path, const Imf::Header& he
     const bool half = std::all_of(channels->begin(), channels->end(),
                                   [](const ExrChannel& channel) { return channel.type == Imf::HALF; });
     texture.head.format = *format_of(SampleKind::floating, half ? 16 : 32, static_cast<int>(channels->size()));
-    describe_normals(header, texture.head);
+    describe_mark(header, texture.head);
     texture.levels = usable_levels(header, base, texture.head.remarks);
     texture.channels = std::move(*channels);
     return texture;

@@ -17,6 +17,7 @@
 #include <ImfHeader.h>
 #include <ImfIO.h>
 #include <ImfStringAttribute.h>
+#include <ImfVecAttribute.h>
 #include <OpenEXRConfig.h>
 
 #include <tex/mip_chain.h>
@@ -69,6 +70,8 @@ Imf::Header header_of(const TextureHead& texture) {
         if (texture.y_known)
             header.insert(kNormalYAxis, Imf::StringAttribute(std::string(name_of(kYAxisNames, texture.y_axis))));
     }
+    if (texture.bumpiness_x != 0.0f)
+        header.insert(kHeightBumpiness, Imf::V2fAttribute({texture.bumpiness_x, texture.bumpiness_y}));
     if (texture.levels > 1)
         header.setTileDescription(Imf::TileDescription(kExrTile, kExrTile, Imf::MIPMAP_LEVELS, Imf::ROUND_DOWN));
     return header;

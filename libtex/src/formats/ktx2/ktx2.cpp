@@ -129,7 +129,8 @@ Error uastc_error(const FetchBytes& fetch, std::size_t size, const std::string& 
             const auto model = std::to_integer<unsigned>((*bytes)[kModel]);
             const auto channel = std::to_integer<unsigned>((*bytes)[kFirstChannel]) & 15u;
             if (model == kUastc && (channel == kRgb || channel == kRrr))
-                return unsupported(name, std::string(kUastcWithoutAlpha));
+                return Error{ErrorCode::unsupported, name, std::string(kUastcWithoutAlpha),
+                             ErrorDetail::uastc_without_alpha};
         }
     }
     return unsupported(name, "UASTC is not supported; \"ktx transcode --target bc5\" makes a file that is");

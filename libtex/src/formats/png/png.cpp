@@ -93,7 +93,7 @@ Result<void> PngRows::open(const ReadOptions& options) {
     describe(extent, channel_names(channels),
              static_cast<std::size_t>(extent.width) * static_cast<std::size_t>(channels * bits / 8));
     describe_samples(SampleKind::unorm, kind.is_palette ? 8 : kind.bit_depth);
-    describe_normals(libpng_->normal_mark());
+    describe_mark(libpng_->normal_mark());
     if (is_interlaced_ || only_libpng_) return libpng_->start();
     plain_ = std::make_unique<PlainPngRows>(libpng_->input(), libpng_->first_length(), extent, kind);
     return {};

@@ -248,10 +248,11 @@ Result<void> ReaderRows::open(const ReadOptions& options) {
     scale_ = *scale;
     describe_samples(scale_.kind, scale_.bits);
     const std::string_view text(header_.description, strnlen(header_.description, sizeof header_.description));
-    describe_normals(std::string(mark_in_description(text)));
+    describe_mark(std::string(mark_in_description(text)));
     describe_no_data(no_data_value());
     if (!std::isfinite(header_.stored.scale) || !std::isfinite(header_.stored.offset)) return nonsense(file_.path());
     describe_stored(header_.stored);
+    if (header_.orientation > 1) describe_orientation(static_cast<int>(header_.orientation));
     return {};
 }
 

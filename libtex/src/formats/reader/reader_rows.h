@@ -16,7 +16,7 @@ namespace tex {
 // Starts the reader process on a file, which must outlive the rows. The process ends with the rows. The file's first
 // bytes choose the decoder: TIFF, JPEG, HDR, PSD, GIF, WebP, PNM, SGI, JPEG 2000, DPX, Cineon, IFF, Softimage PIC.
 // Raw values, unassociated alpha, the first
-// picture of several; orientation tags change nothing. Integers of fewer bits than their container (12-bit TIFF) are
+// picture of several, turned as its orientation says. Integers of fewer bits than their container (12-bit TIFF) are
 // converted back to code / (2^n - 1). Such pictures are read to the end first, because only all values together show
 // how the bits were widened.
 //

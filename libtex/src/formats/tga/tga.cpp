@@ -35,7 +35,7 @@ class TgaRows final : public CodeRows {
 public:
     TgaRows(const InputFile& file, TgaHeader header) : file_(file), header_(std::move(header)) {
         describe_codes(header_.extent, channel_names(header_.channels), header_.bits);
-        describe_normals(header_.normal_mark);
+        describe_mark(header_.normal_mark);
     }
 
     // Checks that all rows are there.
