@@ -311,6 +311,31 @@ TEST_F(BuildFiles, PruningRemovesLevelsThatATextureHasNoMore) {
     EXPECT_EQ(outputs().size(), before);
 }
 
+// A run fails after some levels of the new contents have taken their place. The old contents come back: the state must
+// not take that mixture for what they make.
+TEST_F(BuildFiles, LevelsOfDifferentContentsAreMadeAgain) {
+    fs::create_directory(scratch_.path("in"));
+    scratch_.add_sample("ramp.png", "in/x.png");
+    scratch_.write("normals.toml",
+                   "version = 1\n[[rule]]\nmatch = \"in/x.png\"\nname = \"out/{stem}_{level}.png\"\nsteps = [ { "
+                   "bake = {} } ]\n");
+    ASSERT_EQ(build().code, 0);
+    const auto expected = outputs();
+    const std::string last = fmt::format("out/x_{}.png", expected.size() - 1);
+    fs::rename(scratch_.path("in/x.png"), scratch_.path("before.png"));
+    scratch_.add_sample("hemisphere.png", "in/x.png");
+    fs::rename(scratch_.path(last), scratch_.path("level.png"));
+    fs::create_directories(scratch_.path(last + "/in the way"));
+    ASSERT_NE(build().code, 0);
+    EXPECT_NE(scratch_.read("out/x_0.png"), expected.at("out/x_0.png"));
+    fs::remove_all(scratch_.path(last));
+    fs::rename(scratch_.path("level.png"), scratch_.path(last));
+    fs::rename(scratch_.path("before.png"), scratch_.path("in/x.png"));
+    ASSERT_EQ(build().code, 0);
+    EXPECT_EQ(count("made"), 1u);
+    EXPECT_TRUE(outputs() == expected);
+}
+
 TEST_F(BuildFiles, SettingsAreReadNoFurtherThanTheirLimit) {
     for (const char* const program : {"build-normals", "check-normals"}) {
         std::vector<std::string> arguments = {"/dev/zero"};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// build-normals with long paths, loops of links, and a clock that was set back.
+// build-normals with long paths, other spellings of names, loops of links, and a clock that was set back.
 
 #include <chrono>
 #include <filesystem>
@@ -79,6 +79,29 @@ TEST_F(BuildPaths, AClockThatWasSetBackDoesNoHarm) {
               0);
     EXPECT_NE(build().code, 0) << "the file is damaged now";
     EXPECT_EQ(done_["art/wall_h.png"], "failed");
+}
+
+// An output of one rule that another reads is found under every spelling of its name.
+TEST_F(BuildPaths, NeedsAreFoundUnderOtherSpellings) {
+    for (const std::string name :
+         {"out/shared/grain.dds", "./out/shared/grain.dds", "out//shared/../shared/grain.dds"}) {
+        std::string manifest = kManifest;
+        const std::string plain = "out/shared/grain.dds";
+        manifest.replace(manifest.find(plain), plain.size(), name);
+        scratch_.write("normals.toml", manifest);
+        const Ran plan = run(scratch_, "build-normals", {"--plan", "-"});
+        int found = 0;
+        for (const std::string& line : lines_of(plan.out)) {
+            const auto json = nlohmann::json::parse(line);
+            if (json.value("input", "") != "art/wall_h.png") continue;
+            EXPECT_EQ(json["needs"], nlohmann::json::array({"shared/grain.png"})) << name;
+            ++found;
+        }
+        EXPECT_EQ(found, 1) << plan.err;
+        fs::remove_all(scratch_.path("out"));
+        const Ran ran = build({"--threads", "1"});
+        EXPECT_EQ(ran.code, 0) << name << ran.err;
+    }
 }
 
 }  // namespace tex::cli

@@ -64,6 +64,11 @@ TEST_F(CheckNormalsMesh, DocumentsNameTheMeshAndNeverReplaceIt) {
     const std::string command = "check-normals --mesh meshes/N706.glb --tangents mikktspace N706*.png ";
     EXPECT_EQ(shell(scratch_, command + "--report page.html --depfile page.d").code, 0);
     EXPECT_NE(scratch_.read("page.d").find("meshes/N706.glb"), std::string::npos);
+    // The page shows how to see the map on the mesh with preview-normals, with every choice of the command line.
+    EXPECT_EQ(shell(scratch_, command + "--uv-set 0 --primitive 0 --material 0 --report parts.html").code, 0);
+    EXPECT_NE(scratch_.read("parts.html")
+                  .find("--mesh meshes/N706.glb --material 0 --primitive 0 --uv-set 0 --tangents mikktspace"),
+              std::string::npos);
     const std::string mesh = scratch_.read("meshes/N706.glb");
     EXPECT_EQ(shell(scratch_, command + "--sarif meshes/N706.glb").code, 2);
     EXPECT_EQ(scratch_.read("meshes/N706.glb"), mesh);

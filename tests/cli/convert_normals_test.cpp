@@ -137,6 +137,9 @@ TEST_F(ConvertNormals, WritesWhatPackNormalsWrites) {
     does("convert-normals", {"n.exr", "-o", "zstd.ktx2", "--mesh", "sheet.obj", "--decoder-in", "godot",
                              "--supercompress", "zstd", "--format", "bc5", "--effort", "fast", "--depfile", "d"});
     EXPECT_EQ(scratch_.read("d"), "zstd.ktx2: \\\n  n.exr \\\n  sheet.obj\n");
+    does("convert-normals", {"n.exr", "-o", "same.exr", "--mesh", "sheet.obj", "--to-mesh", "sheet.obj", "--tangents",
+                             "meshopt", "--depfile", "d"});
+    EXPECT_EQ(scratch_.read("d"), "same.exr: \\\n  n.exr \\\n  sheet.obj\n");
     does("convert-normals",
          {"n.exr", "--out-dir", "named", "--name", "{stem}_{format}.dds", "--mesh", "sheet.obj", "--to", "object"});
     EXPECT_TRUE(scratch_.has("named/n_rgb8.dds"));

@@ -56,6 +56,16 @@ TEST(Deal, WhatATextureNeedsIsInItsShard) {
     EXPECT_EQ(deal({{1, {}, true}, {5, {0}, false}}, 2), (Hands{{0, 1}, {}}));
 }
 
+TEST(Deal, TexturesThatNeedTheSameGoTogetherIfThatIsCheaper) {
+    // 1 and 2 need 0, which is expensive. 3 is nearly as large as they are together.
+    const std::vector<DealtTexture> textures = {{100, {}, false}, {1, {0}, false}, {1, {0}, false}, {95, {}, false}};
+    EXPECT_EQ(deal(textures, 2), (Hands{{3}, {0, 1, 2}}));
+}
+
+TEST(Deal, WhatOnlyARefusedTextureNeedsIsDealt) {
+    EXPECT_EQ(deal({{5, {}, false}, {7, {0}, true}, {1, {}, false}}, 2), (Hands{{0}, {2}}));
+}
+
 TEST(Deal, ShardsAreEqualInCost) {
     std::vector<DealtTexture> textures = tree(5000);
     for (std::size_t k = 1; k < textures.size(); k += 3) textures[k].needs = {0};

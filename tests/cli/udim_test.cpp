@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // UDIM tiles: <UDIM> in the names of inputs and of -o, and the triangles in a tile.
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -78,6 +79,19 @@ TEST_F(Udim, NamesStandForTheFilesThatExist) {
     const Ran baked = go("pack-normals", {"n.<UDIM>.png", "--out-dir", "out", "--format", "bc5"});
     EXPECT_EQ(baked.code, 0) << baked.err;
     EXPECT_EQ(scratch_.has("out/n.1001.dds") && scratch_.has("out/n.1012.dds"), true);
+    // In the order of their numbers, whatever the order of the folder is.
+    for (const char* name : {"n.1011.png", "n.1002.png", "n.1021.png"})
+        EXPECT_EQ(go("bake-normals", {"h.png", "-o", name, "--bumpiness", "0"}).code, 0);
+    const Ran all = go("pack-normals", {"n.<UDIM>.png", "--out-dir", "out", "--format", "bc5", "--json"});
+    std::vector<std::string> inputs;
+    for (const std::string& line : lines_of(all.out)) {
+        const std::size_t at = line.find("n.1");
+        if (at != std::string::npos) inputs.push_back(line.substr(at, 6));
+    }
+    EXPECT_EQ(inputs, (std::vector<std::string>{"n.1001", "n.1002", "n.1011", "n.1012", "n.1021"}));
+    for (const char* name : {"n.1011.png", "n.1002.png", "n.1021.png"}) std::filesystem::remove(scratch_.path(name));
+    // Names that are shorter than what comes before the number.
+    EXPECT_EQ(go("pack-normals", {"a-name-longer-than-others.<UDIM>.png", "--out-dir", "out"}).code, 3);
     const Ran checked = run(scratch_, "check-normals", {"n.<UDIM>.png", "--mesh", "tiles.obj"});
     EXPECT_NE(checked.out.find("n.1012.png"), std::string::npos) << checked.out;
     EXPECT_EQ(checked.out.find("N723"), std::string::npos) << checked.out;  // charts-overlap

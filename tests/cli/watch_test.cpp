@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "cli/meshes.h"
 #include "cli/program.h"
 
 namespace tex::cli {
@@ -235,11 +236,39 @@ steps = [ {{ bake = {{}} }}, {{ blend = {{ detail = "out/g.exr", mask = "mask.pn
     EXPECT_TRUE(
         builder.out().ends_with("art/wall_h.png -> out/wall_h.png\ngrain/g.png -> out/g.exr\n2 made, 0 up to date\n"))
         << builder.out();
+    masks.add_sample("hemisphere.png", "other.png");
+    scratch_.write("art/wall_h.png", masks.read("other.png"));  // an input whose rule needs another texture
+    EXPECT_TRUE(within_seconds([&] { return passes(builder) == 4; })) << builder.out();
+    EXPECT_TRUE(builder.out().ends_with("art/wall_h.png -> out/wall_h.png\n1 made, 1 up to date\n")) << builder.out();
     EXPECT_EQ(ended(builder, SIGHUP), 128 + SIGHUP);
     const std::string watched = scratch_.read("out/wall_h.png");
     fs::remove_all(scratch_.path("out"));
     ASSERT_EQ(run(scratch_, "build-normals", {"--no-sync"}).code, 0);
     EXPECT_TRUE(scratch_.read("out/wall_h.png") == watched);
+}
+
+TEST_F(BuildNormalsWatch, AMeshThatHasChangedIsReadAgain) {
+    scratch_.write("sheet.obj", kSheetObj);
+    scratch_.write("normals.toml", R"(version = 1
+[[rule]]
+match = "art/n.png"
+name = "out/{stem}.exr"
+steps = [ { convert = { mesh = "sheet.obj", to = "object" } } ]
+)");
+    ASSERT_EQ(run(scratch_, "bake-normals", {"art/wall_h.png", "-o", "art/n.png"}).code, 0);
+    Background builder(scratch_, "build-normals", {"--watch", "--no-sync"});
+    ASSERT_TRUE(prints(builder, "1 made, 0 up to date\n"));
+    const std::string before = scratch_.read("out/n.exr");
+    std::string bent = kSheetObj;
+    bent.replace(bent.find("vn -0.3 -0.1 1"), 14, "vn -0.1 -0.8 1");
+    scratch_.write("sheet.obj", bent);
+    EXPECT_TRUE(within_seconds([&] { return passes(builder) == 2; }));
+    EXPECT_EQ(ended(builder, SIGINT), 128 + SIGINT);
+    const std::string watched = scratch_.read("out/n.exr");
+    EXPECT_FALSE(watched == before);
+    fs::remove_all(scratch_.path("out"));
+    ASSERT_EQ(run(scratch_, "build-normals", {"--no-sync"}).code, 0);
+    EXPECT_TRUE(scratch_.read("out/n.exr") == watched);
 }
 
 TEST_F(BuildNormalsWatch, VanishedInputsArePruned) {

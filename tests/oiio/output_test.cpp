@@ -177,6 +177,16 @@ TEST_F(OiioOutput, LevelsOfAnotherExtentAreErrors) {
         EXPECT_NE(output->geterror().find("level 1 must have half the width and height"), std::string::npos);
         EXPECT_FALSE(output->close());
     }
+    // Nothing follows a level of one texel.
+    const auto last = new_output();
+    for (const int side : {2, 1, 1}) {
+        const bool is_level = last->open(scratch_.path("x.dds"), ImageSpec(side, side, 3, TypeDesc::UINT8),
+                                         side == 2 ? ImageOutput::Create : ImageOutput::AppendMIPLevel);
+        if (!is_level) break;
+        ASSERT_TRUE(last->write_image(TypeDesc::UINT8, pixels.data()));
+    }
+    EXPECT_NE(last->geterror().find("level 2 must have half the width and height"), std::string::npos);
+    EXPECT_FALSE(last->close());
     const auto output = new_output();
     ASSERT_TRUE(output->open(scratch_.path("x.dds"), ImageSpec(32, 16, 3, TypeDesc::UINT8), ImageOutput::Create));
     EXPECT_FALSE(
@@ -204,6 +214,63 @@ TEST_F(OiioOutput, ColoursAreDividedByTheirAlpha) {
         const auto chain = unpack(*read_texture(scratch_.path("x.ktx2")));
         EXPECT_NEAR(chain->levels[0].x.at(0, 0), 0.5f, 1e-6f);
         EXPECT_NEAR(chain->levels[0].y.at(0, 0), 0.0f, 1e-6f);
+    }
+}
+
+// A filter may have made a texel brighter than its alpha. What is in RGB is a colour all the same.
+TEST_F(OiioOutput, ColoursBrighterThanTheirAlphaAreDividedToo) {
+    std::vector<float> pixels;
+    for (int k = 0; k < 64; ++k) {
+        const float p = 0.3f * static_cast<float>(k % 8) / 8.0f, q = 0.2f * static_cast<float>(k / 8) / 8.0f;
+        for (const float c : {0.5f + p, 0.5f + q, 0.9f}) pixels.push_back(0.25f * c);
+        pixels.push_back(k == 63 ? 0.2f : 0.25f);
+    }
+    ImageSpec spec(8, 8, 4, TypeDesc::FLOAT);
+    spec.attribute("tex:format", "float");
+    spec.attribute("normalEncoding", "unsigned");
+    const auto output = new_output();
+    ASSERT_TRUE(output->open(scratch_.path("x.ktx2"), spec, ImageOutput::Create)) << output->geterror();
+    ASSERT_TRUE(output->write_image(TypeDesc::FLOAT, pixels.data()));
+    ASSERT_TRUE(output->close()) << output->geterror();
+    const auto chain = unpack(*read_texture(scratch_.path("x.ktx2")));
+    EXPECT_NEAR(chain->levels[0].x.at(0, 0), 0.0f, 1e-6f);
+    EXPECT_NEAR(chain->levels[0].y.at(0, 0), 0.0f, 1e-6f);
+    EXPECT_NEAR(chain->levels[0].z.at(0, 0), 1.0f, 1e-6f);
+}
+
+// x is in A and R, G and B were multiplied by it: at each level, or at none.
+TEST_F(OiioOutput, LevelsAreDividedAsTheBaseLevelIs) {
+    const MipChain chain = bumpy_chain({32, 16});
+    const auto output = new_output();
+    for (std::size_t k = 0; k < chain.levels.size(); ++k) {
+        const NormalMap& level = chain.levels[k];
+        const Extent extent = level.extent();
+        ImageSpec spec(extent.width, extent.height, 4, TypeDesc::FLOAT);
+        spec.attribute("tex:format", "ag8");
+        spec.attribute("normalEncoding", "unsigned");
+        spec.attribute("tex:swizzle", "1y1x");
+        std::vector<float> pixels;
+        for (int j = 0; j < extent.height; ++j) {
+            for (int i = 0; i < extent.width; ++i) {
+                const float a = 0.5f + 0.5f * level.x.at(i, j), g = 0.5f + 0.5f * level.y.at(i, j);
+                for (const float c : {a, a * g, a, a}) pixels.push_back(c);
+            }
+        }
+        ASSERT_TRUE(
+            output->open(scratch_.path("x.ktx2"), spec, k == 0 ? ImageOutput::Create : ImageOutput::AppendMIPLevel))
+            << output->geterror();
+        ASSERT_TRUE(output->write_image(TypeDesc::FLOAT, pixels.data()));
+    }
+    ASSERT_TRUE(output->close()) << output->geterror();
+    const auto read = unpack(*read_texture(scratch_.path("x.ktx2")));
+    ASSERT_EQ(read->levels.size(), chain.levels.size());
+    for (std::size_t k = 0; k < chain.levels.size(); ++k) {
+        for (int j = 0; j < chain.levels[k].extent().height; ++j) {
+            for (int i = 0; i < chain.levels[k].extent().width; ++i) {
+                ASSERT_NEAR(read->levels[k].x.at(i, j), chain.levels[k].x.at(i, j), 0.01f) << k;
+                ASSERT_NEAR(read->levels[k].y.at(i, j), chain.levels[k].y.at(i, j), 0.01f) << k;
+            }
+        }
     }
 }
 

@@ -152,8 +152,10 @@ TEST(Background, HidesNoFaultOfTheCharts) {
 TEST(Background, LeavesTheTextOfWhatIsUndecidedTrue) {
     CheckOptions up;
     up.require.y = YAxis::up;
-    NormalMap flat(kExtent);
-    for (int k = 0; k < kExtent.texels(); ++k) flat.z.at(k % kExtent.width, k / kExtent.width) = 1.0f;
+    NormalMap flat;
+    flat.x = Plane<float>(kExtent, 0.0f);
+    flat.y = Plane<float>(kExtent, 0.0f);
+    flat.z = Plane<float>(kExtent, 1.0f);
     const CheckReport report = checked(reference::texture_of(with_background(flat, {0, 0, 0})), up);
     ASSERT_EQ(ids(report), (Ids{"N215", "N403"}));
     EXPECT_NE(report.findings[1].message.find("the correlation is below 0.2 (correlation 0.00"), std::string::npos)

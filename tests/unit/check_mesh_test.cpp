@@ -130,6 +130,38 @@ TEST(CheckMesh, MeasuresTangentsAgainstMikktspaceAndNamesMeshopt) {
     EXPECT_EQ(mesh_ids(selected), MeshIds{});
 }
 
+// A hundredth of the corners may have any tangents.
+TEST(CheckMesh, AFewOtherTangentsAreNoOtherMethod) {
+    SelectedPart selected = stored_sheet();  // of 384 corners
+    const auto turn = [&](std::size_t c) {
+        const Float3 n = selected.part.normals[selected.part.indices[c]];
+        const Float4 t = selected.tangents[c];
+        const Float3 b = {n.y * t.z - n.z * t.y, n.z * t.x - n.x * t.z, n.x * t.y - n.y * t.x};
+        selected.tangents[c] = {b.x, b.y, b.z, t.w};  // by 90 degrees
+    };
+    for (const std::size_t c : {7u, 100u, 383u}) turn(c);
+    EXPECT_EQ(mesh_ids(selected), MeshIds{});
+    for (std::size_t c = 0; c < 6; ++c) turn(c);
+    EXPECT_EQ(mesh_ids(selected), MeshIds{"N705"});
+}
+
+// A triangle that is a line in the map has neither a tangent nor a side that MikkTSpace could know.
+TEST(CheckMesh, TrianglesWithoutAreaInTheMapAreNotCompared) {
+    SelectedPart selected = stored_sheet();
+    const std::size_t corners = selected.tangents.size();
+    for (std::uint32_t k = 0; k < 8; ++k) {
+        for (const std::uint32_t v : {k, k + 1, k}) selected.part.indices.push_back(v);
+        for (int c = 0; c < 3; ++c) selected.tangents.push_back({0.0f, 0.6f, 0.8f, -1.0f});
+    }
+    EXPECT_EQ(mesh_ids(selected), MeshIds{});
+    for (std::size_t c = 0; c < corners; ++c) selected.tangents[c].w *= -1.0f;
+    const auto findings = findings_of(selected);
+    ASSERT_EQ(findings.size(), 1u);
+    EXPECT_EQ(findings[0].rule->id, "N706");
+    EXPECT_EQ(findings[0].figure, 1.0);
+    EXPECT_NE(findings[0].message.find("128 of 128 triangles"), std::string::npos) << findings[0].message;
+}
+
 TEST(CheckMesh, CountsMirroredTrianglesAndSharedTexels) {
     SelectedPart selected = stored_sheet();
     for (Float2& uv : selected.part.uvs[0]) uv.x = 1.0f - uv.x;

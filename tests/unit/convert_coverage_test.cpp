@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which triangle decides about a texel, and what the texels get that none covers.
 
-#include <functional>
+#include <algorithm>
+#include <cstdint>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <tex/tangents.h>
 
+#include "mesh/coverage.h"
 #include "unit/convert_maps.h"
 
 namespace tex {
@@ -46,8 +49,24 @@ TEST(ConvertCoverage, LeavesNoCracksBetweenOddTriangles) {
     EXPECT_EQ(converted->covered, 257 * 311);
 }
 
-// What a map shows that was made for one decoder and is read by another: mean and largest angle in degrees, on surfaces
-// that are flat. The table of convert-normals(1).
+// Which of two triangles gets a texel whose centre is on their edge: the top-left rule of Direct3D 11 and Vulkan.
+TEST(ConvertCoverage, CentresOnABorderBelongToTheTopAndTheLeft) {
+    MeshPart part = square(2.5f / 16.0f, 6.5f / 16.0f);
+    part.v_axis = YAxis::down;
+    const std::vector<Float4> tangents(6, {1.0f, 0.0f, 0.0f, 1.0f});
+    for (const bool mirrored : {false, true}) {
+        if (mirrored) std::reverse(part.indices.begin(), part.indices.end());
+        const auto converted = to_object_space(constant_map({16, 16}, {0.0f, 0.0f, 1.0f}), {part, tangents}, {0});
+        ASSERT_TRUE(converted);
+        for (int j = 0; j < 16; ++j) {
+            for (int i = 0; i < 16; ++i) {
+                const bool is_covered = i >= 2 && i < 6 && j >= 2 && j < 6;
+                EXPECT_EQ(converted->coverage.at(i, j) == Coverage::triangle, is_covered) << i << ' ' << j;
+            }
+        }
+    }
+}
+
 TEST(ConvertCoverage, LetsTheFirstOfSeveralTrianglesDecide) {
     MeshPart part = square(0.25f, 0.75f, 3);
     std::vector<Float4> tangents(6, {1.0f, 0.0f, 0.0f, 1.0f});
@@ -72,7 +91,7 @@ TEST(ConvertCoverage, PadsAsFarAsItIsAsked) {
         ASSERT_TRUE(object && tangent);
         EXPECT_EQ(count(*object, Coverage::triangle), 256);
         EXPECT_EQ(count(*object, Coverage::none) == 0, padding == kPadAll);
-        EXPECT_EQ(count(*tangent, Coverage::none), padding == kPadAll ? 0 : count(*tangent, Coverage::none));
+        EXPECT_EQ(count(*tangent, Coverage::none) == 0, padding == kPadAll);
         EXPECT_EQ(count(*tangent, Coverage::gutter), 0);
         const int filled = 1024 - count(*object, Coverage::none);
         if (padding <= 3) {
@@ -104,6 +123,61 @@ TEST(ConvertCoverage, ContinuesTrianglesInTheGutter) {
     EXPECT_LT(std::abs(x(-3) - x(-2)), 0.5f * std::abs(x(0) - x(1)));
 }
 
+// The map repeats, so the gutter of a chart at its border goes on at the opposite border.
+TEST(ConvertCoverage, GuttersGoOnAtTheOppositeBorder) {
+    MeshPart part = square(0.0f, 0.5f);
+    part.v_axis = YAxis::down;
+    const std::vector<Float4> tangents(6, {1.0f, 0.0f, 0.0f, 1.0f});
+    const auto converted = to_object_space(constant_map({16, 16}, {0.0f, 0.0f, 1.0f}), {part, tangents}, {2});
+    ASSERT_TRUE(converted);
+    for (int k = 0; k < 16; ++k) {
+        const Coverage expected = k < 8 ? Coverage::triangle : k < 10 || k > 13 ? Coverage::gutter : Coverage::none;
+        EXPECT_EQ(converted->coverage.at(k, 3), expected) << k;
+        EXPECT_EQ(converted->coverage.at(3, k), expected) << k;
+    }
+}
+
+// A quarter of a texel high: its plane would give weights of 8 two texels away.
+TEST(ConvertCoverage, NoWeightGoesBeyondMinusOne) {
+    MeshPart part = square(0.0f, 1.0f);
+    part.v_axis = YAxis::down;
+    part.uvs[0] = {{0.25f, 0.25f}, {0.75f, 0.25f}, {0.5f, 0.2578125f}, {0.25f, 0.25f}};
+    const auto coverage = CoverageMap::make(part, 0, {32, 32}, 2);
+    ASSERT_TRUE(coverage);
+    std::vector<Covered> texels;
+    coverage->cover(0, texels);
+    int gutter = 0, limited = 0;
+    for (const Covered& texel : texels) {
+        if (texel.triangle == kNoTriangle) continue;
+        ++gutter;
+        const auto& w = texel.weights;
+        const double least = std::min({w[0], w[1], w[2]});
+        EXPECT_NEAR(w[0] + w[1] + w[2], 1.0, 1e-9);
+        EXPECT_GE(least, -1.0 - 1e-9);
+        limited += least < -1.0 + 1e-9 ? 1 : 0;
+    }
+    EXPECT_GT(gutter, 60);
+    EXPECT_GT(limited, 20);
+}
+
+// Each sliver is in a list for each strip of rows. Such lists are limited as the work is.
+TEST(ConvertCoverage, RefusesSliversThatTakeTooMuchMemory) {
+    constexpr std::uint32_t kCount = 2500;
+    MeshPart part;
+    part.uvs.resize(1);
+    for (std::uint32_t k = 0; k < 3 * kCount; ++k) {
+        const float left = static_cast<float>(k / 3) / static_cast<float>(kCount);
+        part.uvs[0].push_back({k % 3 == 2 ? left + 1e-5f : left, k % 3 == 1 ? 1.0f : 0.0f});
+        part.indices.push_back(k);
+    }
+    part.positions.resize(part.uvs[0].size());
+    const auto coverage = CoverageMap::make(part, 0, {65536, 16384}, 0);
+    ASSERT_FALSE(coverage);
+    EXPECT_EQ(coverage.error().code, ErrorCode::unsupported);
+    EXPECT_EQ(coverage.error().reason, "its triangles are too many and too long for a map of this size");
+    EXPECT_TRUE(CoverageMap::make(part, 0, {65536, 1024}, 0));
+}
+
 // The mesh bends within the texels of the coarse map.
 TEST(ConvertSubsamples, AverageTheVectorsOfATexel) {
     MeshPart part = wavy_part(3);
@@ -127,6 +201,56 @@ TEST(ConvertSubsamples, AverageTheVectorsOfATexel) {
         }
     }
     EXPECT_EQ(averaged->covered, 16);
+}
+
+// At the border of a chart, only the subsamples that triangles cover count, also if the gutter covers the others.
+TEST(ConvertSubsamples, LeaveOutTheGutterWhereATriangleCoversAny) {
+    MeshPart part = wavy_part(2);
+    for (Float2& uv : part.uvs[0]) uv = {0.28f + 0.5f * uv.x, 0.28f + 0.5f * (uv.y - 0.125f * uv.x)};
+    const auto tangents = make_tangents(part);
+    ASSERT_TRUE(tangents);
+    const TangentSpace space{part, *tangents};
+    const auto averaged = to_object_space(constant_map({8, 8}, {0.0f, 0.0f, 1.0f}), space, {2, 4});
+    const auto single = to_object_space(constant_map({32, 32}, {0.0f, 0.0f, 1.0f}), space, {0});
+    ASSERT_TRUE(averaged && single);
+    int partly = 0;
+    for (int j = 0; j < 8; ++j) {
+        for (int i = 0; i < 8; ++i) {
+            Float3 sum;
+            int covered = 0;
+            for (int k = 0; k < 16; ++k) {
+                if (single->coverage.at(4 * i + k % 4, 4 * j + k / 4) != Coverage::triangle) continue;
+                const Float3 n = vector_at(single->map, 4 * i + k % 4, 4 * j + k / 4);
+                sum = {sum.x + n.x, sum.y + n.y, sum.z + n.z};
+                ++covered;
+            }
+            EXPECT_EQ(averaged->coverage.at(i, j) == Coverage::triangle, covered > 0) << i << ' ' << j;
+            if (covered == 0) continue;
+            EXPECT_LT(degrees_between(unit_vector(sum), vector_at(averaged->map, i, j)), 1e-4) << i << ' ' << j;
+            partly += covered < 16 ? 1 : 0;
+        }
+    }
+    EXPECT_GT(partly, 8);
+}
+
+// Half of the texel looks up, half of it down: there is no mean.
+TEST(ConvertSubsamples, ThatCancelEachOtherMakeAFlatTexel) {
+    MeshPart part = square(0.0f, 0.5f);
+    part.uvs[0] = {{0.0f, 0.0f}, {0.5f, 0.0f}, {0.5f, 1.0f}, {0.0f, 1.0f}};
+    for (const std::size_t v : {0u, 1u, 2u, 3u}) {
+        const Float3 p = part.positions[v];
+        const Float2 uv = part.uvs[0][v];
+        part.positions.push_back({p.x + 1.0f, p.y, p.z});
+        part.normals.push_back({0.0f, 0.0f, -1.0f});
+        part.uvs[0].push_back({uv.x + 0.5f, uv.y});
+    }
+    for (std::size_t k = 0; k < 6; ++k) part.indices.push_back(part.indices[k] + 4);
+    const std::vector<Float4> tangents(12, {1.0f, 0.0f, 0.0f, 1.0f});
+    const auto converted = to_object_space(constant_map({1, 1}, {0.0f, 0.0f, 1.0f}), {part, tangents}, {0, 2});
+    ASSERT_TRUE(converted);
+    EXPECT_EQ(converted->singular, 1);
+    EXPECT_EQ(converted->map.x.at(0, 0), 0.0f);
+    EXPECT_EQ(converted->map.z.at(0, 0), 1.0f);
 }
 
 TEST(ConvertSubsamples, CoverTexelsThatATriangleTouches) {

@@ -142,6 +142,36 @@ TEST(Integrate, ForwardCentralAndScharrGiveNoiseBackOnOddExtents) {
 TEST(Integrate, ARampKeepsItsSlopeUpToClampedBorders) {
     const HeightField ramp = field_of({40, 24}, 2.0f, Wrap::clamp, [](int i, int j) { return 0.5 * i - 0.25 * j; });
     for (const auto& kernel : kGradientKernelNames) EXPECT_LT(round_trip_error(ramp, {kernel.value, 1.0f}), 1e-3);
+    for (const Extent extent : {Extent{3, 24}, Extent{24, 3}, Extent{5, 5}}) {  // hardly wider than a kernel
+        const HeightField small = field_of(extent, 2.0f, Wrap::clamp, [](int i, int j) { return 0.5 * i - 0.25 * j; });
+        for (const auto& kernel : kGradientKernelNames)
+            EXPECT_LT(round_trip_error(small, {kernel.value, 1.0f}), 1e-3) << kernel.name << " " << extent.width;
+    }
+}
+
+// A map of one row or column, whose slopes are rises of 1 texel. bake() gives the last two texels of a clamped axis the
+// same slope, so of two slopes that differ, the mean is the best.
+TEST(Integrate, ForwardDifferencesTakeTheMeanOfTheLastTwoSlopes) {
+    const double slopes[] = {0.3, -0.2, 0.5, 0.1, -0.7, 0.9};
+    const double heights[] = {0.0, 0.3, 0.1, 0.6, 0.7, 0.7 + (-0.7 + 0.9) / 2.0};
+    IntegrateOptions options;
+    options.bake.kernel = GradientKernel::forward;
+    options.bumpiness_x = options.bumpiness_y = 1.0f;
+    options.wrap_x = options.wrap_y = Wrap::clamp;
+    for (const bool across : {true, false}) {  // upwards, else
+        const Extent extent = across ? Extent{6, 1} : Extent{1, 6};
+        const auto place = [&](int i, int j) { return across ? i : 5 - j; };
+        NormalMap map(extent);
+        for (int k = 0; k < 6; ++k) {
+            const int i = across ? k : 0, j = across ? 0 : k;
+            const double slope = slopes[place(i, j)], length = std::sqrt(1.0 + slope * slope);
+            map.x.at(i, j) = static_cast<float>(across ? -slope / length : 0.0);
+            map.y.at(i, j) = static_cast<float>(across ? 0.0 : -slope / length);
+            map.z.at(i, j) = static_cast<float>(1.0 / length);
+        }
+        const Plane<float> expected = fields::plane_of(extent, [&](int i, int j) { return heights[place(i, j)]; });
+        EXPECT_LT(error_of(integrated(map, options).field.height, expected), 1e-5) << across;
+    }
 }
 
 TEST(Integrate, CentralDifferencesDoNotSeeAlternatingHeights) {

@@ -46,9 +46,12 @@ TEST_F(PipelineErrors, HeightsThatCannotBeUsedAreTheSameErrors) {
         options_.pack.encoding = default_encoding(container);
         for (const int row : {31, 0, 49}) {
             options_.heights.no_data = image.planes[0].at(7, row);
-            for (const int threads : {1, 2}) {
-                EXPECT_EQ(stream(input, container, threads, {64, 0}).error().message(),
-                          height_field(image, options_.heights).error().message());
+            for (const Deband deband : {Deband::off, Deband::on}) {  // which takes all rows before any
+                options_.heights.deband = deband;
+                for (const int threads : {1, 2}) {
+                    EXPECT_EQ(stream(input, container, threads, {64, 0}).error().message(),
+                              height_field(image, options_.heights).error().message());
+                }
             }
         }
     }

@@ -72,6 +72,15 @@ TEST(TurnOfPictures, ExchangedChannelsAreAQuarterTurn) {
     EXPECT_GT(turn.scale[0].clearest().strength(), 0.99);
 }
 
+// Pairs (divergence, curl) on one line, whose angle is known: (cos, sin) of it.
+TEST(TurnOfPictures, TheAxisOfPairsOnALineIsThatLine) {
+    EXPECT_EQ((TurnSums{0.0, 2.0, 0.0}).angle(), 0.0);
+    EXPECT_EQ((TurnSums{2.0, 0.0, 0.0}).angle(), 90.0);
+    EXPECT_NEAR((TurnSums{1.0, 1.0, 1.0}).angle(), 45.0, 1e-9);
+    EXPECT_NEAR((TurnSums{1.0, 1.0, -1.0}).angle(), -45.0, 1e-9);
+    EXPECT_NEAR((TurnSums{3.0, 1.0, std::sqrt(3.0)}).angle(), 60.0, 1e-9);
+}
+
 TEST(TurnOfPictures, NoiseHasAsMuchCurlAsDivergenceAndNoAxis) {
     Noise noise;
     const Turn turn = turn_of({256, 256}, [&](int, int) {

@@ -115,25 +115,26 @@ Result<void> CoverageMap::place(const MeshPart& part, const std::vector<Float2>&
                 placed.y[k] =
                     static_cast<std::int64_t>(std::floor((corner[k].y - top) * extent_.height * kSteps + 0.5));
             }
-            if (!add(placed, part.triangles()))
-                return Error{ErrorCode::unsupported, {}, "its triangles cover the map more than a thousand times"};
+            if (Result<void> added = add(placed, part.triangles()); !added) return added;
         }
     }
     return {};
 }
 
-// Returns false if that would be too much work or memory.
-bool CoverageMap::add(const Placed& placed, std::size_t triangles) {
+// Fails if that would be too much work or memory.
+Result<void> CoverageMap::add(const Placed& placed, std::size_t triangles) {
     const Box box = box_of(placed, gutter_ + 1, -1);
-    if (box.left > box.right || box.top > box.bottom) return true;
+    if (box.left > box.right || box.top > box.bottom) return {};
     tests_ += static_cast<std::int64_t>(box.right - box.left + 1) * (box.bottom - box.top + 1);
     entries_ += box.bottom / strip_rows_ - box.top / strip_rows_ + 1;
-    if (tests_ > kMaxLayers * std::max<std::int64_t>(extent_.texels(), 1 << 20)) return false;
-    if (entries_ > static_cast<std::int64_t>(16 * triangles) + (1 << 24)) return false;
+    if (tests_ > kMaxLayers * std::max<std::int64_t>(extent_.texels(), 1 << 20))
+        return Error{ErrorCode::unsupported, {}, "its triangles cover the map more than a thousand times"};
+    if (entries_ > static_cast<std::int64_t>(16 * triangles) + (1 << 24))
+        return Error{ErrorCode::unsupported, {}, "its triangles are too many and too long for a map of this size"};
     for (int strip = box.top / strip_rows_; strip <= box.bottom / strip_rows_; ++strip)
         by_strip_[static_cast<std::size_t>(strip)].push_back(static_cast<std::uint32_t>(placed_.size()));
     placed_.push_back(placed);
-    return true;
+    return {};
 }
 
 // The texels near a triangle that are in the map, and in the strip unless it is -1.

@@ -52,7 +52,7 @@ private:
     std::int64_t cover_inside(const Placed& t, int strip, std::vector<Covered>& texels) const;
     void cover_gutter(const Placed& t, int strip, std::vector<Covered>& texels, std::vector<double>& nearest) const;
     Result<void> place(const MeshPart& part, const std::vector<Float2>& uvs, std::int32_t triangle);
-    bool add(const Placed& placed, std::size_t triangles);
+    Result<void> add(const Placed& placed, std::size_t triangles);
 
     Extent extent_;
     int gutter_ = 0;
