@@ -86,8 +86,8 @@ preset() {
     cmake --build --preset "$name" "${targets[@]}" && ctest --preset "$name" --output-junit "$results/$name.xml" "$@"
 }
 
-# The longest tests of the release, which the nightly run has: more instruction sets, pages with real models in a browser,
-# a statistic that sets thresholds.
+# The longest tests of the release, which the nightly run has: more instruction sets, pages with real models in a
+# browser, a statistic that sets thresholds.
 # shellcheck disable=SC2034  # used by the scripts that source this file
 longest='Matrix[.].*"(SSSE3|SSE4|AVX3|EMU128)"|CheckThresholds|ReportPage.LinksReachFilesAnywhereOnALongPage'
 longest+='|ReportMesh.DrawsModelsOfOthers|ReportMesh.LightsAMirroredMeshAsPreviewNormalsDoes'

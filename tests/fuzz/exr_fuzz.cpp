@@ -205,8 +205,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!image) std::abort();
     const auto levels = tex::open_exr_texture_rows(*file, options);
     if (!levels) std::abort();
-    for (std::size_t k = 1; k < levels->levels.size(); ++k)
-        compare_some_rows(*levels->levels[k], choice);
+    for (std::size_t k = 1; k < levels->levels.size(); ++k) compare_some_rows(*levels->levels[k], choice);
     const auto again = tex::encode_exr(*texture);
     if (!again) std::abort();
     auto copy = tex::InputFile::from_memory("again.exr", *again);
