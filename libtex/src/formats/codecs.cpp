@@ -8,11 +8,14 @@
 #include <string>
 
 #include "blocks/astc.h"
+#include "formats/asc/asc.h"
 #include "formats/astc/astc_file.h"
+#include "formats/bil/bil.h"
 #include "formats/bmp/bmp.h"
 #include "formats/dds/dds.h"
 #include "formats/exr/exr.h"
 #include "formats/exr/exr_rows.h"
+#include "formats/hgt/hgt.h"
 #include "formats/ktx2/compress_ktx2.h"
 #include "formats/ktx2/ktx2.h"
 #include "formats/marks.h"
@@ -90,6 +93,7 @@ constexpr Codec kCodecs[] = {
      .holds = is_unorm8_without_alpha,
      .open_rows = open_bmp,
      .open_target = open_bmp_target},
+    {.claims = may_be_asc, .open_rows = open_asc},
     {.container = Container::tga,
      .claims = may_be_tga,
      .holds = is_unorm8_picture,
@@ -104,8 +108,8 @@ constexpr Codec kCodecs[] = {
      .holds = is_unorm8_without_alpha,
      .open_rows = open_reader_rows,
      .reader_name = "jpeg"},
-    // Never found by their first bytes.
     {.container = Container::r16,
+     .is_named = is_raw,
      .holds = [](Format format) { return format == Format::r16_unorm; },
      .open_rows = open_raw,
      .layout = raw_layout},
@@ -114,6 +118,8 @@ constexpr Codec kCodecs[] = {
      .default_encoding = Encoding::float_,
      .open_rows = open_raw,
      .layout = raw_layout},
+    {.is_named = is_hgt, .open_rows = open_hgt},
+    {.is_named = is_bil, .open_rows = open_bil},
 };
 
 }  // namespace
@@ -129,12 +135,12 @@ Result<void> check_holds(const Codec& codec, Format format, const WriteOptions& 
     if (options.zstd > 0 && codec.compress == nullptr) {
         return Error{ErrorCode::unsupported,
                      {},
-                     std::string(name_of(kContainerNames, codec.container)) + " is not compressed with Zstandard"};
+                     std::string(name_of(kContainerNames, *codec.container)) + " is not compressed with Zstandard"};
     }
     if (codec.holds(format)) return {};
     return Error{ErrorCode::unsupported,
                  {},
-                 std::string(name_of(kContainerNames, codec.container)) + " does not hold " +
+                 std::string(name_of(kContainerNames, *codec.container)) + " does not hold " +
                      std::string(name_of(kFormatNames, format))};
 }
 
@@ -146,14 +152,17 @@ Result<void> check_layer(const Codec& codec, const ReadOptions& options) {
 const Codec& codec_for(std::span<const std::byte> head) {
     return *std::find_if(std::begin(kCodecs), std::end(kCodecs), [&](const Codec& codec) {
         if (codec.claims != nullptr) return codec.claims(head);
-        if (codec.magic.empty()) return true;
+        if (codec.magic.empty()) return codec.reader_name != nullptr;
         return head.size() >= codec.magic.size() &&
                std::memcmp(head.data(), codec.magic.data(), codec.magic.size()) == 0;
     });
 }
 
 const Codec& codec_for(const InputFile& file, const ReadOptions& options) {
-    return is_raw(file, options) ? codec_of(Container::r16) : codec_for(file.head());
+    const auto* const named = std::find_if(std::begin(kCodecs), std::end(kCodecs), [&](const Codec& codec) {
+        return codec.is_named != nullptr && codec.is_named(file, options);
+    });
+    return named == std::end(kCodecs) ? codec_for(file.head()) : *named;
 }
 
 }  // namespace tex
