@@ -2,7 +2,7 @@
 // image_io.h: reads pictures from files.
 //
 // The first bytes of a file, not its name, decide how it is read. PNG and EXR are decoded in this process, by libpng
-// and OpenEXR; DDS, KTX2, TGA, BMP and ESRI ASCII grids by libtex. TIFF is decoded by libtiff, JPEG by libjpeg-turbo,
+// and OpenEXR; DDS, KTX, TGA, BMP and ESRI ASCII grids by libtex. TIFF is decoded by libtiff, JPEG by libjpeg-turbo,
 // everything else (HDR, PSD ...) by OpenImageIO (tex-reader-oiio), in a separate process for each file, under limits of
 // memory and time. If such a decoder crashes or hangs, the result is an Error.
 
@@ -32,7 +32,9 @@ struct ReadOptions {
     std::int64_t max_texels = std::int64_t{1} << 30;
 
     // The layer of an EXR file whose channels are read, by its name or the end of it: "Normal" for "ViewLayer.Normal".
-    // Empty: all channels. Other files have no layers: an error (bad_option).
+    // Empty: all channels. The number of a layer of a texture array in DDS, KTX or KTX2, or of a face of a cube map
+    // (6 n + 0 to 5 for +X, -X, +Y, -Y, +Z, -Z of cube n); empty: the only one. Other files have no layers: an error
+    // (bad_option).
     std::string layer;
 
     // What integers become in read_image() and bake_file(). read_texture() always takes `unit`. By itself, a picture
