@@ -158,7 +158,7 @@ TEST(Ktx2, TellsUnsupportedFromDamaged) {
     EXPECT_EQ(code_with(kVkFormatAt, 145), "read");         // BC7
     EXPECT_EQ(code_with(kVkFormatAt, 147), "unsupported");  // ETC2
     EXPECT_EQ(code_with(kSchemeAt, 1), "unsupported");      // BasisLZ
-    EXPECT_EQ(code_with(kFacesAt, 6), "unsupported");  // no face is chosen
+    EXPECT_EQ(code_with(kFacesAt, 6), "unsupported");       // no face is chosen
     EXPECT_EQ(code_with(kFacesAt, 0), "bad-data");
     EXPECT_EQ(code_with(kDepthAt, 2), "unsupported");
     EXPECT_EQ(code_with(kLayersAt, 2), "unsupported");

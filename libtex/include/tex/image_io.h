@@ -45,7 +45,7 @@ struct ReadOptions {
 
     // The layout of a file without a header, "[WxH,]TYPE[,SKIP]": TYPE is u8, or u16, s16 or f32 with le or be (u16le);
     // SKIP is a number of bytes before the first texel. Without an extent, the picture is square. Empty: files called
-    // .r16 hold u16le, .r32 f32le, and .hgt, .bil, .bip, .bsq and .flt what elevation models hold; others have a header.
+    // .r16 hold u16le, .r32 f32le, and .hgt, .bil, .bip, .bsq and .flt elevation models; all others have a header.
     std::string raw;
 
     // The reader program, started for each file. Empty: the program that was installed (libexec/libtex/tex-reader) or

@@ -21,7 +21,7 @@ std::optional<std::vector<KeyValue>> parse_key_values(const std::vector<std::byt
         std::string_view value = entry.substr(end + 1);
         if (!value.empty() && value.back() == '\0') value.remove_suffix(1);
         entries.push_back({entry.substr(0, end), value});
-        const std::size_t step = std::min(size, (4 + length + 3) / 4 * 4);
+        const std::size_t step = std::min(size, (length + 7) & ~std::size_t{3});
         data += step;
         size -= step;
     }
