@@ -74,6 +74,7 @@ cli::OutputRules BakeNormals::rules() const {
     cli::OutputRules rules;
     rules.batch = Container::dds;
     rules.shared = reader_.color.files();
+    rules.amend = &cli::HeightReader::add_header_file;
     if (files.tiles) rules.relate = [this](std::vector<cli::Task>& tasks) { tiles_.relate(tasks, wrap_); };
     return rules;
 }

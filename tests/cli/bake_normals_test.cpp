@@ -297,6 +297,8 @@ TEST_F(BakeNormals, AnElevationModelIsItsHeightsInOtherFiles) {
     EXPECT_EQ(baked({"h.asc"}), expected);
     EXPECT_EQ(baked({"b.bil"}), expected);
     EXPECT_NE(baked({"h.asc", "--no-data", "none"}), expected);
+    EXPECT_EQ(baked({"b.bil", "--depfile", "d"}), expected);
+    EXPECT_EQ(scratch_.read("d"), "x.exr: \\\n  b.bil \\\n  b.hdr\n");
     const Ran holes = bake({"b.bil", "-o", "x.png"});
     EXPECT_EQ(holes.code, 4);
     EXPECT_EQ(holes.err,
