@@ -13,6 +13,7 @@
 #include "cli/usage_error.h"
 #include "options/heights.h"
 #include "options/mips.h"
+#include "options/tiles.h"
 #include "tasks/written_levels.h"
 
 namespace {
@@ -45,6 +46,7 @@ private:
     cli::WrapOptions wrap_;
     cli::KernelOption kernel_;
     cli::MipChainOptions mips_;
+    cli::TileOptions tiles_;
 };
 
 BakeNormals::BakeNormals(const cli::ProgramRow& row) : Converter(row) {
@@ -52,6 +54,7 @@ BakeNormals::BakeNormals(const cli::ProgramRow& row) : Converter(row) {
     command.usage("HEIGHT... --out-dir DIR [--name PATTERN]");
     command.input("HEIGHT...", "height maps; - is standard input");
     files.add(command);
+    tiles_.add(command, files);
     reader_.strength.add(command, true);
     command.group("Heights and slopes");
     kernel_.add(command, "how slopes are measured");
@@ -72,11 +75,15 @@ cli::OutputRules BakeNormals::rules() const {
     cli::OutputRules rules;
     rules.batch = Container::dds;
     rules.shared = reader_.color.files();
+    rules.amend = &cli::HeightReader::add_header_file;
+    if (files.tiles) rules.relate = [this](std::vector<cli::Task>& tasks) { tiles_.relate(tasks, wrap_); };
     return rules;
 }
 
 Result<void> BakeNormals::check(const std::vector<cli::Task>& tasks) {
     mips_.check(tasks);
+    if (files.tiles && (reader_.strength.measured || reader_.heights.options.deband != Deband::off))
+        throw cli::UsageError("--tiles contradicts --deband and --bumpiness auto, which look at whole pictures");
     return reader_.color.check();
 }
 
@@ -90,6 +97,7 @@ BakeFileOptions BakeNormals::options(cli::Job& job) const {
     if (reader_.strength.is_given)
         options.strength = [this](Extent extent) { return reader_.strength.strength(extent); };
     options.auto_strength = reader_.strength.measured;
+    options.tile = tiles_.tile_of(job.task);
     options.bake = kernel_.bake;
     options.mip = mips_.options(mips_.levels_for(job.task), wrap_);
     constexpr bool kKnown = true;

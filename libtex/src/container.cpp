@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "blocks/bptc.h"
 #include "files/atomic_file.h"
 #include "files/input_file.h"
 #include "files/unfinished_files.h"
@@ -82,6 +83,7 @@ Result<std::vector<std::byte>> encode_file(const Texture& texture, Container con
                                            const Execution& execution) {
     return guarded([&]() -> Result<std::vector<std::byte>> {
         const Codec& codec = codec_of(container);
+        if (is_bptc(texture.format)) return check_holds(codec, texture.format, {}).error();
         if (codec.layout != nullptr || options.zstd != 0) {
             if (const Result<void> held = check_holds(codec, texture.format, options); !held) return held.error();
             TextureHead head = head_of(texture);

@@ -268,6 +268,44 @@ TEST_F(BakeNormals, HeightsThatAreInvalidNameTheirRemedy) {
     }
 }
 
+TEST_F(BakeNormals, AnElevationModelIsItsHeightsInOtherFiles) {
+    const int width = 5, height = 4;
+    std::string grid = "ncols 5\nnrows 4\ncellsize 30\nNODATA_value -1\n", pfm = "Pf\n5 4\n-1.0\n", bil;
+    const auto height_at = [](int i, int j) { return i == 2 && j == 1 ? -1 : 40 * i * i + 7 * i * j + 13 * j; };
+    for (int j = 0; j < height; ++j) {
+        for (int i = 0; i < width; ++i) {
+            grid += fmt::format("{} ", height_at(i, j));
+            bil += static_cast<char>(height_at(i, j) & 0xff);
+            bil += static_cast<char>(height_at(i, j) >> 8 & 0xff);
+            const auto value = static_cast<float>(height_at(i, height - 1 - j));  // PFM has its rows from the bottom
+            pfm.append(reinterpret_cast<const char*>(&value), sizeof value);
+        }
+    }
+    scratch_.write("h.asc", grid);
+    scratch_.write("h.pfm", pfm);
+    scratch_.write("b.bil", bil);
+    scratch_.write("b.hdr", "NROWS 4\nNCOLS 5\nNBITS 16\nNODATA -1\n");
+    const std::vector<std::string> rest = {"--height-range", "1", "--size", "150", "--wrap", "clamp", "--fill-invalid"};
+    const auto baked = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), rest.begin(), rest.end());
+        arguments.insert(arguments.end(), {"-o", "x.exr", "--format", "float"});
+        const Ran ran = bake(arguments);
+        EXPECT_EQ(ran.code, 0) << ran.err;
+        return scratch_.read("x.exr");
+    };
+    const std::string expected = baked({"h.pfm", "--no-data", "-1"});
+    EXPECT_EQ(baked({"h.asc"}), expected);
+    EXPECT_EQ(baked({"b.bil"}), expected);
+    EXPECT_NE(baked({"h.asc", "--no-data", "none"}), expected);
+    EXPECT_EQ(baked({"b.bil", "--depfile", "d"}), expected);
+    EXPECT_EQ(scratch_.read("d"), "x.exr: \\\n  b.bil \\\n  b.hdr\n");
+    const Ran holes = bake({"b.bil", "-o", "x.png"});
+    EXPECT_EQ(holes.code, 4);
+    EXPECT_EQ(holes.err,
+              "bake-normals: error: b.bil: 1 height is NaN, infinite or no-data, the first at column 2, row 1; "
+              "--fill-invalid fills in the nearest valid ones\n");
+}
+
 TEST_F(BakeNormals, ThreadsDoNotChangeTheBytes) {
     const std::string one = bytes_of({"bricks.png", "--threads", "1"});
     for (const std::string count : {"2", "3", "16"}) EXPECT_TRUE(bytes_of({"bricks.png", "--threads", count}) == one);

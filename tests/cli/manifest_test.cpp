@@ -95,6 +95,8 @@ TEST(Manifest, MistakesNameTheirPlaceAndTheRemedy) {
     EXPECT_EQ(refusal_of("[ { bke = {} } ]"), "n.toml: line 4, column 13: unknown key 'bke'; did you mean bake?");
     EXPECT_EQ(refusal_of("[ { bake = { bumpines = 2 } } ]"),
               "n.toml: line 4, column 22: bumpines: bake-normals has no such option here; did you mean bumpiness?");
+    EXPECT_EQ(refusal_of("[ { bake = { tiles = true } } ]").substr(0, 70),
+              "n.toml: line 4, column 22: tiles: bake-normals has no such option here");
     EXPECT_EQ(refusal_of("[ { bake = { kernel = \"sobl\" } } ]").substr(0, 60),
               "n.toml: line 4, column 22: bake: --kernel: must be one of fo");
     EXPECT_EQ(refusal_of("[ { bake = { invert = 1 } } ]"), "n.toml: line 4, column 22: invert: must be true or false");

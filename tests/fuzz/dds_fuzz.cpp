@@ -102,8 +102,12 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    const auto texture =
-        tex::load_texture(tex::parse_dds, reinterpret_cast<const std::byte*>(data), size, "fuzz.dds", fuzz_options());
-    if (texture) expect_whole(*texture);
+    tex::ReadOptions options = fuzz_options();
+    for (const char* layer : {"", "1"}) {
+        options.layer = layer;
+        const auto texture =
+            tex::load_texture(tex::parse_dds, reinterpret_cast<const std::byte*>(data), size, "fuzz.dds", options);
+        if (texture) expect_whole(*texture);
+    }
     return 0;
 }

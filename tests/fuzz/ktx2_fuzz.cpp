@@ -7,8 +7,12 @@
 #include "fuzz/whole_texture.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    const auto texture =
-        tex::load_texture(tex::parse_ktx2, reinterpret_cast<const std::byte*>(data), size, "fuzz.ktx2", fuzz_options());
-    if (texture) expect_whole(*texture);
+    tex::ReadOptions options = fuzz_options();
+    for (const char* layer : {"", "1"}) {
+        options.layer = layer;
+        const auto texture =
+            tex::load_texture(tex::parse_ktx2, reinterpret_cast<const std::byte*>(data), size, "fuzz.ktx2", options);
+        if (texture) expect_whole(*texture);
+    }
     return 0;
 }

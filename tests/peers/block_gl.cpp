@@ -19,6 +19,9 @@ GLenum gl_format(tex::Format format) {
         case tex::Format::bc3_unorm: return GL_COMPRESSED_RGBA_S3TC_DXT5_EXT;
         case tex::Format::bc5_unorm: return GL_COMPRESSED_RG_RGTC2;
         case tex::Format::bc5_snorm: return GL_COMPRESSED_SIGNED_RG_RGTC2;
+        case tex::Format::bc6h_ufloat: return GL_COMPRESSED_RGB_BPTC_UNSIGNED_FLOAT;
+        case tex::Format::bc6h_sfloat: return GL_COMPRESSED_RGB_BPTC_SIGNED_FLOAT;
+        case tex::Format::bc7_unorm: return GL_COMPRESSED_RGBA_BPTC_UNORM;
         case tex::Format::eac_r11_unorm: return GL_COMPRESSED_R11_EAC;
         case tex::Format::eac_r11_snorm: return GL_COMPRESSED_SIGNED_R11_EAC;
         case tex::Format::eac_rg11_unorm: return GL_COMPRESSED_RG11_EAC;

@@ -73,7 +73,7 @@ TEST(DdsFiles, ReadsOrRefusesEveryBadFile) {
         {"oiio_crash-bomb-32768", "bad-data"},  // claims a gigabyte
         {"oiio_crash-bpp", "unsupported"},      // says that it is a volume
         {"oiio_dds_bc3_just_header", "bad-data"},
-        {"oiio_dds_bc7_just_header", "unsupported"},
+        {"oiio_dds_bc7_just_header", "bad-data"},
         {"pillow_dxt5-colorblock-alpha-issue-4142", "read 1 1"},  // 240 extra bytes
         {"pillow_timeout-041dd17dfde800360a47a172269df127af138c6b", "bad-data"},
         {"pillow_timeout-755a4d204f4208e3597ac3391edebee196462bd0", "bad-data"},

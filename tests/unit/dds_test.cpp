@@ -249,7 +249,8 @@ TEST(Dds, TellsUnsupportedFromDamaged) {
     EXPECT_EQ(code_of(changed(dx10, kDxgiAt + 4, 4)), "unsupported");        // 3D
     EXPECT_EQ(code_of(changed(dx10, kDxgiAt + 8, 4)), "unsupported");        // cube map
     EXPECT_EQ(code_of(changed(dx10, kDxgiAt + 12, 2)), "unsupported");       // array
-    EXPECT_EQ(code_of(changed(dx10, kDxgiAt, 98)), "unsupported");           // BC7
+    EXPECT_EQ(code_of(changed(dx10, kDxgiAt, 98)), "read");                  // BC7
+    EXPECT_EQ(code_of(changed(dx10, kDxgiAt, 67)), "unsupported");           // R9G9B9E5
     EXPECT_EQ(code_of(changed(legacy, kFourCcAt, fourcc("UYVY"))), "unsupported");
     EXPECT_EQ(code_of(changed(legacy, kWidthAt, 0)), "bad-data");
     EXPECT_EQ(code_of(changed(legacy, kHeightAt, 0xffffffff)), "unsupported");

@@ -134,6 +134,7 @@ void expect_refused(const Bytes& bytes, ErrorCode code, const std::string& reaso
 
 TEST(Supercompression, IsTheSameTextureInEveryFormat) {
     for (const auto& row : kFormatNames) {
+        if (!can_hold(Container::ktx2, row.value)) continue;
         const Texture texture = patterned_texture(row.value, {61, 34}, 6);
         const Bytes plain = encode(texture);
         const auto wanted = read(plain);

@@ -51,6 +51,11 @@ std::string output_name(const std::string& input, const FileOptions& files, cons
     return files.place(pattern, fields);
 }
 
+// The name that -o gives for this input.
+std::string output_of(const std::string& pattern, const Input& input) {
+    return input.place ? with_grid(pattern, *input.place) : with_tile(pattern, input.tile);
+}
+
 // Throws UsageError if -o names tiles that an input does not have.
 void check_tiles(const std::vector<Input>& inputs, const FileOptions& files) {
     if (!has_tile(files.output)) return;
@@ -94,7 +99,8 @@ std::vector<Task> plan_outputs(std::vector<Input> inputs, const FileOptions& fil
         inputs.resize(1);
     }
     check_tiles(inputs, files);
-    if (!files.output.empty() && inputs.size() > 1 && !has_tile(files.output)) {
+    const bool names_each = has_tile(files.output) || (files.tiles && has_grid(files.output));
+    if (!files.output.empty() && inputs.size() > 1 && !names_each) {
         throw UsageError(fmt::format("-o takes one input, {} are given; --out-dir takes many", inputs.size()));
     }
     if (!files.output.empty() && inputs.empty())
@@ -104,15 +110,17 @@ std::vector<Task> plan_outputs(std::vector<Input> inputs, const FileOptions& fil
         for (const Engine* const engine : output.engines_or_none()) {
             const OutputOptions own = output.of(engine);
             const std::string name =
-                files.output.empty() ? output_name(input.name, files, own, rules) : with_tile(files.output, input.tile);
+                files.output.empty() ? output_name(input.name, files, own, rules) : output_of(files.output, input);
             Task task = task_of(input.name, name, own, rules);
             task.joined = joined;
             task.tile = input.tile;
             task.pattern = input.pattern;
+            task.place = input.place;
             tasks.push_back(std::move(task));
         }
     }
     check_engines(tasks, files, output.engines.size());
+    if (rules.relate) rules.relate(tasks);
     if (!files.depfile.empty()) check_depfile_names(tasks);
     check_collisions(tasks, files.depfile, files.files_from);
     return tasks;

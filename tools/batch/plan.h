@@ -25,6 +25,7 @@ struct OutputRules {
     std::vector<std::string> shared = {};        // Task::shared
     std::function<void(Task& task)> amend = {};  // adds the files that options name for this task; may be empty
     Encoding (*encoding)(Container container) = &default_encoding;  // without --format
+    std::function<void(std::vector<Task>& tasks)> relate = {};      // called with all tasks of a command; may be empty
 };
 
 // The task that makes `name`, which may contain kLevelMark, from `input`. Throws UsageError if the name does not show

@@ -98,6 +98,15 @@ void FileOptions::check_inputs(const Command& command) const {
 Result<std::vector<Input>> FileOptions::list_inputs(const Command& command) const {
     std::vector<Input> inputs;
     for (const std::string& input : command.inputs()) {
+        if (tiles) {
+            if (!has_grid(input))
+                throw UsageError(fmt::format("--tiles needs {{x}} and {{y}} in the name of the input, {} has not both",
+                                             printable(input)));
+            auto found = grid_files(input);
+            if (!found) return found.error();
+            for (GridFile& file : *found) inputs.push_back({std::move(file.name), 0, input, std::move(file.place)});
+            continue;
+        }
         if (is_pattern(input)) {  // the shell left it as it is
             auto files = files_matching(input);
             if (!files) return files.error();
@@ -108,6 +117,7 @@ Result<std::vector<Input>> FileOptions::list_inputs(const Command& command) cons
         if (!files) return files.error();
         std::move(files->begin(), files->end(), std::back_inserter(inputs));
     }
+    if (tiles && !files_from.empty()) throw UsageError("--tiles and --files-from contradict each other");
     if (!files_from.empty()) {
         const auto list = read_text_file(files_from);
         if (!list) return list.error();

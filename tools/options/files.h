@@ -24,6 +24,7 @@ struct FileOptions {
     bool update = false;
     bool no_clobber = false;
     bool no_sync = false;
+    bool tiles = false;  // inputs are tiles of terrains, see batch/grid.h
 
     // `joins`: -o can take many inputs and make one output from them; the help says so.
     void add(Command& command, bool joins = false);

@@ -3,7 +3,9 @@
 #include "options/heights.h"
 
 #include <cstdlib>
+#include <filesystem>
 #include <limits>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <tex/image_io.h>
@@ -174,6 +176,20 @@ Result<Plane<float>> read_channel(Job& job, const ChannelFile& source, const Exe
     auto values = height_field(*image, channel, execution);
     if (!values) return values.error().of(source.file);
     return std::move(values->height);
+}
+
+void HeightReader::add_header_file(Task& task) {
+    namespace fs = std::filesystem;
+    fs::path path(task.input);
+    std::string extension = path.extension().string();
+    for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c;
+    if (extension != ".bil" && extension != ".bip" && extension != ".bsq" && extension != ".flt") return;
+    for (const char* header : {".hdr", ".HDR"}) {  // as the reader looks for it
+        std::error_code error;
+        if (!fs::exists(path.replace_extension(header), error)) continue;
+        task.own.push_back(path.string());
+        return;
+    }
 }
 
 Error HeightReader::with_remedy(const Error& error) {

@@ -93,6 +93,9 @@ public:
     // Adds to `error`, which comes from reading or baking heights, the option that avoids it, if there is one.
     [[nodiscard]] static Error with_remedy(const Error& error);
 
+    // Adds the file in which a BIL keeps its header to what its output depends on.
+    static void add_header_file(Task& task);
+
     // Counts the results of reading a job's heights. Any thread may call this.
     void note(Job& job, const HeightReport& report);
 

@@ -13,7 +13,8 @@ void RunOptions::add(Command& command) {
     const auto count = [](auto& target) { return [&target](const std::string& text) { target = parse_count(text); }; };
     command.option("--max-texels", "N", "refuse files of more texels (K, M, G: powers of 1024)", count(read.max_texels))
         .preset = count_text(read.max_texels);
-    command.text(read.layer, "--layer", "NAME", "read this layer of EXR files, such as Normal of ViewLayer.Normal.X");
+    command.text(read.layer, "--layer", "NAME",
+                 "read this layer: of EXR by name, such as Normal; of arrays and cube maps by number");
     command
         .option("--reader-memory", "BYTES", "memory limit of the process that reads TIFF, JPEG and the like",
                 count(read.reader_memory))

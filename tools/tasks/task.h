@@ -3,10 +3,13 @@
 
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <tex/container.h>
+
+#include "tasks/grid.h"
 
 namespace tex::cli {
 
@@ -24,6 +27,9 @@ struct Task {
     const Engine* engine = nullptr;              // what the output is for, if --for says it
     int tile = 0;                                // the UDIM tile of the input (udim.h), or 0
     std::string pattern = {};                    // the input's name with the mark, if there is a tile
+    std::optional<GridPlace> place = {};         // of the input, if it is a tile of a terrain (grid.h)
+    // The tiles around it, row by row, with an empty name for its own and for those that do not exist.
+    std::vector<std::string> around = {};
 
     // The inputs, without the files that options name.
     [[nodiscard]] std::vector<std::string> inputs() const {

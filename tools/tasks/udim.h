@@ -6,11 +6,14 @@
 
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <tex/result.h>
+
+#include "tasks/grid.h"
 
 namespace tex::cli {
 
@@ -19,8 +22,9 @@ inline constexpr std::string_view kTileMark = "<UDIM>";
 // A file of the command line or of a list.
 struct Input {
     std::string name;
-    int tile = 0;              // 0: none
-    std::string pattern = {};  // the name with the mark, if there is a tile
+    int tile = 0;                         // 0: none
+    std::string pattern = {};             // the name with the mark, if there is a tile
+    std::optional<GridPlace> place = {};  // of a tile of a terrain; `pattern` is then the name with its marks
 };
 
 [[nodiscard]] bool has_tile(std::string_view name);

@@ -35,7 +35,9 @@ bool has_rival(const StepSettings& step, const Row& row) {
 std::string settings_text(const StepSettings& step, const OutputSettings* output, const Command& command) {
     std::string text;
     for (const Row& row : command.rows()) {
-        if (row.hidden || row.group == kHelpGroup || row.group == "Files" || row.group == "Running") continue;
+        if (row.hidden || row.group == kHelpGroup || row.group == "Files" || row.group == "Terrains" ||
+            row.group == "Running")
+            continue;
         const std::string key = row.name().substr(2);
         const OptionSetting* setting = output == nullptr ? nullptr : find_setting(output->settings, key);
         const char* from = "outputs, ";

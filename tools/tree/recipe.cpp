@@ -37,7 +37,8 @@ const Row* row_of(const Command& command, const std::string& key, const std::vec
 std::vector<std::string> groups_of(const Command& command) {
     std::vector<std::string> groups;
     for (const Row& row : command.rows()) {
-        if (row.group != kHelpGroup && row.group != "Files" && row.group != "Running") groups.push_back(row.group);
+        if (row.group != kHelpGroup && row.group != "Files" && row.group != "Terrains" && row.group != "Running")
+            groups.push_back(row.group);
     }
     return groups;
 }

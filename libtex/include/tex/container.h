@@ -126,12 +126,13 @@ void remove_unfinished_files() noexcept;
 
 // Reads a texture with all its levels.
 //
-// DDS: legacy and DX10 headers; BC1 to BC5 (DXT1 to DXT5, ATI1, ATI2, BC4U, BC4S, BC5U, BC5S, RXGB), the swizzle codes
+// DDS: legacy and DX10 headers; BC1 to BC7 (DXT1 to DXT5, ATI1, ATI2, BC4U, BC4S, BC5U, BC5S, RXGB), the swizzle codes
 // that ATI's and NVIDIA's tools leave in dwRGBBitCount (xGxR, A2XY, A2D5, RxBG ...), uncompressed formats by masks (8,
 // 16, 24 and 32 bits) and by FourCC (36, 110 to 116), the DXGI formats of Format in their unorm, snorm, float, typeless
-// and sRGB forms. Missing header flags are accepted. Texture::remarks lists the faults that the reader ignored. Cube
-// maps, volumes and arrays are unsupported. KTX2: the VkFormats of Format, also with levels compressed by Zstandard or
-// ZLIB, one layer, one face, one depth. BasisLZ and UASTC are unsupported.
+// and sRGB forms. Missing header flags are accepted. Texture::remarks lists the faults that the reader ignored. KTX2:
+// the VkFormats of Format, also with levels compressed by Zstandard or ZLIB. BasisLZ and UASTC are unsupported. KTX 1:
+// the formats of Format in OpenGL's numbers. Of arrays and cube maps, ReadOptions::layer is read; volumes are
+// unsupported.
 // ATI2 without a swizzle code holds y first (3Dc, ATI 2005); with 'A2XY' x is first.
 // EXR: all levels of a mip-mapped file; the base level only if the extents of the levels are rounded up. Anything else
 // is read as a picture: one level.

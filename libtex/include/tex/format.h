@@ -15,12 +15,16 @@
 namespace tex {
 
 // The layout of a level's bytes. Channels are in the order R, G, B, A, little-endian, rows from the top without
-// padding. Block formats store rows of blocks from the top; blocks at the edges are stored whole. Blocks of BC1 to BC5
+// padding. Block formats store rows of blocks from the top; blocks at the edges are stored whole. Blocks of BC1 to BC7
 // and EAC have 4x4 texels, those of ASTC as many as the name says.
 //
 //   bc1   8 bytes a block: RGB, 5:6:5 endpoints (DXT1)             bc4   8 bytes: R, one BC4 block
 //   bc2  16 bytes: 4-bit alpha, then a BC1 block (DXT3)            bc5  16 bytes: R and G, two BC4 blocks
 //   bc3  16 bytes: alpha as a BC4 block, then a BC1 block (DXT5)
+//
+//   bc6h 16 bytes: RGB, half floats, unsigned or signed            bc7  16 bytes: RGBA
+//
+// BC6H and BC7 are read, not written (Khronos Data Format Specification, BPTC).
 //
 //   eac_r11   8 bytes: R, one EAC block of 11 bits              eac_rg11  16 bytes: R and G, two EAC blocks
 //   astc     16 bytes: RGBA, low dynamic range (Khronos Data Format Specification, ASTC)
@@ -32,6 +36,9 @@ enum class Format {
     bc4_snorm,
     bc5_unorm,
     bc5_snorm,
+    bc6h_ufloat,
+    bc6h_sfloat,
+    bc7_unorm,
     eac_r11_unorm,
     eac_r11_snorm,
     eac_rg11_unorm,
@@ -82,6 +89,9 @@ inline constexpr Named<Format> kFormatNames[] = {
     {Format::bc4_snorm, "bc4-snorm", "BC4, signed"},
     {Format::bc5_unorm, "bc5-unorm", "BC5 (ATI2)"},
     {Format::bc5_snorm, "bc5-snorm", "BC5, signed"},
+    {Format::bc6h_ufloat, "bc6h-ufloat", "BC6H, half"},
+    {Format::bc6h_sfloat, "bc6h-sfloat", "BC6H, half, signed"},
+    {Format::bc7_unorm, "bc7-unorm", "BC7"},
     {Format::eac_r11_unorm, "eac-r11-unorm", "EAC R11"},
     {Format::eac_r11_snorm, "eac-r11-snorm", "EAC R11, signed"},
     {Format::eac_rg11_unorm, "eac-rg11-unorm", "EAC RG11"},

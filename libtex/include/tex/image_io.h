@@ -2,7 +2,7 @@
 // image_io.h: reads pictures from files.
 //
 // The first bytes of a file, not its name, decide how it is read. PNG and EXR are decoded in this process, by libpng
-// and OpenEXR; DDS, KTX2, TGA and BMP by libtex. TIFF is decoded by libtiff and JPEG by libjpeg-turbo (tex-reader),
+// and OpenEXR; DDS, KTX, TGA, BMP and ESRI ASCII grids by libtex. TIFF is decoded by libtiff, JPEG by libjpeg-turbo,
 // everything else (HDR, PSD ...) by OpenImageIO (tex-reader-oiio), in a separate process for each file, under limits of
 // memory and time. If such a decoder crashes or hangs, the result is an Error.
 
@@ -32,18 +32,20 @@ struct ReadOptions {
     std::int64_t max_texels = std::int64_t{1} << 30;
 
     // The layer of an EXR file whose channels are read, by its name or the end of it: "Normal" for "ViewLayer.Normal".
-    // Empty: all channels. Other files have no layers: an error (bad_option).
+    // Empty: all channels. The number of a layer of a texture array in DDS, KTX or KTX2, or of a face of a cube map
+    // (6 n + 0 to 5 for +X, -X, +Y, -Y, +Z, -Z of cube n); empty: the only one. Other files have no layers: an error
+    // (bad_option).
     std::string layer;
 
     // What integers become in read_image() and bake_file(). read_texture() always takes `unit`. By itself, a picture
     // without colours and vectors has the numbers that the file stores if they are quantities: TIFF with signed
     // samples, samples of 32 bits, a place on the Earth (GeoTIFF) or GDAL's scale and offset; EXR with uint; signed raw
-    // heights.
+    // heights; HGT and BIL.
     FileValues values = FileValues::automatic;
 
     // The layout of a file without a header, "[WxH,]TYPE[,SKIP]": TYPE is u8, or u16, s16 or f32 with le or be (u16le);
     // SKIP is a number of bytes before the first texel. Without an extent, the picture is square. Empty: files called
-    // .r16 hold u16le, and files called .r32 hold f32le; all others begin with a header.
+    // .r16 hold u16le, .r32 f32le, and .hgt, .bil, .bip, .bsq and .flt elevation models; all others have a header.
     std::string raw;
 
     // The reader program, started for each file. Empty: the program that was installed (libexec/libtex/tex-reader) or

@@ -45,6 +45,19 @@ struct MoreFile {
     WriteOptions write;
 };
 
+// A tile of a terrain that is stored as a grid of pictures. The tile is baked together with as many rows and columns of
+// the tiles around it as a normal depends on, so that the base levels of all tiles have the bytes of the bake of the
+// whole terrain. Smaller levels are made from the base level of the tile alone, as of any picture.
+struct TerrainTile {
+    // The path of the tile so many places to the right and below (-1, 0 or 1 each, not both 0); empty if there is none:
+    // the heights then continue as wrap_x and wrap_y say. The tile at the other end of a row or a column may stand for
+    // the one that repeats there. May throw std::bad_alloc only.
+    std::function<std::string(int right, int down)> neighbour;
+    // Whether the first row and column of a tile are the last ones of the tile before it. None: they are if both sides
+    // of the tile are 2^n + 1, or those of HGT (1201, 3601). HeightReport::remark counts heights that do not agree.
+    std::optional<bool> shared_border;
+};
+
 // What bake_file() does: read_image(), to_linear() if color.space is not empty, height_field(), bake(),
 // build_mip_chain(), pack(), write_texture().
 struct BakeFileOptions {
@@ -57,6 +70,9 @@ struct BakeFileOptions {
     // The strength at which 99 % of the slopes are at most 1 (45 degrees), to three digits, instead of `strength`; 1 if
     // all heights are equal. The file is read once more before, and heights are debanded and filled twice.
     bool auto_strength = false;
+    // If set, `input` is this tile. Not together with auto_strength or heights.deband, which look at whole pictures
+    // (bad_option); heights.fill_invalid fills from the tile and the rows and columns around it.
+    std::optional<TerrainTile> tile;
     BakeOptions bake;
     MipOptions mip;
     PackOptions pack;

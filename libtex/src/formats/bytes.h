@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// bytes.h: little-endian numbers in the headers of files.
+// bytes.h: numbers in the headers of files, little-endian unless they say otherwise.
 
 #pragma once
 
@@ -14,6 +14,11 @@ namespace tex {
 inline std::uint32_t load_u32(const std::byte* p) {
     return std::to_integer<std::uint32_t>(p[0]) | std::to_integer<std::uint32_t>(p[1]) << 8 |
            std::to_integer<std::uint32_t>(p[2]) << 16 | std::to_integer<std::uint32_t>(p[3]) << 24;
+}
+
+inline std::uint32_t load_big_u32(const std::byte* p) {
+    return std::to_integer<std::uint32_t>(p[3]) | std::to_integer<std::uint32_t>(p[2]) << 8 |
+           std::to_integer<std::uint32_t>(p[1]) << 16 | std::to_integer<std::uint32_t>(p[0]) << 24;
 }
 
 inline std::uint64_t load_u64(const std::byte* p) {

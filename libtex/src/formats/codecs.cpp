@@ -8,13 +8,19 @@
 #include <string>
 
 #include "blocks/astc.h"
+#include "blocks/bptc.h"
+#include "formats/asc/asc.h"
 #include "formats/astc/astc_file.h"
+#include "formats/bil/bil.h"
 #include "formats/bmp/bmp.h"
 #include "formats/dds/dds.h"
 #include "formats/exr/exr.h"
 #include "formats/exr/exr_rows.h"
+#include "formats/hgt/hgt.h"
+#include "formats/ktx/ktx.h"
 #include "formats/ktx2/compress_ktx2.h"
 #include "formats/ktx2/ktx2.h"
+#include "formats/lfs/lfs_pointer.h"
 #include "formats/marks.h"
 #include "formats/png/png.h"
 #include "formats/raw/raw.h"
@@ -24,15 +30,19 @@
 namespace tex {
 namespace {
 
-bool holds_all(Format) { return true; }
+bool is_written(Format format) { return !is_bptc(format); }
 
 // DDS has no number for EAC.
-bool has_dds_number(Format format) {
+bool is_written_in_dds(Format format) {
+    if (!is_written(format)) return false;
     const FormatMarks& marks = marks_of(widened(format));
     return marks.legacy.flags != 0 || marks.dxgi.exact != 0;
 }
 
-bool is_float(Format format) { return format_info(format).sample == SampleKind::floating; }
+bool is_float(Format format) {
+    const FormatInfo info = format_info(format);
+    return info.sample == SampleKind::floating && !info.has_blocks();
+}
 
 // Grey, RGB or RGBA.
 bool is_unorm_picture(Format format) {
@@ -52,19 +62,23 @@ bool is_unorm8_without_alpha(Format format) { return is_unorm8_picture(format) &
 constexpr Codec kCodecs[] = {
     {.container = Container::dds,
      .magic = kDdsMagic,
-     .holds = has_dds_number,
+     .holds = is_written_in_dds,
      .has_levels = true,
      .default_encoding = Encoding::dxt5nm,
      .parse = parse_dds,
+     .has_layers = true,
      .layout = dds_layout},
     {.container = Container::ktx2,
      .magic = kKtx2Magic,
-     .holds = holds_all,
+     .holds = is_written,
      .has_levels = true,
      .default_encoding = Encoding::dxt5nm,
      .parse = parse_ktx2,
+     .has_layers = true,
      .layout = [](const TextureHead& head, const WriteOptions&) { return ktx2_layout(head); },
      .compress = compress_ktx2},
+    {.magic = kLfsMagic, .open_rows = refuse_lfs_pointer},
+    {.magic = kKtxMagic, .parse = parse_ktx, .has_layers = true},
     {.container = Container::astc,
      .magic = kAstcMagic,
      .holds = is_astc,
@@ -90,6 +104,7 @@ constexpr Codec kCodecs[] = {
      .holds = is_unorm8_without_alpha,
      .open_rows = open_bmp,
      .open_target = open_bmp_target},
+    {.claims = may_be_asc, .open_rows = open_asc},
     {.container = Container::tga,
      .claims = may_be_tga,
      .holds = is_unorm8_picture,
@@ -104,8 +119,8 @@ constexpr Codec kCodecs[] = {
      .holds = is_unorm8_without_alpha,
      .open_rows = open_reader_rows,
      .reader_name = "jpeg"},
-    // Never found by their first bytes.
     {.container = Container::r16,
+     .is_named = is_raw,
      .holds = [](Format format) { return format == Format::r16_unorm; },
      .open_rows = open_raw,
      .layout = raw_layout},
@@ -114,6 +129,8 @@ constexpr Codec kCodecs[] = {
      .default_encoding = Encoding::float_,
      .open_rows = open_raw,
      .layout = raw_layout},
+    {.is_named = is_hgt, .open_rows = open_hgt},
+    {.is_named = is_bil, .open_rows = open_bil},
 };
 
 }  // namespace
@@ -129,31 +146,39 @@ Result<void> check_holds(const Codec& codec, Format format, const WriteOptions& 
     if (options.zstd > 0 && codec.compress == nullptr) {
         return Error{ErrorCode::unsupported,
                      {},
-                     std::string(name_of(kContainerNames, codec.container)) + " is not compressed with Zstandard"};
+                     std::string(name_of(kContainerNames, *codec.container)) + " is not compressed with Zstandard"};
     }
     if (codec.holds(format)) return {};
+    if (!is_written(format))
+        return Error{
+            ErrorCode::unsupported, {}, std::string(name_of(kFormatNames, format)) + " can be read, but not written"};
     return Error{ErrorCode::unsupported,
                  {},
-                 std::string(name_of(kContainerNames, codec.container)) + " does not hold " +
+                 std::string(name_of(kContainerNames, *codec.container)) + " does not hold " +
                      std::string(name_of(kFormatNames, format))};
 }
 
 Result<void> check_layer(const Codec& codec, const ReadOptions& options) {
     if (options.layer.empty() || codec.has_layers) return {};
-    return Error{ErrorCode::bad_option, {}, "a layer can be chosen only in an EXR file"};
+    return Error{ErrorCode::bad_option, {}, "a layer can be chosen only in EXR, DDS, KTX and KTX2 files"};
 }
 
 const Codec& codec_for(std::span<const std::byte> head) {
     return *std::find_if(std::begin(kCodecs), std::end(kCodecs), [&](const Codec& codec) {
         if (codec.claims != nullptr) return codec.claims(head);
-        if (codec.magic.empty()) return true;
+        if (codec.magic.empty()) return codec.reader_name != nullptr;
         return head.size() >= codec.magic.size() &&
                std::memcmp(head.data(), codec.magic.data(), codec.magic.size()) == 0;
     });
 }
 
 const Codec& codec_for(const InputFile& file, const ReadOptions& options) {
-    return is_raw(file, options) ? codec_of(Container::r16) : codec_for(file.head());
+    const Codec& by_head = codec_for(file.head());
+    if (by_head.magic == kLfsMagic) return by_head;  // whatever the name says
+    const auto* const named = std::find_if(std::begin(kCodecs), std::end(kCodecs), [&](const Codec& codec) {
+        return codec.is_named != nullptr && codec.is_named(file, options);
+    });
+    return named == std::end(kCodecs) ? by_head : *named;
 }
 
 }  // namespace tex

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // codecs.h: the table of file types, one row for each type.
 //
-// A new file type needs a folder beside this file, a row in codecs.cpp, and an enumerator with its name and extensions
-// in container.h. No other code depends on the type of a file.
+// A new file type needs a folder beside this file and a row in codecs.cpp; if it is written, too, an enumerator with
+// its name and extensions in container.h. No other code depends on the type of a file.
 
 #pragma once
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -23,13 +24,15 @@
 namespace tex {
 
 struct Codec {
-    Container container;
+    std::optional<Container> container = {};  // none: such files are only read
     std::string_view magic =
         {};  // the first bytes of every such file; empty: the reader process recognises and decodes it
     bool (*claims)(std::span<const std::byte> head) = nullptr;  // of a type without a magic that libtex decodes
+    // Of a type that no bytes tell: the options or the file's name do.
+    bool (*is_named)(const InputFile& file, const ReadOptions& options) = nullptr;
 
     // What the file type can hold.
-    bool (*holds)(Format format);
+    bool (*holds)(Format format) = nullptr;
     bool has_levels = false;
     Encoding default_encoding = Encoding::rgb8;
 

@@ -28,7 +28,7 @@ class LevelRows final : public RowSource {
 public:
     LevelRows(const InputFile& file, std::shared_ptr<const StoredTexture> texture, std::size_t k)
         : file_(file), texture_(std::move(texture)), offset_(texture_->levels[k].offset),
-          info_(format_info(texture_->head.format)) {
+          skipped_(texture_->levels[k].skipped), info_(format_info(texture_->head.format)) {
         const Extent extent = texture_->levels[k].extent;
         pitch_ = level_bytes(texture_->head.format, {extent.width, 1});
         const auto block = static_cast<std::size_t>(info_.block.height);
@@ -55,14 +55,14 @@ private:
         const std::uint64_t offset = static_cast<std::uint64_t>(first) * pitch;
         const std::span<std::byte> bytes(out, pitch * static_cast<std::size_t>(count));
         if (inflater_ == nullptr) return read_bytes(file_, offset_ + offset, bytes);
-        const Result<void> done = texture_->upwards ? copy(offset, bytes) : inflater_->read(offset, bytes);
+        const Result<void> done = texture_->upwards ? copy(offset, bytes) : inflater_->read(skipped_ + offset, bytes);
         return done ? done : Result<void>(done.error().of(file_.path()));
     }
     // Reads bytes of the inflated level. Rows that run upwards are read from the end, so the level is inflated once.
     [[nodiscard]] Result<void> copy(std::uint64_t offset, std::span<std::byte> bytes) {
         if (inflated_.empty()) {
             std::vector<std::byte> level(pitch_ * static_cast<std::size_t>(extent().height));
-            if (Result<void> done = inflater_->read(0, level); !done) return done;
+            if (Result<void> done = inflater_->read(skipped_, level); !done) return done;
             inflated_ = std::move(level);
         }
         std::copy_n(inflated_.begin() + static_cast<std::ptrdiff_t>(offset), bytes.size(), bytes.begin());
@@ -77,7 +77,7 @@ private:
 
     const InputFile& file_;
     const std::shared_ptr<const StoredTexture> texture_;
-    const std::uint64_t offset_;
+    const std::uint64_t offset_, skipped_;
     const FormatInfo info_;
     std::size_t pitch_ = 0;  // bytes of a row of blocks or texels, in head.format
     std::unique_ptr<LevelInflater> inflater_;
@@ -86,8 +86,7 @@ private:
 };
 
 void LevelRows::open_inflater(const StoredTexture::Place& place) {
-    inflater_ = LevelInflater::make(texture_->supercompression, fetch_from(file_), place,
-                                    level_bytes(texture_->head.format, place.extent));
+    inflater_ = LevelInflater::make(texture_->supercompression, fetch_from(file_), place, place.inflated);
 }
 
 Result<void> LevelRows::decode(int first, int count, std::byte* rows) {
@@ -101,7 +100,7 @@ Result<void> LevelRows::decode(int first, int count, std::byte* rows) {
     const int block = info_.block.height;
     const int begin = first / block;
     const int units = blocks_across(first + count, block) - begin;
-    return texture_->fields || texture_->bgr ? convert(begin, units, rows) : fetch(begin, units, rows);
+    return is_as_in_memory(*texture_, extent().width) ? fetch(begin, units, rows) : convert(begin, units, rows);
 }
 
 void LevelRows::store(const std::byte* rows, int first, int end, Image& image) const {

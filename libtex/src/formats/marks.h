@@ -25,6 +25,7 @@ struct FormatMarks {
     FormatNumbers dxgi;       // DXGI_FORMAT
     FormatNumbers vk;         // VkFormat
     std::uint32_t khr_model;  // khr_df_model_e
+    FormatNumbers gl = {};    // glInternalFormat of OpenGL, for formats with blocks
 };
 
 [[nodiscard]] const FormatMarks& marks_of(Format format);
@@ -43,6 +44,8 @@ inline constexpr std::uint32_t kKhrBc2 = 129;
 inline constexpr std::uint32_t kKhrBc3 = 130;
 inline constexpr std::uint32_t kKhrBc4 = 131;
 inline constexpr std::uint32_t kKhrBc5 = 132;
+inline constexpr std::uint32_t kKhrBc6h = 133;
+inline constexpr std::uint32_t kKhrBc7 = 134;
 inline constexpr std::uint32_t kKhrEtc2 = 161;  // including EAC
 inline constexpr std::uint32_t kKhrAstc = 162;
 

@@ -11,12 +11,16 @@
 
 namespace tex {
 
-std::size_t stored_pitch(const StoredTexture& texture, int width) {
+namespace {
+
+// The same without the bytes between the rows.
+std::size_t stored_row_bytes(const StoredTexture& texture, int width) {
     if (texture.fields) return static_cast<std::size_t>(width) * static_cast<std::size_t>(texture.fields->texel_bytes);
     return level_bytes(texture.head.format, {width, 1});
 }
 
-void convert_rows(const StoredTexture& texture, const std::byte* source, int width, int count, std::byte* target) {
+// Converts rows that have no bytes between them.
+void convert_texels(const StoredTexture& texture, const std::byte* source, int width, int count, std::byte* target) {
     const Format format = texture.head.format;
     if (texture.fields) {
         convert_fields(*texture.fields, source, static_cast<std::size_t>(width) * static_cast<std::size_t>(count),
@@ -26,6 +30,24 @@ void convert_rows(const StoredTexture& texture, const std::byte* source, int wid
     const std::size_t bytes = level_bytes(format, {width, 1}) * static_cast<std::size_t>(count);
     rearrange_texels(format, texture.bgr ? Rearrange::bgr : Rearrange::none, source,
                      bytes / format_info(format).block_bytes, target);
+}
+
+}  // namespace
+
+std::size_t stored_pitch(const StoredTexture& texture, int width) {
+    const std::size_t bytes = stored_row_bytes(texture, width), step = texture.row_alignment;
+    return (bytes + step - 1) / step * step;
+}
+
+bool is_as_in_memory(const StoredTexture& texture, int width) {
+    return !texture.fields && !texture.bgr && stored_pitch(texture, width) == stored_row_bytes(texture, width);
+}
+
+void convert_rows(const StoredTexture& texture, const std::byte* source, int width, int count, std::byte* target) {
+    const std::size_t pitch = stored_pitch(texture, width);
+    if (pitch == stored_row_bytes(texture, width)) return convert_texels(texture, source, width, count, target);
+    const std::size_t row = level_bytes(texture.head.format, {width, 1});
+    for (int j = 0; j < count; ++j, source += pitch, target += row) convert_texels(texture, source, width, 1, target);
 }
 
 Result<Texture> load_texture(ParseTexture parse, const std::byte* data, std::size_t size, const std::string& name,
@@ -45,8 +67,8 @@ Result<Texture> load_texture(ParseTexture parse, const std::byte* data, std::siz
         std::vector<std::byte> inflated;
         if (stored.supercompression != Supercompression::none) {
             inflated.resize(level.bytes.size());
-            const auto inflater = LevelInflater::make(stored.supercompression, fetch, place, inflated.size());
-            if (const Result<void> done = inflater->read(0, inflated); !done) return done.error().of(name);
+            const auto inflater = LevelInflater::make(stored.supercompression, fetch, place, place.inflated);
+            if (const Result<void> done = inflater->read(place.skipped, inflated); !done) return done.error().of(name);
         }
         const std::byte* source = inflated.empty() ? data + place.offset : inflated.data();
         if (!stored.upwards) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// stored_texture.h: where the texels of a DDS or KTX2 file are, according to its header, and how they are converted to
-// a Format.
+// stored_texture.h: where the texels of a DDS, KTX or KTX2 file are, according to its header, and how they are
+// converted to a Format.
 
 #pragma once
 
@@ -30,6 +30,9 @@ struct StoredTexture {
         Extent extent;
         std::uint64_t offset = 0;
         std::uint64_t bytes = 0;  // in the file
+        // Of a level that is compressed: its bytes with all layers, and those before the layer that is read.
+        std::uint64_t inflated = 0;
+        std::uint64_t skipped = 0;
     };
     Texture head;                       // without levels
     std::vector<Place> levels;          // all of their bytes are within the file
@@ -37,10 +40,14 @@ struct StoredTexture {
     bool bgr = false;                   // except that red and blue may be exchanged
     bool upwards = false;               // the bottom row comes first; never with blocks
     Supercompression supercompression = Supercompression::none;
+    std::size_t row_alignment = 1;  // rows begin at multiples of so many bytes
 };
 
-// The number of bytes that the file uses for a row of texels, or for a row of blocks.
+// The number of bytes that the file uses for a row of texels, or for a row of blocks, with those between the rows.
 [[nodiscard]] std::size_t stored_pitch(const StoredTexture& texture, int width);
+
+// Whether rows are in the file as in memory.
+[[nodiscard]] bool is_as_in_memory(const StoredTexture& texture, int width);
 
 // Converts `count` rows of texels or blocks from the file to rows of head.format.
 void convert_rows(const StoredTexture& texture, const std::byte* source, int width, int count, std::byte* target);

@@ -4,15 +4,53 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "blocks/astc.h"
+#include "blocks/bc6h.h"
+#include "blocks/bc7.h"
+#include "blocks/bptc.h"
 #include "blocks/extent.h"
+#include "kernels/samples.h"
 
 namespace tex {
+namespace {
+
+// Texels of BC6H and BC7 are decoded to codes, which become floats as those of formats without blocks.
+void decode_row_of_bptc(Format format, const std::byte* blocks, int count, const ChannelRows& rows,
+                        std::ptrdiff_t stride) {
+    constexpr int kTexels = kBlockEdge * kBlockEdge;
+    const FormatInfo info = format_info(format);
+    const auto sample_bytes = static_cast<std::size_t>(info.bits / 8);
+    const std::size_t texel_bytes = sample_bytes * static_cast<std::size_t>(info.channels);
+    std::byte texels[kTexels * 8];
+    for (std::ptrdiff_t at = 0; at < std::ptrdiff_t{kBlockEdge} * count; at += kBlockEdge, blocks += info.block_bytes) {
+        if (format == Format::bc7_unorm) {
+            std::uint8_t rgba[kTexels][4];
+            decode_bc7(blocks, rgba);
+            std::memcpy(texels, rgba, sizeof rgba);
+        } else {
+            std::uint16_t rgb[kTexels][3];
+            decode_bc6h(blocks, format == Format::bc6h_sfloat, rgb);
+            std::memcpy(texels, rgb, sizeof rgb);
+        }
+        for (std::size_t c = 0; c < static_cast<std::size_t>(info.channels); ++c) {
+            if (rows.channel[c] == nullptr) continue;
+            float values[kTexels];
+            decode_samples(info.sample, info.bits, texels + c * sample_bytes, texel_bytes, kTexels, values);
+            for (int j = 0; j < kBlockEdge; ++j)
+                std::memcpy(rows.channel[c] + j * stride + at, values + j * kBlockEdge, kBlockEdge * sizeof(float));
+        }
+    }
+}
+
+}  // namespace
 
 void decode_row_of_blocks(Format format, const std::byte* blocks, int width, const ChannelRows& rows,
                           std::ptrdiff_t stride) {
+    if (is_bptc(format)) return decode_row_of_bptc(format, blocks, blocks_across(width), rows, stride);
     if (!is_astc(format)) return decode_blocks(format, blocks, blocks_across(width), rows, stride);
     const Extent extent{width, format_info(format).block.height};
     std::vector<float> rgba(4 * static_cast<std::size_t>(extent.texels()));

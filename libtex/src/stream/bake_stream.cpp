@@ -14,6 +14,7 @@
 #include "stream/open_heights.h"
 #include "stream/shared_writer.h"
 #include "stream/slope_collector.h"
+#include "stream/terrain_rows.h"
 #include "stream/usual_slope.h"
 #include "threads/parallel.h"
 
@@ -35,7 +36,7 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
     Result<Heights> heights = open_heights(file, order, options, gradient, part_of(execution, 0.0, filled));
     if (!heights) return heights.error();
     const Execution onward = part_of(execution, filled, 1.0);
-    const Extent extent = heights->rows->extent();
+    const Extent read = heights->rows->extent(), extent = heights->window ? heights->window->tile : read;
     BakeFileReport report;
     const int first = first_level(options.mip, extent);
     report.extent = level_extent(extent, first);
@@ -46,7 +47,7 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
     const Result<std::unique_ptr<StripWriter>> opened = open_targets(targets, report.extent, report.levels);
     if (!opened) return opened.error();
     StripWriter& writer = **opened;
-    RowStream stream(*heights->rows, file.path(), -first, first + report.levels, writer, onward, sizes);
+    RowStream stream(*heights->rows, file.path(), -first, first + report.levels, writer, onward, sizes, extent);
     if (heights->linear) stream.convert([&](Image& rows, int count) { return heights->linear->convert(rows, count); });
     SlopeCollector slopes(steepest_slope(options.pack.encoding), options.slopes);
     UsualSlope usual(report.extent);
@@ -57,19 +58,23 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
             if (usual.wants(strip.first + j)) usual.add({strip.map.x.row(j), strip.map.y.row(j), strip.map.z.row(j)});
         }
     });
-    HeightStage stage(extent, heights->source, heights->options, gradient, head_of(extent, options, heights->stated),
-                      stream.sink(), std::move(heights->last));
-    LevelStage levels(extent, first + report.levels, stage.start(), counted_from_base(options.mip, first),
-                      stream.strips());
+    HeightFieldHead head = head_of(extent, options, heights->stated);
+    head.wrap_x = heights->options.wrap_x;
+    head.wrap_y = heights->options.wrap_y;
+    HeightStage stage(read, heights->source, heights->options, gradient, head,
+                      heights->window ? without_margins(*heights->window, stream.sink()) : stream.sink(),
+                      std::move(heights->last));
+    LevelStage levels(extent, first + report.levels, heights->window ? 0 : stage.start(),
+                      counted_from_base(options.mip, first), stream.strips());
     if (const Result<void> done = stream.run(stage, levels); !done) return done.error();
     if (const Result<void> done = writer.commit(); !done) return done.error();
     report.bytes = writer.file_bytes();
     report.rdo = writer.rdo();
+    const auto* const terrain = dynamic_cast<const TerrainRows*>(heights->rows.get());
     HeightCounts counts = heights->counts;
-    counts += stage.counts();
+    counts += terrain != nullptr ? terrain->counts() : stage.counts();
     report.heights = report_of(counts, heights->deband, heights->stored);
-    report.heights.remark = heights->remark;
-    const HeightFieldHead head = head_of(extent, options, heights->stated);
+    report.heights.remark = terrain != nullptr ? terrain->remark() : heights->remark;
     report.strength = {head.bumpiness_x, head.bumpiness_y};
     report.is_stated = !options.strength && heights->stated;
     report.usual_slope = usual.slope();

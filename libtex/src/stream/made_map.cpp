@@ -54,6 +54,8 @@ public:
 
     [[nodiscard]] const std::string& path() const override { return input_; }
     Result<TextureRows> open() override {
+        if (options_.tile)
+            return Error{ErrorCode::bad_option, input_, "a tile of a terrain is baked without other steps"};
         Result<InputFile> file = InputFile::open(input_);
         if (!file) return file.error();
         heights_.reset();

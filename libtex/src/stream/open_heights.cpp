@@ -10,6 +10,7 @@
 #include "stream/height_stage.h"
 #include "stream/last_rows.h"
 #include "stream/row_stream.h"
+#include "stream/terrain_rows.h"
 #include "threads/parallel.h"
 
 namespace tex {
@@ -43,6 +44,15 @@ Result<void> prepare(const BakeFileOptions& options, Heights& heights) {
 // Whether a stage needs all rows at once.
 bool needs_all_rows(const HeightOptions& options) { return options.fill_invalid || options.deband != Deband::off; }
 
+// The rows are heights that take_heights() has cleaned.
+void take_cleaned(Heights& heights) {
+    heights.source = {HeightChannel::automatic, 0};
+    heights.linear.reset();
+    heights.options.invert = false;
+    heights.options.deband = Deband::off;
+    heights.options.no_data = std::numeric_limits<float>::quiet_NaN();
+}
+
 // Debands heights, and fills invalid ones.
 Result<void> fill(InputFile& file, const Execution& execution, Heights& heights) {
     Result<std::unique_ptr<RowSource>> filled =
@@ -50,12 +60,27 @@ Result<void> fill(InputFile& file, const Execution& execution, Heights& heights)
                      heights.linear ? &*heights.linear : nullptr, execution, heights.counts, heights.deband);
     if (!filled) return filled.error();
     heights.rows = std::move(*filled);
-    heights.source = {HeightChannel::automatic, 0};
-    heights.linear.reset();
-    heights.options.invert = false;
-    heights.options.deband = Deband::off;
-    heights.options.no_data = std::numeric_limits<float>::quiet_NaN();
+    take_cleaned(heights);
     return {};
+}
+
+// The heights of a tile with those around it, which were cleaned already.
+Result<Heights> open_terrain(InputFile& file, const BakeFileOptions& options, const Gradient& gradient) {
+    if (options.auto_strength || options.heights.deband != Deband::off)
+        return Error{ErrorCode::bad_option, {}, "tiles of a terrain are not debanded or measured one by one"};
+    Result<std::unique_ptr<TerrainRows>> rows =
+        TerrainRows::open(file, options, HeightStage::reach(options.heights, gradient));
+    if (!rows) return rows.error();
+    Heights heights;
+    heights.window = (*rows)->window();
+    heights.stored = (*rows)->heights().stored;
+    heights.remark = (*rows)->heights().remark;
+    heights.options = options.heights;
+    heights.options.wrap_x = heights.window->wrap_x;
+    heights.options.wrap_y = heights.window->wrap_y;
+    take_cleaned(heights);
+    heights.rows = std::move(*rows);
+    return heights;
 }
 
 // Output that is written from the top cannot wait until the last rows arrive.
@@ -75,18 +100,25 @@ HeightFieldHead head_of(Extent extent, const BakeFileOptions& options, const std
     return {strength.x, strength.y, options.heights.wrap_x, options.heights.wrap_y};
 }
 
-Result<Heights> open_heights(InputFile& file, RowOrder order, const BakeFileOptions& options, const Gradient& gradient,
-                             const Execution& execution) {
+Result<Heights> open_height_rows(InputFile& file, const BakeFileOptions& options) {
     Result<std::unique_ptr<RowSource>> rows = open_rows(file, options.read);
     if (!rows) return rows.error();
     Heights heights;
     heights.rows = std::move(*rows);
     if (const Result<void> fits = prepare(options, heights); !fits)
         return after_all_rows(*heights.rows, file.path(), fits.error());
+    return heights;
+}
+
+Result<Heights> open_heights(InputFile& file, RowOrder order, const BakeFileOptions& options, const Gradient& gradient,
+                             const Execution& execution) {
+    Result<Heights> opened = options.tile ? open_terrain(file, options, gradient) : open_height_rows(file, options);
+    if (!opened) return opened.error();
+    Heights heights = std::move(*opened);
     if (needs_all_rows(options.heights)) {
         if (const Result<void> filled = fill(file, execution, heights); !filled) return filled.error();
     }
-    if (order == RowOrder::from_the_top && options.heights.wrap_y == Wrap::repeat) {
+    if (order == RowOrder::from_the_top && heights.options.wrap_y == Wrap::repeat) {
         const double done = needs_all_rows(options.heights) ? 1.0 : 0.0;
         const Result<void> found = find_last_rows(file, options, gradient, part_of(execution, done, 1.0), heights);
         if (!found) return found.error();

@@ -16,6 +16,19 @@
 
 namespace tex {
 
+// What the rows of a tile of a terrain are: the tile, and beside it `left` columns and above it `top` rows of its
+// neighbours, and as many on the other sides. A side without a neighbour has none: there the window ends with the tile,
+// so that the stages continue its heights as they do at the border of the whole terrain. Where heights repeat, every
+// side has a neighbour, if only the tile itself.
+struct TerrainWindow {
+    Extent tile;
+    int left = 0, top = 0;
+    Extent extent;  // of the window
+    // How the stages continue the heights of the window. What they find beyond a neighbour's rows reaches no normal of
+    // the tile.
+    Wrap wrap_x = Wrap::clamp, wrap_y = Wrap::clamp;
+};
+
 // A picture, and what happens to its rows before they become normals.
 struct Heights {
     std::unique_ptr<RowSource> rows;
@@ -24,13 +37,18 @@ struct Heights {
     HeightOptions options;
     HeightCounts counts;  // found so far
     DebandReport deband;
-    bool stored = false;             // as Image::stored
-    std::string remark;              // as Image::remark
-    std::optional<Strength> stated;  // the strength that the file states
-    std::optional<Image> last;       // the last rows, if they are needed first
+    bool stored = false;                  // as Image::stored
+    std::string remark;                   // as Image::remark
+    std::optional<Image> last;            // the last rows, if they are needed first
+    std::optional<Strength> stated;       // the strength that the file states
+    std::optional<TerrainWindow> window;  // what the rows are, if the picture is a tile of a terrain
 };
 
 enum class RowOrder { any, from_the_top };
+
+// Opens the picture in `file`, which must outlive the result, without anything that needs all of its rows. Errors and
+// exceptions: as open_heights().
+Result<Heights> open_height_rows(InputFile& file, const BakeFileOptions& options);
 
 // Opens the picture in `file`, which must outlive the result. Heights that repeat can be baked from the top only if the
 // last rows are known first. Errors: those of bake_file() that concern the picture and its options. May throw

@@ -66,12 +66,12 @@ private:
 
 struct RowStream::Work {
     Work(RowSource& its_rows, const std::string& its_input, int first, int level_total, StripWriter& its_writer,
-         const Execution& its_execution, const StreamSizes& sizes)
+         const Execution& its_execution, const StreamSizes& sizes, Extent made)
         : rows(its_rows), input(its_input), writer(its_writer), execution(its_execution), first_level(first),
           alone(rows.extent().texels() < sizes.worth_threads),
           strip_texels(alone ? std::min(sizes.strip_texels, sizes.strip_texels_alone) : sizes.strip_texels),
-          strips(rows.extent(), level_total, strip_texels, writer.block_rows(), first),
-          batch_rows(rows_of_batch(rows, strips)) {}
+          strips(made, level_total, strip_texels, writer.block_rows(), first), batch_rows(rows_of_batch(rows, strips)) {
+    }
 
     // The rows of one strip, rounded up to whole groups of rows that the file stores together.
     static int rows_of_batch(const RowSource& rows, const Strips& strips) {
@@ -189,8 +189,9 @@ void RowStream::Work::write(Batch& batch) {
 }
 
 RowStream::RowStream(RowSource& rows, const std::string& input, int first, int levels, StripWriter& writer,
-                     const Execution& execution, const StreamSizes& sizes)
-    : work_(std::make_unique<Work>(rows, input, first, levels, writer, execution, sizes)) {}
+                     const Execution& execution, const StreamSizes& sizes, std::optional<Extent> made)
+    : work_(
+          std::make_unique<Work>(rows, input, first, levels, writer, execution, sizes, made.value_or(rows.extent()))) {}
 
 RowStream::~RowStream() = default;
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <tex/execution.h>
@@ -30,9 +31,10 @@ struct StreamSizes {
 class RowStream {
 public:
     // The picture is level `first` of the file. `levels` levels are made from it, including the picture itself.
-    // Messages name the picture `input`. All parameters must outlive the stream.
+    // Messages name the picture `input`. All parameters must outlive the stream. `made`: the extent of what the stage
+    // makes, if the stage takes more rows and columns than it makes.
     RowStream(RowSource& rows, const std::string& input, int first, int levels, StripWriter& writer,
-              const Execution& execution, const StreamSizes& sizes);
+              const Execution& execution, const StreamSizes& sizes, std::optional<Extent> made = {});
     ~RowStream();
 
     // Where the stage writes its rows.

@@ -3,6 +3,7 @@
 #include "formats/dds/dds.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -14,6 +15,7 @@
 #include "formats/bytes.h"
 #include "formats/claims.h"
 #include "formats/dds/dds_format.h"
+#include "formats/layers.h"
 #include "formats/marks.h"
 #include "formats/normal_mark.h"
 
@@ -46,6 +48,7 @@ constexpr std::uint32_t kCapsComplex = 0x8;
 constexpr std::uint32_t kCapsTexture = 0x1000;
 constexpr std::uint32_t kCapsMipMap = 0x400000;
 constexpr std::uint32_t kCaps2CubeMap = 0x200;
+constexpr std::uint32_t kCaps2AllFaces = 0xfc00;
 constexpr std::uint32_t kCaps2Volume = 0x200000;
 
 // DDS_HEADER_DXT10.
@@ -164,20 +167,28 @@ Result<Header> parse_header(const std::byte* data, std::size_t size, const std::
     return header;
 }
 
-// Refuses everything that is not a single two-dimensional texture.
-Result<void> check_kind(Header& header, const std::string& name) {
-    const bool cube = (header.caps2 & kCaps2CubeMap) != 0 || (header.has_dx10 && (header.misc & kMiscTextureCube) != 0);
-    const bool volume = (header.caps2 & kCaps2Volume) != 0 || ((header.flags & kDdsdDepth) != 0 && header.depth > 1) ||
-                        (header.has_dx10 && header.dimension == kDimensionTexture3d);
-    if (cube) return unsupported(name, "cube maps are not supported");
-    if (volume) return unsupported(name, "volume textures are not supported");
-    if (!header.has_dx10) return {};
-    if (header.array_size > 1) return unsupported(name, "texture arrays are not supported");
+// The pictures in the file. Errors: unsupported (volumes).
+Result<LayerCount> count_layers(Header& header, const std::string& name) {
+    constexpr std::uint64_t kFaces = 6;
+    const bool is_legacy_cube = (header.caps2 & kCaps2CubeMap) != 0;
+    const bool is_cube = is_legacy_cube || (header.has_dx10 && (header.misc & kMiscTextureCube) != 0);
+    const bool is_volume = (header.caps2 & kCaps2Volume) != 0 ||
+                           ((header.flags & kDdsdDepth) != 0 && header.depth > 1) ||
+                           (header.has_dx10 && header.dimension == kDimensionTexture3d);
+    if (is_volume) return unsupported(name, "volume textures are not supported");
+    // Direct3D 9 has cube maps without some of their faces.
+    const int faces = std::popcount(header.caps2 & kCaps2AllFaces);
+    LayerCount count{is_cube ? kFaces : 1, is_cube};
+    if (!header.has_dx10) {
+        if (is_cube && faces > 0) count.layers = static_cast<std::uint64_t>(faces);
+        return count;
+    }
+    count.layers *= std::max<std::uint64_t>(header.array_size, 1);
     if (header.array_size == 0) header.remarks.push_back("the array size is 0 instead of 1");
     if (header.dimension != kDimensionTexture2d && !(header.dimension == kDimensionTexture1d && header.height == 1)) {
         header.remarks.push_back("the resource dimension is " + std::to_string(header.dimension) + " instead of 3");
     }
-    return {};
+    return count;
 }
 
 // Bytes of a level in the file. Does not overflow: at most 2^40 texels of 16 bytes.
@@ -261,7 +272,8 @@ Result<StoredTexture> parse_dds(const FetchBytes& fetch, std::size_t size, const
     if (!head) return head.error();
     Result<Header> header = parse_header(head->data(), size, name);
     if (!header) return header.error();
-    if (const Result<void> kind = check_kind(*header, name); !kind) return kind.error();
+    const Result<LayerCount> count = count_layers(*header, name);
+    if (!count) return count.error();
     const Result<Extent> extent = claimed_extent(name, header->width, header->height, options);
     if (!extent) return extent.error();
     Result<DdsTexels> texels = header->has_dx10 ? texels_of_dxgi(header->dxgi) : texels_of(header->pixel_format);
@@ -279,8 +291,20 @@ Result<StoredTexture> parse_dds(const FetchBytes& fetch, std::size_t size, const
 
     apply_found_mark(header->mark, texture);
 
+    const Result<std::uint64_t> layer = chosen_layer(*count, name, options);
+    if (!layer) return layer.error();
     const int wanted = wanted_levels(*header, *extent, texture.remarks);
     std::size_t left = size - header->end;
+    if (count->layers > 1) {  // each with all its levels
+        std::size_t chain = 0;
+        for (int k = 0; k < wanted; ++k) chain += file_bytes(*texels, level_extent(*extent, k));
+        if (left / chain <= *layer)
+            return bad_data(name, "truncated: the file ends before layer " + std::to_string(*layer) + " is complete");
+        left -= chain * static_cast<std::size_t>(*layer);
+        const std::uint64_t after = std::min<std::uint64_t>(count->layers - 1 - *layer, left / chain - 1);
+        size -= chain * static_cast<std::size_t>(after);  // as if the file ended with this layer
+        left -= chain * static_cast<std::size_t>(after);
+    }
     for (int k = 0; k < wanted; ++k) {
         const Extent level = level_extent(*extent, k);
         const std::size_t bytes = file_bytes(*texels, level);

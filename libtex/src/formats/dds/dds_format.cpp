@@ -7,6 +7,7 @@
 
 #include "formats/bytes.h"
 #include "formats/channels.h"
+#include "formats/dds/dds_refused.h"
 #include "formats/marks.h"
 
 namespace tex {
@@ -50,6 +51,7 @@ constexpr FourCcRow kFourCcs[] = {
     {114, Format::r32_float, false, {}},
     {115, Format::rg32_float, false, {}},
     {116, Format::rgba32_float, false, {}},
+    {117, Format::rg8_snorm, false, {}},  // D3DFMT_CxV8U8: z is computed
 };
 
 // DXGI formats of bit fields.
@@ -199,9 +201,10 @@ Result<DdsTexels> texels_of(const DdsPixelFormat& pixel_format) {
             return std::move(*texels);
         }
     }
-    if (masked) return texels_of_masks(pixel_format);
-    return Error{
-        ErrorCode::unsupported, {}, "the pixel format " + code_text(pixel_format.four_cc) + " is not supported"};
+    std::string reason = refused_legacy(pixel_format);
+    if (reason.empty() && masked) return texels_of_masks(pixel_format);
+    if (reason.empty()) reason = "the pixel format " + code_text(pixel_format.four_cc) + " is not supported";
+    return Error{ErrorCode::unsupported, {}, reason};
 }
 
 Result<DdsTexels> texels_of_dxgi(std::uint32_t dxgi) {
@@ -216,7 +219,7 @@ Result<DdsTexels> texels_of_dxgi(std::uint32_t dxgi) {
         if (texels) texels->srgb = row.srgb;
         return texels;
     }
-    return Error{ErrorCode::unsupported, {}, "DXGI format " + std::to_string(dxgi) + " is not supported"};
+    return Error{ErrorCode::unsupported, {}, refused_dxgi(dxgi)};
 }
 
 }  // namespace tex

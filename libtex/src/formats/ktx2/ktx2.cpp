@@ -14,8 +14,10 @@
 #include "formats/bytes.h"
 #include "formats/channels.h"
 #include "formats/claims.h"
+#include "formats/ktx2/key_values.h"
 #include "formats/ktx2/ktx2_descriptor.h"
 #include "formats/ktx2/level_inflater.h"
+#include "formats/layers.h"
 #include "formats/marks.h"
 #include "formats/normal_mark.h"
 
@@ -84,6 +86,7 @@ struct Ktx2Header {
     std::uint32_t key_values_offset, key_values_bytes;
 };
 
+constexpr std::uint32_t kFaces = 6;
 constexpr std::uint32_t kBasisLz = 1;  // a scheme that needs a transcoder
 
 // The schemes that can be read (KTX 2.0, 3.2).
@@ -109,10 +112,8 @@ Result<Extent> check_header(const Ktx2Header& header, const std::string& name, c
         return unsupported(name,
                            "supercompression scheme " + std::to_string(header.supercompression) + " is not supported");
     }
-    if (header.faces == 6) return unsupported(name, "cube maps are not supported");
-    if (header.faces != 1) return bad_data(name, std::to_string(header.faces) + " faces");
+    if (header.faces != 1 && header.faces != kFaces) return bad_data(name, std::to_string(header.faces) + " faces");
     if (header.depth > 1) return unsupported(name, "volume textures are not supported");
-    if (header.layers > 1) return unsupported(name, "texture arrays are not supported");
     if (header.height == 0) return unsupported(name, "one-dimensional textures are not supported");
     return claimed_extent(name, header.width, header.height, options);
 }
@@ -134,30 +135,6 @@ Error uastc_error(const FetchBytes& fetch, std::size_t size, const std::string& 
         }
     }
     return unsupported(name, "UASTC is not supported; \"ktx transcode --target bc5\" makes a file that is");
-}
-
-struct KeyValue {
-    std::string_view key;
-    std::string_view value;  // without the final zero of a string
-};
-
-// nullopt if the entries are inconsistent.
-std::optional<std::vector<KeyValue>> parse_key_values(const std::byte* data, std::size_t size) {
-    std::vector<KeyValue> entries;
-    while (size >= 4) {
-        const std::size_t bytes = load_u32(data);
-        if (bytes > size - 4) return std::nullopt;
-        const std::string_view entry(reinterpret_cast<const char*>(data + 4), bytes);
-        const std::size_t end = entry.find('\0');
-        if (end == std::string_view::npos) return std::nullopt;
-        std::string_view value = entry.substr(end + 1);
-        if (!value.empty() && value.back() == '\0') value.remove_suffix(1);
-        entries.push_back({entry.substr(0, end), value});
-        const std::size_t step = std::min(size, round_up(4 + bytes, 4));
-        data += step;
-        size -= step;
-    }
-    return entries;
 }
 
 // KTXswizzle names the stored channel that a shader reads as R, G, B and A: "ag01" means that A holds x and G holds y.
@@ -187,7 +164,7 @@ Result<bool> apply_key_values(const FetchBytes& fetch, std::size_t size, const K
         Result<std::vector<std::byte>> fetched = fetch(offset, header.key_values_bytes);
         if (!fetched) return fetched.error();
         bytes = std::move(*fetched);
-        entries = parse_key_values(bytes.data(), bytes.size());
+        entries = parse_key_values(bytes, false);
     }
     if (!entries) {
         texture.remarks.push_back("the key/value data are damaged and were not read");
@@ -207,8 +184,13 @@ Result<bool> apply_key_values(const FetchBytes& fetch, std::size_t size, const K
     return upwards;
 }
 
-// The place of level k, from its entry in the level index.
-Result<StoredTexture::Place> place_of(const std::byte* entry, std::size_t size, std::size_t k,
+// The layers of a level follow each other.
+struct LayerChoice {
+    std::uint64_t layers, chosen;
+};
+
+// The place of the chosen layer of level k, from the level's entry in the level index.
+Result<StoredTexture::Place> place_of(const std::byte* entry, std::size_t size, std::size_t k, LayerChoice layer,
                                       const StoredTexture& texture, Extent extent, const std::string& name) {
     const bool is_compressed = texture.supercompression != Supercompression::none;
     const std::uint64_t offset = load_u64(entry);
@@ -216,20 +198,20 @@ Result<StoredTexture::Place> place_of(const std::byte* entry, std::size_t size, 
     const std::uint64_t decoded = is_compressed ? load_u64(entry + 16) : bytes;
     const std::size_t wanted = level_bytes(texture.head.format, extent);
     const std::string level_text = "level " + std::to_string(k);
-    if (decoded != wanted) {
-        return bad_data(name,
-                        level_text + " has " + std::to_string(decoded) + " bytes instead of " + std::to_string(wanted));
+    if (decoded % layer.layers != 0 || decoded / layer.layers != wanted) {
+        const std::string layers = layer.layers > 1 ? std::to_string(layer.layers) + " times " : "";
+        return bad_data(name, level_text + " has " + std::to_string(decoded) + " bytes instead of " + layers +
+                                  std::to_string(wanted));
     }
     if (offset > size || bytes > size - offset) {
         return bad_data(name, "truncated: " + level_text + " ends beyond the end of the file");
     }
-    if (is_compressed) {
-        const Result<void> fits =
-            check_claim(name, extent, static_cast<double>(wanted), static_cast<std::int64_t>(bytes),
-                        most_inflation(texture.supercompression));
-        if (!fits) return fits.error();
-    }
-    return StoredTexture::Place{extent, offset, bytes};
+    const std::uint64_t before = layer.chosen * wanted;
+    if (!is_compressed) return StoredTexture::Place{extent, offset + before, wanted};
+    const Result<void> fits = check_claim(name, extent, static_cast<double>(decoded), static_cast<std::int64_t>(bytes),
+                                          most_inflation(texture.supercompression));
+    if (!fits) return fits.error();
+    return StoredTexture::Place{extent, offset, bytes, decoded, before};
 }
 
 }  // namespace
@@ -290,9 +272,13 @@ Result<StoredTexture> parse_ktx2(const FetchBytes& fetch, std::size_t size, cons
     const Ktx2Header header = parse_header(head->data());
     const Result<Extent> extent = check_header(header, name, options);
     if (!extent) return extent.error();
+    const bool is_cube = header.faces == kFaces;
+    const LayerCount count{std::uint64_t{std::max<std::uint32_t>(header.layers, 1)} * header.faces, is_cube};
     const std::optional<VkRow> row = find_vk_format(header.vk_format);
     if (!row && header.vk_format == 0) return uastc_error(fetch, size, name);
     if (!row) return unsupported(name, "VkFormat " + std::to_string(header.vk_format) + " is not supported");
+    const Result<std::uint64_t> layer = chosen_layer(count, name, options);
+    if (!layer) return layer.error();
     const auto levels = std::max<std::uint32_t>(1, header.levels);  // 0: the reader generates the other levels
     if (levels > static_cast<std::uint32_t>(level_count(*extent))) {
         return bad_data(
@@ -319,8 +305,9 @@ Result<StoredTexture> parse_ktx2(const FetchBytes& fetch, std::size_t size, cons
         return unsupported(name, "blocks whose rows run upwards (KTXorientation) are not supported");
     }
     for (std::size_t k = 0; k < levels; ++k) {
-        const Result<StoredTexture::Place> place = place_of(index->data() + k * kLevelIndexBytes, size, k, stored,
-                                                            level_extent(*extent, static_cast<int>(k)), name);
+        const Result<StoredTexture::Place> place =
+            place_of(index->data() + k * kLevelIndexBytes, size, k, {count.layers, *layer}, stored,
+                     level_extent(*extent, static_cast<int>(k)), name);
         if (!place) return place.error();
         stored.levels.push_back(*place);
     }

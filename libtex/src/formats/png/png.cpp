@@ -9,7 +9,9 @@
 #include <cstring>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "formats/claims.h"
 #include "formats/png/png_libpng.h"
@@ -147,8 +149,21 @@ Result<void> PngRows::finish() {
     return libpng_->finish();
 }
 
+// Xcode puts a chunk of its own before the header and leaves out that of the compressed data.
+bool is_made_for_iphones(const InputFile& file) {
+    constexpr std::size_t kFirstType = 12;
+    constexpr std::string_view kType = "CgBI";
+    const std::span<const std::byte> head = file.head();
+    return head.size() >= kFirstType + kType.size() &&
+           std::memcmp(head.data() + kFirstType, kType.data(), kType.size()) == 0;
+}
+
 Result<std::unique_ptr<RowSource>> open_decoder(InputFile& file, const ReadOptions& options, bool only_libpng) {
     return guarded([&]() -> Result<std::unique_ptr<RowSource>> {
+        if (is_made_for_iphones(file))
+            return Error{ErrorCode::unsupported, file.path(),
+                         "a PNG that Xcode changed for iPhones (CgBI); \"xcrun pngcrush -revert-iphone-optimizations\" "
+                         "or pngdefry converts it"};
         auto rows = std::make_unique<PngRows>(file, only_libpng);
         if (const Result<void> opened = rows->open(options); !opened) return opened.error();
         return std::unique_ptr<RowSource>(std::move(rows));

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "formats/claims.h"
-#include "kernels/samples.h"
+#include "formats/raw/raw_rows.h"
+#include "formats/words.h"
 #include "threads/guard.h"
 
 namespace tex {
@@ -19,24 +19,17 @@ namespace {
 
 constexpr std::string_view kWanted = "a raw layout is [WxH,]TYPE[,SKIP], for example 1025x1025,u16le";
 
-struct RawSamples {
-    SampleKind kind;
-    int bits;
-    bool big_endian;
-    std::uint32_t tiff_kind;  // as StoredSamples counts
-};
-
 RawSamples samples_of(RawType type) {
     switch (type) {
-        case RawType::u8: return {SampleKind::unorm, 8, false, 1};
-        case RawType::u16le: return {SampleKind::unorm, 16, false, 1};
-        case RawType::u16be: return {SampleKind::unorm, 16, true, 1};
-        case RawType::s16le: return {SampleKind::snorm, 16, false, 2};
-        case RawType::s16be: return {SampleKind::snorm, 16, true, 2};
-        case RawType::f32le: return {SampleKind::floating, 32, false, 3};
+        case RawType::u8: return {SampleKind::unorm, 8, false};
+        case RawType::u16le: return {SampleKind::unorm, 16, false};
+        case RawType::u16be: return {SampleKind::unorm, 16, true};
+        case RawType::s16le: return {SampleKind::snorm, 16, false};
+        case RawType::s16be: return {SampleKind::snorm, 16, true};
+        case RawType::f32le: return {SampleKind::floating, 32, false};
         case RawType::f32be: break;
     }
-    return {SampleKind::floating, 32, true, 3};
+    return {SampleKind::floating, 32, true};
 }
 
 bool read_number(std::string_view text, std::int64_t& value) {
@@ -54,70 +47,6 @@ bool read_extent(std::string_view text, Extent& extent) {
     extent = {static_cast<int>(width), static_cast<int>(height)};
     return true;
 }
-
-// In any case.
-bool has_extension(std::string_view path, std::string_view extension) {
-    if (path.size() < extension.size()) return false;
-    const std::string_view end = path.substr(path.size() - extension.size());
-    return std::equal(end.begin(), end.end(), extension.begin(), [](char a, char b) { return a == b || a + 32 == b; });
-}
-
-class RawRows final : public RowSource {
-public:
-    RawRows(const InputFile& file, const RawLayout& layout, Extent extent)
-        : file_(file), skip_(layout.skip), samples_(samples_of(layout.type)) {
-        describe(extent, {"Y"}, static_cast<std::size_t>(extent.width) * sample_bytes());
-        describe_samples(samples_.kind, samples_.bits);
-        describe_stored({.kind = samples_.tiff_kind, .bits = static_cast<std::uint32_t>(samples_.bits)});
-        if (layout.extent.width == 0)
-            describe_remark("the length of the file means " + std::to_string(extent.width) + "x" +
-                            std::to_string(extent.height) + " texels");
-    }
-
-    [[nodiscard]] bool is_random() const override { return true; }
-    bool store_numbers() override {
-        has_whole_numbers_ = true;
-        return true;
-    }
-
-    Result<void> decode(int first, int count, std::byte* rows) override {
-        const std::size_t bytes = row_bytes() * static_cast<std::size_t>(count);
-        const std::int64_t offset = skip_ + static_cast<std::int64_t>(row_bytes()) * first;
-        const Result<std::size_t> got = file_.read_at(offset, rows, bytes);
-        if (!got) return got.error();
-        if (*got < bytes) return Error{ErrorCode::bad_data, file_.path(), "the file has become shorter"};
-        for (std::size_t at = 0; samples_.big_endian && at < bytes; at += sample_bytes())
-            std::reverse(rows + at, rows + at + sample_bytes());
-        return {};
-    }
-
-    void store(const std::byte* rows, int first, int end, Image& image) const override {
-        for (int j = first; j < end; ++j, rows += row_bytes()) {
-            float* const to = image.planes.front().row(j);
-            if (has_whole_numbers_ && samples_.kind != SampleKind::floating)
-                store_whole_numbers(rows, to);
-            else
-                decode_samples(samples_.kind, samples_.bits, rows, sample_bytes(), extent().width, to);
-        }
-    }
-
-private:
-    [[nodiscard]] std::size_t sample_bytes() const { return static_cast<std::size_t>(samples_.bits / 8); }
-
-    void store_whole_numbers(const std::byte* row, float* to) const {
-        for (int i = 0; i < extent().width; ++i, row += sample_bytes()) {
-            std::uint16_t code = 0;
-            std::memcpy(&code, row, sample_bytes());
-            to[i] = samples_.kind == SampleKind::snorm ? static_cast<float>(static_cast<std::int16_t>(code))
-                                                       : static_cast<float>(code);
-        }
-    }
-
-    const InputFile& file_;
-    const std::int64_t skip_;
-    const RawSamples samples_;
-    bool has_whole_numbers_ = false;
-};
 
 // The extent of the layout, or that of a square that fills the file.
 Result<Extent> extent_of(const InputFile& file, const RawLayout& layout, const ReadOptions& options) {
@@ -175,7 +104,11 @@ Result<std::unique_ptr<RowSource>> open_raw(InputFile& file, const ReadOptions& 
         if (const Result<void> settled = file.settle(limit); !settled) return settled.error();
         const Result<Extent> extent = extent_of(file, *layout, options);
         if (!extent) return extent.error();
-        return std::unique_ptr<RowSource>(std::make_unique<RawRows>(file, *layout, *extent));
+        RawPlace place{.extent = *extent, .samples = samples_of(layout->type), .first = layout->skip};
+        if (layout->extent.width == 0)
+            place.remark = "the length of the file means " + std::to_string(extent->width) + "x" +
+                           std::to_string(extent->height) + " texels";
+        return open_raw_rows(file, std::move(place));
     });
 }
 

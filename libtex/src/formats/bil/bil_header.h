@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// bil_header.h: what the header of a BIL file says.
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <tex/image_io.h>
+#include <tex/result.h>
+
+#include "formats/raw/raw_rows.h"
+
+namespace tex {
+
+// Reads the text of a header. `is_float`: the file is called .flt. Errors: as open_bil(); they name `path`. May throw
+// std::bad_alloc.
+Result<RawPlace> read_bil_header(const std::vector<std::byte>& text, const std::string& path, bool is_float,
+                                 const ReadOptions& options);
+
+}  // namespace tex

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "formats/lfs/lfs_pointer.h"
+
+namespace tex {
+
+Result<std::unique_ptr<RowSource>> refuse_lfs_pointer(InputFile& file, const ReadOptions&) {
+    return Error{ErrorCode::bad_data, file.path(),
+                 "a pointer of Git LFS, not the file itself; \"git lfs pull\" fetches it"};
+}
+
+}  // namespace tex

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// bake-normals --tiles: the tiles of a terrain, which a pattern names.
+
+#include <cstring>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <tex/tex.h>
+
+#include "cli/program.h"
+#include "cli/usage_error.h"
+#include "tasks/grid.h"
+
+namespace tex::cli {
+namespace {
+
+constexpr int kSide = 16, kTiles = 3;
+
+class Tiles : public testing::Test {
+protected:
+    // Raw heights: a part of the terrain, which is kTiles * kSide texels wide and high.
+    void write_part(const std::string& name, int left, int top, int side) const {
+        std::string bytes;
+        for (int j = top; j < top + side; ++j) {
+            for (int i = left; i < left + side; ++i) {
+                const int height = (i * i * 37 + j * j * 91 + i * j * 53) % 65536;
+                bytes += static_cast<char>(height & 0xff);
+                bytes += static_cast<char>(height >> 8);
+            }
+        }
+        scratch_.write(name, bytes);
+    }
+    // `name`: of the tile in column x and row y from the top.
+    template <class Name>
+    void write_tiles(const Name& name) const {
+        for (int y = 0; y < kTiles; ++y) {
+            for (int x = 0; x < kTiles; ++x) write_part(name(x, y), kSide * x, kSide * y, kSide);
+        }
+        write_part("whole.r16", 0, 0, kSide * kTiles);
+    }
+    [[nodiscard]] Ran bake(std::vector<std::string> arguments) const {
+        arguments.insert(arguments.end(),
+                         {"--format", "float", "--bumpiness", "9", "--wrap", "clamp", "--kernel", "sobel5"});
+        return run(scratch_, "bake-normals", arguments);
+    }
+    void expect_part(const std::string& tile, const Image& whole, int x, int y) const {
+        const auto image = read_image(scratch_.path(tile));
+        ASSERT_TRUE(image) << image.error().message();
+        ASSERT_EQ(image->extent(), (Extent{kSide, kSide}));
+        for (std::size_t c = 0; c < 3; ++c) {
+            for (int j = 0; j < kSide; ++j)
+                ASSERT_EQ(std::memcmp(image->planes[c].row(j), whole.planes[c].row(kSide * y + j) + kSide * x,
+                                      kSide * sizeof(float)),
+                          0)
+                    << tile << " row " << j;
+        }
+    }
+    [[nodiscard]] Image whole() const {
+        const Ran ran = bake({"whole.r16", "-o", "whole.exr"});
+        EXPECT_EQ(ran.code, 0) << ran.err;
+        return std::move(*read_image(scratch_.path("whole.exr")));
+    }
+
+    const Scratch scratch_;
+};
+
+TEST_F(Tiles, HaveTheBytesOfTheWhole) {
+    write_tiles([](int x, int y) { return fmt::format("h_{:02}_{}.r16", x, y); });
+    const Ran ran = bake({"h_{x}_{y}.r16", "--tiles", "-o", "n_{y}_{x}.exr", "--depfile", "d", "--threads", "2"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    const Image expected = whole();
+    for (int y = 0; y < kTiles; ++y) {
+        for (int x = 0; x < kTiles; ++x) expect_part(fmt::format("n_{}_{:02}.exr", y, x), expected, x, y);
+    }
+    const std::string depfile = scratch_.read("d");
+    const std::size_t corner = depfile.find("n_0_00.exr:");
+    ASSERT_NE(corner, std::string::npos) << depfile;
+    const std::string rule = depfile.substr(corner, depfile.find("n_0_01.exr:") - corner);
+    EXPECT_NE(rule.find("h_01_1.r16"), std::string::npos) << rule;
+    EXPECT_EQ(rule.find("h_02_0.r16"), std::string::npos) << rule;
+}
+
+TEST_F(Tiles, InFoldersAndFromTheBottom) {
+    for (const int x : {-1, 0, 1}) std::filesystem::create_directory(scratch_.path(fmt::format("{}", x)));
+    write_tiles([](int x, int y) { return fmt::format("{}/{}.r16", x - 1, 5 - y); });
+    const Ran ran =
+        bake({"{x}/{y}.r16", "--tiles", "--tile-y", "up", "--out-dir", "out", "--name", "{dir}/{stem}.exr"});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    const Image expected = whole();
+    for (int y = 0; y < kTiles; ++y) {
+        for (int x = 0; x < kTiles; ++x) expect_part(fmt::format("out/{}/{}.exr", x - 1, 5 - y), expected, x, y);
+    }
+}
+
+TEST_F(Tiles, AnAbsolutePatternIsOne) {
+    write_tiles([](int x, int y) { return fmt::format("h_{}_{}.r16", x, y); });
+    const Ran ran = bake({scratch_.path("h_{x}_{y}.r16"), "--tiles", "-o", scratch_.path("n_{x}_{y}.exr")});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    expect_part("n_1_1.exr", whole(), 1, 1);
+}
+
+TEST_F(Tiles, WrongOptionsAreRefused) {
+    write_tiles([](int x, int y) { return fmt::format("h_{}_{}.r16", x, y); });
+    const auto refuses = [&](const std::vector<std::string>& arguments, const std::string& reason) {
+        const Ran ran = run(scratch_, "bake-normals", arguments);
+        EXPECT_EQ(ran.code, 2) << ran.err;
+        EXPECT_NE(ran.err.find(reason), std::string::npos) << ran.err;
+    };
+    refuses({"h_0_0.r16", "--tiles", "-o", "n.exr"}, "--tiles needs {x} and {y} in the name of the input");
+    refuses({"h_{x}_{y}.r16", "--tiles", "-o", "n.exr"}, "-o takes one input, 9 are given");
+    refuses({"h_{x}{y}.r16", "--tiles", "-o", "n_{x}_{y}.exr"}, "something must stand between {x} and {y}");
+    refuses({"h_{x}_{y}.r16", "--tiles", "-o", "n_{x}_{y}.exr", "--deband", "on"}, "--tiles contradicts --deband");
+    refuses({"h_{x}_{y}.r16", "--tiles", "-o", "n_{x}_{y}.exr", "--bumpiness", "auto"}, "--tiles contradicts");
+    refuses({"whole.r16", "--tile-y", "up", "-o", "n.exr"}, "--tile-y has no effect without --tiles");
+    write_part("h_01_0.r16", 0, 0, kSide);
+    refuses({"h_{x}_{y}.r16", "--tiles", "-o", "n_{x}_{y}.exr"}, "are the same tile");
+    const Ran none = run(scratch_, "bake-normals", {"g_{x}_{y}.r16", "--tiles", "-o", "n_{x}_{y}.exr"});
+    EXPECT_EQ(none.code, 3);
+    EXPECT_NE(none.err.find("no file has this name with numbers for {x} and {y}"), std::string::npos) << none.err;
+}
+
+}  // namespace
+}  // namespace tex::cli

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// grid.h: the tiles of a terrain: "tile_{x}_{y}.png" stands for all files that have whole numbers in the place of {x}
+// and {y}.
+
+#pragma once
+
+#include <compare>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tex/height_field.h>
+#include <tex/result.h>
+
+namespace tex::cli {
+
+struct Task;
+
+// The place of a tile, and its numbers as the file's name has them.
+struct GridPlace {
+    int x = 0, y = 0;
+    std::string x_text = {}, y_text = {};
+};
+
+struct GridFile {
+    std::string name;
+    GridPlace place;
+};
+
+// Whether a name has both marks.
+[[nodiscard]] bool has_grid(std::string_view name);
+
+// The name with the tile's numbers in the place of the marks.
+[[nodiscard]] std::string with_grid(std::string name, const GridPlace& place);
+
+// The files whose names and folders a pattern stands for, row by row. Errors: io (there is none; a folder cannot be
+// read). Throws UsageError if no other characters stand between the marks, or if two files have one place.
+[[nodiscard]] Result<std::vector<GridFile>> grid_files(const std::string& pattern);
+
+// Finds the tiles around each task's tile, for Task::around and Task::own. Where the heights repeat, the tile at the
+// other end of a row or column stands for one that does not exist. `upwards`: y grows from the bottom to the top.
+void find_tiles_around(std::vector<Task>& tasks, Wrap wrap_x, Wrap wrap_y, bool upwards);
+
+}  // namespace tex::cli
