@@ -3,8 +3,8 @@
 #include "kernels/trace.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/trace.cpp"
@@ -178,8 +178,8 @@ struct Waiting {
 // Adds the children that the ray meets, the nearest one last.
 HWY_INLINE Waiting* push(const Boxes& boxes, unsigned met, const float* enter, Waiting* top) {
     Waiting* const first = top;
-    for (int k = 0; k < kBoxes; ++k) {
-        if ((met >> k & 1) == 0) continue;
+    for (; met != 0; met &= met - 1) {
+        const int k = std::countr_zero(met);
         Waiting* place = top++;
         for (; place > first && place[-1].enter < enter[k]; --place) *place = place[-1];
         *place = {enter[k], boxes.child[k]};

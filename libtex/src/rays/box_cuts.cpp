@@ -8,6 +8,7 @@ namespace tex {
 namespace {
 
 constexpr int kBins = 16;
+constexpr std::size_t kMany = 256;
 
 struct Bin {
     FloatBox box;
@@ -52,6 +53,25 @@ void choose_cut(const Bin* bins, int axis, Cut& best) {
     }
 }
 
+// A box around twice the centres. If there are many, they fill nearly all of their box, and are not looked at.
+FloatBox bounds_of_centers(const BoxedTriangle* boxes, const BoxRange& range) {
+    FloatBox bounds;
+    if (range.count() > kMany) {
+        for (int axis = 0; axis < 3; ++axis) {
+            bounds.low[axis] = 2.0f * range.box.low[axis];
+            bounds.high[axis] = 2.0f * range.box.high[axis];
+        }
+        return bounds;
+    }
+    for (std::size_t k = range.begin; k < range.end; ++k) {
+        for (int axis = 0; axis < 3; ++axis) {
+            bounds.low[axis] = std::min(bounds.low[axis], boxes[k].center(axis));
+            bounds.high[axis] = std::max(bounds.high[axis], boxes[k].center(axis));
+        }
+    }
+    return bounds;
+}
+
 void halve(const BoxedTriangle* boxes, const BoxRange& range, BoxRange& left, BoxRange& right) {
     const std::size_t middle = range.begin + range.count() / 2;
     left = {range.begin, middle, {}};
@@ -65,13 +85,7 @@ void halve(const BoxedTriangle* boxes, const BoxRange& range, BoxRange& left, Bo
 
 void cut_range(BoxedTriangle* boxes, const BoxRange& range, bool by_order, BoxRange& left, BoxRange& right) {
     if (by_order) return halve(boxes, range, left, right);
-    FloatBox centers;
-    for (std::size_t k = range.begin; k < range.end; ++k) {
-        for (int axis = 0; axis < 3; ++axis) {
-            centers.low[axis] = std::min(centers.low[axis], boxes[k].center(axis));
-            centers.high[axis] = std::max(centers.high[axis], boxes[k].center(axis));
-        }
-    }
+    const FloatBox centers = bounds_of_centers(boxes, range);
     const BinScale scales[3] = {
         {centers.low[0], centers.high[0]}, {centers.low[1], centers.high[1]}, {centers.low[2], centers.high[2]}};
     Bin bins[3][kBins];

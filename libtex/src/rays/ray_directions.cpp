@@ -48,20 +48,53 @@ double angle_between(Vector3 a, Vector3 b) {
     return math::atan(y / x) + (x < 0.0 ? math::kPi : 0.0);
 }
 
+// Triangles that are so narrow that the rounding of their corners to float decides where they face, as at the poles of
+// many spheres, have no normal: (0, 0, 0).
+class FaceNormals {
+public:
+    explicit FaceNormals(const MeshPart& part) : part_(part) {
+        double largest = 0.0;
+        for (const std::uint32_t v : part.indices) {
+            const Vector3 p = vector_of(part.positions[v]);
+            largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+        }
+        least_height_ = kNarrow * largest;
+    }
+
+    [[nodiscard]] Vector3 of(std::size_t triangle) const {
+        const auto corners = corners_of(part_, triangle);
+        double longest = 0.0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vector3 side = corners[(k + 1) % 3] - corners[k];
+            longest = std::max(longest, dot(side, side));
+        }
+        const Vector3 area = cross(corners[1] - corners[0], corners[2] - corners[0]);
+        if (dot(area, area) <= least_height_ * least_height_ * longest) return {};
+        return normalized(area);
+    }
+
+private:
+    static constexpr double kNarrow = 0x1p-21;  // of the largest coordinate, which has 24 bits
+
+    const MeshPart& part_;
+    double least_height_ = 0.0;
+};
+
 // The part of a corner in the sum of the normals that meet there.
-Vector3 weighted_normal(const std::array<Vector3, 3>& corners, std::size_t k) {
-    const Vector3 a = corners[(k + 1) % 3] - corners[k], b = corners[(k + 2) % 3] - corners[k];
-    return angle_between(a, b) * face_normal(corners);
+double weight_of_corner(const std::array<Vector3, 3>& corners, std::size_t k) {
+    return angle_between(corners[(k + 1) % 3] - corners[k], corners[(k + 2) % 3] - corners[k]);
 }
 
 // For each corner, the normalised sum over all corners with its number. Numbers are less than `count`.
 std::vector<Vector3> averaged(const MeshPart& part, const std::vector<std::uint32_t>& number, std::size_t count) {
     std::vector<Vector3> sums(count), normals(number.size());
+    const FaceNormals faces(part);
     for (std::size_t t = 0; t < part.triangles(); ++t) {
         const auto corners = corners_of(part, t);
+        const Vector3 normal = faces.of(t);
         for (std::size_t k = 0; k < 3; ++k) {
             Vector3& sum = sums[number[3 * t + k]];
-            sum = sum + weighted_normal(corners, k);
+            sum = sum + weight_of_corner(corners, k) * normal;
         }
     }
     for (std::size_t c = 0; c < number.size(); ++c) normals[c] = normalized(sums[number[c]]);
@@ -97,13 +130,14 @@ std::vector<Side> sorted_sides(const MeshPart& part, const std::vector<std::uint
 void RayDirections::set_straight(const std::vector<std::uint32_t>& position, double angle) {
     const std::vector<Side> sides = sorted_sides(*part_, position);
     const double least_cosine = math::cos(angle * math::kPi / 180.0);
+    const FaceNormals faces(*part_);
     DisjointSets sets(part_->indices.size());
     for (std::size_t first = 0, end = 0; first < sides.size(); first = end) {
         for (end = first; end < sides.size() && sides[end].key() == sides[first].key();) ++end;
         const Side &a = sides[first], &b = sides[end - 1];
-        const Vector3 n = face_normal(corners_of(*part_, a.low_corner / 3)),
-                      m = face_normal(corners_of(*part_, b.low_corner / 3));
-        if (end - first == 2 && dot(n, m) >= least_cosine) {
+        const Vector3 n = faces.of(a.low_corner / 3), m = faces.of(b.low_corner / 3);
+        const bool no_angle = dot(n, n) == 0.0 || dot(m, m) == 0.0;
+        if (end - first == 2 && (no_angle || dot(n, m) >= least_cosine)) {
             sets.join(a.low_corner, b.low_corner);
             sets.join(a.high_corner, b.high_corner);
             continue;
