@@ -307,7 +307,7 @@ Result<TransferredMaps> cast_all(Extent extent, const TangentSpace& low, const s
 
     TransferredMaps result;
     result.diagonal = diagonal_of(low.part);
-    const double width = length_of(options.straight_width, result.diagonal, 0.02 * result.diagonal);
+    const double width = length_of(options.straight_width, result.diagonal, 0.05 * result.diagonal);
     const auto directions = RayDirections::make(low.part, options.rays, width, options.straight_angle, execution);
     if (!directions) return directions.error();
     FoundReach found;

@@ -3,9 +3,7 @@
 #include <tex/transfer.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstring>
 #include <utility>
 #include <vector>
 
@@ -14,64 +12,11 @@
 #include <tex/convert.h>
 #include <tex/tangents.h>
 
-#include "mesh/vectors.h"
-#include "rays/ray_directions.h"
-#include "unit/convert_maps.h"
 #include "unit/targets.h"
+#include "unit/transfers.h"
 
 namespace tex {
 namespace {
-
-std::vector<MeshPart> only(MeshPart part) {
-    std::vector<MeshPart> parts;
-    parts.push_back(std::move(part));
-    return parts;
-}
-
-TransferOptions all_maps() {
-    TransferOptions options;
-    options.object = options.heights = options.positions = true;
-    return options;
-}
-
-Float3 position_at(const TransferredMaps& maps, int i, int j) {
-    return {maps.position[0].at(i, j), maps.position[1].at(i, j), maps.position[2].at(i, j)};
-}
-
-// Calls body(i, j) for every texel that rays hit, and returns their number.
-template <class Body>
-std::int64_t for_hits(const TransferredMaps& maps, const Body& body) {
-    std::int64_t hits = 0;
-    const auto [width, height] = maps.map.extent();
-    for (int j = 0; j < height; ++j) {
-        for (int i = 0; i < width; ++i) {
-            if (maps.origin.at(i, j) != TexelOrigin::hit) continue;
-            ++hits;
-            body(i, j);
-        }
-    }
-    return hits;
-}
-
-bool same_plane(const Plane<float>& a, const Plane<float>& b) {
-    for (int j = 0; j < a.extent().height; ++j) {
-        if (std::memcmp(a.row(j), b.row(j), static_cast<std::size_t>(a.extent().width) * sizeof(float)) != 0)
-            return false;
-    }
-    return true;
-}
-
-bool same_maps(const TransferredMaps& a, const TransferredMaps& b) {
-    return same_plane(a.map.x, b.map.x) && same_plane(a.map.y, b.map.y) && same_plane(a.map.z, b.map.z) &&
-           same_plane(a.heights, b.heights);
-}
-
-Result<TransferredMaps> transferred(const MeshPart& low, const std::vector<MeshPart>& high, Extent extent,
-                                    const TransferOptions& options = all_maps(), Decoder decoder = Decoder::gltf) {
-    const auto tangents = make_tangents(low);
-    if (!tangents) return tangents.error();
-    return transfer(extent, {low, *tangents, 0, decoder}, high, options);
-}
 
 TEST(Transfer, FromAMeshToItselfIsFlat) {
     std::vector<MeshPart> parts = {wavy_part(20, true)};
@@ -96,19 +41,6 @@ TEST(Transfer, FromAMeshToItselfIsFlat) {
             }
         }
     }
-}
-
-// A square of the size of the map, in texels, and a surface above and below it whose vertices stand over the centres of
-// texels.
-MeshPart flat_square(Extent extent) {
-    MeshPart part = square(0.0f, 1.0f);
-    for (std::size_t v = 0; v < part.positions.size(); ++v) {
-        const Float2 uv = part.uvs[0][v];
-        const float y = part.v_axis == YAxis::up ? uv.y : 1.0f - uv.y;
-        part.positions[v] = {uv.x * static_cast<float>(extent.width), y * static_cast<float>(extent.height), 0.0f};
-        part.normals[v] = {0.0f, 0.0f, 1.0f};
-    }
-    return part;
 }
 
 TEST(Transfer, OfAHeightFieldIsWhatBakeMakesOfIt) {
@@ -298,74 +230,6 @@ TEST(Transfer, SubsamplesAreTexelsOfALargerMap) {
     });
 }
 
-MeshPart lifted(MeshPart part, float height, float scale = 1.0f) {
-    for (Float3& p : part.positions) p = {scale * p.x, scale * p.y, scale * p.z + height};
-    return part;
-}
-
-MeshPart inside_out(MeshPart part) {
-    for (std::size_t k = 0; k < part.indices.size(); k += 3) std::swap(part.indices[k + 1], part.indices[k + 2]);
-    return part;
-}
-
-TEST(Transfer, ChoosesTheOutermostOrTheNearestHit) {
-    const Extent extent{16, 16};
-    const MeshPart low = flat_square(extent);
-    std::vector<MeshPart> high;
-    for (const float height : {0.5f, 2.0f, -0.25f}) high.push_back(lifted(low, height));
-    TransferOptions options = all_maps();
-    options.front = {Reach::Unit::absolute, 3.0};
-    options.back = {Reach::Unit::absolute, 1.0};
-    const auto height = [&] {
-        const auto maps = transferred(low, high, extent, options);
-        return maps ? maps->heights.at(8, 8) : -100.0f;
-    };
-    EXPECT_EQ(height(), 2.0f);
-    options.hit = HitChoice::nearest;
-    EXPECT_EQ(height(), -0.25f);
-    options.back = {Reach::Unit::absolute, 0.1};
-    EXPECT_EQ(height(), 0.5f);
-    high[0] = inside_out(high[0]);  // seen from behind
-    EXPECT_EQ(height(), 2.0f);
-    options.backfaces = true;
-    EXPECT_EQ(height(), 0.5f);
-    options.hit = HitChoice::outermost;
-    options.front = {Reach::Unit::percent, 5.0};  // of 22.6
-    EXPECT_EQ(height(), 0.5f);
-}
-
-TEST(Transfer, CountsWhatIsMissedAndSaysWhatWouldHit) {
-    const Extent extent{32, 32};
-    const MeshPart low = flat_square(extent);
-    TransferOptions options = all_maps();
-    options.front = options.back = {Reach::Unit::absolute, 0.5};
-    std::vector<MeshPart> high = only(lifted(low, 0.25f, 0.5f));  // over the lower left quarter
-    const auto quarter = transferred(low, high, extent, options);
-    ASSERT_TRUE(quarter);
-    EXPECT_EQ(quarter->covered, 1024);
-    EXPECT_EQ(quarter->missed, 768);
-    EXPECT_EQ(quarter->hopeless, 768);
-    EXPECT_EQ(quarter->origin.at(2, 30), TexelOrigin::hit);
-    EXPECT_EQ(quarter->origin.at(30, 2), TexelOrigin::missed);
-    EXPECT_EQ(quarter->heights.at(30, 2), 0.25f);  // of the nearest hit
-    high.push_back(lifted(low, 2.0f));
-    const auto farther = transferred(low, high, extent, options);
-    ASSERT_TRUE(farther);
-    EXPECT_EQ(farther->missed, 768);
-    EXPECT_EQ(farther->hopeless, 0);
-    EXPECT_NEAR(farther->needed_front, 2.0, 1e-6);
-    EXPECT_EQ(farther->needed_back, 0.0);
-    options.front = {Reach::Unit::absolute, farther->needed_front};
-    EXPECT_EQ(transferred(low, high, extent, options)->missed, 0);
-    high[1] = inside_out(lifted(low, 0.4f));
-    const auto behind = transferred(low, high, extent, options);
-    ASSERT_TRUE(behind);
-    EXPECT_EQ(behind->missed, 768);
-    EXPECT_EQ(behind->behind, 768);
-    options.backfaces = true;
-    EXPECT_EQ(transferred(low, high, extent, options)->behind, 1024);
-}
-
 TEST(Transfer, FillsThePaddingAndLeavesTheRestFlat) {
     const MeshPart low = square(0.25f, 0.75f);
     TransferOptions options = all_maps();
@@ -378,102 +242,6 @@ TEST(Transfer, FillsThePaddingAndLeavesTheRestFlat) {
     EXPECT_EQ(maps->origin.at(5, 16), TexelOrigin::none);
     EXPECT_EQ(maps->map.z.at(5, 16), 1.0f);
     EXPECT_EQ(maps->heights.at(5, 16), 0.0f);
-}
-
-MeshPart hard_cube(float size) {
-    MeshPart cube = smooth_cube().part;
-    for (std::size_t v = 0; v < cube.positions.size(); ++v) {
-        const std::size_t face = v / 4;
-        constexpr Float3 kNormals[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-        cube.normals[v] = kNormals[face];
-        const Float3 p = cube.positions[v];
-        cube.positions[v] = {size * p.x, size * p.y, size * p.z};
-    }
-    return cube;
-}
-
-float side_of_skew(const TransferredMaps& maps, const TransferredMaps& starts, int i, int j) {
-    const Float3 p = position_at(maps, i, j), q = position_at(starts, i, j), n = vector_at(starts.object, i, j);
-    const Float3 way{p.x - q.x, p.y - q.y, p.z - q.z};
-    const float along = way.x * n.x + way.y * n.y + way.z * n.z;
-    return std::sqrt(std::max(0.0f, way.x * way.x + way.y * way.y + way.z * way.z - along * along));
-}
-
-// Around a cube with hard edges lies a larger one. Straight rays meet it right above their start, except near edges;
-// smooth rays meet it beside; rays along the normals of vertices miss what lies beyond the edges.
-TEST(Transfer, StraightRaysDoNotSkewAndLeaveNoGap) {
-    const MeshPart low = hard_cube(1.0f);
-    const auto high = only(hard_cube(1.1f));
-    const Extent extent{192, 128};
-    TransferOptions options = all_maps();
-    const auto starts = transferred(low, only(low), extent, options);
-    ASSERT_TRUE(starts);
-    double mean[2] = {};
-    for (const RayMode rays : {RayMode::smooth, RayMode::straight}) {
-        options.rays = rays;
-        options.straight_width = {Reach::Unit::absolute, 0.2};
-        const auto maps = transferred(low, high, extent, options);
-        ASSERT_TRUE(maps);
-        EXPECT_EQ(maps->missed, 0);
-        double& sum = mean[rays == RayMode::straight ? 1 : 0];
-        const auto hits = for_hits(*maps, [&](int i, int j) {
-            const float skew = side_of_skew(*maps, *starts, i, j);
-            sum += static_cast<double>(skew);
-            const Float3 p = position_at(*starts, i, j);
-            float at[3] = {std::abs(p.x), std::abs(p.y), std::abs(p.z)};
-            std::sort(at, at + 3);
-            const bool far_from_edges = rays == RayMode::straight && at[1] < 0.8f;
-            ASSERT_LT(far_from_edges ? skew : 0.0f, 1e-5f);
-        });
-        sum /= static_cast<double>(hits);
-    }
-    EXPECT_GT(mean[0], 0.04);
-    EXPECT_LT(mean[1], 0.4 * mean[0]);
-}
-
-// The directions at places of an edge are the same for both of its triangles.
-TEST(Transfer, DirectionsOfRaysAreContinuous) {
-    for (const MeshPart& part : {hard_cube(1.0f), smooth_cube().part, torus().part, wavy_part(7)}) {
-        for (const RayMode mode : {RayMode::smooth, RayMode::straight}) {
-            const auto directions = RayDirections::make(part, mode, 0.3, 30.0, {});
-            ASSERT_TRUE(directions);
-            int edges = 0;
-            for (std::size_t a = 0; a < part.indices.size(); ++a) {
-                for (std::size_t b = 0; b < part.indices.size(); ++b) {
-                    const std::size_t a_next = a % 3 == 2 ? a - 2 : a + 1, b_next = b % 3 == 2 ? b - 2 : b + 1;
-                    const auto at = [&](std::size_t corner) { return part.positions[part.indices[corner]]; };
-                    if (!same(at(a), at(b_next)) || !same(at(a_next), at(b))) continue;
-                    ++edges;
-                    for (const double k : {0.0, 0.1, 0.5, 0.8}) {
-                        std::array<double, 3> on_a{}, on_b{};
-                        on_a[a % 3] = on_b[b_next % 3] = 1.0 - k;
-                        on_a[a_next % 3] = on_b[b % 3] = k;
-                        const Vector3 p = (1.0 - k) * vector_of(at(a)) + k * vector_of(at(a_next));
-                        const Vector3 gap = directions->at(a / 3, on_a, p) - directions->at(b / 3, on_b, p);
-                        ASSERT_LT(dot(gap, gap), 1e-20);
-                    }
-                }
-            }
-            EXPECT_GT(edges, 10);
-        }
-    }
-}
-
-TEST(Transfer, FindsHowFarRaysMustReach) {
-    const Solid ring = torus();
-    for (const float radius : {0.35f, 0.45f}) {  // of the tube; that of the low mesh is 0.4
-        const auto at = [&](float u, float v) -> Float3 {
-            const Float3 n = ring.normal(u, v);
-            const float a = 6.2831853f * u;
-            return {std::cos(a) + radius * n.x, radius * n.y, -std::sin(a) + radius * n.z};
-        };
-        const auto maps = transferred(ring.part, only(grid_part(64, 48, at, ring.normal)), {128, 96});
-        ASSERT_TRUE(maps);
-        EXPECT_EQ(maps->missed, 0);
-        EXPECT_LT(maps->front, 0.2);
-        EXPECT_LT(maps->back, 0.2);
-        EXPECT_GT(radius > 0.4f ? maps->front : maps->back, 0.05);
-    }
 }
 
 TEST(Transfer, RefusesWhatDoesNotFit) {

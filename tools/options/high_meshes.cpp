@@ -86,7 +86,7 @@ void HighMeshes::compare(Job& job, const MeshPart& low, const std::vector<MeshPa
     std::size_t triangles = 0;
     for (const MeshPart& part : high) triangles += part.triangles();
     job.report["triangles"] = {{"low", low.triangles()}, {"high", triangles}};
-    if (low.triangles() <= triangles) return;
+    if (low.triangles() <= 2 * triangles) return;
     job.warn(
         fmt::format("has more triangles, {}, than the high mesh, {}; did both change places? The low one comes "
                     "first",

@@ -31,7 +31,7 @@ public:
 
     // An error about the low mesh, with the remedy if both may have changed places.
     [[nodiscard]] static Error with_order(const Error& error);
-    // Warns if the low mesh has more triangles than the high ones.
+    // Warns if the low mesh has more than twice as many triangles as the high ones.
     static void compare(Job& job, const MeshPart& low, const std::vector<MeshPart>& high);
 
 private:

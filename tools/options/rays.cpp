@@ -74,7 +74,7 @@ void RayOptions::add(Command& command) {
                 })
         .preset = "30";
     add_reach(command, transfer_.straight_width, "--straight-width",
-              "with --rays straight, rays bend within this distance from hard edges", "2%", "auto");
+              "with --rays straight, rays bend within this distance from hard edges", "5%", "auto");
     add_coverage(command);
     command.check([this, &command] {
         const auto idle = command.given_of({"--straight-angle", "--straight-width"});
@@ -234,7 +234,7 @@ Result<void> TransferMaps::write_positions(Job& job, TransferredMaps& maps) cons
     with.encoding = Encoding::float_;
     auto texture = pack(chain, with, {job.threads(), {}});
     if (!texture) return texture.error();
-    texture->normal_encoding.clear();  // they are no normals
+    texture->swizzle.fill(Component::other);  // they are no normals
     texture->swizzle_known = texture->y_known = false;
     Json report;
     if (auto done = positions_.write(job, *texture, report); !done) return done;

@@ -55,8 +55,8 @@ struct SelectedPart {
 [[nodiscard]] Result<SelectedPart> select_part(const Mesh& mesh, const MeshSelection& selection,
                                                const Execution& execution = {});
 
-// All parts as the nodes of the scene place them: once for each node that shows them; in their own space if there are no
-// nodes at all. Parts that no node shows are left out.
+// All parts as the nodes of the scene place them: once for each node that shows them; in their own space if there are
+// no nodes at all. Parts that no node shows are left out.
 //
 // Preconditions (asserted): every part passes check_part().
 // Errors: bad_data     as in_scene(), or no node shows a part

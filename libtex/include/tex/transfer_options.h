@@ -40,7 +40,7 @@ struct TransferOptions {
     bool backfaces = false;  // faces seen from behind count, too
 
     // With RayMode::straight: an edge is hard if its faces differ by more than this angle in degrees, 0 to 180; within
-    // `straight_width` of hard edges, D turns to the averaged normals. Automatic: 2 percent.
+    // `straight_width` of hard edges, D turns to the averaged normals. Automatic: 5 percent.
     double straight_angle = 30.0;
     Reach straight_width;
 

@@ -72,6 +72,16 @@ FloatBox bounds_of_centers(const BoxedTriangle* boxes, const BoxRange& range) {
     return bounds;
 }
 
+// The axes along which cuts are tried: all, or the longest one if there are many centres.
+std::pair<int, int> axes_of(const FloatBox& centers, const BoxRange& range) {
+    if (range.count() <= kMany) return {0, 2};
+    int longest = 0;
+    for (int axis = 1; axis < 3; ++axis) {
+        if (centers.high[axis] - centers.low[axis] > centers.high[longest] - centers.low[longest]) longest = axis;
+    }
+    return {longest, longest};
+}
+
 void halve(const BoxedTriangle* boxes, const BoxRange& range, BoxRange& left, BoxRange& right) {
     const std::size_t middle = range.begin + range.count() / 2;
     left = {range.begin, middle, {}};
@@ -88,16 +98,18 @@ void cut_range(BoxedTriangle* boxes, const BoxRange& range, bool by_order, BoxRa
     const FloatBox centers = bounds_of_centers(boxes, range);
     const BinScale scales[3] = {
         {centers.low[0], centers.high[0]}, {centers.low[1], centers.high[1]}, {centers.low[2], centers.high[2]}};
+    const auto [first_axis, last_axis] = axes_of(centers, range);
     Bin bins[3][kBins];
-    for (std::size_t k = range.begin; k < range.end; ++k) {
-        for (int axis = 0; axis < 3; ++axis) {
-            Bin& bin = bins[axis][scales[axis].bin(boxes[k].center(axis))];
+    for (int axis = first_axis; axis <= last_axis; ++axis) {
+        const BinScale scale = scales[axis];
+        for (std::size_t k = range.begin; k < range.end; ++k) {
+            Bin& bin = bins[axis][scale.bin(boxes[k].center(axis))];
             bin.box.include(boxes[k].box);
             ++bin.count;
         }
     }
     Cut cut;
-    for (int axis = 0; axis < 3; ++axis) choose_cut(bins[axis], axis, cut);
+    for (int axis = first_axis; axis <= last_axis; ++axis) choose_cut(bins[axis], axis, cut);
     if (cut.axis < 0) return halve(boxes, range, left, right);
     std::size_t first = range.begin, last = range.end;
     while (first < last) {

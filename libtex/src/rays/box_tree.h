@@ -27,10 +27,10 @@ struct NearestPoint {
 };
 
 // Each box has up to eight children: it is cut in two, then its largest child, and so on. A cut is the cheapest of 16
-// places along each axis by the surface area heuristic (Wald, On Fast Construction of SAH-based Bounding Volume
-// Hierarchies, 2007). Triangles whose boxes have a common centre are divided by their order. The least and the greatest
-// of numbers do not depend on their order, and the cuts follow from these and from counts. So the tree is the same for
-// every number of threads.
+// places along the longest axis, or along each axis if there are few triangles, by the surface area heuristic (Wald, On
+// Fast Construction of SAH-based Bounding Volume Hierarchies, 2007). Triangles whose boxes have a common centre are
+// divided by their order. The least and the greatest of numbers do not depend on their order, and the cuts follow from
+// these and from counts. So the tree is the same for every number of threads.
 class BoxTree {
 public:
     // Precondition: there is at least one triangle. Errors: out_of_memory, cancelled.
