@@ -215,7 +215,7 @@ mapfile -t outside_reader < <(select_files '^(libtex|tools)/.*\.(cpp|h)$' |
     grep -v '^\(tools/oiio-reader\|libtex/oiio\)/' || true)
 ban '#include [<"]hwy/|\bHWY_|\bhwy::' 'only kernels/ knows Highway' "${outside_kernels[@]}"
 verbs='bake|blend|check|color|compare|convert|curvature|deband|heat_map|image_io|integrate|mesh_io|mesh_selection|mip'
-verbs+='|pack|pipeline|preview|probe|roughness|scale|sheet|source|tangents|unpack'
+verbs+='|pack|pipeline|preview|probe|roughness|scale|sheet|source|tangents|transfer|unpack'
 ban "#include <tex/($verbs|tex)\.h>" 'rows/, kernels/, blocks/ and surface/ include no header of a verb' \
     "${below_verbs[@]}"
 ban '\b(?!is_|take_)[a-z]+_whole\b|\bcan_stream\b' 'files go one way, through streams' "${library[@]}"

@@ -26,6 +26,7 @@ void each_field(MeshSelection& o, F& f) {
     f("material", o.material);
     f("primitive", o.primitive);
     f("node", o.node);
+    f("in_scene", o.in_scene);
     f("uv_set", o.uv_set);
     f("tangents", o.tangents);
 }

@@ -72,6 +72,7 @@ struct Choice {
     int uv_set = 0;
     TangentSource source = TangentSource::mikktspace;
     bool has_normal_map = false, has_tangents = false;
+    bool in_scene = false;
 };
 
 Result<void> choose_parts(const Mesh& mesh, const MeshSelection& selection, Choice& choice) {
@@ -81,6 +82,7 @@ Result<void> choose_parts(const Mesh& mesh, const MeshSelection& selection, Choi
         if (!called) return called.error();
         material = *called;
     }
+    choice.in_scene = selection.in_scene && selection.node.empty();
     if (!selection.node.empty()) {
         const auto called = node_called(mesh, selection.node);
         if (!called) return called.error();
@@ -171,7 +173,14 @@ void join(SelectedPart& joined, const MeshPart& part, int uv_set, const std::vec
     append(joined.tangents, tangents);
 }
 
-Result<SelectedPart> joined_parts(const Choice& choice, const Execution& execution) {
+// The first node that shows the part, or null.
+const MeshNode* node_of(const Mesh& mesh, const MeshPart& part) {
+    const auto shows = [&](const MeshNode& node) { return node.mesh == part.mesh; };
+    const auto found = std::find_if(mesh.nodes.begin(), mesh.nodes.end(), shows);
+    return found == mesh.nodes.end() ? nullptr : &*found;
+}
+
+Result<SelectedPart> joined_parts(const Mesh& mesh, const Choice& choice, const Execution& execution) {
     std::size_t triangles = 0, vertices = 0;
     for (const MeshPart* part : choice.parts) {
         triangles += part->triangles();
@@ -188,11 +197,12 @@ Result<SelectedPart> joined_parts(const Choice& choice, const Execution& executi
     for (const MeshPart* part : choice.parts) {
         auto tangents = tangents_of(*part, choice, execution);
         if (!tangents) return tangents.error();
-        if (choice.node == nullptr) {
+        const MeshNode* const node = choice.in_scene ? node_of(mesh, *part) : choice.node;
+        if (node == nullptr) {
             join(joined, *part, choice.uv_set, *tangents);
             continue;
         }
-        const auto in_place = placed(*part, std::move(*tangents), *choice.node);
+        const auto in_place = placed(*part, std::move(*tangents), *node);
         if (!in_place) return in_place.error();
         const auto turned = stored_tangents(*in_place);
         if (!turned) return turned.error();
@@ -220,7 +230,27 @@ Result<SelectedPart> select_part(const Mesh& mesh, const MeshSelection& selectio
         Choice choice;
         if (const auto chosen = choose_parts(mesh, selection, choice); !chosen) return chosen.error();
         if (const auto chosen = choose_attributes(mesh, selection, choice); !chosen) return chosen.error();
-        return joined_parts(choice, execution);
+        return joined_parts(mesh, choice, execution);
+    });
+}
+
+Result<std::vector<MeshPart>> parts_in_scene(Mesh mesh) {
+    return guarded([&]() -> Result<std::vector<MeshPart>> {
+        if (mesh.nodes.empty()) return std::move(mesh.parts);
+        std::vector<MeshPart> parts;
+        for (MeshPart& part : mesh.parts) {
+            std::vector<const MeshNode*> nodes;
+            for (const MeshNode& node : mesh.nodes) {
+                if (node.mesh == part.mesh) nodes.push_back(&node);
+            }
+            for (std::size_t k = 0; k < nodes.size(); ++k) {
+                auto in_place = in_scene(k + 1 < nodes.size() ? MeshPart(part) : std::move(part), *nodes[k]);
+                if (!in_place) return in_place.error();
+                parts.push_back(std::move(*in_place));
+            }
+        }
+        if (parts.empty()) return Error{ErrorCode::bad_data, {}, "its scene shows no mesh"};
+        return parts;
     });
 }
 

@@ -23,11 +23,12 @@ std::string big_endian(std::uint32_t value) {
     return bytes;
 }
 
-// The commands that write an output for each input.
+// The commands that write an output for each input, which is a picture.
 std::vector<std::string> writers() {
     std::vector<std::string> names = commands();
     std::erase_if(names, [](const std::string& name) {
-        return name == "build-normals" || name == "check-normals" || name == "compare-normals";
+        return name == "build-normals" || name == "check-normals" || name == "compare-normals" ||
+               name == "transfer-normals";
     });
     return names;
 }

@@ -78,6 +78,7 @@ std::vector<std::string> arguments_for(const std::string& command, const std::st
     if (command == "compare-normals") return {file, file};
     if (command == "blend-normals") return {file, file, "-o", "out.dds"};
     if (command == "convert-normals") return {file, "-o", "out.png", "--mesh", "sheet.obj", "--to", "object"};
+    if (command == "transfer-normals") return {file, file, "-o", "out.png"};
     if (command == "scale-normals") return {file, "-o", "out.dds", "--scale", "2"};
     if (command == "integrate-normals") return {file, "-o", "out.png", "--quiet"};  // it can warn, then fail
     if (command == "unpack-normals" || command == "preview-normals" || command == "integrate-normals")

@@ -89,6 +89,14 @@ const Line kLines[] = {
      "integrate-normals",
      {"MAPS", "--wrap", "clamp,repeat", "--container", "png", "--curvature-out", "{stem}_c.png"}},
     {"integrate-blocks", "integrate-normals", {"bake/hemisphere.dds", "--container", "exr", "--curl-out", "curl.png"}},
+    {"transfer",
+     "transfer-normals",
+     {"crate_low.glb", "--high", "crate_high.glb", "--size", "128", "--subsamples", "2", "--rays", "straight",
+      "--height-out", "{stem}_h.exr", "--object-out", "{stem}_o.png", "--position-out", "{stem}_p.exr"}},
+    {"transfer-nearest",
+     "transfer-normals",
+     {"crate_low.glb", "--high", "crate_high.glb", "--size", "96x64", "--hit", "nearest", "--container", "png",
+      "--decoder", "three", "--padding", "2"}},
     {"preview", "preview-normals", {"maps/waves.png", "maps/hemisphere.png", "--size", "96"}},
     {"check", "check-normals", {"MAPS", "bake/hemisphere.dds", "--json"}},
     {"compare", "compare-normals", {"maps/waves.png", "bake/waves.dds", "--json"}},
@@ -179,6 +187,7 @@ Hashes run_lines(const std::string& target, int threads, std::span<const Line> l
     for (const std::string& height : kHeights) scratch.add_sample(height, height);
     scratch.add_sample("bricks.png", "bricks.png");
     scratch.write("sheet.obj", kSheetObj);
+    for (const std::string mesh : {"crate_low.glb", "crate_high.glb"}) scratch.add_sample(mesh, mesh);
     fs::create_directory(scratch.path("maps"));
     if (lines.data() != kLines) {
         const Ran ran =

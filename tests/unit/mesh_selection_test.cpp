@@ -102,6 +102,37 @@ TEST(MeshSelection, MirrorsTangentsWithTheNode) {
     }
 }
 
+// `north` moves the first mesh by 5; `south`, which comes later, would mirror it.
+TEST(MeshSelection, PlacesPartsWhereTheirFirstNodeDoes) {
+    const Mesh mesh = two_meshes();
+    MeshSelection selection = of("stone");
+    selection.in_scene = true;
+    const auto placed = select_part(mesh, selection);
+    ASSERT_TRUE(placed);
+    EXPECT_EQ(placed->part.triangles(), 8u + 32u);
+    EXPECT_EQ(placed->part.positions.front().x, mesh.parts[0].positions.front().x + 5.0f);
+    EXPECT_EQ(placed->part.positions.back().x, mesh.parts[2].positions[mesh.parts[2].indices.back()].x);
+    selection.node = "south";
+    EXPECT_EQ(select_part(mesh, selection)->part.triangles(), 8u);
+}
+
+TEST(MeshSelection, PlacesAllPartsOnceForEachNode) {
+    Mesh mesh = two_meshes();
+    const auto parts = parts_in_scene(mesh);
+    ASSERT_TRUE(parts);
+    ASSERT_EQ(parts->size(), 6u);  // two parts and one, by two nodes each
+    EXPECT_EQ((*parts)[0].positions.front().x, mesh.parts[0].positions.front().x + 5.0f);
+    EXPECT_EQ((*parts)[1].positions[1].x, -mesh.parts[0].positions[1].x);
+    EXPECT_NE((*parts)[1].indices[1], mesh.parts[0].indices[1]);  // mirrored
+    for (const MeshPart& part : *parts) EXPECT_TRUE(check_part(part));
+    mesh.nodes.resize(1);
+    EXPECT_EQ(parts_in_scene(mesh)->size(), 2u);
+    mesh.nodes[0].mesh = 7;
+    EXPECT_EQ(parts_in_scene(mesh).error().reason, "its scene shows no mesh");
+    mesh.nodes.clear();
+    EXPECT_EQ(parts_in_scene(mesh)->size(), 3u);
+}
+
 TEST(MeshSelection, TakesTangentsOfTheFileIfAllPartsHaveThem) {
     Mesh mesh = two_meshes();
     mesh.parts[0].tangents.assign(mesh.parts[0].positions.size(), {0.0f, 1.0f, 0.0f, -1.0f});

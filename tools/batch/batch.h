@@ -74,6 +74,8 @@ public:
     [[nodiscard]] Result<void> check_task(const Task& task) { return check({task}); }
     // As process(), for a job of such a task.
     [[nodiscard]] Result<void> process_task(Job& job) { return process(job); }
+    // Whether a manifest can name it. The files of a step are the same for all of its inputs.
+    [[nodiscard]] virtual bool can_be_step() const { return true; }
     // What process() does, as a step of apply_steps(). Nothing if the command does something else.
     [[nodiscard]] virtual std::optional<Step> step(Job&) { return std::nullopt; }
     // Prints the warnings that the step's result calls for. Any thread may call this.

@@ -35,11 +35,14 @@ public:
     // name to `report`.
     [[nodiscard]] Result<void> write(Job& job, Plane<float> values, Json& report) const;
     [[nodiscard]] Result<void> write(Job& job, const Image& colors, Json& report) const;
+    // Writes a texture that its file type can hold.
+    [[nodiscard]] Result<void> write(Job& job, const Texture& texture, Json& report) const;
+    // The file type. Throws UsageError as amend().
+    [[nodiscard]] Container container_for(const Task& task) const { return container_of_path(path_of(task)); }
 
 private:
     [[nodiscard]] std::string path_of(const Task& task) const;
     [[nodiscard]] Container container_of_path(const std::string& path) const;
-    [[nodiscard]] Result<void> write(Job& job, const Texture& texture, Json& report) const;
 
     const FileOptions* files_ = nullptr;
     std::string name_, pattern_;

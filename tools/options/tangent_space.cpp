@@ -25,6 +25,8 @@ std::vector<std::string> files_of(const std::string& mesh) {
     return files ? std::move(*files) : std::vector<std::string>{mesh};
 }
 
+constexpr const char* kNodeOfMap = "only the mesh of this node; object space is then the space of the scene";
+
 // The option that avoids an error of select_part().
 Error with_option(const Error& error) {
     Error with = error;
@@ -39,7 +41,7 @@ void TangentSpaceOptions::add(Command& command) {
     add_mesh(command, "the mesh that the map is on: glTF, GLB, OBJ, FBX, PLY ...; required");
     command.text(to_mesh_, "--to-mesh", "FILE", "another version of the mesh, with the same UVs, which the output fits")
         .completes = Completes::files;
-    add_parts(command);
+    add_parts(command, kNodeOfMap);
     command.group("Spaces");
     command.choice(from, "--from", "SPACE", kSpaceNames, "the space of the input's vectors");
     command.choice(to, "--to", "SPACE", kSpaceNames, "the space of the output's vectors");
@@ -56,11 +58,19 @@ void TangentSpaceOptions::add(Command& command) {
 
 void TangentSpaceOptions::add_input(Command& command, bool with_from) {
     add_mesh(command, "the mesh that the inputs are on: glTF, GLB, OBJ, FBX, PLY ...");
-    add_parts(command);
+    add_parts(command, kNodeOfMap);
     if (with_from) command.choice(from, "--from", "SPACE", kSpaceNames, "the space of the inputs' vectors");
     add_decoder(command, "the engine that decodes the inputs");
     add_tangents(command);
     command.check([this, &command] { check_input(command); });
+}
+
+void TangentSpaceOptions::add_low(Command& command) {
+    command.group("Low mesh");
+    selection_.in_scene = true;
+    add_parts(command, "only the mesh of this node");
+    add_decoder(command, "the engine that decodes the map");
+    add_tangents(command);
 }
 
 void TangentSpaceOptions::add_mesh(Command& command, const char* meaning) {
@@ -77,7 +87,7 @@ void TangentSpaceOptions::add_tangents(Command& command) {
         .preset = "file if it has any, else mikktspace";
 }
 
-void TangentSpaceOptions::add_parts(Command& command) {
+void TangentSpaceOptions::add_parts(Command& command, const char* node) {
     command.text(selection_.material, "--material", "NAME",
                  "the material whose triangles the map is on, or its number from 0; required if there are several");
     command
@@ -86,8 +96,7 @@ void TangentSpaceOptions::add_parts(Command& command) {
                     selection_.primitive = parse_int(text, 0, std::numeric_limits<int>::max());
                 })
         .preset = "all";
-    command.text(selection_.node, "--node", "NAME",
-                 "only the mesh of this node; object space is then the space of the scene");
+    command.text(selection_.node, "--node", "NAME", node);
     command
         .option("--uv-set", "N", "the set of UVs, from 0",
                 [this](const std::string& text) {
@@ -162,6 +171,11 @@ Result<MeshSpace> TangentSpaceOptions::input(int tile, const ReadOptions& option
 
 Result<MeshSpace> TangentSpaceOptions::output(int tile, const ReadOptions& options, const Execution& execution) const {
     return read(to_mesh_.empty() ? mesh_ : to_mesh_, tangents_, decoder_, tile, options, execution);
+}
+
+Result<MeshSpace> TangentSpaceOptions::of_file(const std::string& file, int tile, const ReadOptions& options,
+                                               const Execution& execution) const {
+    return read(file, tangents_, decoder_, tile, options, execution);
 }
 
 Result<MeshSpace> TangentSpaceOptions::read(const std::string& file, std::optional<TangentSource> tangents,

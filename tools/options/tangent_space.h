@@ -60,6 +60,9 @@ public:
     // --from.
     void add_input(Command& command, bool with_from = false);
 
+    // For a command whose inputs are meshes, which it places in the scene: --decoder, --tangents, the choice of parts.
+    void add_low(Command& command);
+
     [[nodiscard]] bool has_mesh() const { return !mesh_.empty(); }
     // Whether the engine that decodes the input ignores its z, so that x and y must be read as they are stored.
     [[nodiscard]] bool ignores_z() const {
@@ -81,11 +84,15 @@ public:
     [[nodiscard]] Result<MeshSpace> input(int tile, const ReadOptions& read, const Execution& execution) const;
     [[nodiscard]] Result<MeshSpace> output(int tile, const ReadOptions& read, const Execution& execution) const;
 
+    // The same of any file, with the options of the output.
+    [[nodiscard]] Result<MeshSpace> of_file(const std::string& file, int tile, const ReadOptions& read,
+                                            const Execution& execution) const;
+
 private:
     void check(const Command& command) const;
     void check_input(const Command& command) const;
     void add_mesh(Command& command, const char* meaning);
-    void add_parts(Command& command);
+    void add_parts(Command& command, const char* node);
     void add_decoder(Command& command, const char* meaning);
     void add_tangents(Command& command);
     [[nodiscard]] Result<MeshSpace> read(const std::string& file, std::optional<TangentSource> tangents,

@@ -22,7 +22,10 @@ constexpr const char* kOutputGroup = "Output";
 // An intermediate result, of which only the type and the encoding count. No such file exists.
 constexpr const char* kBetween = "between.exr";
 
-Converter* converter_of(Program& program) { return dynamic_cast<Converter*>(&program); }
+Converter* converter_of(Program& program) {
+    auto* const converter = dynamic_cast<Converter*>(&program);
+    return converter != nullptr && converter->can_be_step() ? converter : nullptr;
+}
 
 const Row* row_of(const Command& command, const std::string& key, const std::vector<std::string>& groups) {
     for (const Row& row : command.rows()) {

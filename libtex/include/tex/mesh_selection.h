@@ -29,6 +29,7 @@ struct MeshSelection {
     std::string material;                   // a name, or an index into Mesh::materials
     std::optional<int> primitive;           // MeshPart::primitive
     std::string node;                       // the parts as this node places them in the scene; else in their own space
+    bool in_scene = false;                  // without `node`: each part as the first node that shows it places it
     std::optional<int> uv_set;              // none: the one that the material's normal map uses, or 0
     std::optional<TangentSource> tangents;  // none: those of the file if all of these parts have them and uv_set is not
                                             // given; else mikktspace
@@ -53,6 +54,14 @@ struct SelectedPart {
 //         out_of_memory, cancelled
 [[nodiscard]] Result<SelectedPart> select_part(const Mesh& mesh, const MeshSelection& selection,
                                                const Execution& execution = {});
+
+// All parts as the nodes of the scene place them: once for each node that shows them; in their own space if there are
+// no nodes at all. Parts that no node shows are left out.
+//
+// Preconditions (asserted): every part passes check_part().
+// Errors: bad_data     as in_scene(), or no node shows a part
+//         out_of_memory
+[[nodiscard]] Result<std::vector<MeshPart>> parts_in_scene(Mesh mesh);
 
 // The triangles whose UVs have their centre in a UDIM tile, with their tangents. Tile 1001 + u + 10 v is the square
 // from (u, v) to (u + 1, v + 1), where v points up and u is 0 to 9 (Foundry, Mari).

@@ -87,6 +87,8 @@
 #include <tex/sheet.h>
 #include <tex/swizzle.h>
 #include <tex/tangents.h>
+#include <tex/transfer.h>
+#include <tex/transfer_options.h>
 #include <tex/unpack.h>
 #include <tex/unpack_options.h>
 

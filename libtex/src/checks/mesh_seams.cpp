@@ -19,11 +19,6 @@ constexpr int kMostPlaces = 8;               // on an edge
 constexpr float kSameNormal = 0.9998f;       // the cosine of a degree
 constexpr double kQuantum = 0.3 / kDegrees;  // a gap that rounding to 8 bits explains
 
-Vector3 operator+(Vector3 a, Vector3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Vector3 operator-(Vector3 a, Vector3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-Vector3 operator*(double s, Vector3 a) { return {s * a.x, s * a.y, s * a.z}; }
-double dot(Vector3 a, Vector3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-
 // For each vertex, the number of its position; equal positions have the same number.
 std::vector<std::uint32_t> positions_of(const MeshPart& part) {
     std::vector<std::uint32_t> order(part.positions.size());

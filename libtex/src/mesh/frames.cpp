@@ -7,28 +7,6 @@
 #include <string>
 
 namespace tex {
-namespace {
-
-Vector3 operator+(Vector3 a, Vector3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Vector3 operator*(double s, Vector3 a) { return {s * a.x, s * a.y, s * a.z}; }
-double dot(Vector3 a, Vector3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Vector3 cross(Vector3 a, Vector3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-
-// A vector without length stays as it is.
-Vector3 normalized(Vector3 v) {
-    const double n = std::sqrt(dot(v, v));
-    return n > 1e-30 ? (1.0 / n) * v : v;
-}
-
-Vector3 vector_of(float x, float y, float z) {
-    return {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
-}
-
-Vector3 mix(const std::array<Vector3, 3>& v, const std::array<double, 3>& weights) {
-    return weights[0] * v[0] + weights[1] * v[1] + weights[2] * v[2];
-}
-
-}  // namespace
 
 Result<void> check_space(const TangentSpace& space) {
     if (space.part.normals.empty()) return Error{ErrorCode::bad_option, {}, "the mesh has no normals"};
@@ -46,8 +24,8 @@ CornerFrames::CornerFrames(const TangentSpace& space, std::size_t triangle) : de
         const std::size_t corner = 3 * triangle + k;
         const Float3& n = space.part.normals[space.part.indices[corner]];
         const Float4& t = space.tangents[corner];
-        normals_[k] = normalized(vector_of(n.x, n.y, n.z));
-        tangents_[k] = normalized(vector_of(t.x, t.y, t.z));
+        normals_[k] = normalized(vector_of(n));
+        tangents_[k] = normalized(vector_of(Float3{t.x, t.y, t.z}));
         signs_[k] = t.w < 0.0f ? -1.0 : 1.0;
         bitangents_[k] = signs_[k] * cross(normals_[k], tangents_[k]);
         if (decoder_kind(decoder_) == DecoderKind::normalized) bitangents_[k] = normalized(bitangents_[k]);

@@ -9,11 +9,9 @@
 #include <tex/convert_options.h>
 #include <tex/result.h>
 
-namespace tex {
+#include "mesh/vector3.h"
 
-struct Vector3 {
-    double x = 0.0, y = 0.0, z = 0.0;
-};
+namespace tex {
 
 // T', B' and N' of convert_options.h. They need be neither unit nor perpendicular.
 struct Frame {

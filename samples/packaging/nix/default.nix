@@ -43,6 +43,7 @@ let
     "pack-normals"
     "preview-normals"
     "scale-normals"
+    "transfer-normals"
     "unpack-normals"
   ];
 in

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "rays/box_cuts.h"
+
+#include <utility>
+
+namespace tex {
+namespace {
+
+constexpr int kBins = 16;
+constexpr std::size_t kMany = 256;
+
+struct Bin {
+    FloatBox box;
+    std::uint32_t count = 0;
+};
+
+// The bin of a place along an axis.
+struct BinScale {
+    float first = 0.0f, factor = 0.0f;
+
+    BinScale(float low, float high) : first(low), factor(high > low ? 0.999f * kBins / (high - low) : 0.0f) {}
+    [[nodiscard]] int bin(float place) const {
+        return std::min(std::max(static_cast<int>((place - first) * factor), 0), kBins - 1);
+    }
+};
+
+struct Cut {
+    float cost = std::numeric_limits<float>::infinity();
+    int axis = -1;
+    int bin = 0;  // the first one on the right
+};
+
+// The cheapest cut of these bins, if it is cheaper than `best`.
+void choose_cut(const Bin* bins, int axis, Cut& best) {
+    float right_cost[kBins];
+    FloatBox box;
+    std::size_t count = 0;
+    for (int k = kBins - 1; k > 0; --k) {
+        box.include(bins[k].box);
+        count += bins[k].count;
+        right_cost[k] = count == 0 ? 0.0f : box.area() * static_cast<float>(count);
+    }
+    const std::size_t all = count + bins[0].count;
+    box = {};
+    count = 0;
+    for (int k = 1; k < kBins; ++k) {
+        box.include(bins[k - 1].box);
+        count += bins[k - 1].count;
+        if (count == 0 || count == all) continue;
+        const float cost = box.area() * static_cast<float>(count) + right_cost[k];
+        if (cost < best.cost) best = {cost, axis, k};
+    }
+}
+
+// A box around twice the centres. If there are many, they fill nearly all of their box, and are not looked at.
+FloatBox bounds_of_centers(const BoxedTriangle* boxes, const BoxRange& range) {
+    FloatBox bounds;
+    if (range.count() > kMany) {
+        for (int axis = 0; axis < 3; ++axis) {
+            bounds.low[axis] = 2.0f * range.box.low[axis];
+            bounds.high[axis] = 2.0f * range.box.high[axis];
+        }
+        return bounds;
+    }
+    for (std::size_t k = range.begin; k < range.end; ++k) {
+        for (int axis = 0; axis < 3; ++axis) {
+            bounds.low[axis] = std::min(bounds.low[axis], boxes[k].center(axis));
+            bounds.high[axis] = std::max(bounds.high[axis], boxes[k].center(axis));
+        }
+    }
+    return bounds;
+}
+
+// The axes along which cuts are tried: all, or the longest one if there are many centres.
+std::pair<int, int> axes_of(const FloatBox& centers, const BoxRange& range) {
+    if (range.count() <= kMany) return {0, 2};
+    int longest = 0;
+    for (int axis = 1; axis < 3; ++axis) {
+        if (centers.high[axis] - centers.low[axis] > centers.high[longest] - centers.low[longest]) longest = axis;
+    }
+    return {longest, longest};
+}
+
+void halve(const BoxedTriangle* boxes, const BoxRange& range, BoxRange& left, BoxRange& right) {
+    const std::size_t middle = range.begin + range.count() / 2;
+    left = {range.begin, middle, {}};
+    right = {middle, range.end, {}};
+    for (BoxRange* half : {&left, &right}) {
+        for (std::size_t k = half->begin; k < half->end; ++k) half->box.include(boxes[k].box);
+    }
+}
+
+}  // namespace
+
+void cut_range(BoxedTriangle* boxes, const BoxRange& range, bool by_order, BoxRange& left, BoxRange& right) {
+    if (by_order) return halve(boxes, range, left, right);
+    const FloatBox centers = bounds_of_centers(boxes, range);
+    const BinScale scales[3] = {
+        {centers.low[0], centers.high[0]}, {centers.low[1], centers.high[1]}, {centers.low[2], centers.high[2]}};
+    const auto [first_axis, last_axis] = axes_of(centers, range);
+    Bin bins[3][kBins];
+    for (int axis = first_axis; axis <= last_axis; ++axis) {
+        const BinScale scale = scales[axis];
+        for (std::size_t k = range.begin; k < range.end; ++k) {
+            Bin& bin = bins[axis][scale.bin(boxes[k].center(axis))];
+            bin.box.include(boxes[k].box);
+            ++bin.count;
+        }
+    }
+    Cut cut;
+    for (int axis = first_axis; axis <= last_axis; ++axis) choose_cut(bins[axis], axis, cut);
+    if (cut.axis < 0) return halve(boxes, range, left, right);
+    std::size_t first = range.begin, last = range.end;
+    while (first < last) {
+        if (scales[cut.axis].bin(boxes[first].center(cut.axis)) < cut.bin)
+            ++first;
+        else
+            std::swap(boxes[first], boxes[--last]);
+    }
+    left = {range.begin, first, {}};
+    right = {first, range.end, {}};
+    for (int k = 0; k < kBins; ++k) (k < cut.bin ? left : right).box.include(bins[cut.axis][k].box);
+}
+
+}  // namespace tex

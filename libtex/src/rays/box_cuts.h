@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// box_cuts.h: cuts a list of boxes in two.
+
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+namespace tex {
+
+struct FloatBox {
+    float low[3] = {std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity(),
+                    std::numeric_limits<float>::infinity()};
+    float high[3] = {-std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(),
+                     -std::numeric_limits<float>::infinity()};
+
+    void include(const FloatBox& box) {
+        for (int k = 0; k < 3; ++k) {
+            low[k] = std::min(low[k], box.low[k]);
+            high[k] = std::max(high[k], box.high[k]);
+        }
+    }
+    // Half of the surface.
+    [[nodiscard]] float area() const {
+        const float x = high[0] - low[0], y = high[1] - low[1], z = high[2] - low[2];
+        return x * y + (y + x) * z;
+    }
+};
+
+struct BoxedTriangle {
+    FloatBox box;
+    std::uint32_t triangle;
+
+    // Twice the centre.
+    [[nodiscard]] float center(int axis) const { return box.low[axis] + box.high[axis]; }
+};
+
+// A piece of the list, and the box around it.
+struct BoxRange {
+    std::size_t begin = 0, end = 0;
+    FloatBox box;
+
+    [[nodiscard]] std::size_t count() const { return end - begin; }
+};
+
+// Sorts the range into two, neither of which is empty. With `by_order`, both halves have the same number of boxes.
+// Precondition: it has at least two.
+void cut_range(BoxedTriangle* boxes, const BoxRange& range, bool by_order, BoxRange& left, BoxRange& right);
+
+}  // namespace tex

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "rays/found_reach.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <utility>
+
+namespace tex {
+namespace {
+
+constexpr double kFarthest = 0.1;  // of the diagonal: what is farther away belongs to something else
+constexpr double kReserve = 0.25, kLeast = 0.001;
+constexpr std::size_t kMostTriangles = 1 << 16;  // of the low mesh from which rays start
+constexpr int kVerticesPerPiece = 4096;
+constexpr int kTrianglesPerPiece = 512;
+
+// The greatest number that any thread has seen.
+class Greatest {
+public:
+    void see(double value) {
+        double seen = value_.load(std::memory_order_relaxed);
+        while (seen < value && !value_.compare_exchange_weak(seen, value, std::memory_order_relaxed)) {
+        }
+    }
+    [[nodiscard]] double value() const { return value_.load(std::memory_order_relaxed); }
+
+private:
+    std::atomic<double> value_{0.0};
+};
+
+struct BothSides {
+    Greatest front, back;
+};
+
+// From the vertices of the high mesh to the low one. A vertex that is nearer than both distances so far changes
+// neither.
+void see_vertices(const MeshPart& part, int begin, int end, const BoxTree& low, const RayDirections& directions,
+                  double most, BothSides& sides) {
+    for (int k = begin; k < end; ++k) {
+        const Vector3 p = vector_of(part.positions[static_cast<std::size_t>(k)]);
+        const double known = std::min(sides.front.value(), sides.back.value());
+        if (low.is_within(p, known * known)) continue;
+        const NearestPoint nearest = low.nearest(p, most * most);
+        if (nearest.triangle == kNoHit) continue;
+        const Vector3 outwards = directions.at(nearest.triangle, nearest.weights, nearest.point);
+        const bool in_front = dot(p - nearest.point, outwards) >= 0.0;
+        (in_front ? sides.front : sides.back).see(std::sqrt(nearest.squared));
+    }
+}
+
+// From the corners and the middle of a triangle of the low mesh to the high one, along both directions of the ray.
+void see_triangle(const MeshPart& low, std::size_t triangle, const RayDirections& directions, const BoxTree& tree,
+                  double most, BothSides& sides) {
+    constexpr double kThird = 1.0 / 3.0;
+    constexpr std::array<double, 3> kPlaces[] = {
+        {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}, {kThird, kThird, kThird}};
+    const auto corners = Triangles::Place{low, triangle}.corners();
+    Ray rays[8];
+    for (std::size_t k = 0; k < 4; ++k) {
+        const Vector3 p = mix(corners, kPlaces[k]), d = directions.at(triangle, kPlaces[k], p);
+        rays[2 * k] = {{p.x, p.y, p.z}, {d.x, d.y, d.z}, most, Facing::back};
+        rays[2 * k + 1] = {{p.x, p.y, p.z}, {-d.x, -d.y, -d.z}, most, Facing::front};
+    }
+    RayHit hits[8];
+    trace_rays(tree.view(), rays, 8, hits);
+    for (std::size_t k = 0; k < 8; k += 2) {
+        const RayHit &out = hits[k], &in = hits[k + 1];
+        if (out.triangle != kNoHit && (in.triangle == kNoHit || out.t < in.t))
+            sides.front.see(out.t);
+        else if (in.triangle != kNoHit)
+            sides.back.see(in.t);
+    }
+}
+
+}  // namespace
+
+Result<FoundReach> found_reach(const MeshPart& low, const RayDirections& directions, const Triangles& high,
+                               const BoxTree& tree, double diagonal, const Execution& execution) {
+    const Execution quiet{execution.threads, {}};
+    const double most = kFarthest * diagonal;
+    BothSides sides;
+    const std::size_t step = low.triangles() / kMostTriangles + 1;
+    const auto from_low = [&](int begin, int end) {
+        for (int k = begin; k < end; ++k)
+            see_triangle(low, static_cast<std::size_t>(k) * step, directions, tree, most, sides);
+    };
+    const auto triangles = static_cast<int>((low.triangles() + step - 1) / step);
+    if (auto seen = parallel_for(quiet, triangles, kTrianglesPerPiece, from_low); !seen) return seen.error();
+    const auto low_tree = BoxTree::build(Triangles({&low}), quiet);
+    if (!low_tree) return low_tree.error();
+    for (const MeshPart* part : high.parts()) {
+        const auto from_high = [&](int begin, int end) {
+            see_vertices(*part, begin, end, *low_tree, directions, most, sides);
+        };
+        const auto vertices = static_cast<int>(part->positions.size());
+        if (auto seen = parallel_for(quiet, vertices, kVerticesPerPiece, from_high); !seen) return seen.error();
+    }
+    const auto with_reserve = [&](double distance) { return (1.0 + kReserve) * distance + kLeast * diagonal; };
+    return FoundReach{with_reserve(sides.front.value()), with_reserve(sides.back.value())};
+}
+
+double distance_between(const MeshPart& low, const BoxTree& high) {
+    double squared = std::numeric_limits<double>::infinity();
+    for (const Float3& p : low.positions) squared = std::min(squared, high.nearest(vector_of(p), squared).squared);
+    return std::sqrt(squared);
+}
+
+}  // namespace tex

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// found_reach.h: how far rays must reach: automatic `front` and `back` of transfer.h.
+
+#pragma once
+
+#include "rays/box_tree.h"
+#include "rays/ray_directions.h"
+
+namespace tex {
+
+// In the unit of the meshes.
+struct FoundReach {
+    double front = 0.0, back = 0.0;
+};
+
+// Both are at least a thousandth of `diagonal`. Errors: out_of_memory, cancelled.
+Result<FoundReach> found_reach(const MeshPart& low, const RayDirections& directions, const Triangles& high,
+                               const BoxTree& tree, double diagonal, const Execution& execution);
+
+// The smallest distance of the low mesh's vertices from the high mesh.
+double distance_between(const MeshPart& low, const BoxTree& high);
+
+}  // namespace tex

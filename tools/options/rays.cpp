@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "options/rays.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <tex/integrate.h>
+#include <tex/pack.h>
+
+#include "cli/text.h"
+#include "cli/usage_error.h"
+#include "cli/value.h"
+
+namespace tex::cli {
+namespace {
+
+constexpr Range kNotNegative{0.0, 1e30, true};
+
+// "auto", "0.25" or "5%".
+Reach parse_reach(const std::string& text) {
+    if (text == "auto") return {};
+    if (text.ends_with('%')) return {Reach::Unit::percent, parse_double(text.substr(0, text.size() - 1), kNotNegative)};
+    return {Reach::Unit::absolute, parse_double(text, kNotNegative)};
+}
+
+void add_reach(Command& command, Reach& reach, const std::string& name, std::string help, std::string automatic,
+               std::string preset) {
+    Row& row = command.option(name, "DISTANCE", std::move(help),
+                              [&reach](const std::string& text) { reach = parse_reach(text); });
+    row.words = {{"auto", std::move(automatic)}};
+    row.completes = Completes::words;
+    row.preset = std::move(preset);
+}
+
+double percent_of(std::int64_t part, std::int64_t whole) {
+    return whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
+}
+
+// Not less than the reach: what is printed as a remedy must suffice.
+double enough(double reach, double diagonal) { return std::max(1.001 * reach, 1e-6 * diagonal); }
+
+}  // namespace
+
+void RayOptions::add(Command& command) {
+    command.group("Rays");
+    command
+        .option("--size", "N[xM]", "the width and height of the map in texels",
+                [this](const std::string& text) {
+                    const auto [width, height] = cut(text, 'x');
+                    extent_.width = parse_int(width, 1, kMaxExtent / kMaxSubsamples);
+                    extent_.height = text.find('x') == std::string::npos
+                                         ? extent_.width
+                                         : parse_int(height, 1, kMaxExtent / kMaxSubsamples);
+                })
+        .preset = fmt::format("{}", extent_.width);
+    command
+        .option("--subsamples", "N", "rays of a texel: N by N",
+                [this](const std::string& text) { transfer_.subsamples = parse_int(text, 1, kMaxSubsamples); })
+        .preset = "1";
+    command.choice(transfer_.rays, "--rays", "R", kRayModeNames, "the directions of rays");
+    add_reach(command, transfer_.front, "--front",
+              "how far rays reach outside of the low mesh: a length in its unit, percent of its diagonal, or the word",
+              "found from both meshes", "auto");
+    add_reach(command, transfer_.back, "--back", "the same inside of the low mesh", "found from both meshes", "auto");
+    command.choice(transfer_.hit, "--hit", "H", kHitChoiceNames, "which point counts if a ray meets several");
+    command.flag(transfer_.backfaces, "--backfaces", "let triangles of the high mesh count that are seen from behind");
+    command
+        .option("--straight-angle", "DEG", "with --rays straight, edges between faces with a larger angle are hard",
+                [this](const std::string& text) {
+                    transfer_.straight_angle = parse_double(text, {0.0, 180.0, true});
+                })
+        .preset = "30";
+    add_reach(command, transfer_.straight_width, "--straight-width",
+              "with --rays straight, rays bend within this distance from hard edges", "5%", "auto");
+    add_coverage(command);
+    command.check([this, &command] {
+        const auto idle = command.given_of({"--straight-angle", "--straight-width"});
+        if (transfer_.rays != RayMode::straight && !idle.empty())
+            throw UsageError(idle.front() + " needs --rays straight");
+    });
+}
+
+void RayOptions::add_coverage(Command& command) {
+    command.group("Coverage");
+    Row& padding = command.option("--padding", "N", "texels to fill around each chart: a number, or the word",
+                                  [this](const std::string& text) {
+                                      transfer_.padding = text == "all" ? kPadAll : parse_int(text, 0, kMaxExtent);
+                                  });
+    padding.words = {{"all", "the whole map"}};
+    padding.completes = Completes::words;
+    padding.preset = "all";
+    command.choice(overlap_, "--overlap", "O", kOverlapNames, "what happens if triangles share texels");
+    command
+        .option("--max-missed", "PERCENT", "exit with status 1 if more of the covered texels are missed",
+                [this](const std::string& text) {
+                    max_missed_ = parse_double(text, {0.0, 100.0, true});
+                })
+        .preset = "no limit";
+    command.finds_things();
+}
+
+void RayOptions::judge_missed(Job& job, const TransferredMaps& maps) const {
+    if (maps.missed == 0) return;
+    std::string sentence = fmt::format("{} of {} texels ({:.3g} %) are missed: no ray hits the high mesh", maps.missed,
+                                       maps.covered, percent_of(maps.missed, maps.covered));
+    const bool farther = maps.needed_front > maps.front || maps.needed_back > maps.back;
+    if (maps.missed > maps.hopeless && farther) {
+        sentence += fmt::format("; --front {:.4g} --back {:.4g} would hit 95 % of those that a longer ray can hit",
+                                enough(std::max(maps.needed_front, maps.front), maps.diagonal),
+                                enough(std::max(maps.needed_back, maps.back), maps.diagonal));
+    }
+    if (maps.hopeless > 0) {
+        sentence += fmt::format(
+            "; {} meet nothing at any distance, so the high mesh has holes there, ends, or faces the "
+            "other way",
+            maps.hopeless);
+    }
+    job.warn(std::move(sentence));
+}
+
+Result<void> RayOptions::judge(Job& job, const TransferredMaps& maps) const {
+    const double missed = percent_of(maps.missed, maps.covered);
+    job.report["covered"] = maps.covered;
+    job.report["overlaps"] = maps.overlaps;
+    job.report["backward"] = maps.backward;
+    job.report["missed"] = {{"texels", maps.missed},
+                            {"percent", missed},
+                            {"hopeless", maps.hopeless},
+                            {"needed", {maps.needed_front, maps.needed_back}}};
+    job.report["behind"] = maps.behind;
+    job.report["reach"] = {{"front", maps.front}, {"back", maps.back}, {"diagonal", maps.diagonal}};
+    job.report["heights"] = {{"lowest", maps.lowest}, {"highest", maps.highest}};
+    const std::string overlaps = fmt::format("several triangles cover the same texel in {} places", maps.overlaps);
+    if (maps.overlaps > 0 && overlap_ == Overlap::error) return Error{ErrorCode::bad_option, job.task.input, overlaps};
+    if (maps.overlaps > 0) job.warn(overlaps + "; the first one decides");
+    judge_missed(job, maps);
+    if (maps.behind > 0) {
+        job.warn(fmt::format("{} rays meet only triangles that face the other way; {}", maps.behind,
+                             transfer_.backfaces ? "they count, because of --backfaces"
+                                                 : "--backfaces lets them count, if the high mesh is inside out"));
+    }
+    if (maps.singular > 0) {
+        job.warn(
+            fmt::format("{} texels have no tangent space, because tangents are missing or parallel to normals; "
+                        "they become flat",
+                        maps.singular));
+    }
+    if (maps.backward > 0) {
+        job.warn(fmt::format("{} texels point into the surface: z is negative, which shaders that rebuild z lose",
+                             maps.backward));
+    }
+    if (max_missed_ && missed > *max_missed_) {
+        job.warn(fmt::format("more texels are missed than --max-missed {} allows", *max_missed_));
+        job.raise(ExitCode::findings);
+    }
+    return {};
+}
+
+std::string reach_of(const TransferredMaps& maps) {
+    const auto height = [&](float value) {  // without the rounding of surfaces that touch each other
+        const auto exact = static_cast<double>(value);
+        return std::abs(exact) < 1e-9 * maps.diagonal ? 0.0 : exact;
+    };
+    return fmt::format("rays reach {:.4g} in front and {:.4g} behind; heights are from {:.4g} to {:.4g}", maps.front,
+                       maps.back, height(maps.lowest), height(maps.highest));
+}
+
+void TransferMaps::add(Command& command, const FileOptions& files) {
+    command.group("Maps beside the output");
+    object_.add(command, files, "--object-out",
+                "write the normals in object space; of many inputs a pattern as --name");
+    heights_.add(command, files, "--height-out",
+                 "write the heights: lengths as floats, or from 0 to 1, with the range reported");
+    positions_.add(command, files, "--position-out", "write x, y and z of what rays hit, as floats");
+}
+
+void TransferMaps::amend(Task& task) const {
+    for (const MapOutput* map : {&object_, &heights_, &positions_}) map->amend(task);
+    if (positions_.is_given() && !can_hold(positions_.container_for(task), Encoding::float_))
+        throw UsageError("--position-out: only exr, dds and ktx2 files hold floats");
+}
+
+void TransferMaps::request(TransferOptions& options) const {
+    options.object = object_.is_given();
+    options.heights = heights_.is_given();
+    options.positions = positions_.is_given();
+}
+
+Result<void> TransferMaps::write(Job& job, TransferredMaps& maps) const {
+    if (object_.is_given()) {
+        if (auto done = write_object(job, std::move(maps.object)); !done) return done;
+    }
+    if (heights_.is_given()) {
+        if (auto done = write_heights(job, maps); !done) return done;
+    }
+    return positions_.is_given() ? write_positions(job, maps) : Result<void>();
+}
+
+Result<void> TransferMaps::write_object(Job& job, NormalMap normals) const {
+    const Container container = object_.container_for(job.task);
+    MipChain chain;
+    chain.levels.push_back(std::move(normals));
+    PackOptions with;
+    with.encoding = can_hold_blocks(container) ? Encoding::rgb8 : default_encoding(container);
+    const auto texture = pack(chain, with, {job.threads(), {}});
+    if (!texture) return texture.error();
+    Json report;
+    if (auto done = object_.write(job, *texture, report); !done) return done;
+    job.report["object"] = std::move(report);
+    return {};
+}
+
+Result<void> TransferMaps::write_heights(Job& job, TransferredMaps& maps) const {
+    Json& report = job.report["heights"];
+    if (!heights_.holds_floats(job)) {
+        // A flat map has no range.
+        const float high = maps.highest > maps.lowest ? maps.highest : maps.lowest + 1.0f;
+        stretch_heights(maps.heights, maps.lowest, high, {job.threads(), {}});
+        report["stored"] = {maps.lowest, high};
+    }
+    return heights_.write(job, std::move(maps.heights), report);
+}
+
+Result<void> TransferMaps::write_positions(Job& job, TransferredMaps& maps) const {
+    MipChain chain;
+    chain.levels.emplace_back();
+    chain.levels.front().x = std::move(maps.position[0]);
+    chain.levels.front().y = std::move(maps.position[1]);
+    chain.levels.front().z = std::move(maps.position[2]);
+    PackOptions with;
+    with.encoding = Encoding::float_;
+    auto texture = pack(chain, with, {job.threads(), {}});
+    if (!texture) return texture.error();
+    texture->swizzle.fill(Component::other);  // they are no normals
+    texture->swizzle_known = texture->y_known = false;
+    Json report;
+    if (auto done = positions_.write(job, *texture, report); !done) return done;
+    job.report["positions"] = std::move(report);
+    return {};
+}
+
+}  // namespace tex::cli

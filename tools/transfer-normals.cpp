@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// transfer-normals: makes the normal map of a low mesh from a high one.
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <tex/tex.h>
+
+#include "batch/batch.h"
+#include "batch/repack.h"
+#include "cli/text.h"
+#include "cli/usage_error.h"
+#include "options/high_meshes.h"
+#include "options/mips.h"
+#include "options/rays.h"
+#include "options/tangent_space.h"
+
+namespace {
+
+using namespace tex;
+
+class TransferNormals : public cli::Converter {
+public:
+    explicit TransferNormals(const cli::ProgramRow& row);
+
+private:
+    [[nodiscard]] cli::OutputRules rules() const override;
+    [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
+    [[nodiscard]] Result<void> process(cli::Job& job) override;
+    [[nodiscard]] bool can_be_step() const override { return false; }  // each low mesh has a high one of its own
+    [[nodiscard]] Result<TransferredMaps> cast(cli::Job& job) const;
+    [[nodiscard]] Result<void> write(cli::Job& job, NormalMap map) const;
+
+    cli::HighMeshes high_;
+    cli::TangentSpaceOptions low_;
+    cli::RayOptions rays_;
+    cli::TransferMaps maps_;
+    cli::MipChainOptions mips_;
+};
+
+TransferNormals::TransferNormals(const cli::ProgramRow& row) : Converter(row) {
+    command.usage("LOW HIGH... -o FILE");
+    command.usage("LOW... --high PATTERN --out-dir DIR");
+    command.input("LOW HIGH...",
+                  "meshes (glTF, GLB, OBJ, FBX, PLY ...): the one that gets the map, then those that rays hit");
+    files.add(command, true);
+    high_.add(command);
+    low_.add_low(command);
+    rays_.add(command);
+    maps_.add(command, files);
+    output.add(command, cli::default_encodings(), "up");
+    output.add_engines(command);
+    mips_.add(command, false, "all in dds and ktx2, else none");
+    running.add(command);
+    command.example("transfer-normals rock_low.glb rock_high.glb -o rock_n.dds --size 4096",
+                    "The high mesh's normals as a DXT5nm texture with all its levels.");
+    command.example(
+        "transfer-normals crate_low.fbx crate_high.obj -o crate_n.png --rays straight --subsamples 4 "
+        "--decoder unreal --y down --height-out crate_h.exr --max-missed 0.1",
+        "Hard edges without skew, 16 rays a texel, for Unreal; fails if much is missed.");
+    command.example(
+        "transfer-normals meshes/*_low.glb --high '{dir}/{stem:-_low}_high.glb' --out-dir out "
+        "--name '{stem:-_low}_n.png'",
+        "A folder of pairs at once.");
+}
+
+cli::OutputRules TransferNormals::rules() const {
+    cli::OutputRules rules;
+    rules.batch = Container::dds;
+    rules.joins = !high_.is_given();
+    if (rules.joins) rules.shared = high_.buffers_of(command.inputs());
+    rules.amend = [this](cli::Task& task) {
+        high_.amend(task);
+        maps_.amend(task);
+    };
+    return rules;
+}
+
+Result<void> TransferNormals::check(const std::vector<cli::Task>& tasks) {
+    mips_.check(tasks);
+    for (const cli::Task& task : tasks) {
+        if (task.joined.empty() && !high_.is_given())
+            throw cli::UsageError("no high mesh: give LOW HIGH... -o FILE, or --high PATTERN");
+    }
+    return {};
+}
+
+Result<TransferredMaps> TransferNormals::cast(cli::Job& job) const {
+    const auto low = low_.of_file(job.task.input, 0, job.read_options, {job.threads(), {}});
+    if (!low) return high_.with_order(low.error());
+    const auto high = high_.read(job);
+    if (!high) return high.error();
+    cli::HighMeshes::compare(job, low->selected().part, *high);
+    job.report["tangents"] = name_of(kTangentSourceNames, low->source());
+    TransferOptions with = rays_.transfer();
+    maps_.request(with);
+    if (!job.reached(0.1)) return Error{ErrorCode::cancelled, {}, "cancelled"};
+    return transfer(rays_.extent(), low->space(), *high, with, job.until(0.8));
+}
+
+Result<void> TransferNormals::write(cli::Job& job, NormalMap map) const {
+    const auto chain = build_mip_chain(std::move(map), mips_.options(mips_.levels_for(job.task), {}), job.until(0.85));
+    if (!chain) return chain.error();
+    const cli::OutputOptions own = output.of(job.task.engine);
+    constexpr bool kKnown = true;
+    const PackOptions with =
+        own.pack_options(own.format.value_or(default_encoding(job.task.container)), YAxis::up, kKnown);
+    std::optional<RdoReport> rdo;
+    if (with.rdo.mean > 0.0f) rdo.emplace();
+    auto texture = pack(*chain, with, job.until(0.95), rdo ? &*rdo : nullptr);
+    if (!texture) return texture.error();
+    const auto written = cli::write_levels(job, std::move(*texture), own.write_options(job));
+    if (!written) return written.error();
+    cli::report_texture(job, rays_.extent(), written->levels, with, written->bytes, rdo);
+    return {};
+}
+
+Result<void> TransferNormals::process(cli::Job& job) {
+    auto maps = cast(job);
+    if (!maps) return maps.error();
+    if (auto judged = rays_.judge(job, *maps); !judged) return judged;
+    if (auto written = maps_.write(job, *maps); !written) return written;
+    if (job.task.output != "-") job.say(fmt::format("{}: {}\n", cli::printable(job.task.output), cli::reach_of(*maps)));
+    return write(job, std::move(maps->map));
+}
+
+const cli::Registered<TransferNormals> kRegistered(
+    "transfer-normals", "Makes the normal map of a low mesh from a high one, by rays, with heights and positions.");
+
+}  // namespace
