@@ -3,7 +3,6 @@
 #include <tex/transfer.h>
 
 #include <algorithm>
-#include <cassert>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -17,7 +16,8 @@
 #include "rays/found_reach.h"
 #include "rays/low_triangle.h"
 #include "rays/ray_casts.h"
-#include "stream/nearest.h"
+#include "rows/usable.h"
+#include "surface/nearest.h"
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
@@ -343,11 +343,30 @@ Result<TransferredMaps> cast_all(Extent extent, const TangentSpace& low, const s
 
 }  // namespace
 
+Result<void> validate(const TransferOptions& options) {
+    const auto is_length = [](const Reach& reach) {
+        return reach.unit == Reach::Unit::automatic || (reach.value >= 0.0 && std::isfinite(reach.value));
+    };
+    if (!is_length(options.front)) return bad_option("front: must be 0 or more");
+    if (!is_length(options.back)) return bad_option("back: must be 0 or more");
+    if (!is_length(options.straight_width)) return bad_option("straight_width: must be 0 or more");
+    if (!(options.straight_angle >= 0.0 && options.straight_angle <= 180.0))
+        return bad_option("straight_angle: must be from 0 to 180");
+    if (options.padding < 0) return bad_option("padding: must be 0 or more");
+    if (options.subsamples < 1 || options.subsamples > kMaxSubsamples)
+        return bad_option("subsamples: must be from 1 to 8");
+    return {};
+}
+
 Result<TransferredMaps> transfer(Extent extent, const TangentSpace& low, const std::vector<MeshPart>& high,
                                  const TransferOptions& options, const Execution& execution) {
-    assert(check_part(low.part) && extent.texels() > 0 && options.padding >= 0);
-    assert(options.subsamples >= 1 && options.subsamples <= kMaxSubsamples);
     return guarded([&]() -> Result<TransferredMaps> {
+        if (auto usable = check_usable(extent, "the map"); !usable) return usable.error();
+        if (auto valid = validate(options); !valid) return valid.error();
+        if (auto sound = check_part(low.part); !sound) return sound.error().of(low.file);
+        for (const MeshPart& part : high) {
+            if (auto sound = check_part(part); !sound) return sound.error();
+        }
         if (const auto checked = check_space(low); !checked) return checked.error().of(low.file);
         auto result = cast_all(extent, low, high, options, execution);
         if (!result) return result;

@@ -135,6 +135,9 @@ TEST(Usable, OptionsOutOfRangeAreNamed) {
     EXPECT_EQ(of<IntegrateOptions>([](auto& o) { o.least_z = 0.0f; }), "least_z: must be above 0 and at most 1");
     EXPECT_EQ(of<ConvertOptions>([](auto& o) { o.padding = -1; }), "padding: must be 0 or more");
     EXPECT_EQ(of<ConvertOptions>([](auto& o) { o.subsamples = 9; }), "subsamples: must be from 1 to 8");
+    EXPECT_EQ(of<TransferOptions>([](auto& o) { o.front = {Reach::Unit::percent, -1.0}; }), "front: must be 0 or more");
+    EXPECT_EQ(of<TransferOptions>([](auto& o) { o.straight_angle = 181.0; }), "straight_angle: must be from 0 to 180");
+    EXPECT_EQ(of<TransferOptions>([](auto& o) { o.subsamples = 0; }), "subsamples: must be from 1 to 8");
     EXPECT_EQ(of<PackFileOptions>([](auto& o) { o.level = -1; }), "level: must be 0 or more");
     EXPECT_EQ(of<PackFileOptions>([](auto& o) { o.roughness.emplace(); }), "roughness: needs mip");
     EXPECT_EQ(of<BlendFileOptions>([](auto& o) { o.layers.emplace_back().scale = 1e9f; }),

@@ -11,8 +11,8 @@
 #include <tex/mesh_io.h>
 #include <tex/mesh_selection.h>
 
-#include "batch/name_pattern.h"
 #include "cli/usage_error.h"
+#include "tasks/name_pattern.h"
 
 namespace tex::cli {
 

@@ -8,8 +8,8 @@
 
 #include <tex/mesh.h>
 
-#include "batch/job.h"
 #include "cli/command.h"
+#include "tasks/job.h"
 
 namespace tex::cli {
 

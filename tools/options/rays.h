@@ -10,10 +10,10 @@
 
 #include <tex/transfer.h>
 
-#include "batch/job.h"
 #include "cli/command.h"
 #include "options/conversion.h"
 #include "options/maps.h"
+#include "tasks/job.h"
 
 namespace tex::cli {
 

@@ -84,8 +84,9 @@ struct TransferredMaps {
 // Makes the maps of the low mesh. `high`: the triangles that rays hit, in the same space as `low.part`. Parts need
 // neither normals nor UVs.
 //
-// Preconditions (asserted): every part passes check_part(); extent is valid; the options are in their ranges.
-// Errors: bad_option   the low mesh has no normals, no such set of UVs, not as many tangents as corners; its triangles
+// Errors: bad_data     a part does not pass check_part()
+//         bad_option   the extent is empty or too large; as validate(options); the low mesh has no normals, no such set
+//         of UVs, not as many tangents as corners; its triangles
 //                      cover no texel of the map; `high` is empty; no ray hits anything (the reason says how far apart
 //                      the meshes are)
 //         unsupported  as to_tangent_space(); more than kMaxTriangles triangles in `high`

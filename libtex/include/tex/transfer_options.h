@@ -5,6 +5,7 @@
 
 #include <tex/convert_options.h>
 #include <tex/names.h>
+#include <tex/result.h>
 
 #pragma GCC visibility push(default)
 namespace tex {
@@ -50,6 +51,9 @@ struct TransferOptions {
     // The maps to make besides the one in tangent space.
     bool object = false, heights = false, positions = false;
 };
+
+// Whether every option is in its range. transfer() calls it first. Errors: bad_option, which names the option.
+[[nodiscard]] Result<void> validate(const TransferOptions& options);
 
 }  // namespace tex
 #pragma GCC visibility pop
