@@ -9,13 +9,13 @@
 #include <tex/tex.h>
 
 #include "batch/batch.h"
-#include "batch/repack.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "options/high_meshes.h"
 #include "options/mips.h"
 #include "options/rays.h"
 #include "options/tangent_space.h"
+#include "tasks/written_levels.h"
 
 namespace {
 
