@@ -47,9 +47,9 @@ std::string_view unsupported_reason(const std::string& format, const OIIO::Image
     const bool has_black =
         std::find(spec.channelnames.begin(), spec.channelnames.end(), "K") != spec.channelnames.end();
     if (has_black || jpeg.find('K') != std::string::npos || spec.get_string_attribute("oiio:ColorSpace") == "CMYK") {
-        return "CMYK pictures are not read";
+        return kCmykReason;
     }
-    if (spec.deep) return "deep data have no single value for a texel";
+    if (spec.deep) return kDeepReason;
     if (spec.depth > 1) return "volumes are not read";
     // This decoder cannot give unassociated alpha: it always multiplies colour by alpha.
     if (format == "webp" && spec.alpha_channel >= 0) return "WebP pictures with alpha are not read";

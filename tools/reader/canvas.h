@@ -10,6 +10,12 @@
 
 namespace tex::reader {
 
+// Why pictures of these kinds are refused, and what converts them.
+inline constexpr char kCmykReason[] =
+    "a CMYK picture, which is not read; ImageMagick makes it RGB: convert FILE -colorspace sRGB RGB.png";
+inline constexpr char kDeepReason[] =
+    "deep data have no single value for a texel; OpenImageIO flattens them: oiiotool FILE --flatten -o FLAT.exr";
+
 // Takes the rows of a picture in the order of the file, and hands them over turned as its orientation says (1 to 8, as
 // in TIFF and EXIF; other values count as 1). Rows that are not turned are handed over at once.
 class Canvas {

@@ -105,7 +105,7 @@ bool decode_jpeg(const Task& task, ReaderHeader& header) {
     jpeg_save_markers(&codec, JPEG_APP0 + 1, kWholeMarker);
     jpeg_read_header(&codec, TRUE);
     if (codec.jpeg_color_space == JCS_CMYK || codec.jpeg_color_space == JCS_YCCK)
-        return refuse(header, ErrorCode::unsupported, "CMYK pictures are not read");
+        return refuse(header, ErrorCode::unsupported, kCmykReason);
     jpeg_calc_output_dimensions(&codec);
     header.width = static_cast<std::int32_t>(codec.image_width);
     header.height = static_cast<std::int32_t>(codec.image_height);

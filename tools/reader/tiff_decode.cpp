@@ -78,7 +78,7 @@ bool refuse_damaged(ReaderHeader& header) {
 std::string unsupported_reason(TIFF* tiff, const Layout& layout) {
     std::uint32_t depth = 1;
     TIFFGetField(tiff, TIFFTAG_IMAGEDEPTH, &depth);
-    if (layout.photometric == PHOTOMETRIC_SEPARATED) return "CMYK pictures are not read";
+    if (layout.photometric == PHOTOMETRIC_SEPARATED) return kCmykReason;
     if (depth > 1) return "volumes are not read";
     if (layout.format == SAMPLEFORMAT_COMPLEXINT || layout.format == SAMPLEFORMAT_COMPLEXIEEEFP)
         return "complex numbers are not read";

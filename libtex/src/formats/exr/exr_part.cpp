@@ -273,7 +273,9 @@ std::optional<Imf::TileDescription> tiles_of(const Imf::Header& header) {
 Result<Extent> check_header(const std::string& path, const Imf::Header& header, std::int64_t file_size,
                             const ReadOptions& options) {
     if (header.hasType() && !Imf::isImage(header.type())) {
-        return Error{ErrorCode::unsupported, path, "deep EXR data have no single value for a texel"};
+        return Error{ErrorCode::unsupported, path,
+                     "deep data have no single value for a texel; OpenImageIO flattens them: oiiotool FILE --flatten "
+                     "-o FLAT.exr"};
     }
     const Imath::Box2i& window = header.dataWindow();
     const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;

@@ -208,15 +208,8 @@ private:
     Scale scale_;
 };
 
-bool is_ktx1(std::span<const std::byte> head) {
-    constexpr unsigned char kMark[] = {0xab, 'K', 'T', 'X', ' ', '1', '1', 0xbb};
-    return head.size() >= sizeof kMark && std::memcmp(head.data(), kMark, sizeof kMark) == 0;
-}
-
 Result<void> ReaderRows::start(const ReadOptions& options) {
     const std::optional<std::string> format = format_of(file_.head());
-    if (!format && is_ktx1(file_.head()))
-        return Error{ErrorCode::unsupported, file_.path(), "a KTX file of version 1: only version 2 is read"};
     if (!format) return Error{ErrorCode::bad_data, file_.path(), "not a picture, or of a type that is not supported"};
     const Result<int> input = descriptor_of(file_, options, memory_);
     if (!input) return input.error();
