@@ -80,7 +80,7 @@ TEST(Asc, RefusesWhatIsDamagedAndNamesTheLine) {
     EXPECT_EQ(reason_of("ncols 2\nnrows 1\n1 2,5\n"), "line 3: \"2,5\" is not a number");
     EXPECT_EQ(reason_of("ncols 2\nnrows two\n"), "line 2: \"two\" is not a number of nrows");
     EXPECT_EQ(reason_of("ncols 2\nnrows 1\nheight 3\n1 2\n"), "line 3: \"height\" is not a word of an ESRI ASCII grid");
-    EXPECT_EQ(reason_of("ncols 2\nnrows 1\nncols 2\n1 2\n"), "line 3: ncols stands there twice");
+    EXPECT_EQ(reason_of("ncols 2\nnrows 1\nncols 2\n1 2\n"), "line 3: ncols appears twice");
     EXPECT_EQ(reason_of("ncols 0\nnrows 1\n1 2\n"), "claims 0x1 texels");
     EXPECT_EQ(reason_of("ncols -3\nnrows nan\n1 2\n"), "claims 0x0 texels");
     EXPECT_EQ(reason_of("ncols 1.5\nnrows 1\n1 2\n"), "claims 0x1 texels");

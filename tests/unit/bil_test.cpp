@@ -101,7 +101,7 @@ TEST_F(Bil, RefusesWhatMakesNoSense) {
     EXPECT_NE(alone.error().reason.find("cannot read its header "), std::string::npos) << alone.error().reason;
     EXPECT_EQ(reason_of("", "abc"), "h.bil: 3 bytes, but its header wants 4");
     EXPECT_EQ(reason_of("SKIPBYTES 1", "abcd"), "h.bil: 4 bytes, but its header wants 5");
-    EXPECT_EQ(reason_of("NBANDS 3", "abcd"), "h.hdr: 3 bands, but heights are one");
+    EXPECT_EQ(reason_of("NBANDS 3", "abcd"), "h.hdr: 3 bands, but heights need one");
     EXPECT_EQ(reason_of("NBITS 4", "abcd"), "h.hdr: 4 bits of an integer are not supported");
     EXPECT_EQ(reason_of("NBITS 64\nPIXELTYPE FLOAT", "abcd"), "h.hdr: 64 bits of a float are not supported");
     EXPECT_EQ(reason_of("PIXELTYPE COMPLEX", "abcd"), "h.hdr: pixeltype is \"complex\"");

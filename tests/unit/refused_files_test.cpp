@@ -28,7 +28,7 @@ TEST(RefusedFiles, APointerOfGitLfsIsOneWhateverItsName) {
         "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a214614ab2935c943f9e0ff69d22eadbb8f32b1258da\nsize "
         "12345\n";
     for (const char* name : {"a.png", "a.dds", "a.r16", "a.hgt", "a.bil", "a.tif"})
-        EXPECT_EQ(reason_of(kPointer, name), "a pointer of Git LFS, not the file itself; \"git lfs pull\" fetches it")
+        EXPECT_EQ(reason_of(kPointer, name), "a Git LFS pointer, not the file itself; \"git lfs pull\" fetches it")
             << name;
 }
 
@@ -45,10 +45,10 @@ TEST(RefusedFiles, FormatsOfDdsHaveTheirNames) {
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no ../shared/data/wild";
     const std::pair<const char*, const char*> files[] = {
         {"l6v5u5.dds",
-         "the pixel format L6V5U5, signed x and y with a brightness, is not supported; "
+         "the pixel format L6V5U5, signed x and y with luminance, is not supported; "
          "\"texconv -f R8G8_SNORM\" converts it"},
         {"x8l8v8u8.dds",
-         "the pixel format X8L8V8U8, signed x and y with a brightness, is not supported; "
+         "the pixel format X8L8V8U8, signed x and y with luminance, is not supported; "
          "\"texconv -f R8G8_SNORM\" converts it"},
         {"rgbg.dds",
          "the pixel format RGBG, in which two texels share red and blue, is not supported; "

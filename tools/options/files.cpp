@@ -100,8 +100,8 @@ Result<std::vector<Input>> FileOptions::list_inputs(const Command& command) cons
     for (const std::string& input : command.inputs()) {
         if (tiles) {
             if (!has_grid(input))
-                throw UsageError(fmt::format("--tiles needs {{x}} and {{y}} in the name of the input, {} has not both",
-                                             printable(input)));
+                throw UsageError(fmt::format(
+                    "--tiles needs {{x}} and {{y}} in the name of the input, {} lacks one of them", printable(input)));
             auto found = grid_files(input);
             if (!found) return found.error();
             for (GridFile& file : *found) inputs.push_back({std::move(file.name), 0, input, std::move(file.place)});

@@ -58,7 +58,7 @@ Result<AscHeader> read_asc_header(WordReader& words) {
         const std::size_t key = key_of(*word);
         if (key == kAscKeyCount) return words.error(words.shown() + " is not a word of an ESRI ASCII grid");
         const std::string name(kAscKeys[key]);
-        if (header.values[key]) return words.error(name + " stands there twice");
+        if (header.values[key]) return words.error(name + " appears twice");
         const Result<std::string_view> number = words.next();
         if (!number) return number.error();
         header.values[key] = number_in(*number);

@@ -124,7 +124,7 @@ Result<RawPlace> read_bil_header(const std::vector<std::byte>& text, const std::
     for (const Result<std::int64_t>* count : {&width, &height, &bands, &skip}) {
         if (!*count) return count->error();
     }
-    if (*bands > 1) return Error{ErrorCode::unsupported, path, std::to_string(*bands) + " bands, but heights are one"};
+    if (*bands > 1) return Error{ErrorCode::unsupported, path, std::to_string(*bands) + " bands, but heights need one"};
     const Result<Extent> extent = claimed_extent(path, *width, *height, options);
     if (!extent) return extent.error();
 

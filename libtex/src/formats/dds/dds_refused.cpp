@@ -106,7 +106,7 @@ std::string refused_legacy(const DdsPixelFormat& pixel_format) {
     if (found != std::end(kRefusedCodes)) return refused(found->what, kBytes);
     if ((flags & kDdpfBumpLuminance) != 0) {
         const char* const name = pixel_format.bit_count == 16 ? "L6V5U5" : "X8L8V8U8";
-        return refused("the pixel format " + std::string(name) + ", signed x and y with a brightness,", kSigned);
+        return refused("the pixel format " + std::string(name) + ", signed x and y with luminance,", kSigned);
     }
     return (flags & kDdpfPalette8) != 0 ? refused("a palette of 8 bits", kBytes) : "";
 }

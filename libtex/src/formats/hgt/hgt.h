@@ -21,9 +21,9 @@ namespace tex {
 // Whether a file is called .hgt, in any case.
 bool is_hgt(const InputFile& file, const ReadOptions& options);
 
-// Opens a file of 3601x3601 (one second of arc), 1801x3601 (one second, two from east to west: beyond 50 degrees of
-// latitude) or 1201x1201 heights (three seconds). It must outlive the rows; several threads may decode at once. Errors:
-// bad_data (another length), unsupported (more than options.max_texels), io, out_of_memory.
+// Opens a file of 3601x3601 (one second of arc), 1801x3601 (one second, two from east to west, as in high
+// latitudes) or 1201x1201 heights (three seconds). It must outlive the rows; several threads may decode at once.
+// Errors: bad_data (another length), unsupported (more than options.max_texels), io, out_of_memory.
 Result<std::unique_ptr<RowSource>> open_hgt(InputFile& file, const ReadOptions& options);
 
 }  // namespace tex

@@ -6,7 +6,7 @@ namespace tex {
 
 Result<std::unique_ptr<RowSource>> refuse_lfs_pointer(InputFile& file, const ReadOptions&) {
     return Error{ErrorCode::bad_data, file.path(),
-                 "a pointer of Git LFS, not the file itself; \"git lfs pull\" fetches it"};
+                 "a Git LFS pointer, not the file itself; \"git lfs pull\" fetches it"};
 }
 
 }  // namespace tex

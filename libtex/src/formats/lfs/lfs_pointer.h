@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// lfs_pointer.h: files that Git LFS has not fetched. In their place is a small text, which other readers would call
+// lfs_pointer.h: files that Git LFS has not fetched. A small text is in their place, which other readers would call
 // damaged.
 
 #pragma once
