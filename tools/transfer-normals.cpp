@@ -88,7 +88,7 @@ Result<void> TransferNormals::check(const std::vector<cli::Task>& tasks) {
 }
 
 Result<TransferredMaps> TransferNormals::cast(cli::Job& job) const {
-    const auto low = low_.of_file(job.task.input, 0, job.read_options, {job.threads(), {}});
+    const auto low = low_.of_low(job.task.input, job.read_options, {job.threads(), {}});
     if (!low) return high_.with_order(low.error());
     const auto high = high_.read(job);
     if (!high) return high.error();

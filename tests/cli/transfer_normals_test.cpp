@@ -210,6 +210,22 @@ TEST_F(TransferNormals, ExplainsWhatIsWrongWithTheMeshes) {
     refuses({"materials.obj", "sheet.obj", "-o", "x.png"}, 4, "--material chooses one");
 }
 
+TEST_F(TransferNormals, MakesOneUdimTile) {
+    std::string moved;  // the sheet in tile 1002
+    for (const std::string& line : lines_of(kSheetObj)) {
+        const std::size_t v = line.rfind(' ');
+        if (line.starts_with("vt "))
+            moved += "vt " + std::to_string(1.0 + std::stod(line.substr(3))) + line.substr(v) + "\n";
+        else
+            moved += line + "\n";
+    }
+    scratch_.write("moved.obj", moved);
+    does({"sheet.obj", "sheet.obj", "-o", "a.png"});
+    does({"moved.obj", "sheet.obj", "-o", "b.png", "--tile", "1002"});
+    EXPECT_EQ(scratch_.read("a.png"), scratch_.read("b.png"));
+    refuses({"moved.obj", "sheet.obj", "-o", "c.png", "--tile", "1001"}, 4, "has no triangle in UDIM tile 1001");
+}
+
 TEST_F(TransferNormals, OutputsThatCannotBeWrittenAreAnError) {
     scratch_.write("old.png", "old");
     scratch_.write("old.exr", "old");

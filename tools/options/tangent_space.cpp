@@ -69,6 +69,10 @@ void TangentSpaceOptions::add_low(Command& command) {
     command.group("Low mesh");
     selection_.in_scene = true;
     add_parts(command, "only the mesh of this node");
+    command
+        .option("--tile", "N", "only the triangles in this UDIM tile, such as 1002",
+                [this](const std::string& text) { tile_ = parse_int(text, 1001, 9999); })
+        .preset = "all";
     add_decoder(command, "the engine that decodes the map");
     add_tangents(command);
 }
@@ -173,9 +177,9 @@ Result<MeshSpace> TangentSpaceOptions::output(int tile, const ReadOptions& optio
     return read(to_mesh_.empty() ? mesh_ : to_mesh_, tangents_, decoder_, tile, options, execution);
 }
 
-Result<MeshSpace> TangentSpaceOptions::of_file(const std::string& file, int tile, const ReadOptions& options,
-                                               const Execution& execution) const {
-    return read(file, tangents_, decoder_, tile, options, execution);
+Result<MeshSpace> TangentSpaceOptions::of_low(const std::string& file, const ReadOptions& options,
+                                              const Execution& execution) const {
+    return read(file, tangents_, decoder_, tile_, options, execution);
 }
 
 Result<MeshSpace> TangentSpaceOptions::read(const std::string& file, std::optional<TangentSource> tangents,

@@ -60,7 +60,8 @@ public:
     // --from.
     void add_input(Command& command, bool with_from = false);
 
-    // For a command whose inputs are meshes, which it places in the scene: --decoder, --tangents, the choice of parts.
+    // For a command whose inputs are meshes, which it places in the scene: --decoder, --tangents, --tile, the choice of
+    // parts.
     void add_low(Command& command);
 
     [[nodiscard]] bool has_mesh() const { return !mesh_.empty(); }
@@ -84,9 +85,9 @@ public:
     [[nodiscard]] Result<MeshSpace> input(int tile, const ReadOptions& read, const Execution& execution) const;
     [[nodiscard]] Result<MeshSpace> output(int tile, const ReadOptions& read, const Execution& execution) const;
 
-    // The same of any file, with the options of the output.
-    [[nodiscard]] Result<MeshSpace> of_file(const std::string& file, int tile, const ReadOptions& read,
-                                            const Execution& execution) const;
+    // The same of an input that is a mesh.
+    [[nodiscard]] Result<MeshSpace> of_low(const std::string& file, const ReadOptions& read,
+                                           const Execution& execution) const;
 
 private:
     void check(const Command& command) const;
@@ -120,6 +121,7 @@ private:
     };
 
     std::string mesh_, to_mesh_;
+    int tile_ = 0;  // of low meshes; 0: all triangles
     MeshSelection selection_;
     Decoder decoder_ = Decoder::gltf;
     std::optional<Decoder> decoder_in_;

@@ -10,7 +10,8 @@
 // (1), 2013). The side of an edge that the ray passes on is computed from the two ends of the edge alone, by operations
 // whose result only changes its sign if the ends change places. So two triangles with a common edge agree, and the ray
 // hits at least one of them; a ray that meets the edge itself hits both. The order in which boxes are visited does not
-// matter: the hit is the least (t, triangle) of all triangles that are hit.
+// matter: the hit is the least (t, triangle) of all triangles that are hit. There is one exception: a triangle that the
+// ray sees edge-on, so that its area is nothing but rounding, may be passed over if the ray does not meet its box.
 
 #pragma once
 
