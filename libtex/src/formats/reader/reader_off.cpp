@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Replaces the other sources of this folder in a build without the reader programs (TEX_READER=OFF): whatever needs one is unsupported.
+// Replaces the other sources of this folder in a build without the reader programs (TEX_READER=OFF): whatever needs one
+// is unsupported.
 
 #include "formats/reader/reader.h"
 #include "formats/reader/reader_mesh.h"
