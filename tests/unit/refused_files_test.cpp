@@ -34,7 +34,7 @@ TEST(RefusedFiles, APointerOfGitLfsIsOneWhateverItsName) {
 
 TEST(RefusedFiles, APngOfXcodeIsOne) {
     EXPECT_EQ(
-        reason_of(std::string_view("\x89PNG\r\n\x1a\n\0\0\0\4CgBI\x50\0\x20\2\x2b\xd5\xb3\x7f\0\0\0\rIHDR", 36),
+        reason_of(std::string_view("\x89PNG\r\n\x1a\n\0\0\0\4CgBI\x50\0\x20\2\x2b\xd5\xb3\x7f\0\0\0\rIHDR", 32),
                   "a.png"),
         "a PNG that Xcode changed for iPhones (CgBI); \"xcrun pngcrush -revert-iphone-optimizations\" or pngdefry "
         "converts it");
