@@ -72,6 +72,28 @@ TEST_F(BuildFiles, ACacheIsAFolderThatWasMadeForIt) {
     refuses({"--cache", "cache"}, "is a cache of another version");
 }
 
+// A BIL file is two files: the header counts as the input does.
+TEST_F(BuildFiles, TheHeaderOfABilIsReadAndNeverReplaced) {
+    std::string heights;
+    for (int k = 0; k < 2 * 64; ++k) heights += static_cast<char>(k * k % 11);
+    const std::string header = "NROWS 8\nNCOLS 8\nNBITS 16\nPIXELTYPE SIGNEDINT\nBYTEORDER ";
+    scratch_.write("dem.bil", heights);
+    scratch_.write("dem.hdr", header + "I\n");
+    write_rule("match = \"dem.bil\"\nname = \"out/dem_n.png\"\n");
+    ASSERT_EQ(build({"--depfile", "d"}).code, 0);
+    EXPECT_NE(scratch_.read("d").find("dem.hdr"), std::string::npos);
+    const std::string first = scratch_.read("out/dem_n.png");
+    EXPECT_NE(build().out.find("\"current\":1"), std::string::npos);
+    scratch_.write("dem.hdr", header + "M\n");
+    const Ran again = build();
+    EXPECT_NE(again.out.find("dem.hdr changed"), std::string::npos) << again.out;
+    EXPECT_NE(scratch_.read("out/dem_n.png"), first);
+    scratch_.write("normals.toml",
+                   "version = 1\n[[rule]]\nmatch = \"dem.bil\"\nname = \"dem.hdr\"\n"
+                   "steps = [ { bake = { container = \"png\" } } ]\n");
+    refuses({}, "the output dem.hdr of dem.bil is dem.hdr, which belongs to dem.bil");
+}
+
 TEST_F(BuildFiles, NothingButEntriesIsRemovedFromACache) {
     ASSERT_EQ(build({"--cache", "cache"}).code, 0);
     ASSERT_EQ(entries().size(), 5u);

@@ -12,6 +12,7 @@
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "tasks/other_parts.h"
 
 namespace tex::cli {
 
@@ -179,17 +180,7 @@ Result<Plane<float>> read_channel(Job& job, const ChannelFile& source, const Exe
 }
 
 void HeightReader::add_header_file(Task& task) {
-    namespace fs = std::filesystem;
-    fs::path path(task.input);
-    std::string extension = path.extension().string();
-    for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c;
-    if (extension != ".bil" && extension != ".bip" && extension != ".bsq" && extension != ".flt") return;
-    for (const char* header : {".hdr", ".HDR"}) {  // as the reader looks for it
-        std::error_code error;
-        if (!fs::exists(path.replace_extension(header), error)) continue;
-        task.own.push_back(path.string());
-        return;
-    }
+    for (std::string& part : other_parts(task.input, task.input)) task.own.push_back(std::move(part));
 }
 
 Error HeightReader::with_remedy(const Error& error) {

@@ -11,6 +11,7 @@
 #include "cli/text_file.h"
 #include "cli/usage_error.h"
 #include "tasks/name_pattern.h"
+#include "tasks/other_parts.h"
 #include "tree/state.h"
 
 namespace tex::cli {
@@ -32,7 +33,11 @@ void TreeFiles::add_inputs(const std::vector<Recipe>& recipes, const std::vector
                            const std::string& root) {
     std::unordered_set<std::string> made;
     for (const BuildTask& task : tasks) {
-        read_.add(path_from(root, task.input), "the input " + printable(task.input));
+        const std::string path = path_from(root, task.input);
+        read_.add(path, "the input " + printable(task.input));
+        for (const std::string& part : other_parts(task.input, path))
+            read_.add(path_from(root, part),
+                      fmt::format("{}, which belongs to {}", printable(part), printable(task.input)));
         made.insert(task.outputs.begin(), task.outputs.end());
     }
     for (const Recipe& recipe : recipes) {

@@ -13,7 +13,7 @@ namespace tex {
 // A sentence about a DXGI_FORMAT.
 [[nodiscard]] std::string refused_dxgi(std::uint32_t dxgi);
 
-// A sentence about a legacy pixel format; empty if it is none of those that have a name.
+// Describes a legacy pixel format in one sentence. Empty if the format has no name.
 [[nodiscard]] std::string refused_legacy(const DdsPixelFormat& pixel_format);
 
 }  // namespace tex

@@ -3,6 +3,7 @@
 #include "formats/exr/exr_reader.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <memory>
 #include <utility>
@@ -111,14 +112,16 @@ Result<void> ExrReader::read_table(std::uint64_t place) {
 // the tile and of the level, each across and down; then its size in bytes. All are 32-bit integers.
 Result<void> ExrReader::read_chunk(int level, int i, int j, ChunkDecoder& decoder) const {
     const Level& of = levels_[static_cast<std::size_t>(level)];
-    std::vector<std::int32_t> expected;
-    if (part_) expected.push_back(*part_);
-    if (has_tiles_)
-        expected.insert(expected.end(), {i, j, level, level});
-    else
-        expected.push_back(header_.dataWindow().min.y + j * of.chunk.height);
-    std::vector<std::int32_t> head(expected.size() + 1);
-    const std::size_t head_bytes = head.size() * sizeof head[0];
+    std::array<std::int32_t, 5> expected{};
+    std::size_t fields = 0;
+    if (part_) expected[fields++] = *part_;
+    if (has_tiles_) {
+        for (const int field : {i, j, level, level}) expected[fields++] = field;
+    } else {
+        expected[fields++] = header_.dataWindow().min.y + j * of.chunk.height;
+    }
+    std::array<std::int32_t, 6> head{};  // with the size
+    const std::size_t head_bytes = (fields + 1) * sizeof head[0];
 
     const auto size = static_cast<std::uint64_t>(*file_->size());
     const std::uint64_t place = table_[of.first + static_cast<std::size_t>(j) * static_cast<std::size_t>(of.across) +
@@ -131,9 +134,9 @@ Result<void> ExrReader::read_chunk(int level, int i, int j, ChunkDecoder& decode
         return {};
     };
     if (Result<void> done = read(place, reinterpret_cast<std::byte*>(head.data()), head_bytes); !done) return done;
-    if (!std::equal(expected.begin(), expected.end(), head.begin()))
+    if (!std::equal(expected.begin(), expected.begin() + static_cast<std::ptrdiff_t>(fields), head.begin()))
         return damaged("the table of chunks does not say where they are");
-    const auto count = static_cast<std::uint64_t>(static_cast<std::uint32_t>(head.back()));
+    const auto count = static_cast<std::uint64_t>(static_cast<std::uint32_t>(head[fields]));
     if (count > size_of(of.chunk, texel_bytes_)) return damaged("a chunk is larger than its texels");
     if (count > size - place - head_bytes) return damaged("the file ends too early");
     decoder.bytes.resize(count);

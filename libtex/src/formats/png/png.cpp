@@ -149,7 +149,7 @@ Result<void> PngRows::finish() {
     return libpng_->finish();
 }
 
-// Xcode puts a chunk of its own before the header and leaves out that of the compressed data.
+// Xcode writes the chunk CgBI before the header, and compressed data without the header of zlib.
 bool is_made_for_iphones(const InputFile& file) {
     constexpr std::size_t kFirstType = 12;
     constexpr std::string_view kType = "CgBI";
