@@ -2,7 +2,6 @@
 
 #include <tex/source.h>
 
-#include "files/input_file.h"
 #include "stream/normal_source.h"
 #include "threads/guard.h"
 
@@ -11,9 +10,8 @@ namespace tex {
 Result<Source> read_normals(const std::string& path, const SourceOptions& options, bool base_only,
                             const Execution& execution) {
     return guarded([&]() -> Result<Source> {
-        Result<InputFile> file = InputFile::open(path);
-        if (!file) return file.error();
-        return read_normals(*file, options, base_only, execution);
+        FileMap map(path, options.read);
+        return read_normals(map, options, base_only, execution);
     });
 }
 

@@ -35,6 +35,7 @@ struct LastStep {
                                                            : pack_stream(*map, output, container, options, execution);
         if (!done) return done.error();
         report.pack = done->pack;
+        if (map != nullptr) map->report(report);
         report.maps.push_back({input, done->source});
         return take(*done);
     }
@@ -43,6 +44,7 @@ struct LastStep {
                                                             : blend_stream(*map, output, container, options, execution);
         if (!done) return done.error();
         report.pack = done->pack;
+        if (map != nullptr) map->report(report);
         report.maps.push_back({input, done->source});
         for (std::size_t k = 0; k < done->details.size(); ++k)
             report.maps.push_back({options.layers[k].input, done->details[k]});
@@ -80,7 +82,7 @@ Result<StepsReport> apply_steps(const std::string& input, const std::vector<Step
     return guarded([&]() -> Result<StepsReport> {
         if (auto valid = validate(steps); !valid) return valid.error();
         StepsReport report;
-        const std::unique_ptr<MapSource> map = made_map(input, steps, steps.size() - 1, execution, report);
+        const std::unique_ptr<MapSource> map = made_map(input, steps, steps.size() - 1, execution);
         const LastStep last{map.get(), input, output, container, execution, report};
         if (const Result<void> done = std::visit(last, steps.back()); !done) return done.error().of(input);
         return report;

@@ -51,8 +51,8 @@ public:
     // they may continue past the last row: row `height` is row 0 again.
     void bake(int j, NormalRow out);
 
-    // The next row of heights that bake() will request. It may lie beyond the border (see height_index()).
-    [[nodiscard]] int next_height() const { return next_; }
+    // Goes on with row j, which need not follow the last one.
+    void go_to(int j) { next_ = j - gradient_.radius; }
 
 private:
     void fetch();

@@ -63,6 +63,12 @@ void SwizzleEvidence::add_row(int j, const float* const (&channels)[4]) {
     }
 }
 
+// If red varies and the colours are not grey, the layout is rgb, whatever else there is: see layout().
+bool SwizzleEvidence::is_certain() const {
+    const auto examined = [this](int side) { return static_cast<double>((side + step_ - 1) / step_); };
+    return !channels_[0].is_constant() && off_grey_ > kGrey * examined(extent_.width) * examined(extent_.height);
+}
+
 Swizzle SwizzleEvidence::layout() const {
     // If no texel is negative, values are taken as unsigned.
     const bool is_signed =
@@ -74,7 +80,6 @@ Swizzle SwizzleEvidence::layout() const {
     constexpr double kNotUnit = 0.25;  // far beyond quantisation and filtering
     // Floats without a negative value may still be signed: a flat map is 0, 0, 1.
     const bool is_unit = rgb_error <= kNotUnit || (is_float_ && signed_.rgb / count <= kNotUnit);
-    constexpr double kGrey = 4.0 / 255.0;  // the same grey in 5 and in 6 bits differs by this much
     const bool is_grey = off_grey_ / count <= kGrey;
     if (is_astc_ && is_grey && !(a.least > 1.0f - kConstant)) return named("ra");
     if (r.is_constant() && b.is_constant() && (!a.is_constant() || !is_unit)) return named("dxt5nm");

@@ -19,6 +19,9 @@ public:
     // Adds row j of the level: its channels R, G, B and A. Each row comes once and in order. Some rows are skipped.
     void add_row(int j, const float* const (&channels)[4]);
 
+    // Whether the rows that are still to come cannot change the layout.
+    [[nodiscard]] bool is_certain() const;
+
     // The layout, according to what has been added so far, which must include row 0.
     [[nodiscard]] Swizzle layout() const;
 
@@ -35,6 +38,8 @@ private:
         double rgb = 0.0;
         double rxgb = 0.0;
     };
+
+    static constexpr double kGrey = 4.0 / 255.0;  // the same grey in 5 and in 6 bits differs by this much
 
     const Extent extent_;
     const bool is_float_;

@@ -2,7 +2,6 @@
 
 #include "stream/bake_stream.h"
 
-#include <memory>
 #include <utility>
 #include <vector>
 
@@ -12,8 +11,8 @@
 #include "stream/height_stage.h"
 #include "stream/level_stage.h"
 #include "stream/open_heights.h"
-#include "stream/shared_writer.h"
 #include "stream/slope_collector.h"
+#include "stream/targets.h"
 #include "stream/terrain_rows.h"
 #include "stream/usual_slope.h"
 #include "threads/parallel.h"
@@ -36,46 +35,41 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
     Result<Heights> heights = open_heights(file, order, options, gradient, part_of(execution, 0.0, filled));
     if (!heights) return heights.error();
     const Execution onward = part_of(execution, filled, 1.0);
-    const Extent read = heights->rows->extent(), extent = heights->window ? heights->window->tile : read;
+    const Extent extent = heights->window ? heights->window->tile : heights->rows->extent();
     BakeFileReport report;
     const int first = first_level(options.mip, extent);
     report.extent = level_extent(extent, first);
     if (any_holds_levels(container, options.level_names, options.more))
         report.levels = levels_to_build(options.mip, extent);
-    std::vector<FileTarget> targets = {{{output, options.level_names}, container, options.pack, options.write}};
-    add_targets(options.more, {}, targets);
-    const Result<std::unique_ptr<StripWriter>> opened = open_targets(targets, report.extent, report.levels);
-    if (!opened) return opened.error();
-    StripWriter& writer = **opened;
-    RowStream stream(*heights->rows, file.path(), -first, first + report.levels, writer, onward, sizes, extent);
-    if (heights->linear) stream.convert([&](Image& rows, int count) { return heights->linear->convert(rows, count); });
+    std::vector<FileTarget> files = {{output, options.level_names, container, options.pack, options.write}};
+    add_targets(options.more, {}, files);
+    Targets targets;
+    if (const Result<void> opened = targets.open(files, report.extent, report.levels); !opened) return opened.error();
     SlopeCollector slopes(steepest_slope(options.pack.encoding), options.slopes);
     UsualSlope usual(report.extent);
-    stream.watch([&](const Strip& strip) {
-        if (strip.level != 0) return;
-        slopes.add(strip.map, 0, strip.height);
-        for (int j = 0; j < strip.height; ++j) {
-            if (usual.wants(strip.first + j)) usual.add({strip.map.x.row(j), strip.map.y.row(j), strip.map.z.row(j)});
+    const WatchRows seen = [&](const LevelRows& rows) {
+        if (rows.level != 0) return;
+        slopes.add(rows.map, 0, rows.height);
+        for (int j = 0; j < rows.height; ++j) {
+            if (usual.wants(rows.first + j)) usual.add({rows.map.x.row(j), rows.map.y.row(j), rows.map.z.row(j)});
         }
-    });
-    HeightFieldHead head = head_of(extent, options, heights->stated);
-    head.wrap_x = heights->options.wrap_x;
-    head.wrap_y = heights->options.wrap_y;
-    HeightStage stage(read, heights->source, heights->options, gradient, head,
-                      heights->window ? without_margins(*heights->window, stream.sink()) : stream.sink(),
-                      std::move(heights->last));
-    LevelStage levels(extent, first + report.levels, heights->window ? 0 : stage.start(),
-                      counted_from_base(options.mip, first), stream.strips());
-    if (const Result<void> done = stream.run(stage, levels); !done) return done.error();
-    if (const Result<void> done = writer.commit(); !done) return done.error();
-    report.bytes = writer.file_bytes();
-    report.rdo = writer.rdo();
+    };
+    const HeightCounts before = heights->counts;
+    Flow flow;
+    flow.set_rows_together(targets.rows_together());
+    const BakedRows baked = add_bake(flow, *heights, file.path(), options, gradient);
+    const MadeLevels levels{-first, first + report.levels, counted_from_base(options.mip, first)};
+    add_levels(flow, *baked.normals, levels, targets, seen);
+    if (const Result<void> done = flow.run(onward, sizes); !done) return done.error();
+    if (const Result<void> done = targets.commit(); !done) return done.error();
+    report.bytes = targets.bytes(Content::normals);
+    report.rdo = targets.rdo();
     const auto* const terrain = dynamic_cast<const TerrainRows*>(heights->rows.get());
     HeightCounts counts = heights->counts;
-    counts += terrain != nullptr ? terrain->counts() : stage.counts();
+    if (terrain != nullptr) (counts = before) += terrain->counts();
     report.heights = report_of(counts, heights->deband, heights->stored);
     report.heights.remark = terrain != nullptr ? terrain->remark() : heights->remark;
-    report.strength = {head.bumpiness_x, head.bumpiness_y};
+    report.strength = {baked.head.bumpiness_x, baked.head.bumpiness_y};
     report.is_stated = !options.strength && heights->stated;
     report.usual_slope = usual.slope();
     report.slopes = slopes.range();

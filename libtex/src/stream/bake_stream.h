@@ -8,7 +8,7 @@
 #include <tex/pipeline.h>
 
 #include "files/input_file.h"
-#include "stream/row_stream.h"
+#include "stream/flow.h"
 
 namespace tex {
 

@@ -30,43 +30,30 @@ std::optional<RowsInStep> rows_in_step(Extent source, Extent result, const UvMap
     return step;
 }
 
-ArrivingMap::ArrivingMap(const TextureRows& texture, Extent extent, const Sources& sources, const UnpackRule& rule,
-                         LayoutFinder* finder, MapInspector* inspector, const RowsInStep& step)
-    : extent_(extent), step_(step), shelf_(extent.height, 0, {step.head, 0, false}), rows_(extent.width, 3),
-      unpack_(texture, extent, sources, rule, std::nullopt, finder, inspector, sink()) {}
-
-NormalSink ArrivingMap::sink() {
-    return {[this](int) {
-                row_ = rows_.make();
-                return NormalRow{row_->row(0), row_->row(1), row_->row(2)};
-            },
-            [this](int j) {
-                shelf_.put(j, {{row_->row(0), row_->row(1), row_->row(2)}, std::move(row_)});
-            }};
-}
-
-bool ArrivingMap::is_ready(int j) const { return shelf_.has(std::min(j + step_.ahead, extent_.height - 1)); }
-
-VectorRow ArrivingMap::row(int j) const {
-    const ShelfRow& row = shelf_.at(j);
-    return {row.planes[0], row.planes[1], row.planes[2]};
-}
-
-BlendStage::BlendStage(const PlacedMaps& maps, std::vector<ArrivingMap*> arriving, NormalSink sink)
-    : arriving_(std::move(arriving)), sink_(std::move(sink)), blend_(maps) {}
-
-void BlendStage::put(const Image& rows, int count) {
-    arrived_ += count;
-    for (ArrivingMap* const map : arriving_) map->put(rows, count);
-    const auto is_ready = [this] {
-        return next_ < arrived_ && std::all_of(arriving_.begin(), arriving_.end(),
-                                               [this](const ArrivingMap* map) { return map->is_ready(next_); });
-    };
-    for (; is_ready(); ++next_) {
-        blend_.make(next_, sink_.place(next_));
-        sink_.finish(next_);
-        for (ArrivingMap* const map : arriving_) map->release(next_);
+std::vector<Need> BlendStage::needs(int first, int end) const {
+    std::vector<Need> needs;
+    for (const MapInStep& map : in_step_) {
+        const int height = extent().height;
+        if (map.step.head > 0) needs.push_back({map.rows, 0, map.step.head});
+        needs.push_back({map.rows, std::max(0, first - map.step.behind), std::min(height, end + map.step.ahead)});
     }
+    return needs;
+}
+
+Result<void> BlendStage::make(Strip& strip) {
+    std::optional<BlendRows> rows;
+    {
+        const std::lock_guard lock(mutex_);
+        if (!idle_.empty()) {
+            rows.emplace(std::move(idle_.back()));
+            idle_.pop_back();
+        }
+    }
+    if (!rows) rows.emplace(maps_);
+    for (int k = 0; k < strip.height; ++k) rows->make(strip.first + k, strip.normals(k));
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(*rows));
+    return {};
 }
 
 }  // namespace tex

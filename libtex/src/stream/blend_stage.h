@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// blend_stage.h: turns rows of several maps, which arrive in step, into rows of the blended map.
+// blend_stage.h: turns rows of several maps into rows of the blended map.
 
 #pragma once
 
-#include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
 #include "rows/blend_rows.h"
-#include "stream/normal_stage.h"
-#include "stream/row_shelf.h"
-#include "stream/unpack_stage.h"
+#include "stream/flow.h"
 
 namespace tex {
 
@@ -26,47 +24,29 @@ struct RowsInStep {
 // extent, is rotated, repeats, is moved up or down, or shrinks.
 std::optional<RowsInStep> rows_in_step(Extent source, Extent result, const UvMap& map, Wrap wrap_x, Wrap wrap_y);
 
-// The unpacked rows of one map, kept as long as the result needs them.
-class ArrivingMap {
-public:
-    ArrivingMap(const TextureRows& texture, Extent extent, const Sources& sources, const UnpackRule& rule,
-                LayoutFinder* finder, MapInspector* inspector, const RowsInStep& step);
-    ArrivingMap(const ArrivingMap&) = delete;
-    ArrivingMap& operator=(const ArrivingMap&) = delete;
-
-    void put(const Image& rows, int count) { unpack_.put(rows, count); }
-
-    // Whether all rows have arrived that row j of the result needs.
-    [[nodiscard]] bool is_ready(int j) const;
-    [[nodiscard]] VectorRow row(int j) const;
-    // To be called when rows up to j of the result have been made.
-    void release(int j) { shelf_.release_before(j + 1 - step_.behind); }
-
-private:
-    [[nodiscard]] NormalSink sink();
-
-    const Extent extent_;
-    const RowsInStep step_;
-    RowShelf shelf_;
-    RowMaker rows_;
-    std::shared_ptr<Plane<float>> row_;  // the row that is being unpacked
-    UnpackStage unpack_;
+// A map that keeps in step.
+struct MapInStep {
+    const Stage* rows;
+    RowsInStep step;
 };
 
 // Makes the same normals as blend().
-class BlendStage final : public NormalStage {
+class BlendStage final : public Stage {
 public:
-    // `maps` read the rows of the maps in `arriving`. All of them must outlive this object.
-    BlendStage(const PlacedMaps& maps, std::vector<ArrivingMap*> arriving, NormalSink sink);
+    // `maps` read the rows of those in step, and must outlive this object.
+    BlendStage(const PlacedMaps& maps, std::vector<MapInStep> in_step)
+        : Stage(maps.extent, 3), maps_(maps), in_step_(std::move(in_step)) {}
 
-    void put(const Image& rows, int count) override;
+    [[nodiscard]] std::vector<Need> needs(int first, int end) const override;
+    Result<void> make(Strip& strip) override;
+    // Without a map in step nothing is read, and this stage is where rows come from.
+    [[nodiscard]] bool reads() const override { return in_step_.empty(); }
 
 private:
-    const std::vector<ArrivingMap*> arriving_;
-    const NormalSink sink_;
-    BlendRows blend_;
-    int arrived_ = 0;  // rows
-    int next_ = 0;     // the next row to make
+    const PlacedMaps& maps_;
+    const std::vector<MapInStep> in_step_;
+    std::mutex mutex_;
+    std::vector<BlendRows> idle_;
 };
 
 }  // namespace tex

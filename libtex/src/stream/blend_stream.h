@@ -7,8 +7,8 @@
 
 #include <tex/pipeline.h>
 
+#include "stream/flow.h"
 #include "stream/map_source.h"
-#include "stream/row_stream.h"
 
 namespace tex {
 

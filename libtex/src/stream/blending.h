@@ -13,10 +13,8 @@
 
 #include "rows/blend_rows.h"
 #include "stream/blend_stage.h"
-#include "stream/joined_rows.h"
-#include "stream/map_file.h"
 #include "stream/map_inspector.h"
-#include "stream/map_source.h"
+#include "stream/settled_map.h"
 #include "stream/shared_maps.h"
 
 namespace tex {
@@ -24,62 +22,54 @@ namespace tex {
 class Blending {
 public:
     // The base is a file or comes from another source. All parameters must outlive this object.
-    Blending(const std::string& input, const BlendFileOptions& options);
     Blending(MapSource& base, const BlendFileOptions& options);
 
-    // Opens all files and reads the maps that are held in memory.
+    // Opens all maps, settles how they are read, and reads those that are held in memory.
     Result<void> open(const Execution& execution);
-    // Prepares for another reading.
-    Result<void> open_again();
-    // Finds out how the maps are read. Call it before each reading.
-    Result<void> prepare();
-    // Reads maps whose layout depends on their texels until it is known.
-    Result<void> settle_layouts();
-    // To be called after each reading: false if the layout of a map was not what it seemed.
-    bool was_right();
+    // Adds stages that make the rows of the result. To be called once.
+    Stage& add_to(Flow& flow);
+    // Sets what SourceInfo says about the texels, after the last row.
+    void judge();
 
-    [[nodiscard]] Extent extent() const { return extent_; }
-    [[nodiscard]] const std::string& path() const { return base_.file.path(); }
-    [[nodiscard]] const SourceInfo& source() { return base_.file.info(); }  // of the base
+    [[nodiscard]] Extent extent() const { return maps_->extent; }
+    [[nodiscard]] const std::string& path() const { return base_.map().path(); }
+    [[nodiscard]] const SourceInfo& source() const { return base_.info; }  // of the base
     [[nodiscard]] std::vector<SourceInfo> details() const;
-    // Sets SourceInfo::y_doubtful of the base and of the details, after the last reading.
-    void judge(SourceInfo& base, std::vector<SourceInfo>& details);
-
-    // One reading of the maps: the rows of those that are read in step, and what makes normals of them.
-    struct Reading {
-        Reading(const BlendOptions& options, Extent extent) : maps{{}, {}, options, extent} {}
-
-        std::deque<ArrivingMap> arriving;
-        std::vector<ArrivingMap*> in_step;
-        PlacedMaps maps;
-        std::optional<JoinedRows> rows;
-    };
-    Result<std::unique_ptr<Reading>> read(const Execution& execution);
 
 private:
-    // One of the maps: its file, its place, and the rows that are needed at a time if its rows keep in step with those
-    // of the result.
+    // One of the maps and its place; and the rows that are needed at a time if its rows keep in step with those of the
+    // result.
     struct Input {
-        Input(const std::string& path, const SourceOptions& options) : file(path, options) {}
-        Input(MapSource& made, const SourceOptions& options) : file(made, options) {}
+        Input(MapSource& map, const SourceOptions& options) : settled(map, options) {}
+        Input(const std::string& path, const SourceOptions& options)
+            : file(std::make_unique<FileMap>(path, options.read)), settled(*file, options) {}
 
-        MapFile file;
-        UvMap map;
+        [[nodiscard]] MapSource& map() const { return settled.map(); }
+
+        std::unique_ptr<FileMap> file;  // unless the map comes from elsewhere
+        SettledMap settled;
+        SourceInfo info;
+        UvMap place;
         Wrap wrap_x = Wrap::repeat;
         Wrap wrap_y = Wrap::repeat;
-        std::optional<RowsInStep> step;         // empty: the whole map is held in memory,
-        std::shared_ptr<const HeldMap> shared;  // here, if other blends hold it, too
+        std::optional<RowsInStep> step;  // empty: the whole map is held in memory, here,
+        MipChain chain;
+        std::shared_ptr<const HeldMap> shared;  // or here, if other blends hold it, too
+        const Stage* rows = nullptr;
         std::optional<MapInspector> inspector;
     };
     Result<void> settle(Input& input, const Execution& execution);
+    Result<void> hold(Input& input, const Execution& execution);
+    Result<void> open_base(const Execution& execution);
     Result<void> open_detail(Input& input, const LayerFile& layer, const Layer& placed, const Execution& execution);
-    Result<PlacedMap> place(Input& input, std::deque<ArrivingMap>& arriving, const Execution& execution);
+    Result<PlacedMap> place(Input& input, const Execution& execution);
 
     const BlendFileOptions& options_;
     std::deque<Input> inputs_;  // the base, then the details
     Input& base_;
     Extent extent_;
-    std::vector<Layer> layers_;
+    std::deque<Layer> layers_;
+    std::optional<PlacedMaps> maps_;
 };
 
 }  // namespace tex

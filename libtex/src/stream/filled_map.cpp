@@ -13,16 +13,18 @@
 #include "checks/background.h"
 #include "formats/row_source.h"
 #include "rows/unpack_rows.h"
+#include "stream/map_source.h"
 #include "stream/source_layout.h"
+#include "stream/source_stage.h"
 #include "surface/nearest.h"
 
 namespace tex {
 namespace {
 
-// Rows of decoded channels in memory.
-class ChannelRows final : public RowSource {
+// Rows of decoded channels in memory, which must outlive them.
+class DecodedRows final : public RowSource {
 public:
-    explicit ChannelRows(Image image) : image_(std::move(image)) {
+    explicit DecodedRows(const Image& image) : image_(image) {
         const Extent extent = image_.extent();
         plane_bytes_ = static_cast<std::size_t>(extent.width) * sizeof(float);
         describe(extent, image_.names, plane_bytes_ * image_.planes.size());
@@ -49,7 +51,7 @@ public:
     }
 
 private:
-    const Image image_;
+    const Image& image_;
     std::size_t plane_bytes_ = 0;
 };
 
@@ -70,6 +72,56 @@ Result<void> fill_holes(const Stored& stored, const Background& background, Imag
         }
     });
 }
+
+class FilledMap final : public MapSource {
+public:
+    FilledMap(MapSource& map, const SourceOptions& options, const Execution& execution)
+        : map_(map), options_(options), execution_{execution.threads, {}} {}
+
+    [[nodiscard]] const std::string& path() const override { return map_.path(); }
+    Result<void> open() override {
+        if (rows_) return {};
+        Result<Texture> texture = map_.read(true, execution_);
+        if (!texture) return texture.error();
+        if (Result<void> fit = check_channels(*texture); !fit) return fit;
+        const Result<Swizzle> swizzle = find_swizzle(*texture, options_, execution_);
+        if (!swizzle) return swizzle.error();
+        Result<Image> image = decode_filled(*texture, *swizzle, options_, execution_);
+        if (!image) return image.error();
+        image_ = std::move(*image);
+        head_ = std::move(*texture);
+        head_.levels.clear();
+        rows_.emplace(image_);
+        return {};
+    }
+    [[nodiscard]] const Texture& head() const override { return head_; }
+    [[nodiscard]] int levels() const override { return 1; }
+    [[nodiscard]] Extent extent(int) const override { return rows_->extent(); }
+    StoredChannels add_to(Flow& flow, int, const std::vector<bool>&) override {
+        StoredChannels channels{&add_source(flow, *rows_, path()), {}};
+        for (std::size_t c = 0; c < image_.planes.size(); ++c) channels.planes.push_back(c);
+        return channels;
+    }
+    Result<void> look(const TakeChannels& take) override {
+        bool goes_on = true;
+        for (int j = 0; j < extent(0).height && goes_on; ++j) {
+            const float* channels[4] = {};
+            for (std::size_t c = 0; c < image_.planes.size(); ++c) channels[c] = image_.planes[c].row(j);
+            goes_on = take(channels);
+        }
+        return {};
+    }
+    Result<Texture> read(bool, const Execution& execution) override { return map_.read(true, execution); }
+    Error after_all_rows(const Error& error) override { return error; }
+
+private:
+    MapSource& map_;
+    const SourceOptions& options_;
+    const Execution execution_;
+    Texture head_;
+    Image image_;
+    std::optional<DecodedRows> rows_;
+};
 
 }  // namespace
 
@@ -92,22 +144,8 @@ Result<Image> decode_filled(Texture& texture, const Swizzle& swizzle, const Sour
     return image;
 }
 
-Result<TextureRows> fill_background(Result<TextureRows> map, const SourceOptions& options, const Execution& execution) {
-    if (!map) return map;
-    map->levels.resize(1);
-    Result<Texture> texture = read_all(std::move(map));
-    if (!texture) return texture.error();
-    if (const Result<void> fit = check_channels(*texture); !fit) return fit.error();
-    const Result<Swizzle> swizzle = find_swizzle(*texture, options, execution);
-    if (!swizzle) return swizzle.error();
-    Result<Image> image = decode_filled(*texture, *swizzle, options, execution);
-    if (!image) return image.error();
-    TextureRows rows;
-    texture->levels.clear();
-    rows.head = std::move(*texture);
-    rows.levels.push_back(std::make_unique<ChannelRows>(std::move(*image)));
-    rows.take_planes_in_order();
-    return rows;
+std::unique_ptr<MapSource> filled(MapSource& map, const SourceOptions& options, const Execution& execution) {
+    return std::make_unique<FilledMap>(map, options, execution);
 }
 
 }  // namespace tex

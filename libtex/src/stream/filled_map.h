@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // filled_map.h: a map whose background takes the normals of the charts beside it, as bakers do with "infinite padding".
-// That reaches over all rows, so the map is read to its end and is then itself a source of rows.
+// That reaches over all rows, so the map is read to its end: see filled() in map_source.h.
 
 #pragma once
 
@@ -17,10 +17,5 @@ namespace tex {
 // remark. Errors: those of decode() and find_background().
 Result<Image> decode_filled(Texture& texture, const Swizzle& swizzle, const SourceOptions& options,
                             const Execution& execution);
-
-// Reads the base level of `map`; smaller levels, which have mixed the background in, are left out, as
-// decode_filled() decodes it. Errors: that of opening; those of reading, of find_swizzle() and of decode_filled(). May
-// throw std::bad_alloc.
-Result<TextureRows> fill_background(Result<TextureRows> map, const SourceOptions& options, const Execution& execution);
 
 }  // namespace tex

@@ -4,184 +4,284 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <utility>
 
 #include "kernels/bake.h"
 #include "kernels/height_field.h"
 #include "rows/blur.h"
 #include "rows/border.h"
+#include "stream/source_stage.h"
+#include "stream/terrain_rows.h"
 
 namespace tex {
 namespace {
 
-Keep rows_to_keep(int height, int start, int radius, Wrap wrap) {
-    Keep keep;
-    keep.head = wrap == Wrap::repeat ? 2 * radius : 0;
-    keep.tail = wrap == Wrap::repeat ? 0 : radius + 2;
-    keep.all = height <= 4 * radius + 2 * start + 8;
-    return keep;
-}
+// Rows of heights. If the last rows had to be read before all others, they are a stage of their own.
+struct HeightInput {
+    const Stage* rows = nullptr;
+    const Stage* last = nullptr;  // null, or what makes the rows from last->begin() on
+    Wrap wrap = Wrap::repeat;
 
-// The first row to make, if the first rows wait for the last ones. (If all rows are kept, each row waits for the rows
-// that it needs.)
-int first_row(int height, int start, int radius, Wrap wrap) {
-    return wrap != Wrap::repeat || rows_to_keep(height, start, radius, wrap).all ? 0 : start + radius;
+    [[nodiscard]] const float* row(int j) const {
+        return (last != nullptr && j >= last->begin() ? last : rows)->row(0, j);
+    }
+    // What rows [first, end), which may lie beyond the border, are made from.
+    [[nodiscard]] std::vector<Need> needs(int first, int end) const {
+        std::vector<Need> needs;
+        const int height = rows->extent().height, split = last == nullptr ? height : last->begin();
+        const auto add = [&](int from, int to) {
+            if (from < std::min(to, split)) needs.push_back({rows, from, std::min(to, split)});
+            if (std::max(from, split) < to) needs.push_back({last, std::max(from, split), to});
+        };
+        add(std::max(first, 0), std::min(end, height));
+        for (int j = first; j < end; ++j) {
+            if (j >= 0 && j < height) continue;
+            const HeightIndex at = height_index(wrap, j, height);
+            add(at.index, at.index + 1);
+            if (at.plain()) continue;
+            add(at.edge, at.edge + 1);
+            add(at.other, at.other + 1);
+        }
+        return needs;
+    }
+};
+
+// A blur along each row, as the first half of the blur; no weights, no blur.
+struct AcrossBlur {
+    std::vector<float> weights;
+    Wrap wrap_x = Wrap::repeat;
+
+    [[nodiscard]] int radius() const { return static_cast<int>(weights.size()) - 1; }
+};
+
+// Takes heights from rows of a picture, and blurs them along the row.
+class TakeStage : public Stage {
+public:
+    TakeStage(Extent extent, int begin, const Heights& heights, const AcrossBlur& blur)
+        : Stage(extent, 1, 0, begin), heights_(heights), blur_(blur) {}
+
+protected:
+    // Row j of `image` becomes row k of the strip.
+    HeightCounts take(const Image& image, int j, Strip& strip, int k) const {
+        return take_heights(image, heights_.source, heights_.options, j, strip.map.x.row(k));
+    }
+    void blur_across(Strip& strip) const {
+        if (blur_.weights.empty()) return;
+        const Extent extent{Stage::extent().width, 1};
+        Plane<float> blurred(extent);
+        const float* row = nullptr;
+        HeightRows extended(
+            extent, [&row](int) { return row; }, blur_.wrap_x, Wrap::repeat, blur_.radius(), 1);
+        for (int k = 0; k < strip.height; ++k) {
+            row = strip.map.x.row(k);
+            smooth_row(extended.fetch(k), blur_.weights.data(), blur_.radius(), extent.width, blurred.row(0));
+            std::copy_n(blurred.row(0), extent.width, strip.map.x.row(k));
+        }
+    }
+
+private:
+    const Heights& heights_;
+    const AcrossBlur blur_;
+};
+
+class HeightStage final : public TakeStage {
+public:
+    HeightStage(Flow& flow, const Stage& picture, Heights& heights, const AcrossBlur& blur)
+        : TakeStage(picture.extent(), 0, heights, blur), flow_(flow), picture_(picture), heights_(heights) {}
+
+    [[nodiscard]] std::vector<Need> needs(int first, int end) const override { return {{&picture_, first, end}}; }
+    [[nodiscard]] bool counts() const override { return true; }
+    Result<void> make(Strip& strip) override {
+        HeightCounts counts;
+        for (int k = 0; k < strip.height; ++k) {
+            const int j = strip.first + k;
+            const Strip& from = picture_.strip_of(j);
+            const HeightCounts found = take(from.image, j - from.first, strip, k);
+            if (found.invalid > 0) note_invalid(strip.map.x.row(k), j);
+            counts += found;
+        }
+        if (counts.invalid == 0) blur_across(strip);
+        const std::lock_guard lock(mutex_);
+        heights_.counts += counts;
+        return {};
+    }
+    [[nodiscard]] Result<void> check() const override {
+        if (first_row_ < 0) return {};
+        return invalid_heights(heights_.counts.invalid, first_column_, first_row_, extent(), heights_.options);
+    }
+
+private:
+    void note_invalid(const float* row, int j) {
+        flow_.only_count();
+        const std::lock_guard lock(mutex_);
+        if (first_row_ >= 0 && first_row_ <= j) return;
+        first_row_ = j;
+        first_column_ =
+            static_cast<int>(std::find_if(row, row + extent().width, [](float h) { return std::isnan(h); }) - row);
+    }
+
+    Flow& flow_;
+    const Stage& picture_;
+    Heights& heights_;
+    std::mutex mutex_;  // guards heights_.counts and the next two
+    int first_row_ = -1, first_column_ = 0;
+};
+
+// The last rows, which were read before all others. They are counted when they come in their turn.
+class LastHeightStage final : public TakeStage {
+public:
+    LastHeightStage(Flow& flow, Extent extent, int begin, const Heights& heights, const AcrossBlur& blur)
+        : TakeStage(extent, begin, heights, blur), flow_(flow), last_(*heights.last) {}
+
+    [[nodiscard]] std::vector<Need> needs(int, int) const override { return {}; }
+    Result<void> make(Strip& strip) override {
+        HeightCounts counts;
+        for (int k = 0; k < strip.height; ++k) counts += take(last_, strip.first - begin() + k, strip, k);
+        if (counts.invalid > 0) flow_.only_count();
+        if (counts.invalid == 0) blur_across(strip);
+        return {};
+    }
+
+private:
+    Flow& flow_;
+    const Image& last_;
+};
+
+// Blurs down the columns what was blurred along the rows.
+class BlurStage final : public Stage {
+public:
+    BlurStage(const HeightInput& input, int begin, const std::vector<float>& weights)
+        : Stage(input.rows->extent(), 1, 0, begin), input_(input), weights_(weights),
+          radius_(static_cast<int>(weights.size()) - 1) {}
+
+    [[nodiscard]] std::vector<Need> needs(int first, int end) const override {
+        return input_.needs(first - radius_, end + radius_);
+    }
+    Result<void> make(Strip& strip) override {
+        std::vector<Plane<float>> beyond;  // rows that are computed
+        std::vector<const float*> rows;
+        for (int j = strip.first - radius_; j < strip.first + strip.height + radius_; ++j)
+            rows.push_back(row_at(j, beyond));
+        for (int k = 0; k < strip.height; ++k)
+            smooth_column(rows.data() + k, weights_.data(), radius_, extent().width, strip.map.x.row(k));
+        return {};
+    }
+
+private:
+    const float* row_at(int j, std::vector<Plane<float>>& beyond) const {
+        const HeightIndex at = height_index(input_.wrap, j, extent().height);
+        if (at.plain()) return input_.row(at.index);
+        beyond.emplace_back(Extent{extent().width, 1});
+        return height_row([this](int k) { return input_.row(k); }, extent(), input_.wrap, j, beyond.back().row(0));
+    }
+
+    const HeightInput input_;
+    const std::vector<float> weights_;
+    const int radius_;
+};
+
+// Bakes heights. The normals of a window become those of the tile in it.
+class BakeStage final : public Stage {
+public:
+    BakeStage(const HeightInput& input, const Gradient& gradient, const HeightFieldHead& head,
+              const std::optional<TerrainWindow>& window)
+        : Stage(window ? window->tile : input.rows->extent(), 3), input_(input), gradient_(gradient), head_(head),
+          left_(window ? window->left : 0), top_(window ? window->top : 0) {}
+
+    [[nodiscard]] std::vector<Need> needs(int first, int end) const override {
+        return input_.needs(first + top_ - gradient_.radius, end + top_ + gradient_.radius);
+    }
+    Result<void> make(Strip& strip) override {
+        std::unique_ptr<Baker> baker = take_baker(strip.first + top_);
+        for (int k = 0; k < strip.height; ++k) bake_row(*baker, strip.first + top_ + k, strip.normals(k));
+        baker->next = strip.first + top_ + strip.height;
+        const std::lock_guard lock(mutex_);
+        idle_.push_back(std::move(baker));
+        return {};
+    }
+
+private:
+    // Filters rows from top to bottom. One that goes on where it was filters no row twice.
+    struct Baker {
+        Baker(const BakeStage& stage, int first)
+            : rows(
+                  stage.input_.rows->extent(), [&stage](int j) { return stage.input_.row(j); }, stage.gradient_,
+                  stage.head_, first),
+              next(first) {}
+
+        BakeRows rows;
+        int next;
+        NormalMap wide;  // a row of the window
+    };
+
+    std::unique_ptr<Baker> take_baker(int first) {
+        {
+            const std::lock_guard lock(mutex_);
+            const auto same =
+                std::find_if(idle_.begin(), idle_.end(), [first](const auto& baker) { return baker->next == first; });
+            const auto taken = same != idle_.end() || idle_.empty() ? same : idle_.begin();
+            if (taken != idle_.end()) {
+                std::unique_ptr<Baker> baker = std::move(*taken);
+                idle_.erase(taken);
+                if (baker->next != first) baker->rows.go_to(first);
+                return baker;
+            }
+        }
+        return std::make_unique<Baker>(*this, first);
+    }
+    void bake_row(Baker& baker, int j, const NormalRow& out) const {
+        if (extent() == input_.rows->extent()) return baker.rows.bake(j, out);
+        if (baker.wide.x.empty()) baker.wide = NormalMap(Extent{input_.rows->extent().width, 1});
+        const NormalRow wide{baker.wide.x.row(0), baker.wide.y.row(0), baker.wide.z.row(0)};
+        baker.rows.bake(j, wide);
+        std::copy_n(wide.x + left_, extent().width, out.x);
+        std::copy_n(wide.y + left_, extent().width, out.y);
+        std::copy_n(wide.z + left_, extent().width, out.z);
+    }
+
+    const HeightInput input_;
+    const Gradient& gradient_;
+    const HeightFieldHead head_;
+    const int left_, top_;
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<Baker>> idle_;
+};
+
+std::vector<float> weights_of(const HeightOptions& options) {
+    if (!(options.blur_sigma > 0.0f)) return {};
+    return gaussian_weights(static_cast<double>(options.blur_sigma));
 }
 
 }  // namespace
 
-HeightWindow::HeightWindow(Extent extent, int start, int radius, Wrap wrap, std::optional<int> first)
-    : shelf(extent.height, start, rows_to_keep(extent.height, start, radius, wrap)), extent_(extent), wrap_(wrap),
-      start_(first.value_or(first_row(extent.height, start, radius, wrap))), next_(start_) {}
+int height_reach(const HeightOptions& options, const Gradient& gradient) {
+    return gradient.radius + std::max(0, static_cast<int>(weights_of(options).size()) - 1);
+}
 
-bool HeightWindow::has(int first, int end) const {
-    for (int j = end - 1; j >= first; --j) {
-        const HeightIndex at = height_index(wrap_, j, extent_.height);
-        if (!shelf.has(at.index)) return false;
-        if (!at.plain() && (!shelf.has(at.edge) || !shelf.has(at.other))) return false;
+BakedRows add_bake(Flow& flow, Heights& heights, const std::string& input, const BakeFileOptions& options,
+                   const Gradient& gradient) {
+    const Extent extent = heights.rows->extent();
+    ConvertRows convert;
+    if (heights.linear) convert = [&heights](Image& rows, int count) { return heights.linear->convert(rows, count); };
+    const Stage& picture = add_source(flow, *heights.rows, input, std::move(convert));
+    const std::vector<float> weights = weights_of(heights.options);
+    const AcrossBlur blur{weights, heights.options.wrap_x};
+    HeightInput rows{&flow.add<HeightStage>(flow, picture, heights, blur), nullptr, heights.options.wrap_y};
+    if (heights.last) {
+        const int begin = std::max(0, extent.height - height_reach(heights.options, gradient));
+        rows.last = &flow.add<LastHeightStage>(flow, extent, begin, heights, blur);
     }
-    return true;
-}
-
-// Blurs along each row as it arrives, and down the columns when the window is complete.
-struct HeightStage::Blur {
-    Blur(Extent its_extent, const HeightOptions& options, std::optional<int> first)
-        : extent(its_extent), wrap_y(options.wrap_y),
-          weights(gaussian_weights(static_cast<double>(options.blur_sigma))),
-          radius(static_cast<int>(weights.size()) - 1), window(extent, 0, radius, wrap_y, first),
-          across(extent.width, 1), extended(
-                                       extent, [this](int) { return row; }, options.wrap_x, options.wrap_y, radius, 1),
-          beyond(Extent{extent.width, wrap_y == Wrap::clamp ? 2 * radius + 1 : 1}),
-          beyond_from(window.start() - radius), pointers(static_cast<std::size_t>(2 * radius + 1)) {}
-
-    // Row j, which may lie beyond the border.
-    const float* row_at(int j) {
-        float* out = beyond.row(wrap_around(j, beyond.extent().height));
-        const bool plain = height_index(wrap_y, j, extent.height).plain();
-        if (!plain && j < beyond_from) return out;
-        if (!plain) beyond_from = j + 1;
-        return height_row([this](int k) { return window.shelf.at(k).planes[0]; }, extent, wrap_y, j, out);
+    if (!weights.empty()) {
+        const HeightInput across = rows;
+        rows.rows = &flow.add<BlurStage>(across, 0, weights);
+        if (heights.last)
+            rows.last = &flow.add<BlurStage>(across, std::max(0, extent.height - gradient.radius), weights);
     }
-
-    const Extent extent;
-    const Wrap wrap_y;
-    const std::vector<float> weights;
-    const int radius;
-    HeightWindow window;
-    RowMaker across;
-    const float* row = nullptr;  // the row that is being blurred
-    HeightRows extended;         // the same row, extended beyond its ends
-    Plane<float> beyond;         // the rows beyond the border, at indices below beyond_from
-    int beyond_from;
-    std::vector<const float*> pointers;
-};
-
-int HeightStage::reach(const HeightOptions& options, const Gradient& gradient) {
-    const bool blurs = options.blur_sigma > 0.0f;
-    return gradient.radius +
-           (blurs ? static_cast<int>(gaussian_weights(static_cast<double>(options.blur_sigma)).size()) - 1 : 0);
-}
-
-HeightStage::HeightStage(Extent extent, const HeightSource& source, const HeightOptions& options,
-                         const Gradient& gradient, const HeightFieldHead& head, NormalSink sink,
-                         std::optional<Image> last)
-    : extent_(extent), source_(source), options_(options), gradient_(gradient), sink_(std::move(sink)),
-      last_(std::move(last)), known_(last_ ? std::min(reach(options, gradient), extent.height) : 0),
-      heights_(extent.width, 1) {
-    // The gradient needs its last rows first as well, so as many rows are blurred before row 0.
-    const std::optional<int> before =
-        known_ > 0 ? std::optional(-std::min(gradient.radius, extent.height)) : std::nullopt;
-    const std::optional<int> top = known_ > 0 ? std::optional(0) : std::nullopt;
-    if (options.blur_sigma > 0.0f) blur_ = std::make_unique<Blur>(extent, options, before);
-    const int from = blur_ && known_ == 0 ? blur_->window.start() : 0;
-    window_ = std::make_unique<HeightWindow>(extent, from, gradient.radius, options.wrap_y, top);
-    const auto height = [this](int j) { return window_->shelf.at(j).planes[0]; };
-    bake_ = std::make_unique<BakeRows>(extent, height, gradient_, head, window_->start());
-}
-
-HeightStage::~HeightStage() = default;
-
-int HeightStage::start() const { return window_->start(); }
-
-void HeightStage::put(const Image& rows, int count) {
-    if (last_) begin_with(*std::exchange(last_, std::nullopt));
-    for (int k = 0; k < count; ++k) put_row(rows, k);
-}
-
-// These rows are counted later, when they arrive in their turn.
-void HeightStage::begin_with(const Image& last) {
-    std::vector<std::shared_ptr<Plane<float>>> rows;
-    for (int k = 0; k < known_ && !only_counts_; ++k) {
-        rows.push_back(heights_.make());
-        only_counts_ = take_heights(last, source_, options_, k, rows.back()->row(0)).invalid > 0;
-    }
-    for (int k = 0; k < known_ && !only_counts_; ++k)
-        take_row(extent_.height - known_ + k, rows[static_cast<std::size_t>(k)]);
-}
-
-void HeightStage::put_row(const Image& rows, int k) {
-    const std::shared_ptr<Plane<float>> row = heights_.make();
-    const HeightCounts counts = take_heights(rows, source_, options_, k, row->row(0));
-    if (counts.invalid > 0 && counts_.invalid == 0) take_invalid(row->row(0));
-    counts_ += counts;
-    only_counts_ = only_counts_ || counts_.invalid > 0;
-    const int j = row_++;
-    if (!only_counts_ && j < extent_.height - known_) take_row(j, row);
-}
-
-void HeightStage::take_row(int j, std::shared_ptr<Plane<float>> row) {
-    const float* const heights = row->row(0);
-    blur_ ? blur_row(j, heights) : put_height(j, {{heights}, std::move(row)});
-}
-
-void HeightStage::take_invalid(const float* row) {
-    const float* found = std::find_if(row, row + extent_.width, [](float h) { return std::isnan(h); });
-    first_invalid_[0] = static_cast<int>(found - row);
-    first_invalid_[1] = row_;
-}
-
-Result<void> HeightStage::check() const {
-    if (counts_.invalid == 0) return {};
-    return invalid_heights(counts_.invalid, first_invalid_[0], first_invalid_[1], extent_, options_);
-}
-
-void HeightStage::blur_row(int j, const float* row) {
-    Blur& blur = *blur_;
-    const std::shared_ptr<Plane<float>> across = blur.across.make();
-    blur.row = row;
-    smooth_row(blur.extended.fetch(j), blur.weights.data(), blur.radius, extent_.width, across->row(0));
-    blur.window.shelf.put(j, {{across->row(0)}, across});
-    while (!blur.window.done()) {
-        const int at = blur.window.next();
-        if (!blur.window.has(at - blur.radius, at + blur.radius + 1)) break;
-        blur_column(at);
-    }
-}
-
-void HeightStage::blur_column(int at) {
-    Blur& blur = *blur_;
-    const std::shared_ptr<Plane<float>> blurred = heights_.make();
-    for (int k = 0; k <= 2 * blur.radius; ++k) {
-        blur.pointers[static_cast<std::size_t>(k)] = blur.row_at(at - blur.radius + k);
-    }
-    smooth_column(blur.pointers.data(), blur.weights.data(), blur.radius, extent_.width, blurred->row(0));
-    blur.window.advance();
-    blur.window.shelf.release_before(blur.window.next() - blur.radius);
-    put_height(wrap_around(at, extent_.height), {{blurred->row(0)}, blurred});
-}
-
-void HeightStage::put_height(int j, ShelfRow row) {
-    HeightWindow& window = *window_;
-    window.shelf.put(j, std::move(row));
-    while (!window.done()) {
-        const int at = window.next();
-        if (!window.has(bake_->next_height(), at + gradient_.radius + 1)) break;
-        const int out = at % extent_.height;
-        bake_->bake(at, sink_.place(out));
-        sink_.finish(out);
-        window.advance();
-        window.shelf.release_before(bake_->next_height());
-    }
+    HeightFieldHead head = head_of(heights.window ? heights.window->tile : extent, options, heights.stated);
+    head.wrap_x = heights.options.wrap_x;
+    head.wrap_y = heights.options.wrap_y;
+    return {&flow.add<BakeStage>(rows, gradient, head, heights.window), head};
 }
 
 }  // namespace tex

@@ -2,47 +2,188 @@
 
 #include "stream/level_stage.h"
 
-#include <cstring>
+#include <algorithm>
 #include <utility>
+#include <vector>
+
+#include <tex/mip_chain.h>
 
 #include "kernels/mip.h"
+#include "kernels/roughness.h"
+#include "rows/border.h"
+#include "rows/mip_rows.h"
 
 namespace tex {
+namespace {
 
-LevelStage::LevelStage(Extent base, int levels, int start, const MipOptions& options, Strips& strips)
-    : options_(options), strips_(strips), width_(base.width),
-      steps_(base, levels, 3, start, options, [this](LevelStep& step, bool last) { return make_row(step, last); }) {
-    if (options.domain == MipDomain::slope && levels > 1) slopes_ = std::make_unique<RowMaker>(base.width, 2);
+// A plane of another stage.
+struct StagePlane {
+    const Stage* stage;
+    int plane;
+};
+
+std::vector<StagePlane> planes_of(const Stage& stage, int count) {
+    std::vector<StagePlane> planes;
+    for (int plane = 0; plane < count; ++plane) planes.push_back({&stage, plane});
+    return planes;
 }
 
-void LevelStage::put(int j, const NormalRow& row, std::shared_ptr<const void> owner) {
-    if (steps_.empty()) return;
-    if (!slopes_) return steps_.put(j, {{row.x, row.y, row.z}, std::move(owner)});
-    const std::shared_ptr<Plane<float>> slopes = slopes_->make();
-    slopes_of_vectors(row.x, row.y, row.z, width_, slopes->row(0), slopes->row(1));
-    steps_.put(j, {{slopes->row(0), slopes->row(1), nullptr}, slopes});
-}
+// Makes the averages of a level from those of the larger one, or from its vectors.
+class MipStage final : public Stage {
+public:
+    // `level` is that of the result.
+    MipStage(std::vector<StagePlane> from, int level, const MipOptions& options)
+        : Stage(level_extent(from.front().stage->extent(), 1), static_cast<int>(from.size()), level),
+          from_(std::move(from)), filter_(from_.front().stage->extent(), options) {}
 
-// Keeps the averages until the next level has been made from them, and stores a finished copy.
-ShelfRow LevelStage::make_row(LevelStep& step, bool last) {
-    const int j = step.row();
-    const int width = step.to.width;
-    const int planes = options_.domain == MipDomain::vector ? 3 : 2;
-    const Strips::Place place = strips_.place(step.to_level, j);
-    float* const outs[3] = {place.row.x, place.row.y, place.row.z};
-    for (int plane = 0; plane < planes; ++plane) step.maker.make(step.window(plane), j, outs[plane]);
-    ShelfRow averages;
-    if (!last) {
-        const std::shared_ptr<Plane<float>> kept = step.rows.make();
-        for (int plane = 0; plane < planes; ++plane) {
-            std::memcpy(kept->row(plane), outs[plane], static_cast<std::size_t>(width) * sizeof(float));
-            averages.planes[plane] = kept->row(plane);
+    [[nodiscard]] std::vector<Need> needs(int first, int end) const override {
+        std::vector<Need> needs;
+        const int height = filter_.from.height;
+        const int top = 2 * first + filter_.y.first, bottom = 2 * (end - 1) + filter_.y.first + filter_.y.taps;
+        for (const StagePlane& from : from_) {
+            if (!needs.empty() && needs.back().stage == from.stage) continue;
+            for (int j = top; j < bottom; ++j) {
+                if (j >= 0 && j < height) continue;
+                const int row = border_index(filter_.wrap_y, j, height);
+                needs.push_back({from.stage, row, row + 1});
+            }
+            const int inner = std::max(top, 0), outer = std::min(bottom, height);
+            if (inner < outer) needs.push_back({from.stage, inner, outer});
         }
-        averages.owner = kept;
+        return needs;
     }
-    finish_row(place.row, width, options_, step.to_level);
-    strips_.finish(step.to_level, j);
-    return averages;
+    Result<void> make(Strip& strip) override {
+        const std::shared_ptr<MipRows> maker = makers_.take([this] { return std::make_unique<MipRows>(filter_); });
+        std::vector<const float*> window(static_cast<std::size_t>(filter_.y.taps));
+        for (int k = 0; k < strip.height; ++k) {
+            const int j = strip.first + k;
+            for (std::size_t plane = 0; plane < from_.size(); ++plane) {
+                for (std::size_t tap = 0; tap < window.size(); ++tap)
+                    window[tap] = from_[plane].stage->row(from_[plane].plane, filter_.source(j, static_cast<int>(tap)));
+                maker->make(window.data(), j, strip.row(static_cast<int>(plane), k));
+            }
+        }
+        return {};
+    }
+
+private:
+    const std::vector<StagePlane> from_;
+    const LevelFilter filter_;
+    Pool<MipRows> makers_;
+};
+
+// Makes x/z and y/z of vectors.
+class SlopeStage final : public Stage {
+public:
+    explicit SlopeStage(const Stage& normals) : Stage(normals.extent(), 2), normals_(normals) {}
+
+    [[nodiscard]] std::vector<Need> needs(int first, int end) const override { return {{&normals_, first, end}}; }
+    Result<void> make(Strip& strip) override {
+        for (int k = 0; k < strip.height; ++k) {
+            const VectorRow from = normals_.normals(strip.first + k);
+            slopes_of_vectors(from.x, from.y, from.z, extent().width, strip.row(0, k), strip.row(1, k));
+        }
+        return {};
+    }
+
+private:
+    const Stage& normals_;
+};
+
+// Makes the material's own roughness at the base level, and its alpha^2, in step with the normals.
+class OwnRoughnessStage final : public Stage {
+public:
+    OwnRoughnessStage(const Stage& normals, const OwnRoughness& own)
+        : Stage(normals.extent(), 2), normals_(normals), own_(own) {}
+
+    [[nodiscard]] std::vector<Need> needs(int first, int end) const override { return {{&normals_, first, end}}; }
+    Result<void> make(Strip& strip) override {
+        for (int k = 0; k < strip.height; ++k) own_.row(strip.first + k, strip.row(0, k), strip.row(1, k));
+        return {};
+    }
+
+private:
+    const Stage& normals_;
+    const OwnRoughness& own_;
+};
+
+// Writes a level. Its rows are those of another stage, or made from them by `finish`, which takes row j to row k of the
+// strip.
+class TargetStage final : public Stage {
+public:
+    using Finish = std::function<void(int j, Strip& strip, int k)>;
+
+    TargetStage(const Stage& from, Content content, int level_in_file, int planes, Finish finish, Targets& targets,
+                WatchRows seen)
+        : Stage(from.extent(), planes, from.level()), from_(from), content_(content), level_in_file_(level_in_file),
+          finish_(std::move(finish)), targets_(targets), seen_(std::move(seen)) {}
+
+    [[nodiscard]] std::vector<Need> needs(int first, int end) const override { return {{&from_, first, end}}; }
+    [[nodiscard]] bool in_order() const override { return targets_.is_in_order(content_, level_in_file_); }
+    Result<void> make(Strip& strip) override {
+        for (int k = 0; finish_ && k < strip.height; ++k) finish_(strip.first + k, strip, k);
+        const NormalMap& map = finish_ ? strip.map : from_.strip_of(strip.first).map;
+        const LevelRows rows{content_, level_in_file_, strip.first, strip.height, map, strip.bytes};
+        if (Result<void> written = targets_.write(rows); !written) return written;
+        if (seen_) seen_(rows);
+        return {};
+    }
+
+private:
+    const Stage& from_;
+    const Content content_;
+    const int level_in_file_;
+    const Finish finish_;
+    Targets& targets_;
+    const WatchRows seen_;
+};
+
+// Turns averages of a level into normals.
+TargetStage::Finish finish_averages(const Stage& averages, int level, const MipOptions& options) {
+    const int width = averages.extent().width, planes = options.domain == MipDomain::vector ? 3 : 2;
+    return [&averages, level, options, width, planes](int j, Strip& strip, int k) {
+        for (int plane = 0; plane < planes; ++plane) std::copy_n(averages.row(plane, j), width, strip.row(plane, k));
+        finish_row(strip.normals(k), width, options, level);
+    };
+}
+
+}  // namespace
+
+void add_levels(Flow& flow, const Stage& normals, const MadeLevels& levels, Targets& targets, const WatchRows& seen) {
+    constexpr int kOfNormals = 3;
+    if (levels.first >= 0)
+        flow.add<TargetStage>(normals, Content::normals, levels.first, 0, TargetStage::Finish(), targets, seen);
+    if (levels.count < 2) return;
+    const bool averages_vectors = levels.options.domain == MipDomain::vector;
+    const int planes = averages_vectors ? kOfNormals : 2;
+    const Stage* larger = averages_vectors ? &normals : &flow.add<SlopeStage>(normals);
+    for (int k = 1; k < levels.count; ++k) {
+        larger = &flow.add<MipStage>(planes_of(*larger, planes), k, levels.options);
+        if (levels.first + k < 0) continue;
+        flow.add<TargetStage>(*larger, Content::normals, levels.first + k, kOfNormals,
+                              finish_averages(*larger, k, levels.options), targets, seen);
+    }
+}
+
+void add_roughness(Flow& flow, const Stage& normals, const MadeLevels& levels, RoughnessModel model,
+                   const OwnRoughness& own, Targets& targets) {
+    constexpr int kOfAverages = 4, kAlpha2 = 3;
+    const Stage& base = flow.add<OwnRoughnessStage>(normals, own);
+    if (levels.first >= 0)
+        flow.add<TargetStage>(base, Content::roughness, levels.first, 0, TargetStage::Finish(), targets, WatchRows());
+    std::vector<StagePlane> larger = planes_of(normals, kAlpha2);
+    larger.push_back({&base, 1});
+    for (int k = 1; k < levels.count; ++k) {
+        const Stage& averages = flow.add<MipStage>(larger, k, levels.options);
+        larger = planes_of(averages, kOfAverages);
+        if (levels.first + k < 0) continue;
+        const auto finish = [&averages, model](int j, Strip& strip, int row) {
+            const VectorRow mean = averages.normals(j);
+            roughness_of_averages(model, mean.x, mean.y, mean.z, averages.row(kAlpha2, j), averages.extent().width,
+                                  strip.row(0, row));
+        };
+        flow.add<TargetStage>(averages, Content::roughness, levels.first + k, 1, finish, targets, WatchRows());
+    }
 }
 
 }  // namespace tex

@@ -1,41 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
-// level_stage.h: turns rows of the base level into rows of all mip levels. Each level keeps only the rows that its
-// filter needs.
+// level_stage.h: from rows of the base level to rows of all mip levels, and to their targets. The same texels as
+// build_mip_chain() and build_roughness_chain().
 
 #pragma once
 
-#include <memory>
+#include <functional>
 
 #include <tex/mip.h>
+#include <tex/roughness.h>
 
-#include "stream/level_step.h"
-#include "stream/row_shelf.h"
-#include "stream/strips.h"
+#include "stream/flow.h"
+#include "stream/own_roughness.h"
+#include "stream/targets.h"
 
 namespace tex {
 
-// Makes the same texels as build_mip_chain().
-class LevelStage {
-public:
-    // Rows of the base level arrive in the order that row_shelf.h describes. `levels` is at least 1 and at most
-    // level_count(base).
-    LevelStage(Extent base, int levels, int start, const MipOptions& options, Strips& strips);
+// Called with rows that have been written, from any thread.
+using WatchRows = std::function<void(const LevelRows& rows)>;
 
-    LevelStage(const LevelStage&) = delete;
-    LevelStage& operator=(const LevelStage&) = delete;
-
-    // Adds row j of the base level, which is finished and does not change while `owner` lives. Makes every row of the
-    // other levels that this row completes.
-    void put(int j, const NormalRow& row, std::shared_ptr<const void> owner);
-
-private:
-    ShelfRow make_row(LevelStep& step, bool last);
-
-    const MipOptions options_;
-    Strips& strips_;
-    std::unique_ptr<RowMaker> slopes_;  // of the base level, in the slope domain
-    const int width_;
-    LevelSteps steps_;
+// The levels that are made from a base level.
+struct MadeLevels {
+    int first = 0;       // the level of the file that the base level is; below 0 if it and others are left out
+    int count = 1;       // levels that are made, including the base level
+    MipOptions options;  // counted from the base level: see counted_from_base()
 };
+
+// Adds what makes the levels from `normals` and writes them to `targets`. `seen` may be empty. All parameters but
+// `levels` must outlive the flow.
+void add_levels(Flow& flow, const Stage& normals, const MadeLevels& levels, Targets& targets,
+                const WatchRows& seen = {});
+
+// The same for roughness that the normals of a level call for.
+void add_roughness(Flow& flow, const Stage& normals, const MadeLevels& levels, RoughnessModel model,
+                   const OwnRoughness& own, Targets& targets);
 
 }  // namespace tex

@@ -15,9 +15,8 @@
 
 namespace tex {
 
-// The map that `steps` make of the file `input`, all of which must outlive the map. What they learn about the files
-// that they read goes to `report`. Precondition: there is a step.
+// The map that `steps` make of the file `input`, all of which must outlive the map. Precondition: there is a step.
 std::unique_ptr<MapSource> made_map(const std::string& input, const std::vector<Step>& steps, std::size_t count,
-                                    const Execution& execution, StepsReport& report);
+                                    const Execution& execution);
 
 }  // namespace tex

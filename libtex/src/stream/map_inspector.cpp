@@ -41,6 +41,11 @@ MapInspector::MapInspector(Extent extent, bool measures_y) : extent_(extent), me
     }
 }
 
+bool MapInspector::wants(int j) const {
+    return std::any_of(windows_.begin(), windows_.end(),
+                       [j](const Rect& window) { return j >= window.y && j < window.y + window.height; });
+}
+
 void MapInspector::add_row(int j, const VectorRow& row) {
     constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
     for (std::size_t k = 0; k < windows_.size(); ++k) {

@@ -20,7 +20,10 @@ class MapInspector {
 public:
     explicit MapInspector(Extent extent, bool measures_y = true);
 
-    // Takes row j of the unpacked map, with y up according to the assumption. Each row comes once.
+    // Whether add_row() looks at row j.
+    [[nodiscard]] bool wants(int j) const;
+    // Takes row j of the unpacked map, with y up according to the assumption. Rows come in any order, each once; those
+    // that it does not want may be left out.
     void add_row(int j, const VectorRow& row);
 
     // Where y points, if the rows show it clearly. Call it once, after the last row. Precondition: it measures y.

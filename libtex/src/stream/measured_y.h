@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// measured_y.h: SourceOptions::measure_y: finds out where y points before the normals are read.
+// measured_y.h: what SourceOptions::measure_y says if the texels do not show where y points.
 
 #pragma once
 
-#include <tex/source.h>
+#include <string>
 
-#include "stream/map_source.h"
+#include <tex/result.h>
 
 namespace tex {
 
-// The options with which the normals of `map` are read: with the direction of y that its base level shows. Reads the
-// base level once, row by row. The caller opens the map again. Errors: those of read_normals().
-Result<SourceOptions> with_measured_y(MapSource& map, const SourceOptions& options);
-
-// The error for a map whose texels do not show it.
-[[nodiscard]] Error undecided_y(const std::string& path);
+[[nodiscard]] inline Error undecided_y(const std::string& path) {
+    return {ErrorCode::bad_data, path, "which way green points does not show clearly in the texels"};
+}
 
 }  // namespace tex

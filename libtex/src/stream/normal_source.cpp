@@ -66,16 +66,8 @@ Result<Source> unpack_source(Texture texture, const SourceOptions& options, bool
 
 }  // namespace
 
-Result<Source> read_normals(InputFile& file, const SourceOptions& options, bool base_only, const Execution& execution) {
-    Result<Texture> texture = read_texture(file, options.read);
-    if (!texture) return texture.error();
-    Result<Source> source = unpack_source(std::move(*texture), options, base_only, execution);
-    if (!source) return source.error().of(file.path());
-    return source;
-}
-
 Result<Source> read_normals(MapSource& map, const SourceOptions& options, bool base_only, const Execution& execution) {
-    Result<Texture> texture = read_all(map.open());
+    Result<Texture> texture = map.read(base_only, execution);
     if (!texture) return texture.error().of(map.path());
     Result<Source> source = unpack_source(std::move(*texture), options, base_only, execution);
     if (!source) return source.error().of(map.path());

@@ -9,7 +9,7 @@
 #include "stream/filled_heights.h"
 #include "stream/height_stage.h"
 #include "stream/last_rows.h"
-#include "stream/row_stream.h"
+#include "stream/source_stage.h"
 #include "stream/terrain_rows.h"
 #include "threads/parallel.h"
 
@@ -69,7 +69,7 @@ Result<Heights> open_terrain(InputFile& file, const BakeFileOptions& options, co
     if (options.auto_strength || options.heights.deband != Deband::off)
         return Error{ErrorCode::bad_option, {}, "tiles of a terrain are not debanded or measured one by one"};
     Result<std::unique_ptr<TerrainRows>> rows =
-        TerrainRows::open(file, options, HeightStage::reach(options.heights, gradient));
+        TerrainRows::open(file, options, height_reach(options.heights, gradient));
     if (!rows) return rows.error();
     Heights heights;
     heights.window = (*rows)->window();
@@ -86,7 +86,7 @@ Result<Heights> open_terrain(InputFile& file, const BakeFileOptions& options, co
 // Output that is written from the top cannot wait until the last rows arrive.
 Result<void> find_last_rows(InputFile& file, const BakeFileOptions& options, const Gradient& gradient,
                             const Execution& execution, Heights& heights) {
-    const int count = std::min(HeightStage::reach(heights.options, gradient), heights.rows->extent().height);
+    const int count = std::min(height_reach(heights.options, gradient), heights.rows->extent().height);
     Result<Image> last = last_rows(file, heights.rows, options.read, count, execution);
     if (!last) return last.error();
     heights.last = std::move(*last);

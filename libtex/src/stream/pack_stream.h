@@ -8,19 +8,18 @@
 #include <tex/pipeline.h>
 
 #include "files/input_file.h"
+#include "stream/flow.h"
 #include "stream/map_source.h"
-#include "stream/row_stream.h"
 
 namespace tex {
 
-// Does what pack_file() does, for a file that is open already. The file is opened again if the first attempt fails. May
-// throw std::bad_alloc.
+// Does what pack_file() does, for a file that is open already and has not been read. May throw std::bad_alloc.
 Result<PackFileReport> pack_stream(InputFile& file, const std::string& output, Container container,
                                    const PackFileOptions& options, const Execution& execution,
                                    const StreamSizes& sizes = {});
 
 // The same, for a map from any source.
-Result<PackFileReport> pack_stream(MapSource& source, const std::string& output, Container container,
+Result<PackFileReport> pack_stream(MapSource& map, const std::string& output, Container container,
                                    const PackFileOptions& options, const Execution& execution,
                                    const StreamSizes& sizes = {});
 

@@ -9,7 +9,8 @@
 
 #include <tex/mip.h>
 
-#include "stream/map_file.h"
+#include "stream/map_source.h"
+#include "stream/normal_source.h"
 #include "stream/placed_map.h"
 
 namespace tex {
@@ -81,15 +82,15 @@ bool SharedMaps::keep(Entry& entry, std::int64_t bytes, const std::function<void
 
 // Reads the map of an entry. Returns null if it is too large.
 Result<SharedMaps::Map> SharedMaps::read(Entry& entry, const Execution& execution) {
-    MapFile file(entry.path, entry.options);
+    FileMap file(entry.path, entry.options.read);
     if (!entry.options.measure_y) {
         if (const Result<void> opened = file.open(); !opened) return opened.error();
-        const RowSource* const rows = file.rows();
-        entry.is_refused = rows != nullptr && bytes_of(rows->extent()) > most_;
+        entry.is_refused = bytes_of(file.extent(0)) > most_;
         if (entry.is_refused) return Map();
     }
-    if (const Result<void> held = file.hold(false, execution); !held) return held.error();
-    const Map map = std::make_shared<const HeldMap>(HeldMap{std::move(file.chain()), file.info()});
+    Result<Source> source = read_normals(file, entry.options, false, execution);
+    if (!source) return source.error();
+    const Map map = std::make_shared<const HeldMap>(HeldMap{std::move(source->chain), std::move(source->info)});
     entry.is_refused =
         FileVersion::of(entry.path) != entry.version || !keep(entry, bytes_of(map->chain), [&] { entry.plain = map; });
     return map;

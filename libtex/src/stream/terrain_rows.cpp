@@ -203,32 +203,4 @@ void TerrainRows::store(const std::byte* rows, int first, int end, Image& image)
     for (int j = first; j < end; ++j, rows += row_bytes()) std::memcpy(image.planes.front().row(j), rows, row_bytes());
 }
 
-NormalSink without_margins(const TerrainWindow& window, NormalSink sink) {
-    struct Margins {
-        TerrainWindow window;
-        NormalSink sink;
-        NormalMap row;
-    };
-    auto margins =
-        std::make_shared<Margins>(Margins{window, std::move(sink), NormalMap(Extent{window.extent.width, 1})});
-    const auto is_inside = [](const Margins& m, int j) {
-        return j >= m.window.top && j < m.window.top + m.window.tile.height;
-    };
-    return {[margins](int) -> NormalRow {
-                return {margins->row.x.row(0), margins->row.y.row(0), margins->row.z.row(0)};
-            },
-            [margins, is_inside](int j) {
-                if (!is_inside(*margins, j)) return;
-                const int row = j - margins->window.top;
-                const NormalRow to = margins->sink.place(row);
-                const auto copy = [&](const Plane<float>& from, float* out) {
-                    std::copy_n(from.row(0) + margins->window.left, margins->window.tile.width, out);
-                };
-                copy(margins->row.x, to.x);
-                copy(margins->row.y, to.y);
-                copy(margins->row.z, to.z);
-                margins->sink.finish(row);
-            }};
-}
-
 }  // namespace tex

@@ -12,7 +12,6 @@
 
 #include "files/input_file.h"
 #include "formats/row_source.h"
-#include "stream/normal_stage.h"
 #include "stream/tile_reader.h"
 
 namespace tex {
@@ -69,8 +68,5 @@ private:
     std::int64_t disagreeing_ = 0;   // heights of shared columns
     std::string invalid_neighbour_;  // the first one with an invalid height in the window
 };
-
-// Passes on the normals of the tile alone.
-NormalSink without_margins(const TerrainWindow& window, NormalSink sink);
 
 }  // namespace tex

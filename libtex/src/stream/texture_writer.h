@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// texture_writer.h: writes strips to DDS and KTX2 files.
+// texture_writer.h: writes rows of levels to DDS and KTX2 files.
 
 #pragma once
 
@@ -15,15 +15,15 @@
 #include "files/scratch_file.h"
 #include "formats/codecs.h"
 #include "formats/file_layout.h"
-#include "stream/strip_writer.h"
+#include "stream/level_writer.h"
 
 namespace tex {
 
 // Writes containers in which the place of every level is known from the start: DDS, KTX2, ASTC.
-class TextureWriter final : public StripWriter {
+class TextureWriter final : public LevelWriter {
 public:
     // `first` is the level with which the file begins.
-    TextureWriter(std::unique_ptr<OutputFile> file, FileLayout layout, StripPacking packing, int first)
+    TextureWriter(std::unique_ptr<OutputFile> file, FileLayout layout, LevelPacking packing, int first)
         : file_(std::move(file)), layout_(std::move(layout)), packing_(std::move(packing)), first_(first),
           size_(layout_.size) {}
 
@@ -38,12 +38,12 @@ public:
         compression_level_ = level;
         return {};
     }
-    [[nodiscard]] bool is_in_order(const Strip&) const override { return false; }
-    [[nodiscard]] int block_rows() const override {
+    [[nodiscard]] bool is_in_order() const override { return false; }
+    [[nodiscard]] int rows_together() const override {
         const FormatInfo format = format_info(packing_.head.format);
         return std::max(packing_.rows_together, format.has_blocks() ? format.block.height : kBlockEdge);
     }
-    Result<void> write(Strip& strip) override;
+    Result<void> write(const LevelRows& rows) override;
     Result<void> commit() override;
     [[nodiscard]] std::size_t file_bytes() const override { return size_; }
     [[nodiscard]] std::optional<RdoReport> rdo() const override {
@@ -53,7 +53,7 @@ public:
 private:
     const std::unique_ptr<OutputFile> file_;
     const FileLayout layout_;
-    const StripPacking packing_;
+    const LevelPacking packing_;
     const int first_;
     std::size_t size_;
     std::optional<ScratchFile> scratch_;

@@ -9,35 +9,38 @@
 
 namespace tex {
 
-UnpackStage::UnpackStage(const TextureRows& texture, Extent extent, const Sources& sources, const UnpackRule& rule,
-                         const std::optional<Scaling>& scale, LayoutFinder* finder, MapInspector* inspector,
-                         NormalSink sink)
-    : texture_(texture), extent_(extent), sources_(sources), rule_(rule), scale_(scale), finder_(finder),
-      inspector_(inspector), sink_(std::move(sink)) {
-    if (texture.rounds) rounded_ = Plane<float>(Extent{extent.width, 4});
+UnpackStage::UnpackStage(StoredChannels channels, const Sources& sources, const UnpackRule& rule,
+                         const std::optional<Scaling>& scale, MapInspector* inspector)
+    : Stage(channels.rows->extent(), 3), channels_(std::move(channels)), sources_(sources), rule_(rule), scale_(scale),
+      inspector_(inspector) {}
+
+const float* UnpackStage::channel(int c, int j, float* rounded) const {
+    if (c < 0) return nullptr;
+    const float* const values = channels_.rows->row(static_cast<int>(channels_.planes[static_cast<std::size_t>(c)]), j);
+    if (!channels_.rounds) return values;
+    round_to_texels(values, extent().width, rounded);
+    return rounded;
 }
 
-void UnpackStage::put(const Image& rows, int count) {
-    for (int k = 0; k < count; ++k) put_row(rows, k);
-}
-
-void UnpackStage::put_row(const Image& rows, int k) {
-    const float* channels[4] = {};
-    for (std::size_t c = 0; c < texture_.planes.size(); ++c) {
-        channels[c] = rows.planes[texture_.planes[c]].row(k);
-        if (!texture_.rounds) continue;
-        float* const rounded = rounded_.row(static_cast<int>(c));
-        round_to_texels(channels[c], extent_.width, rounded);
-        channels[c] = rounded;
+Result<void> UnpackStage::make(Strip& strip) {
+    const int width = extent().width;
+    Plane<float> rounded;
+    if (channels_.rounds) rounded = Plane<float>(Extent{width, 3});
+    for (int k = 0; k < strip.height; ++k) {
+        const int j = strip.first + k;
+        const auto values = [&](int c, int scratch) {
+            return channel(c, j, channels_.rounds ? rounded.row(scratch) : nullptr);
+        };
+        const NormalRow out = strip.normals(k);
+        unpack_row(values(sources_.x, 0), values(sources_.y, 1), values(sources_.z, 2), rule_, width, out.x, out.y,
+                   out.z);
+        if (inspector_ != nullptr && inspector_->wants(j)) {
+            const std::lock_guard lock(inspecting_);
+            inspector_->add_row(j, out);
+        }
+        if (scale_) scale_row(out, scale_->scale, scale_->mode, width, out);
     }
-    if (finder_ != nullptr) finder_->add_row(channels);
-    const int j = row_++;
-    const NormalRow out = sink_.place(j);
-    const float* const z = sources_.z < 0 ? nullptr : channels[sources_.z];
-    unpack_row(channels[sources_.x], channels[sources_.y], z, rule_, extent_.width, out.x, out.y, out.z);
-    if (inspector_ != nullptr) inspector_->add_row(j, out);
-    if (scale_) scale_row(out, scale_->scale, scale_->mode, extent_.width, out);
-    sink_.finish(j);
+    return {};
 }
 
 }  // namespace tex

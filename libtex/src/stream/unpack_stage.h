@@ -3,42 +3,45 @@
 
 #pragma once
 
+#include <mutex>
 #include <optional>
 #include <vector>
 
 #include <tex/scale.h>
 
-#include "formats/texture_rows.h"
 #include "rows/unpack_rows.h"
-#include "stream/layout_finder.h"
+#include "stream/flow.h"
 #include "stream/map_inspector.h"
-#include "stream/normal_stage.h"
 
 namespace tex {
 
-// Makes the same normals as unpack() of one level, followed by scale().
-class UnpackStage final : public NormalStage {
-public:
-    // Shows the rows to `finder` and their normals, before scaling, to `inspector`; both may be null. Precondition: the
-    // rule and the sources are those of its layout.
-    UnpackStage(const TextureRows& texture, Extent extent, const Sources& sources, const UnpackRule& rule,
-                const std::optional<Scaling>& scale, LayoutFinder* finder, MapInspector* inspector, NormalSink sink);
+// The channels of a map's format: their planes in the rows of a stage.
+struct StoredChannels {
+    const Stage* rows = nullptr;
+    std::vector<std::size_t> planes;
+    bool rounds = false;  // values go through round_to_texels() (picture.h)
+};
 
-    void put(const Image& rows, int count) override;
+// Makes the same normals as unpack() of one level, followed by scale().
+class UnpackStage final : public Stage {
+public:
+    // Shows normals, before they are scaled, to `inspector`, which may be null.
+    UnpackStage(StoredChannels channels, const Sources& sources, const UnpackRule& rule,
+                const std::optional<Scaling>& scale, MapInspector* inspector);
+
+    [[nodiscard]] std::vector<Need> needs(int first, int end) const override { return {{channels_.rows, first, end}}; }
+    Result<void> make(Strip& strip) override;
 
 private:
-    void put_row(const Image& rows, int k);
+    // A channel of row j; null if there is none. `rounded` has room for it.
+    [[nodiscard]] const float* channel(int c, int j, float* rounded) const;
 
-    const TextureRows& texture_;
-    const Extent extent_;
+    const StoredChannels channels_;
     const Sources sources_;
     const UnpackRule rule_;
     const std::optional<Scaling> scale_;
-    LayoutFinder* const finder_;
     MapInspector* const inspector_;
-    const NormalSink sink_;
-    Plane<float> rounded_;  // the channels of a row
-    int row_ = 0;           // the next row
+    std::mutex inspecting_;
 };
 
 }  // namespace tex

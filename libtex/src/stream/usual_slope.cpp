@@ -20,6 +20,24 @@ constexpr double kUsual = 0.99;
 constexpr int kDroppedBits = 17;
 constexpr std::size_t kSlopeBinCount = std::size_t{1} << (31 - kDroppedBits);
 
+class MeasureStage final : public Stage {
+public:
+    MeasureStage(const Stage& normals, UsualSlope& usual)
+        : Stage(normals.extent(), 0), normals_(normals), usual_(usual) {}
+
+    [[nodiscard]] std::vector<Need> needs(int first, int end) const override { return {{&normals_, first, end}}; }
+    Result<void> make(Strip& strip) override {
+        for (int j = strip.first; j < strip.first + strip.height; ++j) {
+            if (usual_.wants(j)) usual_.add(normals_.normals(j));
+        }
+        return {};
+    }
+
+private:
+    const Stage& normals_;
+    UsualSlope& usual_;
+};
+
 double rounded_to_three_digits(double value) {
     const double unit = std::pow(10.0, std::floor(std::log10(value)) - 2.0);
     return std::round(value / unit) * unit;
@@ -56,28 +74,12 @@ Result<Strength> measure_strength(InputFile& file, const BakeFileOptions& option
     const Execution silent{execution.threads, {}};
     Result<Heights> heights = open_heights(file, RowOrder::any, as_one, gradient, silent);
     if (!heights) return heights.error();
-    const Extent extent = heights->rows->extent();
-    UsualSlope usual(extent);
-    NormalMap row(Extent{extent.width, 1});
-    const VectorRow made{row.x.row(0), row.y.row(0), row.z.row(0)};
-    const NormalSink sink{[&row](int) {
-                              return NormalRow{row.x.row(0), row.y.row(0), row.z.row(0)};
-                          },
-                          [&](int j) {
-                              if (usual.wants(j)) usual.add(made);
-                          }};
-    HeightStage stage(extent, heights->source, heights->options, gradient, head_of(extent, as_one, {}), sink,
-                      std::move(heights->last));
-    const auto put = [&](Image& rows, int, int count) -> Result<void> {
-        if (execution.progress && !execution.progress(0.0)) return Error{ErrorCode::cancelled, {}, "cancelled"};
-        if (heights->linear) {
-            if (Result<void> linear = heights->linear->convert(rows, count); !linear) return linear;
-        }
-        stage.put(rows, count);
-        return {};
-    };
-    if (const Result<void> read = heights->rows->visit(file.path(), put); !read) return read.error();
-    if (const Result<void> sound = stage.check(); !sound) return sound.error();
+    UsualSlope usual(heights->rows->extent());
+    Flow flow;
+    flow.add<MeasureStage>(*add_bake(flow, *heights, file.path(), as_one, gradient).normals, usual);
+    const Execution onward{execution.threads,
+                           [&execution](double) { return !execution.progress || execution.progress(0.0); }};
+    if (const Result<void> done = flow.run(onward); !done) return done.error();
     const auto slope = static_cast<double>(usual.slope());
     if (!(slope > 0.0)) return Strength{};
     const auto strength = static_cast<float>(rounded_to_three_digits(1.0 / slope));

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "stream/level_writer.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <tex/mip_chain.h>
+
+#include "formats/codecs.h"
+#include "formats/file_layout.h"
+#include "formats/reader/reader.h"
+#include "rows/pack_rows.h"
+#include "rows/roughness_rows.h"
+#include "stream/texture_writer.h"
+#include "threads/guard.h"
+
+namespace tex {
+namespace {
+
+// Writes pictures, which take their rows one after the other. Strips that come too early are packed and wait.
+class PictureWriter final : public LevelWriter {
+public:
+    PictureWriter(std::string path, std::unique_ptr<OutputFile> file, LevelPacking packing, int first)
+        : path_(std::move(path)), file_(std::move(file)), packing_(std::move(packing)), first_(first) {}
+
+    Result<void> begin(const Codec& codec, const TextureHead& head) {
+        Result<std::unique_ptr<RowTarget>> target =
+            codec.open_target(head, [this](std::uint64_t offset, std::span<const std::byte> bytes) {
+                size_ = std::max(size_, static_cast<std::size_t>(offset) + bytes.size());
+                return bytes.empty() ? Result<void>() : file_->write_at(offset, bytes);
+            });
+        if (!target) return target.error().of(path_);
+        target_ = std::move(*target);
+        target_->wait_beside(path_);
+        return {};
+    }
+    // If the target has work, several threads pack strips and do that work.
+    [[nodiscard]] bool is_in_order() const override { return !target_->has_work(); }
+    Result<void> write(const LevelRows& rows) override;
+    Result<void> commit() override;
+    [[nodiscard]] std::size_t file_bytes() const override { return size_; }
+
+private:
+    struct Packed {
+        int rows = 0;
+        std::vector<std::byte> bytes;
+    };
+    struct Level {
+        int next = 0;                   // the row that must come next
+        std::map<int, Packed> waiting;  // keyed by first row
+    };
+    Result<void> put(int level, const std::byte* rows, int count) {
+        levels_[level].next += count;
+        return target_->put(level, rows, count);
+    }
+    Result<void> put_in_order(int level, const LevelRows& rows);
+    Result<void> work(std::size_t left);
+
+    const std::string path_;
+    const std::unique_ptr<OutputFile> file_;
+    const LevelPacking packing_;
+    const int first_;   // the level with which the file begins
+    std::mutex mutex_;  // guards all members below, but not the run() of work
+    std::size_t size_ = 0;
+    std::unique_ptr<RowTarget> target_;  // writes into the file
+    std::deque<std::shared_ptr<RowWork>> ready_;
+    std::map<int, Level> levels_;
+};
+
+Result<void> PictureWriter::write(const LevelRows& rows) {
+    const Result<void> done = guarded([&]() -> Result<void> {
+        rows.scratch.resize(level_bytes(packing_.head.format, {rows.map.extent().width, rows.height}));
+        packing_.pack(rows, rows.scratch.data());
+        if (Result<void> put = put_in_order(rows.level - first_, rows); !put) return put;
+        constexpr std::size_t kForTheNext = 1;
+        return work(kForTheNext);
+    });
+    return done ? done : Result<void>(done.error().of(path_));
+}
+
+Result<void> PictureWriter::put_in_order(int index, const LevelRows& rows) {
+    const std::lock_guard lock(mutex_);
+    Level& level = levels_[index];
+    if (rows.first != level.next) {
+        level.waiting[rows.first] = {rows.height, rows.scratch};
+        return {};
+    }
+    Result<void> done = put(index, rows.scratch.data(), rows.height);
+    while (done && !level.waiting.empty() && level.waiting.begin()->first == level.next) {
+        const Packed packed = std::move(level.waiting.extract(level.waiting.begin()).mapped());
+        done = put(index, packed.bytes.data(), packed.rows);
+    }
+    return done;
+}
+
+// Does one piece of the target's work, and more while more than `left` pieces are left. If one thread did all that its
+// strip has completed, its batch would stay on the conveyor, and the other threads would soon have to wait for it.
+Result<void> PictureWriter::work(std::size_t left) {
+    std::unique_lock lock(mutex_);
+    for (std::size_t allowed = 0;; allowed = left) {
+        while (std::shared_ptr<RowWork> found = target_->take_work()) ready_.push_back(std::move(found));
+        if (ready_.size() <= allowed) return {};
+        const std::shared_ptr<RowWork> work = std::move(ready_.front());
+        ready_.pop_front();
+        lock.unlock();
+        if (Result<void> run = work->run(); !run) return run;
+        lock.lock();
+        if (Result<void> ended = target_->end_work(work); !ended) return ended;
+    }
+}
+
+Result<void> PictureWriter::commit() {
+    const Result<void> ended = guarded([&] {
+        Result<void> done = work(0);
+        return done ? target_->finish() : done;
+    });
+    return ended ? file_->commit() : Result<void>(ended.error().of(path_));
+}
+
+// Writes pictures that the reader process encodes as a whole.
+class EncodedWriter final : public LevelWriter {
+public:
+    EncodedWriter(std::string path, std::unique_ptr<OutputFile> file, LevelPacking packing, ReaderPicture picture)
+        : path_(std::move(path)), file_(std::move(file)), packing_(std::move(packing)), picture_(std::move(picture)) {}
+
+    [[nodiscard]] bool is_in_order() const override { return false; }
+    Result<void> write(const LevelRows& rows) override {
+        const Result<void> done = guarded([&] {
+            rows.scratch.resize(level_bytes(packing_.head.format, {rows.map.extent().width, rows.height}));
+            packing_.pack(rows, rows.scratch.data());
+            return picture_.put(rows.first, rows.scratch);
+        });
+        return done ? done : Result<void>(done.error().of(path_));
+    }
+    Result<void> commit() override {
+        const Result<std::vector<std::byte>> bytes = guarded([&] { return picture_.encode(); });
+        if (!bytes) return bytes.error().of(path_);
+        size_ = bytes->size();
+        const Result<void> written = file_->write_at(0, *bytes);
+        return written ? file_->commit() : written;
+    }
+    [[nodiscard]] std::size_t file_bytes() const override { return size_; }
+
+private:
+    const std::string path_;
+    const std::unique_ptr<OutputFile> file_;
+    const LevelPacking packing_;
+    const ReaderPicture picture_;
+    std::size_t size_ = 0;
+};
+
+}  // namespace
+
+bool takes_any_order(Container container) { return codec_of(container).layout != nullptr; }
+
+LevelPacking packing_of(const PackOptions& options, Extent extent, int levels) {
+    const EncodingInfo encoding = encoding_info(options.encoding);
+    const std::shared_ptr<RdoTally> tally = is_optimised(options) ? std::make_shared<RdoTally>() : nullptr;
+    const int band_rows = rdo_band_rows(options, extent.width);
+    return {{encoding.format, extent, levels, encoding.swizzle, true, options.y_axis, options.y_known},
+            [options, band_rows, tally](const LevelRows& rows, std::byte* out) {
+                pack_rows(rows.map, rows.height, options, 0, rows.height, out, band_rows, tally.get());
+            },
+            band_rows,
+            tally};
+}
+
+LevelPacking packing_of(const RoughnessFile& options, Extent extent, int levels) {
+    TextureHead head{options.format, extent, levels};
+    head.swizzle = kRoughnessSwizzle;
+    return {head,
+            [format = options.format, effort = options.effort](const LevelRows& rows, std::byte* out) {
+                pack_roughness_rows(rows.map.x, rows.height, format, effort, 0, rows.height, out);
+            },
+            1, nullptr};
+}
+
+Result<std::unique_ptr<LevelWriter>> LevelWriter::open(const std::string& path, Container container,
+                                                       const LevelPacking& packing, int first,
+                                                       const WriteOptions& options, Opened when) {
+    const TextureHead& head = packing.head;
+    const Codec& codec = codec_of(container);
+    FileLayout layout;
+    if (codec.layout != nullptr || options.zstd != 0) {
+        if (const Result<void> held = check_holds(codec, head.format, options); !held) return held.error().of(path);
+        layout = codec.layout(head, options);
+    }
+    const std::size_t bytes = codec.layout != nullptr ? layout.size : level_bytes(head.format, head.extent);
+    Result<std::unique_ptr<OutputFile>> file = OutputFile::open(path, bytes, when, AtomicFileOptions::of(options));
+    if (!file) return file.error();
+    if (codec.open_target != nullptr) {
+        auto picture = std::make_unique<PictureWriter>(path, std::move(*file), packing, first);
+        if (const Result<void> begun = picture->begin(codec, head); !begun) return begun.error();
+        return std::unique_ptr<LevelWriter>(std::move(picture));
+    }
+    if (codec.layout == nullptr) {
+        Result<ReaderPicture> picture = ReaderPicture::open(container, head, options);
+        if (!picture) return picture.error().of(path);
+        return std::unique_ptr<LevelWriter>(
+            std::make_unique<EncodedWriter>(path, std::move(*file), packing, std::move(*picture)));
+    }
+    auto texture = std::make_unique<TextureWriter>(std::move(*file), std::move(layout), packing, first);
+    const Result<void> begun =
+        options.zstd > 0 ? texture->begin_compressed(path, codec, options.zstd) : texture->begin();
+    if (!begun) return begun.error();
+    return std::unique_ptr<LevelWriter>(std::move(texture));
+}
+
+}  // namespace tex

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "stream/settled_map.h"
+
+#include <utility>
+#include <vector>
+
+#include "rows/swizzle_evidence.h"
+#include "stream/measured_y.h"
+#include "stream/source_layout.h"
+
+namespace tex {
+
+Result<void> SettledMap::open(const Execution& execution) {
+    if (options_.fill_background && !filled_) {
+        filled_ = filled(*map_, options_, execution);
+        map_ = filled_.get();
+    }
+    if (Result<void> opened = map_->open(); !opened) return opened.error().of(map_->path());
+    if (Result<void> settled = settle(); !settled) return settled.error().of(map_->path());
+    if (!options_.measure_y) return {};
+    if (Result<void> measured = measure_y(execution); !measured) return measured.error().of(map_->path());
+    return map_->open();
+}
+
+// The swizzle that the texels show.
+Result<Swizzle> SettledMap::find_layout() {
+    SwizzleEvidence evidence(map_->extent(0), map_->head().format);
+    int row = 0;
+    const Result<void> seen = map_->look([&](const float* const(&channels)[4]) {
+        evidence.add_row(row++, channels);
+        return !evidence.is_certain();
+    });
+    if (!seen) return seen.error();
+    if (Result<void> again = map_->open(); !again) return again.error();
+    return guessed_swizzle(evidence.layout(), options_);
+}
+
+// Whether floats, of which the file does not say it, are unsigned: one negative value shows that they are not.
+Result<bool> SettledMap::find_range() {
+    RangeEvidence range;
+    const int width = map_->extent(0).width;
+    const Result<void> seen = map_->look([&](const float* const(&channels)[4]) {
+        const float* const z = sources_.z < 0 ? nullptr : channels[sources_.z];
+        range.add(weigh_row(channels[sources_.x], channels[sources_.y], z, width));
+        return !range.negative;
+    });
+    if (!seen) return seen.error();
+    if (Result<void> again = map_->open(); !again) return again.error();
+    return range.says_unsigned();
+}
+
+Result<void> SettledMap::settle() {
+    const Texture& head = map_->head();
+    if (const Result<void> fit = check_channels(head); !fit) return map_->after_all_rows(fit.error().of(map_->path()));
+    if (!swizzle_) swizzle_ = known_swizzle(head, options_);
+    if (!swizzle_) {
+        const Result<Swizzle> found = find_layout();
+        if (!found) return found.error();
+        swizzle_ = *found;
+    }
+    const FormatInfo format = format_info(head.format);
+    const Result<Sources> sources = sources_of(*swizzle_, (1u << format.channels) - 1);
+    if (!sources) return map_->after_all_rows(sources.error().of(map_->path()));
+    sources_ = *sources;
+    if (!is_unsigned_) is_unsigned_ = is_unsigned(format.sample, range_of(head.normal_encoding, options_.unpack));
+    if (!is_unsigned_) {
+        const Result<bool> found = find_range();
+        if (!found) return found.error();
+        is_unsigned_ = *found;
+    }
+    info_ = source_info(map_->head(), *swizzle_, options_);
+    YAxis y = info_.y_axis;
+    if (map_->has_y_up()) y = info_.y_axis == map_->head().y_axis ? YAxis::up : YAxis::down;
+    rule_ = rule_of(unpack_options(info_, options_), format.sample, format.bits, y);
+    rule_.is_unsigned = *is_unsigned_;
+    return {};
+}
+
+Result<void> SettledMap::measure_y(const Execution& execution) {
+    options_.measure_y = options_.file_y_first = false;
+    options_.unpack.y_axis = YAxis::up;
+    if (Result<void> settled = settle(); !settled) return settled;
+    MapInspector inspector(map_->extent(0));
+    Flow flow;
+    add_to(flow, 0, {}, &inspector);
+    if (Result<void> seen = flow.run({execution.threads, {}}); !seen) return seen;
+    const std::optional<YAxis> shown = inspector.y();
+    if (!shown) return undecided_y(map_->path());
+    options_.unpack.y_axis = *shown;
+    return settle();
+}
+
+Stage& SettledMap::add_to(Flow& flow, int level, const std::optional<Scaling>& scale, MapInspector* inspector) const {
+    std::vector<bool> wanted(4, false);
+    for (const int c : {sources_.x, sources_.y, sources_.z}) {
+        if (c >= 0) wanted[static_cast<std::size_t>(c)] = true;
+    }
+    return flow.add<UnpackStage>(map_->add_to(flow, level, wanted), sources_, rule_, scale, inspector);
+}
+
+}  // namespace tex
