@@ -53,7 +53,7 @@ ConvertNormals::ConvertNormals(const cli::ProgramRow& row) : NormalsConverter(ro
     command.input("NORMALS...", "normal maps; - is standard input");
     files.add(command);
     conversion_.add(command);
-    normals.add(command, false);
+    normals.add(command, false, cli::NormalsReader::Others::left_out);
     output.add(command, cli::default_encodings() + "; rgb8 in dds and ktx2 for object space",
                "as in the input; up if the space changes");
     output.add_engines(command);

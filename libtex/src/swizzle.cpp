@@ -34,7 +34,7 @@ Result<Swizzle> guess_swizzle(const Texture& texture, const Execution& execution
         if (texture.swizzle_known || format_info(texture.format).channels < 4) return texture.swizzle;
         const auto image = decode(texture, 0, execution);
         if (!image) return image.error();
-        SwizzleEvidence evidence(image->extent(), texture.format);
+        SwizzleEvidence evidence(image->extent(), texture);
         for (int j = 0; j < image->extent().height; ++j) {
             const auto row = [&](std::size_t c) { return image->planes[c].row(j); };
             evidence.add_row(j, {row(0), row(1), row(2), row(3)});

@@ -32,13 +32,17 @@ void set(Rgba& row, int i, int j, bool rgb) {
 // The layout that is found if the texels for which `is_rgb` holds are x, y, z and the others are DXT5nm.
 template <class IsRgb>
 std::string layout(Extent extent, int rows, IsRgb&& is_rgb) {
-    SwizzleEvidence evidence(extent, Format::rgba8_unorm);
+    SwizzleEvidence evidence(extent, Texture());
+    std::string certain;
     for (int j = 0; j < rows; ++j) {
         Rgba row(static_cast<std::size_t>(extent.width));
         for (int i = 0; i < extent.width; ++i) set(row, i, j, is_rgb(i, j));
         evidence.add_row(j, {row.r.data(), row.g.data(), row.b.data(), row.a.data()});
+        if (certain.empty() && evidence.is_certain()) certain = name_of(kSwizzleNames, evidence.layout());
     }
-    return std::string(name_of(kSwizzleNames, evidence.layout()));
+    std::string found(name_of(kSwizzleNames, evidence.layout()));
+    EXPECT_TRUE(certain.empty() || certain == found) << certain;
+    return found;
 }
 
 // Of a map of 2^21 texels, every second column of every second row is examined: from the first one.
@@ -49,6 +53,23 @@ TEST(SwizzleEvidence, LooksAtEverySecondRowAndColumnOfALargeMap) {
     const Extent larger{4096, 2048};  // every third
     EXPECT_EQ(layout(larger, 64, [](int i, int j) { return i % 3 == 0 && j % 3 == 0; }), "rgb");
     EXPECT_EQ(layout(larger, 64, [](int i, int j) { return i % 3 != 0 || j % 3 != 0; }), "dxt5nm");
+}
+
+// A map of x, y and z need not be read to its end.
+TEST(SwizzleEvidence, IsCertainOfRgbEarly) {
+    const Extent extent{256, 256};
+    SwizzleEvidence rgb(extent, Texture()), packed(extent, Texture());
+    for (int j = 0; j < 256; ++j) {
+        Rgba row(256), dxt5nm(256);
+        for (int i = 0; i < 256; ++i) {
+            set(row, i, j, true);
+            set(dxt5nm, i, j, false);
+        }
+        rgb.add_row(j, {row.r.data(), row.g.data(), row.b.data(), row.a.data()});
+        packed.add_row(j, {dxt5nm.r.data(), dxt5nm.g.data(), dxt5nm.b.data(), dxt5nm.a.data()});
+        EXPECT_TRUE(j < 32 || rgb.is_certain()) << j;
+        EXPECT_FALSE(packed.is_certain()) << j;
+    }
 }
 
 TEST(SwizzleEvidence, LooksAtEveryTexelOfASmallMap) {

@@ -66,6 +66,29 @@ TEST(Swizzle, OfFlatMapsIsToldFromTheirLength) {
     EXPECT_EQ(guess(unmarked(bumps({16, 16}, 0.0f), Encoding::rgba8)), "rgb");
 }
 
+// Gloss or height beside a flat map does not make it DXT5nm.
+TEST(Swizzle, OfFlatMapsWithDataInAlphaIsRgb) {
+    Texture texture = unmarked(bumps({16, 16}, 0.0f), Encoding::rgba8);
+    for (std::size_t k = 0; k < 256; ++k) texture.levels[0].bytes[4 * k + 3] = static_cast<std::byte>(k);
+    EXPECT_EQ(guess(texture), "rgb");
+    Texture packed = unmarked(bumps({16, 16}, 0.0f), Encoding::ag8);
+    for (std::size_t k = 0; k < 256; ++k) packed.levels[0].bytes[4 * k + 3] = static_cast<std::byte>(k);
+    EXPECT_EQ(guess(packed), "dxt5nm");
+}
+
+// Equal colours beside a varying alpha are x and y in KTX2, and y and x elsewhere.
+TEST(Swizzle, OfGreyWithAlphaDependsOnTheConvention) {
+    Texture texture = unmarked(bumps({16, 16}, 0.5f), Encoding::ag8);
+    for (std::size_t k = 0; k < 256; ++k)
+        texture.levels[0].bytes[4 * k] = texture.levels[0].bytes[4 * k + 2] = texture.levels[0].bytes[4 * k + 1];
+    EXPECT_EQ(guess(texture), "dxt5nm");
+    texture.x_in_grey = true;
+    EXPECT_EQ(guess(texture), "ra");
+    Texture plain = unmarked(bumps({16, 16}, 0.5f), Encoding::rgba8);
+    plain.x_in_grey = true;
+    EXPECT_EQ(guess(plain), "rgb");
+}
+
 // No value of a flat map is negative, although the format is signed.
 TEST(Swizzle, OfFlatFloatsIsToldFromBothReadings) {
     const auto flat = [](std::initializer_list<float> texel) {
@@ -81,6 +104,7 @@ TEST(Swizzle, OfFlatFloatsIsToldFromBothReadings) {
     EXPECT_EQ(flat({0.0f, 0.0f, 1.0f, 1.0f}), "rgb");
     EXPECT_EQ(flat({0.5f, 0.5f, 1.0f, 1.0f}), "rgb");
     EXPECT_EQ(flat({1.0f, 0.5f, 1.0f, 0.5f}), "dxt5nm");
+    EXPECT_EQ(flat({0.0f, 0.0f, 1.0f, 0.3f}), "rgb");
 }
 
 TEST(Swizzle, OfRxgbIsToldFromTheUnitVectors) {

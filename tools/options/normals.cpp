@@ -51,7 +51,8 @@ void report_input(Job& job, const SourceInfo& info) {
     job.report["source"] = {{"format", name_of(kFormatNames, info.format)}, {"swizzle", layout_name(info.swizzle)}};
 }
 
-void NormalsReader::add(Command& command, bool with_keep_length) {
+void NormalsReader::add(Command& command, bool with_keep_length, Others others) {
+    others_ = others;
     command.group("Input");
     Row& y = command.option("--y-in", "AXIS", "which way green points in the input", [this](const std::string& text) {
         std::vector<std::string> names = names_of(words_of(kYAxisNames));
@@ -82,6 +83,8 @@ void NormalsReader::add(Command& command, bool with_keep_length) {
     command.flag(unpack.snap_flat, "--snap-flat", "read 127 and 128 of 8-bit files as 0");
     command.flag(fills_background, "--fill-background", "fill the background around charts with the nearest normals");
     if (with_keep_length) command.flag(unpack.keep_length, "--keep-length", "do not normalise what is read");
+    if (others == Others::none) return;
+    command.flag(drops_others, "--drop", "leave out channels that hold no normals, and do not warn of it");
 }
 
 void NormalsReader::warn_of_guesses(Console& console) const {
@@ -103,6 +106,7 @@ SourceOptions NormalsReader::options(const Job& job, const Reading& reading) con
     options.r_or_a = rg_or_ag;
     options.doubt_y = reading.doubt_y;
     options.inspect = !reading.object;
+    options.drop_others = drops_others || others_ == Others::none;
     options.fill_background = fills_background;
     options.file_y_first = reading.is_detail && !reading.y;
     return options;
@@ -129,6 +133,7 @@ void NormalsReader::note(Job& job, const std::string& path, const SourceInfo& in
                              std::max(1.0, 100.0 * info.background)),
                  path);
     }
+    if (path == job.task.input && !info.others.empty()) warn_of_others(job, path, info.others);
     if (!info.guessed) return;
     const std::string name = layout_name(info.swizzle);
     job.remark(guess_text(name), path);
@@ -136,6 +141,19 @@ void NormalsReader::note(Job& job, const std::string& path, const SourceInfo& in
     Guesses& guesses = guesses_[name];
     // Files that are read in parallel arrive in any order. The alphabetically first one is named.
     if (guesses.count++ == 0 || path < guesses.first) guesses.first = path;
+}
+
+// Says which channels an output lacks.
+void NormalsReader::warn_of_others(Job& job, const std::string& path, const std::vector<OtherChannel>& others) const {
+    std::vector<std::string> names;
+    for (const OtherChannel& other : others)
+        names.push_back(fmt::format("{} ({:.2g} to {:.2g})", other.name, other.least, other.greatest));
+    const bool is_alpha = others.back().name == 'A' && others_ == Others::kept_in_alpha;
+    job.warn(fmt::format("{} {} no part of the normals and {} left out; {}--drop leaves out such channels without this "
+                         "warning",
+                         join(names, " and "), names.size() == 1 ? "holds" : "hold",
+                         names.size() == 1 ? "is" : "are", is_alpha ? "--format rgba8 keeps A, " : ""),
+             path);
 }
 
 Result<Source> NormalsReader::read(Job& job, const std::string& path, const Execution& execution,

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <tex/container.h>
 #include <tex/source.h>
@@ -49,9 +50,13 @@ public:
     bool measures_y = false;  // the texels show which way green points
     bool fills_background = false;
     bool warns_of_background = true;  // where the output may mix it into the charts
+    bool drops_others = false;        // channels that hold no normals are left out, and no warning says so
+
+    // What becomes of channels that hold no normals, if the command writes a map.
+    enum class Others { none, kept_in_alpha, left_out };
 
     // `with_keep_length`: --keep-length is an option. Otherwise the command itself chooses.
-    void add(Command& command, bool with_keep_length = true);
+    void add(Command& command, bool with_keep_length = true, Others others = Others::kept_in_alpha);
 
     // The same, as options of the library.
     [[nodiscard]] SourceOptions options(const Job& job, const Reading& reading = {}) const;
@@ -75,6 +80,9 @@ private:
         int count = 0;
     };
 
+    void warn_of_others(Job& job, const std::string& path, const std::vector<OtherChannel>& others) const;
+
+    Others others_ = Others::none;
     std::mutex mutex_;
     std::map<std::string, Guesses> guesses_;  // by the name of the swizzle
 };

@@ -28,13 +28,23 @@ struct SourceOptions {
     bool r_or_a = false;           // y is in G, and x in A if guess_swizzle() finds it there, else in R; unpack.swizzle
                                    // takes precedence
     bool doubt_y = false;          // if neither the file nor the caller states y, measure it: SourceInfo::y_doubtful
-    bool inspect = false;          // look for signs that the texels hold something else: object_space, background
+    bool inspect = false;          // look for signs that the texels hold something else: object_space, background,
+                                   // others
+    bool drop_others = false;      // channels that hold no part of the normals are not carried along: see SourceInfo
     bool fill_background = false;  // black, grey or white around charts takes the nearest normals; smaller levels are
                                    // left out, and the base level is held in memory
     bool measure_y = false;     // the texels of the base level decide about y, whatever the file or unpack.y_axis state
     bool file_y_first = false;  // the direction that a file states takes precedence over unpack.y_axis
 
     friend bool operator==(const SourceOptions&, const SourceOptions&) = default;
+};
+
+// A channel of a file that holds no part of the normals, but something of its own: heights, gloss, a mask.
+struct OtherChannel {
+    char name = 'A';                      // R, G, B or A
+    float least = 0.0f, greatest = 0.0f;  // as decode() gives its values
+
+    friend bool operator==(const OtherChannel&, const OtherChannel&) = default;
 };
 
 // What a file holds.
@@ -47,7 +57,11 @@ struct SourceInfo {
     bool y_doubtful = false;   // it is assumed, and the texels clearly show the other direction
     bool object_space = false;  // more than 5 % of the texels that were inspected point away from the surface
     double background = 0.0;    // the share of those that are black, grey or white, if it is 1 % or more
-    bool srgb = false;          // this and remarks: as in Texture
+    // Channels of the base level, whose values differ by more than 1.5 of 255 and repeat none of x, y and z. After
+    // pack_file() and blend_file(): those of them that are not in every output. The encoding rgba8 takes alpha along;
+    // smaller levels hold its mean.
+    std::vector<OtherChannel> others;
+    bool srgb = false;  // this and remarks: as in Texture
     std::vector<std::string> remarks;
 };
 

@@ -31,8 +31,9 @@ inline constexpr Named<Swizzle> kSwizzleNames[] = {
 // leaves no choice (fewer than four channels). Otherwise the texels of the base level decide, up to about 2^20 of them,
 // spread over the map:
 //
-//   ra       in ASTC, R, G and B are equal (x in all three), as astcenc stores normals, and A is not 1 everywhere
-//   dxt5nm   R and B are constant (within 8/255), and A varies or R, G, B cannot be a unit vector (if they are floats:
+//   ra       in ASTC and KTX2 (Texture::x_in_grey), R, G and B are equal (x in all three), and A is not 1 everywhere
+//   rgb      R and B are constant (within 8/255), and those of a flat map (x = 0, z = 1): A is something else
+//   dxt5nm   R and B are constant otherwise, and A varies or R, G, B cannot be a unit vector (if they are floats:
 //            neither unchanged nor as (n + 1) / 2); or A varies and R, G and B are equal (y in all three)
 //   rxgb     R is constant, A is not, and A, G, B are nearer to unit vectors than R, G, B
 //   rgb      all others

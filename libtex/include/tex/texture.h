@@ -33,6 +33,10 @@ struct Texture {
     YAxis y_axis = YAxis::up;
     bool y_known = false;
 
+    // Where R, G and B are equal and A varies, they hold x and A holds y: the convention of ASTC and KTX2 (Khronos'
+    // texture tools, --normal-mode). Elsewhere such texels are DXT5nm. guess_swizzle() asks for it.
+    bool x_in_grey = false;
+
     // As Image::normal_encoding: "signed" if floats are the components of normals themselves, or empty.
     std::string normal_encoding;
 

@@ -113,7 +113,7 @@ constexpr Rule kRules[] = {
     {"N212", "alpha-not-one", values, note, true, "Alpha is not 255 beside x in R.",
      "Unity's UnpackNormalmapRGorAG multiplies x by A. A height or gloss there bends the normals, unless the shader "
      "reads R, G and B alone.",
-     "pack-normals FILE --keep-length --format SAME -o FIXED", ""},
+     "pack-normals FILE --keep-length --drop --format SAME -o FIXED", ""},
     {"N213", "object-space", values, error, true, "The normals are not in tangent space.",
      "z points away from the surface in many texels and the vectors face all directions: an object-space or "
      "world-space map.",

@@ -20,8 +20,9 @@ namespace {
 // The rows of a normal map as the channels of a format.
 class Rows {
 public:
-    Rows(const NormalMap& map, int height, const Swizzle& swizzle, YAxis y_axis)
-        : map_(map), extent_{map.extent().width, height}, swizzle_(swizzle), negate_y_(y_axis == YAxis::down) {}
+    Rows(const NormalMap& map, int height, const Swizzle& swizzle, YAxis y_axis, const Plane<float>* alpha)
+        : map_(map), alpha_(alpha), extent_{map.extent().width, height}, swizzle_(swizzle),
+          negate_y_(y_axis == YAxis::down) {}
 
     void channels(int j, PackChannel out[4]) const {
         for (std::size_t k = 0; k < 4; ++k) {
@@ -31,6 +32,7 @@ public:
                 case Component::z: out[k] = {map_.z.row(j), false}; break;
                 default:
                     out[k] = {};
+                    if (k == 3 && alpha_ != nullptr) out[k] = {alpha_->row(j), false};
                     break;  // every encoding's constants are 1, except in channels that it does not store
             }
         }
@@ -42,6 +44,7 @@ public:
 
 private:
     const NormalMap& map_;
+    const Plane<float>* const alpha_;
     const Extent extent_;
     const Swizzle swizzle_;
     const bool negate_y_;
@@ -104,11 +107,16 @@ void pack_astc(const Rows& rows, Format format, Effort effort, int j, int count,
 
 }  // namespace
 
+bool can_hold_alpha(Encoding encoding) {
+    const auto [format, swizzle] = encoding_info(encoding);
+    return format_info(format).channels == 4 && !format_info(format).has_blocks() && swizzle[3] == Component::one;
+}
+
 void pack_rows(const NormalMap& map, int height, const PackOptions& options, int begin, int end, std::byte* out,
-               int band_rows, RdoTally* tally) {
+               int band_rows, RdoTally* tally, const Plane<float>* alpha) {
     const auto [format, swizzle] = encoding_info(options.encoding);
     const FormatInfo info = format_info(format);
-    const Rows rows(map, height, swizzle, options.y_axis);
+    const Rows rows(map, height, swizzle, options.y_axis, alpha);
     if (info.has_blocks()) {
         const std::size_t pitch = level_bytes(format, {rows.extent().width, 1});
         const int block = info.block.height;

@@ -30,6 +30,8 @@ double length_error(float a, float b, float c, float scale, float offset) {
 double signed_error(float a, float b, float c) { return length_error(a, b, c, 1.0f, 0.0f); }
 double unsigned_error(float a, float b, float c) { return length_error(a, b, c, 2.0f, 1.0f); }
 
+bool is_near(float value, float wanted) { return std::abs(value - wanted) <= kConstant; }
+
 Swizzle named(std::string_view name) { return *find_by_name(kSwizzleNames, name); }
 
 }  // namespace
@@ -42,9 +44,9 @@ void SwizzleEvidence::Range::add(float value) {
 
 bool SwizzleEvidence::Range::is_constant() const { return !(greatest - least > kConstant); }
 
-SwizzleEvidence::SwizzleEvidence(Extent extent, Format format)
-    : extent_(extent), is_float_(format_info(format).sample == SampleKind::floating), is_astc_(is_astc(format)),
-      step_(step_of(extent)) {}
+SwizzleEvidence::SwizzleEvidence(Extent extent, const Texture& head)
+    : extent_(extent), is_float_(format_info(head.format).sample == SampleKind::floating),
+      x_in_grey_(head.x_in_grey || is_astc(head.format)), step_(step_of(extent)) {}
 
 void SwizzleEvidence::add_row(int j, const float* const (&channels)[4]) {
     if (j % step_ != 0) return;
@@ -81,7 +83,11 @@ Swizzle SwizzleEvidence::layout() const {
     // Floats without a negative value may still be signed: a flat map is 0, 0, 1.
     const bool is_unit = rgb_error <= kNotUnit || (is_float_ && signed_.rgb / count <= kNotUnit);
     const bool is_grey = off_grey_ / count <= kGrey;
-    if (is_astc_ && is_grey && !(a.least > 1.0f - kConstant)) return named("ra");
+    if (x_in_grey_ && is_grey && !(a.least > 1.0f - kConstant)) return named("ra");
+    // A flat map with something else in alpha: DXT5nm has no such red beside such blue.
+    constexpr float kHalf = 128.0f / 255.0f;
+    const float zero = is_float_ && is_near(r.least, 0.0f) ? 0.0f : kHalf;  // of signed floats, or of codes
+    if (r.is_constant() && is_near(r.least, zero) && b.is_constant() && is_near(b.least, 1.0f)) return named("rgb");
     if (r.is_constant() && b.is_constant() && (!a.is_constant() || !is_unit)) return named("dxt5nm");
     if (!a.is_constant() && is_grey) return named("dxt5nm");
     if (r.is_constant() && !a.is_constant() && rxgb_error < rgb_error) return named("rxgb");

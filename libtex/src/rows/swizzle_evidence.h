@@ -14,7 +14,8 @@ namespace tex {
 
 class SwizzleEvidence {
 public:
-    SwizzleEvidence(Extent extent, Format format);
+    // `head` describes the texture; it needs no levels.
+    SwizzleEvidence(Extent extent, const Texture& head);
 
     // Adds row j of the level: its channels R, G, B and A. Each row comes once and in order. Some rows are skipped.
     void add_row(int j, const float* const (&channels)[4]);
@@ -43,7 +44,7 @@ private:
 
     const Extent extent_;
     const bool is_float_;
-    const bool is_astc_;
+    const bool x_in_grey_;
     const int step_;  // distance between the texels that are examined
     Range channels_[4];
     Errors signed_;

@@ -37,6 +37,7 @@ std::vector<Need> BlendStage::needs(int first, int end) const {
         if (map.step.head > 0) needs.push_back({map.rows, 0, map.step.head});
         needs.push_back({map.rows, std::max(0, first - map.step.behind), std::min(height, end + map.step.ahead)});
     }
+    if (alpha_ != nullptr) needs.push_back({alpha_, first, end});
     return needs;
 }
 
@@ -50,7 +51,11 @@ Result<void> BlendStage::make(Strip& strip) {
         }
     }
     if (!rows) rows.emplace(maps_);
-    for (int k = 0; k < strip.height; ++k) rows->make(strip.first + k, strip.normals(k));
+    for (int k = 0; k < strip.height; ++k) {
+        rows->make(strip.first + k, strip.normals(k));
+        if (alpha_ != nullptr)
+            std::copy_n(alpha_->row(kAlphaPlane, strip.first + k), extent().width, strip.fourth.row(k));
+    }
     const std::lock_guard lock(mutex_);
     idle_.push_back(std::move(*rows));
     return {};

@@ -33,9 +33,10 @@ struct MapInStep {
 // Makes the same normals as blend().
 class BlendStage final : public Stage {
 public:
-    // `maps` read the rows of those in step, and must outlive this object.
-    BlendStage(const PlacedMaps& maps, std::vector<MapInStep> in_step)
-        : Stage(maps.extent, 3), maps_(maps), in_step_(std::move(in_step)) {}
+    // `maps` read the rows of those in step, and must outlive this object. `alpha`: the stage whose fourth plane goes
+    // along, or null.
+    BlendStage(const PlacedMaps& maps, std::vector<MapInStep> in_step, const Stage* alpha)
+        : Stage(maps.extent, alpha == nullptr ? 3 : 4), maps_(maps), in_step_(std::move(in_step)), alpha_(alpha) {}
 
     [[nodiscard]] std::vector<Need> needs(int first, int end) const override;
     Result<void> make(Strip& strip) override;
@@ -45,6 +46,7 @@ public:
 private:
     const PlacedMaps& maps_;
     const std::vector<MapInStep> in_step_;
+    const Stage* const alpha_;
     std::mutex mutex_;
     std::vector<BlendRows> idle_;
 };

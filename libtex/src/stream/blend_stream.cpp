@@ -30,10 +30,11 @@ Result<BlendFileReport> blend_stream(MapSource& base, const std::string& output,
     if (const Result<void> opened = targets.open(files, report.extent, report.levels); !opened) return opened.error();
     Flow flow;
     flow.set_rows_together(targets.rows_together());
-    const MadeLevels levels{-left_out, left_out + report.levels, counted_from_base(options.mip, left_out)};
-    add_levels(flow, blending.add_to(flow), levels, targets);
+    const bool keeps_alpha = blending.has_other_alpha() && any_holds_alpha(files);
+    const MadeLevels levels{-left_out, left_out + report.levels, counted_from_base(options.mip, left_out), keeps_alpha};
+    add_levels(flow, blending.add_to(flow, keeps_alpha), levels, targets);
     if (const Result<void> done = flow.run(execution, sizes); !done) return done.error();
-    blending.judge();
+    blending.judge(keeps_alpha && all_hold_alpha(files));
     report.source = blending.source();
     report.details = blending.details();
     if (const Result<void> committed = targets.commit(); !committed) return committed.error();

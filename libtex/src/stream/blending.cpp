@@ -93,21 +93,33 @@ Result<PlacedMap> Blending::place(Input& input, const Execution& execution) {
     return PlacedMap{nullptr, row, extent_, input.place, input.wrap_x, input.wrap_y};
 }
 
-Stage& Blending::add_to(Flow& flow) {
+bool Blending::has_other_alpha() const {
+    return base_.step && base_.settled.has_other_alpha() && !base_.settled.options().drop_others;
+}
+
+Stage& Blending::add_to(Flow& flow, bool keeps_alpha) {
     std::vector<MapInStep> in_step;
     for (Input& input : inputs_) {
         if (!input.step) continue;
         if (auto inspector = inspector_for(input.settled.options(), input.info, extent_))
             input.inspector.emplace(std::move(*inspector));
-        input.rows = &input.settled.add_to(flow, 0, {}, input.inspector ? &*input.inspector : nullptr);
+        const SourceOptions& source = input.settled.options();
+        if (source.inspect && !source.drop_others)
+            input.others.emplace(format_info(input.info.format).channels, input.settled.sources());
+        input.rows = &input.settled.add_to(flow, 0,
+                                           {{},
+                                            input.inspector ? &*input.inspector : nullptr,
+                                            input.others && !input.others->empty() ? &*input.others : nullptr,
+                                            keeps_alpha && &input == &base_});
         in_step.push_back({input.rows, *input.step});
     }
-    return flow.add<BlendStage>(*maps_, std::move(in_step));
+    return flow.add<BlendStage>(*maps_, std::move(in_step), keeps_alpha ? base_.rows : nullptr);
 }
 
-void Blending::judge() {
+void Blending::judge(bool keeps_alpha) {
     for (Input& input : inputs_) {
         if (input.inspector) input.inspector->report(input.info);
+        if (input.others) input.info.others = left_out(input.others->found(), keeps_alpha && &input == &base_);
     }
 }
 

@@ -26,10 +26,12 @@ public:
 
     // Opens all maps, settles how they are read, and reads those that are held in memory.
     Result<void> open(const Execution& execution);
+    // Whether the base has something else in alpha, which can be carried along.
+    [[nodiscard]] bool has_other_alpha() const;
     // Adds stages that make the rows of the result. To be called once.
-    Stage& add_to(Flow& flow);
-    // Sets what SourceInfo says about the texels, after the last row.
-    void judge();
+    Stage& add_to(Flow& flow, bool keeps_alpha = false);
+    // Sets what SourceInfo says about the texels, after the last row. `keeps_alpha`: all outputs hold that of the base.
+    void judge(bool keeps_alpha);
 
     [[nodiscard]] Extent extent() const { return maps_->extent; }
     [[nodiscard]] const std::string& path() const { return base_.map().path(); }
@@ -57,6 +59,7 @@ private:
         std::shared_ptr<const HeldMap> shared;  // or here, if other blends hold it, too
         const Stage* rows = nullptr;
         std::optional<MapInspector> inspector;
+        std::optional<OtherChannels> others;
     };
     Result<void> settle(Input& input, const Execution& execution);
     Result<void> hold(Input& input, const Execution& execution);

@@ -122,8 +122,14 @@ public:
     [[nodiscard]] bool in_order() const override { return targets_.is_in_order(content_, level_in_file_); }
     Result<void> make(Strip& strip) override {
         for (int k = 0; finish_ && k < strip.height; ++k) finish_(strip.first + k, strip, k);
-        const NormalMap& map = finish_ ? strip.map : from_.strip_of(strip.first).map;
-        const LevelRows rows{content_, level_in_file_, strip.first, strip.height, map, strip.bytes};
+        const Strip& made = finish_ ? strip : from_.strip_of(strip.first);
+        const LevelRows rows{content_,
+                             level_in_file_,
+                             strip.first,
+                             strip.height,
+                             made.map,
+                             strip.bytes,
+                             made.fourth.empty() ? nullptr : &made.fourth};
         if (Result<void> written = targets_.write(rows); !written) return written;
         if (seen_) seen_(rows);
         return {};
@@ -138,11 +144,13 @@ private:
     const WatchRows seen_;
 };
 
-// Turns averages of a level into normals.
-TargetStage::Finish finish_averages(const Stage& averages, int level, const MipOptions& options) {
-    const int width = averages.extent().width, planes = options.domain == MipDomain::vector ? 3 : 2;
-    return [&averages, level, options, width, planes](int j, Strip& strip, int k) {
+// Turns averages of a level into normals. Alpha, if there is any, is the plane after them.
+TargetStage::Finish finish_averages(const Stage& averages, int level, const MadeLevels& levels) {
+    const int width = averages.extent().width, planes = levels.options.domain == MipDomain::vector ? 3 : 2;
+    return [&averages, level, options = levels.options, has_alpha = levels.has_alpha, width, planes](
+               int j, Strip& strip, int k) {
         for (int plane = 0; plane < planes; ++plane) std::copy_n(averages.row(plane, j), width, strip.row(plane, k));
+        if (has_alpha) std::copy_n(averages.row(planes, j), width, strip.row(kAlphaPlane, k));
         finish_row(strip.normals(k), width, options, level);
     };
 }
@@ -150,18 +158,20 @@ TargetStage::Finish finish_averages(const Stage& averages, int level, const MipO
 }  // namespace
 
 void add_levels(Flow& flow, const Stage& normals, const MadeLevels& levels, Targets& targets, const WatchRows& seen) {
-    constexpr int kOfNormals = 3;
+    const int of_target = levels.has_alpha ? 4 : 3;
     if (levels.first >= 0)
         flow.add<TargetStage>(normals, Content::normals, levels.first, 0, TargetStage::Finish(), targets, seen);
     if (levels.count < 2) return;
     const bool averages_vectors = levels.options.domain == MipDomain::vector;
-    const int planes = averages_vectors ? kOfNormals : 2;
-    const Stage* larger = averages_vectors ? &normals : &flow.add<SlopeStage>(normals);
+    std::vector<StagePlane> larger =
+        averages_vectors ? planes_of(normals, 3) : planes_of(flow.add<SlopeStage>(normals), 2);
+    if (levels.has_alpha) larger.push_back({&normals, kAlphaPlane});
     for (int k = 1; k < levels.count; ++k) {
-        larger = &flow.add<MipStage>(planes_of(*larger, planes), k, levels.options);
+        const Stage& averages = flow.add<MipStage>(larger, k, levels.options);
+        larger = planes_of(averages, static_cast<int>(larger.size()));
         if (levels.first + k < 0) continue;
-        flow.add<TargetStage>(*larger, Content::normals, levels.first + k, kOfNormals,
-                              finish_averages(*larger, k, levels.options), targets, seen);
+        flow.add<TargetStage>(averages, Content::normals, levels.first + k, of_target,
+                              finish_averages(averages, k, levels), targets, seen);
     }
 }
 

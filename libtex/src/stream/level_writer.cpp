@@ -168,7 +168,7 @@ LevelPacking packing_of(const PackOptions& options, Extent extent, int levels) {
     const int band_rows = rdo_band_rows(options, extent.width);
     return {{encoding.format, extent, levels, encoding.swizzle, true, options.y_axis, options.y_known},
             [options, band_rows, tally](const LevelRows& rows, std::byte* out) {
-                pack_rows(rows.map, rows.height, options, 0, rows.height, out, band_rows, tally.get());
+                pack_rows(rows.map, rows.height, options, 0, rows.height, out, band_rows, tally.get(), rows.alpha);
             },
             band_rows,
             tally};

@@ -29,8 +29,9 @@ struct LevelRows {
     int level;
     int first;
     int height;
-    const NormalMap& map;             // rows 0 to height - 1, with room for whole blocks; roughness uses x alone
-    std::vector<std::byte>& scratch;  // room for the code that packs the rows
+    const NormalMap& map;                 // rows 0 to height - 1, with room for whole blocks; roughness uses x alone
+    std::vector<std::byte>& scratch;      // room for the code that packs the rows
+    const Plane<float>* alpha = nullptr;  // the same rows of 2 A - 1, if alpha holds something else
 };
 
 // How rows are packed into texels.

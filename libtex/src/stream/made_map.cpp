@@ -162,7 +162,7 @@ public:
     }
 
 private:
-    Stage& add_normals(Flow& flow, int level) override { return map_.add_to(flow, first_ + level, options_.scale); }
+    Stage& add_normals(Flow& flow, int level) override { return map_.add_to(flow, first_ + level, {options_.scale}); }
 
     const std::unique_ptr<MapSource> before_;
     const PackFileOptions& options_;

@@ -10,6 +10,7 @@
 #include "stream/filled_map.h"
 #include "stream/map_inspector.h"
 #include "stream/measured_y.h"
+#include "stream/other_channels.h"
 #include "stream/source_layout.h"
 
 namespace tex {
@@ -28,6 +29,25 @@ Result<void> turn_up(Source& source) {
             for (int i = 0; i < level.extent().width; ++i) y[i] = -y[i];
         }
     }
+    return {};
+}
+
+// Sets SourceInfo::others.
+Result<void> look_at_others(const Texture& texture, Source& source, const Execution& execution) {
+    const int channels = format_info(texture.format).channels;
+    const Result<Sources> sources = sources_of(source.info.swizzle, (1u << channels) - 1);
+    if (!sources) return sources.error();
+    OtherChannels others(channels, *sources);
+    if (others.empty()) return {};
+    const Result<Image> image = decode(texture, 0, {execution.threads, {}});
+    if (!image) return image.error();
+    const NormalMap& map = source.chain.levels.front();
+    for (int j = 0; j < map.extent().height; ++j) {
+        const float* row[4] = {};
+        for (std::size_t c = 0; c < image->planes.size(); ++c) row[c] = image->planes[c].row(j);
+        others.add_row(row, {map.x.row(j), map.y.row(j), map.z.row(j)}, map.extent().width);
+    }
+    source.info.others = others.found();
     return {};
 }
 
@@ -61,6 +81,9 @@ Result<Source> unpack_source(Texture texture, const SourceOptions& options, bool
         if (const Result<void> turned = turn_up(source); !turned) return turned.error();
     }
     inspect(source.chain.levels.front(), options, source.info);
+    if (options.inspect && !options.drop_others) {
+        if (const Result<void> looked = look_at_others(texture, source, execution); !looked) return looked.error();
+    }
     return source;
 }
 

@@ -40,7 +40,8 @@ private:
     }
     [[nodiscard]] Extent extent(int level) const { return map_.map().extent(level); }
     [[nodiscard]] MadeLevels made_levels(int level, int count) const {
-        return {level - first_ - left_out_, count, counted_from_base(mip_.value_or(MipOptions()), left_out_)};
+        return {level - first_ - left_out_, count, counted_from_base(mip_.value_or(MipOptions()), left_out_),
+                keeps_alpha_};
     }
 
     SettledMap map_;
@@ -52,6 +53,7 @@ private:
     std::optional<MipOptions> mip_;
     Plane<float> roughness_map_;  // RoughnessFile::map
     std::optional<OwnRoughness> own_;
+    bool keeps_alpha_ = false;
     int first_ = 0;     // the level that becomes the base level
     int end_ = 1;       // the end of the levels that are read
     int left_out_ = 0;  // levels that are built and not written
@@ -88,6 +90,7 @@ Result<void> PackRun::prepare() {
     files_.push_back({output_, options_.level_names, container_, report_.pack, options_.write});
     add_targets(options_.more, report_.source, files_);
     settle_lengths();
+    keeps_alpha_ = map_.has_other_alpha() && !options_.source.drop_others && any_holds_alpha(files_);
     report_.levels = end_ - first_;
     if (mip_ && holds) report_.levels = levels_to_build(*mip_, base);
     return {};
@@ -157,7 +160,12 @@ Result<void> PackRun::pack_level(int level, const Execution& execution) {
     auto inspector = level == first_ ? inspector_for(options_.source, report_.source, extent(level)) : std::nullopt;
     Flow flow;
     flow.set_rows_together(targets_.rows_together());
-    const Stage& normals = map_.add_to(flow, level, options_.scale, inspector ? &*inspector : nullptr);
+    std::optional<OtherChannels> others;
+    if (level == first_ && options_.source.inspect && !options_.source.drop_others)
+        others.emplace(format_info(report_.source.format).channels, map_.sources());
+    const Stage& normals = map_.add_to(flow, level,
+                                       {options_.scale, inspector ? &*inspector : nullptr,
+                                        others && !others->empty() ? &*others : nullptr, keeps_alpha_});
     add_levels(flow, normals, made_levels(level, mip_ ? left_out_ + report_.levels : 1), targets_);
     if (options_.roughness) {
         const MadeLevels levels = made_levels(level, left_out_ + roughness_levels());
@@ -165,6 +173,7 @@ Result<void> PackRun::pack_level(int level, const Execution& execution) {
     }
     if (Result<void> done = flow.run(execution, sizes_); !done) return done;
     if (inspector) inspector->report(report_.source);
+    if (others) report_.source.others = left_out(others->found(), keeps_alpha_ && all_hold_alpha(files_));
     return {};
 }
 

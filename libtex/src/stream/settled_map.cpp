@@ -25,7 +25,7 @@ Result<void> SettledMap::open(const Execution& execution) {
 
 // The swizzle that the texels show.
 Result<Swizzle> SettledMap::find_layout() {
-    SwizzleEvidence evidence(map_->extent(0), map_->head().format);
+    SwizzleEvidence evidence(map_->extent(0), map_->head());
     int row = 0;
     const Result<void> seen = map_->look([&](const float* const(&channels)[4]) {
         evidence.add_row(row++, channels);
@@ -83,7 +83,7 @@ Result<void> SettledMap::measure_y(const Execution& execution) {
     if (Result<void> settled = settle(); !settled) return settled;
     MapInspector inspector(map_->extent(0));
     Flow flow;
-    add_to(flow, 0, {}, &inspector);
+    add_to(flow, 0, {{}, &inspector});
     if (Result<void> seen = flow.run({execution.threads, {}}); !seen) return seen;
     const std::optional<YAxis> shown = inspector.y();
     if (!shown) return undecided_y(map_->path());
@@ -91,12 +91,14 @@ Result<void> SettledMap::measure_y(const Execution& execution) {
     return settle();
 }
 
-Stage& SettledMap::add_to(Flow& flow, int level, const std::optional<Scaling>& scale, MapInspector* inspector) const {
-    std::vector<bool> wanted(4, false);
-    for (const int c : {sources_.x, sources_.y, sources_.z}) {
-        if (c >= 0) wanted[static_cast<std::size_t>(c)] = true;
-    }
-    return flow.add<UnpackStage>(map_->add_to(flow, level, wanted), sources_, rule_, scale, inspector);
+bool SettledMap::has_other_alpha() const {
+    const bool has_alpha = format_info(map_->head().format).channels > kAlphaPlane;
+    return has_alpha && sources_.x != kAlphaPlane && sources_.y != kAlphaPlane && sources_.z != kAlphaPlane;
+}
+
+Stage& SettledMap::add_to(Flow& flow, int level, const UnpackExtras& extras) const {
+    StoredChannels channels = map_->add_to(flow, level, wanted_channels(sources_, extras));
+    return flow.add<UnpackStage>(std::move(channels), sources_, rule_, extras);
 }
 
 }  // namespace tex

@@ -36,9 +36,11 @@ public:
     void keep_length() { rule_.keep_length = true; }
     [[nodiscard]] const UnpackRule& rule() const { return rule_; }
 
-    // Adds stages that make the normals of a level. `inspector` may be null; it must outlive the flow, as the map must.
-    Stage& add_to(Flow& flow, int level, const std::optional<Scaling>& scale = {},
-                  MapInspector* inspector = nullptr) const;
+    // Whether alpha holds something else than normals, which can be carried along.
+    [[nodiscard]] bool has_other_alpha() const;
+
+    // Adds stages that make the normals of a level. What the extras name must outlive the flow, as the map must.
+    Stage& add_to(Flow& flow, int level, const UnpackExtras& extras = {}) const;
 
 private:
     Result<void> settle();

@@ -16,6 +16,9 @@
 
 namespace tex {
 
+// Of a strip of normals: the plane after x, y and z, for what else is in a map's alpha, as 2 A - 1.
+inline constexpr int kAlphaPlane = 3;
+
 // Consecutive rows that a stage has made. Which of the members it uses is up to the stage.
 struct Strip {
     int first = 0;   // its first row
@@ -86,6 +89,7 @@ protected:
     [[nodiscard]] virtual std::unique_ptr<Strip> new_strip(int rows) const;
 
 private:
+    friend class FlowPlan;
     friend class FlowRun;
 
     const Extent extent_;

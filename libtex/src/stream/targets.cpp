@@ -8,6 +8,8 @@
 
 #include <tex/mip_chain.h>
 
+#include "rows/pack_rows.h"
+
 namespace tex {
 namespace {
 
@@ -20,7 +22,7 @@ void pack_units(LevelPacking& packing, const UnitRule& unit) {
             unpack_row(from.x.row(j), from.y.row(j), unit.has_z ? from.z.row(j) : nullptr, unit.rule,
                        from.extent().width, to.x.row(j), to.y.row(j), to.z.row(j));
         }
-        pack({rows.content, rows.level, rows.first, rows.height, to, rows.scratch}, out);
+        pack({rows.content, rows.level, rows.first, rows.height, to, rows.scratch, rows.alpha}, out);
     };
 }
 
@@ -41,6 +43,16 @@ void add_targets(const std::vector<MoreFile>& more, const SourceInfo& source, st
         targets.push_back({file.output, file.level_names, file.container,
                            packing_for(file.pack, file.container, source), file.write, file.levels});
     }
+}
+
+bool any_holds_alpha(const std::vector<FileTarget>& targets) {
+    return std::any_of(targets.begin(), targets.end(),
+                       [](const FileTarget& target) { return can_hold_alpha(target.pack.encoding); });
+}
+
+bool all_hold_alpha(const std::vector<FileTarget>& targets) {
+    return std::all_of(targets.begin(), targets.end(),
+                       [](const FileTarget& target) { return can_hold_alpha(target.pack.encoding); });
 }
 
 bool holds_levels(Container container, const LevelNames& names) { return names || can_hold_levels(container); }

@@ -40,6 +40,10 @@ void add_targets(const std::vector<MoreFile>& more, const SourceInfo& source, st
 PackOptions packing_for(const std::function<PackOptions(const SourceInfo&)>& pack, Container container,
                         const SourceInfo& source);
 
+// Whether any of the files, or all of them, can hold something else in alpha.
+[[nodiscard]] bool any_holds_alpha(const std::vector<FileTarget>& targets);
+[[nodiscard]] bool all_hold_alpha(const std::vector<FileTarget>& targets);
+
 // Whether all levels are written, rather than the base level alone.
 [[nodiscard]] bool holds_levels(Container container, const LevelNames& names);
 // Whether any of the files holds more than the base level.

@@ -9,38 +9,56 @@
 
 namespace tex {
 
-UnpackStage::UnpackStage(StoredChannels channels, const Sources& sources, const UnpackRule& rule,
-                         const std::optional<Scaling>& scale, MapInspector* inspector)
-    : Stage(channels.rows->extent(), 3), channels_(std::move(channels)), sources_(sources), rule_(rule), scale_(scale),
-      inspector_(inspector) {}
-
-const float* UnpackStage::channel(int c, int j, float* rounded) const {
-    if (c < 0) return nullptr;
-    const float* const values = channels_.rows->row(static_cast<int>(channels_.planes[static_cast<std::size_t>(c)]), j);
-    if (!channels_.rounds) return values;
-    round_to_texels(values, extent().width, rounded);
-    return rounded;
+std::vector<bool> wanted_channels(const Sources& sources, const UnpackExtras& extras) {
+    std::vector<bool> wanted(4, false);
+    for (int c = 0; c < 4; ++c) {
+        wanted[static_cast<std::size_t>(c)] = c == sources.x || c == sources.y || c == sources.z ||
+                                              (c == kAlphaPlane && extras.takes_alpha) ||
+                                              (extras.others != nullptr && extras.others->wants(c));
+    }
+    return wanted;
 }
+
+UnpackStage::UnpackStage(StoredChannels channels, const Sources& sources, const UnpackRule& rule,
+                         const UnpackExtras& extras)
+    : Stage(channels.rows->extent(), extras.takes_alpha ? 4 : 3), channels_(std::move(channels)), sources_(sources),
+      rule_(rule), extras_(extras), wanted_(wanted_channels(sources, extras)) {}
 
 Result<void> UnpackStage::make(Strip& strip) {
     const int width = extent().width;
     Plane<float> rounded;
-    if (channels_.rounds) rounded = Plane<float>(Extent{width, 3});
+    if (channels_.rounds) rounded = Plane<float>(Extent{width, 4});
     for (int k = 0; k < strip.height; ++k) {
         const int j = strip.first + k;
-        const auto values = [&](int c, int scratch) {
-            return channel(c, j, channels_.rounds ? rounded.row(scratch) : nullptr);
-        };
-        const NormalRow out = strip.normals(k);
-        unpack_row(values(sources_.x, 0), values(sources_.y, 1), values(sources_.z, 2), rule_, width, out.x, out.y,
-                   out.z);
-        if (inspector_ != nullptr && inspector_->wants(j)) {
-            const std::lock_guard lock(inspecting_);
-            inspector_->add_row(j, out);
+        const float* channels[4] = {};
+        for (std::size_t c = 0; c < 4; ++c) {
+            if (!wanted_[c]) continue;
+            channels[c] = channels_.rows->row(static_cast<int>(channels_.planes[c]), j);
+            if (!channels_.rounds) continue;
+            float* const row = rounded.row(static_cast<int>(c));
+            round_to_texels(channels[c], width, row);
+            channels[c] = row;
         }
-        if (scale_) scale_row(out, scale_->scale, scale_->mode, width, out);
+        make_row(j, channels, strip, k);
     }
     return {};
+}
+
+void UnpackStage::make_row(int j, const float* const (&channels)[4], Strip& strip, int k) {
+    const int width = extent().width;
+    const NormalRow out = strip.normals(k);
+    const float* const z = sources_.z < 0 ? nullptr : channels[sources_.z];
+    unpack_row(channels[sources_.x], channels[sources_.y], z, rule_, width, out.x, out.y, out.z);
+    if (extras_.takes_alpha) {
+        float* const alpha = strip.fourth.row(k);
+        for (int i = 0; i < width; ++i) alpha[i] = 2.0f * channels[kAlphaPlane][i] - 1.0f;
+    }
+    if (extras_.others != nullptr) extras_.others->add_row(channels, out, width);
+    if (extras_.inspector != nullptr && extras_.inspector->wants(j)) {
+        const std::lock_guard lock(inspecting_);
+        extras_.inspector->add_row(j, out);
+    }
+    if (extras_.scale) scale_row(out, extras_.scale->scale, extras_.scale->mode, width, out);
 }
 
 }  // namespace tex

@@ -12,6 +12,7 @@
 #include "rows/unpack_rows.h"
 #include "stream/flow.h"
 #include "stream/map_inspector.h"
+#include "stream/other_channels.h"
 
 namespace tex {
 
@@ -22,25 +23,33 @@ struct StoredChannels {
     bool rounds = false;  // values go through round_to_texels() (picture.h)
 };
 
+// What happens to normals besides unpacking.
+struct UnpackExtras {
+    std::optional<Scaling> scale = {};
+    MapInspector* inspector = nullptr;  // is shown normals before they are scaled, unless it is null
+    OtherChannels* others = nullptr;    // is shown all channels, unless it is null
+    bool takes_alpha = false;           // the fourth plane becomes 2 A - 1
+};
+
+// Whether each of the four channels is read.
+[[nodiscard]] std::vector<bool> wanted_channels(const Sources& sources, const UnpackExtras& extras);
+
 // Makes the same normals as unpack() of one level, followed by scale().
 class UnpackStage final : public Stage {
 public:
-    // Shows normals, before they are scaled, to `inspector`, which may be null.
-    UnpackStage(StoredChannels channels, const Sources& sources, const UnpackRule& rule,
-                const std::optional<Scaling>& scale, MapInspector* inspector);
+    UnpackStage(StoredChannels channels, const Sources& sources, const UnpackRule& rule, const UnpackExtras& extras);
 
     [[nodiscard]] std::vector<Need> needs(int first, int end) const override { return {{channels_.rows, first, end}}; }
     Result<void> make(Strip& strip) override;
 
 private:
-    // A channel of row j; null if there is none. `rounded` has room for it.
-    [[nodiscard]] const float* channel(int c, int j, float* rounded) const;
+    void make_row(int j, const float* const (&channels)[4], Strip& strip, int k);
 
     const StoredChannels channels_;
     const Sources sources_;
     const UnpackRule rule_;
-    const std::optional<Scaling> scale_;
-    MapInspector* const inspector_;
+    const UnpackExtras extras_;
+    const std::vector<bool> wanted_;  // channels
     std::mutex inspecting_;
 };
 

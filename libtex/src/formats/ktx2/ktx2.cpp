@@ -297,6 +297,7 @@ Result<StoredTexture> parse_ktx2(const FetchBytes& fetch, std::size_t size, cons
     Texture& texture = stored.head;
     texture.format = row->format;
     texture.swizzle = likely_swizzle(row->format);
+    texture.x_in_grey = true;
     texture.srgb = row->srgb;
     const Result<bool> upwards = apply_key_values(fetch, size, header, texture);
     if (!upwards) return upwards.error();

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "stream/other_channels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tex {
+namespace {
+
+constexpr float kVaries = 1.5f / 255.0f;
+constexpr float kRepeats = 8.5f / 255.0f;  // the same value in channels of 5 and 6 bits, and rebuilt z, differ by less
+
+}  // namespace
+
+OtherChannels::OtherChannels(int channels, const Sources& sources) : sources_(sources) {
+    constexpr float kNone = std::numeric_limits<float>::infinity();
+    for (int c = 0; c < channels; ++c) {
+        if (c != sources.x && c != sources.y && c != sources.z) seen_.push_back({c, kNone, -kNone, 0.0f, 0.0f, 0.0f});
+    }
+}
+
+bool OtherChannels::wants(int channel) const {
+    return std::any_of(seen_.begin(), seen_.end(), [channel](const Seen& seen) { return seen.channel == channel; });
+}
+
+void OtherChannels::look(Seen& seen, const float* const (&channels)[4], const VectorRow& normals, int width) const {
+    const float* const values = channels[seen.channel];
+    const float *const x = channels[sources_.x], *const y = channels[sources_.y];
+    for (int i = 0; i < width; ++i) {
+        seen.least = std::min(seen.least, values[i]);
+        seen.greatest = std::max(seen.greatest, values[i]);
+        seen.off_x = std::max(seen.off_x, std::abs(values[i] - x[i]));
+        seen.off_y = std::max(seen.off_y, std::abs(values[i] - y[i]));
+        seen.off_z = std::max(seen.off_z, std::abs(values[i] - (0.5f * normals.z[i] + 0.5f)));
+    }
+}
+
+void OtherChannels::add_row(const float* const (&channels)[4], const VectorRow& normals, int width) {
+    std::vector<Seen> row;
+    {
+        const std::lock_guard lock(mutex_);
+        row = seen_;
+    }
+    for (Seen& seen : row) look(seen, channels, normals, width);
+    const std::lock_guard lock(mutex_);
+    for (std::size_t k = 0; k < row.size(); ++k) {
+        seen_[k].least = std::min(seen_[k].least, row[k].least);
+        seen_[k].greatest = std::max(seen_[k].greatest, row[k].greatest);
+        seen_[k].off_x = std::max(seen_[k].off_x, row[k].off_x);
+        seen_[k].off_y = std::max(seen_[k].off_y, row[k].off_y);
+        seen_[k].off_z = std::max(seen_[k].off_z, row[k].off_z);
+    }
+}
+
+std::vector<OtherChannel> OtherChannels::found() const {
+    std::vector<OtherChannel> found;
+    for (const Seen& seen : seen_) {
+        const bool repeats = std::min({seen.off_x, seen.off_y, seen.off_z}) <= kRepeats;
+        if (seen.greatest - seen.least > kVaries && !repeats)
+            found.push_back({"RGBA"[seen.channel], seen.least, seen.greatest});
+    }
+    return found;
+}
+
+std::vector<OtherChannel> left_out(std::vector<OtherChannel> channels, bool keeps_alpha) {
+    std::erase_if(channels, [keeps_alpha](const OtherChannel& channel) { return keeps_alpha && channel.name == 'A'; });
+    return channels;
+}
+
+}  // namespace tex
