@@ -3,7 +3,6 @@
 #include "blocks/astc.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <iterator>
 #include <memory>
@@ -20,20 +19,10 @@ namespace {
 
 constexpr astcenc_swizzle kAsGiven = {ASTCENC_SWZ_R, ASTCENC_SWZ_G, ASTCENC_SWZ_B, ASTCENC_SWZ_A};
 
-enum class Use { fast, normal, best, decode };
-
-Use use_of(Effort effort) {
+float quality_of(Effort effort) {
     switch (effort) {
-        case Effort::fast: return Use::fast;
-        case Effort::best: return Use::best;
-        default: return Use::normal;
-    }
-}
-
-float quality_of(Use use) {
-    switch (use) {
-        case Use::normal: return ASTCENC_PRE_MEDIUM;
-        case Use::best: return ASTCENC_PRE_THOROUGH;
+        case Effort::normal: return ASTCENC_PRE_MEDIUM;
+        case Effort::best: return ASTCENC_PRE_THOROUGH;
         default: return ASTCENC_PRE_FAST;
     }
 }
@@ -52,13 +41,12 @@ struct Context {
     std::vector<float> rgba;
 
     // The extents are valid, so all that can fail is memory.
-    Context(Extent block, Use use) {
-        const unsigned flags = use == Use::decode ? ASTCENC_FLG_DECOMPRESS_ONLY : ASTCENC_FLG_MAP_NORMAL;
+    Context(Extent block, Effort effort) {
         astcenc_config config = {};
         astcenc_context* made = nullptr;
         bool done = astcenc_config_init(ASTCENC_PRF_LDR, static_cast<unsigned>(block.width),
-                                        static_cast<unsigned>(block.height), 1, quality_of(use), flags,
-                                        &config) == ASTCENC_SUCCESS;
+                                        static_cast<unsigned>(block.height), 1, quality_of(effort),
+                                        ASTCENC_FLG_MAP_NORMAL, &config) == ASTCENC_SUCCESS;
         config.tune_mode0_mse_overshoot = kOvershoot;
         config.tune_refinement_mse_overshoot = kOvershoot;
         done = done && astcenc_context_alloc(&config, 1, &made) == ASTCENC_SUCCESS;
@@ -67,13 +55,13 @@ struct Context {
     }
 };
 
-std::shared_ptr<Context> take_context(Format format, Use use) {
+std::shared_ptr<Context> take_context(Format format, Effort effort) {
     constexpr std::size_t kFormats =
         static_cast<std::size_t>(Format::astc_12x12_unorm) - static_cast<std::size_t>(Format::astc_4x4_unorm) + 1;
-    static Pool<Context> pools[kFormats][4];
+    static Pool<Context> pools[kFormats][3];
     const std::size_t index = static_cast<std::size_t>(format) - static_cast<std::size_t>(Format::astc_4x4_unorm);
-    return pools[index][static_cast<std::size_t>(use)].take(
-        [&] { return std::make_unique<Context>(format_info(format).block, use); });
+    return pools[index][static_cast<std::size_t>(effort)].take(
+        [&] { return std::make_unique<Context>(format_info(format).block, effort); });
 }
 
 astcenc_image image_of(Extent extent, void** slice) {
@@ -85,7 +73,7 @@ std::size_t bytes_of(Format format, Extent extent) { return level_bytes(format, 
 }  // namespace
 
 void encode_astc(Format format, Effort effort, const float* xy, Extent extent, std::byte* blocks) {
-    const std::shared_ptr<Context> context = take_context(format, use_of(effort));
+    const std::shared_ptr<Context> context = take_context(format, effort);
     const auto texels = static_cast<std::size_t>(extent.texels());
     context->rgba.resize(4 * texels);
     float* rgba = context->rgba.data();
@@ -101,21 +89,6 @@ void encode_astc(Format format, Effort effort, const float* xy, Extent extent, s
         astcenc_compress_image(context->library.get(), &image, &kAsGiven, reinterpret_cast<std::uint8_t*>(blocks),
                                bytes_of(format, extent), 0);
     if (failed != ASTCENC_SUCCESS) throw std::bad_alloc();
-}
-
-void decode_astc(Format format, const std::byte* blocks, Extent extent, float* rgba) {
-    const std::shared_ptr<Context> context = take_context(format, Use::decode);
-    void* slice = rgba;
-    astcenc_image image = image_of(extent, &slice);
-    const astcenc_error failed =
-        astcenc_decompress_image(context->library.get(), reinterpret_cast<const std::uint8_t*>(blocks),
-                                 bytes_of(format, extent), &image, &kAsGiven, 0);
-    if (failed != ASTCENC_SUCCESS) throw std::bad_alloc();
-    const auto count = 4 * static_cast<std::size_t>(extent.texels());
-    constexpr float kMagenta[] = {1.0f, 0.0f, 1.0f, 1.0f};
-    for (std::size_t k = 0; k < count; ++k) {
-        if (std::isnan(rgba[k])) rgba[k] = kMagenta[k % 4];
-    }
 }
 
 }  // namespace tex

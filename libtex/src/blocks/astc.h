@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// astc.h: blocks of ASTC with low dynamic range (Khronos Data Format Specification, ASTC), through libastcenc. No other
-// code knows that library.
+// astc.h: encodes blocks of ASTC with low dynamic range through libastcenc. No other code knows that library. (For
+// decoding, see astc_decode.h.)
 //
 // libastcenc is compiled without vector instructions in Debian, so that its bytes do not depend on the processor. Its
 // contexts take about 10 ms to make and 4 to 10 MB each. They wait for the next rows of the same format.
@@ -23,10 +23,5 @@ namespace tex {
 // then repeat the last texels. x becomes R, G and B, and y becomes A, as astcenc's mode for normal maps expects: it
 // minimises the error of both, and rebuilds z. Throws std::bad_alloc.
 void encode_astc(Format format, Effort effort, const float* xy, Extent extent, std::byte* blocks);
-
-// Decodes a row of blocks to R, G, B, A for each texel, 0 to 1, in rows of `extent.width` texels. Values are exact
-// halves, as the specification demands. Blocks that are not valid, or of high dynamic range, become magenta (1, 0, 1,
-// 1). Throws std::bad_alloc.
-void decode_astc(Format format, const std::byte* blocks, Extent extent, float* rgba);
 
 }  // namespace tex
