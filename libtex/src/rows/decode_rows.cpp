@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <cstring>
 
-#include "blocks/astc.h"
 #include "blocks/astc_decode.h"
 #include "blocks/bc6h.h"
 #include "blocks/bc7.h"
