@@ -189,7 +189,7 @@ double mean_angle(const std::vector<float>& a, const std::vector<float>& b) {
 TEST(AstcEncode, IsCloserThanLibastcencOnRealMaps) {
     const std::filesystem::path folder = std::filesystem::path(TEX_SOURCE_DIR) / "../shared/data/normal";
     if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << "no ../shared/data";
-    constexpr float kQualities[] = {ASTCENC_PRE_FAST, ASTCENC_PRE_MEDIUM, ASTCENC_PRE_THOROUGH};
+    const float kQualities[] = {ASTCENC_PRE_FAST, ASTCENC_PRE_MEDIUM, ASTCENC_PRE_THOROUGH};
     constexpr Extent kPart{96, 96};
     for (const Format format : {Format::astc_4x4_unorm, Format::astc_6x6_unorm, Format::astc_8x8_unorm}) {
         double ours[3] = {}, theirs[3] = {};

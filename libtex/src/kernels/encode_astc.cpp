@@ -31,8 +31,8 @@ struct Spending {
 Spending spending_of(Effort effort) {
     switch (effort) {
         case Effort::fast: return {1, {0, 1, 1, 1, false, 0}, 0, {8, 0, 1}, 0, 0, {}};
-        case Effort::best: return {24, {3, 1, 2, 2, true, 0}, 3, {8, 12, 1}, 0, 4, {5, 2, 5, 3, true, 3}};
-        default: return {4, {3, 1, 2, 2, true, 0}, 1, {8, 3, 4}, 1.0f, 0, {}};
+        case Effort::best: return {32, {3, 1, 2, 2, true, 0}, 5, {8, 12, 1}, 0, 6, {5, 2, 5, 3, true, 3}};
+        default: return {6, {3, 1, 2, 2, true, 0}, 2, {8, 3, 2}, 1.0f, 0, {}};
     }
 }
 
