@@ -96,27 +96,30 @@ void add_plans(int partitions, AstcPlans& plans) {
     }
 }
 
-void add_patterns(AstcPlans& plans) {
+void add_patterns(int partitions, AstcPlans& plans) {
     const int texels = plans.block.width * plans.block.height;
-    const std::uint64_t all = ~std::uint64_t{0} >> (64 - texels);
-    std::set<std::uint64_t> seen;
+    std::set<std::array<std::uint64_t, 2>> seen;
     for (unsigned index = 0; index < 1024; ++index) {
         std::uint8_t of_texels[kAstcMostTexels];
-        astc_partitions(plans.block, 2, index, of_texels);
-        std::uint64_t second = 0;
-        for (int k = 0; k < texels; ++k) second |= std::uint64_t{of_texels[k]} << k;
-        const std::uint64_t without_first = (second & 1) != 0 ? all & ~second : second;
-        if (without_first != 0 && seen.insert(without_first).second) plans.patterns.push_back({index, second});
+        astc_partitions(plans.block, partitions, index, of_texels);
+        std::uint64_t parts[3] = {};
+        int order[3], used = 0;  // partitions in the order of their first texels
+        for (int k = 0; k < texels; ++k) {
+            const int p = of_texels[k];
+            if (parts[p] == 0) order[used++] = p;
+            parts[p] |= std::uint64_t{1} << k;
+        }
+        if (used < partitions) continue;
+        if (seen.insert({parts[order[1]], partitions == 3 ? parts[order[2]] : 0}).second)
+            plans.patterns[partitions - 2].push_back({index, {parts[1], parts[2]}});
     }
 }
 
 AstcPlans make_plans(Extent block) {
     AstcPlans plans;
     plans.block = block;
-    add_plans(1, plans);
-    plans.first_of_two = static_cast<int>(plans.plans.size());
-    add_plans(2, plans);
-    add_patterns(plans);
+    for (int partitions = 1; partitions <= 3; ++partitions) add_plans(partitions, plans);
+    for (int partitions = 2; partitions <= 3; ++partitions) add_patterns(partitions, plans);
     return plans;
 }
 
@@ -156,11 +159,11 @@ void write_astc(const AstcPlan& plan, const AstcContent& content, std::byte* blo
     if (plan.partitions == 1) {
         bits.put(13, 4, kAstcLuminanceAlpha);
     } else {
-        bits.put(11, 2, 1);
+        bits.put(11, 2, static_cast<unsigned>(plan.partitions - 1));
         bits.put(13, 10, content.pattern);
         bits.put(25, 4, kAstcLuminanceAlpha);
     }
-    std::uint8_t values[8];
+    std::uint8_t values[12];
     for (int p = 0; p < plan.partitions; ++p) {
         for (int k = 0; k < 4; ++k) values[4 * p + k] = plan.colors->stored[content.ends[p][k / 2][k % 2]];
     }

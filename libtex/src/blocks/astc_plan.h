@@ -55,19 +55,18 @@ struct AstcPlan {
     const AstcValues* colors = nullptr;
 };
 
-// A way to divide the texels of a block into two partitions; neither is empty.
+// A way to divide the texels of a block into two or three partitions, none of them empty.
 struct AstcPattern {
     unsigned index;
-    std::uint64_t second;  // a bit for each texel: whether it is in the second one
+    std::uint64_t later[2];  // a bit for each texel: whether it is in the second one; in the third one
 };
 
 // All ways to store blocks of a size. No two patterns divide the texels alike.
 struct AstcPlans {
     Extent block;
     std::vector<std::unique_ptr<AstcGrid>> grids;
-    std::vector<AstcPlan> plans;  // those with two partitions come last
-    std::vector<AstcPattern> patterns;
-    int first_of_two = 0;  // of `plans`
+    std::vector<AstcPlan> plans;
+    std::vector<AstcPattern> patterns[2];  // of two partitions; of three
 };
 
 // Made at the first call for a size. Throws std::bad_alloc.
@@ -76,7 +75,7 @@ struct AstcPlans {
 // What a block of a plan holds.
 struct AstcContent {
     std::uint8_t weights[2][kAstcMostWeights];  // by plane; 0 to 64
-    std::uint8_t ends[2][2][2];                 // by partition and channel (x, y): the endpoints
+    std::uint8_t ends[3][2][2];                 // by partition and channel (x, y): the endpoints
     unsigned pattern = 0;                       // the index of the partition
 };
 

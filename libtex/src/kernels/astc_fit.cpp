@@ -49,6 +49,7 @@ void FitAstcTo(const AstcPlan& plan, const AstcSteps& steps, const AstcGroup& gr
 }
 
 void FitAstc(const AstcPlan& plan, const AstcSteps& steps, const AstcGroup& group, AstcFits& fits) {
+    if (plan.partitions == 3) return FitAstcTo<3>(plan, steps, group, fits);
     if (plan.partitions == 2) return FitAstcTo<2>(plan, steps, group, fits);
     FitAstcTo<1>(plan, steps, group, fits);
 }

@@ -15,7 +15,7 @@ namespace tex {
 inline constexpr int kAstcLanes = 16;
 
 // Blocks side by side, by texel and block: values of each channel from 0 to 255 (of the greatest code; fractions
-// count), and partitions, 0 or 1, which plans with two partitions alone read. Aligned for vectors.
+// count), and partitions, 0 to 2, which plans with several alone read. Aligned for vectors.
 struct AstcGroup {
     const float* value[2] = {};
     const float* partition = nullptr;
@@ -25,7 +25,7 @@ struct AstcGroup {
 struct AstcFits {
     alignas(64) float error[kAstcLanes];  // squared, in units of `value`
     alignas(64) float weights[2][kAstcMostWeights * kAstcLanes];
-    alignas(64) float ends[2][2][2][kAstcLanes];
+    alignas(64) float ends[3][2][2][kAstcLanes];
 };
 
 struct AstcSteps {

@@ -2,13 +2,7 @@
 
 #include "kernels/astc_guess.h"
 
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <iterator>
-#include <utility>
-
-#include "blocks/astc_ise.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/astc_guess.cpp"
@@ -233,7 +227,10 @@ HWY_INLINE AstcAxes AxesOf(float count, FloatVec x, FloatVec y, FloatVec xx, Flo
 // Patterns are ranked with the noise of 4 or 5 levels.
 inline constexpr float kAstcRankNoise = 0.05f;
 
-void GuessAstcPatterns(const AstcGuide& guide, const AstcGroup& group, int patterns, AstcGuesses& guesses) {
+void GuessAstcPatterns(const AstcGuide& guide, const AstcGroup& group, int partitions, int patterns,
+                       AstcGuesses& guesses) {
+    const std::vector<AstcPattern>& all = guide.patterns[partitions - 2];
+    const std::vector<AstcGuide::Grid>& of_parts = guide.of_parts[partitions - 2];
     const FloatTag d;
     const std::size_t lanes = hn::Lanes(d);
     const Extent block = guide.plans->block;
@@ -250,27 +247,40 @@ void GuessAstcPatterns(const AstcGuide& guide, const AstcGroup& group, int patte
     AstcGuesses best;  // of patterns: `plan` holds the energy along the lines
     best.count = patterns;
     ClearGuesses(best);
-    for (std::size_t n = 0; n < guide.patterns.size(); ++n) {
-        FloatVec x = hn::Zero(d), y = x, xx = x, xy = x, yy = x;
-        int count = 0;
-        for (int k = 0; k < texels; ++k) {
-            if ((guide.patterns[n].second >> k & 1) == 0) continue;
-            const std::size_t at = static_cast<std::size_t>(k) * lanes;
-            ++count;
-            x = hn::Add(x, hn::Load(d, shape.v[0] + at));
-            y = hn::Add(y, hn::Load(d, shape.v[1] + at));
-            xx = hn::Add(xx, hn::Load(d, product[0] + at));
-            xy = hn::Add(xy, hn::Load(d, product[1] + at));
-            yy = hn::Add(yy, hn::Load(d, product[2] + at));
+    for (std::size_t n = 0; n < all.size(); ++n) {
+        // The first partition is what the others leave.
+        FloatVec x1 = hn::Zero(d), y1 = x1, xx1 = shape.xx, xy1 = shape.xy, yy1 = shape.yy, along = x1, across = x1;
+        int first = texels;
+        for (int p = 0; p < partitions - 1; ++p) {
+            FloatVec x = hn::Zero(d), y = x, xx = x, xy = x, yy = x;
+            int count = 0;
+            for (int k = 0; k < texels; ++k) {
+                if ((all[n].later[p] >> k & 1) == 0) continue;
+                const std::size_t at = static_cast<std::size_t>(k) * lanes;
+                ++count;
+                x = hn::Add(x, hn::Load(d, shape.v[0] + at));
+                y = hn::Add(y, hn::Load(d, shape.v[1] + at));
+                xx = hn::Add(xx, hn::Load(d, product[0] + at));
+                xy = hn::Add(xy, hn::Load(d, product[1] + at));
+                yy = hn::Add(yy, hn::Load(d, product[2] + at));
+            }
+            const AstcAxes axes = AxesOf(static_cast<float>(count), x, y, xx, xy, yy);
+            along = hn::Add(along, axes.along);
+            across = hn::Add(across, axes.across);
+            x1 = hn::Sub(x1, x);
+            y1 = hn::Sub(y1, y);
+            xx1 = hn::Sub(xx1, xx);
+            xy1 = hn::Sub(xy1, xy);
+            yy1 = hn::Sub(yy1, yy);
+            first -= count;
         }
-        const AstcAxes second = AxesOf(static_cast<float>(count), x, y, xx, xy, yy);
-        const AstcAxes first = AxesOf(static_cast<float>(texels - count), x, y, hn::Sub(shape.xx, xx),
-                                      hn::Sub(shape.xy, xy), hn::Sub(shape.yy, yy));
-        const FloatVec along = hn::Add(first.along, second.along), across = hn::Add(first.across, second.across);
+        const AstcAxes axes = AxesOf(static_cast<float>(first), x1, y1, xx1, xy1, yy1);
+        along = hn::Add(along, axes.along);
+        across = hn::Add(across, axes.across);
         const FloatVec rank = hn::Add(across, hn::Mul(along, AstcNumber(kAstcRankNoise)));
         AddGuess(rank, static_cast<int>(n), along, best);
     }
-    const int grids = static_cast<int>(guide.of_two.size());
+    const int grids = static_cast<int>(of_parts.size());
     guesses.count = patterns * grids;
     ClearGuesses(guesses);
     for (int q = 0; q < patterns; ++q) {
@@ -278,7 +288,7 @@ void GuessAstcPatterns(const AstcGuide& guide, const AstcGroup& group, int patte
         const FloatVec along = hn::Load(d, best.pattern + at);
         const FloatVec across = hn::Sub(hn::Load(d, best.error + at), hn::Mul(along, AstcNumber(kAstcRankNoise)));
         for (int g = 0; g < grids; ++g) {
-            const AstcGuide::Grid& grid = guide.of_two[static_cast<std::size_t>(g)];
+            const AstcGuide::Grid& grid = of_parts[static_cast<std::size_t>(g)];
             const bool two = grid.planes == 2;
             FloatVec least = AstcNumber(1e30f), plan = hn::Zero(d);
             for (const AstcGuide::Choice& choice : grid.choices) {
@@ -309,114 +319,9 @@ void guess_astc(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& gue
     HWY_DYNAMIC_DISPATCH(GuessAstc)(guide, group, guesses);
 }
 
-void guess_astc_patterns(const AstcGuide& guide, const AstcGroup& group, int patterns, AstcGuesses& guesses) {
-    HWY_DYNAMIC_DISPATCH(GuessAstcPatterns)(guide, group, patterns, guesses);
-}
-
-namespace {
-
-// What measured errors of rounded weights are of those of a uniform distribution between evenly spaced levels, by
-// range: the median over the real maps.
-constexpr float kMeasuredNoise[kAstcWeightRanges] = {0.26f, 0.455f, 0.555f, 0.61f, 0.65f, 0.65f,
-                                                     0.69f, 0.69f,  0.7f,   0.7f,  0.7f,  0.7f};
-constexpr float kMeasuredEnds = 0.6f;
-
-// The squared range of texels along a line in terms of their mean energy; evenly spread, it would be 12.
-constexpr float kLineEnergy = 10.0f;
-
-AstcGuide::Choice choice_of(const AstcPlans& plans, int number) {
-    const AstcPlan& plan = plans.plans[static_cast<std::size_t>(number)];
-    const auto texels = static_cast<float>(plans.block.width * plans.block.height);
-    const auto steps = static_cast<float>(kAstcRangeTable[plan.mode.range].levels - 1);
-    float kept = 0;  // of the noise of the grid's weights, by interpolation
-    for (int k = 0; k < plan.grid->texels; ++k) {
-        for (const float share : plan.grid->infill[k]) kept += share * share / 256.0f;
-    }
-    const float step = 255.0f / static_cast<float>(kAstcRangeTable[plan.color_range].levels - 1);
-    return {number, plan.mode.planes, kMeasuredNoise[plan.mode.range] * kept / (12.0f * steps * steps),
-            2.0f * texels * kMeasuredEnds * step * step / 12.0f,
-            plan.grid->is_full && plan.mode.planes == 2 && step < 1.5f ? steps + 1 : 0};
-}
-
-// Grids for two partitions, the most useful ones on the real maps first: full ones, and bands along an axis.
-std::vector<AstcGuide::Grid> pair_grids(Extent block, int count) {
-    const auto [w, h] = std::pair(block.width, block.height);
-    const AstcGuide::Grid all[] = {{{w, h}, 1, {}},
-                                   {{w, 2}, 1, {}},
-                                   {{2, h}, 1, {}},
-                                   {{w, h}, 2, {}},
-                                   {{w, std::max(3, h / 2)}, 2, {}},
-                                   {{std::max(3, w / 2), h}, 2, {}},
-                                   {{w - 1, h - 1}, 1, {}},
-                                   {{w, 2}, 2, {}},
-                                   {{2, h}, 2, {}},
-                                   {{w, h - 1}, 1, {}},
-                                   {{w - 1, h}, 1, {}},
-                                   {{2, (h + 2) / 2}, 1, {}}};
-    return {std::begin(all), std::begin(all) + std::min<std::ptrdiff_t>(count, std::size(all))};
-}
-
-// Gram and Schmidt's method in double precision.
-void make_basis(int texels, int weights, float basis[8][8]) {
-    double made[8][8] = {};
-    for (int w = 0; w < weights; ++w) {
-        double* const row = made[w];
-        for (int i = 0; i < texels; ++i) {
-            const AstcInfill infill = astc_infill(i, texels, weights);
-            row[i] = infill.first == w ? 16 - infill.part : infill.first + 1 == w ? infill.part : 0;
-        }
-        for (int other = 0; other < w; ++other) {
-            double product = 0;
-            for (int i = 0; i < texels; ++i) product += row[i] * made[other][i];
-            for (int i = 0; i < texels; ++i) row[i] -= product * made[other][i];
-        }
-        double square = 0;
-        for (int i = 0; i < texels; ++i) square += row[i] * row[i];
-        for (int i = 0; i < texels; ++i) {
-            row[i] /= std::sqrt(square);
-            basis[w][i] = static_cast<float>(row[i]);
-        }
-    }
-}
-
-}  // namespace
-
-AstcGuide make_astc_guide(const AstcPlans& plans, const AstcReach& reach) {
-    AstcGuide guide{};
-    guide.plans = &plans;
-    guide.of_two = pair_grids(plans.block, reach.pair_grids);
-    for (int number = 0; number < static_cast<int>(plans.plans.size()); ++number) {
-        AstcGuide::Choice choice = choice_of(plans, number);
-        const AstcMode& mode = plans.plans[static_cast<std::size_t>(number)].mode;
-        if (number >= plans.first_of_two) {
-            choice.weights *= kLineEnergy / static_cast<float>(plans.block.width * plans.block.height);
-            for (AstcGuide::Grid& grid : guide.of_two) {
-                if (grid.extent == mode.grid && grid.planes == mode.planes) grid.choices.push_back(choice);
-            }
-            continue;
-        }
-        if (mode.grid != plans.block && std::max(mode.grid.width, mode.grid.height) > reach.most_weights) continue;
-        auto grid = std::find_if(guide.grids.begin(), guide.grids.end(),
-                                 [&](const AstcGuide::Grid& made) { return made.extent == mode.grid; });
-        if (grid == guide.grids.end()) {
-            guide.grids.push_back({mode.grid, 0, {}});
-            grid = guide.grids.end() - 1;
-        }
-        grid->choices.push_back(choice);
-    }
-    guide.of_two.erase(std::remove_if(guide.of_two.begin(), guide.of_two.end(),
-                                      [](const AstcGuide::Grid& grid) { return grid.choices.empty(); }),
-                       guide.of_two.end());
-    std::stable_sort(guide.grids.begin(), guide.grids.end(), [](const AstcGuide::Grid& a, const AstcGuide::Grid& b) {
-        return a.extent.width < b.extent.width;
-    });
-    for (std::size_t k = 0; k < plans.patterns.size(); k += static_cast<std::size_t>(reach.pattern_steps))
-        guide.patterns.push_back(plans.patterns[k]);
-    for (int weights = 2; weights <= plans.block.width; ++weights)
-        make_basis(plans.block.width, weights, guide.basis[0][weights]);
-    for (int weights = 2; weights <= plans.block.height; ++weights)
-        make_basis(plans.block.height, weights, guide.basis[1][weights]);
-    return guide;
+void guess_astc_patterns(const AstcGuide& guide, const AstcGroup& group, int partitions, int patterns,
+                         AstcGuesses& guesses) {
+    HWY_DYNAMIC_DISPATCH(GuessAstcPatterns)(guide, group, partitions, patterns, guesses);
 }
 
 }  // namespace tex

@@ -7,41 +7,10 @@
 
 #pragma once
 
-#include <vector>
-
 #include "kernels/astc_fit.h"
+#include "kernels/astc_guide.h"
 
 namespace tex {
-
-// Plans that blocks of a size may use, in an order that the guesses need.
-struct AstcGuide {
-    struct Choice {
-        int plan;  // of AstcPlans
-        int planes;
-        float weights;  // times the squared range of the texels: the noise of rounded weights
-        float ends;     // the noise of rounded endpoints
-        float levels;   // of weights, if they are few, each texel has its own and each channel, too; otherwise 0
-    };
-    struct Grid {
-        Extent extent;
-        int planes;  // of grids for two partitions
-        std::vector<Choice> choices;
-    };
-    const AstcPlans* plans = nullptr;
-    std::vector<Grid> grids;   // with one partition, by width
-    std::vector<Grid> of_two;  // with two partitions
-    std::vector<AstcPattern> patterns;
-    // Orthonormal bases of what so many weights can express along an axis: by texels (of width, of height), weights.
-    float basis[2][9][8][8];
-};
-
-// How much of it an effort uses.
-struct AstcReach {
-    int most_weights = 64;  // along an axis, of grids with one partition that are not full
-    int pair_grids = 0;     // grids for two partitions
-    int pattern_steps = 1;  // of so many patterns, one
-};
-[[nodiscard]] AstcGuide make_astc_guide(const AstcPlans& plans, const AstcReach& reach);
 
 inline constexpr int kAstcMostGuesses = 64;
 
@@ -57,8 +26,9 @@ struct AstcGuesses {
 // Of plans with one partition: the `count` best, from the best.
 void guess_astc(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& guesses);
 
-// Of plans with two partitions: for each of the `patterns` best patterns and each grid, the best plan. Sets `count`.
-// What the grid cannot express is left out, so the guess is a low one.
-void guess_astc_patterns(const AstcGuide& guide, const AstcGroup& group, int patterns, AstcGuesses& guesses);
+// Of plans with two or three partitions: for each of the `patterns` best patterns and each grid, the best plan. Sets
+// `count`. What the grid cannot express is left out, so the guess is a low one.
+void guess_astc_patterns(const AstcGuide& guide, const AstcGroup& group, int partitions, int patterns,
+                         AstcGuesses& guesses);
 
 }  // namespace tex

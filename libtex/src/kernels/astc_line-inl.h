@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// astc_line-inl.h: blocks side by side, of which one set of weights interpolates one or two channels, in one or two
+// astc_line-inl.h: blocks side by side, of which one set of weights interpolates one or two channels, in one to three
 // partitions. Include it after hwy/highway.h, once for each target.
 
 #if defined(TEX_KERNELS_ASTC_LINE_INL_H) == defined(HWY_TARGET_TOGGLE)
@@ -14,7 +14,6 @@
 
 #include <hwy/highway.h>
 
-#include "blocks/astc_ise.h"
 #include "kernels/astc_fit.h"
 #include "kernels/vectors-inl.h"
 
@@ -80,15 +79,21 @@ private:
         return hn::GatherIndex(d_, table, hn::ConvertTo(di, hn::Add(place, number(0.5f))));
     }
 
-    // Of the two partitions' values, that of a texel.
-    HWY_INLINE AstcFloat of_texel(int k, AstcFloat first, AstcFloat second) const {
-        if (kPartitions == 1) return first;
-        return hn::IfThenElse(hn::Gt(hn::Load(d_, partition_ + at(k)), number(0.5f)), second, first);
+    // Of the partitions' values, that of a texel.
+    template <class Value>
+    HWY_INLINE AstcFloat of_texel(int k, Value value) const {
+        AstcFloat result = value(0);
+        for (int p = 1; p < kPartitions; ++p) {
+            const AstcFloat partition = hn::Load(d_, partition_ + at(k));
+            result = hn::IfThenElse(hn::Gt(partition, number(static_cast<float>(p) - 0.5f)), value(p), result);
+        }
+        return result;
     }
 
     // Of a texel of partition p, a value; of others, another one.
     HWY_INLINE AstcFloat of_partition(int p, int k, AstcFloat value, AstcFloat other) const {
-        return p == 0 ? of_texel(k, value, other) : of_texel(k, other, value);
+        const AstcFloat partition = hn::Load(d_, partition_ + at(k));
+        return hn::IfThenElse(hn::Eq(partition, number(static_cast<float>(p))), value, other);
     }
 
     // Over the texels of a partition: their number, and sums of weights, squares, values and products.

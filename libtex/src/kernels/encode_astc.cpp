@@ -21,18 +21,18 @@ namespace {
 struct Spending {
     int guesses = 1;  // plans of one partition that a block is fitted to
     AstcSteps steps;
-    int patterns = 0;  // of two partitions
+    int patterns[2] = {};  // of two, of three partitions
     AstcReach reach;
-    float worth = 0;   // the squared error of a texel from which two partitions are tried
+    float worth = 0;   // the squared error of a texel from which several partitions are tried
     int polished = 0;  // the best of all of these are fitted again, with
     AstcSteps polish;
 };
 
 Spending spending_of(Effort effort) {
     switch (effort) {
-        case Effort::fast: return {1, {0, 1, 1, 1, false, 0}, 0, {8, 0, 1}, 0, 0, {}};
-        case Effort::best: return {32, {3, 1, 2, 2, true, 0}, 5, {8, 12, 1}, 0, 6, {5, 2, 5, 3, true, 3}};
-        default: return {6, {3, 1, 2, 2, true, 0}, 2, {8, 3, 2}, 1.0f, 0, {}};
+        case Effort::fast: return {1, {0, 1, 1, 1, false, 0}, {}, {8, {}, 1}, 0, 0, {}};
+        case Effort::best: return {32, {3, 1, 2, 2, true, 0}, {5, 4}, {8, {12, 4}, 1}, 0, 6, {5, 2, 5, 3, true, 3}};
+        default: return {6, {3, 1, 2, 2, true, 0}, {2, 1}, {8, {3, 2}, 2}, 1.0f, 0, {}};
     }
 }
 
@@ -88,10 +88,14 @@ public:
 
 private:
     void gather(const Candidate* candidates, int used);
+    // Of a candidate with several partitions.
+    [[nodiscard]] const AstcPattern& pattern_of(const Candidate& candidate) const {
+        return guide_.patterns[plans_.plans[place(candidate.plan)].partitions - 2][place(candidate.pattern)];
+    }
     AstcGroup group(int first);
     void add(int block, int lane, float most);
     void guess();
-    void guess_pairs(float worth);
+    void guess_parts(int partitions, float worth);
     void fit(const AstcSteps& steps, std::size_t begin);
     void fit_some(const AstcSteps& steps, Candidate* candidates, int used);
     void keep_best_candidates();
@@ -133,8 +137,8 @@ void Batch::guess() {
     }
 }
 
-// Guesses two partitions for blocks whose error is greater than `worth`.
-void Batch::guess_pairs(float worth) {
+// Guesses several partitions for blocks whose error is greater than `worth`.
+void Batch::guess_parts(int partitions, float worth) {
     std::vector<Candidate> some;
     for (int block = 0; block < static_cast<int>(found_.size()); ++block) {
         if (found_[place(block)].error > worth && found_[place(block)].error < kNone) some.push_back({block, 0, 0, 0});
@@ -142,7 +146,8 @@ void Batch::guess_pairs(float worth) {
     for (std::size_t at = 0; at < some.size(); at += place(lanes_)) {
         const int used = std::min(lanes_, static_cast<int>(some.size() - at));
         gather(&some[at], used);
-        guess_astc_patterns(guide_, {{gathered_[0], gathered_[1]}, nullptr}, spending_.patterns, guesses_);
+        guess_astc_patterns(guide_, {{gathered_[0], gathered_[1]}, nullptr}, partitions,
+                            spending_.patterns[partitions - 2], guesses_);
         for (int l = 0; l < used; ++l) {
             const int block = some[at + place(l)].block;
             add(block, l, found_[place(block)].error);
@@ -164,11 +169,10 @@ void Batch::gather(const Candidate* candidates, int used) {
 void Batch::fit_some(const AstcSteps& steps, Candidate* candidates, int used) {
     gather(candidates, used);
     const AstcPlan& plan = plans_.plans[place(candidates->plan)];
-    if (plan.partitions == 2) {
-        for (int l = 0; l < lanes_; ++l) {
-            const std::uint64_t second = guide_.patterns[place(candidates[std::min(l, used - 1)].pattern)].second;
-            for (int k = 0; k < texels_; ++k) gathered_[2][k * lanes_ + l] = (second >> k & 1) != 0 ? 1.0f : 0.0f;
-        }
+    for (int l = 0; l < lanes_ && plan.partitions > 1; ++l) {
+        const auto& later = pattern_of(candidates[std::min(l, used - 1)]).later;
+        for (int k = 0; k < texels_; ++k)
+            gathered_[2][k * lanes_ + l] = static_cast<float>((later[0] >> k & 1) + 2 * (later[1] >> k & 1));
     }
     fit_astc(plan, steps, {{gathered_[0], gathered_[1]}, gathered_[2]}, fits_);
     for (int l = 0; l < used; ++l) {
@@ -177,7 +181,7 @@ void Batch::fit_some(const AstcSteps& steps, Candidate* candidates, int used) {
         if (fits_.error[l] >= found.error) continue;
         found.error = fits_.error[l];
         found.plan = candidates[l].plan;
-        if (plan.partitions == 2) found.content.pattern = guide_.patterns[place(candidates[l].pattern)].index;
+        if (plan.partitions > 1) found.content.pattern = pattern_of(candidates[l]).index;
         for (int p = 0; p < plan.mode.planes; ++p) {
             for (int w = 0; w < plan.grid->weights; ++w)
                 found.content.weights[p][w] = static_cast<std::uint8_t>(fits_.weights[p][w * lanes_ + l]);
@@ -258,9 +262,10 @@ void Batch::encode(int count, std::byte* blocks) {
     candidates_.clear();
     guess();
     fit(spending_.steps, 0);
-    if (spending_.patterns > 0) {
+    for (int partitions = 2; partitions <= 3; ++partitions) {
+        if (spending_.patterns[partitions - 2] == 0) continue;
         const std::size_t begin = candidates_.size();
-        guess_pairs(spending_.worth * static_cast<float>(texels_));
+        guess_parts(partitions, spending_.worth * static_cast<float>(texels_));
         fit(spending_.steps, begin);
     }
     if (spending_.polished > 0) {
