@@ -6,14 +6,14 @@
 build_packages=(
     g++ cmake ninja-build pkg-config
     libpng-dev libopenexr-dev libtiff-dev libjpeg62-turbo-dev libopenimageio-dev libopencolorio-dev libseccomp-dev
-    libdeflate-dev libisal-dev libzstd-dev libastcenc-dev libtbb-dev libhwy-dev libfmt-dev
+    libdeflate-dev libisal-dev libzstd-dev libtbb-dev libhwy-dev libfmt-dev
     nlohmann-json3-dev libtomlplusplus-dev libassimp-dev
 )
 # shellcheck disable=SC2034
 test_packages=(
     libgtest-dev libgmock-dev libsquish-dev libosmesa6-dev libgl-dev
-    astcenc imagemagick openimageio-tools python3-jsonschema python3-yaml libxml2-utils mandoc shellcheck dpkg-dev file
-    git strace zsh fish assimp-utils nix-bin ruby
+    astcenc libastcenc-dev imagemagick openimageio-tools python3-jsonschema python3-yaml libxml2-utils mandoc shellcheck
+    dpkg-dev file git strace zsh fish assimp-utils nix-bin ruby
     pybind11-dev python3-dev python3-numpy python3-pytest python3-pip
 )
 # The browser takes 300 MB. Without it and GNU parallel, their tests report that they were skipped.

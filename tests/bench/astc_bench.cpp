@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // astc_bench: ASTC beside the other encodings for phones and desktops: bits a texel, speed on one thread, and the angle
-// to the map. The maps are those of encode_bench, but at most 256x256 texels from their middle, because libastcenc is
-// slow. Errors are those of our decoder.
+// to the map. The maps are those of encode_bench, but at most 256x256 texels from their middle, because the best
+// efforts are slow. Errors are those of our decoder. (ASTC.md compares with astcenc.)
 
 #include <algorithm>
 #include <cstdio>

@@ -263,7 +263,7 @@ packages)
     quietly 'the packages cannot be built' cmake --build "$scratch/build"
     quietly 'cpack failed' cpack --config "$scratch/build/CPackConfig.cmake" -B "$scratch"
     root=$scratch/root
-    package libtex0 libc6 libpng16-16 libdeflate0 libisal2 libzstd1 libastcenc3d libopenexr libtbb12 libhwy \
+    package libtex0 libc6 libpng16-16 libdeflate0 libisal2 libzstd1 libopenexr libtbb12 libhwy \
         libopencolorio
     case $depends in *openimageio* | *assimp*) fail "the library needs the readers: $depends" ;; esac
     package libtex-dev 'libtex0 (= '

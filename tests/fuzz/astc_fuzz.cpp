@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // An .astc file of any bytes is read or refused; what is read is whole, and can be unpacked and written again. The
-// blocks are any bytes, too, so this tests libastcenc's decoder.
+// blocks are any bytes, too, so this tests their decoder.
 
 #include <algorithm>
 #include <cstring>

@@ -12,7 +12,7 @@
 #include <tex/pack.h>
 #include <tex/unpack.h>
 
-#include "blocks/astc.h"
+#include "blocks/astc_decode.h"
 #include "blocks/bc1.h"
 #include "blocks/bc4.h"
 #include "blocks/eac.h"

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-# Evaluates the expression of libtex with names in the place of packages: { file, astcenc } -> what it declares.
-{ file, astcenc }:
+# Evaluates the expression of libtex with names in the place of packages: { file } -> what it declares.
+{ file }:
 
 let
   package = import file;
   names = builtins.attrNames (builtins.functionArgs package);
   lib = {
-    throwIf = condition: message: value: if condition then throw message else value;
     cleanSource = source: source;
     cleanSourceWith = { src, filter }: {
       folder = toString src;
@@ -18,5 +17,5 @@ let
 in
 package (
   builtins.listToAttrs (map (name: { inherit name; value = name; }) names)
-  // { inherit lib astcenc; stdenv.mkDerivation = declared: declared; }
+  // { inherit lib; stdenv.mkDerivation = declared: declared; }
 )

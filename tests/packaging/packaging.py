@@ -32,7 +32,6 @@ LIBRARY = [
     Dependency("OpenEXR", "libopenexr-dev", "openexr", "openexr", "openexr"),
     Dependency("TBB", "libtbb-dev", "tbb", "onetbb", "tbb"),
     Dependency("hwy", "libhwy-dev", "highway", "libhwy", "highway"),
-    Dependency("astcenc", "libastcenc-dev", "", "astcenc", ""),
     Dependency("nlohmann_json", "nlohmann-json3-dev", "nlohmann-json", "nlohmann_json", "nlohmann-json"),
     Dependency("OpenColorIO", "libopencolorio-dev", "opencolorio", "opencolorio", "opencolorio"),
     Dependency("libdeflate", "libdeflate-dev", "libdeflate", "libdeflate", "libdeflate"),
@@ -144,7 +143,7 @@ def test_nix(stage: Path) -> None:
     file = PACKAGING / "nix/default.nix"
     evaluate = ["nix-instantiate", "--store", "dummy://", "--eval", "--strict", "--json", HERE / "evaluate.nix",
                 "--arg", "file", file]
-    declared = json.loads(run(*evaluate, "--argstr", "astcenc", "astcenc"))
+    declared = json.loads(run(*evaluate))
     check(declared["version"] == VERSION, f"default.nix is about {declared['version']}, not {VERSION}")
     same("buildInputs of default.nix", declared["buildInputs"], column("nix", LIBRARY, COMMANDS))
     same("nativeBuildInputs of default.nix", declared["nativeBuildInputs"], ["cmake", "ninja", "pkg-config"])
@@ -153,10 +152,6 @@ def test_nix(stage: Path) -> None:
     looped = re.search(r"for command in (.*); do", declared["installCheckPhase"])[1].split()
     same("commands of default.nix", looped, PROGRAMS)
     run("bash", "-euo", "pipefail", "-c", declared["installCheckPhase"], env={**os.environ, "out": str(stage)})
-
-    without = subprocess.run([*map(str, evaluate), "--arg", "astcenc", "null"], capture_output=True, text=True)
-    check(without.returncode != 0 and "libtex needs libastcenc" in without.stderr,
-          f"default.nix without astcenc: {without.stderr}")
 
 
 def test_homebrew(stage: Path, scratch: Path) -> None:
@@ -169,9 +164,6 @@ def test_homebrew(stage: Path, scratch: Path) -> None:
     same("commands of libtex.rb", declared["commands"], PROGRAMS)
     options_exist("libtex.rb", declared["started"][0])
     check(f'"{VERSION}"' in (PACKAGING / "homebrew/libtex.rb").read_text(), f"libtex.rb does not test for {VERSION}")
-
-    found = json.loads(run(*words, env={**clean, "HOMEBREW_ASTCENC_DIR": "/astcenc"}).splitlines()[-1])
-    check("-Dastcenc_DIR=/astcenc" in found["started"][0], "libtex.rb ignores HOMEBREW_ASTCENC_DIR")
 
 
 def main() -> int:

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "blocks/astc.h"
+#include "blocks/astc_decode.h"
 #include "checks/centre.h"
 #include "checks/grid.h"
 #include "checks/jpeg.h"

@@ -8,7 +8,7 @@
 
 #include <tex/texture.h>
 
-#include "blocks/astc.h"
+#include "blocks/astc_decode.h"
 
 namespace tex {
 

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <string>
 
-#include "blocks/astc.h"
+#include "blocks/astc_decode.h"
 #include "blocks/bptc.h"
 #include "formats/asc/asc.h"
 #include "formats/astc/astc_file.h"

@@ -6,9 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <vector>
 
-#include "blocks/astc.h"
+#include "blocks/astc_decode.h"
 #include "blocks/bc6h.h"
 #include "blocks/bc7.h"
 #include "blocks/bptc.h"
@@ -46,23 +45,29 @@ void decode_row_of_bptc(Format format, const std::byte* blocks, int count, const
     }
 }
 
+void decode_row_of_astc(Extent block, const std::byte* blocks, int width, const ChannelRows& rows,
+                        std::ptrdiff_t stride) {
+    float values[4][kAstcMostTexels];
+    AstcTexels texels;
+    for (int c = 0; c < 4; ++c) texels.channel[c] = rows.channel[c] == nullptr ? nullptr : values[c];
+    for (int at = 0; at < width; at += block.width, blocks += kAstcBlockBytes) {
+        decode_astc(block, blocks, texels);
+        const int count = std::min(block.width, width - at);
+        for (int c = 0; c < 4; ++c) {
+            if (rows.channel[c] == nullptr) continue;
+            for (int j = 0; j < block.height; ++j)
+                std::copy_n(values[c] + j * block.width, count, rows.channel[c] + j * stride + at);
+        }
+    }
+}
+
 }  // namespace
 
 void decode_row_of_blocks(Format format, const std::byte* blocks, int width, const ChannelRows& rows,
                           std::ptrdiff_t stride) {
     if (is_bptc(format)) return decode_row_of_bptc(format, blocks, blocks_across(width), rows, stride);
     if (!is_astc(format)) return decode_blocks(format, blocks, blocks_across(width), rows, stride);
-    const Extent extent{width, format_info(format).block.height};
-    std::vector<float> rgba(4 * static_cast<std::size_t>(extent.texels()));
-    decode_astc(format, blocks, extent, rgba.data());
-    const float* from = rgba.data();
-    for (int j = 0; j < extent.height; ++j) {
-        for (int i = 0; i < width; ++i, from += 4) {
-            for (int c = 0; c < 4; ++c) {
-                if (rows.channel[c] != nullptr) rows.channel[c][j * stride + i] = from[c];
-            }
-        }
-    }
+    decode_row_of_astc(format_info(format).block, blocks, width, rows, stride);
 }
 
 int strip_rows_of(Format format) {

@@ -10,8 +10,9 @@
 
 #include <half.h>
 
-#include "blocks/astc.h"
+#include "blocks/astc_decode.h"
 #include "kernels/encode.h"
+#include "kernels/encode_astc.h"
 #include "kernels/pack.h"
 
 namespace tex {
@@ -88,7 +89,7 @@ void pack_values(const Rows& rows, int channels, int begin, int end, std::byte* 
     }
 }
 
-// Packs a row of blocks: at most as many rows as a block has, from row j.
+// Packs rows of blocks, `count` rows of texels from row j.
 void pack_astc(const Rows& rows, Format format, Effort effort, int j, int count, std::byte* out) {
     const int width = rows.extent().width;
     std::vector<float> xy(2 * size(width) * size(count));
@@ -120,14 +121,10 @@ void pack_rows(const NormalMap& map, int height, const PackOptions& options, int
     if (info.has_blocks()) {
         const std::size_t pitch = level_bytes(format, {rows.extent().width, 1});
         const int block = info.block.height;
-        for (int j = begin; j < end; j += block) {
-            std::byte* const blocks = out + size(j / block) * pitch;
-            if (is_astc(format)) {
-                pack_astc(rows, format, options.effort, j, std::min(block, height - j), blocks);
-            } else {
-                encode_blocks(rows.blocks(j), options, blocks);
-            }
+        if (is_astc(format)) {
+            return pack_astc(rows, format, options.effort, begin, end - begin, out + size(begin / block) * pitch);
         }
+        for (int j = begin; j < end; j += block) encode_blocks(rows.blocks(j), options, out + size(j / block) * pitch);
         if (!is_optimised(options)) return;
         for (int j = begin; j < end; j += band_rows) {
             const auto row = [&](int r) { return rows.blocks(j + r * block); };

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
 # The library and the commands, for Homebrew on Linux, built from the clone that HOMEBREW_LIBTEX_SOURCE names.
-# Homebrew has no formula of astcenc: see the README of samples/packaging.
 class Libtex < Formula
   desc "Tangent-space normal maps: bake, mip, pack, check"
   license "Apache-2.0"
@@ -39,11 +38,7 @@ class Libtex < Formula
   ].freeze
 
   def install
-    args = ["-DBUILD_TESTING=OFF"]
-    # The folder of astcencConfig.cmake, where CMake does not find it by itself.
-    astcenc = ENV.fetch("HOMEBREW_ASTCENC_DIR", nil)
-    args << "-Dastcenc_DIR=#{astcenc}" if astcenc
-    system "cmake", "-S", ".", "-B", "build", "-G", "Ninja", *args, *std_cmake_args
+    system "cmake", "-S", ".", "-B", "build", "-G", "Ninja", "-DBUILD_TESTING=OFF", *std_cmake_args
     system "cmake", "--build", "build"
     system "cmake", "--install", "build"
   end

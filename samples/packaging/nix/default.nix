@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # The library and the commands, built from the clone in which this file lies:
 #
-#   with import <nixpkgs> { }; callPackage ./samples/packaging/nix { astcenc = ...; }
-#
-# nixpkgs has no libastcenc: its astc-encoder installs the program alone. See the README of samples/packaging.
+#   with import <nixpkgs> { }; callPackage ./samples/packaging/nix { }
 {
   lib,
   stdenv,
@@ -11,7 +9,6 @@
   ninja,
   pkg-config,
   assimp,
-  astcenc ? null,
   fmt,
   isa-l,
   libdeflate,
@@ -47,61 +44,56 @@ let
     "unpack-normals"
   ];
 in
-lib.throwIf (astcenc == null)
-  "libtex needs libastcenc, its header and its CMake package: give them to callPackage as astcenc"
-  (
-    stdenv.mkDerivation {
-      pname = "libtex";
-      inherit version;
+stdenv.mkDerivation {
+  pname = "libtex";
+  inherit version;
 
-      # The clone without .git and the folder in which CMake builds.
-      src = lib.cleanSourceWith {
-        src = lib.cleanSource ../../..;
-        filter = path: type: type != "directory" || baseNameOf path != "build";
-      };
+  # The clone without .git and the folder in which CMake builds.
+  src = lib.cleanSourceWith {
+    src = lib.cleanSource ../../..;
+    filter = path: type: type != "directory" || baseNameOf path != "build";
+  };
 
-      nativeBuildInputs = [
-        cmake
-        ninja
-        pkg-config
-      ];
-      buildInputs = [
-        assimp
-        astcenc
-        fmt
-        isa-l
-        libdeflate
-        libhwy
-        libjpeg
-        libpng
-        libseccomp
-        libtiff
-        nlohmann_json
-        onetbb
-        opencolorio
-        openexr
-        openimageio
-        tomlplusplus
-        zstd
-      ];
-      cmakeFlags = [ "-DBUILD_TESTING=OFF" ];
+  nativeBuildInputs = [
+    cmake
+    ninja
+    pkg-config
+  ];
+  buildInputs = [
+    assimp
+    fmt
+    isa-l
+    libdeflate
+    libhwy
+    libjpeg
+    libpng
+    libseccomp
+    libtiff
+    nlohmann_json
+    onetbb
+    opencolorio
+    openexr
+    openimageio
+    tomlplusplus
+    zstd
+  ];
+  cmakeFlags = [ "-DBUILD_TESTING=OFF" ];
 
-      doInstallCheck = true;
-      installCheckPhase = ''
-        for command in ${toString commands}; do
-          "$out/bin/$command" --version | grep -F ${version}
-        done
-        for file in include/tex/tex.h lib/libtex.so lib/pkgconfig/libtex.pc libexec/libtex/tex-reader \
-          libexec/libtex/tex-reader-oiio libexec/libtex/tex-mesh-reader share/man/man7/normal-maps.7*; do
-          ls "$out"/$file
-        done
-      '';
+  doInstallCheck = true;
+  installCheckPhase = ''
+    for command in ${toString commands}; do
+      "$out/bin/$command" --version | grep -F ${version}
+    done
+    for file in include/tex/tex.h lib/libtex.so lib/pkgconfig/libtex.pc libexec/libtex/tex-reader \
+      libexec/libtex/tex-reader-oiio libexec/libtex/tex-mesh-reader share/man/man7/normal-maps.7*; do
+      ls "$out"/$file
+    done
+  '';
 
-      meta = {
-        description = "Tangent-space normal maps: bake, mip, pack, check";
-        license = lib.licenses.asl20;
-        platforms = lib.platforms.linux;
-        mainProgram = "bake-normals";
-      };
-    }
-  )
+  meta = {
+    description = "Tangent-space normal maps: bake, mip, pack, check";
+    license = lib.licenses.asl20;
+    platforms = lib.platforms.linux;
+    mainProgram = "bake-normals";
+  };
+}

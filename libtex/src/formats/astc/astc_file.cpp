@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "blocks/astc.h"
+#include "blocks/astc_decode.h"
 #include "formats/bytes.h"
 #include "formats/channels.h"
 #include "formats/claims.h"

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # The library alone, built from the clone in which this port lies. The commands are left out, because their reader of
-# pictures needs libseccomp, and vcpkg has no port of it. vcpkg has no port of astcenc either: see the README of
-# samples/packaging.
+# pictures needs libseccomp, and vcpkg has no port of it.
 get_filename_component(SOURCE_PATH "${CMAKE_CURRENT_LIST_DIR}/../../../.." ABSOLUTE)
 
 vcpkg_find_acquire_program(PKGCONFIG)

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "kernels/astc_fit.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/astc_fit.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "kernels/astc_steps-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tex {
+namespace HWY_NAMESPACE {
+
+// Stores a line as a plane: of one channel, or of both.
+template <int kChannels, int kPartitions>
+HWY_INLINE void StoreLine(const AstcLine<kChannels, kPartitions>& line, int weights, int plane, AstcFits& fits) {
+    const FloatTag d;
+    const std::size_t end = static_cast<std::size_t>(weights) * hn::Lanes(d);
+    for (std::size_t k = 0; k < end; k += hn::Lanes(d))
+        hn::Store(hn::Load(d, line.best().weights + k), d, fits.weights[plane] + k);
+    for (int p = 0; p < kPartitions; ++p) {
+        for (int c = 0; c < kChannels; ++c) {
+            for (int e = 0; e < 2; ++e) hn::Store(line.best().ends.at[p][c][e], d, fits.ends[p][plane + c][e]);
+        }
+    }
+}
+
+template <int kPartitions>
+void FitAstcTo(const AstcPlan& plan, const AstcSteps& steps, const AstcGroup& group, AstcFits& fits) {
+    const FloatTag d;
+    const int weights = plan.grid->weights;
+    if (plan.mode.planes == 1) {
+        AstcLine<2, kPartitions> both(plan, steps, group.partition, group.value[0], group.value[1]);
+        both.fit();
+        StoreLine(both, weights, 0, fits);
+        hn::Store(both.best().error, d, fits.error);
+        return;
+    }
+    FloatVec error = hn::Zero(d);
+    for (int c = 0; c < 2; ++c) {
+        AstcLine<1, kPartitions> line(plan, steps, group.partition, group.value[c], nullptr);
+        line.fit();
+        StoreLine(line, weights, c, fits);
+        error = hn::Add(error, line.best().error);
+    }
+    hn::Store(error, d, fits.error);
+}
+
+void FitAstc(const AstcPlan& plan, const AstcSteps& steps, const AstcGroup& group, AstcFits& fits) {
+    if (plan.partitions == 3) return FitAstcTo<3>(plan, steps, group, fits);
+    if (plan.partitions == 2) return FitAstcTo<2>(plan, steps, group, fits);
+    FitAstcTo<1>(plan, steps, group, fits);
+}
+
+int AstcLanes() { return static_cast<int>(hn::Lanes(FloatTag())); }
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tex
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tex {
+
+HWY_EXPORT(FitAstc);
+HWY_EXPORT(AstcLanes);
+
+int astc_lanes() { return HWY_DYNAMIC_DISPATCH(AstcLanes)(); }
+
+void fit_astc(const AstcPlan& plan, const AstcSteps& steps, const AstcGroup& group, AstcFits& fits) {
+    HWY_DYNAMIC_DISPATCH(FitAstc)(plan, steps, group, fits);
+}
+
+}  // namespace tex
+#endif

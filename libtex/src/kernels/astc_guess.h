@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// astc_guess.h: guesses the errors of blocks in the plans of ASTC, many blocks side by side, before anything is fitted.
+//
+// The error of a plan is guessed as what its grid cannot express (the energy outside the space that the grid spans),
+// and noise from rounding weights and endpoints: in proportion to the squared range of the texels over the squared
+// number of levels. Of two partitions, the grid is taken to be full.
+
+#pragma once
+
+#include "kernels/astc_fit.h"
+#include "kernels/astc_guide.h"
+
+namespace tex {
+
+inline constexpr int kAstcMostGuesses = 64;
+
+// Guesses of each block: errors, numbers of plans, and numbers of patterns in the guide.
+struct AstcGuesses {
+    int count = 0;  // at most kAstcMostGuesses; set by the caller
+    alignas(64) float error[kAstcMostGuesses * kAstcLanes];
+    alignas(64) float plan[kAstcMostGuesses * kAstcLanes];
+    alignas(64) float pattern[kAstcMostGuesses * kAstcLanes];
+    alignas(64) float range[kAstcLanes];  // of both channels, the sum of the squares; guess_astc() sets it
+};
+
+// Of plans with one partition: the `count` best, from the best.
+void guess_astc(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& guesses);
+
+// Of plans with two or three partitions: for each of the `patterns` best patterns and each grid, the best plan. Sets
+// `count`. What the grid cannot express is left out, so the guess is a low one.
+void guess_astc_patterns(const AstcGuide& guide, const AstcGroup& group, int partitions, int patterns,
+                         AstcGuesses& guesses);
+
+}  // namespace tex

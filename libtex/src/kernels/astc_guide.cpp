@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "kernels/astc_guide.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "blocks/astc_ise.h"
+
+namespace tex {
+namespace {
+
+// What measured errors of rounded weights are of those of a uniform distribution between evenly spaced levels, by
+// range: the median over the real maps.
+constexpr float kMeasuredNoise[kAstcWeightRanges] = {0.26f, 0.455f, 0.555f, 0.61f, 0.65f, 0.65f,
+                                                     0.69f, 0.69f,  0.7f,   0.7f,  0.7f,  0.7f};
+constexpr float kMeasuredEnds = 0.6f;
+
+// The squared range of texels along a line in terms of their mean energy; evenly spread, it would be 12.
+constexpr float kLineEnergy = 10.0f;
+
+AstcGuide::Choice choice_of(const AstcPlans& plans, int number) {
+    const AstcPlan& plan = plans.plans[static_cast<std::size_t>(number)];
+    const auto texels = static_cast<float>(plans.block.width * plans.block.height);
+    const auto steps = static_cast<float>(kAstcRangeTable[plan.mode.range].levels - 1);
+    float kept = 0;  // of the noise of the grid's weights, by interpolation
+    for (int k = 0; k < plan.grid->texels; ++k) {
+        for (const float share : plan.grid->infill[k]) kept += share * share / 256.0f;
+    }
+    const float step = 255.0f / static_cast<float>(kAstcRangeTable[plan.color_range].levels - 1);
+    return {number, plan.mode.planes, kMeasuredNoise[plan.mode.range] * kept / (12.0f * steps * steps),
+            2.0f * texels * kMeasuredEnds * step * step / 12.0f,
+            plan.grid->is_full && plan.mode.planes == 2 && step < 1.5f ? steps + 1 : 0};
+}
+
+// Grids for several partitions, the most useful ones on the real maps first: full ones, and bands along an axis.
+std::vector<AstcGuide::Grid> part_grids(Extent block, int count) {
+    const auto [w, h] = std::pair(block.width, block.height);
+    const AstcGuide::Grid all[] = {{{w, h}, 1, {}},
+                                   {{w, 2}, 1, {}},
+                                   {{2, h}, 1, {}},
+                                   {{w, h}, 2, {}},
+                                   {{w, std::max(3, h / 2)}, 2, {}},
+                                   {{std::max(3, w / 2), h}, 2, {}},
+                                   {{w - 1, h - 1}, 1, {}},
+                                   {{w, 2}, 2, {}},
+                                   {{2, h}, 2, {}},
+                                   {{w, h - 1}, 1, {}},
+                                   {{w - 1, h}, 1, {}},
+                                   {{2, (h + 2) / 2}, 1, {}}};
+    return {std::begin(all), std::begin(all) + std::min<std::ptrdiff_t>(count, std::size(all))};
+}
+
+// Gram and Schmidt's method in double precision.
+void make_basis(int texels, int weights, float basis[8][8]) {
+    double made[8][8] = {};
+    for (int w = 0; w < weights; ++w) {
+        double* const row = made[w];
+        for (int i = 0; i < texels; ++i) {
+            const AstcInfill infill = astc_infill(i, texels, weights);
+            row[i] = infill.first == w ? 16 - infill.part : infill.first + 1 == w ? infill.part : 0;
+        }
+        for (int other = 0; other < w; ++other) {
+            double product = 0;
+            for (int i = 0; i < texels; ++i) product += row[i] * made[other][i];
+            for (int i = 0; i < texels; ++i) row[i] -= product * made[other][i];
+        }
+        double square = 0;
+        for (int i = 0; i < texels; ++i) square += row[i] * row[i];
+        for (int i = 0; i < texels; ++i) {
+            row[i] /= std::sqrt(square);
+            basis[w][i] = static_cast<float>(row[i]);
+        }
+    }
+}
+
+}  // namespace
+
+AstcGuide make_astc_guide(const AstcPlans& plans, const AstcReach& reach) {
+    AstcGuide guide{};
+    guide.plans = &plans;
+    for (int p = 0; p < 2; ++p) guide.of_parts[p] = part_grids(plans.block, reach.part_grids[p]);
+    for (int number = 0; number < static_cast<int>(plans.plans.size()); ++number) {
+        AstcGuide::Choice choice = choice_of(plans, number);
+        const AstcPlan& plan = plans.plans[static_cast<std::size_t>(number)];
+        const AstcMode& mode = plan.mode;
+        if (plan.partitions > 1) {
+            choice.weights *= kLineEnergy / static_cast<float>(plans.block.width * plans.block.height);
+            for (AstcGuide::Grid& grid : guide.of_parts[plan.partitions - 2]) {
+                if (grid.extent == mode.grid && grid.planes == mode.planes) grid.choices.push_back(choice);
+            }
+            continue;
+        }
+        if (mode.grid != plans.block && std::max(mode.grid.width, mode.grid.height) > reach.most_weights) continue;
+        auto grid = std::find_if(guide.grids.begin(), guide.grids.end(),
+                                 [&](const AstcGuide::Grid& made) { return made.extent == mode.grid; });
+        if (grid == guide.grids.end()) {
+            guide.grids.push_back({mode.grid, 0, {}});
+            grid = guide.grids.end() - 1;
+        }
+        grid->choices.push_back(choice);
+    }
+    for (auto& grids : guide.of_parts) {
+        grids.erase(std::remove_if(grids.begin(), grids.end(),
+                                   [](const AstcGuide::Grid& grid) { return grid.choices.empty(); }),
+                    grids.end());
+    }
+    std::stable_sort(guide.grids.begin(), guide.grids.end(), [](const AstcGuide::Grid& a, const AstcGuide::Grid& b) {
+        return a.extent.width < b.extent.width;
+    });
+    for (int p = 0; p < 2; ++p) {
+        for (std::size_t k = 0; k < plans.patterns[p].size(); k += static_cast<std::size_t>(reach.pattern_steps))
+            guide.patterns[p].push_back(plans.patterns[p][k]);
+    }
+    for (int weights = 2; weights <= plans.block.width; ++weights)
+        make_basis(plans.block.width, weights, guide.basis[0][weights]);
+    for (int weights = 2; weights <= plans.block.height; ++weights)
+        make_basis(plans.block.height, weights, guide.basis[1][weights]);
+    return guide;
+}
+
+}  // namespace tex

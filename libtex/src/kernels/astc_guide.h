@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// astc_guide.h: what the guesses of astc_guess.h need to know about the plans of a size of blocks.
+
+#pragma once
+
+#include <vector>
+
+#include "blocks/astc_plan.h"
+
+namespace tex {
+
+// Plans that blocks of a size may use, in an order that the guesses need.
+struct AstcGuide {
+    struct Choice {
+        int plan;  // of AstcPlans
+        int planes;
+        float weights;  // times the squared range of the texels: the noise of rounded weights
+        float ends;     // the noise of rounded endpoints
+        float levels;   // of weights, if they are few, each texel has its own and each channel, too; otherwise 0
+    };
+    struct Grid {
+        Extent extent;
+        int planes;  // of grids for several partitions
+        std::vector<Choice> choices;
+    };
+    const AstcPlans* plans = nullptr;
+    std::vector<Grid> grids;  // with one partition, by width
+    // With two partitions; with three.
+    std::vector<Grid> of_parts[2];
+    std::vector<AstcPattern> patterns[2];
+    // Orthonormal bases of what so many weights can express along an axis: by texels (of width, of height), weights.
+    float basis[2][9][8][8];
+};
+
+// How much of it an effort uses.
+struct AstcReach {
+    int most_weights = 64;   // along an axis, of grids with one partition that are not full
+    int part_grids[2] = {};  // grids for two, for three partitions
+    int pattern_steps = 1;   // of so many patterns, one
+};
+[[nodiscard]] AstcGuide make_astc_guide(const AstcPlans& plans, const AstcReach& reach);
+
+}  // namespace tex

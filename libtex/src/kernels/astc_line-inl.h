@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// astc_line-inl.h: blocks side by side, of which one set of weights interpolates one or two channels, in one to three
+// partitions. Include it after hwy/highway.h, once for each target.
+
+#if defined(TEX_KERNELS_ASTC_LINE_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TEX_KERNELS_ASTC_LINE_INL_H
+#undef TEX_KERNELS_ASTC_LINE_INL_H
+#else
+#define TEX_KERNELS_ASTC_LINE_INL_H
+#endif
+
+#include <cstddef>
+#include <cstdint>
+
+#include <hwy/highway.h>
+
+#include "kernels/astc_fit.h"
+#include "kernels/vectors-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tex {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using AstcFloat = FloatVec;
+
+// Decoding rounds down, by half of a step of halves in the mean; so what is to come back is that much greater.
+inline constexpr float kAstcRoundedDown = 1.0003f;
+
+template <int kChannels, int kPartitions>
+struct AstcEnds {
+    AstcFloat at[kPartitions][kChannels][2];
+};
+
+template <int kChannels, int kPartitions>
+struct AstcBest {
+    AstcFloat error;
+    AstcEnds<kChannels, kPartitions> ends;
+    alignas(64) float weights[kAstcMostWeights * kAstcLanes];
+};
+
+template <int kChannels, int kPartitions>
+class AstcLine {
+public:
+    using Ends = AstcEnds<kChannels, kPartitions>;
+
+    AstcLine(const AstcPlan& plan, const AstcSteps& steps, const float* partition, const float* v0, const float* v1)
+        : plan_(plan), steps_(steps), partition_(partition), value_{v0, v1} {
+        best_.error = hn::Set(d_, 1e30f);
+    }
+
+    [[nodiscard]] const AstcBest<kChannels, kPartitions>& best() const { return best_; }
+
+    void fit() {
+        Ends starts[kMostStarts];
+        make_starts(starts);
+        for (int k = 0; k < steps_.starts; ++k) {
+            Ends ends = starts[k];
+            for (int n = 0; n < steps_.iterations; ++n) {
+                make_weights(ends);
+                make_ends(ends);
+                keep(ends);
+            }
+        }
+        for (int n = 0; n < steps_.polishes && polish(); ++n) {
+        }
+    }
+
+private:
+    static constexpr int kMostStarts = 2;
+    HWY_INLINE AstcFloat texel(int c, int k) const { return hn::Load(d_, value_[c] + at(k)); }
+    HWY_INLINE std::size_t at(int k) const { return static_cast<std::size_t>(k) * hn::Lanes(d_); }
+    HWY_INLINE AstcFloat number(float value) const { return hn::Set(d_, value); }
+
+    // The element of a table of floats that stands at a value, rounded.
+    HWY_INLINE AstcFloat look_up(const float* table, AstcFloat place) const {
+        const hn::RebindToSigned<FloatTag> di;
+        return hn::GatherIndex(d_, table, hn::ConvertTo(di, hn::Add(place, number(0.5f))));
+    }
+
+    // Of the partitions' values, that of a texel.
+    template <class Value>
+    HWY_INLINE AstcFloat of_texel(int k, Value value) const {
+        AstcFloat result = value(0);
+        for (int p = 1; p < kPartitions; ++p) {
+            const AstcFloat partition = hn::Load(d_, partition_ + at(k));
+            result = hn::IfThenElse(hn::Gt(partition, number(static_cast<float>(p) - 0.5f)), value(p), result);
+        }
+        return result;
+    }
+
+    // Of a texel of partition p, a value; of others, another one.
+    HWY_INLINE AstcFloat of_partition(int p, int k, AstcFloat value, AstcFloat other) const {
+        const AstcFloat partition = hn::Load(d_, partition_ + at(k));
+        return hn::IfThenElse(hn::Eq(partition, number(static_cast<float>(p))), value, other);
+    }
+
+    // Over the texels of a partition: their number, and sums of weights, squares, values and products.
+    struct Sums {
+        AstcFloat n, w, ww, v, wv;
+    };
+
+    AstcFloat in_partition(int p, int k) const;
+    Ends outer_ends() const;
+    void outer_ends_of_two(int p, Ends& ends) const;
+    void make_starts(Ends* starts);
+    void try_starts(int p, AstcFloat best[2][2]) const;
+    void make_ideal(const Ends& ends);
+    void make_weights(const Ends& ends);
+    void round_grid();
+    void change_weight(int w, bool rounds);
+    void make_ends(Ends& ends) const;
+    AstcFloat rounded_end(AstcFloat end) const;
+    void nearest_pair(const Sums& s, AstcFloat end[2]) const;
+    bool keep(const Ends& ends);
+    bool polish();
+    AstcFloat error_of(const Ends& ends) const;
+
+    const FloatTag d_;
+    const AstcPlan& plan_;
+    const AstcSteps& steps_;
+    const float* const partition_;
+    const float* const value_[2];
+    AstcBest<kChannels, kPartitions> best_;
+    alignas(64) float ideal_[kAstcMostPlanned * kAstcLanes];   // weights of texels, and what the grid leaves of them
+    alignas(64) float square_[kAstcMostPlanned * kAstcLanes];  // of the distance of the endpoints of a texel
+    alignas(64) float grid_[kAstcMostWeights * kAstcLanes];    // 0 to 64
+    alignas(64) float weight_[kAstcMostPlanned * kAstcLanes];  // of texels, as the decoder makes them: 0 to 64
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tex
+HWY_AFTER_NAMESPACE();
+
+#endif  // TEX_KERNELS_ASTC_LINE_INL_H

@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "kernels/encode_astc.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "blocks/astc_decode.h"
+#include "blocks/extent.h"
+#include "kernels/astc_guess.h"
+
+namespace tex {
+namespace {
+
+// What an effort spends.
+struct Spending {
+    int guesses = 1;  // plans of one partition that a block is fitted to
+    AstcSteps steps;
+    int patterns[2] = {};  // of two, of three partitions
+    AstcReach reach;
+    float worth = 0;   // the squared error of a texel from which several partitions are tried
+    int polished = 0;  // the best of all of these are fitted again, with
+    AstcSteps polish;
+};
+
+Spending spending_of(Effort effort) {
+    switch (effort) {
+        case Effort::fast: return {1, {0, 1, 1, 1, false, 0}, {}, {8, {}, 1}, 0, 0, {}};
+        case Effort::best: return {32, {3, 1, 2, 2, true, 0}, {5, 4}, {8, {12, 4}, 1}, 0, 6, {5, 2, 5, 3, true, 3}};
+        default: return {6, {3, 1, 2, 2, true, 0}, {2, 1}, {8, {3, 2}, 2}, 1.0f, 0, {}};
+    }
+}
+
+// So many blocks are encoded together: enough that most plans are those of several blocks.
+constexpr int kBatch = 2048;
+
+// A value of 1, 65536 of a decoder's codes, in units of endpoints.
+constexpr float kOne = 65536.0f / 257.0f;
+
+// More than any error.
+constexpr float kNone = 1e30f;
+
+// Floats that begin at a multiple of 64 bytes.
+class Values {
+public:
+    explicit Values(std::size_t count) : room_(count + kAlign / sizeof(float)) {}
+    float* data() {
+        const auto at = reinterpret_cast<std::uintptr_t>(room_.data());
+        return room_.data() + (kAlign - at % kAlign) % kAlign / sizeof(float);
+    }
+
+private:
+    static constexpr std::size_t kAlign = 64;
+    std::vector<float> room_;
+};
+
+struct Candidate {
+    int block, plan, pattern;
+    float error;
+};
+
+struct Found {
+    float error = kNone;
+    int plan = -1;
+    AstcContent content;
+};
+
+std::size_t place(int n) { return static_cast<std::size_t>(n); }
+
+class Batch {
+public:
+    Batch(const AstcGuide& guide, const Spending& spending)
+        : guide_(guide), spending_(spending), plans_(*guide.plans), lanes_(astc_lanes()),
+          texels_(plans_.block.width * plans_.block.height), values_(place(2 * kBatch * texels_)) {}
+
+    // The first texel of a channel of a block; the others follow at distances of lanes().
+    float* values(int block, int channel) {
+        return values_.data() + place((block / lanes_ * 2 + channel) * texels_ * lanes_ + block % lanes_);
+    }
+    [[nodiscard]] int lanes() const { return lanes_; }
+
+    void encode(int count, std::byte* blocks);
+
+private:
+    void gather(const Candidate* candidates, int used);
+    // Of a candidate with several partitions.
+    [[nodiscard]] const AstcPattern& pattern_of(const Candidate& candidate) const {
+        return guide_.patterns[plans_.plans[place(candidate.plan)].partitions - 2][place(candidate.pattern)];
+    }
+    AstcGroup group(int first);
+    void add(int block, int lane, float most);
+    void guess();
+    void guess_parts(int partitions, float worth);
+    void fit(const AstcSteps& steps, std::size_t begin);
+    void fit_some(const AstcSteps& steps, Candidate* candidates, int used);
+    void keep_best_candidates();
+    void write(int block, std::byte* bytes);
+
+    const AstcGuide& guide_;
+    const Spending& spending_;
+    const AstcPlans& plans_;
+    const int lanes_, texels_;
+    Values values_;  // of groups of lanes_ blocks: channels, texels, blocks
+    std::vector<Found> found_;
+    std::vector<float> range_;
+    std::vector<Candidate> candidates_;
+    alignas(64) float gathered_[3][kAstcMostPlanned * kAstcLanes];
+    AstcFits fits_;
+    AstcGuesses guesses_;
+};
+
+AstcGroup Batch::group(int first) { return {{values(first, 0), values(first, 1)}, nullptr}; }
+
+// The guesses of a lane, up to an error, become candidates of a block.
+void Batch::add(int block, int lane, float most) {
+    for (int q = 0; q < guesses_.count; ++q) {
+        const std::size_t k = place(q * lanes_ + lane);
+        if (guesses_.error[k] >= most) continue;
+        candidates_.push_back({block, static_cast<int>(guesses_.plan[k]), static_cast<int>(guesses_.pattern[k]), 0.0f});
+    }
+}
+
+void Batch::guess() {
+    const int count = static_cast<int>(found_.size());
+    for (int first = 0; first < count; first += lanes_) {
+        guesses_.count = spending_.guesses;
+        guess_astc(guide_, group(first), guesses_);
+        for (int l = 0; l < std::min(lanes_, count - first); ++l) {
+            range_[place(first + l)] = guesses_.range[l];
+            if (guesses_.range[l] > 0.0f) add(first + l, l, kNone);
+        }
+    }
+}
+
+// Guesses several partitions for blocks whose error is greater than `worth`.
+void Batch::guess_parts(int partitions, float worth) {
+    std::vector<Candidate> some;
+    for (int block = 0; block < static_cast<int>(found_.size()); ++block) {
+        if (found_[place(block)].error > worth && found_[place(block)].error < kNone) some.push_back({block, 0, 0, 0});
+    }
+    for (std::size_t at = 0; at < some.size(); at += place(lanes_)) {
+        const int used = std::min(lanes_, static_cast<int>(some.size() - at));
+        gather(&some[at], used);
+        guess_astc_patterns(guide_, {{gathered_[0], gathered_[1]}, nullptr}, partitions,
+                            spending_.patterns[partitions - 2], guesses_);
+        for (int l = 0; l < used; ++l) {
+            const int block = some[at + place(l)].block;
+            add(block, l, found_[place(block)].error);
+        }
+    }
+}
+
+// Puts the blocks of candidates side by side; the last one fills what is left.
+void Batch::gather(const Candidate* candidates, int used) {
+    for (int l = 0; l < lanes_; ++l) {
+        const int block = candidates[std::min(l, used - 1)].block;
+        for (int c = 0; c < 2; ++c) {
+            const float* const from = values(block, c);
+            for (int k = 0; k < texels_ * lanes_; k += lanes_) gathered_[c][k + l] = from[k];
+        }
+    }
+}
+
+void Batch::fit_some(const AstcSteps& steps, Candidate* candidates, int used) {
+    gather(candidates, used);
+    const AstcPlan& plan = plans_.plans[place(candidates->plan)];
+    for (int l = 0; l < lanes_ && plan.partitions > 1; ++l) {
+        const auto& later = pattern_of(candidates[std::min(l, used - 1)]).later;
+        for (int k = 0; k < texels_; ++k)
+            gathered_[2][k * lanes_ + l] = static_cast<float>((later[0] >> k & 1) + 2 * (later[1] >> k & 1));
+    }
+    fit_astc(plan, steps, {{gathered_[0], gathered_[1]}, gathered_[2]}, fits_);
+    for (int l = 0; l < used; ++l) {
+        Found& found = found_[place(candidates[l].block)];
+        candidates[l].error = fits_.error[l];
+        if (fits_.error[l] >= found.error) continue;
+        found.error = fits_.error[l];
+        found.plan = candidates[l].plan;
+        if (plan.partitions > 1) found.content.pattern = pattern_of(candidates[l]).index;
+        for (int p = 0; p < plan.mode.planes; ++p) {
+            for (int w = 0; w < plan.grid->weights; ++w)
+                found.content.weights[p][w] = static_cast<std::uint8_t>(fits_.weights[p][w * lanes_ + l]);
+        }
+        for (int n = 0; n < 4 * plan.partitions; ++n) {
+            found.content.ends[n / 4][n / 2 % 2][n % 2] =
+                static_cast<std::uint8_t>(fits_.ends[n / 4][n / 2 % 2][n % 2][l]);
+        }
+    }
+}
+
+// Fits the candidates from `begin` on, plan by plan.
+void Batch::fit(const AstcSteps& steps, std::size_t begin) {
+    const auto first = candidates_.begin() + static_cast<std::ptrdiff_t>(begin);
+    std::stable_sort(first, candidates_.end(), [](const Candidate& a, const Candidate& b) { return a.plan < b.plan; });
+    for (std::size_t at = begin; at < candidates_.size();) {
+        int used = 1;
+        while (used < lanes_ && at + place(used) < candidates_.size() &&
+               candidates_[at + place(used)].plan == candidates_[at].plan)
+            ++used;
+        fit_some(steps, &candidates_[at], used);
+        at += place(used);
+    }
+}
+
+// Of each block, those with the least errors.
+void Batch::keep_best_candidates() {
+    std::stable_sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
+        return a.block != b.block ? a.block < b.block : a.error < b.error;
+    });
+    std::vector<Candidate> kept;
+    int of_block = 0;
+    for (std::size_t k = 0; k < candidates_.size(); ++k) {
+        of_block = k > 0 && candidates_[k - 1].block == candidates_[k].block ? of_block + 1 : 0;
+        if (of_block < spending_.polished) kept.push_back(candidates_[k]);
+    }
+    candidates_ = std::move(kept);
+}
+
+// What a decoder makes of a code of 16 bits, in units of endpoints.
+float decoded(int code) { return astc_value(code) * kOne; }
+
+// The code of which it makes the value that is nearest.
+int void_code(float value) {
+    const auto code = static_cast<int>(std::clamp(value * 257.0f, 0.0f, 65535.0f));
+    int best = code;
+    for (int other = std::max(code - 32, 0); other <= std::min(code + 32, 0xffff); ++other) {
+        if (std::abs(decoded(other) - value) < std::abs(decoded(best) - value)) best = other;
+    }
+    return best;
+}
+
+void Batch::write(int block, std::byte* bytes) {
+    const Found& found = found_[place(block)];
+    // A block of one colour is better only if it hardly differs.
+    constexpr float kHardly = 16.0f;
+    if (range_[place(block)] < kHardly) {
+        int code[2];
+        float error = 0;
+        for (int c = 0; c < 2; ++c) {
+            const float* const from = values(block, c);
+            float sum = 0;
+            for (int k = 0; k < texels_; ++k) sum += from[k * lanes_];
+            code[c] = void_code(sum / static_cast<float>(texels_));
+            for (int k = 0; k < texels_; ++k) {
+                const float off = decoded(code[c]) - from[k * lanes_];
+                error += off * off;
+            }
+        }
+        if (error <= found.error) return write_astc_void(code[0], code[1], bytes);
+    }
+    write_astc(plans_.plans[place(found.plan)], found.content, bytes);
+}
+
+void Batch::encode(int count, std::byte* blocks) {
+    found_.assign(place(count), {});
+    range_.assign(place(count), 0.0f);
+    candidates_.clear();
+    guess();
+    fit(spending_.steps, 0);
+    for (int partitions = 2; partitions <= 3; ++partitions) {
+        if (spending_.patterns[partitions - 2] == 0) continue;
+        const std::size_t begin = candidates_.size();
+        guess_parts(partitions, spending_.worth * static_cast<float>(texels_));
+        fit(spending_.steps, begin);
+    }
+    if (spending_.polished > 0) {
+        keep_best_candidates();
+        fit(spending_.polish, 0);
+    }
+    for (int block = 0; block < count; ++block) write(block, blocks + kAstcBlockBytes * block);
+}
+
+const AstcGuide& guide_of(Format format, Effort effort) {
+    constexpr std::size_t kSizes = 8;
+    static std::array<std::once_flag, 3 * kSizes> once;
+    static std::array<std::unique_ptr<const AstcGuide>, 3 * kSizes> made;
+    const std::size_t size = static_cast<std::size_t>(format) - static_cast<std::size_t>(Format::astc_4x4_unorm);
+    const std::size_t at = 3 * size + static_cast<std::size_t>(effort);
+    std::call_once(once[at], [&] {
+        const AstcPlans& plans = astc_plans(format_info(format).block);
+        made[at] = std::make_unique<const AstcGuide>(make_astc_guide(plans, spending_of(effort).reach));
+    });
+    return *made[at];
+}
+
+}  // namespace
+
+bool encodes_astc(Format format) { return format >= Format::astc_4x4_unorm && format <= Format::astc_8x8_unorm; }
+
+void encode_astc(Format format, Effort effort, const float* xy, Extent extent, std::byte* blocks) {
+    const Extent block = format_info(format).block;
+    const int across = blocks_across(extent.width, block.width);
+    const int all = across * blocks_across(extent.height, block.height);
+    const Spending spending = spending_of(effort);
+    const auto texels = static_cast<std::size_t>(extent.texels());
+    std::vector<float> planes[2];
+    for (std::size_t c = 0; c < 2; ++c) {
+        planes[c].resize(texels);
+        for (std::size_t k = 0; k < texels; ++k)
+            planes[c][k] = (std::clamp(xy[2 * k + c], -1.0f, 1.0f) + 1.0f) * (0.5f * kOne);
+    }
+    const auto batch = std::make_unique<Batch>(guide_of(format, effort), spending);
+    for (int first = 0; first < all; first += kBatch) {
+        const int count = std::min(kBatch, all - first);
+        for (int n = 0; n < count; ++n) {
+            const int left = (first + n) % across * block.width, top = (first + n) / across * block.height;
+            for (int c = 0; c < 2; ++c) {
+                float* to = batch->values(n, c);
+                for (int j = top; j < top + block.height; ++j) {
+                    const float* const row = planes[c].data() + place(std::min(j, extent.height - 1) * extent.width);
+                    for (int i = left; i < left + block.width; ++i, to += batch->lanes())
+                        *to = row[std::min(i, extent.width - 1)];
+                }
+            }
+        }
+        batch->encode(count, blocks + kAstcBlockBytes * static_cast<std::ptrdiff_t>(first));
+    }
+}
+
+}  // namespace tex

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+// The encoder of ASTC: what it believes is what the decoder gives; no block depends on its neighbours, the instruction
+// set or the size of a batch; and how it compares with libastcenc on real maps.
+
+#include "kernels/encode_astc.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <tex/image_io.h>
+
+#include "blocks/astc_decode.h"
+#include "blocks/astc_plan.h"
+#include "kernels/astc_fit.h"
+#include "unit/astcenc.h"
+#include "unit/targets.h"
+
+namespace tex {
+namespace {
+
+constexpr Format kFormats[] = {Format::astc_4x4_unorm, Format::astc_5x4_unorm, Format::astc_5x5_unorm,
+                               Format::astc_6x5_unorm, Format::astc_6x6_unorm, Format::astc_8x5_unorm,
+                               Format::astc_8x6_unorm, Format::astc_8x8_unorm};
+constexpr Effort kEfforts[] = {Effort::fast, Effort::normal, Effort::best};
+
+std::size_t index(int n) { return static_cast<std::size_t>(n); }
+
+// Waves, an edge and noise, as x and y from -1 to 1.
+std::vector<float> bumps(Extent extent) {
+    std::mt19937 random(3);
+    std::vector<float> xy;
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) {
+            const double noise = static_cast<double>(random() % 1000) / 1000 - 0.5;
+            const double rough = i > extent.width / 2 ? 0.3 : 0.004;
+            xy.push_back(static_cast<float>(0.5 * std::sin(0.2 * i + 0.1 * j) + rough * noise));
+            xy.push_back(static_cast<float>((i + 2 * j) % 40 < 20 ? 0.3 : -0.45 * std::cos(0.07 * i)));
+        }
+    }
+    return xy;
+}
+
+std::vector<std::byte> encoded(Format format, Effort effort, const std::vector<float>& xy, Extent extent) {
+    std::vector<std::byte> blocks(level_bytes(format, extent));
+    encode_astc(format, effort, xy.data(), extent, blocks.data());
+    return blocks;
+}
+
+// x and y as the decoder gives them.
+std::vector<float> decoded(Format format, const std::vector<std::byte>& blocks, Extent extent) {
+    const Extent block = format_info(format).block;
+    const int across = (extent.width + block.width - 1) / block.width;
+    std::vector<float> xy(2 * index(extent.width * extent.height));
+    float x[kAstcMostTexels], y[kAstcMostTexels];
+    for (int n = 0; n < static_cast<int>(blocks.size() / 16); ++n) {
+        decode_astc(block, &blocks[index(16 * n)], {{x, nullptr, nullptr, y}});
+        for (int k = 0; k < block.width * block.height; ++k) {
+            const int i = n % across * block.width + k % block.width, j = n / across * block.height + k / block.width;
+            if (i >= extent.width || j >= extent.height) continue;
+            xy[2 * index(j * extent.width + i)] = 2.0f * x[k] - 1.0f;
+            xy[2 * index(j * extent.width + i) + 1] = 2.0f * y[k] - 1.0f;
+        }
+    }
+    return xy;
+}
+
+double mean_square(const std::vector<float>& a, const std::vector<float>& b) {
+    double sum = 0;
+    for (std::size_t k = 0; k < a.size(); ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
+    return sum / static_cast<double>(a.size());
+}
+
+// Fits and all plans of a size, with the errors of the decoder.
+void expect_believed(Extent block) {
+    const AstcPlans& plans = astc_plans(block);
+    const int lanes = astc_lanes(), texels = block.width * block.height;
+    const AstcSteps steps{3, 1, 2, 2, true, 1};
+    std::mt19937 random(9);
+    alignas(64) static float value[2][kAstcMostPlanned * kAstcLanes], partition[kAstcMostPlanned * kAstcLanes];
+    const AstcGroup group{{value[0], value[1]}, partition};
+    static AstcFits fits;
+    for (const AstcPlan& plan : plans.plans) {
+        const auto& patterns = plans.patterns[plan.partitions == 3 ? 1 : 0];
+        const AstcPattern& pattern = patterns[random() % patterns.size()];
+        for (int k = 0; k < texels * lanes; ++k) {
+            const int spread = 1 + 15 * (k % lanes);
+            for (auto& channel : value)
+                channel[k] = 0.01f * static_cast<float>(static_cast<int>(random() % 100) * spread % 25500);
+            partition[k] =
+                static_cast<float>((pattern.later[0] >> (k / lanes) & 1) + 2 * (pattern.later[1] >> (k / lanes) & 1));
+        }
+        fit_astc(plan, steps, group, fits);
+        for (int l = 0; l < lanes; ++l) {
+            AstcContent content{};
+            content.pattern = pattern.index;
+            for (int w = 0; w < plan.mode.weights(); ++w)
+                content.weights[w % plan.mode.planes][w / plan.mode.planes] =
+                    static_cast<std::uint8_t>(fits.weights[w % plan.mode.planes][w / plan.mode.planes * lanes + l]);
+            for (int n = 0; n < 4 * plan.partitions; ++n)
+                content.ends[n / 4][n / 2 % 2][n % 2] =
+                    static_cast<std::uint8_t>(fits.ends[n / 4][n / 2 % 2][n % 2][l]);
+            std::byte bytes[16];
+            write_astc(plan, content, bytes);
+            float xy[2][kAstcMostTexels];
+            decode_astc(block, bytes, {{xy[0], nullptr, nullptr, xy[1]}});
+            double error = 0;
+            for (int c = 0; c < 2; ++c) {
+                for (int k = 0; k < texels; ++k) {
+                    const double off = xy[c][k] * 65536.0 / 257.0 - static_cast<double>(value[c][k * lanes + l]);
+                    error += off * off;
+                }
+            }
+            EXPECT_NEAR(fits.error[l], error, 1e-3 + 1e-4 * error) << "mode " << plan.mode_bits << " lane " << l;
+        }
+    }
+}
+
+TEST(AstcEncode, BlocksOfEveryPlanDecodeToWhatTheFitBelieves) {
+    expect_believed({4, 4});
+    expect_believed({6, 5});
+    expect_believed({8, 8});
+}
+
+TEST(AstcEncode, GivesTheSameBytesOnEveryTargetAndRowByRow) {
+    const Extent extent{53, 41};
+    const std::vector<float> xy = bumps(extent);
+    for (const Format format : {Format::astc_4x4_unorm, Format::astc_6x5_unorm, Format::astc_8x8_unorm}) {
+        const Extent block = format_info(format).block;
+        for (const Effort effort : kEfforts) {
+            const std::vector<std::byte> whole = encoded(format, effort, xy, extent);
+            on_every_target([&] { EXPECT_EQ(encoded(format, effort, xy, extent), whole); });
+            std::vector<std::byte> rows;
+            for (int j = 0; j < extent.height; j += block.height) {
+                const Extent row{extent.width, std::min(block.height, extent.height - j)};
+                const auto* const begin = xy.data() + 2 * static_cast<std::ptrdiff_t>(j) * extent.width;
+                const std::vector<std::byte> bytes =
+                    encoded(format, effort, {begin, begin + 2 * row.width * row.height}, row);
+                rows.insert(rows.end(), bytes.begin(), bytes.end());
+            }
+            EXPECT_EQ(rows, whole);
+        }
+    }
+}
+
+TEST(AstcEncode, KeepsConstantMapsOfEveryCode) {
+    for (const Format format : {Format::astc_5x4_unorm, Format::astc_8x6_unorm}) {
+        const Extent block = format_info(format).block;
+        const Extent extent{256 * block.width, block.height};
+        std::vector<float> xy;
+        for (int k = 0; k < extent.width * extent.height; ++k) {
+            const int code = k % extent.width / block.width;
+            xy.push_back(static_cast<float>(code) / 127.5f - 1.0f);
+            xy.push_back(1.0f - static_cast<float>(code) / 127.5f);
+        }
+        const std::vector<float> again = decoded(format, encoded(format, Effort::fast, xy, extent), extent);
+        for (std::size_t k = 0; k < xy.size(); ++k) ASSERT_NEAR(again[k], xy[k], 1.0f / 2048.0f) << k;
+    }
+}
+
+TEST(AstcEncode, MoreEffortGivesSmallerErrors) {
+    const Extent extent{80, 64};
+    const std::vector<float> xy = bumps(extent);
+    for (const Format format : kFormats) {
+        double error[3];
+        for (int e = 0; e < 3; ++e) {
+            error[e] = mean_square(xy, decoded(format, encoded(format, kEfforts[e], xy, extent), extent));
+        }
+        EXPECT_LT(error[1], error[0]);
+        EXPECT_LT(error[2], error[1]);
+    }
+}
+
+double mean_angle(const std::vector<float>& a, const std::vector<float>& b) {
+    const auto z_of = [](double x, double y) { return std::sqrt(std::max(0.0, 1.0 - x * x - y * y)); };
+    double sum = 0;
+    for (std::size_t k = 0; k < a.size(); k += 2) {
+        const double dx = a[k] - b[k], dy = a[k + 1] - b[k + 1], dz = z_of(a[k], a[k + 1]) - z_of(b[k], b[k + 1]);
+        sum += 2.0 * std::asin(std::min(1.0, 0.5 * std::sqrt(dx * dx + dy * dy + dz * dz)));
+    }
+    return sum / static_cast<double>(a.size() / 2);
+}
+
+// Maps of sharp steps between flat parts, such as panels, are better with three partitions, which libastcenc tries; the
+// benchmark has them.
+TEST(AstcEncode, IsCloserThanLibastcencOnRealMaps) {
+    const std::filesystem::path folder = std::filesystem::path(TEX_SOURCE_DIR) / "../shared/data/normal";
+    if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << "no ../shared/data";
+    const float kQualities[] = {ASTCENC_PRE_FAST, ASTCENC_PRE_MEDIUM, ASTCENC_PRE_THOROUGH};
+    constexpr Extent kPart{96, 96};
+    for (const Format format : {Format::astc_4x4_unorm, Format::astc_6x6_unorm, Format::astc_8x8_unorm}) {
+        double ours[3] = {}, theirs[3] = {};
+        for (const char* name : {"aluminium_745.png", "brick_512.jpg", "detail_water_512.png", "fieldstone_512.tga"}) {
+            const auto image = read_image((folder / name).string());
+            ASSERT_TRUE(image) << name;
+            std::vector<float> xy, rgba;
+            for (int j = 0; j < kPart.height; ++j) {
+                for (int i = 0; i < kPart.width; ++i) {
+                    const float x = image->planes[0].at(200 + i, 200 + j), y = image->planes[1].at(200 + i, 200 + j);
+                    xy.insert(xy.end(), {2.0f * x - 1.0f, 2.0f * y - 1.0f});
+                    rgba.insert(rgba.end(), {x, x, x, y});
+                }
+            }
+            for (int e = 0; e < 3; ++e) {
+                ours[e] += mean_angle(xy, decoded(format, encoded(format, kEfforts[e], xy, kPart), kPart));
+                std::vector<std::byte> blocks(level_bytes(format, kPart));
+                Astcenc(format_info(format).block, kQualities[e]).encode(rgba, kPart, blocks);
+                theirs[e] += mean_angle(xy, decoded(format, blocks, kPart));
+            }
+        }
+        for (int e = 0; e < 3; ++e) EXPECT_LT(ours[e], theirs[e]) << "effort " << e;
+        EXPECT_LT(ours[0], 0.95 * theirs[0]);
+    }
+}
+
+}  // namespace
+}  // namespace tex
