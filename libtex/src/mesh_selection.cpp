@@ -37,6 +37,11 @@ std::string material_name(const Mesh& mesh, int material) {
     return name.empty() ? std::to_string(material) : quoted(name);
 }
 
+std::string plain_material_name(const Mesh& mesh, int material) {
+    const bool exists = material >= 0 && static_cast<std::size_t>(material) < mesh.materials.size();
+    return exists ? mesh.materials[static_cast<std::size_t>(material)].name : std::string();
+}
+
 Result<int> material_called(const Mesh& mesh, const std::string& text) {
     for (std::size_t k = 0; k < mesh.materials.size(); ++k) {
         if (mesh.materials[k].name == text) return static_cast<int>(k);
@@ -198,6 +203,8 @@ Result<SelectedPart> joined_parts(const Mesh& mesh, const Choice& choice, const 
         auto tangents = tangents_of(*part, choice, execution);
         if (!tangents) return tangents.error();
         const MeshNode* const node = choice.in_scene ? node_of(mesh, *part) : choice.node;
+        joined.pieces.push_back(SelectedPiece{node != nullptr && !node->name.empty() ? node->name : part->name,
+                                              plain_material_name(mesh, part->material), joined.part.triangles()});
         if (node == nullptr) {
             join(joined, *part, choice.uv_set, *tangents);
             continue;
@@ -246,6 +253,7 @@ Result<std::vector<MeshPart>> parts_in_scene(Mesh mesh) {
             for (std::size_t k = 0; k < nodes.size(); ++k) {
                 auto in_place = in_scene(k + 1 < nodes.size() ? MeshPart(part) : std::move(part), *nodes[k]);
                 if (!in_place) return in_place.error();
+                if (!nodes[k]->name.empty()) in_place->name = nodes[k]->name;
                 parts.push_back(std::move(*in_place));
             }
         }
@@ -270,6 +278,10 @@ Result<SelectedPart> in_tile(const SelectedPart& selected, int tile) {
         if (kept.empty()) return unfit("has no triangle in UDIM tile " + std::to_string(tile));
         part.indices.resize(3 * kept.size());
         cut.tangents.resize(3 * kept.size());
+        for (SelectedPiece& piece : cut.pieces) {
+            const auto first = std::lower_bound(kept.begin(), kept.end(), piece.triangle);
+            piece.triangle = static_cast<std::size_t>(first - kept.begin());
+        }
         part.quads.clear();
         for (std::size_t k = 0; k + 1 < kept.size(); ++k) {
             const std::vector<std::uint32_t>& quads = selected.part.quads;

@@ -115,5 +115,19 @@ int main(int argc, char** argv) {
         });
         print(subsamples == 1 ? "transfer()" : "transfer(), 4x4 subsamples", threads, took);
     }
+    for (const bool inwards : {false, true}) {
+        tex::TransferOptions options;
+        (inwards ? options.thickness : options.occlusion) = true;
+        const int quarter = std::max(1, size / 4);
+        std::int64_t rays_cast = 0;
+        const Took took = median_of([&] {
+            const auto maps = tex::transfer({quarter, quarter}, {low, *tangents}, high, options, {1, {}});
+            if (!maps) std::exit(1);
+            rays_cast = maps->rays;
+        });
+        print(inwards ? "thickness, 64 rays a hit" : "occlusion, 64 rays a hit", 1, took);
+        std::printf("%.2f million rays a second of processor time, %d x %d\n",
+                    static_cast<double>(rays_cast) / took.processor / 1e6, quarter, quarter);
+    }
     std::printf("\n%.2f million rays a second on one thread\n", static_cast<double>(rays.size()) / traced.wall / 1e6);
 }

@@ -176,7 +176,7 @@ void Recipe::check_order(const StepSettings& step, const ReadyCommand& command, 
     const Task task{"input", kBetween, Container::exr};
     const ReadOptions read;
     const WriteOptions write;
-    Job job(task, console, read, write, 1, [](double) { return true; });
+    Job job(task, console, read, write, 1, [](double, const std::string&) { return true; });
     const std::optional<Step> made = command.converter->step(job);
     if (!made && !is_only) fail("must be the only step");
     if (!made && check_->is_given()) fail("makes no normals, so check cannot be used");

@@ -19,8 +19,9 @@ public:
 
     Job& add(Task task) {
         tasks_.push_back(std::move(task));
-        Job& job = jobs_.emplace_back(tasks_.back(), console_, settings_.running.read, settings_.write,
-                                      settings_.running.threads, settings_.advance);
+        Job& job = jobs_.emplace_back(
+            tasks_.back(), console_, settings_.running.read, settings_.write, settings_.running.threads,
+            [this](double fraction, const std::string&) { return settings_.advance(fraction); });
         job.shared_maps = settings_.shared;
         return job;
     }
