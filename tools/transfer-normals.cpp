@@ -32,7 +32,6 @@ private:
     [[nodiscard]] cli::OutputRules rules() const override;
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] Result<void> process(cli::Job& job) override;
-    [[nodiscard]] bool can_be_step() const override { return false; }  // each low mesh has a high one of its own
     [[nodiscard]] Result<TransferredMaps> cast(cli::Job& job, const cli::HighParts& high) const;
     [[nodiscard]] Result<void> write(cli::Job& job, NormalMap map) const;
 

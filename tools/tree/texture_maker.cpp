@@ -110,6 +110,10 @@ Result<Made> run_commands(const Recipe& recipe, const std::string& input, const 
         Converter& converter = *recipe.outputs()[output.index].last.converter;
         Job& job = jobs.add(converter.task_for(input, output.path));
         if (const Result<void> done = converter.process_task(job); !done) return done.error();
+        if (job.code() != ExitCode::done) {
+            return Error{ErrorCode::bad_data, input,
+                         job.warnings().empty() ? "has findings" : job.warnings().back().message};
+        }
         made.files.push_back(job.outputs());
     }
     jobs.add_warnings(made);
