@@ -121,7 +121,7 @@ struct OwnInputs {
     Plane<float> skew, offset;
     std::list<NormalMap> maps;
     std::list<std::vector<Float4>> tangents;
-    std::list<Image> images;
+    std::list<Picture> pictures;
 
     explicit OwnInputs(const GivenInputs& given) {
         if (!given.cage.is_none()) inputs.cage = &part_from(given.cage, "cage");
@@ -151,7 +151,7 @@ private:
             } else if (name == "decoder") {
                 detail.decoder = Convert<Decoder>::from(value, name);
             } else if (name == "color") {
-                detail.color = &images.emplace_back(*Picture(value, name));
+                detail.color = &*pictures.emplace_back(value, name);
             } else if (name == "uv_set") {
                 detail.uv_set = Convert<int>::from(value, name);
             } else {
@@ -199,7 +199,10 @@ void add_maps(py::dict& result, TransferredMaps& maps) {
     plane("heights", maps.heights);
     plane("occlusion", maps.occlusion);
     plane("thickness", maps.thickness);
-    NormalMap position{std::move(maps.position[0]), std::move(maps.position[1]), std::move(maps.position[2])};
+    NormalMap position;
+    position.x = std::move(maps.position[0]);
+    position.y = std::move(maps.position[1]);
+    position.z = std::move(maps.position[2]);
     vectors("position", position);
     result["color"] = maps.color.planes.empty() ? py::object(py::none()) : object_of(std::move(maps.color));
 }
@@ -240,7 +243,7 @@ void add_helpers(Module& module) {
         py::list list;
         for (MeshPart& part : value_of(without_gil([&] { return parts_in_scene(mesh); })))
             list.append(py::cast(std::make_shared<MeshPart>(std::move(part))));
-        return std::move(list);
+        return list;
     });
     module.verb<>("match_names", {{"low", "Sequence[str]"}, {"high", "Sequence[str]"}}, "dict[str, Any]",
                   "A dict of the fields of MatchedNames.", [](Call& call) -> py::object {
@@ -251,7 +254,7 @@ void add_helpers(Module& module) {
                       result["high"] = matched.high;
                       result["lone_low"] = strs_of(matched.lone_low);
                       result["lone_high"] = strs_of(matched.lone_high);
-                      return std::move(result);
+                      return result;
                   });
 }
 

@@ -6,10 +6,12 @@
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <utility>
 
 #include <tex/tangents.h>
 
+#include "mesh/part_names.h"
 #include "rows/usable.h"
 #include "threads/guard.h"
 
@@ -230,6 +232,24 @@ int tile_of(const MeshPart& part, std::size_t triangle) {
     return 1001 + static_cast<int>(u) + 10 * static_cast<int>(v);
 }
 
+// The numbers of the names, which their stems have or get.
+std::vector<int> numbered(const std::vector<std::string>& names, PartSide side, std::map<std::string, int>& numbers) {
+    std::vector<int> found;
+    for (const std::string& name : names)
+        found.push_back(numbers.try_emplace(stem_of_part(name, side), static_cast<int>(numbers.size())).first->second);
+    return found;
+}
+
+std::vector<std::string> lone(const std::vector<std::string>& names, const std::vector<int>& own,
+                              const std::vector<int>& others) {
+    std::vector<std::string> left;
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        const bool has_partner = std::find(others.begin(), others.end(), own[k]) != others.end();
+        if (!has_partner && std::find(left.begin(), left.end(), names[k]) == left.end()) left.push_back(names[k]);
+    }
+    return left;
+}
+
 }  // namespace
 
 Result<SelectedPart> select_part(const Mesh& mesh, const MeshSelection& selection, const Execution& execution) {
@@ -290,6 +310,16 @@ Result<SelectedPart> in_tile(const SelectedPart& selected, int tile) {
         }
         return cut;
     });
+}
+
+MatchedNames match_names(const std::vector<std::string>& low, const std::vector<std::string>& high) {
+    std::map<std::string, int> numbers;
+    MatchedNames matched;
+    matched.low = numbered(low, PartSide::low, numbers);
+    matched.high = numbered(high, PartSide::high, numbers);
+    matched.lone_low = lone(low, matched.low, matched.high);
+    matched.lone_high = lone(high, matched.high, matched.low);
+    return matched;
 }
 
 }  // namespace tex

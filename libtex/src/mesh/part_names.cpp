@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/mesh_selection.h>
+#include "mesh/part_names.h"
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <map>
 #include <string_view>
 
 namespace tex {
@@ -23,7 +22,10 @@ std::string in_lower_case(std::string text) {
     return text;
 }
 
-std::string stem_of(const std::string& name, const Marks& marks) {
+}  // namespace
+
+std::string stem_of_part(const std::string& name, PartSide side) {
+    const Marks& marks = side == PartSide::low ? kLowMarks : kHighMarks;
     const std::string text = in_lower_case(name);
     std::size_t end = text.size();  // of the word, from the last one to the second
     while (end > 0) {
@@ -34,37 +36,6 @@ std::string stem_of(const std::string& name, const Marks& marks) {
         end = separator;
     }
     return text;
-}
-
-// The numbers of the names, which their stems have or get.
-std::vector<int> numbered(const std::vector<std::string>& names, const Marks& marks,
-                          std::map<std::string, int>& numbers) {
-    std::vector<int> found;
-    for (const std::string& name : names)
-        found.push_back(numbers.try_emplace(stem_of(name, marks), static_cast<int>(numbers.size())).first->second);
-    return found;
-}
-
-std::vector<std::string> lone(const std::vector<std::string>& names, const std::vector<int>& own,
-                              const std::vector<int>& others) {
-    std::vector<std::string> left;
-    for (std::size_t k = 0; k < names.size(); ++k) {
-        const bool has_partner = std::find(others.begin(), others.end(), own[k]) != others.end();
-        if (!has_partner && std::find(left.begin(), left.end(), names[k]) == left.end()) left.push_back(names[k]);
-    }
-    return left;
-}
-
-}  // namespace
-
-MatchedNames match_names(const std::vector<std::string>& low, const std::vector<std::string>& high) {
-    std::map<std::string, int> numbers;
-    MatchedNames matched;
-    matched.low = numbered(low, kLowMarks, numbers);
-    matched.high = numbered(high, kHighMarks, numbers);
-    matched.lone_low = lone(low, matched.low, matched.high);
-    matched.lone_high = lone(high, matched.high, matched.low);
-    return matched;
 }
 
 }  // namespace tex
