@@ -250,6 +250,14 @@ std::vector<std::string> lone(const std::vector<std::string>& names, const std::
     return left;
 }
 
+// Drops those without triangles.
+void drop_empty(std::vector<SelectedPiece>& pieces, std::size_t triangles) {
+    for (std::size_t k = pieces.size(); k-- > 0;) {
+        const std::size_t end = k + 1 < pieces.size() ? pieces[k + 1].triangle : triangles;
+        if (pieces[k].triangle == end) pieces.erase(pieces.begin() + static_cast<std::ptrdiff_t>(k));
+    }
+}
+
 }  // namespace
 
 Result<SelectedPart> select_part(const Mesh& mesh, const MeshSelection& selection, const Execution& execution) {
@@ -302,6 +310,7 @@ Result<SelectedPart> in_tile(const SelectedPart& selected, int tile) {
             const auto first = std::lower_bound(kept.begin(), kept.end(), piece.triangle);
             piece.triangle = static_cast<std::size_t>(first - kept.begin());
         }
+        drop_empty(cut.pieces, kept.size());
         part.quads.clear();
         for (std::size_t k = 0; k + 1 < kept.size(); ++k) {
             const std::vector<std::uint32_t>& quads = selected.part.quads;

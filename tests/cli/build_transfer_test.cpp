@@ -14,6 +14,7 @@ namespace {
 class BuildTransfer : public TextureTree {
 protected:
     BuildTransfer() {
+        fs::create_directories(scratch_.path("meshes"));
         for (const std::string kind : {"low", "high"}) {
             scratch_.add_sample("crate_" + kind + ".glb", "meshes/crate_" + kind + ".glb");
             scratch_.write("meshes/sheet_" + kind + ".obj", kSheetObj);
@@ -72,6 +73,8 @@ TEST_F(BuildTransfer, IsOutOfDateIfEitherMeshChanges) {
     fails(3, "meshes/sheet_high.obj");
     const Ran explained = run(scratch_, "build-normals", {"--explain", "meshes/sheet_low.obj"});
     EXPECT_NE(explained.out.find("reads meshes/sheet_high.obj"), std::string::npos) << explained.out << explained.err;
+    const Ran readers = run(scratch_, "build-normals", {"--explain", "meshes/sheet_high.obj"});
+    EXPECT_NE(readers.out.find("meshes/sheet_high.obj: read by rule 1"), std::string::npos) << readers.out;
 }
 
 TEST_F(BuildTransfer, RefusesWhatCannotBe) {

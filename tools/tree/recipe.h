@@ -70,6 +70,10 @@ public:
     // (other_parts.h), and those that options name by a pattern, such as the high mesh of a low one. `path` leads to
     // the input.
     [[nodiscard]] std::vector<std::string> own_files(const std::string& input, const std::string& path) const;
+    // Where a file is whose name is relative to the root.
+    [[nodiscard]] std::string path_to(const std::string& name) const {
+        return root_.empty() ? name : root_ + "/" + name;
+    }
     // The value that a setting of RecipeOutput::named has if it is not given, in the words of --help; may be empty.
     [[nodiscard]] std::string preset_of(const std::string& name) const;
     // The command lines that do the same, one for each step, for people.

@@ -24,6 +24,9 @@ public:
     [[nodiscard]] RayStart at(std::size_t triangle, const std::array<double, 3>& weights, Vector3 point, double x,
                               double y) const;
 
+    // Whether at() needs x and y.
+    [[nodiscard]] bool has_pictures() const { return inputs_.skew != nullptr || inputs_.offset != nullptr; }
+
     // The largest distance between the corners of the cage and of `low`, or `front` without a cage.
     [[nodiscard]] double farthest(const MeshPart& low) const;
 

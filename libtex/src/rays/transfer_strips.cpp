@@ -124,10 +124,13 @@ void TransferStrips::collect(Strip& strip, int first_row, int j, int begin, int 
             if (!covered.inside) continue;
             const auto triangle = static_cast<std::size_t>(covered.triangle);
             const Vector3 point = triangle_of(strip, covered).point(covered.weights);
-            const double x = i + (static_cast<double>(k % n) + 0.5) / n_,
-                         y = j + (static_cast<double>(k / n) + 0.5) / n_;
+            double x = 0.0, y = 0.0;
+            if (scene_.starts.has_pictures()) {
+                x = (i + (static_cast<double>(k % n) + 0.5) / n_) / map_width;
+                y = (j + (static_cast<double>(k / n) + 0.5) / n_) / map_height;
+            }
             strip.samples.push_back({i, k, covered, scene_.groups.of_low(triangle)});
-            strip.starts.push_back(scene_.starts.at(triangle, covered.weights, point, x / map_width, y / map_height));
+            strip.starts.push_back(scene_.starts.at(triangle, covered.weights, point, x, y));
         }
     }
 }
