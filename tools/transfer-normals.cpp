@@ -11,8 +11,11 @@
 #include "batch/batch.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "options/guides.h"
+#include "options/high_details.h"
 #include "options/high_meshes.h"
 #include "options/mips.h"
+#include "options/part_ids.h"
 #include "options/rays.h"
 #include "options/tangent_space.h"
 #include "tasks/written_levels.h"
@@ -29,13 +32,15 @@ private:
     [[nodiscard]] cli::OutputRules rules() const override;
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] Result<void> process(cli::Job& job) override;
-    [[nodiscard]] bool can_be_step() const override { return false; }  // each low mesh has a high one of its own
-    [[nodiscard]] Result<TransferredMaps> cast(cli::Job& job) const;
+    [[nodiscard]] Result<TransferredMaps> cast(cli::Job& job, const cli::HighParts& high) const;
     [[nodiscard]] Result<void> write(cli::Job& job, NormalMap map) const;
 
     cli::HighMeshes high_;
     cli::TangentSpaceOptions low_;
     cli::RayOptions rays_;
+    cli::GuideOptions guides_;
+    cli::HighDetailOptions pictures_;
+    cli::PartIds ids_;
     cli::TransferMaps maps_;
     cli::MipChainOptions mips_;
 };
@@ -49,7 +54,10 @@ TransferNormals::TransferNormals(const cli::ProgramRow& row) : Converter(row) {
     high_.add(command);
     low_.add_low(command);
     rays_.add(command);
+    guides_.add(command);
+    pictures_.add(command);
     maps_.add(command, files);
+    ids_.add(command, files);
     output.add(command, cli::default_encodings(), "up");
     output.add_engines(command);
     mips_.add(command, false, "all in dds and ktx2, else none");
@@ -60,6 +68,16 @@ TransferNormals::TransferNormals(const cli::ProgramRow& row) : Converter(row) {
         "transfer-normals crate_low.fbx crate_high.obj -o crate_n.png --rays straight --subsamples 4 "
         "--decoder unreal --y down --height-out crate_h.exr --max-missed 0.1",
         "Hard edges without skew, 16 rays a texel, for Unreal; fails if much is missed.");
+    command.example(
+        "transfer-normals rock_low.glb rock_high.glb -o rock_n.png --subsamples 2 --occlusion-out rock_ao.png "
+        "--bent-out rock_bent.png --rays-per-hit 32",
+        "Ambient occlusion and bent normals beside the map, from 128 rays a texel.");
+    command.example("transfer-normals set_low.fbx set_high.fbx -o set_n.png --match name --id-out set_id.png",
+                    "Parts that touch each other, each onto its own, with a mask for each.");
+    command.example(
+        "transfer-normals scan_low.glb scan_high.glb -o scan_n.png --high-normals scan_fine.png "
+        "--high-color scan_base.png --color-out scan_c.png",
+        "A scan's base colour and its own fine normals beside its shape.");
     command.example(
         "transfer-normals meshes/*_low.glb --high '{dir}/{stem:-_low}_high.glb' --out-dir out "
         "--name '{stem:-_low}_n.png'",
@@ -73,6 +91,9 @@ cli::OutputRules TransferNormals::rules() const {
     if (rules.joins) rules.shared = high_.buffers_of(command.inputs());
     rules.amend = [this](cli::Task& task) {
         high_.amend(task);
+        guides_.amend(task);
+        pictures_.amend(task);
+        ids_.amend(task);
         maps_.amend(task);
     };
     return rules;
@@ -87,17 +108,32 @@ Result<void> TransferNormals::check(const std::vector<cli::Task>& tasks) {
     return {};
 }
 
-Result<TransferredMaps> TransferNormals::cast(cli::Job& job) const {
+Result<TransferredMaps> TransferNormals::cast(cli::Job& job, const cli::HighParts& high) const {
     const auto low = low_.of_low(job.task.input, job.read_options, {job.threads(), {}});
     if (!low) return high_.with_order(low.error());
-    const auto high = high_.read(job);
-    if (!high) return high.error();
-    cli::HighMeshes::compare(job, low->selected().part, *high);
+    cli::HighMeshes::compare(job, low->selected().part, high.parts);
     job.report["tangents"] = name_of(kTangentSourceNames, low->source());
+    TransferInputs inputs;
+    if (auto matched = high_.match(job, low->selected(), high, inputs); !matched) return matched.error();
+    const auto guides = guides_.read(job, low_, *low);
+    if (!guides) return guides.error();
+    guides->fill(inputs);
+    const auto pictures = pictures_.read(job, high);
+    if (!pictures) return pictures.error();
+    inputs.high_details = pictures->details;
+    ids_.number(high, inputs);
     TransferOptions with = rays_.transfer();
+    if (guides_.wants_straight()) with.rays = RayMode::straight;
     maps_.request(with);
     if (!job.reached(0.1)) return Error{ErrorCode::cancelled, {}, "cancelled"};
-    return transfer(rays_.extent(), low->space(), *high, with, job.until(0.8));
+    cli::RaySpeed speed;
+    inputs.rays = &speed.rays();
+    job.show([&speed] { return speed.short_words(); });
+    auto maps = transfer(rays_.extent(), low->space(), high.parts, inputs, with, job.until(0.8));
+    job.show({});
+    if (maps && with.has_second_rays() && job.task.output != "-")
+        job.say(fmt::format("{}: {}\n", cli::printable(job.task.output), speed.words()));
+    return maps;
 }
 
 Result<void> TransferNormals::write(cli::Job& job, NormalMap map) const {
@@ -118,15 +154,20 @@ Result<void> TransferNormals::write(cli::Job& job, NormalMap map) const {
 }
 
 Result<void> TransferNormals::process(cli::Job& job) {
-    auto maps = cast(job);
+    const auto high = high_.read(job, pictures_.is_given());
+    if (!high) return high.error();
+    auto maps = cast(job, *high);
     if (!maps) return maps.error();
     if (auto judged = rays_.judge(job, *maps); !judged) return judged;
-    if (auto written = maps_.write(job, *maps); !written) return written;
+    if (auto written = ids_.write(job, *high, *maps); !written) return written;
+    const YAxis y = output.of(job.task.engine).y.value_or(YAxis::up);
+    if (auto written = maps_.write(job, *maps, y); !written) return written;
     if (job.task.output != "-") job.say(fmt::format("{}: {}\n", cli::printable(job.task.output), cli::reach_of(*maps)));
     return write(job, std::move(maps->map));
 }
 
 const cli::Registered<TransferNormals> kRegistered(
-    "transfer-normals", "Makes the normal map of a low mesh from a high one, by rays, with heights and positions.");
+    "transfer-normals",
+    "Makes the normal map of a low mesh from a high one, by rays, with heights, occlusion and more.");
 
 }  // namespace

@@ -231,6 +231,19 @@ void add_mesh(Module& module) {
                   [](const SelectedPart& s) { return word_of(s.source); })
         .property("has_normal_map", "bool", "The material has a normal map.",
                   [](const SelectedPart& s) { return s.has_normal_map; })
+        .property("pieces", "list[dict[str, Any]]",
+                  "Where its parts begin: 'name', 'material', and 'triangle', the first one.",
+                  [](const SelectedPart& s) {
+                      py::list pieces;
+                      for (const SelectedPiece& piece : s.pieces) {
+                          py::dict one;
+                          one["name"] = str_of(piece.name);
+                          one["material"] = str_of(piece.material);
+                          one["triangle"] = piece.triangle;
+                          pieces.append(std::move(one));
+                      }
+                      return pieces;
+                  })
         .property("has_tangents", "bool", "Every part has stored tangents.",
                   [](const SelectedPart& s) { return s.has_tangents; })
         .copies()

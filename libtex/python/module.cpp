@@ -23,6 +23,7 @@ PYBIND11_MODULE(_tex, extension) {
     tex::python::add_pipeline(module);
     tex::python::add_meshes(module);
     tex::python::add_spaces(module);
+    tex::python::add_transfers(module);
     tex::python::add_checks(module);
     tex::python::add_pictures(module);
     tex::python::add_programs(module);

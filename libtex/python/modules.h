@@ -18,6 +18,7 @@ void add_files(Module& module);
 void add_pipeline(Module& module);
 void add_meshes(Module& module);
 void add_spaces(Module& module);
+void add_transfers(Module& module);
 void add_checks(Module& module);
 void add_pictures(Module& module);
 void add_programs(Module& module);

@@ -6,10 +6,12 @@
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <utility>
 
 #include <tex/tangents.h>
 
+#include "mesh/part_names.h"
 #include "rows/usable.h"
 #include "threads/guard.h"
 
@@ -35,6 +37,11 @@ std::string material_name(const Mesh& mesh, int material) {
     if (material < 0 || static_cast<std::size_t>(material) >= mesh.materials.size()) return "no material";
     const std::string& name = mesh.materials[static_cast<std::size_t>(material)].name;
     return name.empty() ? std::to_string(material) : quoted(name);
+}
+
+std::string plain_material_name(const Mesh& mesh, int material) {
+    const bool exists = material >= 0 && static_cast<std::size_t>(material) < mesh.materials.size();
+    return exists ? mesh.materials[static_cast<std::size_t>(material)].name : std::string();
 }
 
 Result<int> material_called(const Mesh& mesh, const std::string& text) {
@@ -198,6 +205,8 @@ Result<SelectedPart> joined_parts(const Mesh& mesh, const Choice& choice, const 
         auto tangents = tangents_of(*part, choice, execution);
         if (!tangents) return tangents.error();
         const MeshNode* const node = choice.in_scene ? node_of(mesh, *part) : choice.node;
+        joined.pieces.push_back(SelectedPiece{node != nullptr && !node->name.empty() ? node->name : part->name,
+                                              plain_material_name(mesh, part->material), joined.part.triangles()});
         if (node == nullptr) {
             join(joined, *part, choice.uv_set, *tangents);
             continue;
@@ -223,6 +232,32 @@ int tile_of(const MeshPart& part, std::size_t triangle) {
     return 1001 + static_cast<int>(u) + 10 * static_cast<int>(v);
 }
 
+// The numbers of the names, which their stems have or get.
+std::vector<int> numbered(const std::vector<std::string>& names, PartSide side, std::map<std::string, int>& numbers) {
+    std::vector<int> found;
+    for (const std::string& name : names)
+        found.push_back(numbers.try_emplace(stem_of_part(name, side), static_cast<int>(numbers.size())).first->second);
+    return found;
+}
+
+std::vector<std::string> lone(const std::vector<std::string>& names, const std::vector<int>& own,
+                              const std::vector<int>& others) {
+    std::vector<std::string> left;
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        const bool has_partner = std::find(others.begin(), others.end(), own[k]) != others.end();
+        if (!has_partner && std::find(left.begin(), left.end(), names[k]) == left.end()) left.push_back(names[k]);
+    }
+    return left;
+}
+
+// Drops those without triangles.
+void drop_empty(std::vector<SelectedPiece>& pieces, std::size_t triangles) {
+    for (std::size_t k = pieces.size(); k-- > 0;) {
+        const std::size_t end = k + 1 < pieces.size() ? pieces[k + 1].triangle : triangles;
+        if (pieces[k].triangle == end) pieces.erase(pieces.begin() + static_cast<std::ptrdiff_t>(k));
+    }
+}
+
 }  // namespace
 
 Result<SelectedPart> select_part(const Mesh& mesh, const MeshSelection& selection, const Execution& execution) {
@@ -246,6 +281,7 @@ Result<std::vector<MeshPart>> parts_in_scene(Mesh mesh) {
             for (std::size_t k = 0; k < nodes.size(); ++k) {
                 auto in_place = in_scene(k + 1 < nodes.size() ? MeshPart(part) : std::move(part), *nodes[k]);
                 if (!in_place) return in_place.error();
+                if (!nodes[k]->name.empty()) in_place->name = nodes[k]->name;
                 parts.push_back(std::move(*in_place));
             }
         }
@@ -270,6 +306,11 @@ Result<SelectedPart> in_tile(const SelectedPart& selected, int tile) {
         if (kept.empty()) return unfit("has no triangle in UDIM tile " + std::to_string(tile));
         part.indices.resize(3 * kept.size());
         cut.tangents.resize(3 * kept.size());
+        for (SelectedPiece& piece : cut.pieces) {
+            const auto first = std::lower_bound(kept.begin(), kept.end(), piece.triangle);
+            piece.triangle = static_cast<std::size_t>(first - kept.begin());
+        }
+        drop_empty(cut.pieces, kept.size());
         part.quads.clear();
         for (std::size_t k = 0; k + 1 < kept.size(); ++k) {
             const std::vector<std::uint32_t>& quads = selected.part.quads;
@@ -278,6 +319,16 @@ Result<SelectedPart> in_tile(const SelectedPart& selected, int tile) {
         }
         return cut;
     });
+}
+
+MatchedNames match_names(const std::vector<std::string>& low, const std::vector<std::string>& high) {
+    std::map<std::string, int> numbers;
+    MatchedNames matched;
+    matched.low = numbered(low, PartSide::low, numbers);
+    matched.high = numbered(high, PartSide::high, numbers);
+    matched.lone_low = lone(low, matched.low, matched.high);
+    matched.lone_high = lone(high, matched.high, matched.low);
+    return matched;
 }
 
 }  // namespace tex

@@ -17,34 +17,13 @@
 #include <tex/tangents.h>
 #include <tex/transfer.h>
 
+#include "bench/wavy_sphere.h"
 #include "rays/box_tree.h"
 
 namespace {
 
-tex::MeshPart wavy_sphere(int columns, int rows, float waves) {
-    tex::MeshPart part;
-    part.uvs.resize(1);
-    for (int j = 0; j <= rows; ++j) {
-        for (int i = 0; i <= columns; ++i) {
-            const float u = static_cast<float>(i) / static_cast<float>(columns),
-                        v = static_cast<float>(j) / static_cast<float>(rows);
-            const float a = 6.2831853f * u, b = 3.1415927f * (v - 0.5f);
-            const tex::Float3 n{std::cos(a) * std::cos(b), std::sin(b), -std::sin(a) * std::cos(b)};
-            const float r = 1.0f + waves * std::sin(40.0f * a) * std::sin(40.0f * b);
-            part.positions.push_back({r * n.x, r * n.y, r * n.z});
-            part.normals.push_back(n);
-            part.uvs[0].push_back({u, v});
-        }
-    }
-    for (int j = 0; j < rows; ++j) {
-        for (int i = 0; i < columns; ++i) {
-            const auto a = static_cast<std::uint32_t>(j * (columns + 1) + i),
-                       c = a + static_cast<std::uint32_t>(columns) + 1;
-            for (const std::uint32_t k : {a, a + 1, c + 1, a, c + 1, c}) part.indices.push_back(k);
-        }
-    }
-    return part;
-}
+using tex::bench::rays_at;
+using tex::bench::wavy_sphere;
 
 struct Took {
     double wall = 0.0, processor = 0.0;  // seconds
@@ -63,21 +42,6 @@ Took median_of(const std::function<void()>& body) {
     }
     std::sort(runs.begin(), runs.end(), [](const Took& a, const Took& b) { return a.wall < b.wall; });
     return runs[kRuns / 2];
-}
-
-// A ray for each texel, as transfer() casts them.
-std::vector<tex::Ray> rays_at(int size, double reach) {
-    std::vector<tex::Ray> rays;
-    for (int j = 0; j < size; ++j) {
-        for (int i = 0; i < size; ++i) {
-            const double a = 6.283185307 * (i + 0.5) / size, b = 3.141592654 * ((j + 0.5) / size - 0.5);
-            const double n[3] = {std::cos(a) * std::cos(b), std::sin(b), -std::sin(a) * std::cos(b)};
-            const double far = 1.0 + reach;
-            rays.push_back(
-                {{far * n[0], far * n[1], far * n[2]}, {-n[0], -n[1], -n[2]}, 2.0 * reach, tex::Facing::front});
-        }
-    }
-    return rays;
 }
 
 }  // namespace
@@ -114,6 +78,20 @@ int main(int argc, char** argv) {
             if (!tex::transfer({size, size}, {low, *tangents}, high, options, execution)) std::exit(1);
         });
         print(subsamples == 1 ? "transfer()" : "transfer(), 4x4 subsamples", threads, took);
+    }
+    for (const bool inwards : {false, true}) {
+        tex::TransferOptions options;
+        (inwards ? options.thickness : options.occlusion) = true;
+        const int quarter = std::max(1, size / 4);
+        std::int64_t rays_cast = 0;
+        const Took took = median_of([&] {
+            const auto maps = tex::transfer({quarter, quarter}, {low, *tangents}, high, options, {1, {}});
+            if (!maps) std::exit(1);
+            rays_cast = maps->rays;
+        });
+        print(inwards ? "thickness, 64 rays a hit" : "occlusion, 64 rays a hit", 1, took);
+        std::printf("%.2f million rays a second of processor time, %d x %d\n",
+                    static_cast<double>(rays_cast) / took.processor / 1e6, quarter, quarter);
     }
     std::printf("\n%.2f million rays a second on one thread\n", static_cast<double>(rays.size()) / traced.wall / 1e6);
 }

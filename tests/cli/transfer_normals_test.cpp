@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <tex/tex.h>
 #include <nlohmann/json.hpp>
@@ -121,6 +122,198 @@ TEST_F(TransferNormals, StoresHeightsFromZeroToOneAndReportsTheirRange) {
     EXPECT_EQ(report["triangles"]["high"], 6912);
     EXPECT_EQ(report["tangents"], "mikktspace");
     EXPECT_GT(report["reach"]["back"], 0.05);
+}
+
+// The library makes the same maps of the same files.
+TEST_F(TransferNormals, WritesOcclusionBentNormalsAndThickness) {
+    const auto report =
+        reports({"crate_low.glb", "crate_high.glb", "-o", "n.png", "--occlusion-out", "a.exr", "--bent-out", "b.png",
+                 "--thickness-out", "t.exr", "--rays-per-hit", "16", "--occlusion-distance", "50%", "--y", "down"});
+    const auto low = read_mesh(scratch_.path("crate_low.glb"));
+    auto high = read_mesh(scratch_.path("crate_high.glb"));
+    ASSERT_TRUE(low && high);
+    MeshSelection selection;
+    selection.in_scene = true;
+    const auto selected = select_part(*low, selection);
+    const auto parts = parts_in_scene(std::move(*high));
+    ASSERT_TRUE(selected && parts);
+    TransferOptions options;
+    options.occlusion = options.bent = options.thickness = true;
+    options.rays_per_hit = 16;
+    options.occlusion_distance = {Reach::Unit::percent, 50.0};
+    const auto maps = transfer({96, 96}, {selected->part, selected->tangents}, *parts, options);
+    ASSERT_TRUE(maps);
+    EXPECT_EQ(report["rays"], maps->rays);
+    EXPECT_FLOAT_EQ(report["thickness"]["highest"].get<float>(), maps->thickest);
+    const auto open = read_image(scratch_.path("a.exr")), thick = read_image(scratch_.path("t.exr")),
+               bent = read_image(scratch_.path("b.png"));
+    ASSERT_TRUE(open && thick && bent);
+    for (const int i : {0, 17, 40, 95}) {
+        EXPECT_EQ(open->planes[0].at(i, 30), maps->occlusion.at(i, 30));
+        EXPECT_EQ(thick->planes[0].at(i, 30), maps->thickness.at(i, 30));
+        EXPECT_NEAR(bent->planes[0].at(i, 30), 0.5f + 0.5f * maps->bent.x.at(i, 30), 0.01f);
+        EXPECT_NEAR(bent->planes[1].at(i, 30), 0.5f - 0.5f * maps->bent.y.at(i, 30), 0.01f);
+    }
+    const Ran ran = does({"crate_low.glb", "crate_high.glb", "-o", "n.png", "--occlusion-out", "a.png"});
+    EXPECT_NE(ran.out.find(" million rays, "), std::string::npos) << ran.out;
+    // The bar knows it, too.
+    const Ran bar =
+        go({"crate_low.glb", "crate_high.glb", "-o", "n.png", "--bent-out", "a.png", "--progress", "always"});
+    EXPECT_NE(bar.err.find(" M rays/s, crate_low.glb"), std::string::npos) << bar.err;
+    const auto stored = reports({"crate_low.glb", "crate_high.glb", "-o", "n.png", "--thickness-out", "t.png"});
+    EXPECT_EQ(stored["thickness"]["stored"][1], stored["thickness"]["highest"]);
+    refuses({"crate_low.glb", "crate_high.glb", "-o", "n2.png", "--rays-per-hit", "8"}, 2,
+            "--rays-per-hit needs --occlusion-out, --bent-out or --thickness-out");
+    refuses({"crate_low.glb", "crate_high.glb", "-o", "n2.png", "--bent-out", "n2.png"}, 2, "n2.png");
+    refuses({"crate_low.glb", "crate_high.glb", "-o", "n2.png", "--bent-out", "b2.png", "--rays-per-hit", "0"}, 2,
+            "--rays-per-hit");
+}
+
+// Two sheets that lie on each other, and a part that only one of the meshes has.
+TEST_F(TransferNormals, MatchesPartsByName) {
+    const auto sheet = [](const std::string& name, float height, int first, bool with_uvs, float x = 0.0f) {
+        std::string text = "o " + name + "\nusemtl " + name.substr(0, 1) + "\n";
+        for (int k = 0; k < 4; ++k) {
+            const int right = k == 1 || k == 2 ? 1 : 0, up = k / 2;
+            text += "v " + std::to_string(x + static_cast<float>(right)) + " " + std::to_string(up) + " " +
+                    std::to_string(height) + "\n";
+            if (with_uvs)
+                text += "vt " + std::to_string((x + static_cast<float>(right)) / 2.0f) + " " + std::to_string(up) +
+                        "\nvn 0 0 1\n";
+        }
+        text += "f";
+        for (int k = first; k < first + 4; ++k)
+            text += " " + std::to_string(k) + (with_uvs ? "/" + std::to_string(k) + "/" + std::to_string(k) : "");
+        return text + "\n";
+    };
+    std::string low = sheet("a_low", 0, 1, true) + sheet("b_low", 0, 5, true, 1.0f);
+    for (std::size_t at = low.find("usemtl"); at != std::string::npos; at = low.find("usemtl")) low.erase(at, 9);
+    scratch_.write("low.obj", low);
+    scratch_.write("high.obj", sheet("B_high", 0.25f, 1, false) + sheet("B_high_more", 0.5f, 5, false, 1.0f) +
+                                   sheet("a_high.001", 0.125f, 9, false) + sheet("c_high", 0.5f, 13, false));
+    const std::vector<std::string> line = {"low.obj",      "high.obj", "-o",       "n.png", "--front", "1",
+                                           "--back",       "1",        "--id-out", "i.png", "--match", "name",
+                                           "--height-out", "h.exr"};
+    const Ran ran = go(line);
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_NE(ran.err.find("no part of the low mesh belongs to \"c_high\" of the high one: no ray meets them"),
+              std::string::npos)
+        << ran.err;
+    EXPECT_NE(ran.out.find(" a_high.001 ("), std::string::npos) << ran.out;
+    const auto heights = read_image(scratch_.path("h.exr")), ids = read_image(scratch_.path("i.png"));
+    ASSERT_TRUE(heights && ids);
+    EXPECT_EQ(heights->planes[0].at(20, 50), 0.125f);
+    EXPECT_EQ(heights->planes[0].at(70, 50), 0.5f);
+    const auto report = reports(line);
+    ASSERT_EQ(report["ids"]["legend"].size(), 4u);
+    const auto color_at = [&](int i) {
+        std::string text = "#";
+        for (const Plane<float>& plane : ids->planes)
+            text += fmt::format("{:02x}", static_cast<int>(255.0f * plane.at(i, 50) + 0.5f));
+        return text;
+    };
+    EXPECT_EQ(report["ids"]["legend"][2]["color"], color_at(20));
+    EXPECT_EQ(report["ids"]["legend"][1]["color"], color_at(70));
+    EXPECT_EQ(report["ids"]["legend"][1]["texels"], 48 * 96);
+    EXPECT_EQ(report["ids"]["legend"][3]["texels"], 0);
+    EXPECT_EQ(report["match"]["lone_high"][0], "c_high");
+    // The other parts of one file.
+    scratch_.write("b.obj", sheet("b_high", 0.25f, 1, false, 1.0f));
+    const Ran lone = go({"low.obj", "b.obj", "-o", "n.png", "--match", "name", "--front", "1", "--max-missed", "10"});
+    EXPECT_EQ(lone.code, 1);
+    EXPECT_NE(lone.err.find("no part of the high mesh belongs to \"a_low\": their texels are missed"),
+              std::string::npos)
+        << lone.err;
+    scratch_.write("d.obj", sheet("d", 0.25f, 1, false, 1.0f));
+    refuses({"low.obj", "d.obj", "-o", "x.png", "--match", "name"}, 4,
+            "low.obj: no part has a partner: the low mesh has \"a_low\", \"b_low\", the high one \"d\"");
+    const auto materials =
+        reports({"low.obj", "high.obj", "-o", "n.png", "--front", "1", "--id-out", "i.png", "--id-by", "material"});
+    EXPECT_EQ(materials["ids"]["legend"].size(), 3u);
+    const auto files = reports(
+        {"low.obj", "high.obj", "b.obj", "-o", "n.png", "--front", "1", "--id-out", "i.png", "--id-by", "mesh"});
+    EXPECT_EQ(files["ids"]["legend"][1]["name"], "b.obj");
+    refuses({"low.obj", "high.obj", "-o", "x.png", "--id-by", "mesh"}, 2, "--id-by needs --id-out");
+}
+
+TEST_F(TransferNormals, IsGuidedByCagesSkewAndOffsets) {
+    std::string cage;  // without UVs and normals
+    for (const std::string& line : lines_of(kSheetObj)) {
+        if (line.starts_with("v ")) {
+            const std::size_t z = line.rfind(' ');
+            cage += line.substr(0, z + 1) + std::to_string(std::stod(line.substr(z)) + 0.5) + "\n";
+        } else if (line.starts_with("f ")) {
+            std::string corners;
+            for (std::size_t at = line.find(' '); at != std::string::npos; at = line.find(' ', at + 1))
+                corners += " " + line.substr(at + 1, line.find('/', at) - at - 1);
+            cage += "f" + corners + "\n";
+        }
+    }
+    scratch_.write("sheet_cage.obj", cage);
+    const auto caged = reports({"sheet.obj", "sheet.obj", "-o", "a.png", "--cage", "{stem}_cage.obj"});
+    EXPECT_NEAR(caged["reach"]["front"].get<double>(), 0.5, 1e-6);
+    EXPECT_EQ(caged["missed"]["texels"], 0);
+    does({"sheet.obj", "sheet.obj", "-o", "a.png", "--cage", "sheet.obj", "--back", "1"});
+    refuses({"sheet.obj", "sheet.obj", "-o", "b.png", "--cage", "crate_low.glb"}, 4,
+            "crate_low.glb: has 12 triangles, but the low mesh has 8: a cage is the low mesh, pushed outwards");
+    refuses({"sheet.obj", "sheet.obj", "-o", "b.png", "--cage", "none.obj"}, 3, "none.obj: ");
+    refuses({"sheet.obj", "sheet.obj", "-o", "sheet_cage.obj", "--cage", "sheet_cage.obj"}, 2, "sheet_cage.obj");
+    refuses({"sheet.obj", "sheet.obj", "-o", "b.png", "--cage", "c.obj", "--front", "1"}, 2, "--cage decides");
+    refuses({"sheet.obj", "sheet.obj", "-o", "b.png", "--skew", "s.png", "--rays", "smooth"}, 2,
+            "--skew needs --rays straight");
+    refuses({"sheet.obj", "sheet.obj", "-o", "b.png", "--skew", "s.png", "--straight-width", "1"}, 2, "--skew decides");
+    // White and black pictures are straight and smooth rays.
+    const auto write_plane = [&](const std::string& name, float value) {
+        RoughnessChain chain;
+        chain.levels.emplace_back(Extent{2, 2}, value);
+        const auto texture = pack_roughness(chain, Format::r8_unorm);
+        ASSERT_TRUE(texture);
+        const auto bytes = encode_file(*texture, Container::png);
+        ASSERT_TRUE(bytes);
+        scratch_.write(name, std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size()));
+    };
+    write_plane("white.png", 1.0f);
+    write_plane("black.png", 0.0f);
+    does({"crate_low.glb", "crate_high.glb", "-o", "smooth.png"});
+    does({"crate_low.glb", "crate_high.glb", "-o", "black_n.png", "--skew", "black.png"});
+    EXPECT_EQ(scratch_.read("smooth.png"), scratch_.read("black_n.png"));
+    EXPECT_EQ(go({"crate_low.glb", "crate_high.glb", "-o", "white_n.png", "--skew", "white.png"}).code, 0);
+    EXPECT_NE(scratch_.read("smooth.png"), scratch_.read("white_n.png"));
+    const auto offset = reports({"crate_low.glb", "crate_high.glb", "-o", "o.png", "--offset", "black.png"});
+    EXPECT_LE(offset["heights"]["highest"].get<double>(), 1e-6);
+}
+
+TEST_F(TransferNormals, TakesPicturesOfTheHighMesh) {
+    does({"sheet.obj", "sheet.obj", "-o", "flat.png"});
+    does({"crate_low.glb", "crate_high.glb", "-o", "crate_n.png"});
+    // The sheet's own map comes back.
+    does({"sheet.obj", "sheet.obj", "-o", "again.png", "--high-normals", "crate_n.png", "--high-color", "crate_n.png",
+          "--color-out", "c.png"});
+    const auto a = read_image(scratch_.path("crate_n.png")), b = read_image(scratch_.path("again.png")),
+               c = read_image(scratch_.path("c.png"));
+    ASSERT_TRUE(a && b && c);
+    for (int j = 0; j < 96; ++j) {
+        for (int i = 0; i < 96; ++i) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                ASSERT_NEAR(a->planes[k].at(i, j), b->planes[k].at(i, j), 0.0045f) << i << " " << j;
+                ASSERT_NEAR(a->planes[k].at(i, j), c->planes[k].at(i, j), 1e-6f);
+            }
+        }
+    }
+    const auto floats =
+        reports({"sheet.obj", "sheet.obj", "-o", "n.png", "--high-color", "crate_n.png", "--color-out", "c.exr"});
+    EXPECT_EQ(floats["colors"]["output"], "c.exr");
+    refuses({"sheet.obj", "sheet.obj", "-o", "x.png", "--color-out", "c2.png"}, 2, "--color-out needs --high-color");
+    refuses({"sheet.obj", "sheet.obj", "-o", "x.png", "--high-color", "crate_n.png"}, 2,
+            "--high-color needs --color-out");
+    refuses({"sheet.obj", "sheet.obj", "-o", "x.png", "--high-y", "down"}, 2, "--high-y needs --high-normals");
+    refuses({"sheet.obj", "sheet.obj", "-o", "x.png", "--high-normals", "wood=crate_n.png"}, 4,
+            "--high-normals: the high mesh has no material \"wood\"");
+    refuses({"sheet.obj", "sheet.obj", "-o", "x.png", "--high-normals", "none.png"}, 3, "none.png: ");
+    refuses({"sheet.obj", "sheet.obj", "-o", "crate_n.png", "--high-normals", "crate_n.png"}, 2, "crate_n.png");
+    scratch_.write("bare.obj", "o bare\nv 0 0 0\nv 2 0 0\nv 2 2 0\nf 1 2 3\n");
+    refuses({"sheet.obj", "bare.obj", "-o", "x.png", "--high-normals", "crate_n.png", "--quiet"}, 4,
+            "part \"bare\" has no UVs, which --high-normals needs");
 }
 
 TEST_F(TransferNormals, SaysWhatIsMissedAndHowFarRaysMustReach) {

@@ -26,7 +26,6 @@ NOT_BOUND = {
     "find_by_name": "words are the names",
     "least_response_of": "integrate() takes it by default",
     "name_of": "words are the names",
-    "parts_in_scene": "for transfer()",
     "padded_stride": "memory of planes, which arrays keep",
     "rebuilds_z": "to_object_space() and preview() ask it",
     "reconstruct_z": "a formula for one texel, for numpy: sqrt(1 - clip(x * x + y * y, 0, 1))",
@@ -35,7 +34,6 @@ NOT_BOUND = {
     "share_maps": "run('blend-normals', ...) shares details between many bases",
     "stretch_heights": "for numpy: (heights - low) / (high - low)",
     "to_string": "layouts are words",
-    "transfer": "run('transfer-normals', ...) makes maps of meshes in files",
     "validate": "check() validates its arguments",
 }
 
@@ -100,6 +98,7 @@ STRUCTURES = [
     ("read_image", "image_io.h", "ReadOptions"),
     ("bake", "execution.h", "Execution"),
     ("to_object_space", "convert_options.h", "ConvertOptions"),
+    ("transfer", "transfer_options.h", "TransferOptions"),
 ]
 
 

@@ -110,6 +110,10 @@ TEST(MeshSelection, PlacesPartsWhereTheirFirstNodeDoes) {
     const auto placed = select_part(mesh, selection);
     ASSERT_TRUE(placed);
     EXPECT_EQ(placed->part.triangles(), 8u + 32u);
+    ASSERT_EQ(placed->pieces.size(), 2u);
+    EXPECT_EQ(placed->pieces[0].name, "north");
+    EXPECT_EQ(placed->pieces[0].material, "stone");
+    EXPECT_EQ(placed->pieces[1].triangle, 8u);
     EXPECT_EQ(placed->part.positions.front().x, mesh.parts[0].positions.front().x + 5.0f);
     EXPECT_EQ(placed->part.positions.back().x, mesh.parts[2].positions[mesh.parts[2].indices.back()].x);
     selection.node = "south";
@@ -125,12 +129,42 @@ TEST(MeshSelection, PlacesAllPartsOnceForEachNode) {
     EXPECT_EQ((*parts)[1].positions[1].x, -mesh.parts[0].positions[1].x);
     EXPECT_NE((*parts)[1].indices[1], mesh.parts[0].indices[1]);  // mirrored
     for (const MeshPart& part : *parts) EXPECT_TRUE(check_part(part));
+    EXPECT_EQ((*parts)[0].name, "north");
+    EXPECT_EQ((*parts)[1].name, "south");
     mesh.nodes.resize(1);
     EXPECT_EQ(parts_in_scene(mesh)->size(), 2u);
     mesh.nodes[0].mesh = 7;
     EXPECT_EQ(parts_in_scene(mesh).error().reason, "its scene shows no mesh");
     mesh.nodes.clear();
     EXPECT_EQ(parts_in_scene(mesh)->size(), 3u);
+}
+
+TEST(MeshSelection, MatchesNamesByTheirStems) {
+    const auto number = [](const std::string& low, const std::string& high) {
+        const MatchedNames matched = match_names({low}, {high});
+        EXPECT_EQ(matched.lone_low.empty(), matched.low == matched.high);
+        EXPECT_EQ(matched.lone_high.empty(), matched.low == matched.high);
+        return matched.low == matched.high;
+    };
+    EXPECT_TRUE(number("rock_low", "rock_high"));
+    EXPECT_TRUE(number("Rock_Low", "rock_HIGH_bolts"));
+    EXPECT_TRUE(number("rock.lp", "rock.hp.001"));
+    EXPECT_TRUE(number("rock-lowpoly", "rock highpoly"));
+    EXPECT_TRUE(number("rock_low_poly", "rock_high_poly"));
+    EXPECT_TRUE(number("rock", "rock"));
+    EXPECT_TRUE(number("rock", "rock_high"));
+    EXPECT_TRUE(number("low_wall_low", "low_wall_high"));
+    EXPECT_TRUE(number("", ""));
+    EXPECT_FALSE(number("rock_low", "rocks_high"));
+    EXPECT_FALSE(number("rock_lower", "rock_higher"));
+    EXPECT_FALSE(number("low", "high"));
+    EXPECT_FALSE(number("rock_high", "rock_low"));
+    const MatchedNames many =
+        match_names({"a_low", "b_low", "c_low", "c_low"}, {"b_high", "a_high_1", "a_high_2", "d"});
+    EXPECT_EQ(many.low, (std::vector<int>{0, 1, 2, 2}));
+    EXPECT_EQ(many.high, (std::vector<int>{1, 0, 0, 3}));
+    EXPECT_EQ(many.lone_low, std::vector<std::string>{"c_low"});
+    EXPECT_EQ(many.lone_high, std::vector<std::string>{"d"});
 }
 
 TEST(MeshSelection, TakesTangentsOfTheFileIfAllPartsHaveThem) {
@@ -196,6 +230,9 @@ TEST(MeshSelection, CutsOutUdimTiles) {
         ASSERT_EQ(tile->part.triangles(), 4u);
         ASSERT_EQ(tile->tangents.size(), 12u);
         EXPECT_EQ(tile->part.quads, (std::vector<std::uint32_t>{0, 2}));
+        ASSERT_EQ(tile->pieces.size(), selected.pieces.size());
+        EXPECT_EQ(tile->pieces.front().triangle, 0u);
+        EXPECT_LE(tile->pieces.back().triangle, 4u);
         for (std::size_t c = 0; c < 12; ++c) EXPECT_GE(tile->part.uvs[0][tile->part.indices[c]].x, 4.0f);
         EXPECT_TRUE(in_tile(selected, 1024));
         const auto empty = in_tile(selected, 1001);

@@ -137,6 +137,11 @@ TEST(Usable, OptionsOutOfRangeAreNamed) {
     EXPECT_EQ(of<ConvertOptions>([](auto& o) { o.subsamples = 9; }), "subsamples: must be from 1 to 8");
     EXPECT_EQ(of<TransferOptions>([](auto& o) { o.front = {Reach::Unit::percent, -1.0}; }), "front: must be 0 or more");
     EXPECT_EQ(of<TransferOptions>([](auto& o) { o.straight_angle = 181.0; }), "straight_angle: must be from 0 to 180");
+    EXPECT_EQ(of<TransferOptions>([](auto& o) { o.rays_per_hit = 0; }), "rays_per_hit: must be from 1 to 4096");
+    EXPECT_EQ(of<TransferOptions>([](auto& o) {
+                  o.occlusion_distance = {Reach::Unit::absolute, -1.0};
+              }),
+              "occlusion_distance: must be 0 or more");
     EXPECT_EQ(of<TransferOptions>([](auto& o) { o.subsamples = 0; }), "subsamples: must be from 1 to 8");
     EXPECT_EQ(of<PackFileOptions>([](auto& o) { o.level = -1; }), "level: must be 0 or more");
     EXPECT_EQ(of<PackFileOptions>([](auto& o) { o.roughness.emplace(); }), "roughness: needs mip");

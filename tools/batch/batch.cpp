@@ -67,12 +67,13 @@ private:
     [[nodiscard]] bool stopped() const { return !console_.host().interruption().empty() || reporter_.is_abandoned(); }
 
     // Adds the progress of one file, from `counted` to `fraction`, to the total.
-    void advance(const Task& task, double& counted, double fraction) {
+    void advance(const Task& task, double& counted, double fraction, const std::string& words) {
         const double done = done_ += fraction - counted;
         counted = fraction;
-        console_.draw_progress(
-            done / static_cast<double>(tasks_.size()),
-            tasks_.size() == 1 ? task.input : fmt::format("{} of {} files", finished_.load(), tasks_.size()));
+        console_.draw_progress(done / static_cast<double>(tasks_.size()),
+                               tasks_.size() > 1 ? fmt::format("{} of {} files", finished_.load(), tasks_.size())
+                               : words.empty()   ? task.input
+                                                 : fmt::format("{}, {}", words, task.input));
     }
 
     Outcome outcome_of(const Task& planned) {
@@ -80,10 +81,11 @@ private:
         if (planned.output == "-") renamed.emplace(planned).output = console_.host().out_name();
         const Task& task = renamed ? *renamed : planned;
         double counted = 0.0;  // the part of this file that done_ includes
-        Job job(task, console_, running_.read, write_, running_.threads, [&](double fraction) {
-            if (shows_progress_) advance(task, counted, fraction);
-            return !stopped();
-        });
+        Job job(task, console_, running_.read, write_, running_.threads,
+                [&](double fraction, const std::string& words) {
+                    if (shows_progress_) advance(task, counted, fraction, words);
+                    return !stopped();
+                });
         Outcome outcome;
         const Clock::time_point start = Clock::now();
         try {

@@ -4,17 +4,30 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
 #include <tex/mesh_io.h>
 #include <tex/mesh_selection.h>
 
+#include "cli/text.h"
 #include "cli/usage_error.h"
 #include "tasks/name_pattern.h"
 
 namespace tex::cli {
+
+std::string quoted_list(const std::vector<std::string>& names) {
+    constexpr std::size_t kMost = 6;
+    std::vector<std::string> once;
+    for (const std::string& name : names) {
+        if (std::find(once.begin(), once.end(), name) == once.end()) once.push_back(name);
+    }
+    std::string text;
+    for (std::size_t k = 0; k < std::min(kMost, once.size()); ++k)
+        text += fmt::format("{}\"{}\"", k == 0 ? "" : ", ", printable(once[k]));
+    if (once.size() > kMost) text += fmt::format(" and {} more", once.size() - kMost);
+    return text;
+}
 
 void HighMeshes::add(Command& command) {
     command.group("High mesh");
@@ -29,6 +42,7 @@ void HighMeshes::add(Command& command) {
     row.completes = Completes::files;
     row.repeatable = true;
     row.preset = "the inputs after the first one";
+    command.choice(match_, "--match", "M", kMatchNames, "which parts of both meshes belong together");
 }
 
 std::vector<std::string> HighMeshes::buffers_of(const std::vector<std::string>& meshes) {
@@ -59,22 +73,63 @@ void HighMeshes::amend(Task& task) const {
     for (std::string& buffer : buffers_of(meshes)) task.own.push_back(std::move(buffer));
 }
 
-Result<std::vector<MeshPart>> HighMeshes::read(const Job& job) const {
-    std::vector<MeshPart> parts;
+Result<HighParts> HighMeshes::read(const Job& job, bool with_uvs) const {
+    HighParts high;
     MeshReadOptions how;
     how.reader = job.read_options;
+    int file = 0;
     for (const std::string& name : names_of(job.task)) {
         auto mesh = read_mesh(name, how);
         if (!mesh) return mesh.error().of(name);
         for (MeshPart& part : mesh->parts) {  // not needed
-            part.uvs.clear();
-            part.tangents.clear();
+            if (!with_uvs) part.uvs.clear();
+            if (!with_uvs) part.tangents.clear();
         }
+        const std::vector<MeshMaterial> materials = mesh->materials;
         auto placed = parts_in_scene(std::move(*mesh));
         if (!placed) return placed.error().of(name);
-        std::move(placed->begin(), placed->end(), std::back_inserter(parts));
+        for (MeshPart& part : *placed) {
+            const bool has_material = part.material >= 0 && static_cast<std::size_t>(part.material) < materials.size();
+            high.materials.push_back(has_material ? materials[static_cast<std::size_t>(part.material)].name : "");
+            high.files.push_back(file);
+            high.parts.push_back(std::move(part));
+        }
+        high.names.push_back(name);
+        ++file;
     }
-    return parts;
+    return high;
+}
+
+Result<void> HighMeshes::match(Job& job, const SelectedPart& low, const HighParts& high, TransferInputs& inputs) const {
+    if (match_ == Match::all) return {};
+    std::vector<std::string> low_names, high_names;
+    for (const SelectedPiece& piece : low.pieces)
+        low_names.push_back(match_ == Match::name ? piece.name : piece.material);
+    for (std::size_t k = 0; k < high.parts.size(); ++k)
+        high_names.push_back(match_ == Match::name ? high.parts[k].name : high.materials[k]);
+    const MatchedNames matched = match_names(low_names, high_names);
+    job.report["match"] = {{"lone_low", matched.lone_low}, {"lone_high", matched.lone_high}};
+    const std::string what = match_ == Match::name ? "part" : "material";
+    const auto belongs = [&](int number) {
+        return std::find(matched.high.begin(), matched.high.end(), number) != matched.high.end();
+    };
+    if (std::none_of(matched.low.begin(), matched.low.end(), belongs)) {
+        return Error{ErrorCode::bad_option, job.task.input,
+                     fmt::format("no {} has a partner: the low mesh has {}, the high one {}", what,
+                                 quoted_list(low_names), quoted_list(high_names))};
+    }
+    if (!matched.lone_low.empty())
+        job.warn(fmt::format("no {} of the high mesh belongs to {}: their texels are missed", what,
+                             quoted_list(matched.lone_low)));
+    if (!matched.lone_high.empty())
+        job.warn(fmt::format("no {} of the low mesh belongs to {} of the high one: no ray meets them", what,
+                             quoted_list(matched.lone_high)));
+    inputs.high_groups = matched.high;
+    for (std::size_t k = 0; k < low.pieces.size(); ++k) {
+        const std::size_t end = k + 1 < low.pieces.size() ? low.pieces[k + 1].triangle : low.part.triangles();
+        inputs.low_groups.resize(end, matched.low[k]);
+    }
+    return {};
 }
 
 Error HighMeshes::with_order(const Error& error) {

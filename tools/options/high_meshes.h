@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// high_meshes.h: the option group of the meshes that rays hit: --high, or the inputs after the first one.
+// high_meshes.h: the option group of the meshes that rays hit: --high, or the inputs after the first one;
+// --match.
 
 #pragma once
 
@@ -7,11 +8,33 @@
 #include <vector>
 
 #include <tex/mesh.h>
+#include <tex/mesh_selection.h>
+#include <tex/transfer.h>
 
 #include "cli/command.h"
 #include "tasks/job.h"
 
 namespace tex::cli {
+
+// How parts of the high mesh find those of the low one whose rays meet them.
+enum class Match { all, name, material };
+
+inline constexpr Named<Match> kMatchNames[] = {
+    {Match::all, "all", "every ray meets all parts"},
+    {Match::name, "name", "rock_low and rock_high belong together"},
+    {Match::material, "material", "the same with the names of materials"},
+};
+
+// The parts that rays may hit, and what their files say about each.
+struct HighParts {
+    std::vector<MeshPart> parts;
+    std::vector<std::string> materials;  // their names; may be empty
+    std::vector<int> files;              // the number of the file
+    std::vector<std::string> names;      // of the files
+};
+
+// The first names, each once, in quotes, for a message.
+[[nodiscard]] std::string quoted_list(const std::vector<std::string>& names);
 
 class HighMeshes {
 public:
@@ -26,8 +49,13 @@ public:
     // Adds the files of --high, and what holds buffers of all meshes, to the task.
     void amend(Task& task) const;
 
-    // Reads the meshes of a job, as the nodes of their scenes place them.
-    [[nodiscard]] Result<std::vector<MeshPart>> read(const Job& job) const;
+    // Reads the meshes of a job, as the nodes of their scenes place them, without UVs and tangents if nobody needs
+    // them.
+    [[nodiscard]] Result<HighParts> read(const Job& job, bool with_uvs) const;
+
+    // Numbers the parts as --match says, and reports those without partner.
+    [[nodiscard]] Result<void> match(Job& job, const SelectedPart& low, const HighParts& high,
+                                     TransferInputs& inputs) const;
 
     // An error about the low mesh, with the remedy if both may have changed places.
     [[nodiscard]] static Error with_order(const Error& error);
@@ -38,6 +66,7 @@ private:
     [[nodiscard]] std::vector<std::string> names_of(const Task& task) const;
 
     std::vector<std::string> patterns_;
+    Match match_ = Match::all;
 };
 
 }  // namespace tex::cli

@@ -75,11 +75,30 @@ void RayOptions::add(Command& command) {
         .preset = "30";
     add_reach(command, transfer_.straight_width, "--straight-width",
               "with --rays straight, rays bend within this distance from hard edges", "5%", "auto");
+    add_second(command);
     add_coverage(command);
     command.check([this, &command] {
         const auto idle = command.given_of({"--straight-angle", "--straight-width"});
-        if (transfer_.rays != RayMode::straight && !idle.empty())
+        const bool implied = command.given("--skew") && !command.given("--rays");
+        if (transfer_.rays != RayMode::straight && !implied && !idle.empty())
             throw UsageError(idle.front() + " needs --rays straight");
+        if (transfer_.rays != RayMode::straight && command.given("--skew") && !implied)
+            throw UsageError("--skew needs --rays straight");
+    });
+}
+
+void RayOptions::add_second(Command& command) {
+    command.group("Second rays");
+    command
+        .option("--rays-per-hit", "N", "rays from each hit, for occlusion, bent normals and thickness",
+                [this](const std::string& text) { transfer_.rays_per_hit = parse_int(text, 1, kMaxRaysPerHit); })
+        .preset = fmt::format("{}", transfer_.rays_per_hit);
+    add_reach(command, transfer_.occlusion_distance, "--occlusion-distance",
+              "how far they reach: a length as --front, or the word", "without limit", "auto");
+    command.check([this, &command] {
+        const auto idle = command.given_of({"--rays-per-hit", "--occlusion-distance"});
+        if (!idle.empty() && command.given_of({"--occlusion-out", "--bent-out", "--thickness-out"}).empty())
+            throw UsageError(idle.front() + " needs --occlusion-out, --bent-out or --thickness-out");
     });
 }
 
@@ -131,6 +150,7 @@ Result<void> RayOptions::judge(Job& job, const TransferredMaps& maps) const {
                             {"hopeless", maps.hopeless},
                             {"needed", {maps.needed_front, maps.needed_back}}};
     job.report["behind"] = maps.behind;
+    job.report["rays"] = maps.rays;
     job.report["reach"] = {{"front", maps.front}, {"back", maps.back}, {"diagonal", maps.diagonal}};
     job.report["heights"] = {{"lowest", maps.lowest}, {"highest", maps.highest}};
     const std::string overlaps = fmt::format("several triangles cover the same texel in {} places", maps.overlaps);
@@ -159,6 +179,18 @@ Result<void> RayOptions::judge(Job& job, const TransferredMaps& maps) const {
     return {};
 }
 
+double RaySpeed::millions_a_second() const {
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start_;
+    return static_cast<double>(rays_.load()) / 1e6 / std::max(passed.count(), 1e-9);
+}
+
+std::string RaySpeed::words() const {
+    return fmt::format("{:.3g} million rays, {:.2g} million a second", static_cast<double>(rays_.load()) / 1e6,
+                       millions_a_second());
+}
+
+std::string RaySpeed::short_words() const { return fmt::format("{:.2g} M rays/s", millions_a_second()); }
+
 std::string reach_of(const TransferredMaps& maps) {
     const auto height = [&](float value) {  // without the rounding of surfaces that touch each other
         const auto exact = static_cast<double>(value);
@@ -175,10 +207,15 @@ void TransferMaps::add(Command& command, const FileOptions& files) {
     heights_.add(command, files, "--height-out",
                  "write the heights: lengths as floats, or from 0 to 1, with the range reported");
     positions_.add(command, files, "--position-out", "write x, y and z of what rays hit, as floats");
+    occlusion_.add(command, files, "--occlusion-out", "write ambient occlusion: 1 is open, 0 closed");
+    bent_.add(command, files, "--bent-out", "write bent normals, the mean directions that are open, in tangent space");
+    thickness_.add(command, files, "--thickness-out", "write the mean thickness of the high mesh, stored as heights");
+    color_.add(command, files, "--color-out", "write the colours that --high-color names");
 }
 
 void TransferMaps::amend(Task& task) const {
-    for (const MapOutput* map : {&object_, &heights_, &positions_}) map->amend(task);
+    for (const MapOutput* map : {&object_, &heights_, &positions_, &occlusion_, &bent_, &thickness_, &color_})
+        map->amend(task);
     if (positions_.is_given() && !can_hold(positions_.container_for(task), Encoding::float_))
         throw UsageError("--position-out: only exr, dds and ktx2 files hold floats");
 }
@@ -187,58 +224,101 @@ void TransferMaps::request(TransferOptions& options) const {
     options.object = object_.is_given();
     options.heights = heights_.is_given();
     options.positions = positions_.is_given();
+    options.occlusion = occlusion_.is_given();
+    options.bent = bent_.is_given();
+    options.thickness = thickness_.is_given();
 }
 
-Result<void> TransferMaps::write(Job& job, TransferredMaps& maps) const {
+Result<void> TransferMaps::write(Job& job, TransferredMaps& maps, YAxis y) const {
     if (object_.is_given()) {
-        if (auto done = write_object(job, std::move(maps.object)); !done) return done;
+        if (auto done = write_normals(job, object_, std::move(maps.object), YAxis::up, "object"); !done) return done;
     }
     if (heights_.is_given()) {
-        if (auto done = write_heights(job, maps); !done) return done;
+        auto done =
+            write_lengths(job, heights_, std::move(maps.heights), maps.lowest, maps.highest, job.report["heights"]);
+        if (!done) return done;
     }
-    return positions_.is_given() ? write_positions(job, maps) : Result<void>();
+    if (positions_.is_given()) {
+        Json report;
+        std::vector<Plane<float>> planes;
+        for (Plane<float>& plane : maps.position) planes.push_back(std::move(plane));
+        if (auto done = write_floats(job, positions_, std::move(planes), report); !done) return done;
+        job.report["positions"] = std::move(report);
+    }
+    if (occlusion_.is_given()) {
+        if (auto done = write_occlusion(job, maps); !done) return done;
+    }
+    if (bent_.is_given()) {
+        if (auto done = write_normals(job, bent_, std::move(maps.bent), y, "bent"); !done) return done;
+    }
+    if (thickness_.is_given()) {
+        Json& report = job.report["thickness"];
+        report = {{"lowest", maps.thinnest}, {"highest", maps.thickest}};
+        auto done = write_lengths(job, thickness_, std::move(maps.thickness), maps.thinnest, maps.thickest, report);
+        if (!done) return done;
+    }
+    return color_.is_given() ? write_colors(job, std::move(maps.color)) : Result<void>();
 }
 
-Result<void> TransferMaps::write_object(Job& job, NormalMap normals) const {
-    const Container container = object_.container_for(job.task);
+// Into report[key].
+Result<void> TransferMaps::write_normals(Job& job, const MapOutput& output, NormalMap normals, YAxis y,
+                                         const char* key) const {
+    const Container container = output.container_for(job.task);
     MipChain chain;
     chain.levels.push_back(std::move(normals));
     PackOptions with;
     with.encoding = can_hold_blocks(container) ? Encoding::rgb8 : default_encoding(container);
+    with.y_axis = y;
     const auto texture = pack(chain, with, {job.threads(), {}});
     if (!texture) return texture.error();
     Json report;
-    if (auto done = object_.write(job, *texture, report); !done) return done;
-    job.report["object"] = std::move(report);
+    if (auto done = output.write(job, *texture, report); !done) return done;
+    job.report[key] = std::move(report);
     return {};
 }
 
-Result<void> TransferMaps::write_heights(Job& job, TransferredMaps& maps) const {
-    Json& report = job.report["heights"];
-    if (!heights_.holds_floats(job)) {
+// As they are in files of floats, otherwise from 0 to 1.
+Result<void> TransferMaps::write_lengths(Job& job, const MapOutput& output, Plane<float> lengths, float lowest,
+                                         float highest, Json& report) const {
+    if (!output.holds_floats(job)) {
         // A flat map has no range.
-        const float high = maps.highest > maps.lowest ? maps.highest : maps.lowest + 1.0f;
-        stretch_heights(maps.heights, maps.lowest, high, {job.threads(), {}});
-        report["stored"] = {maps.lowest, high};
+        const float high = highest > lowest ? highest : lowest + 1.0f;
+        stretch_heights(lengths, lowest, high, {job.threads(), {}});
+        report["stored"] = {lowest, high};
     }
-    return heights_.write(job, std::move(maps.heights), report);
+    return output.write(job, std::move(lengths), report);
 }
 
-Result<void> TransferMaps::write_positions(Job& job, TransferredMaps& maps) const {
+Result<void> TransferMaps::write_occlusion(Job& job, TransferredMaps& maps) const {
+    Json report;
+    if (auto done = occlusion_.write(job, std::move(maps.occlusion), report); !done) return done;
+    job.report["occlusion"] = std::move(report);
+    return {};
+}
+
+// Three planes as they are, which are no normals.
+Result<void> TransferMaps::write_floats(Job& job, const MapOutput& output, std::vector<Plane<float>> planes,
+                                        Json& report) const {
     MipChain chain;
     chain.levels.emplace_back();
-    chain.levels.front().x = std::move(maps.position[0]);
-    chain.levels.front().y = std::move(maps.position[1]);
-    chain.levels.front().z = std::move(maps.position[2]);
+    chain.levels.front().x = std::move(planes[0]);
+    chain.levels.front().y = std::move(planes[1]);
+    chain.levels.front().z = std::move(planes[2]);
     PackOptions with;
     with.encoding = Encoding::float_;
     auto texture = pack(chain, with, {job.threads(), {}});
     if (!texture) return texture.error();
-    texture->swizzle.fill(Component::other);  // they are no normals
+    texture->swizzle.fill(Component::other);
     texture->swizzle_known = texture->y_known = false;
+    return output.write(job, *texture, report);
+}
+
+Result<void> TransferMaps::write_colors(Job& job, Image colors) const {
     Json report;
-    if (auto done = positions_.write(job, *texture, report); !done) return done;
-    job.report["positions"] = std::move(report);
+    auto done = color_.holds_floats(job) ? write_floats(job, color_, std::move(colors.planes), report)
+                                         : color_.write(job, colors, report);
+    if (!done) return done;
+    job.report["colors"] = std::move(report);
     return {};
 }
 

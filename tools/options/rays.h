@@ -4,6 +4,9 @@
 
 #pragma once
 
+#include <atomic>
+#include <chrono>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,8 +20,8 @@
 
 namespace tex::cli {
 
-// --size, --subsamples, --rays, --front, --back, --hit, --backfaces, --straight-angle, --straight-width, --padding,
-// --overlap, --max-missed.
+// --size, --subsamples, --rays, --front, --back, --hit, --backfaces, --straight-angle, --straight-width,
+// --rays-per-hit, --occlusion-distance, --padding, --overlap, --max-missed.
 class RayOptions {
 public:
     void add(Command& command);
@@ -31,6 +34,7 @@ public:
     [[nodiscard]] Result<void> judge(Job& job, const TransferredMaps& maps) const;
 
 private:
+    void add_second(Command& command);
     void add_coverage(Command& command);
     void judge_missed(Job& job, const TransferredMaps& maps) const;
 
@@ -40,10 +44,26 @@ private:
     std::optional<double> max_missed_;  // percent
 };
 
+// Counts rays while they are cast.
+class RaySpeed {
+public:
+    [[nodiscard]] std::atomic<std::int64_t>& rays() { return rays_; }
+    // "12.5 million rays, 4.1 million a second"
+    [[nodiscard]] std::string words() const;
+    // "4.1 M rays/s", beside the progress bar.
+    [[nodiscard]] std::string short_words() const;
+
+private:
+    [[nodiscard]] double millions_a_second() const;
+
+    std::atomic<std::int64_t> rays_{0};
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
 // "rays reach 0.1 in front and 0.2 behind; heights are from -0.05 to 0.06"
 [[nodiscard]] std::string reach_of(const TransferredMaps& maps);
 
-// --object-out, --height-out, --position-out.
+// --object-out, --height-out, --position-out, --occlusion-out, --bent-out, --thickness-out, --color-out.
 class TransferMaps {
 public:
     void add(Command& command, const FileOptions& files);
@@ -51,15 +71,20 @@ public:
     // Sets the maps that are wanted.
     void request(TransferOptions& options) const;
 
-    // Write what the user wants, and add it to the job's report.
-    [[nodiscard]] Result<void> write(Job& job, TransferredMaps& maps) const;
+    // Write what the user wants, and add it to the job's report. `y` is that of normals in tangent space.
+    [[nodiscard]] Result<void> write(Job& job, TransferredMaps& maps, YAxis y) const;
 
 private:
-    [[nodiscard]] Result<void> write_object(Job& job, NormalMap normals) const;
-    [[nodiscard]] Result<void> write_heights(Job& job, TransferredMaps& maps) const;
-    [[nodiscard]] Result<void> write_positions(Job& job, TransferredMaps& maps) const;
+    [[nodiscard]] Result<void> write_normals(Job& job, const MapOutput& output, NormalMap normals, YAxis y,
+                                             const char* key) const;
+    [[nodiscard]] Result<void> write_lengths(Job& job, const MapOutput& output, Plane<float> lengths, float lowest,
+                                             float highest, Json& report) const;
+    [[nodiscard]] Result<void> write_occlusion(Job& job, TransferredMaps& maps) const;
+    [[nodiscard]] Result<void> write_floats(Job& job, const MapOutput& output, std::vector<Plane<float>> planes,
+                                            Json& report) const;
+    [[nodiscard]] Result<void> write_colors(Job& job, Image colors) const;
 
-    MapOutput object_, heights_, positions_;
+    MapOutput object_, heights_, positions_, occlusion_, bent_, thickness_, color_;
 };
 
 }  // namespace tex::cli

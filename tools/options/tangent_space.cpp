@@ -3,6 +3,7 @@
 #include "options/tangent_space.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <system_error>
@@ -26,6 +27,14 @@ std::vector<std::string> files_of(const std::string& mesh) {
 }
 
 constexpr const char* kNodeOfMap = "only the mesh of this node; object space is then the space of the scene";
+
+// What select_part() needs, and nobody reads.
+void give_attributes(MeshPart& part, bool with_uvs) {
+    const std::size_t count = part.positions.size();
+    if (part.normals.empty()) part.normals.assign(count, {0.0f, 0.0f, 1.0f});
+    part.tangents.assign(count, {1.0f, 0.0f, 0.0f, 1.0f});
+    if (with_uvs && part.uvs.empty()) part.uvs.emplace_back(count);
+}
 
 // The option that avoids an error of select_part().
 Error with_option(const Error& error) {
@@ -180,6 +189,24 @@ Result<MeshSpace> TangentSpaceOptions::output(int tile, const ReadOptions& optio
 Result<MeshSpace> TangentSpaceOptions::of_low(const std::string& file, const ReadOptions& options,
                                               const Execution& execution) const {
     return read(file, tangents_, decoder_, tile_, options, execution);
+}
+
+Result<MeshSpace> TangentSpaceOptions::cage(const std::string& file, const ReadOptions& options,
+                                            const Execution& execution) const {
+    MeshReadOptions how;
+    how.reader = options;
+    auto mesh = read_mesh(file, how);
+    if (!mesh) return mesh.error().of(file);
+    for (MeshPart& part : mesh->parts) give_attributes(part, tile_ == 0);
+    MeshSelection selection = selection_;
+    selection.tangents = TangentSource::file;  // which do not count
+    selection.uv_set.reset();
+    if (mesh->materials.empty()) selection.material.clear();
+    if (mesh->nodes.size() <= 1) selection.node.clear();
+    auto selected = select_part(*mesh, selection, execution);
+    if (selected && tile_ != 0) selected = in_tile(*selected, tile_);
+    if (!selected) return with_option(selected.error()).of(file);
+    return MeshSpace(std::make_shared<const SelectedPart>(std::move(*selected)), decoder_, file);
 }
 
 Result<MeshSpace> TangentSpaceOptions::read(const std::string& file, std::optional<TangentSource> tangents,

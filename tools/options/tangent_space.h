@@ -89,6 +89,11 @@ public:
     [[nodiscard]] Result<MeshSpace> of_low(const std::string& file, const ReadOptions& read,
                                            const Execution& execution) const;
 
+    // The parts of a cage that belong to those of of_low(). It needs neither normals nor UVs, except with --tile, nor
+    // materials. Errors: as of_low().
+    [[nodiscard]] Result<MeshSpace> cage(const std::string& file, const ReadOptions& read,
+                                         const Execution& execution) const;
+
 private:
     void check(const Command& command) const;
     void check_input(const Command& command) const;

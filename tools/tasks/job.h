@@ -23,9 +23,10 @@ namespace tex::cli {
 
 class Job {
 public:
-    // `advance` takes the fraction of the job that is done. It returns false if the job must stop.
+    // `advance` takes the fraction of the job that is done, and a few words about how it goes on, which may be empty.
+    // It returns false if the job must stop.
     Job(const Task& its_task, Console& its_console, const ReadOptions& read, const WriteOptions& write, int threads,
-        std::function<bool(double fraction)> advance)
+        std::function<bool(double fraction, const std::string& words)> advance)
         : task(its_task), console(its_console), read_options(read), write_options(write), threads_(threads),
           advance_(std::move(advance)) {}
 
@@ -41,13 +42,15 @@ public:
     [[nodiscard]] Execution until(double fraction) {
         const double from = reached_;
         reached_ = fraction;
-        return {threads_, [this, from, fraction](double done) { return advance_(from + (fraction - from) * done); }};
+        return {threads_, [this, from, fraction](double done) { return advance(from + (fraction - from) * done); }};
     }
     // The same for steps that take no Execution. Returns false if the job must stop.
     [[nodiscard]] bool reached(double fraction) {
         reached_ = fraction;
-        return advance_(fraction);
+        return advance(fraction);
     }
+    // What is shown beside the progress from now on; empty: nothing.
+    void show(std::function<std::string()> words) { words_ = std::move(words); }
 
     [[nodiscard]] int threads() const { return threads_; }
 
@@ -70,8 +73,11 @@ public:
     [[nodiscard]] ExitCode code() const { return code_; }
 
 private:
+    [[nodiscard]] bool advance(double fraction) const { return advance_(fraction, words_ ? words_() : std::string()); }
+
     int threads_;
-    std::function<bool(double)> advance_;
+    std::function<bool(double, const std::string&)> advance_;
+    std::function<std::string()> words_;
     double reached_ = 0.0;
     std::vector<FileWarning> warnings_, remarks_;
     std::vector<std::string> outputs_;

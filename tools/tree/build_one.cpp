@@ -19,7 +19,6 @@
 #include "files/system_error.h"
 #include "tasks/folders.h"
 #include "tasks/name_pattern.h"
-#include "tasks/other_parts.h"
 #include "tree/build_run.h"
 
 namespace tex::cli {
@@ -181,7 +180,7 @@ std::vector<std::optional<FileStamp>> BuildRun::stamps_of(const BuildTask& task)
         });
     };
     std::vector<std::optional<FileStamp>> stamps = {contents_.stamp(task.input)};
-    for (const std::string& part : other_parts(task.input, contents_.path(task.input)))
+    for (const std::string& part : recipes_[task.recipe].own_files(task.input, contents_.path(task.input)))
         stamps.push_back(contents_.stamp(part));
     for (const std::string& file : recipes_[task.recipe].files()) {
         if (!is_made(file)) stamps.push_back(contents_.stamp(file));

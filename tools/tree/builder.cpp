@@ -26,7 +26,6 @@
 #include "options/files.h"
 #include "tasks/depfile.h"
 #include "tasks/folders.h"
-#include "tasks/other_parts.h"
 #include "tree/build_run.h"
 
 namespace tex::cli {
@@ -256,7 +255,7 @@ ExitCode BuildRun::write_depfile() const {
             for (const auto& [file, digest] : record->second.files) dependency.outputs.push_back(contents_.path(file));
         }
         dependency.inputs = {contents_.path(task.input), options_.manifest};
-        for (const std::string& part : other_parts(task.input, contents_.path(task.input)))
+        for (const std::string& part : recipes_[task.recipe].own_files(task.input, contents_.path(task.input)))
             dependency.inputs.push_back(contents_.path(part));
         for (const std::string& file : recipes_[task.recipe].files()) dependency.inputs.push_back(contents_.path(file));
     }

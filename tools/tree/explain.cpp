@@ -63,9 +63,13 @@ std::string readers_text(const std::string& name, const std::vector<Recipe>& rec
         const auto is_it = [&](const std::string& file) {
             return std::filesystem::path(file).lexically_normal().string() == name;
         };
-        if (std::none_of(files.begin(), files.end(), is_it)) continue;
-        const auto count = std::count_if(work.tasks.begin(), work.tasks.end(),
-                                         [k](const BuildTask& task) { return task.recipe == k; });
+        const bool is_for_all = std::any_of(files.begin(), files.end(), is_it);
+        const auto count = std::count_if(work.tasks.begin(), work.tasks.end(), [&](const BuildTask& task) {
+            if (task.recipe != k || is_for_all) return task.recipe == k;
+            const auto own = recipes[k].own_files(task.input, recipes[k].path_to(task.input));
+            return std::any_of(own.begin(), own.end(), is_it);
+        });
+        if (!is_for_all && count == 0) continue;
         text += fmt::format("{}: read by rule {} (line {}) for {} texture{}, match {}\n", printable(name),
                             recipes[k].number(), recipes[k].rule().place.line, count, count == 1 ? "" : "s",
                             printable(join(recipes[k].rule().match)));
@@ -83,6 +87,8 @@ std::string task_text(const BuildTask& task, const Recipe& recipe) {
         text += settings_text(rule.steps[k], nullptr, recipe.before()[k].program->command);
     }
     for (const std::string& needed : recipe.files()) text += fmt::format("  reads {}\n", printable(needed));
+    for (const std::string& needed : recipe.own_files(task.input, recipe.path_to(task.input)))
+        text += fmt::format("  reads {}\n", printable(needed));
     for (std::size_t k = 0; k < task.outputs.size(); ++k) {
         text += fmt::format("  {} for {}:\n", rule.steps.back().command, printable(with_level(task.outputs[k], 0)));
         text += settings_text(rule.steps.back(), &rule.outputs[k], recipe.outputs()[k].last.program->command);

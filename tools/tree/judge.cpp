@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "cli/text.h"
-#include "tasks/other_parts.h"
 
 namespace tex::cli {
 
@@ -24,7 +23,7 @@ Result<Judgement> Judge::judge(const BuildTask& task, const Recipe& recipe) {
     Judgement judgement;
     Sha256 inputs;
     std::vector<std::string> files = {task.input};
-    const std::vector<std::string> parts = other_parts(task.input, contents_.path(task.input));
+    const std::vector<std::string> parts = recipe.own_files(task.input, contents_.path(task.input));
     files.insert(files.end(), parts.begin(), parts.end());
     files.insert(files.end(), recipe.files().begin(), recipe.files().end());
     for (const std::string& file : files) {

@@ -11,6 +11,7 @@
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "tasks/other_parts.h"
 
 namespace tex::cli {
 namespace {
@@ -110,7 +111,9 @@ void Recipe::add_option(const OptionSetting& setting, const Command& command, co
 std::string Recipe::with_root(const std::string& argument, const Command& command) const {
     const auto [name, value] = cut(argument, '=');
     const Row* const row = row_of(command, name.substr(2), groups_of(command));
-    const bool is_below = !root_.empty() && row != nullptr && names_a_file(*row) && !fs::path(value).is_absolute();
+    // {dir} is that of the input, which is below the root.
+    const bool is_below = !root_.empty() && row != nullptr && names_a_file(*row) && !fs::path(value).is_absolute() &&
+                          !value.starts_with("{dir}");
     return is_below ? fmt::format("{}={}/{}", name, root_, value) : argument;
 }
 
@@ -176,7 +179,7 @@ void Recipe::check_order(const StepSettings& step, const ReadyCommand& command, 
     const Task task{"input", kBetween, Container::exr};
     const ReadOptions read;
     const WriteOptions write;
-    Job job(task, console, read, write, 1, [](double) { return true; });
+    Job job(task, console, read, write, 1, [](double, const std::string&) { return true; });
     const std::optional<Step> made = command.converter->step(job);
     if (!made && !is_only) fail("must be the only step");
     if (!made && check_->is_given()) fail("makes no normals, so check cannot be used");
@@ -216,16 +219,42 @@ void Recipe::add_output(const OutputSettings& output, Console& console) {
     made.settings += check_->text();
     made.named = named_settings(made.last, task);
     if (outputs_.empty()) {
-        const auto add_files = [this](const Task& of) {
-            for (const std::string& file : of.prerequisites()) {
-                const bool is_below = !root_.empty() && file.starts_with(root_ + "/");
-                files_.push_back(is_below ? file.substr(root_.size() + 1) : file);
-            }
-        };
-        for (const ReadyCommand& command : before_) add_files(command.converter->task_for(kBetween, kBetween));
-        add_files(task);
+        first_out_ = out;
+        std::vector<std::string> files;
+        for (const ReadyCommand& command : before_) {
+            for (std::string& file : files_for_all(*command.converter, kBetween)) files.push_back(std::move(file));
+        }
+        for (std::string& file : files_for_all(*made.last.converter, out)) files.push_back(std::move(file));
+        for (const std::string& file : files) files_.push_back(below_root(file));
     }
     outputs_.push_back(std::move(made));
+}
+
+std::string Recipe::below_root(const std::string& file) const {
+    const bool is_below = !root_.empty() && file.starts_with(root_ + "/");
+    return is_below ? file.substr(root_.size() + 1) : file;
+}
+
+// What an input has and another has not is its own.
+std::vector<std::string> Recipe::files_for_all(const Converter& converter, const std::string& out) const {
+    std::vector<std::string> files = converter.task_for("input", out).prerequisites();
+    const std::vector<std::string> others = converter.task_for("other/name", out).prerequisites();
+    std::erase_if(
+        files, [&](const std::string& file) { return std::find(others.begin(), others.end(), file) == others.end(); });
+    return files;
+}
+
+std::vector<std::string> Recipe::own_files(const std::string& input, const std::string& path) const {
+    std::vector<std::string> files = other_parts(input, path);
+    const ReadyCommand& first = before_.empty() ? outputs_.front().last : before_.front();
+    const std::string out = before_.empty() ? first_out_ : kBetween;
+    for (const std::string& file : first.converter->task_for(path, out).prerequisites()) {
+        std::string name = below_root(file);
+        const bool is_known = std::find(files_.begin(), files_.end(), name) != files_.end() ||
+                              std::find(files.begin(), files.end(), name) != files.end();
+        if (!is_known) files.push_back(std::move(name));
+    }
+    return files;
 }
 
 // An output that leads out of the root whatever its input is called is a mistake in the manifest.

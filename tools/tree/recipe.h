@@ -66,6 +66,14 @@ public:
 
     // The files that options name and every output depends on, relative to the root.
     [[nodiscard]] const std::vector<std::string>& files() const { return files_; }
+    // The other files that the outputs of one input depend on, relative to the root: further parts of the input
+    // (other_parts.h), and those that options name by a pattern, such as the high mesh of a low one. `path` leads to
+    // the input.
+    [[nodiscard]] std::vector<std::string> own_files(const std::string& input, const std::string& path) const;
+    // Where a file is whose name is relative to the root.
+    [[nodiscard]] std::string path_to(const std::string& name) const {
+        return root_.empty() ? name : root_ + "/" + name;
+    }
     // The value that a setting of RecipeOutput::named has if it is not given, in the words of --help; may be empty.
     [[nodiscard]] std::string preset_of(const std::string& name) const;
     // The command lines that do the same, one for each step, for people.
@@ -79,6 +87,8 @@ private:
     [[nodiscard]] std::string with_root(const std::string& argument, const Command& command) const;
     void check_order(const StepSettings& step, const ReadyCommand& command, std::size_t index, Console& console) const;
     void add_output(const OutputSettings& output, Console& console);
+    [[nodiscard]] std::string below_root(const std::string& file) const;
+    [[nodiscard]] std::vector<std::string> files_for_all(const Converter& converter, const std::string& out) const;
     void check_folder(const NamePattern& name, const std::string& out, const Place& place) const;
     [[nodiscard]] NamedValues named_settings(const ReadyCommand& last, const Task& task) const;
 
@@ -86,6 +96,7 @@ private:
     const RuleSettings& rule_;
     const int number_;
     const std::string root_;
+    std::string first_out_;  // the first output of an input called "name"
     std::vector<Glob> match_, exclude_;
     std::unique_ptr<TextureCheck> check_;
     std::vector<ReadyCommand> before_;

@@ -19,8 +19,9 @@ public:
 
     Job& add(Task task) {
         tasks_.push_back(std::move(task));
-        Job& job = jobs_.emplace_back(tasks_.back(), console_, settings_.running.read, settings_.write,
-                                      settings_.running.threads, settings_.advance);
+        Job& job = jobs_.emplace_back(
+            tasks_.back(), console_, settings_.running.read, settings_.write, settings_.running.threads,
+            [this](double fraction, const std::string&) { return settings_.advance(fraction); });
         job.shared_maps = settings_.shared;
         return job;
     }
@@ -109,6 +110,10 @@ Result<Made> run_commands(const Recipe& recipe, const std::string& input, const 
         Converter& converter = *recipe.outputs()[output.index].last.converter;
         Job& job = jobs.add(converter.task_for(input, output.path));
         if (const Result<void> done = converter.process_task(job); !done) return done.error();
+        if (job.code() != ExitCode::done) {
+            return Error{ErrorCode::bad_data, input,
+                         job.warnings().empty() ? "has findings" : job.warnings().back().message};
+        }
         made.files.push_back(job.outputs());
     }
     jobs.add_warnings(made);

@@ -11,7 +11,6 @@
 #include "cli/text_file.h"
 #include "cli/usage_error.h"
 #include "tasks/name_pattern.h"
-#include "tasks/other_parts.h"
 #include "tree/state.h"
 
 namespace tex::cli {
@@ -35,7 +34,7 @@ void TreeFiles::add_inputs(const std::vector<Recipe>& recipes, const std::vector
     for (const BuildTask& task : tasks) {
         const std::string path = path_from(root, task.input);
         read_.add(path, "the input " + printable(task.input));
-        for (const std::string& part : other_parts(task.input, path))
+        for (const std::string& part : recipes[task.recipe].own_files(task.input, path))
             read_.add(path_from(root, part),
                       fmt::format("{}, which belongs to {}", printable(part), printable(task.input)));
         made.insert(task.outputs.begin(), task.outputs.end());

@@ -16,7 +16,6 @@
 #include <sys/stat.h>
 
 #include "cli/usage_error.h"
-#include "tasks/other_parts.h"
 #include "tree/file_events.h"
 
 namespace tex::cli {
@@ -145,7 +144,8 @@ void Watch::learn_names() {
     for (std::size_t k = 0; k < tree_->work.tasks.size(); ++k) {
         const BuildTask& task = tree_->work.tasks[k];
         inputs_.emplace(task.input, k);
-        for (std::string& part : other_parts(task.input, path(task.input))) inputs_.emplace(std::move(part), k);
+        for (std::string& part : tree_->recipes[task.recipe].own_files(task.input, path(task.input)))
+            inputs_.emplace(std::move(part), k);
         add_link(task.input);
         for (const std::string& output : task.outputs) {
             outputs_.insert(output);

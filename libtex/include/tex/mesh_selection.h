@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,13 +36,21 @@ struct MeshSelection {
                                             // given; else mikktspace
 };
 
+// Triangles of a SelectedPart that come from one part of the file.
+struct SelectedPiece {
+    std::string name;          // of the node that places the part, or of the part if that has none
+    std::string material;      // may be empty
+    std::size_t triangle = 0;  // the first one; the others follow up to that of the next piece
+};
+
 // The chosen parts, joined. The part has one set of UVs, normals, and no tangents of vertices.
 struct SelectedPart {
     MeshPart part;
     std::vector<Float4> tangents;  // one for each element of part.indices
     TangentSource source = TangentSource::mikktspace;
-    bool has_normal_map = false;  // their material
-    bool has_tangents = false;    // every part has stored tangents, whether or not they were chosen
+    bool has_normal_map = false;        // their material
+    bool has_tangents = false;          // every part has stored tangents, whether or not they were chosen
+    std::vector<SelectedPiece> pieces;  // in the order of their triangles
 };
 
 // Joins the parts that `selection` names. Tangents are made for each part, before a node transforms it.
@@ -56,12 +65,25 @@ struct SelectedPart {
                                                const Execution& execution = {});
 
 // All parts as the nodes of the scene place them: once for each node that shows them; in their own space if there are
-// no nodes at all. Parts that no node shows are left out.
+// no nodes at all. Parts that no node shows are left out. Each is called as its node is, if that has a name.
 //
 // Preconditions (asserted): every part passes check_part().
 // Errors: bad_data     as in_scene(), or no node shows a part
 //         out_of_memory
 [[nodiscard]] Result<std::vector<MeshPart>> parts_in_scene(Mesh mesh);
+
+// Which names belong together: numbers for TransferInputs.
+struct MatchedNames {
+    std::vector<int> low, high;                    // the number of each name; equal numbers belong together
+    std::vector<std::string> lone_low, lone_high;  // those without partner, each once
+};
+
+// Names of parts of a low and a high mesh belong together if their stems are equal, in upper or lower case. The stem of
+// "Rock_low" is "Rock"; what follows the mark does not count, so that "Rock_high", "rock_high_bolts" and
+// "Rock_high.001" belong to it. A mark is low, lowpoly, lo or lp, or high, highpoly, hi or hp, between separators (_ -
+// . or a space) or at the end; the last one counts. A name without a mark is its own stem. (Bakers agree on _low and
+// _high.)
+[[nodiscard]] MatchedNames match_names(const std::vector<std::string>& low, const std::vector<std::string>& high);
 
 // The triangles whose UVs have their centre in a UDIM tile, with their tangents. Tile 1001 + u + 10 v is the square
 // from (u, v) to (u + 1, v + 1), where v points up and u is 0 to 9 (Foundry, Mari).

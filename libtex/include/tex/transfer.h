@@ -21,9 +21,23 @@
 // between two triangles with a common edge. Among triangles at the same distance, the first one wins.
 //
 // At the hit, n is the normalised interpolated normal of the high mesh, or the triangle's own where the high mesh has
-// none. The texel's vector is the normalised sum of its samples that hit, converted to tangent space at the texel's
-// centre by the decoder (convert.h), or at the covered sample nearest to it. A texel is *missed* if triangles of the
-// low mesh cover it, but no ray hits.
+// none, or what HighDetail::normals say in the tangent space of the high mesh. The texel's vector is the normalised sum
+// of its samples that hit, converted to tangent space at the texel's centre by the decoder (convert.h), or at the
+// covered sample nearest to it. A texel is *missed* if triangles of the low mesh cover it, but no ray hits.
+//
+// Second rays start at each hit of a sample, N = rays_per_hit of them, in directions about n (about the triangle's own
+// normal G if n points into it), each as often as its cosine with n says: the k-th point of Sobol's sequence, which the
+// texel's place scrambles (rays/hemisphere.h). Directions below the triangle's plane are reflected by it, so that no
+// triangle hides itself. They start off the surface by 2^-32 of the largest coordinate, less than a float can tell.
+// Every triangle blocks them, from both sides, up to occlusion_distance. Without backfaces all is on the side of G;
+// with them, on the side from which the ray came.
+//
+//     occlusion  the part of second rays that nothing blocks: 1 is open, 0 closed. Of a plane below an infinite wall
+//                at a right angle, 1/2; its standard deviation is at most sqrt(v (1 - v) / N).
+//     bent       the normalised sum of the directions that nothing blocks, in tangent space; n if all are blocked
+//     thickness  the mean distance to the first triangle along N such directions about -n, at most occlusion_distance.
+//                Those that meet none count as that distance, or not at all if there is no limit. It is 4/3 r in a
+//                sphere of radius r.
 //
 // Automatic `front` and `back` follow from both meshes. They are the largest distances of the high mesh's vertices from
 // the low mesh, and of the low mesh's corners and middles of triangles from the high one along their D, outwards and
@@ -32,6 +46,7 @@
 
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <vector>
 
@@ -61,6 +76,12 @@ struct TransferredMaps {
     NormalMap object;      // in the space of the meshes: see convert.h
     Plane<float> heights;  // the mean distance of the hits from P along D, in the unit of the meshes: outside is > 0
     Plane<float> position[3];  // x, y, z of the mean hit
+    Plane<float> occlusion;    // 0 to 1; background is 1
+    NormalMap bent;
+    Plane<float> thickness;  // in the unit of the meshes
+    // If the inputs have them. The id is that of most hits of a texel, the smallest one of several; colours are means.
+    Plane<std::int32_t> ids;  // kNoId: background
+    Image color;              // R, G, B; background is 0
     Plane<TexelOrigin> origin;
 
     // Counts of texels; those of samples say so.
@@ -71,9 +92,13 @@ struct TransferredMaps {
     std::int64_t singular = 0;  // the low mesh has no tangent space there: they are (0, 0, 1)
     std::int64_t behind = 0;    // samples whose rays hit, or would hit, only triangles seen from behind
 
-    double front = 0.0, back = 0.0;       // as used, in the unit of the meshes
-    double diagonal = 0.0;                // of the low mesh's box
-    float lowest = 0.0f, highest = 0.0f;  // heights of hits, also if no map of heights is made
+    std::int64_t rays = 0;  // all that were cast from samples and from hits
+
+    // As used, in the unit of the meshes; with a cage, front is the largest distance from it.
+    double front = 0.0, back = 0.0;
+    double diagonal = 0.0;                   // of the low mesh's box
+    float lowest = 0.0f, highest = 0.0f;     // heights of hits, also if no map of heights is made
+    float thinnest = 0.0f, thickest = 0.0f;  // of hits
 
     // What would have hit the missed texels, by a line through the first sample of each: the reach in front and behind
     // that 95 percent of those need whose line meets a triangle from outside, and the number of the others.
@@ -81,22 +106,66 @@ struct TransferredMaps {
     std::int64_t hopeless = 0;
 };
 
+inline constexpr std::int32_t kNoId = -1;
+
+// Pictures on a part of the high mesh, at its UVs, which repeat. They are filtered bilinearly, without mip levels: of
+// pictures that are finer than the map, subsamples make the mean. What pointers show must stay until transfer()
+// returns.
+struct HighDetail {
+    // The part's own normal map in tangent space, y up, the engine that decodes it, and the part's tangents, one for
+    // each corner. Null: none. The part must have normals.
+    const NormalMap* normals = nullptr;
+    const std::vector<Float4>* tangents = nullptr;
+    Decoder decoder = Decoder::gltf;
+    // Its colours: one plane is grey, of more the first three count. Null: the part is white.
+    const Image* color = nullptr;
+    int uv_set = 0;
+};
+
+// What transfer() may be given beside the two meshes. What pointers show must stay as it is until it returns.
+struct TransferInputs {
+    // The low mesh, pushed outwards: the same triangles, of which only the positions count. Rays start at O = C, the
+    // same place of the cage's triangle, with D = normalize(C - P) and |C - P| in place of `front`, and a millionth of
+    // the low mesh's diagonal more, so that they meet what lies on the cage. Where C is P, D is that of `rays`.
+    const MeshPart* cage = nullptr;
+    // With RayMode::straight, k of each place of the map, from 0 (smooth) to 1 (straight), in place of the distance to
+    // hard edges. A picture of any size, which is filtered bilinearly and lies over the map.
+    const Plane<float>* skew = nullptr;
+    // The same of a factor for `front`, 0 or more.
+    const Plane<float>* offset = nullptr;
+    // Rays from triangles of the low mesh meet the parts of the high one that have the same number: one for each
+    // triangle, and one for each part. Rays of a number that no part has are missed. Second rays meet all parts. Both
+    // are empty: all rays meet all parts.
+    std::vector<int> low_groups, high_groups;
+    // What TransferredMaps::ids shows of each part of the high mesh, 0 or more. Empty: there is no such map.
+    std::vector<std::int32_t> high_ids;
+    // What lies on each part of the high mesh. Empty: nothing.
+    std::vector<HighDetail> high_details;
+    // Counts rays while they are cast; may be null.
+    std::atomic<std::int64_t>* rays = nullptr;
+};
+
 // Makes the maps of the low mesh. `high`: the triangles that rays hit, in the same space as `low.part`. Parts need
 // neither normals nor UVs.
 //
 // Errors: bad_data     a part does not pass check_part()
 //         bad_option   the extent is empty or too large; as validate(options); the low mesh has no normals, no such set
-//         of UVs, not as many tangents as corners; its triangles
-//                      cover no texel of the map; `high` is empty; no ray hits anything (the reason says how far apart
-//                      the meshes are)
+//                      of UVs, not as many tangents as corners; its triangles cover no texel of the map; `high` is
+//                      empty; no ray hits anything (the reason says how far apart the meshes are); the cage has other
+//                      triangles; a skew or offset is empty, negative or not finite; groups, ids or details do not fit
+//                      the meshes
 //         unsupported  as to_tangent_space(); more than kMaxTriangles triangles in `high`
 //         out_of_memory, cancelled
 // The same bytes for every number of threads, processor and compiler.
-// Memory: 13 bytes for each texel, 12 more for object space, 4 for heights, 12 for positions, and 4 while borders are
-// filled; about 100 bytes for each triangle of the high mesh and 200 for each of the low one.
+// Memory: 13 bytes for each texel, 12 more for object space, for positions and for bent normals, 4 for heights,
+// occlusion and thickness, and 4 while borders are filled; about 100 bytes for each triangle of the high mesh (twice
+// that for groups with second rays) and 200 for each of the low one.
 [[nodiscard]] Result<TransferredMaps> transfer(Extent extent, const TangentSpace& low,
                                                const std::vector<MeshPart>& high, const TransferOptions& options = {},
                                                const Execution& execution = {});
+[[nodiscard]] Result<TransferredMaps> transfer(Extent extent, const TangentSpace& low,
+                                               const std::vector<MeshPart>& high, const TransferInputs& inputs,
+                                               const TransferOptions& options = {}, const Execution& execution = {});
 
 }  // namespace tex
 #pragma GCC visibility pop

@@ -34,6 +34,8 @@ struct Reach {
     double value = 0.0;  // finite, 0 or more; means nothing if automatic
 };
 
+inline constexpr int kMaxRaysPerHit = 4096;
+
 struct TransferOptions {
     RayMode rays = RayMode::smooth;
     Reach front, back;  // how far rays reach outside and inside of the low mesh
@@ -48,8 +50,14 @@ struct TransferOptions {
     int padding = kPadAll;  // the width in texels of the border around each chart, 0 or more
     int subsamples = 1;     // of a texel, in each direction, 1 to kMaxSubsamples
 
-    // The maps to make besides the one in tangent space.
+    // The maps to make besides the one in tangent space: from the rays, and from second rays that start where they hit.
     bool object = false, heights = false, positions = false;
+    bool occlusion = false, bent = false, thickness = false;
+
+    int rays_per_hit = 64;     // second rays: 1 to kMaxRaysPerHit; as many again for thickness
+    Reach occlusion_distance;  // how far second rays reach; automatic: without limit
+
+    [[nodiscard]] bool has_second_rays() const { return occlusion || bent || thickness; }
 };
 
 // Whether every option is in its range. transfer() calls it first. Errors: bad_option, which names the option.

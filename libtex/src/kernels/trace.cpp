@@ -187,6 +187,8 @@ HWY_INLINE Waiting* push(const Boxes& boxes, unsigned met, const float* enter, W
     return top;
 }
 
+// The nearest hit, or with kAny the first one that is found.
+template <bool kAny>
 HWY_INLINE RayHit trace(const TreeView& tree, const Ray& ray) {
     RayHit hit;
     BoxRay box;
@@ -200,7 +202,9 @@ HWY_INLINE RayHit trace(const TreeView& tree, const Ray& ray) {
         const Waiting next = *--top;
         if (next.enter > box.most) continue;
         if ((next.child & kGroupBit) != 0) {
-            if (hit_group(tree.groups[next.child & ~kGroupBit], ray, edge, hit)) box.shorten(hit.t);
+            if (!hit_group(tree.groups[next.child & ~kGroupBit], ray, edge, hit)) continue;
+            if (kAny) return hit;
+            box.shorten(hit.t);
             continue;
         }
         float enter[kBoxes];
@@ -212,7 +216,11 @@ HWY_INLINE RayHit trace(const TreeView& tree, const Ray& ray) {
 }
 
 void TraceRays(const TreeView& tree, const Ray* rays, std::size_t count, RayHit* hits) {
-    for (std::size_t k = 0; k < count; ++k) hits[k] = trace(tree, rays[k]);
+    for (std::size_t k = 0; k < count; ++k) hits[k] = trace<false>(tree, rays[k]);
+}
+
+void FindBlocked(const TreeView& tree, const Ray* rays, std::size_t count, std::uint8_t* blocked) {
+    for (std::size_t k = 0; k < count; ++k) blocked[k] = trace<true>(tree, rays[k]).triangle != kNoHit ? 1 : 0;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -223,9 +231,14 @@ HWY_AFTER_NAMESPACE();
 namespace tex {
 
 HWY_EXPORT(TraceRays);
+HWY_EXPORT(FindBlocked);
 
 void trace_rays(const TreeView& tree, const Ray* rays, std::size_t count, RayHit* hits) {
     HWY_DYNAMIC_DISPATCH(TraceRays)(tree, rays, count, hits);
+}
+
+void find_blocked(const TreeView& tree, const Ray* rays, std::size_t count, std::uint8_t* blocked) {
+    HWY_DYNAMIC_DISPATCH(FindBlocked)(tree, rays, count, blocked);
 }
 
 }  // namespace tex

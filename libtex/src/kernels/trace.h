@@ -72,4 +72,7 @@ struct RayHit {
 // hits[k] becomes the hit of rays[k]. A ray whose origin is farther away than 10^30 sizes of the tree hits nothing.
 void trace_rays(const TreeView& tree, const Ray* rays, std::size_t count, RayHit* hits);
 
+// blocked[k] becomes 1 if rays[k] hits anything, otherwise 0: what trace_rays() finds, in less time.
+void find_blocked(const TreeView& tree, const Ray* rays, std::size_t count, std::uint8_t* blocked);
+
 }  // namespace tex

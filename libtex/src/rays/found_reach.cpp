@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <utility>
+#include <cstdint>
+#include <limits>
+#include <vector>
 
 namespace tex {
 namespace {
@@ -34,17 +36,23 @@ struct BothSides {
     Greatest front, back;
 };
 
+// Some triangles of the low mesh, with a tree over them.
+struct LowSide {
+    const BoxTree& tree;
+    const std::vector<std::uint32_t>& triangles;
+    const RayDirections& directions;
+};
+
 // From the vertices of the high mesh to the low one. A vertex that is nearer than both distances so far changes
 // neither.
-void see_vertices(const MeshPart& part, int begin, int end, const BoxTree& low, const RayDirections& directions,
-                  double most, BothSides& sides) {
+void see_vertices(const MeshPart& part, int begin, int end, const LowSide& low, double most, BothSides& sides) {
     for (int k = begin; k < end; ++k) {
         const Vector3 p = vector_of(part.positions[static_cast<std::size_t>(k)]);
         const double known = std::min(sides.front.value(), sides.back.value());
-        if (low.is_within(p, known * known)) continue;
-        const NearestPoint nearest = low.nearest(p, most * most);
+        if (low.tree.is_within(p, known * known)) continue;
+        const NearestPoint nearest = low.tree.nearest(p, most * most);
         if (nearest.triangle == kNoHit) continue;
-        const Vector3 outwards = directions.at(nearest.triangle, nearest.weights, nearest.point);
+        const Vector3 outwards = low.directions.at(low.triangles[nearest.triangle], nearest.weights, nearest.point);
         const bool in_front = dot(p - nearest.point, outwards) >= 0.0;
         (in_front ? sides.front : sides.back).see(std::sqrt(nearest.squared));
     }
@@ -74,36 +82,69 @@ void see_triangle(const MeshPart& low, std::size_t triangle, const RayDirections
     }
 }
 
-}  // namespace
+// The triangles of the low mesh whose rays meet a group.
+std::vector<std::uint32_t> triangles_of(const MeshPart& low, const RayGroups& groups, int group) {
+    std::vector<std::uint32_t> triangles;
+    for (std::uint32_t t = 0; t < low.triangles(); ++t) {
+        if (groups.of_low(t) == group) triangles.push_back(t);
+    }
+    return triangles;
+}
 
-Result<FoundReach> found_reach(const MeshPart& low, const RayDirections& directions, const Triangles& high,
-                               const BoxTree& tree, double diagonal, const Execution& execution) {
-    const Execution quiet{execution.threads, {}};
-    const double most = kFarthest * diagonal;
-    BothSides sides;
-    const std::size_t step = low.triangles() / kMostTriangles + 1;
+MeshPart only_these(const MeshPart& low, const std::vector<std::uint32_t>& triangles) {
+    MeshPart part;
+    part.positions = low.positions;
+    for (const std::uint32_t t : triangles)
+        part.indices.insert(part.indices.end(), {low.indices[3 * t], low.indices[3 * t + 1], low.indices[3 * t + 2]});
+    return part;
+}
+
+Result<void> see_group(const MeshPart& low, const std::vector<std::uint32_t>& triangles,
+                       const RayDirections& directions, const RayGroup& group, double most, const Execution& execution,
+                       BothSides& sides) {
+    const std::size_t step = triangles.size() / kMostTriangles + 1;
     const auto from_low = [&](int begin, int end) {
         for (int k = begin; k < end; ++k)
-            see_triangle(low, static_cast<std::size_t>(k) * step, directions, tree, most, sides);
+            see_triangle(low, triangles[static_cast<std::size_t>(k) * step], directions, group.tree, most, sides);
     };
-    const auto triangles = static_cast<int>((low.triangles() + step - 1) / step);
-    if (auto seen = parallel_for(quiet, triangles, kTrianglesPerPiece, from_low); !seen) return seen.error();
-    const auto low_tree = BoxTree::build(Triangles({&low}), quiet);
+    const auto count = static_cast<int>((triangles.size() + step - 1) / step);
+    if (auto seen = parallel_for(execution, count, kTrianglesPerPiece, from_low); !seen) return seen;
+    const MeshPart part = only_these(low, triangles);
+    const auto low_tree = BoxTree::build(Triangles({&part}), execution);
     if (!low_tree) return low_tree.error();
-    for (const MeshPart* part : high.parts()) {
-        const auto from_high = [&](int begin, int end) {
-            see_vertices(*part, begin, end, *low_tree, directions, most, sides);
-        };
-        const auto vertices = static_cast<int>(part->positions.size());
-        if (auto seen = parallel_for(quiet, vertices, kVerticesPerPiece, from_high); !seen) return seen.error();
+    const LowSide side{*low_tree, triangles, directions};
+    for (const MeshPart* high : group.triangles.parts()) {
+        const auto from_high = [&](int begin, int end) { see_vertices(*high, begin, end, side, most, sides); };
+        const auto vertices = static_cast<int>(high->positions.size());
+        if (auto seen = parallel_for(execution, vertices, kVerticesPerPiece, from_high); !seen) return seen;
+    }
+    return {};
+}
+
+}  // namespace
+
+Result<FoundReach> found_reach(const MeshPart& low, const RayDirections& directions, const RayGroups& groups,
+                               double diagonal, const Execution& execution) {
+    BothSides sides;
+    for (std::size_t k = 0; k < groups.all().size(); ++k) {
+        const std::vector<std::uint32_t> triangles = triangles_of(low, groups, static_cast<int>(k));
+        if (triangles.empty()) continue;
+        auto seen = see_group(low, triangles, directions, groups.all()[k], kFarthest * diagonal,
+                              {execution.threads, {}}, sides);
+        if (!seen) return seen.error();
     }
     const auto with_reserve = [&](double distance) { return (1.0 + kReserve) * distance + kLeast * diagonal; };
     return FoundReach{with_reserve(sides.front.value()), with_reserve(sides.back.value())};
 }
 
-double distance_between(const MeshPart& low, const BoxTree& high) {
+double distance_between(const MeshPart& low, const RayGroups& groups) {
     double squared = std::numeric_limits<double>::infinity();
-    for (const Float3& p : low.positions) squared = std::min(squared, high.nearest(vector_of(p), squared).squared);
+    for (std::size_t c = 0; c < low.indices.size(); ++c) {
+        const int group = groups.of_low(c / 3);
+        if (group == RayGroups::kNone) continue;
+        const BoxTree& high = groups.all()[static_cast<std::size_t>(group)].tree;
+        squared = std::min(squared, high.nearest(vector_of(low.positions[low.indices[c]]), squared).squared);
+    }
     return std::sqrt(squared);
 }
 

@@ -3,8 +3,8 @@
 
 #pragma once
 
-#include "rays/box_tree.h"
 #include "rays/ray_directions.h"
+#include "rays/ray_groups.h"
 
 namespace tex {
 
@@ -14,10 +14,10 @@ struct FoundReach {
 };
 
 // Both are at least a thousandth of `diagonal`. Errors: out_of_memory, cancelled.
-Result<FoundReach> found_reach(const MeshPart& low, const RayDirections& directions, const Triangles& high,
-                               const BoxTree& tree, double diagonal, const Execution& execution);
+Result<FoundReach> found_reach(const MeshPart& low, const RayDirections& directions, const RayGroups& groups,
+                               double diagonal, const Execution& execution);
 
-// The smallest distance of the low mesh's vertices from the high mesh.
-double distance_between(const MeshPart& low, const BoxTree& high);
+// The smallest distance of the low mesh's vertices from what their rays may meet.
+double distance_between(const MeshPart& low, const RayGroups& groups);
 
 }  // namespace tex

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rays/high_surface.h"
+
 namespace tex {
 namespace {
 
@@ -30,7 +32,7 @@ RayEnd nearer(const RayHit& out, const RayHit& in) {
 void RayCaster::cast_nearest(const std::vector<RayStart>& starts, std::vector<RayEnd>& ends, bool backfaces) const {
     std::vector<Ray> rays;
     for (const RayStart& s : starts) {
-        rays.push_back(ray_from(s.point, s.direction, front_, backfaces ? Facing::both : Facing::back));
+        rays.push_back(ray_from(s.point, s.direction, s.front, backfaces ? Facing::both : Facing::back));
         rays.push_back(ray_from(s.point, -1.0 * s.direction, back_, backfaces ? Facing::both : Facing::front));
     }
     std::vector<RayHit> hits(rays.size());
@@ -41,12 +43,12 @@ void RayCaster::cast_nearest(const std::vector<RayStart>& starts, std::vector<Ra
 void RayCaster::cast_outermost(const std::vector<RayStart>& starts, std::vector<RayEnd>& ends, bool backfaces) const {
     std::vector<Ray> rays;
     for (const RayStart& s : starts) {
-        rays.push_back(ray_from(s.point + front_ * s.direction, -1.0 * s.direction, front_ + back_,
+        rays.push_back(ray_from(s.point + s.front * s.direction, -1.0 * s.direction, s.front + back_,
                                 backfaces ? Facing::both : Facing::front));
     }
     std::vector<RayHit> hits(rays.size());
     trace_rays(tree_.view(), rays.data(), rays.size(), hits.data());
-    for (std::size_t k = 0; k < starts.size(); ++k) ends[k] = end_of(hits[k], front_ - hits[k].t);
+    for (std::size_t k = 0; k < starts.size(); ++k) ends[k] = end_of(hits[k], starts[k].front - hits[k].t);
 }
 
 // Casts what has missed again, for triangles seen from behind.
@@ -54,7 +56,7 @@ void RayCaster::note_behind(const std::vector<RayStart>& starts, std::vector<Ray
     if (backfaces_) {
         for (std::size_t k = 0; k < starts.size(); ++k) {
             if (ends[k].triangle == kNoHit) continue;
-            ends[k].behind = dot(face_normal_of(ends[k].triangle), starts[k].direction) <= 0.0;
+            ends[k].behind = dot(HighSurface::face_normal(place_of(ends[k])), starts[k].direction) <= 0.0;
         }
         return;
     }
@@ -88,22 +90,6 @@ RayEnd RayCaster::cast_line(const RayStart& start) const {
     RayHit hits[2];
     trace_rays(tree_.view(), rays, 2, hits);
     return nearer(hits[0], hits[1]);
-}
-
-Vector3 RayCaster::face_normal_of(std::uint32_t triangle) const {
-    const auto corners = triangles_.at(triangle).corners();
-    return normalized(cross(corners[1] - corners[0], corners[2] - corners[0]));
-}
-
-Vector3 RayCaster::normal_at(const RayEnd& end) const {
-    const Triangles::Place place = triangles_.at(end.triangle);
-    if (!place.part.normals.empty()) {
-        Vector3 sum;
-        for (std::size_t k = 0; k < 3; ++k)
-            sum = sum + end.weights[k] * normalized(vector_of(place.part.normals[place.vertex(k)]));
-        if (dot(sum, sum) > 1e-12) return normalized(sum);
-    }
-    return face_normal_of(end.triangle);
 }
 
 }  // namespace tex

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -15,13 +16,14 @@ namespace tex {
 // A place of the low mesh.
 struct RayStart {
     Vector3 point;
-    Vector3 direction;  // outwards, of unit length
+    Vector3 direction;   // outwards, of unit length
+    double front = 0.0;  // how far the ray reaches outwards
 };
 
 // Where its ray meets the high mesh.
 struct RayEnd {
     std::uint32_t triangle = kNoHit;  // of the high mesh
-    double weights[3] = {};           // of its corners
+    std::array<double, 3> weights{};  // of its corners
     double height = 0.0;              // from the place along the direction
     bool behind = false;              // only triangles seen from behind are hit, or would be if they counted
 };
@@ -29,9 +31,8 @@ struct RayEnd {
 class RayCaster {
 public:
     // Distances in the unit of the meshes. `triangles` and `tree` must outlive this.
-    RayCaster(const Triangles& triangles, const BoxTree& tree, HitChoice choice, bool backfaces, double front,
-              double back)
-        : triangles_(triangles), tree_(tree), choice_(choice), backfaces_(backfaces), front_(front), back_(back) {}
+    RayCaster(const Triangles& triangles, const BoxTree& tree, HitChoice choice, bool backfaces, double back)
+        : triangles_(triangles), tree_(tree), choice_(choice), backfaces_(backfaces), back_(back) {}
 
     // ends[k] belongs to starts[k].
     void cast(const std::vector<RayStart>& starts, std::vector<RayEnd>& ends) const;
@@ -39,20 +40,20 @@ public:
     // The nearest triangle seen from outside on the whole line of a start.
     [[nodiscard]] RayEnd cast_line(const RayStart& start) const;
 
-    // The normal at a hit: see transfer.h. Of unit length.
-    [[nodiscard]] Vector3 normal_at(const RayEnd& end) const;
+    // The triangle of a hit, and the place of the hit on it.
+    [[nodiscard]] Triangles::Place place_of(const RayEnd& end) const { return triangles_.at(end.triangle); }
+    [[nodiscard]] Vector3 point_of(const RayEnd& end) const { return mix(place_of(end).corners(), end.weights); }
 
 private:
     void cast_outermost(const std::vector<RayStart>& starts, std::vector<RayEnd>& ends, bool backfaces) const;
     void cast_nearest(const std::vector<RayStart>& starts, std::vector<RayEnd>& ends, bool backfaces) const;
     void note_behind(const std::vector<RayStart>& starts, std::vector<RayEnd>& ends) const;
-    [[nodiscard]] Vector3 face_normal_of(std::uint32_t triangle) const;
 
     const Triangles& triangles_;
     const BoxTree& tree_;
     HitChoice choice_;
     bool backfaces_;
-    double front_, back_;
+    double back_;
 };
 
 }  // namespace tex

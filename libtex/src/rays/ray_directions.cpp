@@ -177,20 +177,23 @@ Result<RayDirections> RayDirections::make(const MeshPart& part, RayMode mode, do
     });
 }
 
+double RayDirections::straightness(Vector3 point) const {
+    if (!hard_tree_) return 1.0;
+    const double most = width_ * width_;
+    const double part = std::sqrt(std::min(hard_tree_->nearest(point, most).squared, most));
+    const double t = width_ > 0.0 ? part / width_ : 1.0;
+    return t * t * (3.0 - 2.0 * t);
+}
+
 Vector3 RayDirections::at(std::size_t triangle, const std::array<double, 3>& weights, Vector3 point) const {
+    return skewed(triangle, weights, own_.empty() ? 0.0 : straightness(point));
+}
+
+Vector3 RayDirections::skewed(std::size_t triangle, const std::array<double, 3>& weights, double k) const {
     const Vector3 smooth = normalized(mix(of_corners(normals_, triangle), weights));
     Vector3 direction = smooth;
-    if (!own_.empty()) {
-        const Vector3 own = normalized(mix(of_corners(own_, triangle), weights));
-        double k = 1.0;
-        if (hard_tree_) {
-            const double most = width_ * width_;
-            const double part = std::sqrt(std::min(hard_tree_->nearest(point, most).squared, most));
-            const double t = width_ > 0.0 ? part / width_ : 1.0;
-            k = t * t * (3.0 - 2.0 * t);
-        }
-        direction = normalized((1.0 - k) * smooth + k * own);
-    }
+    if (!own_.empty())
+        direction = normalized((1.0 - k) * smooth + k * normalized(mix(of_corners(own_, triangle), weights)));
     if (dot(direction, direction) > 0.5) return direction;
     // Normals cancel out: the triangle's own, or any.
     const Vector3 face = face_normal(corners_of(*part_, triangle));

@@ -25,12 +25,15 @@ public:
 
     // Of unit length, at the point of the triangle that has these weights.
     [[nodiscard]] Vector3 at(std::size_t triangle, const std::array<double, 3>& weights, Vector3 point) const;
+    // The same with this k of RayMode::straight.
+    [[nodiscard]] Vector3 skewed(std::size_t triangle, const std::array<double, 3>& weights, double k) const;
 
     // The hard edges as triangles without area; empty unless the mode is `straight`.
     [[nodiscard]] const MeshPart& hard_edges() const { return *hard_; }
 
 private:
     void set_straight(const std::vector<std::uint32_t>& position, double angle);
+    [[nodiscard]] double straightness(Vector3 point) const;
     [[nodiscard]] std::array<Vector3, 3> of_corners(const std::vector<Vector3>& normals, std::size_t triangle) const {
         return {normals[3 * triangle], normals[3 * triangle + 1], normals[3 * triangle + 2]};
     }

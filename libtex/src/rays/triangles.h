@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // triangles.h: the triangles of several parts under one numbering.
 //
-// The folder rays/ holds what rays meet: a tree of boxes over triangles, and the places on them that are nearest to a
-// point. Its rule: it opens no file and knows no map. Coordinates are those of the meshes, in double; only
+// The folder rays/ holds what rays meet, a tree of boxes over triangles, the places on them that are nearest to a
+// point, and the maps that rays fill. Its rule: it opens no file. Coordinates are those of the meshes, in double; only
 // kernels/trace.h knows other ones.
 
 #pragma once

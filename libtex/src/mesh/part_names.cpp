@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "mesh/part_names.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+namespace tex {
+namespace {
+
+using Marks = std::array<std::string_view, 4>;
+constexpr Marks kLowMarks = {"low", "lowpoly", "lo", "lp"}, kHighMarks = {"high", "highpoly", "hi", "hp"};
+constexpr std::string_view kSeparators = "_-. ";
+
+// Only ASCII: names in other scripts have no case, or must be written alike.
+std::string in_lower_case(std::string text) {
+    for (char& c : text) {
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string stem_of_part(const std::string& name, PartSide side) {
+    const Marks& marks = side == PartSide::low ? kLowMarks : kHighMarks;
+    const std::string text = in_lower_case(name);
+    std::size_t end = text.size();  // of the word, from the last one to the second
+    while (end > 0) {
+        const std::size_t separator = text.find_last_of(kSeparators, end - 1);
+        if (separator == std::string::npos || separator == 0) break;
+        const std::string_view word = std::string_view(text).substr(separator + 1, end - separator - 1);
+        if (std::find(marks.begin(), marks.end(), word) != marks.end()) return text.substr(0, separator);
+        end = separator;
+    }
+    return text;
+}
+
+}  // namespace tex

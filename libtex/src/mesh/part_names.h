@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// part_names.h: what names of parts of low and high meshes have in common: match_names() of tex/mesh_selection.h.
+
+#pragma once
+
+#include <string>
+
+namespace tex {
+
+enum class PartSide { low, high };
+
+// The name in lower case, without the last mark of its side and what follows it.
+[[nodiscard]] std::string stem_of_part(const std::string& name, PartSide side);
+
+}  // namespace tex

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// high_surface.h: what is found on the high mesh at a hit: normals, colours, ids (TransferInputs).
+
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include <tex/transfer.h>
+
+#include "rays/triangles.h"
+
+namespace tex {
+
+class HighSurface {
+public:
+    // Both must outlive this. Places refer to parts of `high`.
+    HighSurface(const std::vector<MeshPart>& high, const TransferInputs& inputs);
+
+    using Weights = std::array<double, 3>;
+
+    // The normal at the place: see transfer.h. Of unit length.
+    [[nodiscard]] Vector3 normal_at(const Triangles::Place& place, const Weights& weights) const;
+    [[nodiscard]] static Vector3 face_normal(const Triangles::Place& place);
+
+    [[nodiscard]] bool has_colors() const { return has_colors_; }
+    [[nodiscard]] Vector3 color_at(const Triangles::Place& place, const Weights& weights) const;
+
+    [[nodiscard]] bool has_ids() const { return !inputs_.high_ids.empty(); }
+    [[nodiscard]] std::int32_t id_of(const Triangles::Place& place) const { return inputs_.high_ids[index_of(place)]; }
+
+private:
+    [[nodiscard]] std::size_t index_of(const Triangles::Place& place) const {
+        return static_cast<std::size_t>(&place.part - high_.data());
+    }
+    [[nodiscard]] const HighDetail* detail_of(const Triangles::Place& place) const {
+        return inputs_.high_details.empty() ? nullptr : &inputs_.high_details[index_of(place)];
+    }
+
+    const std::vector<MeshPart>& high_;
+    const TransferInputs& inputs_;
+    bool has_colors_ = false;
+};
+
+// Errors: bad_option, if ids and details do not fit the parts (transfer.h).
+Result<void> check_details(const TransferInputs& inputs, const std::vector<MeshPart>& high);
+
+}  // namespace tex

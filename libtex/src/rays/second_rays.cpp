@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "rays/second_rays.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace tex {
+namespace {
+
+// Of the largest coordinate. The place of a hit and the test of a triangle are exact to a few times 2^-52 of it.
+constexpr double kLift = 0x1p-32;
+// Makes the directions of thickness others than those of occlusion.
+constexpr std::uint32_t kInwards = 0x68bc21ebU;
+
+double largest_coordinate(const BoxTree& tree) {
+    const Vector3 a = tree.low(), b = tree.high();
+    return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z), std::abs(b.x), std::abs(b.y), std::abs(b.z)});
+}
+
+}  // namespace
+
+SecondRays::SecondRays(const BoxTree& tree, const TransferOptions& options, double distance)
+    : tree_(tree), hemisphere_(options.rays_per_hit), looks_out_(options.occlusion || options.bent),
+      looks_in_(options.thickness), limit_(distance) {
+    const Vector3 across = tree.high() - tree.low();
+    length_ = std::min(limit_, 2.0 * std::sqrt(dot(across, across)));  // nothing is farther away
+    lift_ = kLift * largest_coordinate(tree);
+}
+
+void SecondRays::start(const HitPlace& place, double side, std::uint32_t seed, Facing facing, Scratch& scratch) const {
+    const auto count = static_cast<std::size_t>(hemisphere_.count());
+    scratch.directions.resize(count);
+    scratch.rays.resize(count);
+    hemisphere_.about(side * place.normal, side * place.face, seed, scratch.directions.data());
+    const Vector3 from = place.point + (side * lift_) * place.face;
+    for (std::size_t k = 0; k < count; ++k) {
+        const Vector3& d = scratch.directions[k];
+        scratch.rays[k] = {{from.x, from.y, from.z}, {d.x, d.y, d.z}, length_, facing};
+    }
+}
+
+void SecondRays::add_openness(const HitPlace& place, std::uint32_t seed, Scratch& scratch, Sums& sums) const {
+    start(place, 1.0, seed, Facing::both, scratch);
+    scratch.blocked.resize(scratch.rays.size());
+    find_blocked(tree_.view(), scratch.rays.data(), scratch.rays.size(), scratch.blocked.data());
+    int open = 0;
+    Vector3 bent;
+    for (std::size_t k = 0; k < scratch.rays.size(); ++k) {
+        if (scratch.blocked[k] != 0) continue;
+        ++open;
+        bent = bent + scratch.directions[k];
+    }
+    sums.open += static_cast<double>(open) / hemisphere_.count();
+    sums.bent = sums.bent + bent;
+    sums.rays += hemisphere_.count();
+}
+
+void SecondRays::add_thickness(const HitPlace& place, std::uint32_t seed, Scratch& scratch, Sums& sums) const {
+    start(place, -1.0, seed ^ kInwards, Facing::both, scratch);
+    scratch.hits.assign(scratch.rays.size(), {});
+    trace_rays(tree_.view(), scratch.rays.data(), scratch.rays.size(), scratch.hits.data());
+    double sum = 0.0;
+    int count = 0;
+    for (const RayHit& hit : scratch.hits) {
+        const bool meets = hit.triangle != kNoHit;
+        if (!meets && std::isinf(limit_)) continue;
+        sum += meets ? hit.t : limit_;
+        ++count;
+    }
+    sums.rays += hemisphere_.count();
+    if (count == 0) return;
+    sums.thickness += sum / count;
+    ++sums.thick;
+}
+
+void SecondRays::add(const HitPlace& place, std::uint32_t seed, Scratch& scratch, Sums& sums) const {
+    if (looks_out_) add_openness(place, seed, scratch, sums);
+    if (looks_in_) add_thickness(place, seed, scratch, sums);
+}
+
+}  // namespace tex

@@ -1,0 +1,380 @@
+// SPDX-License-Identifier: Apache-2.0
+// What transfer() may be given beside the meshes: cages, skew, offsets, groups of parts.
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <tex/convert.h>
+#include <tex/transfer.h>
+
+#include "unit/transfers.h"
+
+namespace tex {
+namespace {
+
+Result<TransferredMaps> guided(const MeshPart& low, const std::vector<MeshPart>& high, Extent extent,
+                               const TransferInputs& inputs, const TransferOptions& options = all_maps()) {
+    const auto tangents = make_tangents(low);
+    if (!tangents) return tangents.error();
+    return transfer(extent, {low, *tangents}, high, inputs, options);
+}
+
+Reach length(double value) { return {Reach::Unit::absolute, value}; }
+
+// A sphere whose cage is a larger one: its rays are those along normals.
+TEST(TransferInputs, ACageAlongTheNormalsIsAConstantFront) {
+    const Solid ball = sphere();
+    const auto grown = [&](float r) {
+        return grid_part(
+            16, 8,
+            [&](float u, float v) {
+                return Float3{r * ball.normal(u, v).x, r * ball.normal(u, v).y, r * ball.normal(u, v).z};
+            },
+            ball.normal);
+    };
+    const MeshPart cage = grown(1.25f);
+    const auto high = only(grid_part(60, 30, ball.normal, ball.normal));
+    TransferInputs inputs;
+    inputs.cage = &cage;
+    TransferOptions options = all_maps();
+    options.back = length(0.1);
+    const auto caged = guided(ball.part, high, {96, 64}, inputs, options);
+    ASSERT_TRUE(caged) << caged.error().message();
+    EXPECT_NEAR(caged->front, 0.25, 1e-6);
+    EXPECT_EQ(caged->missed, 0);
+    for_hits(*caged, [&](int i, int j) {  // rays run through the centre
+        const Float3 n = unit_vector(position_at(*caged, i, j));
+        ASSERT_LT(degrees_between(n, vector_at(caged->object, i, j)), 1e-3);
+        const Float3 p = position_at(*caged, i, j);
+        ASSERT_NEAR(std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z), 1.0f, 0.01f);
+    });
+}
+
+TEST(TransferInputs, RaysRunFromTheCageToTheLowMesh) {
+    const Extent extent{16, 16};
+    const MeshPart low = flat_square(extent);
+    MeshPart cage = lifted(low, 2.0f);
+    for (Float3& p : cage.positions) p = {p.x + 1.0f, p.y, p.z};
+    std::vector<MeshPart> high = only(lifted(low, 1.0f, 4.0f));
+    for (Float3& p : high[0].positions) p = {p.x - 16.0f, p.y - 16.0f, p.z};
+    TransferInputs inputs;
+    inputs.cage = &cage;
+    const auto maps = guided(low, high, extent, inputs);
+    ASSERT_TRUE(maps) << maps.error().message();
+    EXPECT_NEAR(maps->front, std::sqrt(5.0), 1e-6);
+    EXPECT_EQ(maps->missed, 0);
+    for_hits(*maps, [&](int i, int j) {
+        const Float3 p = position_at(*maps, i, j);
+        ASSERT_NEAR(p.x, static_cast<float>(i) + 1.0f, 1e-5f);  // half a texel, and half of the way aside
+        ASSERT_NEAR(p.y, 15.5f - static_cast<float>(j), 1e-5f);
+        ASSERT_NEAR(p.z, 1.0f, 1e-6f);
+        ASSERT_NEAR(maps->heights.at(i, j), 0.5f * std::sqrt(5.0f), 1e-5f);
+    });
+    // What lies beyond the cage is not seen.
+    high[0] = lifted(high[0], 1.5f);
+    const auto beyond = guided(low, high, extent, inputs);
+    EXPECT_FALSE(beyond);
+    // A cage that touches the low mesh has the rays of `rays`.
+    inputs.cage = &low;
+    TransferOptions options = all_maps();
+    options.back = length(1.0);
+    const auto touching = guided(low, only(lifted(low, -0.5f)), extent, inputs, options);
+    ASSERT_TRUE(touching) << touching.error().message();
+    EXPECT_EQ(touching->front, 0.0);
+    EXPECT_EQ(touching->missed, 0);
+}
+
+TEST(TransferInputs, SkewMixesSmoothAndStraightRays) {
+    const MeshPart low = hard_cube(1.0f);
+    const auto high = only(hard_cube(1.1f));
+    const Extent extent{96, 64};
+    TransferOptions options = all_maps();
+    options.front = options.back = length(0.3);
+    const auto smooth = guided(low, high, extent, {}, options);
+    options.rays = RayMode::straight;
+    options.straight_width = length(0.0);
+    const auto straight = guided(low, high, extent, {}, options);
+    ASSERT_TRUE(smooth && straight);
+    for (const float value : {0.0f, 1.0f}) {
+        const Plane<float> skew({7, 3}, value);
+        TransferInputs inputs;
+        inputs.skew = &skew;
+        const auto maps = guided(low, high, extent, inputs, options);
+        ASSERT_TRUE(maps);
+        EXPECT_TRUE(same_maps(*maps, value == 0.0f ? *smooth : *straight));
+    }
+    // From left to right; texels of the map are eight times as fine.
+    Plane<float> skew({12, 8});
+    for (int j = 0; j < 8; ++j) {
+        for (int i = 0; i < 12; ++i) skew.at(i, j) = static_cast<float>(i) / 11.0f;
+    }
+    TransferInputs inputs;
+    inputs.skew = &skew;
+    const auto starts = guided(low, only(low), extent, {}, options);
+    const auto maps = guided(low, high, extent, inputs, options);
+    ASSERT_TRUE(maps && starts);
+    const auto way = [&](const TransferredMaps& to, int i, int j) {
+        const Float3 p = position_at(to, i, j), q = position_at(*starts, i, j);
+        return unit_vector({p.x - q.x, p.y - q.y, p.z - q.z});
+    };
+    const auto hits = for_hits(*maps, [&](int i, int j) {
+        if (smooth->origin.at(i, j) != TexelOrigin::hit || straight->origin.at(i, j) != TexelOrigin::hit) return;
+        const double at = std::min(11.0, std::max(0.0, (i + 0.5) / 8.0 - 0.5));
+        const auto k = static_cast<float>(at / 11.0);
+        const Float3 a = way(*smooth, i, j), b = way(*straight, i, j);
+        const Float3 truth = unit_vector({(1 - k) * a.x + k * b.x, (1 - k) * a.y + k * b.y, (1 - k) * a.z + k * b.z});
+        ASSERT_LT(degrees_between(way(*maps, i, j), truth), 1e-3) << i << " " << j;
+    });
+    EXPECT_GT(hits, 4000);
+}
+
+TEST(TransferInputs, OffsetsScaleTheFront) {
+    const Extent extent{32, 16};
+    const MeshPart low = flat_square(extent);
+    std::vector<MeshPart> high = only(lifted(low, 1.0f));
+    high.push_back(lifted(low, -0.5f));
+    Plane<float> offset({2, 1}, 0.5f);
+    offset.at(1, 0) = 1.5f;
+    TransferInputs inputs;
+    inputs.offset = &offset;
+    TransferOptions options = all_maps();
+    options.front = options.back = length(1.0);
+    const auto maps = guided(low, high, extent, inputs, options);
+    ASSERT_TRUE(maps);
+    EXPECT_EQ(maps->missed, 0);
+    // The factor is 0.5 up to a quarter of the map, and 1 in its middle.
+    for_hits(*maps, [&](int i, int j) { ASSERT_EQ(maps->heights.at(i, j), i < 16 ? -0.5f : 1.0f) << i; });
+}
+
+TEST(TransferInputs, GroupsMeetTheirOwnPartsAlone) {
+    const Extent extent{32, 16};
+    const MeshPart low = flat_square(extent);  // two triangles
+    const auto upper = [&](float height) { return lifted(low, height); };
+    std::vector<MeshPart> high = {upper(0.25f), upper(0.75f), upper(0.5f)};
+    TransferInputs inputs;
+    inputs.low_groups = {7, 3};
+    inputs.high_groups = {3, 7, 7};
+    TransferOptions options = all_maps();
+    options.front = options.back = length(1.0);
+    options.occlusion = true;
+    options.rays_per_hit = 8;
+    const auto maps = guided(low, high, extent, inputs, options);
+    ASSERT_TRUE(maps) << maps.error().message();
+    int triangles[2] = {};
+    for_hits(*maps, [&](int i, int j) {
+        const bool first = maps->heights.at(i, j) == 0.75f;
+        ++triangles[first ? 0 : 1];
+        ASSERT_TRUE(first || maps->heights.at(i, j) == 0.25f);
+        if (first) {
+            ASSERT_EQ(maps->occlusion.at(i, j), 1.0f);
+        }
+        // Second rays meet all parts.
+        if (!first && i > 8 && i < 24 && j > 4 && j < 12) {
+            ASSERT_EQ(maps->occlusion.at(i, j), 0.0f);
+        }
+    });
+    EXPECT_EQ(triangles[0] + triangles[1], 512);
+    EXPECT_NEAR(triangles[0], 256, 32);
+    // The reach follows from each group alone.
+    options.front = options.back = {};
+    const auto found = guided(low, high, extent, inputs, options);
+    ASSERT_TRUE(found);
+    EXPECT_GT(found->front, 0.75);
+    inputs.high_groups = {3, 3, 3};
+    const auto half = guided(low, high, extent, inputs, options);
+    ASSERT_TRUE(half);
+    EXPECT_EQ(half->missed, triangles[0]);
+    EXPECT_EQ(half->hopeless, half->missed);
+    inputs.high_groups = {1, 1, 1};
+    const auto none = guided(low, high, extent, inputs, options);
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.error().reason, "no part of the high mesh belongs to one of the low mesh");
+}
+
+// The map of the high mesh comes back, where both meshes are the same. Coverage places corners on a grid within texels,
+// so that hits lie up to a few thousandths of a texel beside the centres; the map turns by 10 degrees in a texel.
+TEST(TransferInputs, NormalMapsOfTheHighMeshComeBack) {
+    std::vector<MeshPart> parts = {wavy_part(9, true), square(0.0f, 1.0f)};
+    for (const Solid& solid : {sphere(), torus(), smooth_cube()}) parts.push_back(solid.part);
+    const Extent extent{96, 64};
+    const NormalMap map = bumpy_map(extent);
+    for (MeshPart& part : parts) {
+        for (const auto& decoder : kDecoderNames) {
+            const auto tangents = make_tangents(part);
+            ASSERT_TRUE(tangents);
+            TransferInputs inputs;
+            inputs.high_details = {HighDetail{&map, &*tangents, decoder.value}};
+            const TangentSpace space{part, *tangents, 0, decoder.value};
+            const auto maps = transfer(extent, space, only(part), inputs, all_maps());
+            ASSERT_TRUE(maps) << maps.error().message();
+            const auto object = to_object_space(map, space);
+            ASSERT_TRUE(object);
+            double most = 0.0;
+            const auto hits = for_hits(*maps, [&](int i, int j) {
+                most = std::max(most, degrees_between(vector_at(maps->object, i, j), vector_at(object->map, i, j)));
+                most = std::max(most, degrees_between(vector_at(maps->map, i, j), vector_at(map, i, j)));
+            });
+            EXPECT_GT(hits, 2500);
+            EXPECT_LT(most, 0.04) << decoder.name;
+        }
+    }
+}
+
+// From other tangents and another decoder to those of the low mesh, as convert does it.
+TEST(TransferInputs, NormalMapsChangeTheirTangentSpace) {
+    const MeshPart part = torus().part;
+    const Extent extent{96, 64};
+    const NormalMap map = bumpy_map(extent);
+    const auto tangents = make_tangents(part);
+    ASSERT_TRUE(tangents);
+    std::vector<Float4> turned = *tangents;  // about the normals
+    for (std::size_t c = 0; c < turned.size(); ++c) {
+        const Float3 n = unit_vector(part.normals[part.indices[c]]), t{turned[c].x, turned[c].y, turned[c].z};
+        turned[c] = {n.y * t.z - n.z * t.y, n.z * t.x - n.x * t.z, n.x * t.y - n.y * t.x, turned[c].w};
+    }
+    TransferInputs inputs;
+    inputs.high_details = {HighDetail{&map, &turned, Decoder::unity_builtin}};
+    const auto maps = transfer(extent, {part, *tangents}, only(part), inputs);
+    const auto refitted = refit(map, {part, turned, 0, Decoder::unity_builtin}, {part, *tangents});
+    ASSERT_TRUE(maps && refitted);
+    EXPECT_LT(angles_between(maps->map, refitted->map, refitted->coverage).max, 1e-3);
+}
+
+TEST(TransferInputs, ColorsAreThoseOfTheTexture) {
+    const Extent extent{16, 8};
+    const MeshPart part = square(0.0f, 1.0f);
+    Image picture;
+    for (const char* const name : {"R", "G", "B", "A"}) {
+        picture.planes.emplace_back(extent);
+        picture.names.emplace_back(name);
+    }
+    for (int j = 0; j < 8; ++j) {
+        for (int i = 0; i < 16; ++i) {
+            for (std::size_t k = 0; k < 4; ++k)
+                picture.planes[k].at(i, j) = static_cast<float>((i * 7 + j * 3 + static_cast<int>(k) * 5) % 16) / 16.0f;
+        }
+    }
+    std::vector<MeshPart> high = only(part);
+    for (Float2& uv : high[0].uvs[0]) uv = {uv.x + 3.0f, uv.y - 2.0f};  // pictures repeat
+    TransferInputs inputs;
+    inputs.high_details.resize(1);
+    inputs.high_details[0].color = &picture;
+    TransferOptions options;
+    const auto maps = guided(part, high, extent, inputs, options);
+    ASSERT_TRUE(maps) << maps.error().message();
+    ASSERT_EQ(maps->color.planes.size(), 3u);
+    for_hits(*maps, [&](int i, int j) {
+        for (std::size_t k = 0; k < 3; ++k)
+            ASSERT_NEAR(maps->color.planes[k].at(i, j), picture.planes[k].at(i, j), 1e-5f) << i << " " << j;
+    });
+    // A map of half of the size shows means.
+    options.subsamples = 2;
+    const auto half = guided(part, high, {8, 4}, inputs, options);
+    ASSERT_TRUE(half);
+    const Plane<float>& red = picture.planes[0];
+    EXPECT_NEAR(half->color.planes[0].at(3, 2), 0.25f * (red.at(6, 4) + red.at(7, 4) + red.at(6, 5) + red.at(7, 5)),
+                1e-5f);
+    // Grey pictures, and parts without any.
+    picture.planes.resize(1);
+    picture.names.resize(1);
+    high.push_back(lifted(part, 0.5f));
+    for (Float3& p : high[1].positions) p.x += 0.5f;
+    inputs.high_details.resize(2);
+    options = {};
+    options.front = length(1.0);
+    const auto grey = guided(part, high, extent, inputs, options);
+    ASSERT_TRUE(grey);
+    EXPECT_NEAR(grey->color.planes[2].at(2, 3), red.at(2, 3), 1e-5f);
+    EXPECT_EQ(grey->color.planes[2].at(12, 3), 1.0f);
+}
+
+TEST(TransferInputs, IdsAreThoseOfMostHits) {
+    const Extent extent{8, 8};
+    const MeshPart low = square(0.0f, 1.0f);
+    std::vector<MeshPart> high = only(low);
+    high.push_back(lifted(low, 0.25f));
+    for (Float3& p : high[1].positions) p.x = 0.4375f + 0.5625f * p.x;  // from the middle of the fourth column
+    high.push_back(lifted(high[1], 0.25f));
+    for (Float3& p : high[2].positions) p.y = 0.4375f * p.y;
+    TransferInputs inputs;
+    inputs.high_ids = {9, 4, 0};
+    TransferOptions options;
+    options.front = options.back = length(1.0);
+    options.subsamples = 4;
+    const auto maps = guided(low, high, extent, inputs, options);
+    ASSERT_TRUE(maps) << maps.error().message();
+    EXPECT_EQ(maps->ids.at(0, 0), 9);
+    EXPECT_EQ(maps->ids.at(3, 0), 4);  // half of it, and the smaller one
+    EXPECT_EQ(maps->ids.at(4, 0), 4);
+    EXPECT_EQ(maps->ids.at(4, 7), 0);
+    EXPECT_EQ(maps->ids.at(4, 4), 0);
+    EXPECT_EQ(maps->ids.at(3, 7), 0);
+    EXPECT_EQ(maps->ids.at(2, 7), 9);
+    options.padding = 0;
+    const MeshPart small = square(0.25f, 0.75f);
+    TransferInputs numbered;
+    numbered.high_ids = {7};
+    const auto island = guided(small, only(lifted(small, 0.1f)), {16, 16}, numbered, options);
+    ASSERT_TRUE(island);
+    EXPECT_EQ(island->ids.at(8, 8), 7);
+    EXPECT_EQ(island->ids.at(0, 0), kNoId);
+}
+
+TEST(TransferInputs, AreRefusedIfTheyDoNotFit) {
+    const Extent extent{8, 8};
+    const MeshPart low = flat_square(extent), cage = wavy_part(3);
+    const auto high = only(low);
+    const Plane<float> good({2, 2}, 0.5f), empty, large({2, 2}, 1.5f), negative({1, 1}, -1.0f);
+    const auto reason = [&](const TransferInputs& inputs, RayMode rays = RayMode::straight) {
+        TransferOptions options;
+        options.rays = rays;
+        const auto maps = guided(low, high, extent, inputs, options);
+        return maps ? std::string() : maps.error().reason;
+    };
+    TransferInputs inputs;
+    inputs.cage = &cage;
+    EXPECT_EQ(reason(inputs), "cage: must have the triangles of the low mesh, 2, but has 18");
+    inputs.cage = &low;
+    inputs.offset = &good;
+    EXPECT_EQ(reason(inputs), "cage: decides where rays start, so skew and offset mean nothing");
+    inputs = {};
+    inputs.skew = &good;
+    EXPECT_EQ(reason(inputs, RayMode::smooth), "skew: needs RayMode::straight");
+    EXPECT_EQ(reason(inputs), "");
+    inputs.skew = &large;
+    EXPECT_EQ(reason(inputs), "skew: a value at column 0 of row 0 is not between 0 and 1");
+    inputs.skew = &empty;
+    EXPECT_EQ(reason(inputs), "skew: the picture is empty");
+    inputs.skew = nullptr;
+    inputs.offset = &large;
+    EXPECT_EQ(reason(inputs), "");
+    inputs.offset = &negative;
+    EXPECT_EQ(reason(inputs), "offset: a value at column 0 of row 0 is negative or not finite");
+    inputs = {};
+    inputs.low_groups = {1};
+    inputs.high_groups = {1};
+    EXPECT_EQ(reason(inputs), "low_groups: must have a number for each triangle of the low mesh");
+    inputs.low_groups = {1, 1};
+    inputs.high_groups = {};
+    EXPECT_EQ(reason(inputs), "high_groups: must have a number for each part of the high mesh");
+    inputs = {};
+    inputs.high_ids = {1, 2};
+    EXPECT_EQ(reason(inputs), "high_ids: must have a number for each part of the high mesh");
+    inputs.high_ids = {-1};
+    EXPECT_EQ(reason(inputs), "high_ids: must be 0 or more");
+    inputs = {};
+    inputs.high_details.resize(2);
+    EXPECT_EQ(reason(inputs), "high_details: must have one for each part of the high mesh");
+    const NormalMap map = bumpy_map({4, 4});
+    inputs.high_details.resize(1);
+    inputs.high_details[0].normals = &map;
+    EXPECT_EQ(reason(inputs), "high_details: part 0: has a normal map, but no tangents");
+    inputs.high_details[0].uv_set = 1;
+    EXPECT_EQ(reason(inputs), "high_details: part 0: has no such set of UVs");
+}
+
+}  // namespace
+}  // namespace tex

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "options/high_details.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+#include <tex/image_io.h>
+#include <tex/source.h>
+#include <tex/tangents.h>
+
+#include "cli/text.h"
+#include "cli/usage_error.h"
+#include "tasks/name_pattern.h"
+
+namespace tex::cli {
+namespace {
+
+Error no_uvs(const MeshPart& part, const std::string& option) {
+    return {
+        ErrorCode::bad_option, {}, fmt::format("part \"{}\" has no UVs, which {} needs", printable(part.name), option)};
+}
+
+std::string path_of(const std::string& pattern, const Task& task) {
+    return NamePattern(pattern).expand(name_fields(task.input));
+}
+
+Result<NormalMap> read_map(Job& job, const std::string& file, std::optional<YAxis> y) {
+    SourceOptions options;
+    options.read = job.read_options;
+    options.unpack.y_axis = y;
+    options.doubt_y = options.inspect = true;
+    auto source = read_normals(file, options, true, {job.threads(), {}});
+    if (!source) return source.error();
+    if (source->info.y_doubtful && !y) {
+        job.warn(fmt::format("green is taken to point {}, but the texels show the other direction; --high-y decides",
+                             name_of(kYAxisNames, source->info.y_axis)),
+                 file);
+    }
+    return std::move(source->chain.levels.front());
+}
+
+Result<std::vector<Float4>> tangents_of(const MeshPart& part, const Execution& execution) {
+    return part.tangents.empty() ? make_tangents(part, TangentMethod::mikktspace, 0, execution) : stored_tangents(part);
+}
+
+}  // namespace
+
+void HighDetailOptions::add_files(Command& command, std::vector<Assigned>& files, const std::string& name,
+                                  std::string help) {
+    Row& row = command.option(name, "[NAME=]FILE", std::move(help), [&files](const std::string& text) {
+        const auto [before, after] = cut(text, '=');
+        const bool is_named = text.find('=') != std::string::npos;
+        const Assigned added{is_named ? std::string(before) : std::string(), is_named ? std::string(after) : text};
+        if (added.pattern.empty() || added.pattern == "-") throw UsageError("needs a file");
+        if (is_named && added.material.empty()) throw UsageError("needs a material before =");
+        if (NamePattern(added.pattern).uses("level") || NamePattern(added.pattern).uses("format"))
+            throw UsageError("{level} and {format} have no meaning here");
+        const auto same = [&](const Assigned& other) { return other.material == added.material; };
+        if (std::any_of(files.begin(), files.end(), same))
+            throw UsageError(is_named ? "is given twice for this material" : "is given twice without a material");
+        files.push_back(added);
+    });
+    row.completes = Completes::files;
+    row.repeatable = true;
+}
+
+void HighDetailOptions::add(Command& command) {
+    command.group("Pictures on the high mesh");
+    add_files(command, normals_, "--high-normals",
+              "its own normal map, of all parts or of those with this material; may be repeated");
+    add_files(command, colors_, "--high-color",
+              "a texture for --color-out, of all parts or of those with this material; may be repeated");
+    command.choice(y_, "--high-y", "Y", kYAxisNames, "where green of --high-normals points").preset =
+        "as the file says, else up";
+    command.choice(decoder_, "--high-decoder", "D", kDecoderNames, "the engine that --high-normals are made for");
+    command.check([&command] {
+        const auto idle = command.given_of({"--high-y", "--high-decoder"});
+        if (!idle.empty() && !command.given("--high-normals")) throw UsageError(idle.front() + " needs --high-normals");
+        if (command.given("--high-color") != command.given("--color-out"))
+            throw UsageError(command.given("--high-color") ? "--high-color needs --color-out"
+                                                           : "--color-out needs --high-color");
+    });
+}
+
+void HighDetailOptions::amend(Task& task) const {
+    for (const std::vector<Assigned>* files : {&normals_, &colors_}) {
+        for (const Assigned& file : *files) task.own.push_back(path_of(file.pattern, task));
+    }
+}
+
+const HighDetailOptions::Assigned* HighDetailOptions::find(const std::vector<Assigned>& files,
+                                                           const std::string& material) {
+    const Assigned* found = nullptr;
+    for (const Assigned& file : files) {
+        if (file.material.empty() && found == nullptr) found = &file;
+        if (!file.material.empty() && file.material == material) found = &file;
+    }
+    return found;
+}
+
+Result<void> HighDetailOptions::check(const std::vector<Assigned>& files, const HighParts& high,
+                                      const std::string& option) {
+    for (const Assigned& file : files) {
+        const bool exists =
+            std::find(high.materials.begin(), high.materials.end(), file.material) != high.materials.end();
+        if (file.material.empty() || exists) continue;
+        return Error{ErrorCode::bad_option,
+                     {},
+                     fmt::format("{}: the high mesh has no material \"{}\"; it has {}", option,
+                                 printable(file.material), quoted_list(high.materials))};
+    }
+    return {};
+}
+
+Result<void> HighDetailOptions::read_normals_of(Job& job, const HighParts& high, HighPictures& pictures) const {
+    if (auto known = check(normals_, high, "--high-normals"); !known) return known;
+    std::map<const Assigned*, const NormalMap*> maps;
+    for (std::size_t k = 0; k < high.parts.size(); ++k) {
+        const Assigned* const file = find(normals_, high.materials[k]);
+        if (file == nullptr) continue;
+        const MeshPart& part = high.parts[k];
+        if (part.uvs.empty()) return no_uvs(part, "--high-normals");
+        if (part.normals.empty())
+            return Error{ErrorCode::bad_option,
+                         {},
+                         fmt::format("part \"{}\" has no normals, which --high-normals needs", printable(part.name))};
+        if (maps[file] == nullptr) {
+            auto map = read_map(job, path_of(file->pattern, job.task), y_);
+            if (!map) return map.error();
+            maps[file] = &pictures.normals.emplace_back(std::move(*map));
+        }
+        auto tangents = tangents_of(part, {job.threads(), {}});
+        if (!tangents) return tangents.error();
+        HighDetail& detail = pictures.details[k];
+        detail.normals = maps[file];
+        detail.tangents = &pictures.tangents.emplace_back(std::move(*tangents));
+        detail.decoder = decoder_;
+    }
+    return {};
+}
+
+Result<void> HighDetailOptions::read_colors_of(Job& job, const HighParts& high, HighPictures& pictures) const {
+    if (auto known = check(colors_, high, "--high-color"); !known) return known;
+    std::map<const Assigned*, const Image*> images;
+    for (std::size_t k = 0; k < high.parts.size(); ++k) {
+        const Assigned* const file = find(colors_, high.materials[k]);
+        if (file == nullptr) continue;
+        if (high.parts[k].uvs.empty()) return no_uvs(high.parts[k], "--high-color");
+        if (images[file] == nullptr) {
+            ReadOptions how = job.read_options;
+            how.values = FileValues::unit;
+            auto image = read_image(path_of(file->pattern, job.task), how);
+            if (!image) return image.error();
+            images[file] = &pictures.colors.emplace_back(std::move(*image));
+        }
+        pictures.details[k].color = images[file];
+    }
+    return {};
+}
+
+Result<HighPictures> HighDetailOptions::read(Job& job, const HighParts& high) const {
+    HighPictures pictures;
+    if (!is_given()) return pictures;
+    pictures.details.resize(high.parts.size());
+    if (auto done = read_normals_of(job, high, pictures); !done) return done.error();
+    if (auto done = read_colors_of(job, high, pictures); !done) return done.error();
+    return pictures;
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// high_details.h: the option group of pictures on the high mesh: --high-normals, --high-color, --high-y,
+// --high-decoder.
+
+#pragma once
+
+#include <list>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tex/transfer.h>
+
+#include "cli/command.h"
+#include "options/high_meshes.h"
+#include "tasks/job.h"
+
+namespace tex::cli {
+
+// What the files hold, for one job.
+struct HighPictures {
+    std::list<NormalMap> normals;
+    std::list<Image> colors;
+    std::list<std::vector<Float4>> tangents;
+    std::vector<HighDetail> details;  // of the parts, which refer to the lists
+};
+
+class HighDetailOptions {
+public:
+    void add(Command& command);
+
+    [[nodiscard]] bool has_colors() const { return !colors_.empty(); }
+    // Whether parts must keep their UVs.
+    [[nodiscard]] bool is_given() const { return !colors_.empty() || !normals_.empty(); }
+
+    // Adds the files to the task.
+    void amend(Task& task) const;
+
+    // Reads the files, each once. Errors: no part has such a material; a part has no UVs.
+    [[nodiscard]] Result<HighPictures> read(Job& job, const HighParts& high) const;
+
+private:
+    // A file, for the parts with one material or for those that nothing else is given for.
+    struct Assigned {
+        std::string material;  // empty: all others
+        std::string pattern;
+    };
+
+    static void add_files(Command& command, std::vector<Assigned>& files, const std::string& name, std::string help);
+    [[nodiscard]] static const Assigned* find(const std::vector<Assigned>& files, const std::string& material);
+    [[nodiscard]] static Result<void> check(const std::vector<Assigned>& files, const HighParts& high,
+                                            const std::string& option);
+    [[nodiscard]] Result<void> read_normals_of(Job& job, const HighParts& high, HighPictures& pictures) const;
+    [[nodiscard]] Result<void> read_colors_of(Job& job, const HighParts& high, HighPictures& pictures) const;
+
+    std::vector<Assigned> normals_, colors_;
+    std::optional<YAxis> y_;
+    Decoder decoder_ = Decoder::gltf;
+};
+
+}  // namespace tex::cli
