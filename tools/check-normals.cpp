@@ -31,7 +31,7 @@ private:
     [[nodiscard]] bool reads_nothing() const { return rules_.list() || rules_.explain() != nullptr; }
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] Result<void> process(cli::Job& job) override;
-    [[nodiscard]] Result<CheckReport> check_one(const cli::Job& job, CheckOptions checks, const Execution& execution);
+    [[nodiscard]] Result<CheckReport> check_one(cli::Job& job, CheckOptions checks, const Execution& execution);
     [[nodiscard]] Result<void> add_to_documents(cli::Job& job, const cli::JudgedReport& judged);
     [[nodiscard]] cli::ExitCode finish(cli::Console& console) override;
 
@@ -97,10 +97,11 @@ Result<void> CheckNormals::check(const std::vector<cli::Task>& tasks) {
     return rules_.read(command, tasks, running.read);
 }
 
-Result<CheckReport> CheckNormals::check_one(const cli::Job& job, CheckOptions checks, const Execution& execution) {
+Result<CheckReport> CheckNormals::check_one(cli::Job& job, CheckOptions checks, const Execution& execution) {
     if (!mesh_.has_mesh()) return check_file(job.task.input, checks, job.read_options, execution);
     const auto space = mesh_.input(job.task.tile, job.read_options, {job.threads(), {}});
     if (!space) return space.error();
+    mesh_.note(job, *space);
     const MeshToCheck mesh{space->selected(), space->decoder(), space->file()};
     checks.mesh = &mesh;
     return check_file(job.task.input, checks, job.read_options, execution);

@@ -90,6 +90,7 @@ Result<void> TransferNormals::check(const std::vector<cli::Task>& tasks) {
 Result<TransferredMaps> TransferNormals::cast(cli::Job& job) const {
     const auto low = low_.of_low(job.task.input, job.read_options, {job.threads(), {}});
     if (!low) return high_.with_order(low.error());
+    low_.note(job, *low);
     const auto high = high_.read(job);
     if (!high) return high.error();
     cli::HighMeshes::compare(job, low->selected().part, *high);

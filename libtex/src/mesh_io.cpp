@@ -33,7 +33,10 @@ Result<Mesh> parse_other(const std::string& path, const std::vector<std::byte>& 
 Result<Mesh> parse(const std::string& path, const std::vector<std::byte>& bytes, const LoadBeside& load,
                    const MeshReadOptions& options) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    if (is_gltf(bytes)) return parse_gltf(bytes, load);
+    const DecodeDraco draco = [&](std::span<const std::byte> request) {
+        return decode_draco_with_reader(path, request, options.reader);
+    };
+    if (is_gltf(bytes)) return parse_gltf(bytes, load, draco);
     if (!is_obj(text)) return parse_other(path, bytes, options.reader);
     auto mesh = parse_obj(text);
     if (!mesh) return mesh;

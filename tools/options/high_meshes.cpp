@@ -59,13 +59,14 @@ void HighMeshes::amend(Task& task) const {
     for (std::string& buffer : buffers_of(meshes)) task.own.push_back(std::move(buffer));
 }
 
-Result<std::vector<MeshPart>> HighMeshes::read(const Job& job) const {
+Result<std::vector<MeshPart>> HighMeshes::read(Job& job) const {
     std::vector<MeshPart> parts;
     MeshReadOptions how;
     how.reader = job.read_options;
     for (const std::string& name : names_of(job.task)) {
         auto mesh = read_mesh(name, how);
         if (!mesh) return mesh.error().of(name);
+        for (const std::string& remark : mesh->remarks) job.warn(remark, name);
         for (MeshPart& part : mesh->parts) {  // not needed
             part.uvs.clear();
             part.tangents.clear();

@@ -27,7 +27,7 @@ public:
     void amend(Task& task) const;
 
     // Reads the meshes of a job, as the nodes of their scenes place them.
-    [[nodiscard]] Result<std::vector<MeshPart>> read(const Job& job) const;
+    [[nodiscard]] Result<std::vector<MeshPart>> read(Job& job) const;
 
     // An error about the low mesh, with the remedy if both may have changed places.
     [[nodiscard]] static Error with_order(const Error& error);

@@ -182,6 +182,16 @@ Result<MeshSpace> TangentSpaceOptions::of_low(const std::string& file, const Rea
     return read(file, tangents_, decoder_, tile_, options, execution);
 }
 
+void TangentSpaceOptions::note(Job& job, const MeshSpace& mesh) const {
+    const std::lock_guard lock(mutex_);
+    for (const std::string& remark : mesh.selected().remarks) {
+        if (noted_.insert(mesh.file() + '\n' + remark).second)
+            job.warn(remark, mesh.file());
+        else
+            job.remark(remark, mesh.file());
+    }
+}
+
 Result<MeshSpace> TangentSpaceOptions::read(const std::string& file, std::optional<TangentSource> tangents,
                                             Decoder decoder, int tile, const ReadOptions& options,
                                             const Execution& execution) const {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +19,7 @@
 #include <tex/mesh_selection.h>
 
 #include "cli/command.h"
+#include "tasks/job.h"
 
 namespace tex::cli {
 
@@ -89,6 +91,9 @@ public:
     [[nodiscard]] Result<MeshSpace> of_low(const std::string& file, const ReadOptions& read,
                                            const Execution& execution) const;
 
+    // Warns of what was left out of a mesh, once in a run. Any thread may call this.
+    void note(Job& job, const MeshSpace& mesh) const;
+
 private:
     void check(const Command& command) const;
     void check_input(const Command& command) const;
@@ -128,6 +133,7 @@ private:
     std::optional<TangentSource> tangents_, tangents_in_;
     mutable std::mutex mutex_;
     mutable std::map<std::pair<std::string, std::optional<TangentSource>>, Loaded> loaded_;
+    mutable std::set<std::string> noted_;
 };
 
 }  // namespace tex::cli
