@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "files/input_file.h"
+#include "files/beside.h"
 #include "formats/reader/reader_mesh.h"
 #include "mesh/gltf.h"
 #include "mesh/obj.h"
@@ -46,29 +46,15 @@ Result<Mesh> parse(const std::string& path, const std::vector<std::byte>& bytes,
     return mesh;
 }
 
-Result<std::vector<std::byte>> read_all(const std::string& path, const MeshReadOptions& options) {
-    auto file = InputFile::open(path);
-    if (!file) return file.error();
-    if (file->size() && *file->size() > options.max_bytes)
-        return Error{ErrorCode::unsupported, path, "has more than " + std::to_string(options.max_bytes) + " bytes"};
-    return file->read_rest(options.max_bytes);
-}
-
-// The path of a file that the mesh at `path` names.
-std::string beside(const std::string& path, const std::string& name) {
-    const std::size_t slash = path.rfind('/');
-    return slash == std::string::npos ? name : path.substr(0, slash + 1) + name;
-}
-
 }  // namespace
 
 Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options) {
     return guarded([&]() -> Result<Mesh> {
-        const auto bytes = read_all(path, options);
+        const auto bytes = read_at_most(path, options.max_bytes);
         if (!bytes) return bytes.error();
         const LoadBeside load = [&](const std::string& name) -> Result<std::vector<std::byte>> {
             if (path == "-") return Error{ErrorCode::unsupported, path, "has buffers in other files: " + name};
-            return read_all(beside(path, name), options);
+            return read_at_most(beside(path, name), options.max_bytes);
         };
         auto mesh = parse(path, *bytes, load, options);
         if (!mesh) return mesh.error().of(path);
@@ -82,7 +68,7 @@ Result<std::vector<std::string>> mesh_files(const std::string& path, const MeshR
         std::error_code error;
         if (path == "-" || (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)))
             return files;
-        const auto bytes = read_all(path, options);
+        const auto bytes = read_at_most(path, options.max_bytes);
         if (!bytes) return bytes.error();
         if (!is_gltf(*bytes)) return files;
         const auto names = gltf_buffer_files(*bytes);

@@ -62,11 +62,19 @@ public:
     // --from.
     void add_input(Command& command, bool with_from = false);
 
+    // The same for a command whose inputs may be models: --material, --decoder and --tangents are then for these, too.
+    void add_input_of_models(Command& command);
+    // Throws UsageError if the options do not fit the inputs.
+    void check_models(const Command& command, const std::vector<std::string>& inputs) const;
+
     // For a command whose inputs are meshes, which it places in the scene: --decoder, --tangents, --tile, the choice of
     // parts.
     void add_low(Command& command);
 
     [[nodiscard]] bool has_mesh() const { return !mesh_.empty(); }
+    [[nodiscard]] const std::string& material() const { return selection_.material; }
+    [[nodiscard]] Decoder decoder() const { return decoder_; }
+    [[nodiscard]] std::optional<TangentSource> tangents() const { return tangents_; }
     // Whether the engine that decodes the input ignores its z, so that x and y must be read as they are stored.
     [[nodiscard]] bool ignores_z() const {
         return from == Space::tangent && rebuilds_z(decoder_in_.value_or(decoder_));
@@ -97,6 +105,7 @@ public:
 private:
     void check(const Command& command) const;
     void check_input(const Command& command) const;
+    void add_input_options(Command& command, bool with_from, const char* meaning);
     void add_mesh(Command& command, const char* meaning);
     void add_parts(Command& command, const char* node);
     void add_decoder(Command& command, const char* meaning);

@@ -219,11 +219,20 @@ struct ModelCheckOptions {
     std::optional<TangentSource> tangents = {};  // none: those of the model, or MikkTSpace where it has none
 };
 
-// Reads a model and checks every normal map that its materials use, each on its mesh, with the rules of the families
-// "mesh" and "model". Returns a report for each map, in the order of Model::maps; none if no material uses a map. If an
-// image cannot be read, its report has a finding (N101) and the Error, as that of check_file().
+// Checks a normal map of a model, on its mesh, with the rules of the families "mesh" and "model". glTF's y is up, so
+// that is what Requirements::y demands by default. If the image cannot be read, the report has a finding (N101) and the
+// Error, as that of check_file(). If its triangles cannot be examined, the report has a finding (N807).
 //
-// Errors: those of read_model(); bad_option (see validate(); there is no such material); out_of_memory, cancelled
+// Preconditions (asserted): the model is one of read_model(), and the map one of its maps.
+// Errors: bad_option (see validate())
+[[nodiscard]] Result<CheckReport> check_map(const Model& model, const ModelMap& map,
+                                            const ModelCheckOptions& options = {}, const ReadOptions& read = {},
+                                            const Execution& execution = {});
+
+// Reads a model and checks every normal map that its materials use, as check_map() does. Returns a report for each, in
+// the order of Model::maps; none if no material uses a map.
+//
+// Errors: those of read_model(); bad_option (also: there is no such material); out_of_memory, cancelled
 [[nodiscard]] Result<std::vector<CheckReport>> check_model(const std::string& path,
                                                            const ModelCheckOptions& options = {},
                                                            const ReadOptions& read = {},

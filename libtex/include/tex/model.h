@@ -7,7 +7,7 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,6 +44,7 @@ struct ModelImage {
     std::string mime_type;  // as the model states it; may be empty
     std::vector<std::byte> bytes;
     std::vector<ImageUse> uses;
+    std::optional<Error> error;  // why it cannot be read, if the model says enough to know that
 };
 
 // A normal map that a material uses.
@@ -83,7 +84,11 @@ struct Model {
 [[nodiscard]] Result<Texture> read_map(const Model& model, const ModelMap& map, const ReadOptions& options = {});
 
 // The triangles that the map is on: those of its material, with its UV set and transform.
-[[nodiscard]] MeshSelection selection_of(const ModelMap& map);
+[[nodiscard]] MeshSelection selection_of(const Model& model, const ModelMap& map);
+
+// The maps of a material, by its name or its number from 0; all maps if `material` is empty. Errors: bad_option (there
+// is no such material).
+[[nodiscard]] Result<std::vector<ModelMap>> maps_of(const Model& model, const std::string& material);
 
 }  // namespace tex
 #pragma GCC visibility pop
