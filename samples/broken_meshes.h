@@ -69,6 +69,7 @@ struct BrokenMaterial {
     std::string texture = R"("source":0)";
     std::vector<std::byte> image = {};  // empty: a file beside it
     std::string mime_type = "image/png";
+    std::string extension = {};  // that it uses
 };
 
 // A GLB file of the part, whose material has a normal map.
@@ -112,7 +113,8 @@ inline std::string glb_of_part(const MeshPart& part, const BrokenMaterial& with 
                                         "\",\"bufferView\":" + std::to_string(maker.add_view(with.image));
     return maker.glb("{\"attributes\":{" + attributes + "},\"indices\":" + std::to_string(indices) + ",\"material\":0}",
                      ",\"materials\":[{" + with.material + "}],\"textures\":[{" + with.texture + "}],\"images\":[{" +
-                         image + R"(}],"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],"scene":0)");
+                         image + R"(}],"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],"scene":0)" +
+                         (with.extension.empty() ? "" : ",\"extensionsUsed\":[\"" + with.extension + "\"]"));
 }
 
 }  // namespace tex

@@ -430,7 +430,7 @@ void Maker::models() {
     const std::string normal = R"("name":"stone","normalTexture":{"index":0})";
     model("N801-two-channel-in-model", sheet,
           {normal, R"("extensions":{"MSFT_texture_dds":{"source":0}})",
-           encoded(packed(part(64, 64), Encoding::bc5), Container::dds), "image/vnd-ms.dds"});
+           encoded(packed(part(64, 64), Encoding::bc5), Container::dds), "image/vnd-ms.dds", "MSFT_texture_dds"});
     put("N802-used-as-color", sheet, normal + R"(,"pbrMetallicRoughness":{"baseColorTexture":{"index":0}})");
     put("N803-uv-set-missing", sheet, R"("name":"stone","normalTexture":{"index":0,"texCoord":1})");
     put("N804-scale-not-positive", sheet, R"("name":"stone","normalTexture":{"index":0,"scale":-1})");

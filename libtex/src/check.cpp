@@ -289,6 +289,7 @@ Result<CheckReport> check_map(const Model& model, const ModelMap& map, const Mod
         if (!checks.require.y) {
             checks.require.y = YAxis::up;
             checks.disable.push_back("N403");  // nobody asked for the direction
+            checks.severity.insert(checks.severity.begin(), {"N401", Severity::warning});
         }
         const auto finished = [&](CheckReport report) {
             report.map = map_name(model, map);

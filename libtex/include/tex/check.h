@@ -219,9 +219,9 @@ struct ModelCheckOptions {
     std::optional<TangentSource> tangents = {};  // none: those of the model, or MikkTSpace where it has none
 };
 
-// Checks a normal map of a model, on its mesh, with the rules of the families "mesh" and "model". glTF's y is up, so
-// that is what Requirements::y demands by default. If the image cannot be read, the report has a finding (N101) and the
-// Error, as that of check_file(). If its triangles cannot be examined, the report has a finding (N807).
+// Checks a normal map of a model, on its mesh, with the rules of the families "mesh" and "model". Unless y is demanded,
+// N401 warns if green points down, which is not glTF's. If the image cannot be read, the report has N101 and the Error,
+// as that of check_file(). If its triangles cannot be examined, the report has a finding (N807).
 //
 // Preconditions (asserted): the model is one of read_model(), and the map one of its maps.
 // Errors: bad_option (see validate())
