@@ -122,7 +122,9 @@ Result<cli::Json> CheckNormals::judge(cli::Job& job, CheckReport report, double 
     std::vector<Finding> waived = documents_.accept(report);
     const auto known = static_cast<int>(waived.size());
     if (report.error) {
-        if (report.findings.empty()) job.console.error(report.error->message());
+        if (report.findings.empty())
+            job.console.error(report.map.empty() ? report.error->message()
+                                                 : cli::title_of(report) + ": " + report.error->reason);
         job.raise(cli::exit_code(report.error->code));
     }
     const bool fails = std::any_of(report.findings.begin(), report.findings.end(),
