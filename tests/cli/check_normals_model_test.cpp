@@ -69,7 +69,7 @@ TEST_F(CheckNormalsModel, OptionsAreForModelsToo) {
     EXPECT_EQ(shell(scratch_, "check-normals N804*.glb --material stone --decoder three --tangents mikktspace").code,
               0);
     const Ran none = shell(scratch_, "check-normals N804*.glb --material glass");
-    EXPECT_EQ(none.code, 2);
+    EXPECT_EQ(none.code, 4);
     EXPECT_NE(none.err.find("has no material \"glass\""), std::string::npos) << none.err;
     const Ran mesh = shell(scratch_, "check-normals N804*.glb --mesh N804*.glb");
     EXPECT_EQ(mesh.code, 2);

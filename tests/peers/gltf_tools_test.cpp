@@ -3,7 +3,8 @@
 //
 // The tools come from npm, into a folder of the build; the test is skipped where npm or its registry is missing. Each
 // output is read, its normal map's parts are selected, and the map is decoded on both meshes. The angles between the
-// results are those that quantisation explains.
+// results are those that quantisation explains. With TEX_GLTF_TOOLS=all in the environment, every model goes through
+// every tool; else a third of the pairs, which show the same.
 
 #include <algorithm>
 #include <array>
@@ -46,14 +47,15 @@ struct Sample {
     const char* file;
     const char* material;  // or empty
     bool exact_only;       // without a texture, gltfpack keeps no scale of its quantised UVs
+    bool always;
 };
 
 constexpr Sample kSamples[] = {
-    {"Plane", "AssetGenerator_plane/Mesh_PrimitiveAttribute_06.gltf", "", false},
-    {"Suzanne", "Suzanne/02_suzanne.gltf", "", false},
-    {"Helmet", "FlightHelmet/FlightHelmet.gltf", "LeatherPartsMat", false},
-    {"NormalTangentTest", "NormalTangentTest.glb", "", false},
-    {"Cube", "mikktspace_obj/cube_wasm.glb", "", true},
+    {"Plane", "AssetGenerator_plane/Mesh_PrimitiveAttribute_06.gltf", "", false, false},
+    {"Suzanne", "Suzanne/02_suzanne.gltf", "", false, true},
+    {"Helmet", "FlightHelmet/FlightHelmet.gltf", "GlassPlasticMat", false, true},  // no texels are shared
+    {"NormalTangentTest", "NormalTangentTest.glb", "", false, true},
+    {"Cube", "mikktspace_obj/cube_wasm.glb", "", true, true},
 };
 
 struct Tool {
@@ -61,7 +63,7 @@ struct Tool {
     const char* program;
     const char* before;  // arguments before the names
     const char* after;
-    double mean, p99;  // degrees
+    double mean, p98;  // degrees
     bool exact;        // nothing is quantised
 };
 
@@ -77,6 +79,11 @@ constexpr Tool kTools[] = {
     {"Dedup", "gltf-transform", "dedup", "", 1e-3, 1e-3, true},
     {"Webp", "gltf-transform", "webp", "", 1e-3, 1e-3, true},
 };
+
+bool runs_all() {
+    const char* const wish = std::getenv("TEX_GLTF_TOOLS");
+    return wish != nullptr && std::string(wish) == "all";
+}
 
 tex::NormalMap waves() {
     tex::HeightField field;
@@ -154,6 +161,7 @@ class GltfTools : public testing::TestWithParam<Sample> {
 protected:
     void SetUp() override {
         if (!fs::exists(kMeshes)) GTEST_SKIP() << "no ../shared/data";
+        if (!GetParam().always && !runs_all()) return;
         if (tools().empty()) GTEST_SKIP() << "npm cannot install gltfpack and gltf-transform here";
         std::string name = (fs::temp_directory_path() / "gltf_tools_XXXXXX").string();
         folder_ = mkdtemp(name.data());
@@ -164,17 +172,21 @@ protected:
         if (model_.extension() == ".gltf")
             add_missing_pictures(model_, kMeshes / "FlightHelmet/FlightHelmet_Materials_LensesMat_Normal.png");
     }
-    void TearDown() override { fs::remove_all(folder_); }
+    void TearDown() override {
+        if (!folder_.empty()) fs::remove_all(folder_);
+    }
 
     fs::path folder_, model_;
 };
 
 TEST_P(GltfTools, OutputsAreReadAsTheModel) {
+    if (!GetParam().always && !runs_all()) return;
     const auto plain = on_mesh(model_, GetParam().material);
     ASSERT_TRUE(plain);
     for (const Tool& tool : kTools) {
         SCOPED_TRACE(tool.name);
         if (GetParam().exact_only && !tool.exact) continue;
+        if (!runs_all() && !GetParam().exact_only && (tool.exact || std::string(tool.name) == "Quantize")) continue;
         const std::string out = (folder_ / (std::string(tool.name) + ".glb")).string();
         const bool is_gltfpack = std::string(tool.program) == "gltfpack";
         ASSERT_TRUE(run("cd '" + folder_.string() + "' && '" + tools() + tool.program + "' " + tool.before + " '" +
@@ -189,7 +201,7 @@ TEST_P(GltfTools, OutputsAreReadAsTheModel) {
         double sum = 0.0;
         for (const double angle : all) sum += angle;
         EXPECT_LE(sum / static_cast<double>(all.size()), tool.mean);
-        EXPECT_LE(all[all.size() * 98 / 100], tool.p99);
+        EXPECT_LE(all[all.size() * 98 / 100], tool.p98);
         std::printf("%-18s %-24s mean %.4f, p98 %.3f degrees of %zu texels\n", GetParam().name, tool.name,
                     sum / static_cast<double>(all.size()), all[all.size() * 98 / 100], all.size());
     }

@@ -82,12 +82,13 @@ protected:
 TEST_F(Models, ImagesAreInViewsDataUrisAndFiles) {
     write("maps/a b.png", picture({8, 4}));
     const int view = maker_.add_view(picture({16, 4}));
-    const auto model = read(
-        R"("materials":[{"name":"leather","normalTexture":{"index":0,"scale":0.5}},)"
-        R"({"normalTexture":{"index":1},"extensions":{"KHR_materials_clearcoat":{"clearcoatNormalTexture":{"index":2}}}}],)"
-        R"("textures":[{"source":0},{"source":1},{"source":2}],"images":[{"uri":"maps/a%20b.png"},)"
-        R"({"name":"inside","mimeType":"image/png","bufferView":)" +
-        std::to_string(view) + R"(},{"uri":"data:image/png;base64,)" + base64(picture({32, 4})) + "\"}]");
+    const auto model =
+        read(R"("materials":[{"name":"leather","normalTexture":{"index":0,"scale":0.5}},)"
+             R"({"normalTexture":{"index":1},"extensions":{"KHR_materials_clearcoat":)"
+             R"({"clearcoatNormalTexture":{"index":2}}}}],)"
+             R"("textures":[{"source":0},{"source":1},{"source":2}],"images":[{"uri":"maps/a%20b.png"},)"
+             R"({"name":"inside","mimeType":"image/png","bufferView":)" +
+             std::to_string(view) + R"(},{"uri":"data:image/png;base64,)" + base64(picture({32, 4})) + "\"}]");
     ASSERT_TRUE(model) << model.error().message();
     ASSERT_EQ(model->maps.size(), 3u);
     EXPECT_EQ(model->maps[0].scale, 0.5);

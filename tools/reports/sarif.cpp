@@ -57,7 +57,7 @@ Json location_json(const CheckReport& report) {
     location["region"] = {{"startLine", 1}};  // textures have no lines, but viewers require one
     Json json;
     json["physicalLocation"] = std::move(location);
-    if (!report.map.empty()) json["logicalLocations"] = Json::array({{{"name", report.map}, {"kind", "resource"}}});
+    if (!report.map.empty()) json["logicalLocations"] = Json::array({{{"name", report.map}}});
     return json;
 }
 

@@ -300,7 +300,7 @@ constexpr Rule kRules[] = {
      "Set normalTexture.scale to a value above 0, and turn the heights of the map over if they are meant to be dents.",
      ""},
     {"N805", "mirrored-and-double-sided", model, note, true, "A double-sided material has mirrored tangents.",
-     "On back faces, glTF turns the normal over. Readers differ in whether tangent and bitangent turn with it, and those "
+     "On back faces, glTF turns the normal over. Readers differ in whether tangent and bitangent turn with it; those "
      "that derive the bitangent from the turned normal and w show bumps as dents there.",
      "Make the material single-sided, or look at both sides in each engine that is to show the model.", "N722"},
     {"N806", "data-in-normal-slot", model, error, true, "The image is used as other data, too.",

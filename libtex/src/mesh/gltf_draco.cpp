@@ -34,7 +34,7 @@ void append_buffer(std::vector<std::byte>& request, std::span<const std::byte> b
     const auto size = static_cast<std::uint32_t>(bytes.size());
     for (unsigned k = 0; k < 4; ++k) request.push_back(static_cast<std::byte>(size >> (8 * k) & 0xff));
     request.insert(request.end(), bytes.begin(), bytes.end());
-    request.resize((request.size() + 3) / 4 * 4);
+    while (request.size() % 4 != 0) request.push_back(std::byte{});
 }
 
 }  // namespace

@@ -61,10 +61,11 @@ void read_group(ByteReader& from, unsigned bits, std::uint8_t* to) {
 
 // A column in groups, after two bits for each group that choose one of four widths.
 void read_groups(ByteReader& from, std::size_t count, const std::array<unsigned, 4>& widths, Column& column) {
+    constexpr std::size_t kInByte = 4;
     const std::size_t groups = (count + kGroup - 1) / kGroup;
-    const auto header = from.take((groups + 3) / 4);
+    const auto header = from.take((groups + kInByte - 1) / kInByte);
     for (std::size_t g = 0; g < groups && !from.failed(); ++g) {
-        const unsigned choice = std::to_integer<unsigned>(header[g / 4]) >> (g % 4 * 2) & 3;
+        const unsigned choice = std::to_integer<unsigned>(header[g / kInByte]) >> (g % kInByte * 2) & 3;
         read_group(from, widths[choice], column.data() + g * kGroup);
     }
 }

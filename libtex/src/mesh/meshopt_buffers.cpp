@@ -24,7 +24,12 @@ void store_number(std::byte* to, float value) {
     std::memcpy(to, &number, sizeof number);
 }
 
-float half_away(float value) { return value >= 0.0f ? value + 0.5f : value - 0.5f; }
+// The nearest whole number, ties to even, for magnitudes below 2^22: what meshoptimizer's decoders of vectors do, in
+// browsers too.
+float nearest(float value) {
+    constexpr float kShift = 12582912.0f;  // 1.5 * 2^23
+    return (value + kShift) - kShift;
+}
 
 // Octahedral vectors (Meyer et al. 2010): x and y, with the scale in z; w stays. Numbers of T become normalised ones.
 template <class T>
@@ -38,9 +43,9 @@ void undo_octahedral(std::byte* at) {
     y += y >= 0.0f ? fold : -fold;
     const float length = std::sqrt(x * x + y * y + z * z);
     const float scale = length > 0.0f ? kMost / length : 0.0f;
-    store_number<T>(at, half_away(x * scale));
-    store_number<T>(at + sizeof(T), half_away(y * scale));
-    store_number<T>(at + 2 * sizeof(T), half_away(z * scale));
+    store_number<T>(at, nearest(x * scale));
+    store_number<T>(at + sizeof(T), nearest(y * scale));
+    store_number<T>(at + 2 * sizeof(T), nearest(z * scale));
 }
 
 // Unit quaternions without their largest component, whose number is in the lowest bits of w, and the scale above.
@@ -55,10 +60,10 @@ void undo_quaternion(std::byte* at) {
     const float w = std::sqrt(std::max(square, 0.0f)), most = 32767.0f / std::sqrt(2.0f) / scale;
     const auto largest = static_cast<std::size_t>(last & 3);
     for (std::size_t k = 0; k < 3; ++k) {
-        const float value = std::clamp(half_away(v[k] * most), -32768.0f, 32767.0f);
+        const float value = std::clamp(nearest(v[k] * most), -32768.0f, 32767.0f);
         store_number<std::int16_t>(at + 2 * ((largest + k + 1) & 3), value);
     }
-    store_number<std::int16_t>(at + 2 * largest, std::clamp(w * most + 0.5f, -32768.0f, 32767.0f));
+    store_number<std::int16_t>(at + 2 * largest, std::clamp(nearest(w * most), -32768.0f, 32767.0f));
 }
 
 // A signed mantissa of 24 bits, and the exponent above.
