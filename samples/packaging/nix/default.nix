@@ -12,6 +12,7 @@
   pkg-config,
   assimp,
   astcenc ? null,
+  draco,
   fmt,
   isa-l,
   libdeflate,
@@ -68,6 +69,7 @@ lib.throwIf (astcenc == null)
       buildInputs = [
         assimp
         astcenc
+        draco
         fmt
         isa-l
         libdeflate
