@@ -94,7 +94,7 @@ py::dict facts_of(const Model& model, const ModelMap& map) {
     py::dict facts;
     facts["name"] = str_of(map_name(model, map));
     facts["material"] = map.material;
-    facts["slot"] = word_of(map.slot);
+    facts["slot"] = str_of(std::string(name_of(kNormalSlotNames, map.slot)));
     facts["image"] = map.image < 0 ? py::none() : py::object(py::int_(map.image));
     facts["uv_set"] = map.uv_set;
     facts["uv_transform"] = transform_of(map.uv_transform);
