@@ -63,8 +63,17 @@ std::vector<float> floats_of(const std::vector<T>& values) {
     return list;
 }
 
+// The material of a GLB file, and the image that its textures show.
+struct BrokenMaterial {
+    std::string material = R"("normalTexture":{"index":0})";
+    std::string texture = R"("source":0)";
+    std::vector<std::byte> image = {};  // empty: a file beside it
+    std::string mime_type = "image/png";
+    std::string extension = {};  // that it uses
+};
+
 // A GLB file of the part, whose material has a normal map.
-inline std::string glb_of_part(const MeshPart& part) {
+inline std::string glb_of_part(const MeshPart& part, const BrokenMaterial& with = {}) {
     GltfMaker maker;
     std::array<float, 3> low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
     for (const Float3& p : part.positions) {
@@ -92,14 +101,20 @@ inline std::string glb_of_part(const MeshPart& part) {
     }
     const std::string bounds = ",\"min\":" + triple(low) + ",\"max\":" + triple(high);
     std::string attributes = attribute("POSITION", maker.add(floats_of(part.positions), "VEC3", 5126, bounds));
-    attributes += "," + attribute("NORMAL", maker.add(floats_of(part.normals), "VEC3", 5126));
+    if (!part.normals.empty())
+        attributes += "," + attribute("NORMAL", maker.add(floats_of(part.normals), "VEC3", 5126));
     attributes += "," + attribute("TEXCOORD_0", maker.add(floats_of(uvs), "VEC2", 5126));
     if (!part.tangents.empty())
         attributes += "," + attribute("TANGENT", maker.add(floats_of(part.tangents), "VEC4", 5126));
     const int indices = maker.add(part.indices, "SCALAR", 5125);
+    const std::string image = with.image.empty()
+                                  ? R"("uri":"normals.png")"
+                                  : "\"name\":\"normals\",\"mimeType\":\"" + with.mime_type +
+                                        "\",\"bufferView\":" + std::to_string(maker.add_view(with.image));
     return maker.glb("{\"attributes\":{" + attributes + "},\"indices\":" + std::to_string(indices) + ",\"material\":0}",
-                     R"(,"materials":[{"normalTexture":{"index":0}}],"textures":[{"source":0}],)"
-                     R"("images":[{"uri":"normals.png"}],"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],"scene":0)");
+                     ",\"materials\":[{" + with.material + "}],\"textures\":[{" + with.texture + "}],\"images\":[{" +
+                         image + R"(}],"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],"scene":0)" +
+                         (with.extension.empty() ? "" : ",\"extensionsUsed\":[\"" + with.extension + "\"]"));
 }
 
 }  // namespace tex

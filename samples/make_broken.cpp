@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // make_broken: writes samples/broken, which has one file for each rule of check-normals. Only that rule reports the
-// file. Rules about meshes also have a mesh, in samples/broken/meshes.
+// file. Rules about meshes also have a mesh, in samples/broken/meshes. Rules about models have a
+// model.
 //
 //     make_broken samples/waves.png FOLDER
 //
@@ -105,6 +106,8 @@ struct Maker {
     void tangents();
     void seams();
     void padding();
+    void model(const std::string& name, const MeshPart& part, const BrokenMaterial& material);
+    void models();
 };
 
 // Every `step`-th texel becomes (r, g, b).
@@ -411,6 +414,34 @@ void Maker::padding() {
     png("N731-quads-ambiguous", codes_of(part(64, 64)));
 }
 
+void Maker::model(const std::string& name, const MeshPart& part, const BrokenMaterial& material) {
+    const std::string glb = glb_of_part(part, material);
+    std::vector<std::byte> bytes(glb.size());
+    std::memcpy(bytes.data(), glb.data(), glb.size());
+    write(name + ".glb", std::move(bytes));
+}
+
+void Maker::models() {
+    const std::vector<std::byte> image = encoded(texture_of(codes_of(part(64, 64))), Container::png);
+    const auto put = [&](const std::string& name, const MeshPart& on, const std::string& material) {
+        model(name, on, {material, R"("source":0)", image, "image/png"});
+    };
+    const MeshPart sheet = broken_sheet();
+    const std::string normal = R"("name":"stone","normalTexture":{"index":0})";
+    model("N801-two-channel-in-model", sheet,
+          {normal, R"("extensions":{"MSFT_texture_dds":{"source":0}})",
+           encoded(packed(part(64, 64), Encoding::bc5), Container::dds), "image/vnd-ms.dds", "MSFT_texture_dds"});
+    put("N802-used-as-color", sheet, normal + R"(,"pbrMetallicRoughness":{"baseColorTexture":{"index":0}})");
+    put("N803-uv-set-missing", sheet, R"("name":"stone","normalTexture":{"index":0,"texCoord":1})");
+    put("N804-scale-not-positive", sheet, R"("name":"stone","normalTexture":{"index":0,"scale":-1})");
+    put("N805-mirrored-and-double-sided", two_sheets(true), normal + R"(,"doubleSided":true)");
+    put("N806-data-in-normal-slot", sheet, normal + R"(,"occlusionTexture":{"index":0})");
+    MeshPart bare = sheet;
+    bare.normals.clear();
+    bare.tangents.clear();
+    put("N807-mesh-not-examined", bare, normal);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -436,5 +467,6 @@ int main(int argc, char** argv) {
     maker.levels();
     maker.tangents();
     maker.seams();
+    maker.models();
     return maker.failed ? 3 : 0;
 }

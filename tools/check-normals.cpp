@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <memory>
 #include <mutex>
 #include <utility>
 
@@ -31,8 +32,13 @@ private:
     [[nodiscard]] bool reads_nothing() const { return rules_.list() || rules_.explain() != nullptr; }
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] Result<void> process(cli::Job& job) override;
-    [[nodiscard]] Result<CheckReport> check_one(const cli::Job& job, CheckOptions checks, const Execution& execution);
-    [[nodiscard]] Result<void> add_to_documents(cli::Job& job, const cli::JudgedReport& judged);
+    [[nodiscard]] Result<void> process_model(cli::Job& job);
+    [[nodiscard]] Result<CheckReport> check_one(cli::Job& job, CheckOptions checks, const Execution& execution);
+    // Prints a report and adds it to the documents, and returns it as JSON.
+    [[nodiscard]] Result<cli::Json> judge(cli::Job& job, CheckReport report, double seconds, const cli::MapOnMesh* mesh,
+                                          const cli::CheckDocuments::ReadTexture& read);
+    [[nodiscard]] Result<cli::Json> judge_in_model(cli::Job& job, CheckReport report, double seconds,
+                                                   const Model& model, const ModelMap& map);
     [[nodiscard]] cli::ExitCode finish(cli::Console& console) override;
 
     cli::RuleOptions rules_;
@@ -45,10 +51,10 @@ private:
 CheckNormals::CheckNormals(const cli::ProgramRow& row) : Batch(row) {
     command.usage("FILE...");
     command.usage("--list | --explain ID");
-    command.input("FILE...", "textures and pictures of normals; - is standard input");
+    command.input("FILE...", "textures and pictures of normals, and glTF models with their maps; - is standard input");
     command.finds_things();
     rules_.add(command);
-    mesh_.add_input(command);
+    mesh_.add_input_of_models(command);
     documents_.add(command);
     command.check([this] {
         if (running.json && documents_.is_for_github())
@@ -72,6 +78,8 @@ CheckNormals::CheckNormals(const cli::ProgramRow& row) : Batch(row) {
                     "Whether a normal map was made from a height map.");
     command.example("check-normals rock_n.dds --mesh rock.glb --decoder unreal",
                     "Whether a map fits its mesh in an engine.");
+    command.example("check-normals 'models/**/*.glb' --report models.html",
+                    "Every normal map that the materials of models use, each on its mesh.");
 }
 
 cli::ExitCode CheckNormals::work(cli::Console& console) {
@@ -84,6 +92,7 @@ Result<void> CheckNormals::check(const std::vector<cli::Task>& tasks) {
     std::vector<std::string> inputs;
     inputs.reserve(tasks.size());
     for (const cli::Task& task : tasks) inputs.push_back(task.input);
+    mesh_.check_models(command, inputs);
     std::vector<cli::NamedFile> others = {
         {"--config", rules_.config()}, {"--height", rules_.height_file()}, {"--files-from", files.files_from}};
     if (mesh_.has_mesh()) {
@@ -97,57 +106,136 @@ Result<void> CheckNormals::check(const std::vector<cli::Task>& tasks) {
     return rules_.read(command, tasks, running.read);
 }
 
-Result<CheckReport> CheckNormals::check_one(const cli::Job& job, CheckOptions checks, const Execution& execution) {
+Result<CheckReport> CheckNormals::check_one(cli::Job& job, CheckOptions checks, const Execution& execution) {
     if (!mesh_.has_mesh()) return check_file(job.task.input, checks, job.read_options, execution);
     const auto space = mesh_.input(job.task.tile, job.read_options, {job.threads(), {}});
     if (!space) return space.error();
+    mesh_.note(job, *space);
     const MeshToCheck mesh{space->selected(), space->decoder(), space->file()};
     checks.mesh = &mesh;
     return check_file(job.task.input, checks, job.read_options, execution);
 }
 
-Result<void> CheckNormals::process(cli::Job& job) {
-    const Execution execution = job.until(documents_.has_page() ? 0.5 : 1.0);
+Result<cli::Json> CheckNormals::judge(cli::Job& job, CheckReport report, double seconds, const cli::MapOnMesh* mesh,
+                                      const cli::CheckDocuments::ReadTexture& read) {
     const cli::Demands& demands = rules_.demands_of(job.task.input);
-    const auto start = std::chrono::steady_clock::now();
-    auto report = check_one(job, demands.checks, execution);
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    if (!report) return report.error();
-    if (report->error && report->error->code == ErrorCode::cancelled) return *report->error;
-    std::vector<Finding> waived = documents_.accept(*report);
+    std::vector<Finding> waived = documents_.accept(report);
     const auto known = static_cast<int>(waived.size());
-    if (report->error) {
-        if (report->findings.empty()) job.console.error(report->error->message());
-        job.raise(cli::exit_code(report->error->code));
+    if (report.error) {
+        if (report.findings.empty())
+            job.console.error(report.map.empty() ? report.error->message()
+                                                 : cli::title_of(report) + ": " + report.error->reason);
+        job.raise(cli::exit_code(report.error->code));
     }
-    const bool fails = std::any_of(report->findings.begin(), report->findings.end(),
+    const bool fails = std::any_of(report.findings.begin(), report.findings.end(),
                                    [&](const Finding& finding) { return demands.fails(finding); });
     if (fails && !documents_.writes_baseline()) job.raise(cli::ExitCode::findings);
     const Requirements& require = demands.checks.require;
     job.say(documents_.is_for_github()
-                ? cli::github_text(*report, require)
-                : cli::findings_text(*report, require) + cli::pair_text(*report) + cli::seams_text(*report));
-    job.report = cli::findings_json(*report, require);
-    if (known > 0) job.report["known"] = known;
+                ? cli::github_text(report, require)
+                : cli::findings_text(report, require) + cli::pair_text(report) + cli::seams_text(report));
+    cli::Json json = cli::findings_json(report, require);
+    if (known > 0) json["known"] = known;
     {
         const std::lock_guard lock(mutex_);
-        totals_.add(*report, known);
+        totals_.add(report, known);
     }
-    if (auto added =
-            add_to_documents(job, {std::move(*report), require, demands.fail_on, std::move(waived), seconds.count()});
-        !added)
-        return added;
+    const cli::JudgedReport judged{std::move(report), require, demands.fail_on, std::move(waived), seconds};
+    if (auto added = documents_.add(job, judged, mesh, read); !added) return added.error();
+    return json;
+}
+
+Result<void> CheckNormals::process(cli::Job& job) {
+    if (!mesh_.has_mesh() && is_model(job.task.input)) return process_model(job);
+    const Execution execution = job.until(documents_.has_page() ? 0.5 : 1.0);
+    const auto start = std::chrono::steady_clock::now();
+    auto report = check_one(job, rules_.demands_of(job.task.input).checks, execution);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    if (!report) return report.error();
+    if (report->error && report->error->code == ErrorCode::cancelled) return *report->error;
+    const auto finish = [&](const cli::MapOnMesh* on_mesh) -> Result<void> {
+        const auto read = [&] { return read_texture(job.task.input, job.read_options); };
+        auto json = judge(job, std::move(*report), seconds.count(), on_mesh, read);
+        if (!json) return json.error();
+        job.report = std::move(*json);
+        const std::lock_guard lock(mutex_);
+        ++totals_.files;
+        return {};
+    };
+    if (!mesh_.has_mesh() || !report->y_on_mesh) return finish(nullptr);
+    const auto space = mesh_.input(job.task.tile, job.read_options, {job.threads(), {}});
+    if (!space) return space.error();
+    const cli::MapOnMesh on_mesh{space->space(), *report->y_on_mesh, report->seams.has_value(), mesh_.input_arguments(),
+                                 cli::shell_file(job.task.tile == 0 ? job.task.input : job.task.pattern)};
+    return finish(&on_mesh);
+}
+
+// A model is in memory once, and its maps are one after the other.
+Result<void> CheckNormals::process_model(cli::Job& job) {
+    const MeshReadOptions how{job.read_options};
+    const auto model = read_model(job.task.input, how);
+    if (!model) return model.error();
+    for (const std::string& remark : model->mesh.remarks) job.warn(remark);
+    if (const auto files = mesh_files(job.task.input, how)) {
+        for (const std::string& file : *files) documents_.depends_on(file);
+    }
+    const auto maps = maps_of(*model, mesh_.material());
+    if (!maps) return maps.error();
+    if (maps->empty() && !documents_.is_for_github())
+        job.say(fmt::format("{}: no material uses a normal map\n", cli::printable(job.task.input)));
+    job.report["maps"] = cli::Json::array();
+    job.report["findings"] = cli::Json::array();
+    const ModelCheckOptions options{rules_.demands_of(job.task.input).checks, {}, mesh_.decoder(), mesh_.tangents()};
+    for (std::size_t k = 0; k < maps->size(); ++k) {
+        const ModelMap& map = (*maps)[k];
+        const double share = (static_cast<double>(k) + 1.0) / static_cast<double>(maps->size());
+        const auto start = std::chrono::steady_clock::now();
+        auto report = check_map(*model, map, options, job.read_options, job.until(share));
+        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+        if (!report) return report.error();
+        if (report->error && report->error->code == ErrorCode::cancelled) return *report->error;
+        auto json = judge_in_model(job, std::move(*report), seconds.count(), *model, map);
+        if (!json) return json.error();
+        for (cli::Json& finding : (*json)["findings"]) {
+            finding["map"] = (*json)["map"];
+            job.report["findings"].push_back(std::move(finding));
+        }
+        json->erase("findings");
+        job.report["maps"].push_back(std::move(*json));
+    }
+    const std::lock_guard lock(mutex_);
+    ++totals_.files;
     return {};
 }
 
-Result<void> CheckNormals::add_to_documents(cli::Job& job, const cli::JudgedReport& judged) {
-    const CheckReport& report = judged.report;
-    if (!mesh_.has_mesh() || !report.y_on_mesh) return documents_.add(job, judged, nullptr);
-    const auto space = mesh_.input(job.task.tile, job.read_options, {job.threads(), {}});
-    if (!space) return space.error();
-    const cli::MapOnMesh on_mesh{space->space(), *report.y_on_mesh, report.seams.has_value(), mesh_.input_arguments(),
-                                 cli::shell_file(job.task.tile == 0 ? job.task.input : job.task.pattern)};
-    return documents_.add(job, judged, &on_mesh);
+Result<cli::Json> CheckNormals::judge_in_model(cli::Job& job, CheckReport report, double seconds, const Model& model,
+                                               const ModelMap& map) {
+    const auto& materials = model.mesh.materials;
+    const ModelImage* const image = map.image < 0 ? nullptr : &model.images[static_cast<std::size_t>(map.image)];
+    if (image != nullptr && !image->file.empty()) documents_.depends_on(image->file);
+    const auto finish = [&](const cli::MapOnMesh* on_mesh) -> Result<cli::Json> {
+        const auto read = [&] { return read_map(model, map, job.read_options); };
+        auto json = judge(job, std::move(report), seconds, on_mesh, read);
+        if (!json) return json;
+        (*json)["material"] = materials[static_cast<std::size_t>(map.material)].name;
+        (*json)["material_number"] = map.material;
+        (*json)["slot"] = name_of(kNormalSlotNames, map.slot);
+        (*json)["image"] = image == nullptr ? cli::Json() : cli::Json(image->file.empty() ? image->name : image->file);
+        (*json)["uv_set"] = map.uv_set;
+        (*json)["scale"] = map.scale;
+        return json;
+    };
+    if (!documents_.has_page() || !report.y_on_mesh) return finish(nullptr);
+    MeshSelection selection = selection_of(model, map);
+    selection.tangents = mesh_.tangents();
+    auto selected = select_part(model.mesh, selection, {job.threads(), {}});
+    if (!selected) return selected.error().of(model.file);
+    const cli::MeshSpace space(std::make_shared<const SelectedPart>(std::move(*selected)), mesh_.decoder(), model.file);
+    const std::string arguments =
+        fmt::format("--mesh {} --material {}", cli::shell_file(model.file), cli::shell_word(selection.material));
+    const cli::MapOnMesh on_mesh{space.space(), *report.y_on_mesh, report.seams.has_value(), arguments,
+                                 image->file.empty() ? "IMAGE" : cli::shell_file(image->file)};
+    return finish(&on_mesh);
 }
 
 cli::ExitCode CheckNormals::finish(cli::Console& console) {

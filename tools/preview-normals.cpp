@@ -118,6 +118,7 @@ Result<void> PreviewNormals::process(cli::Job& job) {
         auto read = mesh_.input(job.task.tile, job.read_options, {job.threads(), {}});
         if (!read) return read.error();
         mesh = std::move(*read);
+        mesh_.note(job, *mesh);
         job.report["tangents"] = name_of(kTangentSourceNames, mesh->source());
     }
     const PreviewOptions& preview = scene_.preview;

@@ -111,6 +111,7 @@ Result<void> TransferNormals::check(const std::vector<cli::Task>& tasks) {
 Result<TransferredMaps> TransferNormals::cast(cli::Job& job, const cli::HighParts& high) const {
     const auto low = low_.of_low(job.task.input, job.read_options, {job.threads(), {}});
     if (!low) return high_.with_order(low.error());
+    low_.note(job, *low);
     cli::HighMeshes::compare(job, low->selected().part, high.parts);
     job.report["tangents"] = name_of(kTangentSourceNames, low->source());
     TransferInputs inputs;

@@ -32,6 +32,34 @@ void each_field(Checking& o, F& f) {
     f("decoder", o.decoder);
 }
 
+// The keywords of check_model().
+struct CheckingModels {
+    py::object require = py::none(), enable = py::none(), disable = py::none(), severity = py::none();
+    std::string material;
+    Decoder decoder = Decoder::gltf;
+    std::optional<TangentSource> tangents;
+
+    [[nodiscard]] Checking checks() const {
+        Checking same;
+        same.require = require;
+        same.enable = enable;
+        same.disable = disable;
+        same.severity = severity;
+        return same;
+    }
+};
+
+template <class F>
+void each_field(CheckingModels& o, F& f) {
+    f("require", o.require, "dict[str, str | int | bool] | None");
+    f("enable", o.enable, "Sequence[str] | None");
+    f("disable", o.disable, "Sequence[str] | None");
+    f("severity", o.severity, "dict[str, str] | None");
+    f("material", o.material);
+    f("decoder", o.decoder);
+    f("tangents", o.tangents);
+}
+
 struct ReadKeyword {
     ReadOptions read;
 };
@@ -182,6 +210,8 @@ py::object seams_of(const std::optional<SeamEvidence>& seams) {
 void add_report(Module& module) {
     Class<CheckReport>(module, "CheckReport", "The findings about a texture. Iterates over them.")
         .property("file", "str", "The file's name.", [](const CheckReport& r) { return str_of(r.file); })
+        .property("map", "str", "Of a map in a model: its material and image; else empty.",
+                  [](const CheckReport& r) { return str_of(r.map); })
         .property("findings", "list[Finding]", "By rule, then level.", [](const CheckReport& r) { return r.findings; })
         .property("explained", "int", "Findings left out because another one explains them.",
                   [](const CheckReport& r) { return r.explained; })
@@ -255,6 +285,22 @@ void add_checks(Module& module) {
         "check_file", {{"path", "str | PathLike[str]"}}, "CheckReport", "The arguments are those of check().",
         [](Call& call, Checking& given, ReadKeyword& keyword, Running& running) -> py::object {
             return checked_file(call["path"], given, keyword.read, running);
+        });
+    module.verb<CheckingModels, ReadKeyword, Running>(
+        "check_model", {{"path", "str | PathLike[str]"}}, "list[CheckReport]",
+        "`require`, `enable`, `disable` and `severity` are those of check(). An image that cannot be read gives a "
+        "report "
+        "with the finding N101.",
+        [](Call& call, CheckingModels& given, ReadKeyword& keyword, Running& running) -> py::object {
+            Checks checks;
+            read_checks(given.checks(), checks);
+            const std::string file = path_from(call["path"], "path");
+            const ModelCheckOptions options{checks.options, given.material, given.decoder, given.tangents};
+            py::list reports;
+            for (CheckReport& report :
+                 running.run([&](const Execution& e) { return check_model(file, options, keyword.read, e); }))
+                reports.append(py::cast(std::make_shared<CheckReport>(std::move(report))));
+            return reports;
         });
     module.verb<>("rules", {}, "list[dict[str, Any]]", "A list of dicts with the fields of Rule.",
                   [](Call&) -> py::object {

@@ -163,6 +163,18 @@ py::list parts_of(const py::object& self) {
     return parts;
 }
 
+}  // namespace
+
+py::dict transform_of(const UvTransform& transform) {
+    py::dict facts;
+    facts["offset"] = py::make_tuple(transform.offset_x, transform.offset_y);
+    facts["rotation"] = transform.rotation;
+    facts["scale"] = py::make_tuple(transform.scale_x, transform.scale_y);
+    return facts;
+}
+
+namespace {
+
 py::list materials_of(const Mesh& mesh) {
     py::list materials;
     for (const MeshMaterial& material : mesh.materials) {
@@ -171,6 +183,8 @@ py::list materials_of(const Mesh& mesh) {
         facts["normal_map"] = str_of(material.normal_map);
         facts["uv_set"] = material.uv_set;
         facts["has_normal_map"] = material.has_normal_map;
+        facts["uv_transform"] = transform_of(material.uv_transform);
+        facts["mixed_transforms"] = material.mixed_transforms;
         materials.append(facts);
     }
     return materials;
@@ -202,6 +216,8 @@ void add_mesh(Module& module) {
         .property("parts", "list[MeshPart]", "Each is stored once, however many nodes show it.", parts_of)
         .property("materials", "list[dict[str, Any]]", "The fields of MeshMaterial.", materials_of)
         .property("nodes", "list[dict[str, Any]]", "The fields of MeshNode; 'to_scene' is an array (3, 4).", nodes_of)
+        .property("remarks", "list[str]", "What was left out and may matter.",
+                  [](const Mesh& mesh) { return strs_of(mesh.remarks); })
         .method("__repr__", "(self) -> str",
                 [](const Mesh& mesh) {
                     return fmt::format("<tex.Mesh: {} parts, {} materials, {} nodes>", mesh.parts.size(),
@@ -246,6 +262,10 @@ void add_mesh(Module& module) {
                   })
         .property("has_tangents", "bool", "Every part has stored tangents.",
                   [](const SelectedPart& s) { return s.has_tangents; })
+        .property("has_transform", "bool", "UVs were moved: they are not those of the file.",
+                  [](const SelectedPart& s) { return s.has_transform; })
+        .property("remarks", "list[str]", "Those of the mesh, and what the choice left out.",
+                  [](const SelectedPart& s) { return strs_of(s.remarks); })
         .copies()
         .finish();
 }

@@ -14,6 +14,7 @@ namespace tex::python {
 
 [[nodiscard]] const Mesh& mesh_from(py::handle from, std::string_view name);
 [[nodiscard]] const MeshPart& part_from(py::handle from, std::string_view name);
+[[nodiscard]] py::dict transform_of(const UvTransform& transform);
 [[nodiscard]] const SelectedPart& selected_from(py::handle from, std::string_view name);
 
 // An array of a row for each element: four columns for tangents. `tangents_of` copies, `tangents_from` does, too.

@@ -213,6 +213,8 @@ void each_part(MeshMaterial& o, F& f) {
     f(o.normal_map);
     f(o.uv_set);
     f(o.has_normal_map);
+    f(o.uv_transform);
+    f(o.mixed_transforms);
 }
 
 template <class F>
@@ -227,6 +229,7 @@ void each_part(Mesh& o, F& f) {
     f(o.parts);
     f(o.materials);
     f(o.nodes);
+    f(o.remarks);
 }
 
 template <class F>
@@ -236,6 +239,8 @@ void each_part(SelectedPart& o, F& f) {
     f(o.source);
     f(o.has_normal_map);
     f(o.has_tangents);
+    f(o.has_transform);
+    f(o.remarks);
 }
 
 // A rule is its id, and a unit a word of the rule table's kind: both outlive the findings.
@@ -262,6 +267,7 @@ void each_part(Finding& o, F& f) {
 template <class F>
 void each_part(CheckReport& o, F& f) {
     f(o.file);
+    f(o.map);
     f(o.findings);
     f(o.explained);
     f(o.format);

@@ -77,6 +77,51 @@ MeshNode node_from(py::handle from) {
     return node;
 }
 
+py::dict facts_of(const ModelImage& image) {
+    py::list uses;
+    for (const ImageUse& use : image.uses) uses.append(py::make_tuple(use.material, str_of(use.slot), use.is_color));
+    py::dict facts;
+    facts["name"] = str_of(image.name);
+    facts["file"] = str_of(image.file);
+    facts["mime_type"] = str_of(image.mime_type);
+    facts["bytes"] = py::bytes(reinterpret_cast<const char*>(image.bytes.data()), image.bytes.size());
+    facts["uses"] = uses;
+    facts["error"] = image.error ? py::object(str_of(image.error->reason)) : py::none();
+    return facts;
+}
+
+py::dict facts_of(const Model& model, const ModelMap& map) {
+    py::dict facts;
+    facts["name"] = str_of(map_name(model, map));
+    facts["material"] = map.material;
+    facts["slot"] = str_of(std::string(name_of(kNormalSlotNames, map.slot)));
+    facts["image"] = map.image < 0 ? py::none() : py::object(py::int_(map.image));
+    facts["uv_set"] = map.uv_set;
+    facts["uv_transform"] = transform_of(map.uv_transform);
+    facts["scale"] = map.scale;
+    facts["is_double_sided"] = map.is_double_sided;
+    return facts;
+}
+
+void add_models(Module& module) {
+    module.verb<MeshReadOptions>(
+        "read_model", {{"path", kMeshPath}}, "dict[str, Any]",
+        "A dict: `mesh`, a Mesh; `images`, a list of dicts with the fields of ModelImage, where a use is a tuple "
+        "(material, slot, is_color); `maps`, a list of dicts with the fields of ModelMap, and `name`.",
+        [](Call& call, MeshReadOptions& options) -> py::object {
+            const std::string path = path_from(call["path"], "path");
+            Model model = value_of(without_gil([&] { return read_model(path, options); }));
+            py::list images, maps;
+            for (const ModelImage& image : model.images) images.append(facts_of(image));
+            for (const ModelMap& map : model.maps) maps.append(facts_of(model, map));
+            py::dict facts;
+            facts["mesh"] = py::cast(std::make_shared<Mesh>(std::move(model.mesh)));
+            facts["images"] = images;
+            facts["maps"] = maps;
+            return facts;
+        });
+}
+
 void add_mesh_files(Module& module) {
     module.verb<MeshReadOptions>(
         "read_mesh", {{"path", kMeshPath}}, "Mesh", "Arrays of its parts are not copied.",
@@ -174,6 +219,7 @@ void add_conversion(Module& module, const char* name, Conversion* convert) {
 
 void add_spaces(Module& module) {
     add_mesh_files(module);
+    add_models(module);
     add_parts(module);
     add_conversion(module, "to_object_space", to_object_space);
     add_conversion(module, "to_tangent_space", to_tangent_space);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include <tex/model.h>
 #include <tex/swizzle.h>
 #include <tex/unpack.h>
 
@@ -19,6 +20,7 @@
 #include "checks/mesh_fit.h"
 #include "checks/mesh_rules.h"
 #include "checks/mip_rules.h"
+#include "checks/model_rules.h"
 #include "checks/pair_rules.h"
 #include "checks/rules.h"
 #include "checks/sign_rules.h"
@@ -236,6 +238,7 @@ Result<CheckReport> check(const std::string& file, const Texture& texture, const
         } else {
             return seams.error();
         }
+        check_model_rules(subject, findings);
         report.file = file;
         report.findings = findings.take(report.explained);
         report.format = texture.format;
@@ -249,26 +252,106 @@ Result<CheckReport> check(const std::string& file, const Texture& texture, const
     });
 }
 
+namespace {
+
+// The report of a file that could not be read or checked.
+CheckReport failed_report(const std::string& file, const CheckOptions& options, const Error& error) {
+    CheckReport report;
+    report.file = file;
+    report.error = error;
+    if (error.code != ErrorCode::bad_data && error.code != ErrorCode::unsupported) return report;
+    Findings findings(options);
+    findings.add(error.detail == ErrorDetail::uastc_without_alpha ? "N114" : "N101", error.reason);
+    report.findings = findings.take(report.explained);
+    return report;
+}
+
+// Adds a finding that the mesh could not be examined. Ids ascend, and this is the last one.
+void add_not_examined(const Error& error, const CheckOptions& options, CheckReport& report) {
+    const auto explains = [](const Finding& finding) { return has_id(finding.rule->explains, "N807"); };
+    if (std::any_of(report.findings.begin(), report.findings.end(), explains)) {
+        ++report.explained;
+        return;
+    }
+    Findings findings(options);
+    findings.add("N807", error.reason);
+    int explained = 0;
+    for (Finding& finding : findings.take(explained)) report.findings.push_back(std::move(finding));
+}
+
+}  // namespace
+
+Result<CheckReport> check_map(const Model& model, const ModelMap& map, const ModelCheckOptions& options,
+                              const ReadOptions& read, const Execution& execution) {
+    return guarded([&]() -> Result<CheckReport> {
+        CheckOptions checks = options.checks;
+        if (auto valid = validate(checks); !valid) return valid.error();
+        if (!checks.require.y) {
+            checks.require.y = YAxis::up;
+            checks.disable.push_back("N403");  // nobody asked for the direction
+            checks.severity.insert(checks.severity.begin(), {"N401", Severity::warning});
+        }
+        const auto finished = [&](CheckReport report) {
+            report.map = map_name(model, map);
+            return report;
+        };
+        const auto texture = read_map(model, map, read);
+        if (!texture) return finished(failed_report(model.file, checks, texture.error()));
+        MeshSelection selection = selection_of(model, map);
+        selection.tangents = options.tangents;
+        const auto selected = select_part(model.mesh, selection, execution);
+        const MapInModel in{model, map};
+        checks.model = &in;
+        std::optional<MeshToCheck> mesh;
+        if (selected) mesh.emplace(MeshToCheck{*selected, options.decoder, model.file});
+        checks.mesh = mesh ? &*mesh : nullptr;
+        auto report = check(model.file, *texture, checks, execution);
+        if (!report && mesh && report.error().code != ErrorCode::cancelled &&
+            report.error().code != ErrorCode::out_of_memory) {
+            const Error why = report.error();
+            checks.mesh = nullptr;
+            report = check(model.file, *texture, checks, execution);
+            if (report) add_not_examined(why, checks, *report);
+        } else if (report && !selected) {
+            add_not_examined(selected.error(), checks, *report);
+        }
+        return finished(report ? std::move(*report) : failed_report(model.file, checks, report.error()));
+    });
+}
+
+Result<std::vector<CheckReport>> check_model(const std::string& path, const ModelCheckOptions& options,
+                                             const ReadOptions& read, const Execution& execution) {
+    return guarded([&]() -> Result<std::vector<CheckReport>> {
+        MeshReadOptions how;
+        how.reader = read;
+        const auto model = read_model(path, how);
+        if (!model) return model.error();
+        const auto maps = maps_of(*model, options.material);
+        if (!maps) return maps.error();
+        std::vector<CheckReport> reports;
+        for (const ModelMap& map : *maps) {
+            auto report = check_map(*model, map, options, read, execution);
+            if (!report) return report.error();
+            const auto& error = report->error;
+            if (error && (error->code == ErrorCode::cancelled || error->code == ErrorCode::out_of_memory))
+                return *error;
+            reports.push_back(std::move(*report));
+        }
+        return reports;
+    });
+}
+
 Result<CheckReport> check_file(const std::string& path, const CheckOptions& options, const ReadOptions& read,
                                const Execution& execution) {
     return guarded([&]() -> Result<CheckReport> {
         if (auto valid = validate(options); !valid) return valid.error();
+        const auto texture = read_texture(path, read);
+        if (!texture) return failed_report(path, options, texture.error());
+        auto checked = check(path, *texture, options, execution);
+        if (checked) return checked;
         CheckReport report;
         report.file = path;
-        const auto texture = read_texture(path, read);
-        if (texture) {
-            auto checked = check(path, *texture, options, execution);
-            if (checked) return checked;
-            report.error = checked.error();
-            return report;
-        }
-        report.error = texture.error();
-        if (report.error->code == ErrorCode::bad_data || report.error->code == ErrorCode::unsupported) {
-            Findings findings(options);
-            const bool uastc = report.error->detail == ErrorDetail::uastc_without_alpha;
-            findings.add(uastc ? "N114" : "N101", report.error->reason);
-            report.findings = findings.take(report.explained);
-        }
+        report.error = checked.error();
         return report;
     });
 }

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "files/input_file.h"
+#include "files/beside.h"
 #include "formats/reader/reader_mesh.h"
 #include "mesh/gltf.h"
 #include "mesh/obj.h"
@@ -33,7 +33,10 @@ Result<Mesh> parse_other(const std::string& path, const std::vector<std::byte>& 
 Result<Mesh> parse(const std::string& path, const std::vector<std::byte>& bytes, const LoadBeside& load,
                    const MeshReadOptions& options) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    if (is_gltf(bytes)) return parse_gltf(bytes, load);
+    const DecodeDraco draco = [&](std::span<const std::byte> request) {
+        return decode_draco_with_reader(path, request, options.reader);
+    };
+    if (is_gltf(bytes)) return parse_gltf(bytes, load, draco);
     if (!is_obj(text)) return parse_other(path, bytes, options.reader);
     auto mesh = parse_obj(text);
     if (!mesh) return mesh;
@@ -43,29 +46,15 @@ Result<Mesh> parse(const std::string& path, const std::vector<std::byte>& bytes,
     return mesh;
 }
 
-Result<std::vector<std::byte>> read_all(const std::string& path, const MeshReadOptions& options) {
-    auto file = InputFile::open(path);
-    if (!file) return file.error();
-    if (file->size() && *file->size() > options.max_bytes)
-        return Error{ErrorCode::unsupported, path, "has more than " + std::to_string(options.max_bytes) + " bytes"};
-    return file->read_rest(options.max_bytes);
-}
-
-// The path of a file that the mesh at `path` names.
-std::string beside(const std::string& path, const std::string& name) {
-    const std::size_t slash = path.rfind('/');
-    return slash == std::string::npos ? name : path.substr(0, slash + 1) + name;
-}
-
 }  // namespace
 
 Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options) {
     return guarded([&]() -> Result<Mesh> {
-        const auto bytes = read_all(path, options);
+        const auto bytes = read_at_most(path, options.max_bytes);
         if (!bytes) return bytes.error();
         const LoadBeside load = [&](const std::string& name) -> Result<std::vector<std::byte>> {
             if (path == "-") return Error{ErrorCode::unsupported, path, "has buffers in other files: " + name};
-            return read_all(beside(path, name), options);
+            return read_at_most(beside(path, name), options.max_bytes);
         };
         auto mesh = parse(path, *bytes, load, options);
         if (!mesh) return mesh.error().of(path);
@@ -79,7 +68,7 @@ Result<std::vector<std::string>> mesh_files(const std::string& path, const MeshR
         std::error_code error;
         if (path == "-" || (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)))
             return files;
-        const auto bytes = read_all(path, options);
+        const auto bytes = read_at_most(path, options.max_bytes);
         if (!bytes) return bytes.error();
         if (!is_gltf(*bytes)) return files;
         const auto names = gltf_buffer_files(*bytes);

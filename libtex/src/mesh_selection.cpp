@@ -12,6 +12,7 @@
 #include <tex/tangents.h>
 
 #include "mesh/part_names.h"
+#include "mesh/uv_transform.h"
 #include "rows/usable.h"
 #include "threads/guard.h"
 
@@ -80,6 +81,8 @@ struct Choice {
     TangentSource source = TangentSource::mikktspace;
     bool has_normal_map = false, has_tangents = false;
     bool in_scene = false;
+    UvTransform transform;
+    std::vector<std::string> remarks;
 };
 
 Result<void> choose_parts(const Mesh& mesh, const MeshSelection& selection, Choice& choice) {
@@ -113,21 +116,55 @@ Result<void> choose_parts(const Mesh& mesh, const MeshSelection& selection, Choi
     return {};
 }
 
-Result<void> choose_attributes(const Mesh& mesh, const MeshSelection& selection, Choice& choice) {
-    const int material = choice.parts.front()->material;
-    if (material >= 0 && static_cast<std::size_t>(material) < mesh.materials.size()) {
-        choice.uv_set = mesh.materials[static_cast<std::size_t>(material)].uv_set;
-        choice.has_normal_map = mesh.materials[static_cast<std::size_t>(material)].has_normal_map;
+// Parts without the set of UVs show no map: bakers and engines pass over them if there are others.
+Result<void> leave_out_parts_without_uvs(Choice& choice) {
+    const auto set = static_cast<std::size_t>(choice.uv_set);
+    const auto has_set = [&](const MeshPart* part) { return choice.uv_set >= 0 && set < part->uvs.size(); };
+    if (std::none_of(choice.parts.begin(), choice.parts.end(), has_set)) {
+        const MeshPart& part = *choice.parts.front();
+        const std::string name = part.name.empty() ? "" : quoted(part.name) + " ";
+        if (part.uvs.empty()) return unfit(name + "has no UVs, which say where the map is");
+        return unfit(name + "has no UV set " + std::to_string(choice.uv_set) + "; the last one is " +
+                     std::to_string(part.uvs.size() - 1));
     }
-    choice.uv_set = selection.uv_set.value_or(choice.uv_set);
+    std::size_t without = 0;
+    for (const MeshPart* part : choice.parts) without += has_set(part) ? 0 : part->triangles();
+    std::erase_if(choice.parts, [&](const MeshPart* part) { return !has_set(part); });
+    if (without > 0) {
+        choice.remarks.push_back(std::to_string(without) + (without == 1 ? " triangle has" : " triangles have") +
+                                 (choice.uv_set == 0 ? " no UVs" : " no UV set " + std::to_string(choice.uv_set)) +
+                                 " and shows no map");
+        if (without > 1) choice.remarks.back().replace(choice.remarks.back().rfind("shows"), 5, "show");
+    }
+    return {};
+}
+
+void choose_uvs(const Mesh& mesh, const MeshSelection& selection, Choice& choice) {
+    const int material = choice.parts.front()->material;
+    if (material < 0 || static_cast<std::size_t>(material) >= mesh.materials.size()) {
+        choice.uv_set = selection.uv_set.value_or(0);
+        choice.transform = selection.uv_transform.value_or(UvTransform{});
+        return;
+    }
+    const MeshMaterial& of = mesh.materials[static_cast<std::size_t>(material)];
+    choice.has_normal_map = of.has_normal_map;
+    choice.uv_set = selection.uv_set.value_or(of.uv_set);
+    const bool same_set = choice.uv_set == of.uv_set;
+    choice.transform = selection.uv_transform.value_or(same_set ? of.uv_transform : UvTransform{});
+    if (of.mixed_transforms && !selection.uv_transform) {
+        choice.remarks.push_back("material " + material_name(mesh, material) +
+                                 " has no normal map, and its textures move UVs in several ways "
+                                 "(KHR_texture_transform); the map is put on the UVs as they are stored");
+    }
+}
+
+Result<void> choose_attributes(const Mesh& mesh, const MeshSelection& selection, Choice& choice) {
+    choice.remarks = mesh.remarks;
+    choose_uvs(mesh, selection, choice);
+    if (const auto left = leave_out_parts_without_uvs(choice); !left) return left.error();
     bool all_have_tangents = true;
     for (const MeshPart* part : choice.parts) {
         const std::string name = part->name.empty() ? "" : quoted(part->name) + " ";
-        if (part->uvs.empty()) return unfit(name + "has no UVs, which say where the map is");
-        if (choice.uv_set < 0 || static_cast<std::size_t>(choice.uv_set) >= part->uvs.size()) {
-            return unfit(name + "has no UV set " + std::to_string(choice.uv_set) + "; the last one is " +
-                         std::to_string(part->uvs.size() - 1));
-        }
         if (part->normals.empty()) return unfit(name + "has no normals, which tangent space needs");
         if (part->tangents.empty()) {
             all_have_tangents = false;
@@ -146,6 +183,14 @@ Result<std::vector<Float4>> tangents_of(const MeshPart& part, const Choice& choi
     const bool is_meshopt = choice.source == TangentSource::meshopt;
     return make_tangents(part, is_meshopt ? TangentMethod::meshopt : TangentMethod::mikktspace, choice.uv_set,
                          execution);
+}
+
+// The part with the chosen UVs where the material puts them.
+Result<MeshPart> with_moved_uvs(const MeshPart& part, const Choice& choice) {
+    MeshPart moved = part;
+    move_uvs(moved.uvs[static_cast<std::size_t>(choice.uv_set)], choice.transform, part.v_axis);
+    if (const auto sound = check_part(moved); !sound) return sound.error();
+    return moved;
 }
 
 // The part as the node places it. A node may mirror a part, so each corner becomes a vertex with its own tangent.
@@ -201,7 +246,16 @@ Result<SelectedPart> joined_parts(const Mesh& mesh, const Choice& choice, const 
     joined.has_tangents = choice.has_tangents;
     joined.part.v_axis = choice.parts.front()->v_axis;
     joined.part.uvs.resize(1);
-    for (const MeshPart* part : choice.parts) {
+    joined.has_transform = !(choice.transform == UvTransform{});
+    joined.remarks = choice.remarks;
+    for (const MeshPart* stored : choice.parts) {
+        std::optional<MeshPart> moved;
+        if (joined.has_transform) {
+            auto done = with_moved_uvs(*stored, choice);
+            if (!done) return done.error();
+            moved = std::move(*done);
+        }
+        const MeshPart* const part = moved ? &*moved : stored;
         auto tangents = tangents_of(*part, choice, execution);
         if (!tangents) return tangents.error();
         const MeshNode* const node = choice.in_scene ? node_of(mesh, *part) : choice.node;

@@ -265,9 +265,9 @@ packages)
     root=$scratch/root
     package libtex0 libc6 libpng16-16 libdeflate0 libisal2 libzstd1 libopenexr libtbb12 libhwy \
         libopencolorio
-    case $depends in *openimageio* | *assimp*) fail "the library needs the readers: $depends" ;; esac
+    case $depends in *openimageio* | *assimp* | *draco*) fail "the library needs the readers: $depends" ;; esac
     package libtex-dev 'libtex0 (= '
-    package libtex-tools 'libtex0 (= ' libtiff6 libjpeg62-turbo libassimp libseccomp2
+    package libtex-tools 'libtex0 (= ' libtiff6 libjpeg62-turbo libassimp libdraco libseccomp2
     case $depends in *openimageio*) fail "the commands need OpenImageIO: $depends" ;; esac
     package libtex-reader-oiio libopenimageio libseccomp2
     package python3-libtex 'libtex0 (= ' 'python3 (>= 3.11)' python3-numpy

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A glTF or GLB file of any bytes is read or refused; what is read is whole, and tangents can be made. The files that
-// it names are in its folder.
+// it names are in its folder. Its maps belong to materials and images that exist. What stands for the answer of Draco
+// is the buffer that it was to decode.
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -9,8 +11,45 @@
 #include <string>
 #include <vector>
 
+#include <tex/mesh_selection.h>
+
 #include "fuzz/whole_mesh.h"
 #include "mesh/gltf.h"
+#include "mesh/gltf_images.h"
+
+namespace {
+
+// UVs that were moved are finite.
+void expect_selected(const tex::Mesh& mesh) {
+    for (std::size_t k = 0; k < mesh.materials.size() && k < 4; ++k) {
+        tex::MeshSelection selection;
+        selection.material = std::to_string(k);
+        const auto selected = tex::select_part(mesh, selection, {1, {}});
+        if (selected) expect(static_cast<bool>(tex::check_part(selected->part)));
+    }
+}
+
+void look_at_maps(std::span<const std::byte> bytes, const tex::LoadBeside& load) {
+    const auto chunks = tex::gltf_chunks(bytes);
+    if (!chunks) return;
+    const auto document = tex::JsonDocument::parse(chunks->json);
+    if (!document) return;
+    const auto maps = tex::gltf_maps(document->root());
+    if (!maps) return;
+    tex::GltfBuffers buffers(document->root(), chunks->json.size(), chunks->binary, load);
+    const auto images = tex::gltf_images(document->root(), buffers, *maps);
+    const std::size_t materials = document->root()["materials"].size();
+    for (const tex::ModelMap& map : *maps) {
+        expect(map.material >= 0 && static_cast<std::size_t>(map.material) < materials);
+        expect(map.image >= -1 && map.image < static_cast<int>(images.size()));
+    }
+    for (const tex::ModelImage& image : images) {
+        const bool leaves = image.file.starts_with('/') || ("/" + image.file + "/").find("/../") != std::string::npos;
+        expect(!leaves);
+    }
+}
+
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     // A file beside it has a few bytes; every other one is missing.
@@ -19,7 +58,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         return tex::Error{tex::ErrorCode::io, path, "is missing"};
     };
     const std::span bytes(reinterpret_cast<const std::byte*>(data), size);
-    if (const auto mesh = tex::parse_gltf(bytes, load)) expect_whole(*mesh);
+    const tex::DecodeDraco draco = [](std::span<const std::byte> request) -> tex::Result<std::vector<std::byte>> {
+        const auto buffer = request.subspan(std::min<std::size_t>(4, request.size()));
+        return std::vector<std::byte>(buffer.begin(), buffer.end());
+    };
+    if (const auto mesh = tex::parse_gltf(bytes, load, draco)) {
+        expect_whole(*mesh);
+        expect_selected(*mesh);
+    }
+    look_at_maps(bytes, load);
     if (const auto files = tex::gltf_buffer_files(bytes)) {
         // No name leads out of the folder of the file.
         for (const std::string& file : *files) {

@@ -45,6 +45,7 @@ COMMANDS = [
     Dependency("OpenImageIO", "libopenimageio-dev", "", "openimageio", "openimageio"),
     Dependency("libseccomp", "libseccomp-dev", "", "libseccomp", "libseccomp"),
     Dependency("assimp", "libassimp-dev", "", "assimp", "assimp"),
+    Dependency("draco", "libdraco-dev", "", "draco", "draco"),
     Dependency("", "libtomlplusplus-dev", "", "tomlplusplus", "tomlplusplus"),
 ]
 

@@ -198,3 +198,19 @@ def test_height_field_reports():
     assert found["deband"] == {"applied": False, "step": 0.0, "codes": 0, "terrace_texels": 0}
     with pytest.raises(TypeError, match="report: expected a dict"):
         tex.height_field(picture, [], fill_invalid=True)
+
+
+def test_models_have_their_maps():
+    file = str(BROKEN / "N802-used-as-color.glb")
+    model = tex.read_model(file)
+    assert isinstance(model["mesh"], tex.Mesh)
+    (image,), (found,) = model["images"], model["maps"]
+    assert image["bytes"].startswith(b"\x89PNG") and image["error"] is None
+    assert (0, "baseColorTexture", True) in image["uses"]
+    assert found["name"] == "stone: normals" and found["image"] == 0 and found["scale"] == 1.0
+    assert found["uv_transform"] == {"offset": (0.0, 0.0), "rotation": 0.0, "scale": (1.0, 1.0)}
+    (report,) = tex.check_model(file)
+    assert report.map == "stone: normals" and [finding.id for finding in report] == ["N802"]
+    assert tex.check_model(file, disable=["N802"], material="stone")[0].findings == []
+    with pytest.raises(tex.BadOptionError):
+        tex.check_model(file, material="glass")

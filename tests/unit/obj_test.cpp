@@ -39,9 +39,11 @@ TEST(Obj, CountsNegativeIndicesFromTheEnd) {
     const auto mesh = parse_with_quad("f -4/-4 -3/-3 -2/-2\nv 9 9 9\nf -1 1 2\n");
     ASSERT_TRUE(mesh) << mesh.error().reason;
     EXPECT_EQ(mesh->parts[0].positions[0].x, 0.0f);
-    EXPECT_EQ(mesh->parts[0].positions[3].x, 9.0f);
-    EXPECT_TRUE(mesh->parts[0].uvs.empty());  // one face has none
-    EXPECT_TRUE(mesh->parts[0].normals.empty());
+    ASSERT_EQ(mesh->parts.size(), 2u);  // faces without UVs are a part of their own
+    EXPECT_FALSE(mesh->parts[0].uvs.empty());
+    EXPECT_EQ(mesh->parts[1].positions[0].x, 9.0f);
+    EXPECT_TRUE(mesh->parts[1].uvs.empty());
+    EXPECT_TRUE(mesh->parts[1].normals.empty());
 }
 
 TEST(Obj, MakesPartsOfObjectsAndMaterials) {

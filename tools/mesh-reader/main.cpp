@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// tex-mesh-reader: reads meshes with Assimp for libtex, which starts it. Do not run it by hand.
+// tex-mesh-reader: reads meshes with Assimp, and buffers of glTF with Draco, for libtex, which starts it. Do not run it
+// by hand.
 //
 // reader_protocol.h describes how. The answer is the mesh as a GLB file (glb.h).
 
@@ -17,6 +18,7 @@
 #include <assimp/postprocess.h>
 #include <assimp/Importer.hpp>
 
+#include "draco.h"
 #include "glb.h"
 #include "reader/reader.h"
 
@@ -64,6 +66,10 @@ bool read_mesh(const Task& task, ReaderHeader& header) {
     const auto bytes = static_cast<std::size_t>(status.st_size);
     const void* const file = mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE, kInputDescriptor, 0);
     if (file == MAP_FAILED) throw std::bad_alloc();
+    if (task.verb == "draco") {
+        Glb glb;
+        return decode_draco(file, bytes, glb, header) && answer(glb, header);
+    }
     Assimp::Importer importer;
     leave_out_own_types(importer);
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);

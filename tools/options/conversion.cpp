@@ -30,6 +30,8 @@ Result<ConvertedMap> ConversionOptions::convert(Job& job, const NormalMap& map, 
     if (!from) return from.error();
     const auto to = spaces.output(job.task.tile, job.read_options, {job.threads(), {}});
     if (!to) return to.error();
+    spaces.note(job, *from);
+    if (to->file() != from->file()) spaces.note(job, *to);
     const Execution execution = job.until(until);
     const bool both = spaces.from == Space::tangent && !makes_object();
     auto converted = both             ? refit(map, from->space(), to->space(), convert_, execution)

@@ -73,7 +73,7 @@ void HighMeshes::amend(Task& task) const {
     for (std::string& buffer : buffers_of(meshes)) task.own.push_back(std::move(buffer));
 }
 
-Result<HighParts> HighMeshes::read(const Job& job, bool with_uvs) const {
+Result<HighParts> HighMeshes::read(Job& job, bool with_uvs) const {
     HighParts high;
     MeshReadOptions how;
     how.reader = job.read_options;
@@ -81,6 +81,7 @@ Result<HighParts> HighMeshes::read(const Job& job, bool with_uvs) const {
     for (const std::string& name : names_of(job.task)) {
         auto mesh = read_mesh(name, how);
         if (!mesh) return mesh.error().of(name);
+        for (const std::string& remark : mesh->remarks) job.warn(remark, name);
         for (MeshPart& part : mesh->parts) {  // not needed
             if (!with_uvs) part.uvs.clear();
             if (!with_uvs) part.tangents.clear();

@@ -51,7 +51,7 @@ public:
 
     // Reads the meshes of a job, as the nodes of their scenes place them, without UVs and tangents if nobody needs
     // them.
-    [[nodiscard]] Result<HighParts> read(const Job& job, bool with_uvs) const;
+    [[nodiscard]] Result<HighParts> read(Job& job, bool with_uvs) const;
 
     // Numbers the parts as --match says, and reports those without partner.
     [[nodiscard]] Result<void> match(Job& job, const SelectedPart& low, const HighParts& high,

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 #include <tex/mesh_io.h>
+#include <tex/model.h>
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
@@ -65,13 +66,38 @@ void TangentSpaceOptions::add(Command& command) {
     command.check([this, &command] { check(command); });
 }
 
-void TangentSpaceOptions::add_input(Command& command, bool with_from) {
-    add_mesh(command, "the mesh that the inputs are on: glTF, GLB, OBJ, FBX, PLY ...");
+void TangentSpaceOptions::add_input_options(Command& command, bool with_from, const char* meaning) {
+    add_mesh(command, meaning);
     add_parts(command, kNodeOfMap);
     if (with_from) command.choice(from, "--from", "SPACE", kSpaceNames, "the space of the inputs' vectors");
     add_decoder(command, "the engine that decodes the inputs");
     add_tangents(command);
+}
+
+void TangentSpaceOptions::add_input(Command& command, bool with_from) {
+    add_input_options(command, with_from, "the mesh that the inputs are on: glTF, GLB, OBJ, FBX, PLY ...");
     command.check([this, &command] { check_input(command); });
+}
+
+void TangentSpaceOptions::add_input_of_models(Command& command) {
+    add_input_options(command, false,
+                      "the mesh that the inputs are on: glTF, GLB, OBJ, FBX, PLY ...; models have their own");
+    command.check([this, &command] {
+        if (mesh_ == "-") throw UsageError("--mesh: a mesh cannot come from standard input");
+        const auto idle = command.given_of({"--primitive", "--node", "--uv-set"});
+        if (!has_mesh() && !idle.empty()) throw UsageError(fmt::format("{} needs --mesh", idle.front()));
+    });
+}
+
+void TangentSpaceOptions::check_models(const Command& command, const std::vector<std::string>& inputs) const {
+    const auto model =
+        std::find_if(inputs.begin(), inputs.end(), [](const std::string& name) { return is_model(name); });
+    if (model != inputs.end() && has_mesh())
+        throw UsageError(
+            fmt::format("--mesh is for maps, and {} is a model with meshes of its own", printable(*model)));
+    if (model != inputs.end() || has_mesh()) return;
+    const auto idle = command.given_of({"--material", "--decoder", "--tangents"});
+    if (!idle.empty()) throw UsageError(fmt::format("{} needs --mesh, or a model", idle.front()));
 }
 
 void TangentSpaceOptions::add_low(Command& command) {
@@ -207,6 +233,16 @@ Result<MeshSpace> TangentSpaceOptions::cage(const std::string& file, const ReadO
     if (selected && tile_ != 0) selected = in_tile(*selected, tile_);
     if (!selected) return with_option(selected.error()).of(file);
     return MeshSpace(std::make_shared<const SelectedPart>(std::move(*selected)), decoder_, file);
+}
+
+void TangentSpaceOptions::note(Job& job, const MeshSpace& mesh) const {
+    const std::lock_guard lock(mutex_);
+    for (const std::string& remark : mesh.selected().remarks) {
+        if (noted_.insert(mesh.file() + '\n' + remark).second)
+            job.warn(remark, mesh.file());
+        else
+            job.remark(remark, mesh.file());
+    }
 }
 
 Result<MeshSpace> TangentSpaceOptions::read(const std::string& file, std::optional<TangentSource> tangents,

@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +19,7 @@
 #include <tex/mesh_selection.h>
 
 #include "cli/command.h"
+#include "tasks/job.h"
 
 namespace tex::cli {
 
@@ -60,11 +62,19 @@ public:
     // --from.
     void add_input(Command& command, bool with_from = false);
 
+    // The same for a command whose inputs may be models: --material, --decoder and --tangents are then for these, too.
+    void add_input_of_models(Command& command);
+    // Throws UsageError if the options do not fit the inputs.
+    void check_models(const Command& command, const std::vector<std::string>& inputs) const;
+
     // For a command whose inputs are meshes, which it places in the scene: --decoder, --tangents, --tile, the choice of
     // parts.
     void add_low(Command& command);
 
     [[nodiscard]] bool has_mesh() const { return !mesh_.empty(); }
+    [[nodiscard]] const std::string& material() const { return selection_.material; }
+    [[nodiscard]] Decoder decoder() const { return decoder_; }
+    [[nodiscard]] std::optional<TangentSource> tangents() const { return tangents_; }
     // Whether the engine that decodes the input ignores its z, so that x and y must be read as they are stored.
     [[nodiscard]] bool ignores_z() const {
         return from == Space::tangent && rebuilds_z(decoder_in_.value_or(decoder_));
@@ -93,10 +103,13 @@ public:
     // materials. Errors: as of_low().
     [[nodiscard]] Result<MeshSpace> cage(const std::string& file, const ReadOptions& read,
                                          const Execution& execution) const;
+    // Warns of what was left out of a mesh, once in a run. Any thread may call this.
+    void note(Job& job, const MeshSpace& mesh) const;
 
 private:
     void check(const Command& command) const;
     void check_input(const Command& command) const;
+    void add_input_options(Command& command, bool with_from, const char* meaning);
     void add_mesh(Command& command, const char* meaning);
     void add_parts(Command& command, const char* node);
     void add_decoder(Command& command, const char* meaning);
@@ -133,6 +146,7 @@ private:
     std::optional<TangentSource> tangents_, tangents_in_;
     mutable std::mutex mutex_;
     mutable std::map<std::pair<std::string, std::optional<TangentSource>>, Loaded> loaded_;
+    mutable std::set<std::string> noted_;
 };
 
 }  // namespace tex::cli

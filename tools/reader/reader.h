@@ -28,7 +28,7 @@
 namespace tex::reader {
 
 struct Task {
-    std::string verb;             // "decode", "encode", "describe" or "mesh"
+    std::string verb;             // "decode", "encode", "describe", "mesh" or "draco"
     std::string format;           // the name of the file type; the extension of a mesh
     std::int64_t max_texels = 0;  // a picture with more texels is refused
     std::int64_t memory = 0;      // bytes of address space, the result included

@@ -30,6 +30,11 @@ fs::path absolute_of(const fs::path& path) {
     return (error ? path : absolute).lexically_normal();
 }
 
+// Content of a model's file, and the name of one of its maps.
+std::string content_with_map(const CheckReport& report, const std::string& content) {
+    return content.empty() || report.map.empty() ? content : content + " " + printable(report.map);
+}
+
 }  // namespace
 
 std::string content_of(const std::string& path) {
@@ -55,6 +60,11 @@ std::string Baseline::name_of_file(const std::string& file) const {
     if (folder_.empty()) return printable(fs::path(file).lexically_normal().generic_string());
     const fs::path absolute = absolute_of(file), relative = absolute.lexically_relative(folder_);
     return printable((relative.empty() ? absolute : relative).generic_string());
+}
+
+// The maps of a model are told apart by their names.
+std::string Baseline::name_of(const CheckReport& report) const {
+    return name_of_file(report.file) + (report.map.empty() ? "" : ": " + printable(report.map));
 }
 
 void Baseline::insert(const Entry& entry) {
@@ -94,16 +104,16 @@ Result<Baseline> Baseline::parse(const std::string& path, const std::string& tex
 void Baseline::add(const CheckReport& report, const std::string& content) {
     if (report.error) return;
     for (const Finding& finding : report.findings)
-        insert({name_of_file(report.file), std::string(finding.rule->id), level_of(finding), content});
+        insert({name_of(report), std::string(finding.rule->id), level_of(finding), content_with_map(report, content)});
 }
 
 std::vector<Finding> Baseline::accept(CheckReport& report, const std::string& content) const {
     if (report.error) return {};
-    const std::string file = name_of_file(report.file);
+    const std::string file = name_of(report), with_map = content_with_map(report, content);
     const auto is_known = [&](const Finding& finding) {
         const std::string id(finding.rule->id);
         const int level = level_of(finding);
-        return by_file_.count({file, id, level}) > 0 || by_content_.count({content, id, level}) > 0;
+        return by_file_.count({file, id, level}) > 0 || by_content_.count({with_map, id, level}) > 0;
     };
     const auto known = std::stable_partition(report.findings.begin(), report.findings.end(),
                                              [&](const Finding& finding) { return !is_known(finding); });

@@ -46,6 +46,7 @@ private:
     using Entry = std::tuple<std::string, std::string, int, std::string>;  // file, id, level, content
 
     [[nodiscard]] std::string name_of_file(const std::string& file) const;
+    [[nodiscard]] std::string name_of(const CheckReport& report) const;
     void insert(const Entry& entry);
 
     std::filesystem::path folder_;  // that files are relative to; empty: files are as given

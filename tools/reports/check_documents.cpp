@@ -9,6 +9,7 @@
 
 #include "cli/text_file.h"
 #include "cli/usage_error.h"
+#include "reports/findings.h"
 #include "reports/html_map.h"
 #include "reports/sarif.h"
 #include "tasks/depfile.h"
@@ -75,31 +76,36 @@ std::vector<Finding> CheckDocuments::accept(CheckReport& report) {
     return baseline_ ? baseline_->accept(report, content) : std::vector<Finding>();
 }
 
-Result<void> CheckDocuments::add(Job& job, const JudgedReport& judged, const MapOnMesh* mesh) {
+Result<void> CheckDocuments::add(Job& job, const JudgedReport& judged, const MapOnMesh* mesh, const ReadTexture& read) {
     if (has_page()) {
-        if (auto added = add_to_page(job, judged.report, judged.require, mesh); !added) return added;
+        if (auto added = add_to_page(job, judged.report, judged.require, mesh, read); !added) return added;
     }
     const std::lock_guard lock(mutex_);
-    if (!sarif_.empty() || !junit_.empty()) reports_.insert_or_assign(job.task.input, judged);
+    if (!sarif_.empty() || !junit_.empty()) reports_.insert_or_assign(title_of(judged.report), judged);
     return {};
 }
 
+void CheckDocuments::depends_on(const std::string& file) {
+    const std::lock_guard lock(mutex_);
+    more_sources_.insert(file);
+}
+
 Result<void> CheckDocuments::add_to_page(Job& job, const CheckReport& report, const Requirements& require,
-                                         const MapOnMesh* mesh) {
+                                         const MapOnMesh* mesh, const ReadTexture& read) {
     for (const Finding& finding : report.findings) page_.explain(*finding.rule);
     std::optional<HtmlMap> map;
     if (!report.error) {
-        const auto texture = read_texture(job.task.input, job.read_options);
+        const auto texture = read();
         if (!texture) return texture.error();
-        auto drawn = draw_html_map(job.task.input, *texture, report.swizzle, report.y.y.value_or(texture->y_axis), mesh,
-                                   sizes_, job.until(1.0));
+        auto drawn = draw_html_map(title_of(report), *texture, report.swizzle, report.y.y.value_or(texture->y_axis),
+                                   mesh, sizes_, job.until(1.0));
         // A file that holds no normals has findings, and no pictures.
         if (drawn)
             map = std::move(*drawn);
         else if (drawn.error().code != ErrorCode::bad_option)
             return drawn.error();
     }
-    page_.add(job.task.input, check_entry(report, require, map ? &*map : nullptr));
+    page_.add(title_of(report), check_entry(report, require, map ? &*map : nullptr));
     return {};
 }
 
@@ -118,7 +124,11 @@ ExitCode CheckDocuments::write(Console& console, const std::string& summary) con
     if (has_page()) write(page_path_, page_.page(summary));
     if (writes_baseline()) write(baseline_written_, new_baseline_.text());
     if (depfile_.empty() || code != ExitCode::done) return code;
-    if (const auto text = depfile_text({{written(), sources_}})) {
+    std::vector<std::string> sources = sources_;
+    for (const std::string& file : more_sources_) {
+        if (std::find(sources.begin(), sources.end(), file) == sources.end()) sources.push_back(file);
+    }
+    if (const auto text = depfile_text({{written(), sources}})) {
         write(depfile_, *text);
     } else {
         console.error(text.error().message());

@@ -3,9 +3,11 @@
 
 #pragma once
 
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -40,9 +42,14 @@ public:
     // Removes the findings that the baseline knows from the report, and returns them. Any thread may call this.
     [[nodiscard]] std::vector<Finding> accept(CheckReport& report);
 
-    // Adds a file to the documents, with the mesh that it is on or null. Any thread may call this. Errors: those of
-    // reading the file again for its pictures.
-    [[nodiscard]] Result<void> add(Job& job, const JudgedReport& judged, const MapOnMesh* mesh);
+    // Adds a map to the documents, with the mesh that it is on or null. `read` reads its texture again, for pictures.
+    // Any thread may call this. Errors: those of `read`.
+    using ReadTexture = std::function<Result<Texture>()>;
+    [[nodiscard]] Result<void> add(Job& job, const JudgedReport& judged, const MapOnMesh* mesh,
+                                   const ReadTexture& read);
+
+    // A file that a map was made from, besides the inputs. Any thread may call this.
+    void depends_on(const std::string& file);
 
     // Writes all of them. `summary` is the first sentence of the page.
     [[nodiscard]] ExitCode write(Console& console, const std::string& summary) const;
@@ -50,10 +57,11 @@ public:
 private:
     [[nodiscard]] std::vector<std::string> written() const;
     [[nodiscard]] Result<void> add_to_page(Job& job, const CheckReport& report, const Requirements& require,
-                                           const MapOnMesh* mesh);
+                                           const MapOnMesh* mesh, const ReadTexture& read);
 
     std::string page_path_, sarif_, junit_, baseline_path_, baseline_written_, depfile_;  // or empty
     std::vector<std::string> sources_;  // what the documents are made from
+    std::set<std::string> more_sources_;
     bool is_for_github_ = false;
     std::mutex mutex_;
     std::optional<Baseline> baseline_;

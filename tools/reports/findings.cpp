@@ -29,14 +29,19 @@ Json region_json(const Region& region) {
 
 }  // namespace
 
+std::string title_of(const CheckReport& report) {
+    return report.map.empty() ? report.file : report.file + ": " + report.map;
+}
+
 std::string findings_text(const CheckReport& report, const Requirements& require) {
     std::string text, told;  // the command that was printed before
     for (const Finding& finding : report.findings) {
         const Rule& rule = *finding.rule;
         std::string_view sentence = rule.sentence;
         sentence.remove_suffix(1);
-        text += fmt::format("{}: {} {} {}: {}: {}\n", printable(report.file), name_of(kSeverityNames, finding.severity),
-                            rule.id, rule.name, sentence, printable(finding.message));
+        text += fmt::format("{}: {} {} {}: {}: {}\n", printable(title_of(report)),
+                            name_of(kSeverityNames, finding.severity), rule.id, rule.name, sentence,
+                            printable(finding.message));
         const Fix fix = fix_of(finding, report, require);
         if (fix.text.empty()) continue;
         if (fix.is_command && fix.text == told) {
@@ -53,7 +58,7 @@ std::string pair_text(const CheckReport& report) {
     if (!report.pair) return {};
     const PairEvidence& pair = *report.pair;
     return fmt::format("{}: fits the height map with correlation {:.2f}, strength {:.2f}, y {}, offset {}, {}\n",
-                       printable(report.file), pair.correlation, pair.strength, name_of_y(pair.y), pair.offset_x,
+                       printable(title_of(report)), pair.correlation, pair.strength, name_of_y(pair.y), pair.offset_x,
                        pair.offset_y);
 }
 
@@ -62,11 +67,12 @@ std::string seams_text(const CheckReport& report) {
     const SeamEvidence& seams = *report.seams;
     return fmt::format(
         "{}: {} seam edges of the mesh, mean {:.2f}, p99 {:.2f}, mean of the worst edge {:.2f} degrees\n",
-        printable(report.file), seams.edges, seams.mean, seams.p99, seams.worst);
+        printable(title_of(report)), seams.edges, seams.mean, seams.p99, seams.worst);
 }
 
 Json findings_json(const CheckReport& report, const Requirements& require) {
     Json json;
+    if (!report.map.empty()) json["map"] = report.map;
     if (report.error) {
         json["error"] = {{"code", name_of(kErrorCodeNames, report.error->code)}, {"reason", report.error->reason}};
     } else {
@@ -141,7 +147,6 @@ std::string rule_text(const Rule& rule) {
 }
 
 void CheckTotals::add(const CheckReport& report, int its_known) {
-    ++files;
     known += its_known;
     if (report.error) ++unreadable;
     for (const Finding& finding : report.findings) ++by_severity[static_cast<int>(finding.severity)];

@@ -11,6 +11,9 @@
 
 namespace tex::cli {
 
+// The file, and the map if it is one of a model: "car.glb: Paint: paint_n.png".
+[[nodiscard]] std::string title_of(const CheckReport& report);
+
 // One line for each finding, with its fix below: "maps/a.dds: error N401 wrong-y: Green points ...: green points down
 // instead of up".
 [[nodiscard]] std::string findings_text(const CheckReport& report, const Requirements& require);
@@ -33,7 +36,7 @@ struct CheckTotals {
     int files = 0, unreadable = 0, known = 0;
     int by_severity[3] = {};
 
-    // `its_known`: the number of findings that a baseline removed from the report.
+    // `its_known`: the number of findings that a baseline removed from the report. Files are counted by the caller.
     void add(const CheckReport& report, int its_known);
     [[nodiscard]] std::string text() const;
 };

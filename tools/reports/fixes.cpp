@@ -208,6 +208,7 @@ Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements
             "The texels do not show which way green points. Find that out first: if it is as required, only the "
             "statement is wrong."};
     }
+    if (!report.map.empty()) return {"Correct the image in the program that made it, and put it into the model again."};
     const std::vector<const Finding*> together = fixed_together(finding, report, require);
     FixCommand command;
     std::optional<Target> target;

@@ -10,6 +10,7 @@
 #include <tex/sheet.h>
 #include <tex/swizzle.h>
 
+#include "reports/findings.h"
 #include "reports/fixes.h"
 #include "reports/html.h"
 #include "reports/html_report.h"
@@ -134,7 +135,7 @@ std::vector<std::string> check_columns() { return {"findings", "format", "extent
 
 HtmlEntry check_entry(const CheckReport& report, const Requirements& require, HtmlMap* map) {
     HtmlEntry entry;
-    entry.title = report.file;
+    entry.title = title_of(report);
     entry.row = "<td>";
     std::vector<Finding> worst_first = report.findings;
     std::stable_sort(worst_first.begin(), worst_first.end(),

@@ -42,7 +42,7 @@ std::string test_case(const JudgedReport& judged) {
     std::erase_if(failing.findings, [&](const Finding& finding) { return !fails(finding); });
     std::erase_if(other.findings, fails);
     std::string xml = fmt::format("    <testcase classname=\"check-normals\" name=\"{}\" time=\"{:.3f}\">\n",
-                                  escaped(report.file), judged.seconds);
+                                  escaped(title_of(report)), judged.seconds);
     if (report.error) {
         xml += fmt::format("      <error type=\"{}\" message=\"{}\"/>\n", name_of(kErrorCodeNames, report.error->code),
                            escaped(report.error->reason));

@@ -8,6 +8,7 @@
 #include <tex/tex.h>
 
 #include "cli/json.h"
+#include "reports/findings.h"
 #include "reports/fixes.h"
 
 namespace tex::cli {
@@ -50,12 +51,13 @@ Json rule_json(const Rule& rule) {
     return json;
 }
 
-Json location_json(const std::string& file) {
+Json location_json(const CheckReport& report) {
     Json location;
-    location["artifactLocation"] = {{"uri", uri_of(file)}};
+    location["artifactLocation"] = {{"uri", uri_of(report.file)}};
     location["region"] = {{"startLine", 1}};  // textures have no lines, but viewers require one
     Json json;
     json["physicalLocation"] = std::move(location);
+    if (!report.map.empty()) json["logicalLocations"] = Json::array({{{"name", report.map}}});
     return json;
 }
 
@@ -65,11 +67,12 @@ Json result_json(const CheckReport& report, const Finding& finding, const Requir
     json["ruleIndex"] = finding.rule - rules().data();
     json["level"] = level_of(finding.severity);
     const Fix fix = fix_of(finding, report, require);
-    json["message"] = text_json(fmt::format("{} {}.{}{}{}", finding.rule->sentence, finding.message,
-                                            fix.text.empty() ? "" : " ", fix.is_command ? "Fix: " : "", fix.text));
-    json["locations"] = Json::array({location_json(report.file)});
+    json["message"] =
+        text_json(fmt::format("{}{}{} {}.{}{}{}", report.map, report.map.empty() ? "" : ": ", finding.rule->sentence,
+                              finding.message, fix.text.empty() ? "" : " ", fix.is_command ? "Fix: " : "", fix.text));
+    json["locations"] = Json::array({location_json(report)});
     const int level = finding.regions.empty() ? 0 : finding.regions.front().level;
-    json["partialFingerprints"] = {{"rule/v1", fmt::format("{}:{}:{}", finding.rule->id, level, report.file)}};
+    json["partialFingerprints"] = {{"rule/v1", fmt::format("{}:{}:{}", finding.rule->id, level, title_of(report))}};
     Json properties;
     properties["figure"] = static_cast<float>(finding.figure);
     properties["unit"] = finding.unit;
@@ -101,7 +104,7 @@ std::string sarif_text(const std::vector<JudgedReport>& reports) {
         Json notification;
         notification["level"] = "error";
         notification["message"] = text_json(report.error->reason);
-        notification["locations"] = Json::array({location_json(report.file)});
+        notification["locations"] = Json::array({location_json(report)});
         notifications.push_back(std::move(notification));
     }
     Json invocation;

@@ -31,6 +31,9 @@
 #pragma GCC visibility push(default)
 namespace tex {
 
+struct Model;     // model.h
+struct ModelMap;  // model.h
+
 enum class Severity { note, warning, error };
 
 inline constexpr Named<Severity> kSeverityNames[] = {
@@ -39,7 +42,7 @@ inline constexpr Named<Severity> kSeverityNames[] = {
     {Severity::error, "error", "is wrong"},
 };
 
-enum class RuleFamily { file, values, damage, convention, mips, pair, mesh };
+enum class RuleFamily { file, values, damage, convention, mips, pair, mesh, model };
 
 inline constexpr Named<RuleFamily> kRuleFamilyNames[] = {
     {RuleFamily::file, "file", "the file and its header"},
@@ -49,6 +52,7 @@ inline constexpr Named<RuleFamily> kRuleFamilyNames[] = {
     {RuleFamily::mips, "mips", "the smaller levels"},
     {RuleFamily::pair, "pair", "the map beside its height map"},
     {RuleFamily::mesh, "mesh", "the map on its mesh"},
+    {RuleFamily::model, "model", "the map in a glTF model"},
 };
 
 struct Rule {
@@ -119,6 +123,12 @@ struct MeshToCheck {
     std::string file = {};            // that errors name; may be empty
 };
 
+// The model in which a map is, for the rules of the family "model". Refers to the caller's objects.
+struct MapInModel {
+    const Model& model;
+    const ModelMap& map;
+};
+
 struct CheckOptions {
     Requirements require;
     std::vector<std::string> enable;                         // ids or names
@@ -126,6 +136,7 @@ struct CheckOptions {
     std::vector<std::pair<std::string, Severity>> severity;  // by id or name; the last one applies
     const HeightField* height = nullptr;                     // the map's heights, for the rules of the pair; not owned
     const MeshToCheck* mesh = nullptr;                       // the mesh that the map is on; not owned
+    const MapInModel* model = nullptr;                       // the model that uses the map; not owned
 };
 
 // Texels [x, x + width) x [y, y + height) of a level; y counts rows from the top.
@@ -172,6 +183,7 @@ struct SeamEvidence {
 
 struct CheckReport {
     std::string file;
+    std::string map = {};           // of a map in a model: its material and image, "Leather: leather_n.png"; else empty
     std::vector<Finding> findings;  // by rule id, then level
     int explained = 0;              // findings left out because another one explains them
     std::optional<Error> error;     // the file could not be read (then findings hold N101) or checked
@@ -199,6 +211,32 @@ struct CheckReport {
 // The same report for every number of threads, processor and compiler.
 [[nodiscard]] Result<CheckReport> check(const std::string& file, const Texture& texture,
                                         const CheckOptions& options = {}, const Execution& execution = {});
+
+struct ModelCheckOptions {
+    CheckOptions checks = {};                    // without `mesh` and `model`
+    std::string material = {};                   // only the maps of this one: a name, or a number from 0
+    Decoder decoder = Decoder::gltf;             // the engine that decodes the maps
+    std::optional<TangentSource> tangents = {};  // none: those of the model, or MikkTSpace where it has none
+};
+
+// Checks a normal map of a model, on its mesh, with the rules of the families "mesh" and "model". Unless y is demanded,
+// N401 warns if green points down, which is not glTF's. If the image cannot be read, the report has N101 and the Error,
+// as that of check_file(). If its triangles cannot be examined, the report has a finding (N807).
+//
+// Preconditions (asserted): the model is one of read_model(), and the map one of its maps.
+// Errors: bad_option (see validate())
+[[nodiscard]] Result<CheckReport> check_map(const Model& model, const ModelMap& map,
+                                            const ModelCheckOptions& options = {}, const ReadOptions& read = {},
+                                            const Execution& execution = {});
+
+// Reads a model and checks every normal map that its materials use, as check_map() does. Returns a report for each, in
+// the order of Model::maps; none if no material uses a map.
+//
+// Errors: those of read_model(); bad_option (also: there is no such material); out_of_memory, cancelled
+[[nodiscard]] Result<std::vector<CheckReport>> check_model(const std::string& path,
+                                                           const ModelCheckOptions& options = {},
+                                                           const ReadOptions& read = {},
+                                                           const Execution& execution = {});
 
 // Reads a file and checks it. If it cannot be read, the report has a finding (N101) and the Error. If memory runs out
 // or the check is cancelled, the report has only CheckReport::error. Errors: bad_option.

@@ -60,11 +60,29 @@ struct MeshPart {
     [[nodiscard]] std::size_t triangles() const { return indices.size() / 3; }
 };
 
+// How a material moves UVs before it looks up a texture (glTF's KHR_texture_transform). With c and s the cosine and the
+// sine of `rotation`, and v pointing down,
+//
+//     u' =  c scale_x u + s scale_y v + offset_x
+//     v' = -s scale_x u + c scale_y v + offset_y
+//
+// A mesh keeps the UVs that its file stores; select_part() moves them.
+struct UvTransform {
+    double offset_x = 0.0, offset_y = 0.0;
+    double rotation = 0.0;  // radians
+    double scale_x = 1.0, scale_y = 1.0;
+
+    friend bool operator==(const UvTransform&, const UvTransform&) = default;
+};
+
 struct MeshMaterial {
     std::string name;
     std::string normal_map;       // the path of the normal map as the file states it; empty: none, or inside the file
     int uv_set = 0;               // the set of UVs that the normal map uses
     bool has_normal_map = false;  // in a file or inside the mesh's file
+    // Of the normal map. Without one, that which all textures of the material share.
+    UvTransform uv_transform = {};
+    bool mixed_transforms = false;  // there is no normal map, and the other textures differ in this
 };
 
 // A place where a mesh stands in the scene.
@@ -80,6 +98,8 @@ struct Mesh {
     std::vector<MeshPart> parts;
     std::vector<MeshMaterial> materials;
     std::vector<MeshNode> nodes;  // in depth-first order; those without a mesh are left out
+    // What was left out and may matter, as sentences that follow the name of the file.
+    std::vector<std::string> remarks = {};
 };
 
 // The largest number of triangles of a part: the reference implementation of MikkTSpace stops here, too.

@@ -8,10 +8,16 @@
 //        with a scheme, absolute paths and ".." are refused, because a mesh from a stranger must not choose what is
 //        read. Read: triangles, strips and fans (points and lines are skipped); indices of 8, 16 and 32 bits; POSITION,
 //        NORMAL, TANGENT and up to kMaxUvSets sets TEXCOORD_n, as floats or as integers (KHR_mesh_quantization); sparse
-//        accessors; matrices, translations, rotations and scales of nodes. Vertices that no triangle uses are dropped.
-//        Ignored: skins, morph targets, animations, cameras, extensions that the file does not require.
+//        accessors; matrices, translations, rotations and scales of nodes; instances of nodes
+//        (EXT_mesh_gpu_instancing); buffers compressed by meshoptimizer (EXT_meshopt_compression,
+//        KHR_meshopt_compression); triangles compressed by Draco (KHR_draco_mesh_compression), which a separate process
+//        decodes, as for other file types. Vertices that no triangle uses are dropped. UVs stay as stored; materials
+//        say how textures move them (KHR_texture_transform). Ignored: skins, morph targets (the base shape is read),
+//        animations, cameras. Other extensions: refused if the file requires them and they are not known to leave
+//        triangles alone; else Mesh::remarks says if one was ignored where it might change UVs, normals or tangents.
 // OBJ    v, vt, vn, f, o, usemtl. Polygons become fans around their first corner. Faces of the same object and material
-//        are one part. A part has UVs or normals if all of its corners have them. All else is ignored.
+//        are one part; those of them without UVs are another. A part has normals if all of its corners have them. All
+//        else is ignored.
 // other  What Assimp reads from one file: FBX, PLY, Collada, STL and more. As Assimp has crashed on damaged files, it
 //        runs in a separate process, tex-mesh-reader, under the limits of memory and time that ReadOptions states,
 //        and can open no other file. Polygons become triangles as Assimp divides them. Tangents count if the file has

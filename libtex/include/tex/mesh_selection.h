@@ -34,6 +34,8 @@ struct MeshSelection {
     std::optional<int> uv_set;              // none: the one that the material's normal map uses, or 0
     std::optional<TangentSource> tangents;  // none: those of the file if all of these parts have them and uv_set is not
                                             // given; else mikktspace
+    // How the map places the UVs. None: as the material says of its normal map, if `uv_set` is not another set.
+    std::optional<UvTransform> uv_transform = {};
 };
 
 // Triangles of a SelectedPart that come from one part of the file.
@@ -43,21 +45,27 @@ struct SelectedPiece {
     std::size_t triangle = 0;  // the first one; the others follow up to that of the next piece
 };
 
-// The chosen parts, joined. The part has one set of UVs, normals, and no tangents of vertices.
+// The chosen parts, joined. The part has one set of UVs, in which the transform is applied, normals, and no tangents of
+// vertices.
 struct SelectedPart {
     MeshPart part;
     std::vector<Float4> tangents;  // one for each element of part.indices
     TangentSource source = TangentSource::mikktspace;
     bool has_normal_map = false;        // their material
     bool has_tangents = false;          // every part has stored tangents, whether or not they were chosen
+    bool has_transform = false;         // UVs were moved: they are not those of the file
     std::vector<SelectedPiece> pieces;  // in the order of their triangles
+    // Those of the mesh, and what the choice left out, as sentences that follow the name of the file.
+    std::vector<std::string> remarks = {};
 };
 
-// Joins the parts that `selection` names. Tangents are made for each part, before a node transforms it.
+// Joins the parts that `selection` names. Tangents are made for each part, from the moved UVs, before a node transforms
+// it. Stored tangents stay as they are: a transform moves the map, not the tangents. If only some of the parts have the
+// set of UVs, the others are left out, as they show no map.
 //
 // Preconditions (asserted): every part passes check_part().
 // Errors: bad_option   there is no such material, node or part; several nodes have this name; the parts have different
-//                      materials; a part lacks normals, the set of UVs, or the tangents
+//                      materials; no part has the set of UVs; a part lacks normals or the tangents
 //         unsupported  the parts have more than kMaxTriangles triangles; and as make_tangents()
 //         bad_data     as in_scene()
 //         out_of_memory, cancelled

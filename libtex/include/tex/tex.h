@@ -96,6 +96,7 @@
 #include <tex/container.h>
 #include <tex/image_io.h>
 #include <tex/mesh_io.h>
+#include <tex/model.h>
 #include <tex/pipeline.h>
 #include <tex/probe.h>
 #include <tex/source.h>

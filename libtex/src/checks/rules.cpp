@@ -284,6 +284,32 @@ constexpr Rule kRules[] = {
      "other "
      "diagonal than the engine, the map makes up for normals that the engine does not have: an X shows on the surface.",
      "Split the quads before baking, and export the same triangles to the engine.", ""},
+    {"N801", "two-channel-in-model", model, error, true, "The image has two channels.",
+     "glTF reads x, y and z of normals from R, G and B. BC5, EAC RG11 and other files of two channels give 0 for "
+     "blue, which is z = -1. An engine that knows its own files may rebuild z; other readers of the model do not.",
+     "Store the map with three components: PNG, WebP, or KTX2 with rgb8.", ""},
+    {"N802", "used-as-color", model, error, true, "The image is used as a colour, too.",
+     "glTF reads colours as sRGB and normals as linear values. One image cannot be both: either the lighting or the "
+     "colour is wrong.",
+     "Give each slot of the material its own image.", ""},
+    {"N803", "uv-set-missing", model, error, true, "The mesh lacks the set of UVs that the material names.",
+     "Engines take another set, or (0, 0) everywhere, so the map does not show where it was made for.",
+     "Correct texCoord of the material, or export the mesh with that set of UVs.", "N807"},
+    {"N804", "scale-not-positive", model, warning, true, "The scale of the normal texture is not above 0.",
+     "x and y are multiplied by it. A scale below 0 turns bumps into dents, and 0 makes the map flat.",
+     "Set normalTexture.scale to a value above 0, and turn the heights of the map over if they are meant to be dents.",
+     ""},
+    {"N805", "mirrored-and-double-sided", model, note, true, "A double-sided material has mirrored tangents.",
+     "On back faces, glTF turns the normal over. Readers differ in whether tangent and bitangent turn with it; those "
+     "that derive the bitangent from the turned normal and w show bumps as dents there.",
+     "Make the material single-sided, or look at both sides in each engine that is to show the model.", "N722"},
+    {"N806", "data-in-normal-slot", model, error, true, "The image is used as other data, too.",
+     "An image of occlusion, roughness or metalness holds no normals. Such images stand in the normal slot if slots "
+     "were mixed up.",
+     "Give each slot of the material its own image.", ""},
+    {"N807", "mesh-not-examined", model, note, true, "The map was not examined on its mesh.",
+     "Its triangles lack what tangent space needs, such as normals, so the rules for maps on meshes were left out.",
+     "Export the mesh with normals and UVs.", ""},
 };
 
 }  // namespace

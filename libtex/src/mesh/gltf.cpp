@@ -12,6 +12,9 @@
 
 #include <tex/mesh_io.h>
 
+#include "mesh/gltf_extensions.h"
+#include "mesh/gltf_materials.h"
+
 namespace tex {
 namespace {
 
@@ -27,79 +30,12 @@ std::string_view text_of(std::span<const std::byte> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-struct Chunks {
-    std::string_view json;
-    std::span<const std::byte> binary;
-};
-
-// GLB: a header of 12 bytes, a chunk of JSON, and perhaps one of bytes (glTF 2.0, 4.4).
-Result<Chunks> split(std::span<const std::byte> bytes) {
-    if (!text_of(bytes).starts_with("glTF")) return Chunks{text_of(bytes), {}};
-    constexpr std::uint32_t kJson = 0x4e4f534a, kBinary = 0x004e4942;
-    if (bytes.size() < 20) return bad_gltf("truncated: a GLB file has a header of 20 bytes");
-    if (const std::uint32_t version = load_u32(bytes, 4); version != 2)
-        return unsupported("its GLB version is " + std::to_string(version) + ", only 2 is supported");
-    const std::uint32_t total = load_u32(bytes, 8), length = load_u32(bytes, 12);
-    if (total > bytes.size()) {
-        return bad_gltf("truncated: its header claims " + std::to_string(total) + " bytes, there are " +
-                        std::to_string(bytes.size()));
-    }
-    if (total < 20 || load_u32(bytes, 16) != kJson) return bad_gltf("its first chunk is not JSON");
-    if (length > total - 20) return bad_gltf("truncated: its JSON leaves the file");
-    Chunks chunks{text_of(bytes.subspan(20, length)), {}};
-    const std::span<const std::byte> rest = bytes.subspan(20 + std::size_t{length}, total - 20 - length);
-    if (rest.size() < 8 || load_u32(rest, 4) != kBinary) return chunks;
-    const std::uint32_t size = load_u32(rest, 0);
-    if (size > rest.size() - 8) return bad_gltf("truncated: its binary chunk leaves the file");
-    chunks.binary = rest.subspan(8, size);
-    return chunks;
-}
-
-// Extensions that change neither triangles nor their attributes.
-bool is_harmless(std::string_view extension) {
-    for (const std::string_view known : {"KHR_mesh_quantization", "KHR_lights_punctual", "KHR_texture_basisu",
-                                         "EXT_texture_webp", "EXT_texture_avif", "MSFT_texture_dds"}) {
-        if (extension == known) return true;
-    }
-    return extension.starts_with("KHR_materials_");
-}
-
-Result<void> check_asset(JsonValue root) {
-    const std::optional<std::string> version = root["asset"]["version"].text();
-    if (!version) return bad_gltf("is JSON, but not glTF: asset.version is missing");
-    if (!version->starts_with("2.")) return unsupported("its glTF version is " + *version + ", only 2.x is supported");
-    const JsonValue required = root["extensionsRequired"];
-    for (std::size_t k = 0; k < required.size(); ++k) {
-        const std::string name = required[k].text().value_or("");
-        if (!is_harmless(name)) return unsupported("requires the extension " + name + ", which is not supported");
-    }
-    return {};
-}
-
-std::vector<MeshMaterial> materials_of(JsonValue root) {
-    const JsonValue list = root["materials"];
-    std::vector<MeshMaterial> materials(list.size());
-    for (std::size_t k = 0; k < materials.size(); ++k) {
-        materials[k].name = list[k]["name"].text().value_or("");
-        const JsonValue normal = list[k]["normalTexture"];
-        const auto texture = normal["index"].count();
-        if (!texture) continue;
-        materials[k].has_normal_map = true;
-        materials[k].uv_set =
-            static_cast<int>(std::min<std::int64_t>(normal["texCoord"].count().value_or(0), kMaxUvSets));
-        const auto image = root["textures"][static_cast<std::size_t>(*texture)]["source"].count();
-        if (!image) continue;
-        const std::string uri = root["images"][static_cast<std::size_t>(*image)]["uri"].text().value_or("");
-        if (!uri.starts_with("data:")) materials[k].normal_map = uri;
-    }
-    return materials;
-}
-
 // Reads primitives. What a file claims is compared with its bytes: triangles that use the same numbers many times over
 // would take memory out of proportion.
 class PrimitiveReader {
 public:
-    PrimitiveReader(JsonValue root, GltfBuffers& buffers) : materials_(root["materials"].size()), buffers_(buffers) {}
+    PrimitiveReader(JsonValue root, GltfBuffers& buffers, DracoTriangles& compressed)
+        : materials_(root["materials"].size()), buffers_(buffers), compressed_(compressed) {}
 
     Result<void> read(JsonValue primitive, MeshPart& part);
 
@@ -108,13 +44,14 @@ private:
 
     Result<Read> corners_of(JsonValue primitive, std::size_t vertices);
     Read used_of(Read& corners, std::size_t vertices);
-    Result<const GltfAccessor*> attribute(JsonValue attributes, const std::string& name, int components);
+    Result<const GltfAccessor*> attribute(JsonValue primitive, const std::string& name, int components);
     template <class T>
-    Result<void> fill(JsonValue attributes, const std::string& name, const Read& used, std::vector<T>& values);
-    Result<void> read_attributes(JsonValue attributes, const Read& used, MeshPart& part);
+    Result<void> fill(JsonValue primitive, const std::string& name, const Read& used, std::vector<T>& values);
+    Result<void> read_attributes(JsonValue primitive, const Read& used, MeshPart& part);
 
     std::size_t materials_;
     GltfBuffers& buffers_;
+    DracoTriangles& compressed_;
     std::size_t vertices_ = 0;  // of this primitive
     std::size_t corners_ = 0;   // of all primitives so far
     std::uint32_t round_ = 0;
@@ -138,17 +75,23 @@ Result<std::vector<std::uint32_t>> triangles_of(std::vector<std::uint32_t> corne
 }
 
 Result<PrimitiveReader::Read> PrimitiveReader::corners_of(JsonValue primitive, std::size_t vertices) {
-    const auto mode = primitive["mode"].is_null() ? std::optional<std::int64_t>(4) : primitive["mode"].count();
+    auto mode = primitive["mode"].is_null() ? std::optional<std::int64_t>(4) : primitive["mode"].count();
     if (!mode || *mode > 6) return bad_gltf("its mode is not one of glTF's");
     const JsonValue index = primitive["indices"];
     const GltfAccessor* indices = nullptr;
-    if (!index.is_null()) {
+    if (compressed_.holds(primitive)) {
+        const auto accessor = compressed_.indices(primitive);
+        if (!accessor) return accessor.error();
+        indices = *accessor;
+        if (*mode >= 4) mode = 4;  // strips become triangles
+    } else if (!index.is_null()) {
         const auto accessor = buffers_.accessor(index);
         if (!accessor) return accessor.error();
         indices = *accessor;
-        if (indices->components != 1 || (indices->type != 5121 && indices->type != 5123 && indices->type != 5125))
-            return bad_gltf("its indices are not unsigned integers");
     }
+    if (indices != nullptr &&
+        (indices->components != 1 || (indices->type != 5121 && indices->type != 5123 && indices->type != 5125)))
+        return bad_gltf("its indices are not unsigned integers");
     Read corners;
     if (*mode < 4) return corners;  // points and lines
     const std::size_t count = indices == nullptr ? vertices : indices->count;
@@ -191,8 +134,9 @@ void assign(const GltfAccessor& a, std::size_t k, Float4& v) {
     v = {a.number(k, 0), a.number(k, 1), a.number(k, 2), a.number(k, 3)};
 }
 
-Result<const GltfAccessor*> PrimitiveReader::attribute(JsonValue attributes, const std::string& name, int components) {
-    const auto accessor = buffers_.accessor(attributes[name]);
+Result<const GltfAccessor*> PrimitiveReader::attribute(JsonValue primitive, const std::string& name, int components) {
+    const auto accessor = compressed_.holds(primitive) ? compressed_.attribute(primitive, name)
+                                                       : buffers_.accessor(primitive["attributes"][name]);
     if (!accessor) {
         Error error = accessor.error();
         if (error.file.empty()) error.reason = name + ": " + error.reason;
@@ -208,22 +152,23 @@ Result<const GltfAccessor*> PrimitiveReader::attribute(JsonValue attributes, con
 }
 
 template <class T>
-Result<void> PrimitiveReader::fill(JsonValue attributes, const std::string& name, const Read& used,
+Result<void> PrimitiveReader::fill(JsonValue primitive, const std::string& name, const Read& used,
                                    std::vector<T>& values) {
-    const auto accessor = attribute(attributes, name, static_cast<int>(sizeof(T) / sizeof(float)));
+    const auto accessor = attribute(primitive, name, static_cast<int>(sizeof(T) / sizeof(float)));
     if (!accessor) return accessor.error();
     values.resize(used.size());
     for (std::size_t k = 0; k < used.size(); ++k) assign(**accessor, used[k], values[k]);
     return {};
 }
 
-Result<void> PrimitiveReader::read_attributes(JsonValue attributes, const Read& used, MeshPart& part) {
-    if (const auto done = fill(attributes, "POSITION", used, part.positions); !done) return done.error();
+Result<void> PrimitiveReader::read_attributes(JsonValue primitive, const Read& used, MeshPart& part) {
+    const JsonValue attributes = primitive["attributes"];
+    if (const auto done = fill(primitive, "POSITION", used, part.positions); !done) return done.error();
     if (!attributes["NORMAL"].is_null()) {
-        if (const auto done = fill(attributes, "NORMAL", used, part.normals); !done) return done.error();
+        if (const auto done = fill(primitive, "NORMAL", used, part.normals); !done) return done.error();
     }
     if (!attributes["TANGENT"].is_null()) {
-        if (const auto done = fill(attributes, "TANGENT", used, part.tangents); !done) return done.error();
+        if (const auto done = fill(primitive, "TANGENT", used, part.tangents); !done) return done.error();
     }
     for (int set = 0; set < kMaxUvSets; ++set) {
         const std::string name = "TEXCOORD_" + std::to_string(set);
@@ -231,17 +176,15 @@ Result<void> PrimitiveReader::read_attributes(JsonValue attributes, const Read& 
         if (part.uvs.size() != static_cast<std::size_t>(set))
             return bad_gltf("has " + name + ", but not TEXCOORD_" + std::to_string(part.uvs.size()));
         part.uvs.emplace_back();
-        if (const auto done = fill(attributes, name, used, part.uvs.back()); !done) return done.error();
+        if (const auto done = fill(primitive, name, used, part.uvs.back()); !done) return done.error();
     }
     return {};
 }
 
 Result<void> PrimitiveReader::read(JsonValue primitive, MeshPart& part) {
-    if (!primitive["extensions"]["KHR_draco_mesh_compression"].is_null() && primitive["attributes"].is_null())
-        return unsupported("is compressed by Draco");
-    const JsonValue attributes = primitive["attributes"], material = primitive["material"];
+    const JsonValue material = primitive["material"];
     vertices_ = 0;
-    const auto positions = attribute(attributes, "POSITION", 3);
+    const auto positions = attribute(primitive, "POSITION", 3);
     if (!positions) return positions.error();
     vertices_ = (*positions)->count;
     auto corners = corners_of(primitive, vertices_);
@@ -255,11 +198,11 @@ Result<void> PrimitiveReader::read(JsonValue primitive, MeshPart& part) {
     const Read used = used_of(*corners, vertices_);
     part.indices = std::move(*corners);
     part.v_axis = YAxis::down;
-    return read_attributes(attributes, used, part);
+    return read_attributes(primitive, used, part);
 }
 
-Result<void> read_primitives(JsonValue root, GltfBuffers& buffers, Mesh& mesh) {
-    PrimitiveReader reader(root, buffers);
+Result<void> read_primitives(JsonValue root, GltfBuffers& buffers, DracoTriangles& compressed, Mesh& mesh) {
+    PrimitiveReader reader(root, buffers, compressed);
     const JsonValue meshes = root["meshes"];
     for (std::size_t m = 0; m < meshes.size(); ++m) {
         const JsonValue primitives = meshes[m]["primitives"];
@@ -292,8 +235,38 @@ bool is_gltf(std::span<const std::byte> head) {
     return text.starts_with("glTF") || (first != std::string_view::npos && text[first] == '{');
 }
 
+// GLB: a header of 12 bytes, a chunk of JSON, and perhaps one of bytes (glTF 2.0, 4.4).
+Result<GltfChunks> gltf_chunks(std::span<const std::byte> bytes) {
+    if (!text_of(bytes).starts_with("glTF")) return GltfChunks{text_of(bytes), {}};
+    constexpr std::uint32_t kJson = 0x4e4f534a, kBinary = 0x004e4942;
+    if (bytes.size() < 20) return bad_gltf("truncated: a GLB file has a header of 20 bytes");
+    if (const std::uint32_t version = load_u32(bytes, 4); version != 2)
+        return unsupported("its GLB version is " + std::to_string(version) + ", only 2 is supported");
+    const std::uint32_t total = load_u32(bytes, 8), length = load_u32(bytes, 12);
+    if (total > bytes.size()) {
+        return bad_gltf("truncated: its header claims " + std::to_string(total) + " bytes, there are " +
+                        std::to_string(bytes.size()));
+    }
+    if (total < 20 || load_u32(bytes, 16) != kJson) return bad_gltf("its first chunk is not JSON");
+    if (length > total - 20) return bad_gltf("truncated: its JSON leaves the file");
+    GltfChunks chunks{text_of(bytes.subspan(20, length)), {}};
+    const std::span<const std::byte> rest = bytes.subspan(20 + std::size_t{length}, total - 20 - length);
+    if (rest.size() < 8 || load_u32(rest, 4) != kBinary) return chunks;
+    const std::uint32_t size = load_u32(rest, 0);
+    if (size > rest.size() - 8) return bad_gltf("truncated: its binary chunk leaves the file");
+    chunks.binary = rest.subspan(8, size);
+    return chunks;
+}
+
+Result<void> check_asset(JsonValue root) {
+    const std::optional<std::string> version = root["asset"]["version"].text();
+    if (!version) return bad_gltf("is JSON, but not glTF: asset.version is missing");
+    if (!version->starts_with("2.")) return unsupported("its glTF version is " + *version + ", only 2.x is supported");
+    return check_required_extensions(root);
+}
+
 Result<std::vector<std::string>> gltf_buffer_files(std::span<const std::byte> bytes) {
-    const auto chunks = split(bytes);
+    const auto chunks = gltf_chunks(bytes);
     if (!chunks) return chunks.error();
     const auto document = JsonDocument::parse(chunks->json);
     if (!document) return document.error();
@@ -309,22 +282,30 @@ Result<std::vector<std::string>> gltf_buffer_files(std::span<const std::byte> by
     return files;
 }
 
-Result<Mesh> parse_gltf(std::span<const std::byte> bytes, const LoadBeside& load) {
-    const auto chunks = split(bytes);
+Result<Mesh> parse_gltf(JsonValue root, GltfBuffers& buffers, const DecodeDraco& draco) {
+    if (const auto checked = check_asset(root); !checked) return checked.error();
+    Mesh mesh;
+    auto nodes = gltf_nodes(root, buffers);
+    if (!nodes) return nodes.error();
+    mesh.nodes = std::move(*nodes);
+    auto compressed = DracoTriangles::decode(root, buffers, draco);
+    if (!compressed) return compressed.error();
+    if (const auto read = read_primitives(root, buffers, *compressed, mesh); !read) return read.error();
+    if (mesh.parts.empty()) return bad_gltf("has no triangles");
+    auto materials = gltf_materials(root);
+    if (!materials) return materials.error();
+    mesh.materials = std::move(*materials);
+    mesh.remarks = ignored_extensions(root);
+    return mesh;
+}
+
+Result<Mesh> parse_gltf(std::span<const std::byte> bytes, const LoadBeside& load, const DecodeDraco& draco) {
+    const auto chunks = gltf_chunks(bytes);
     if (!chunks) return chunks.error();
     const auto document = JsonDocument::parse(chunks->json);
     if (!document) return document.error();
-    const JsonValue root = document->root();
-    if (const auto checked = check_asset(root); !checked) return checked.error();
-    Mesh mesh;
-    auto nodes = gltf_nodes(root);
-    if (!nodes) return nodes.error();
-    mesh.nodes = std::move(*nodes);
-    GltfBuffers buffers(root, chunks->json.size(), chunks->binary, load);
-    if (const auto read = read_primitives(root, buffers, mesh); !read) return read.error();
-    if (mesh.parts.empty()) return bad_gltf("has no triangles");
-    mesh.materials = materials_of(root);
-    return mesh;
+    GltfBuffers buffers(document->root(), chunks->json.size(), chunks->binary, load);
+    return parse_gltf(document->root(), buffers, draco);
 }
 
 }  // namespace tex

@@ -7,6 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include "mesh/meshopt_buffers.h"
+
 namespace tex {
 namespace {
 
@@ -47,6 +49,34 @@ bool fits(std::size_t bytes, std::int64_t offset, std::size_t count, std::size_t
 // A number that may be missing; nullopt if it is there but not a count.
 std::optional<std::int64_t> count_or(JsonValue value, std::int64_t otherwise) {
     return value.is_null() ? otherwise : value.count();
+}
+
+// Decoded buffers may have 64 bytes for each byte that the file holds, and 64 MiB more: zeros take almost no bytes.
+constexpr std::size_t kMostExpansion = 64, kMostDecoded = std::size_t{64} << 20;
+
+template <class T, std::size_t N>
+std::optional<T> word_of(const std::optional<std::string>& word, const std::pair<std::string_view, T> (&words)[N]) {
+    for (const auto& [name, value] : words) {
+        if (word == name) return value;
+    }
+    return std::nullopt;
+}
+
+std::optional<MeshoptLayout> meshopt_layout(JsonValue compression) {
+    constexpr std::pair<std::string_view, MeshoptMode> kModes[] = {{"ATTRIBUTES", MeshoptMode::attributes},
+                                                                   {"TRIANGLES", MeshoptMode::triangles},
+                                                                   {"INDICES", MeshoptMode::indices}};
+    constexpr std::pair<std::string_view, MeshoptFilter> kFilters[] = {{"NONE", MeshoptFilter::none},
+                                                                       {"OCTAHEDRAL", MeshoptFilter::octahedral},
+                                                                       {"QUATERNION", MeshoptFilter::quaternion},
+                                                                       {"EXPONENTIAL", MeshoptFilter::exponential},
+                                                                       {"COLOR", MeshoptFilter::color}};
+    const JsonValue filter = compression["filter"];
+    const auto mode = word_of(compression["mode"].text(), kModes);
+    const auto chosen = filter.is_null() ? std::optional(MeshoptFilter::none) : word_of(filter.text(), kFilters);
+    const auto count = compression["count"].count(), stride = compression["byteStride"].count();
+    if (!mode || !chosen || !count || !stride || *stride < 1 || *stride > 256) return std::nullopt;
+    return MeshoptLayout{*mode, *chosen, static_cast<std::size_t>(*count), static_cast<std::size_t>(*stride)};
 }
 
 int hex_digit(char c) {
@@ -187,23 +217,60 @@ Result<std::span<const std::byte>> GltfBuffers::buffer(std::int64_t index) {
     return bytes.first(static_cast<std::size_t>(*length));
 }
 
-Result<GltfBuffers::View> GltfBuffers::view(JsonValue index) {
-    const std::optional<std::int64_t> number = index.count();
-    const JsonValue description = number ? root_["bufferViews"][static_cast<std::size_t>(*number)] : JsonValue();
-    if (!description.is_object()) return bad_gltf("a buffer view does not exist");
-    const std::string name = "buffer view " + std::to_string(*number);
-    if (!description["extensions"]["EXT_meshopt_compression"].is_null() ||
-        !description["extensions"]["KHR_meshopt_compression"].is_null())
-        return Error{ErrorCode::unsupported, {}, name + " is compressed by meshoptimizer"};
+// The bytes that `buffer`, `byteOffset` and `byteLength` of a description name.
+Result<std::span<const std::byte>> GltfBuffers::range(JsonValue description, const std::string& name) {
     const auto of = description["buffer"].count(), offset = count_or(description["byteOffset"], 0),
-               length = description["byteLength"].count(), stride = count_or(description["byteStride"], 0);
-    if (!of || !offset || !length || !stride) return bad_gltf(name + " is damaged");
-    if (*stride != 0 && (*stride < 4 || *stride > 252)) return bad_gltf(name + ": its stride must be from 4 to 252");
+               length = description["byteLength"].count();
+    if (!of || !offset || !length) return bad_gltf(name + " is damaged");
     auto bytes = buffer(*of);
     if (!bytes) return bytes.error();
     const auto from = static_cast<std::size_t>(*offset), size = static_cast<std::size_t>(*length);
     if (from > bytes->size() || bytes->size() - from < size) return bad_gltf(name + " leaves its buffer");
-    return View{bytes->subspan(from, size), static_cast<std::size_t>(*stride)};
+    return bytes->subspan(from, size);
+}
+
+// A buffer view that EXT_meshopt_compression or KHR_meshopt_compression describes. Each is decoded once.
+Result<GltfBuffers::View> GltfBuffers::compressed_view(std::int64_t number, JsonValue compression) {
+    const std::string name = "buffer view " + std::to_string(number);
+    const auto layout = meshopt_layout(compression);
+    if (!layout) return bad_gltf(name + ": its compression is damaged");
+    const View view{{}, layout->mode == MeshoptMode::attributes ? layout->stride : 0};
+    auto found = decoded_.find(number);
+    if (found == decoded_.end()) {
+        const auto bytes = range(compression, name);
+        if (!bytes) return bytes.error();
+        const std::size_t most = kMostDecoded + kMostExpansion * (bytes_ - decoded_bytes_);
+        if (decoded_bytes_ > most || layout->count > (most - decoded_bytes_) / layout->stride)
+            return Error{ErrorCode::unsupported, {}, name + " claims too many elements for its compressed bytes"};
+        auto decoded = decode_meshopt(*layout, *bytes);
+        if (!decoded) return bad_gltf(name + ": " + decoded.error().reason);
+        count_decoded(decoded->size());
+        found = decoded_.emplace(number, std::move(*decoded)).first;
+    }
+    return View{found->second, view.stride};
+}
+
+Result<GltfBuffers::View> GltfBuffers::view(JsonValue index) {
+    const std::optional<std::int64_t> number = index.count();
+    const JsonValue description = number ? root_["bufferViews"][static_cast<std::size_t>(*number)] : JsonValue();
+    if (!description.is_object()) return bad_gltf("a buffer view does not exist");
+    for (const std::string_view extension : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
+        const JsonValue compression = description["extensions"][extension];
+        if (!compression.is_null()) return compressed_view(*number, compression);
+    }
+    const std::string name = "buffer view " + std::to_string(*number);
+    const auto stride = count_or(description["byteStride"], 0);
+    if (!stride) return bad_gltf(name + " is damaged");
+    if (*stride != 0 && (*stride < 4 || *stride > 252)) return bad_gltf(name + ": its stride must be from 4 to 252");
+    const auto bytes = range(description, name);
+    if (!bytes) return bytes.error();
+    return View{*bytes, static_cast<std::size_t>(*stride)};
+}
+
+Result<std::span<const std::byte>> GltfBuffers::view_bytes(JsonValue index) {
+    const auto found = view(index);
+    if (!found) return found.error();
+    return found->bytes;
 }
 
 Result<void> GltfBuffers::make_sparse(JsonValue sparse, GltfAccessor& accessor) {

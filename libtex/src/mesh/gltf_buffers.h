@@ -65,8 +65,15 @@ public:
     // Errors: bad_data, unsupported, those of LoadBeside.
     Result<const GltfAccessor*> accessor(JsonValue index);
 
-    // All bytes that the file has held so far: what it claims may not exceed them.
+    // The bytes of a buffer view, decoded if meshoptimizer compressed them. Errors: as accessor().
+    Result<std::span<const std::byte>> view_bytes(JsonValue index);
+
+    // All bytes that the file has held so far, those that were decoded included: what it claims may not exceed them.
     [[nodiscard]] std::size_t bytes() const { return bytes_; }
+    void count_decoded(std::size_t bytes) {
+        bytes_ += bytes;
+        decoded_bytes_ += bytes;
+    }
 
 private:
     struct View {
@@ -77,6 +84,8 @@ private:
     Result<View> view(JsonValue index);
     Result<GltfAccessor> make(JsonValue description);
     Result<void> make_sparse(JsonValue description, GltfAccessor& accessor);
+    Result<std::span<const std::byte>> range(JsonValue description, const std::string& name);
+    Result<View> compressed_view(std::int64_t number, JsonValue compression);
     Result<std::span<const std::byte>> load(const std::string& uri);
 
     JsonValue root_;
@@ -85,6 +94,8 @@ private:
     std::size_t bytes_;
     std::map<std::string, std::vector<std::byte>> loaded_;  // by path or data URI
     std::map<std::int64_t, GltfAccessor> accessors_;
+    std::map<std::int64_t, std::vector<std::byte>> decoded_;  // by view
+    std::size_t decoded_bytes_ = 0;                           // of bytes_
 };
 
 }  // namespace tex

@@ -41,25 +41,27 @@ std::optional<std::array<double, N>> numbers(JsonValue value, std::array<double,
 }
 
 // Translation after rotation after scale (glTF 2.0, 3.5.3).
-std::optional<Matrix> matrix_of_parts(JsonValue node) {
-    const auto t = numbers<3>(node["translation"], {0, 0, 0});
-    const auto q = numbers<4>(node["rotation"], {0, 0, 0, 1});
-    const auto s = numbers<3>(node["scale"], {1, 1, 1});
-    if (!t || !q || !s) return std::nullopt;
-    const auto [x, y, z, w] = *q;
+Matrix matrix_of_parts(const std::array<double, 3>& t, const std::array<double, 4>& q, const std::array<double, 3>& s) {
+    const auto [x, y, z, w] = q;
     const double rotation[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
                                    {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
                                    {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}};
     Matrix result{};
     for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t j = 0; j < 3; ++j) result[i * 4 + j] = rotation[i][j] * (*s)[j];
-        result[i * 4 + 3] = (*t)[i];
+        for (std::size_t j = 0; j < 3; ++j) result[i * 4 + j] = rotation[i][j] * s[j];
+        result[i * 4 + 3] = t[i];
     }
     return result;
 }
 
 std::optional<Matrix> matrix_of(JsonValue node) {
-    if (node["matrix"].is_null()) return matrix_of_parts(node);
+    if (node["matrix"].is_null()) {
+        const auto t = numbers<3>(node["translation"], {0, 0, 0});
+        const auto q = numbers<4>(node["rotation"], {0, 0, 0, 1});
+        const auto s = numbers<3>(node["scale"], {1, 1, 1});
+        if (!t || !q || !s) return std::nullopt;
+        return matrix_of_parts(*t, *q, *s);
+    }
     const auto m = numbers<16>(node["matrix"], {});  // in columns
     if (!m) return std::nullopt;
     Matrix result{};
@@ -68,6 +70,45 @@ std::optional<Matrix> matrix_of(JsonValue node) {
     }
     return result;
 }
+
+// Where the instances of a node stand in its own space (EXT_mesh_gpu_instancing).
+class Instances {
+public:
+    static Result<Instances> of(JsonValue node, GltfBuffers& buffers) {
+        Instances all;
+        const JsonValue attributes = node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+        for (std::size_t k = 0; k < 3; ++k) {
+            const JsonValue index = attributes[std::array{"TRANSLATION", "ROTATION", "SCALE"}[k]];
+            if (index.is_null()) continue;
+            const auto accessor = buffers.accessor(index);
+            if (!accessor) return accessor.error();
+            if ((*accessor)->components != (k == 1 ? 4 : 3)) return bad_gltf("its instances are damaged");
+            all.parts_[k] = *accessor;
+            if (all.count_ && *all.count_ != (*accessor)->count) return bad_gltf("its instances are damaged");
+            all.count_ = (*accessor)->count;
+        }
+        return all;
+    }
+
+    // Nothing if the node has none.
+    [[nodiscard]] std::optional<std::size_t> count() const { return count_; }
+    [[nodiscard]] Matrix matrix(std::size_t instance) const {
+        return matrix_of_parts(part<3>(0, instance, {0, 0, 0}), part<4>(1, instance, {0, 0, 0, 1}),
+                               part<3>(2, instance, {1, 1, 1}));
+    }
+
+private:
+    template <std::size_t N>
+    [[nodiscard]] std::array<double, N> part(std::size_t k, std::size_t instance, std::array<double, N> values) const {
+        if (parts_[k] == nullptr) return values;
+        for (std::size_t c = 0; c < N; ++c)
+            values[c] = static_cast<double>(parts_[k]->number(instance, static_cast<int>(c)));
+        return values;
+    }
+
+    std::array<const GltfAccessor*, 3> parts_{};
+    std::optional<std::size_t> count_;
+};
 
 struct Waiting {
     std::int64_t node;
@@ -117,9 +158,26 @@ Result<std::vector<Waiting>> roots_of(JsonValue root, std::vector<bool>& known) 
     return roots;
 }
 
+// Adds a node, or its instances. All nodes of a file may have as many instances as it has bytes.
+Result<void> add_node(JsonValue node, int mesh, const Matrix& to_scene, GltfBuffers& buffers,
+                      std::vector<MeshNode>& nodes) {
+    const std::string name = node["name"].text().value_or("");
+    const auto instances = Instances::of(node, buffers);
+    if (!instances) return instances.error();
+    if (!instances->count()) {
+        nodes.push_back({name, mesh, to_scene});
+        return {};
+    }
+    if (nodes.size() + *instances->count() > buffers.bytes())
+        return bad_gltf("claims more instances than it has bytes");
+    for (std::size_t k = 0; k < *instances->count(); ++k)
+        nodes.push_back({name + "[" + std::to_string(k) + "]", mesh, product(to_scene, instances->matrix(k))});
+    return {};
+}
+
 }  // namespace
 
-Result<std::vector<MeshNode>> gltf_nodes(JsonValue root) {
+Result<std::vector<MeshNode>> gltf_nodes(JsonValue root, GltfBuffers& buffers) {
     const JsonValue nodes = root["nodes"];
     std::vector<bool> known(nodes.size(), false);
     auto waiting = roots_of(root, known);
@@ -138,7 +196,11 @@ Result<std::vector<MeshNode>> gltf_nodes(JsonValue root) {
             const std::optional<std::int64_t> number = mesh.count();
             if (!number || static_cast<std::size_t>(*number) >= root["meshes"].size())
                 return bad_gltf(name + ": its mesh does not exist");
-            result.push_back({node["name"].text().value_or(""), static_cast<int>(*number), to_scene});
+            if (const auto added = add_node(node, static_cast<int>(*number), to_scene, buffers, result); !added) {
+                Error error = added.error();
+                if (error.file.empty()) error.reason = name + ": " + error.reason;
+                return error;
+            }
         }
         if (const auto added = add_children(node["children"], to_scene, known, *waiting); !added) return added.error();
     }

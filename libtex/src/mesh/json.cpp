@@ -68,6 +68,13 @@ JsonValue JsonValue::operator[](std::size_t index) const {
 
 std::size_t JsonValue::size() const { return is_array() ? value_of(value_).size() : 0; }
 
+std::vector<std::string> JsonValue::keys() const {
+    std::vector<std::string> keys;
+    if (!is_object()) return keys;
+    for (const auto& item : value_of(value_).items()) keys.push_back(item.key());
+    return keys;
+}
+
 std::optional<std::string> JsonValue::text() const {
     if (value_ == nullptr || !value_of(value_).is_string()) return std::nullopt;
     return value_of(value_).get_ref<const std::string&>();

@@ -13,6 +13,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <tex/result.h>
 
@@ -33,6 +34,7 @@ public:
     [[nodiscard]] JsonValue operator[](std::string_view key) const;  // of an object
     [[nodiscard]] JsonValue operator[](std::size_t index) const;     // of an array
     [[nodiscard]] std::size_t size() const;                          // of an array; 0 for all else
+    [[nodiscard]] std::vector<std::string> keys() const;             // of an object, in the order of their bytes
     [[nodiscard]] std::optional<std::string> text() const;
     [[nodiscard]] std::optional<double> number() const;
     [[nodiscard]] std::optional<bool> boolean() const;

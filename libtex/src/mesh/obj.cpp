@@ -2,6 +2,7 @@
 
 #include "mesh/obj.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -91,7 +93,7 @@ private:
     Result<std::uint32_t> index_of(std::string_view word, std::size_t count, const char* what) const;
     Result<ObjCorner> corner_of(std::string_view word) const;
     Result<void> read_face(std::string_view line);
-    ObjPart& part();
+    ObjPart& part(bool has_uvs);
     Mesh finish();
     [[nodiscard]] MeshPart finished(const ObjPart& part) const;
 
@@ -102,9 +104,10 @@ private:
     int material_ = -1;
     std::map<std::string, int, std::less<>> materials_, objects_;
     std::vector<std::string> material_names_;
-    std::map<std::pair<int, int>, std::size_t> part_of_;  // by object and material
+    std::map<std::tuple<int, int, bool>, std::size_t> part_of_;  // by object, material, whether there are UVs
     std::vector<ObjPart> parts_;
     ObjPart* current_ = nullptr;  // null after `o` and `usemtl`
+    std::vector<ObjCorner> corners_;
     std::vector<std::uint32_t> polygon_;
 };
 
@@ -159,33 +162,39 @@ Result<ObjCorner> ObjReader::corner_of(std::string_view word) const {
     return corner;
 }
 
-ObjPart& ObjReader::part() {
-    if (current_ != nullptr) return *current_;
+ObjPart& ObjReader::part(bool has_uvs) {
     const int mesh = objects_.try_emplace(object_, static_cast<int>(objects_.size())).first->second;
-    const auto [place, is_new] = part_of_.try_emplace({mesh, material_}, parts_.size());
+    const auto [place, is_new] = part_of_.try_emplace({mesh, material_, has_uvs}, parts_.size());
     if (is_new) {
         parts_.emplace_back();
         parts_.back().object = object_;
         parts_.back().mesh = mesh;
         parts_.back().material = material_;
+        parts_.back().has_uvs = has_uvs;
     }
-    current_ = &parts_[place->second];
-    return *current_;
+    return parts_[place->second];
 }
 
 Result<void> ObjReader::read_face(std::string_view line) {
-    ObjPart& to = part();
-    polygon_.clear();
+    corners_.clear();
     for (std::string_view word = take_word(line); !word.empty(); word = take_word(line)) {
         const auto corner = corner_of(word);
         if (!corner) return corner.error();
-        to.has_uvs = to.has_uvs && corner->uv != kMissing;
-        to.has_normals = to.has_normals && corner->normal != kMissing;
-        const auto [place, is_new] = to.known.try_emplace(*corner, static_cast<std::uint32_t>(to.vertices.size()));
-        if (is_new) to.vertices.push_back(*corner);
+        corners_.push_back(*corner);
+    }
+    if (corners_.size() < 3) return at_line("a face needs at least 3 corners");
+    const bool has_uvs =
+        std::all_of(corners_.begin(), corners_.end(), [](const ObjCorner& corner) { return corner.uv != kMissing; });
+    if (current_ == nullptr || current_->has_uvs != has_uvs) current_ = &part(has_uvs);
+    ObjPart& to = *current_;
+    polygon_.clear();
+    for (ObjCorner& corner : corners_) {
+        if (!has_uvs) corner.uv = kMissing;
+        to.has_normals = to.has_normals && corner.normal != kMissing;
+        const auto [place, is_new] = to.known.try_emplace(corner, static_cast<std::uint32_t>(to.vertices.size()));
+        if (is_new) to.vertices.push_back(corner);
         polygon_.push_back(place->second);
     }
-    if (polygon_.size() < 3) return at_line("a face needs at least 3 corners");
     if (polygon_.size() == 4) to.quads.push_back(static_cast<std::uint32_t>(to.indices.size() / 3));
     for (std::size_t k = 2; k < polygon_.size(); ++k)
         to.indices.insert(to.indices.end(), {polygon_[0], polygon_[k - 1], polygon_[k]});

@@ -13,6 +13,7 @@ class Libtex < Formula
   depends_on "pkgconf" => :build
   depends_on "tomlplusplus" => :build
   depends_on "assimp"
+  depends_on "draco"
   depends_on "fmt"
   depends_on "highway"
   depends_on "isa-l"

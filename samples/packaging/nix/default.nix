@@ -9,6 +9,7 @@
   ninja,
   pkg-config,
   assimp,
+  draco,
   fmt,
   isa-l,
   libdeflate,
@@ -61,6 +62,7 @@ stdenv.mkDerivation {
   ];
   buildInputs = [
     assimp
+    draco
     fmt
     isa-l
     libdeflate

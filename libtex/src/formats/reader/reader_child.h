@@ -16,7 +16,7 @@ enum class ReaderProgram { pictures, other_pictures, meshes };  // tex-reader, t
 struct ReaderJob {
     ReaderProgram program = ReaderProgram::pictures;
     std::string path;  // for messages
-    std::string verb;  // "decode", "encode", "describe" or "mesh"
+    std::string verb;  // "decode", "encode", "describe", "mesh" or "draco"
     std::string format;
     int input = -1;
     int result = -1;  // a memory_file()

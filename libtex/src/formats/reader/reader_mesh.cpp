@@ -24,19 +24,29 @@ std::string extension_hint(const std::string& path) {
     return is_plain ? hint : "-";
 }
 
-}  // namespace
-
-Result<std::vector<std::byte>> read_with_mesh_reader(const std::string& path, std::span<const std::byte> file,
-                                                     const ReadOptions& options) {
+Result<std::vector<std::byte>> answer_of_mesh_reader(const std::string& path, const char* verb, const std::string& hint,
+                                                     std::span<const std::byte> bytes, const ReadOptions& options) {
     const Result<Descriptor> input = memory_file(path);
     const Result<Descriptor> result = memory_file(path);
     if (!input) return input.error();
     if (!result) return result.error();
-    if (!write_exactly(input->get(), 0, file)) return system_error(path, errno, "a file in memory");
+    if (!write_exactly(input->get(), 0, bytes)) return system_error(path, errno, "a file in memory");
     const Result<ReaderHeader> reply =
-        run_reader({ReaderProgram::meshes, path, "mesh", extension_hint(path), input->get(), result->get()}, options);
+        run_reader({ReaderProgram::meshes, path, verb, hint, input->get(), result->get()}, options);
     if (!reply) return reply.error();
     return answered_bytes(path, result->get(), *reply);
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> read_with_mesh_reader(const std::string& path, std::span<const std::byte> file,
+                                                     const ReadOptions& options) {
+    return answer_of_mesh_reader(path, "mesh", extension_hint(path), file, options);
+}
+
+Result<std::vector<std::byte>> decode_draco_with_reader(const std::string& path, std::span<const std::byte> request,
+                                                        const ReadOptions& options) {
+    return answer_of_mesh_reader(path, "draco", "-", request, options);
 }
 
 }  // namespace tex

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// reader_mesh.h: meshes of file types that Assimp reads, in a separate process: tex-mesh-reader.
+// reader_mesh.h: meshes of file types that Assimp reads, and Draco, in a separate process: tex-mesh-reader.
 
 #pragma once
 
@@ -22,5 +22,9 @@ namespace tex {
 //         out_of_memory
 Result<std::vector<std::byte>> read_with_mesh_reader(const std::string& path, std::span<const std::byte> file,
                                                      const ReadOptions& options);
+
+// Decodes what Draco compressed: a request becomes an answer, as mesh/gltf_draco.h describes them. Errors: as above.
+Result<std::vector<std::byte>> decode_draco_with_reader(const std::string& path, std::span<const std::byte> request,
+                                                        const ReadOptions& options);
 
 }  // namespace tex

@@ -30,6 +30,11 @@ Result<std::vector<std::byte>> read_with_mesh_reader(const std::string& path, st
     return no_reader(path);
 }
 
+Result<std::vector<std::byte>> decode_draco_with_reader(const std::string& path, std::span<const std::byte>,
+                                                        const ReadOptions&) {
+    return no_reader(path);
+}
+
 Result<ReaderPicture> ReaderPicture::open(Container, const TextureHead&, const WriteOptions&) { return no_reader(); }
 Result<void> ReaderPicture::put(int, std::span<const std::byte>) const { return no_reader(); }
 Result<std::vector<std::byte>> ReaderPicture::encode() const { return no_reader(); }

@@ -6,6 +6,7 @@
 //     tex-reader       decode|encode|describe FORMAT MAX_TEXELS MEMORY SECONDS PARENT
 //     tex-reader-oiio  decode|encode|describe FORMAT MAX_TEXELS MEMORY SECONDS PARENT
 //     tex-mesh-reader  mesh EXTENSION MAX_TEXELS MEMORY SECONDS PARENT
+//     tex-mesh-reader  draco - MAX_TEXELS MEMORY SECONDS PARENT
 //
 // for one file (FORMAT is a name of reader_rows.cpp, or exr/PART with the number of a part, EXTENSION of the mesh's
 // file or -, MEMORY in bytes, PARENT the process id of the caller) with these descriptors and no others:
@@ -16,6 +17,7 @@
 //                          encode: a file in memory, ReaderHeader at 0 (extent, channels, type), the texels at
 //                          kReaderDataOffset
 //                          mesh: the file, in memory
+//                          draco: the request that mesh/gltf_draco.h describes, in memory
 //                          describe: an empty file in memory; the answer is in `sandboxed`, `landlock` and, as the
 //                          version of the decoders, `reason`
 //     kProgressDescriptor  a socket: one byte for each strip of rows that is in place; it ends when the process is gone

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// model_rules.h: the rules of the family "model", see rules.cpp.
+
+#pragma once
+
+#include "checks/findings.h"
+
+namespace tex {
+
+// Checks how the model of subject.options.model uses the map, if there is a model.
+void check_model_rules(const Subject& subject, Findings& findings);
+
+}  // namespace tex

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// beside.h: files that another file names.
+
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <tex/result.h>
+
+namespace tex {
+
+// The path of a file that the file at `path` names by a relative path.
+std::string beside(const std::string& path, const std::string& name);
+
+// Errors: those of InputFile::open() and read_rest(); unsupported (more than `most` bytes).
+Result<std::vector<std::byte>> read_at_most(const std::string& path, std::int64_t most);
+
+}  // namespace tex

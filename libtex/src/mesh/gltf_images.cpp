@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "mesh/gltf_images.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "mesh/gltf_materials.h"
+
+namespace tex {
+namespace {
+
+// The image that a texture shows, or -1: the first source that is there.
+int image_of(JsonValue root, std::int64_t texture) {
+    const JsonValue description = root["textures"][static_cast<std::size_t>(texture)],
+                    extensions = description["extensions"];
+    for (const JsonValue& source :
+         {extensions["KHR_texture_basisu"]["source"], extensions["MSFT_texture_dds"]["source"],
+          extensions["EXT_texture_webp"]["source"], extensions["EXT_texture_avif"]["source"], description["source"]}) {
+        const std::optional<std::int64_t> image = source.count();
+        if (image && static_cast<std::size_t>(*image) < root["images"].size()) return static_cast<int>(*image);
+    }
+    return -1;
+}
+
+std::optional<NormalSlot> normal_slot(const GltfSlot& slot) {
+    if (slot.name == "normalTexture" && slot.extension.empty()) return NormalSlot::normal;
+    if (slot.name == "clearcoatNormalTexture") return NormalSlot::clearcoat_normal;
+    return std::nullopt;
+}
+
+// Where the bytes of an image are. Those in the file are read if `reads` is set.
+Result<void> locate(JsonValue description, GltfBuffers& buffers, bool reads, ModelImage& image) {
+    if (const JsonValue view = description["bufferView"]; !view.is_null()) {
+        if (!reads) return {};
+        const auto bytes = buffers.view_bytes(view);
+        if (!bytes) return bytes.error();
+        image.bytes.assign(bytes->begin(), bytes->end());
+        return {};
+    }
+    const std::string uri = description["uri"].text().value_or("");
+    if (uri.empty()) return bad_gltf("has neither bytes nor a file");
+    if (!uri.starts_with("data:")) {
+        auto path = path_of_uri(uri);
+        if (!path)
+            return Error{path.error().code, {}, "its file \"" + uri.substr(0, 80) + "\" is not one in its folder"};
+        image.file = std::move(*path);
+        return {};
+    }
+    if (!reads) return {};
+    auto bytes = decode_data_uri(uri);
+    if (!bytes) return bytes.error();
+    image.bytes = std::move(*bytes);
+    return {};
+}
+
+std::string name_of_image(JsonValue description, const ModelImage& image, std::size_t number) {
+    const std::string name = description["name"].text().value_or("");
+    if (!name.empty()) return name;
+    if (!image.file.empty()) return image.file.substr(image.file.rfind('/') + 1);
+    return "image " + std::to_string(number);
+}
+
+}  // namespace
+
+Result<std::vector<ModelMap>> gltf_maps(JsonValue root) {
+    std::vector<ModelMap> maps;
+    const JsonValue materials = root["materials"];
+    for (std::size_t m = 0; m < materials.size(); ++m) {
+        const auto slots = slots_of(materials[m]);
+        if (!slots) return bad_gltf("material " + std::to_string(m) + ": " + slots.error().reason);
+        const std::size_t first = maps.size();
+        for (const GltfSlot& slot : *slots) {
+            const auto kind = normal_slot(slot);
+            if (!kind) continue;
+            ModelMap map;
+            map.material = static_cast<int>(m);
+            map.slot = *kind;
+            map.image = image_of(root, slot.texture);
+            map.uv_set = slot.uv_set;
+            map.uv_transform = slot.transform;
+            map.scale = slot.scale;
+            map.is_double_sided = materials[m]["doubleSided"].boolean().value_or(false);
+            maps.push_back(map);
+        }
+        std::stable_sort(maps.begin() + static_cast<std::ptrdiff_t>(first), maps.end(),
+                         [](const ModelMap& a, const ModelMap& b) { return a.slot < b.slot; });
+    }
+    return maps;
+}
+
+std::vector<ModelImage> gltf_images(JsonValue root, GltfBuffers& buffers, const std::vector<ModelMap>& maps) {
+    const JsonValue list = root["images"], materials = root["materials"];
+    std::vector<ModelImage> images(list.size());
+    for (std::size_t k = 0; k < images.size(); ++k) {
+        const auto uses = [&](const ModelMap& map) { return map.image == static_cast<int>(k); };
+        const bool reads = std::any_of(maps.begin(), maps.end(), uses);
+        if (const auto located = locate(list[k], buffers, reads, images[k]); !located)
+            images[k].error = located.error();
+        images[k].name = name_of_image(list[k], images[k], k);
+        images[k].mime_type = list[k]["mimeType"].text().value_or("");
+    }
+    for (std::size_t m = 0; m < materials.size(); ++m) {
+        const auto slots = slots_of(materials[m]);
+        if (!slots) continue;
+        for (const GltfSlot& slot : *slots) {
+            const int image = image_of(root, slot.texture);
+            if (image >= 0)
+                images[static_cast<std::size_t>(image)].uses.push_back({static_cast<int>(m), slot.name, slot.is_color});
+        }
+    }
+    return images;
+}
+
+}  // namespace tex
