@@ -74,9 +74,9 @@ std::size_t place(int n) { return static_cast<std::size_t>(n); }
 
 class Batch {
 public:
-    Batch(const AstcGuide& guide, const Spending& spending)
+    Batch(const AstcGuide& guide, const Spending& spending, int most)
         : guide_(guide), spending_(spending), plans_(*guide.plans), lanes_(astc_lanes()),
-          texels_(plans_.block.width * plans_.block.height), values_(place(2 * kBatch * texels_)) {}
+          texels_(plans_.block.width * plans_.block.height), values_(place(2 * (most + lanes_) * texels_)) {}
 
     // The first texel of a channel of a block; the others follow at distances of lanes().
     float* values(int block, int channel) {
@@ -304,7 +304,7 @@ void encode_astc(Format format, Effort effort, const float* xy, Extent extent, s
         for (std::size_t k = 0; k < texels; ++k)
             planes[c][k] = (std::clamp(xy[2 * k + c], -1.0f, 1.0f) + 1.0f) * (0.5f * kOne);
     }
-    const auto batch = std::make_unique<Batch>(guide_of(format, effort), spending);
+    const auto batch = std::make_unique<Batch>(guide_of(format, effort), spending, std::min(kBatch, all));
     for (int first = 0; first < all; first += kBatch) {
         const int count = std::min(kBatch, all - first);
         for (int n = 0; n < count; ++n) {
