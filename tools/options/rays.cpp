@@ -95,7 +95,7 @@ void RayOptions::add_second(Command& command) {
         .preset = fmt::format("{}", transfer_.rays_per_hit);
     add_reach(command, transfer_.occlusion_distance, "--occlusion-distance",
               "how far they reach: a length as --front, or the word", "without limit", "auto");
-    command.check([this, &command] {
+    command.check([&command] {
         const auto idle = command.given_of({"--rays-per-hit", "--occlusion-distance"});
         if (!idle.empty() && command.given_of({"--occlusion-out", "--bent-out", "--thickness-out"}).empty())
             throw UsageError(idle.front() + " needs --occlusion-out, --bent-out or --thickness-out");

@@ -14,7 +14,7 @@ namespace {
 
 // The picture at (x, y), from 0 to 1. Beyond the centres of its texels at the border it is constant.
 double filtered(const Plane<float>& picture, double x, double y) {
-    const auto [width, height] = picture.extent();
+    const int width = picture.extent().width, height = picture.extent().height;
     const double column = std::clamp(x * width - 0.5, 0.0, width - 1.0),
                  row = std::clamp(y * height - 0.5, 0.0, height - 1.0);
     const int i = std::min(static_cast<int>(column), std::max(width - 2, 0)),
