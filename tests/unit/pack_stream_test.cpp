@@ -70,6 +70,7 @@ protected:
     void draw_options(std::mt19937& random, int levels) {
         const auto one_in = [&](unsigned n) { return random() % n == 0; };
         options_.source = {};
+        options_.source.drop_others = true;  // verbs on maps in memory have no other channels
         options_.source.unpack.snap_flat = one_in(3);
         options_.source.unpack.keep_length = one_in(3);
         options_.source.unpack.range = one_in(2) ? ValueRange::automatic : any_of(kValueRangeNames, random);

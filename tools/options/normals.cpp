@@ -151,8 +151,8 @@ void NormalsReader::warn_of_others(Job& job, const std::string& path, const std:
     const bool is_alpha = others.back().name == 'A' && others_ == Others::kept_in_alpha;
     job.warn(fmt::format("{} {} no part of the normals and {} left out; {}--drop leaves out such channels without this "
                          "warning",
-                         join(names, " and "), names.size() == 1 ? "holds" : "hold",
-                         names.size() == 1 ? "is" : "are", is_alpha ? "--format rgba8 keeps A, " : ""),
+                         join(names, " and "), names.size() == 1 ? "holds" : "hold", names.size() == 1 ? "is" : "are",
+                         is_alpha ? "--format rgba8 keeps A, " : ""),
              path);
 }
 
