@@ -79,10 +79,11 @@ py::array floats_of(const py::array& array, std::string_view name, bool is_map) 
                                          std::string(py::str(array.dtype())),
                                          is_map ? "" : ", or to uint8 or uint16, which are divided by 255 or 65535"));
     }
-    py::object floats = array.attr("astype")("float32");
+    const py::dtype float32("float32");
+    py::object floats = call_method(array, "astype", float32);
     if (integers) {
         const auto bits = static_cast<int>(8 * bytes) - (kind == 'i' ? 1 : 0);
-        floats = floats.attr("__truediv__")(py::dtype("float32").attr("type")((1 << bits) - 1));
+        floats = call_method(floats, "__truediv__", float32.attr("type")((1 << bits) - 1));
     }
     return floats;
 }

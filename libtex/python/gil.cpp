@@ -71,6 +71,19 @@ py::object call_with(const py::object& callable, double fraction) {
     return py::reinterpret_steal<py::object>(answer);
 }
 
+py::object call_method(py::handle object, const char* method, py::handle argument) {
+    PyObject* const name = PyUnicode_FromString(method);
+    PyObject* answer = nullptr;
+    try {
+        if (name != nullptr) answer = PyObject_CallMethodOneArg(object.ptr(), name, argument.ptr());
+    } catch (abi::__forced_unwind&) {
+        wait_for_ever();
+    }
+    Py_XDECREF(name);
+    if (answer == nullptr) throw py::error_already_set();
+    return py::reinterpret_steal<py::object>(answer);
+}
+
 Work::Work(std::atomic<bool>* stop) : stop_(stop) {
     Works& all = works();
     const std::lock_guard lock(all.mutex);

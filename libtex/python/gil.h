@@ -21,6 +21,10 @@ void take_gil(PyThreadState* state) noexcept;
 // progress(fraction), which does not return either if the interpreter exits meanwhile. Returns null with an exception.
 py::object call_with(const py::object& callable, double fraction);
 
+// Calls a method of an object that may give up the GIL on its way, as those of NumPy's arrays do. If the interpreter
+// ends meanwhile, the thread waits for ever instead of unwinding through C++. Throws py::error_already_set.
+py::object call_method(py::handle object, const char* method, py::handle argument);
+
 // While this object exists, work goes on for which an exit waits. `stop` is set if it should end early.
 class Work {
 public:

@@ -150,8 +150,7 @@ struct PackFileOptions {
     bool keep_codes = false;
 
     // Returns how the output is packed, given the properties of the source. Empty: default_encoding() of the container,
-    // with y as in the source. Must not throw. If the swizzle depends on the texels, it may be called more than once;
-    // the last call counts.
+    // with y as in the source. Must not throw.
     std::function<PackOptions(const SourceInfo&)> pack;
     WriteOptions write;
     LevelNames level_names;                  // as in BakeFileOptions

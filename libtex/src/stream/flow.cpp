@@ -201,17 +201,16 @@ void FlowRun::fail(double place, const Error& error) {
     changed_.notify_all();
 }
 
+// One thread at a time reports, and none after an error.
 void FlowRun::report(std::unique_lock<std::mutex>& lock) {
     if (!execution_.progress) return;
     lock.unlock();
-    bool goes_on = true;
-    {
-        const std::lock_guard one_at_a_time(reporting_);
-        lock.lock();
-        const double fraction = static_cast<double>(made_texels_) / static_cast<double>(plan_.target_texels);
-        lock.unlock();
-        goes_on = execution_.progress(fraction);
-    }
+    const std::lock_guard one_at_a_time(reporting_);
+    lock.lock();
+    if (error_) return;
+    const double fraction = static_cast<double>(made_texels_) / static_cast<double>(plan_.target_texels);
+    lock.unlock();
+    const bool goes_on = execution_.progress(fraction);
     lock.lock();
     if (!goes_on) fail(-1.0, {ErrorCode::cancelled, {}, "cancelled"});
 }
