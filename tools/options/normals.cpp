@@ -149,10 +149,10 @@ void NormalsReader::warn_of_others(Job& job, const std::string& path, const std:
     for (const OtherChannel& other : others)
         names.push_back(fmt::format("{} ({:.2g} to {:.2g})", other.name, other.least, other.greatest));
     const bool is_alpha = others.back().name == 'A' && others_ == Others::kept_in_alpha;
-    job.warn(fmt::format("{} {} no part of the normals and {} left out; {}--drop leaves out such channels without this "
-                         "warning",
-                         join(names, " and "), names.size() == 1 ? "holds" : "hold", names.size() == 1 ? "is" : "are",
-                         is_alpha ? "--format rgba8 keeps A, " : ""),
+    const bool is_one = names.size() == 1;
+    job.warn(fmt::format("{} {} data beside the normals, which {} left out ({}--drop: without this warning)",
+                         join(names, " and "), is_one ? "holds" : "hold", is_one ? "is" : "are",
+                         is_alpha ? "--format rgba8 keeps A; " : ""),
              path);
 }
 
