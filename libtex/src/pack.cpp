@@ -77,7 +77,7 @@ Result<Texture> pack(const MipChain& chain, const PackOptions& options, const Ex
         if (auto valid = validate(options); !valid) return valid.error();
         RdoTally tally;
         Result<Texture> texture = pack_chain(chain, options, execution, &tally);
-        if (texture && rdo != nullptr && is_optimised(options)) *rdo = tally.report();
+        if (texture && rdo != nullptr && is_optimised(options)) *rdo = report_of(tally.sum());
         return texture;
     });
 }

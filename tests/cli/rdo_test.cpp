@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // --rdo-mean makes compressed files smaller, at a promised angle.
 
+#include <filesystem>
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -24,6 +28,29 @@ protected:
 
     Scratch scratch_;
 };
+
+// Whatever the level at which a file is compressed, it is never larger than without optimisation.
+TEST_F(RdoOption, NoFileGrows) {
+    const std::string wild = TEX_SOURCE_DIR "/../shared/data/trial3/grow_dxt5nm_0.05_9.dds";
+    std::vector<std::string> inputs = {"n.exr"};
+    if (std::filesystem::exists(wild)) inputs.push_back(wild);
+    for (const std::string& input : inputs) {
+        for (const char* level : {"1", "9", "19"}) {
+            for (const char* mean : {"0.02", "0.05", "0.2"}) {
+                const std::string pack = "pack-normals " + input +
+                                         " --mips all --format dxt5nm --effort fast --quiet "
+                                         "--supercompress zstd:" +
+                                         level + " --json -o ";
+                const auto plain = nlohmann::json::parse(shell(scratch_, pack + "plain.ktx2").out);
+                const auto small = nlohmann::json::parse(
+                    shell(scratch_, pack + "small.ktx2 --rdo-window 4096 --rdo-mean " + mean).out);
+                EXPECT_LE(small["bytes"], plain["bytes"]) << input << ' ' << level << ' ' << mean;
+                EXPECT_LE(small["rdo"]["most_growth"].get<double>(), std::stod(mean) + 1e-6);
+            }
+        }
+    }
+    if (inputs.size() == 1) GTEST_SKIP() << "without shared data";
+}
 
 TEST_F(RdoOption, FilesAreSmallerAndTheReportShowsThePromise) {
     const std::string pack = "pack-normals n.exr --supercompress zstd:19 --format bc5 --json -o ";

@@ -81,7 +81,7 @@ inline constexpr Named<Metric> kMetricNames[] = {
 //   max      no texel's angle exceeds both `max` degrees and its own angle without optimisation; if `max` is 0, it is
 //            kRdoMaxOfMean times the mean angle that the band may have, so that smooth maps stay smooth
 //
-// A band that cannot keep the promise, or is no smaller after zstd -19, gets the blocks without optimisation.
+// A band that cannot keep the promise, or is no smaller after zstd -19, stays plain; in files, so does a whole level.
 inline constexpr int kLeastRdoWindow = 64;
 inline constexpr int kMostRdoWindow = 1 << 20;
 inline constexpr double kRdoMaxOfMean = 4.0;

@@ -114,7 +114,7 @@ bool can_hold_alpha(Encoding encoding) {
 }
 
 void pack_rows(const NormalMap& map, int height, const PackOptions& options, int begin, int end, std::byte* out,
-               int band_rows, RdoTally* tally, const Plane<float>* alpha) {
+               int band_rows, RdoTally* tally, const Plane<float>* alpha, std::byte* plain) {
     const auto [format, swizzle] = encoding_info(options.encoding);
     const FormatInfo info = format_info(format);
     const Rows rows(map, height, swizzle, options.y_axis, alpha);
@@ -126,6 +126,10 @@ void pack_rows(const NormalMap& map, int height, const PackOptions& options, int
         }
         for (int j = begin; j < end; j += block) encode_blocks(rows.blocks(j), options, out + size(j / block) * pitch);
         if (!is_optimised(options)) return;
+        if (plain != nullptr) {
+            const std::size_t offset = size(begin / block) * pitch;
+            std::memcpy(plain + offset, out + offset, size(blocks_across(end - begin, block)) * pitch);
+        }
         for (int j = begin; j < end; j += band_rows) {
             const auto row = [&](int r) { return rows.blocks(j + r * block); };
             optimise_band(row, blocks_across(std::min(band_rows, end - j), block), options,

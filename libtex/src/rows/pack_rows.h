@@ -19,9 +19,12 @@ namespace tex {
 // If is_optimised(options), rows are optimised in bands of `band_rows`, see rdo_band_rows(); `begin` is then a multiple
 // of it, and `end` too, unless it is the height. `tally` may be null. Throws std::bad_alloc.
 //
+// `plain`, unless it is null, gets the blocks as they are without optimisation, at the same places as `out`.
+//
 // Where the encoding stores alpha as 1, it stores `alpha` instead, unless that is null: rows of 2 A - 1.
 void pack_rows(const NormalMap& map, int height, const PackOptions& options, int begin, int end, std::byte* out,
-               int band_rows, RdoTally* tally = nullptr, const Plane<float>* alpha = nullptr);
+               int band_rows, RdoTally* tally = nullptr, const Plane<float>* alpha = nullptr,
+               std::byte* plain = nullptr);
 
 // Whether this encoding can store something else in alpha.
 [[nodiscard]] bool can_hold_alpha(Encoding encoding);

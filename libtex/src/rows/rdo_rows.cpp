@@ -169,11 +169,26 @@ void RdoTally::add(const Band& band) {
     sum_.most_raised = std::max(sum_.most_raised, band.most_raised);
 }
 
-RdoReport RdoTally::report() const {
+void RdoTally::take_plain() {
     const std::lock_guard lock(mutex_);
-    const double all = kMillionths * static_cast<double>(std::max<std::int64_t>(1, sum_.texels));
-    return {static_cast<double>(sum_.plain) / all, static_cast<double>(sum_.optimised) / all, sum_.most_growth,
-            sum_.most_raised};
+    sum_ = {sum_.texels, sum_.plain, sum_.plain, 0.0, 0.0};
+}
+
+RdoTally::Band RdoTally::sum() const {
+    const std::lock_guard lock(mutex_);
+    return sum_;
+}
+
+RdoReport report_of(const RdoTally::Band& sum) {
+    const double all = kMillionths * static_cast<double>(std::max<std::int64_t>(1, sum.texels));
+    return {static_cast<double>(sum.plain) / all, static_cast<double>(sum.optimised) / all, sum.most_growth,
+            sum.most_raised};
+}
+
+RdoReport RdoTallies::report() const {
+    RdoTally all;
+    for (const RdoTally& level : levels_) all.add(level.sum());
+    return report_of(all.sum());
 }
 
 bool is_optimised(const PackOptions& options) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <vector>
 
 #include <tex/pack_options.h>
 
@@ -23,11 +24,27 @@ public:
         double most_growth, most_raised;
     };
     void add(const Band& band);
-    [[nodiscard]] RdoReport report() const;
+    // The plain blocks are written after all.
+    void take_plain();
+    [[nodiscard]] Band sum() const;
 
 private:
     mutable std::mutex mutex_;
     Band sum_{};
+};
+
+[[nodiscard]] RdoReport report_of(const RdoTally::Band& sum);
+
+// The tallies of all levels.
+class RdoTallies {
+public:
+    explicit RdoTallies(int levels) : levels_(static_cast<std::size_t>(levels)) {}
+
+    [[nodiscard]] RdoTally& of(int level) { return levels_[static_cast<std::size_t>(level)]; }
+    [[nodiscard]] RdoReport report() const;
+
+private:
+    std::vector<RdoTally> levels_;
 };
 
 // Whether blocks of this encoding are optimised with these options.

@@ -79,7 +79,7 @@ private:
 Result<void> PictureWriter::write(const LevelRows& rows) {
     const Result<void> done = guarded([&]() -> Result<void> {
         rows.scratch.resize(level_bytes(packing_.head.format, {rows.map.extent().width, rows.height}));
-        packing_.pack(rows, rows.scratch.data());
+        packing_.pack(rows, rows.scratch.data(), nullptr);
         if (Result<void> put = put_in_order(rows.level - first_, rows); !put) return put;
         constexpr std::size_t kForTheNext = 1;
         return work(kForTheNext);
@@ -136,7 +136,7 @@ public:
     Result<void> write(const LevelRows& rows) override {
         const Result<void> done = guarded([&] {
             rows.scratch.resize(level_bytes(packing_.head.format, {rows.map.extent().width, rows.height}));
-            packing_.pack(rows, rows.scratch.data());
+            packing_.pack(rows, rows.scratch.data(), nullptr);
             return picture_.put(rows.first, rows.scratch);
         });
         return done ? done : Result<void>(done.error().of(path_));
@@ -164,21 +164,22 @@ bool takes_any_order(Container container) { return codec_of(container).layout !=
 
 LevelPacking packing_of(const PackOptions& options, Extent extent, int levels) {
     const EncodingInfo encoding = encoding_info(options.encoding);
-    const std::shared_ptr<RdoTally> tally = is_optimised(options) ? std::make_shared<RdoTally>() : nullptr;
+    const auto tallies = is_optimised(options) ? std::make_shared<RdoTallies>(levels) : nullptr;
     const int band_rows = rdo_band_rows(options, extent.width);
     return {{encoding.format, extent, levels, encoding.swizzle, true, options.y_axis, options.y_known},
-            [options, band_rows, tally](const LevelRows& rows, std::byte* out) {
-                pack_rows(rows.map, rows.height, options, 0, rows.height, out, band_rows, tally.get(), rows.alpha);
+            [options, band_rows, tallies](const LevelRows& rows, std::byte* out, std::byte* plain) {
+                RdoTally* const tally = tallies ? &tallies->of(rows.level) : nullptr;
+                pack_rows(rows.map, rows.height, options, 0, rows.height, out, band_rows, tally, rows.alpha, plain);
             },
             band_rows,
-            tally};
+            tallies};
 }
 
 LevelPacking packing_of(const RoughnessFile& options, Extent extent, int levels) {
     TextureHead head{options.format, extent, levels};
     head.swizzle = kRoughnessSwizzle;
     return {head,
-            [format = options.format, effort = options.effort](const LevelRows& rows, std::byte* out) {
+            [format = options.format, effort = options.effort](const LevelRows& rows, std::byte* out, std::byte*) {
                 pack_roughness_rows(rows.map.x, rows.height, format, effort, 0, rows.height, out);
             },
             1, nullptr};
@@ -209,8 +210,7 @@ Result<std::unique_ptr<LevelWriter>> LevelWriter::open(const std::string& path, 
             std::make_unique<EncodedWriter>(path, std::move(*file), packing, std::move(*picture)));
     }
     auto texture = std::make_unique<TextureWriter>(std::move(*file), std::move(layout), packing, first);
-    const Result<void> begun =
-        options.zstd > 0 ? texture->begin_compressed(path, codec, options.zstd) : texture->begin();
+    const Result<void> begun = texture->begin(path, codec, options.zstd);
     if (!begun) return begun.error();
     return std::unique_ptr<LevelWriter>(std::move(texture));
 }

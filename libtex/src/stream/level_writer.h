@@ -37,9 +37,10 @@ struct LevelRows {
 // How rows are packed into texels.
 struct LevelPacking {
     TextureHead head;
-    std::function<void(const LevelRows& rows, std::byte* out)> pack;
-    int rows_together = 1;            // strips consist of so many rows of texels, or of whole blocks
-    std::shared_ptr<RdoTally> tally;  // of blocks that are optimised; otherwise null
+    // If blocks are optimised, `plain` gets them as they are without that, unless it is null.
+    std::function<void(const LevelRows& rows, std::byte* out, std::byte* plain)> pack;
+    int rows_together = 1;                // strips consist of so many rows of texels, or of whole blocks
+    std::shared_ptr<RdoTallies> tallies;  // of blocks that are optimised; otherwise null
 };
 LevelPacking packing_of(const PackOptions& options, Extent extent, int levels);
 LevelPacking packing_of(const RoughnessFile& options, Extent extent, int levels);

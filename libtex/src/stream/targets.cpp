@@ -15,14 +15,14 @@ namespace {
 
 // Gives vectors unit length before they are packed: in a copy, because the rows go to other files, too.
 void pack_units(LevelPacking& packing, const UnitRule& unit) {
-    packing.pack = [unit, pack = std::move(packing.pack)](const LevelRows& rows, std::byte* out) {
+    packing.pack = [unit, pack = std::move(packing.pack)](const LevelRows& rows, std::byte* out, std::byte* plain) {
         const NormalMap& from = rows.map;
         NormalMap to(from.extent());
         for (int j = 0; j < rows.height; ++j) {
             unpack_row(from.x.row(j), from.y.row(j), unit.has_z ? from.z.row(j) : nullptr, unit.rule,
                        from.extent().width, to.x.row(j), to.y.row(j), to.z.row(j));
         }
-        pack({rows.content, rows.level, rows.first, rows.height, to, rows.scratch, rows.alpha}, out);
+        pack({rows.content, rows.level, rows.first, rows.height, to, rows.scratch, rows.alpha}, out, plain);
     };
 }
 

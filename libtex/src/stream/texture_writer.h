@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "files/output_file.h"
 #include "files/scratch_file.h"
@@ -27,17 +28,10 @@ public:
         : file_(std::move(file)), layout_(std::move(layout)), packing_(std::move(packing)), first_(first),
           size_(layout_.size) {}
 
-    Result<void> begin() { return file_->write_at(0, layout_.head); }
-    // Instead of begin(): levels go to a scratch file first, because the place of a compressed level is known only when
-    // the smaller ones are complete.
-    Result<void> begin_compressed(const std::string& path, const Codec& codec, int level) {
-        Result<ScratchFile> scratch = ScratchFile::open(path);
-        if (!scratch) return scratch.error();
-        scratch_.emplace(std::move(*scratch));
-        compress_ = codec.compress;
-        compression_level_ = level;
-        return {};
-    }
+    // Writes what comes before the texels. Levels go to a scratch file first if they are compressed, because their
+    // places are known only when the smaller ones are complete; and if their blocks are optimised, because a whole
+    // level is needed to judge whether that makes it smaller.
+    Result<void> begin(const std::string& path, const Codec& codec, int zstd_level);
     [[nodiscard]] bool is_in_order() const override { return false; }
     [[nodiscard]] int rows_together() const override {
         const FormatInfo format = format_info(packing_.head.format);
@@ -47,18 +41,24 @@ public:
     Result<void> commit() override;
     [[nodiscard]] std::size_t file_bytes() const override { return size_; }
     [[nodiscard]] std::optional<RdoReport> rdo() const override {
-        return packing_.tally ? std::optional(packing_.tally->report()) : std::nullopt;
+        return packing_.tallies ? std::optional(packing_.tallies->report()) : std::nullopt;
     }
 
 private:
+    Result<void> choose_blocks();
+    Result<void> copy_levels();
+    [[nodiscard]] Result<std::vector<std::byte>> chosen(std::uint64_t offset, std::size_t count) const;
+
     const std::unique_ptr<OutputFile> file_;
     const FileLayout layout_;
     const LevelPacking packing_;
     const int first_;
     std::size_t size_;
     std::optional<ScratchFile> scratch_;
+    std::optional<ScratchFile> plain_;  // blocks without optimisation
+    std::vector<bool> takes_plain_;     // for each level
     decltype(Codec::compress) compress_ = nullptr;
-    int compression_level_ = 0;
+    int zstd_level_ = 0;
 };
 
 }  // namespace tex

@@ -95,6 +95,11 @@ Result<std::uint64_t> compress_ktx2(const FileLayout& layout, int level, const F
     return size;
 }
 
+Result<std::uint64_t> compressed_size(const FileLayout::Place& place, int level, const FetchBytes& fetch) {
+    const WriteBytes discard = [](std::uint64_t, std::span<const std::byte>) { return Result<void>(); };
+    return LevelCompressor(level, fetch, discard).compress(place, 0);
+}
+
 const char* zstd_version() { return ZSTD_versionString(); }
 
 }  // namespace tex

@@ -22,6 +22,13 @@ inline constexpr std::size_t kChunkBytes = std::size_t{1} << 18;  // that are re
 [[nodiscard]] Result<std::uint64_t> compress_ktx2(const FileLayout& layout, int level, const FetchBytes& fetch,
                                                   const WriteBytes& write);
 
+// The size of one level after that, without the rest of the file. Errors and exceptions: as compress_ktx2().
+[[nodiscard]] Result<std::uint64_t> compressed_size(const FileLayout::Place& place, int level, const FetchBytes& fetch);
+
+// The level at which blocks are judged that a file stores without compression: what they are compressed with later is
+// not known.
+inline constexpr int kJudgedZstdLevel = 19;
+
 // The version of libzstd at run time: "1.5.4".
 [[nodiscard]] const char* zstd_version();
 
