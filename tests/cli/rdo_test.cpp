@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -32,24 +31,21 @@ protected:
 // Whatever the level at which a file is compressed, it is never larger than without optimisation.
 TEST_F(RdoOption, NoFileGrows) {
     const std::string wild = TEX_SOURCE_DIR "/../shared/data/trial3/grow_dxt5nm_0.05_9.dds";
-    std::vector<std::string> inputs = {"n.exr"};
-    if (std::filesystem::exists(wild)) inputs.push_back(wild);
-    for (const std::string& input : inputs) {
-        for (const char* level : {"1", "9", "19"}) {
-            for (const char* mean : {"0.02", "0.05", "0.2"}) {
-                const std::string pack = "pack-normals " + input +
-                                         " --mips all --format dxt5nm --effort fast --quiet "
-                                         "--supercompress zstd:" +
-                                         level + " --json -o ";
-                const auto plain = nlohmann::json::parse(shell(scratch_, pack + "plain.ktx2").out);
-                const auto small = nlohmann::json::parse(
-                    shell(scratch_, pack + "small.ktx2 --rdo-window 4096 --rdo-mean " + mean).out);
-                EXPECT_LE(small["bytes"], plain["bytes"]) << input << ' ' << level << ' ' << mean;
-                EXPECT_LE(small["rdo"]["most_growth"].get<double>(), std::stod(mean) + 1e-6);
-            }
-        }
-    }
-    if (inputs.size() == 1) GTEST_SKIP() << "without shared data";
+    const auto expect_no_growth = [this](const std::string& input, const std::string& level, const std::string& mean) {
+        const std::string pack = "pack-normals " + input +
+                                 " --mips all --format dxt5nm --effort fast --quiet --no-sync "
+                                 "--json --supercompress zstd:" +
+                                 level;
+        const auto plain = nlohmann::json::parse(shell(scratch_, pack + " -o plain.ktx2").out);
+        const auto small =
+            nlohmann::json::parse(shell(scratch_, pack + " -o small.ktx2 --rdo-window 4096 --rdo-mean " + mean).out);
+        EXPECT_LE(small["bytes"], plain["bytes"]) << input << ' ' << level << ' ' << mean;
+        EXPECT_LE(small["rdo"]["most_growth"].get<double>(), std::stod(mean) + 1e-6);
+    };
+    expect_no_growth("n.exr", "1", "0.02");
+    if (!std::filesystem::exists(wild)) GTEST_SKIP() << "without shared data";
+    expect_no_growth(wild, "9", "0.05");
+    expect_no_growth(wild, "1", "0.05");
 }
 
 TEST_F(RdoOption, FilesAreSmallerAndTheReportShowsThePromise) {
