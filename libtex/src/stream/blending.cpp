@@ -104,8 +104,7 @@ Stage& Blending::add_to(Flow& flow, bool keeps_alpha) {
         if (auto inspector = inspector_for(input.settled.options(), input.info, extent_))
             input.inspector.emplace(std::move(*inspector));
         const SourceOptions& source = input.settled.options();
-        if (source.inspect && !source.drop_others)
-            input.others.emplace(format_info(input.info.format).channels, input.settled.sources());
+        if (source.inspect && !source.drop_others) input.others.emplace(input.map().head(), input.settled.sources());
         input.rows = &input.settled.add_to(flow, 0,
                                            {{},
                                             input.inspector ? &*input.inspector : nullptr,

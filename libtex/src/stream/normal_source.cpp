@@ -37,7 +37,7 @@ Result<void> look_at_others(const Texture& texture, Source& source, const Execut
     const int channels = format_info(texture.format).channels;
     const Result<Sources> sources = sources_of(source.info.swizzle, (1u << channels) - 1);
     if (!sources) return sources.error();
-    OtherChannels others(channels, *sources);
+    OtherChannels others(texture, *sources);
     if (others.empty()) return {};
     const Result<Image> image = decode(texture, 0, {execution.threads, {}});
     if (!image) return image.error();

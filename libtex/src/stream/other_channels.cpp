@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace tex {
@@ -14,10 +15,13 @@ constexpr float kRepeats = 8.5f / 255.0f;  // the same value in channels of 5 an
 
 }  // namespace
 
-OtherChannels::OtherChannels(int channels, const Sources& sources) : sources_(sources) {
+OtherChannels::OtherChannels(const Texture& head, const Sources& sources) : sources_(sources) {
     constexpr float kNone = std::numeric_limits<float>::infinity();
-    for (int c = 0; c < channels; ++c) {
-        if (c != sources.x && c != sources.y && c != sources.z) seen_.push_back({c, kNone, -kNone, 0.0f, 0.0f, 0.0f});
+    constexpr int kAlpha = 3;
+    for (int c = 0; c < format_info(head.format).channels; ++c) {
+        const bool is_stated = head.swizzle_known && head.swizzle[static_cast<std::size_t>(c)] == Component::one;
+        const bool is_source = c == sources.x || c == sources.y || c == sources.z;
+        if (!is_source && (c == kAlpha || !is_stated)) seen_.push_back({c, kNone, -kNone, 0.0f, 0.0f, 0.0f});
     }
 }
 
@@ -28,6 +32,13 @@ bool OtherChannels::wants(int channel) const {
 void OtherChannels::look(Seen& seen, const float* const (&channels)[4], const VectorRow& normals, int width) const {
     const float* const values = channels[seen.channel];
     const float *const x = channels[sources_.x], *const y = channels[sources_.y];
+    // Most such channels are constant, and a constant row repeats nothing.
+    const auto all_but_one = static_cast<std::size_t>(width - 1) * sizeof(float);
+    if (std::memcmp(values, values + 1, all_but_one) == 0) {
+        seen.least = std::min(seen.least, values[0]);
+        seen.greatest = std::max(seen.greatest, values[0]);
+        return;
+    }
     for (int i = 0; i < width; ++i) {
         seen.least = std::min(seen.least, values[i]);
         seen.greatest = std::max(seen.greatest, values[i]);

@@ -15,8 +15,8 @@ namespace tex {
 
 class OtherChannels {
 public:
-    // `channels` is the number of channels of the format.
-    OtherChannels(int channels, const Sources& sources);
+    // `head` describes the map. Colours that the file itself states to be constant are not looked at.
+    OtherChannels(const Texture& head, const Sources& sources);
 
     [[nodiscard]] bool empty() const { return seen_.empty(); }
     // The channels to look at: bit c is set for channel c.

@@ -162,7 +162,7 @@ Result<void> PackRun::pack_level(int level, const Execution& execution) {
     flow.set_rows_together(targets_.rows_together());
     std::optional<OtherChannels> others;
     if (level == first_ && options_.source.inspect && !options_.source.drop_others)
-        others.emplace(format_info(report_.source.format).channels, map_.sources());
+        others.emplace(map_.map().head(), map_.sources());
     const Stage& normals = map_.add_to(flow, level,
                                        {options_.scale, inspector ? &*inspector : nullptr,
                                         others && !others->empty() ? &*others : nullptr, keeps_alpha_});
