@@ -39,7 +39,7 @@ struct SourceOptions {
     friend bool operator==(const SourceOptions&, const SourceOptions&) = default;
 };
 
-// A channel of a file that holds no part of the normals, but something of its own: heights, gloss, a mask.
+// A channel of a file that holds other data beside the normals: heights, gloss, a mask.
 struct OtherChannel {
     char name = 'A';                      // R, G, B or A
     float least = 0.0f, greatest = 0.0f;  // as decode() gives its values

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // astc_mode.h: how a block of ASTC is divided: a grid of weights, which texels interpolate, and partitions of the
-// texels, each with endpoints of its own. (Khronos Data Format Specification 1.3: "Block Mode", "Weight Infill",
+// texels, each with its own endpoints. (Khronos Data Format Specification 1.3: "Block Mode", "Weight Infill",
 // "Partition Pattern Generation".)
 
 #pragma once
@@ -24,7 +24,7 @@ inline constexpr unsigned kAstcVoid = 0x1fc;  // the lowest 9 bits of a block of
 // The weights of a block.
 struct AstcMode {
     Extent grid{1, 1};
-    int planes = 1;  // with two, a channel of choice has weights of its own
+    int planes = 1;  // with two, a chosen channel has its own weights
     int range = 0;   // of kAstcRangeTable
 
     [[nodiscard]] int weights() const { return grid.width * grid.height * planes; }

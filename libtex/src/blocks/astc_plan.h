@@ -26,7 +26,7 @@ struct AstcShare {
 struct AstcGrid {
     Extent extent;
     int texels = 0, weights = 0;
-    bool is_full = false;  // each texel has a weight of its own
+    bool is_full = false;  // each texel has its own weight
     // The weights around a texel, and their shares in it in sixteenths.
     int around[kAstcMostPlanned][4];
     float infill[kAstcMostPlanned][4];

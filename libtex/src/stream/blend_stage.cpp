@@ -3,7 +3,7 @@
 #include "stream/blend_stage.h"
 
 #include <algorithm>
-#include <utility>
+#include <memory>
 
 namespace tex {
 
@@ -42,22 +42,12 @@ std::vector<Need> BlendStage::needs(int first, int end) const {
 }
 
 Result<void> BlendStage::make(Strip& strip) {
-    std::optional<BlendRows> rows;
-    {
-        const std::lock_guard lock(mutex_);
-        if (!idle_.empty()) {
-            rows.emplace(std::move(idle_.back()));
-            idle_.pop_back();
-        }
-    }
-    if (!rows) rows.emplace(maps_);
+    const std::shared_ptr<BlendRows> rows = rows_.take([this] { return std::make_unique<BlendRows>(maps_); });
     for (int k = 0; k < strip.height; ++k) {
         rows->make(strip.first + k, strip.normals(k));
         if (alpha_ != nullptr)
             std::copy_n(alpha_->row(kAlphaPlane, strip.first + k), extent().width, strip.fourth.row(k));
     }
-    const std::lock_guard lock(mutex_);
-    idle_.push_back(std::move(*rows));
     return {};
 }
 

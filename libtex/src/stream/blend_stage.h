@@ -3,7 +3,6 @@
 
 #pragma once
 
-#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -47,8 +46,7 @@ private:
     const PlacedMaps& maps_;
     const std::vector<MapInStep> in_step_;
     const Stage* const alpha_;
-    std::mutex mutex_;
-    std::vector<BlendRows> idle_;
+    Pool<BlendRows> rows_;
 };
 
 }  // namespace tex
