@@ -66,7 +66,7 @@ BakeNormals::BakeNormals(const cli::ProgramRow& row) : Converter(row) {
     mips_.add(command, false, "all in dds and ktx2, else none");
     running.add(command);
     command.example("bake-normals bricks.png -o bricks.dds --bumpiness 8", "A DXT5nm texture with all its mip levels.");
-    command.example("bake-normals rock.exr -o rock.ktx2 --format bc5 --height-range 0.15 --size 2 --y down",
+    command.example("bake-normals rock.exr -o rock.ktx2 --format bc5 --height-range 0.15 --world-size 2 --y down",
                     "A rock face 2 m wide with 15 cm of relief, as BC5 for a renderer with green down.");
     command.example("bake-normals maps/*.png --out-dir out --kernel scharr --json", "A folder at once, with a report.");
 }

@@ -152,6 +152,7 @@ Result<void> PreviewNormals::process(cli::Job& job) {
     if (auto written = write_file(job.task.output, *bytes, job.write_options); !written) return written.error();
     job.wrote(job.task.output);
     job.report["maps"] = names;
+    if (!sheet_.is_difference()) job.report["show"] = sheet_.names_of_shows();
     job.report["extent"] = {first.extent().width, first.extent().height};
     job.report["frames"] = frames->size();
     job.report["bytes"] = bytes->size();

@@ -178,7 +178,7 @@ Result<Texture> show_height(const Job& job) {
         greatest = std::max(greatest, *high);
     }
     return show_plane(job, height.view(),
-                      {"height", static_cast<double>(least), static_cast<double>(greatest), Palette::grey},
+                      {"height, texels", static_cast<double>(least), static_cast<double>(greatest), Palette::grey},
                       job.execution);
 }
 

@@ -96,15 +96,16 @@ TEST_F(BakeNormals, EveryEncodingGoesIntoDdsAndKtx2) {
 
 TEST_F(BakeNormals, StrengthsAreOneOfThree) {
     refuses({"--bumpiness", "1", "--uv-height", "2"}, "--bumpiness and --uv-height contradict each other");
-    refuses({"--bumpiness", "1", "--height-range", "2", "--size", "1"}, "--bumpiness and --height-range contradict");
-    refuses({"--size", "2"}, "--size does nothing without --height-range");
-    refuses({"--height-range", "2"}, "--height-range needs --size");
-    refuses({"--height-range", "2", "--size", "0"}, "--size: 0 is not greater than 0");
-    refuses({"--height-range", "2", "--size", "2x"}, "--size: '' is not a number");
+    refuses({"--bumpiness", "1", "--height-range", "2", "--world-size", "1"},
+            "--bumpiness and --height-range contradict");
+    refuses({"--world-size", "2"}, "--world-size does nothing without --height-range");
+    refuses({"--height-range", "2"}, "--height-range needs --world-size");
+    refuses({"--height-range", "2", "--world-size", "0"}, "--world-size: 0 is not greater than 0");
+    refuses({"--height-range", "2", "--world-size", "2x"}, "--world-size: '' is not a number");
     // 512 texels that cover 64 units: 8 texels for each unit.
     const std::string direct = bytes_of({"bricks.png", "--bumpiness", "8"});
-    EXPECT_TRUE(bytes_of({"bricks.png", "--height-range", "1", "--size", "64"}) == direct);
-    EXPECT_TRUE(bytes_of({"bricks.png", "--height-range", "1", "--size", "64x64"}) == direct);
+    EXPECT_TRUE(bytes_of({"bricks.png", "--height-range", "1", "--world-size", "64"}) == direct);
+    EXPECT_TRUE(bytes_of({"bricks.png", "--height-range", "1", "--world-size", "64x64"}) == direct);
     EXPECT_TRUE(bytes_of({"bricks.png", "--uv-height", "0.015625"}) == direct);
     EXPECT_TRUE(bytes_of({"bricks.png", "--bumpiness", "-8"}) != direct);
 }
@@ -285,7 +286,8 @@ TEST_F(BakeNormals, AnElevationModelIsItsHeightsInOtherFiles) {
     scratch_.write("h.pfm", pfm);
     scratch_.write("b.bil", bil);
     scratch_.write("b.hdr", "NROWS 4\nNCOLS 5\nNBITS 16\nNODATA -1\n");
-    const std::vector<std::string> rest = {"--height-range", "1", "--size", "150", "--wrap", "clamp", "--fill-invalid"};
+    const std::vector<std::string> rest = {"--height-range", "1",     "--world-size",  "150",
+                                           "--wrap",         "clamp", "--fill-invalid"};
     const auto baked = [&](std::vector<std::string> arguments) {
         arguments.insert(arguments.end(), rest.begin(), rest.end());
         arguments.insert(arguments.end(), {"-o", "x.exr", "--format", "float"});
@@ -418,6 +420,15 @@ TEST_F(BakeNormals, FilesThatClaimTooMuchAreRefused) {
     EXPECT_EQ(ran.code, 4);
     EXPECT_EQ(lines_of(ran.err).size(), 1u) << ran.err;
     EXPECT_EQ(bake({"bricks.png", "-o", "x.dds", "--max-texels", "256K"}).code, 0);
+    // Files that are also larger than the limit allows for their bytes say why in texels.
+    ASSERT_EQ(bake({"bricks.png", "-o", "big.dds", "--format", "float", "--mips", "none"}).code, 0);
+    for (const std::string command : {"pack-normals", "preview-normals", "check-normals"}) {
+        const Ran large =
+            shell(scratch_, command + " big.dds --max-texels 1K" + (command[0] == 'c' ? "" : " -o y.png"));
+        EXPECT_EQ(large.code, 4) << command;
+        EXPECT_NE((large.err + large.out).find("512x512 texels are more than the limit of 1024"), std::string::npos)
+            << large.err;
+    }
 }
 
 }  // namespace tex::cli

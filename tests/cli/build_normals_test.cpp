@@ -313,7 +313,7 @@ out-dir = "out"
 [[rule]]
 match = "art/wall_h.png"
 name = "w_{level}.png"
-steps = [ { bake = { height-range = 0.05, size = 2 } }, { mip = {} } ]
+steps = [ { bake = { height-range = 0.05, world-size = 2 } }, { mip = {} } ]
 )");
     const std::string text = run(scratch_, "build-normals", {"--explain", "art/wall_h.png"}).out;
     EXPECT_NE(text.find("height-range = 0.05  (line 7)"), std::string::npos) << text;

@@ -78,7 +78,7 @@ protected:
 TEST_F(IntegrateNormals, IsTheInverseOfBakeNormalsInEveryUnit) {
     const std::vector<std::vector<std::string>> strengths = {{"--bumpiness", "-6"},
                                                              {"--uv-height", "0.05"},
-                                                             {"--height-range", "0.2", "--size", "2x1.5"},
+                                                             {"--height-range", "0.2", "--world-size", "2x1.5"},
                                                              {"--kernel", "scharr", "--bumpiness", "4"},
                                                              {"--wrap", "clamp,mirror", "--kernel", "forward"}};
     for (const std::vector<std::string>& strength : strengths) {

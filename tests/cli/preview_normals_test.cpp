@@ -99,6 +99,7 @@ TEST_F(PreviewNormals, ASheetDoesWithoutADamagedMap) {
     EXPECT_EQ(report["failed"][0]["file"], "cut.dds");
     EXPECT_EQ(report["failed"][1]["code"], "io");
     EXPECT_EQ(report["maps"].size(), 4u);
+    EXPECT_EQ(report["show"].dump(), R"(["lit","normals"])");
     // The other maps are shown as without it.
     ASSERT_EQ(preview({"bricks.dds", "small.png.dds", "-o", "two.png", "--show", "lit,normals", "--size", "50"}).code,
               0);

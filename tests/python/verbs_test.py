@@ -55,7 +55,7 @@ def test_to_linear_takes_the_srgb_curve_away():
 
 def test_strengths_are_those_of_the_command(commands, bricks, heights):
     commands("bake-normals", bricks, "-o", "n.exr", "--format", "float", "--mips", "none", "--height-range", "0.25",
-             "--size", "2")
+             "--world-size", "2")
     strength = tex.strength_from_world((512, 512), 0.25, 2)
     assert strength == (64.0, 64.0)
     assert tex.bake(heights, bumpiness=strength).tobytes() == commands.floats("n.exr").tobytes()

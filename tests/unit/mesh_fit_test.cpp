@@ -140,6 +140,57 @@ TEST(MeshFit, FindsWrongSpacesOnACube) {
     EXPECT_TRUE(says(fit, "the decoder is one of unity-urp, unity-hdrp, unreal, gltf")) << message_of(fit);
 }
 
+// Godot takes z from x and y, whatever the file holds; other engines take the z that is there.
+TEST(MeshFit, ReadsZAsTheDecoderDoes) {
+    const SelectedPart selected = selected_cube();
+    const NormalMap surface = wavy_surface(selected.part, {256, 256}, 1.0);
+    Texture texture = baked(surface, {selected.part, selected.tangents, 0, Decoder::godot});
+    const Fit right = fit_of(texture, selected, Decoder::godot);
+    EXPECT_EQ(message_of(right), "");
+    auto& bytes = texture.levels[0].bytes;
+    for (std::size_t k = 2; k < bytes.size(); k += bytes.size() / (256 * 256)) bytes[k] = std::byte{140};
+    const Fit same = fit_of(texture, selected, Decoder::godot);
+    ASSERT_TRUE(right.seams && same.seams);
+    EXPECT_EQ(message_of(same), "");
+    EXPECT_NEAR(same.seams->mean, right.seams->mean, 0.2);
+    EXPECT_GT(fit_of(texture, selected, Decoder::unity_builtin).seams->mean, 5.0 * right.seams->mean);
+}
+
+// The background is judged by what the mesh shows of it.
+TEST(MeshFit, SaysHowMuchOfTheBackgroundIsOnTheMesh) {
+    const SelectedPart selected = selected_cube();
+    Texture texture = baked(wavy_surface(selected.part, {256, 256}, 1.0), {selected.part, selected.tangents});
+    const auto coverage = CoverageMap::make(selected.part, 0, {256, 256}, 0);
+    ASSERT_TRUE(coverage);
+    const auto message_with = [&](int hole) {
+        Texture holed = texture;
+        auto& bytes = holed.levels[0].bytes;
+        const std::size_t texel = bytes.size() / (256 * 256);
+        std::vector<Covered> texels;
+        for (int strip = 0; strip < coverage->strips(); ++strip) {
+            coverage->cover(strip, texels);
+            for (std::size_t k = 0; k < texels.size(); ++k) {
+                const std::size_t at = 256 * static_cast<std::size_t>(strip * coverage->strip_rows()) + k;
+                const std::size_t i = at % 256, j = at / 256;
+                const auto inside = static_cast<std::size_t>(hole);
+                if (texels[k].inside && (i >= inside || j >= inside)) continue;
+                std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(at * texel), texel, std::byte{0});
+            }
+        }
+        const MeshToCheck mesh{selected, Decoder::gltf, "mesh.glb"};
+        CheckOptions options;
+        options.mesh = &mesh;
+        const auto report = check("map", holed, options);
+        EXPECT_TRUE(report);
+        for (const Finding& finding : report->findings) {
+            if (finding.rule->id == "N215") return finding.message;
+        }
+        return std::string();
+    };
+    EXPECT_NE(message_with(0).find("; no chart of the mesh covers any of it"), std::string::npos) << message_with(0);
+    EXPECT_NE(message_with(100).find("; charts of the mesh cover "), std::string::npos) << message_with(100);
+}
+
 TEST(MeshFit, FindsWrongSpacesOnRealModels) {
     const fs::path folder = TEX_SOURCE_DIR "/../shared/data/mesh";
     if (!fs::exists(folder)) GTEST_SKIP() << "no shared data";

@@ -72,9 +72,9 @@ void StrengthOptions::add(Command& command, bool can_measure) {
     } else {
         command.number(bumpiness, "--bumpiness", "B", {}, help).rivals = rivals;
     }
-    command.option("--height-range", "R", "the height of value 1.0 in the unit of --size",
+    command.option("--height-range", "R", "the height of value 1.0 in the unit of --world-size",
                    [this](const std::string& text) { height_range = parse_double(text); });
-    command.option("--size", "W[xH]", "the width and height of the whole map; without H, texels are square",
+    command.option("--world-size", "W[xH]", "the width and height of the whole map; without H, texels are square",
                    [this](const std::string& text) {
                        const auto [first, second] = cut(text, 'x');
                        width = parse_double(first, kPositive);
@@ -86,8 +86,9 @@ void StrengthOptions::add(Command& command, bool can_measure) {
         const std::vector<std::string> several = command.given_of({"--bumpiness", "--height-range", "--uv-height"});
         is_given = !several.empty();
         if (several.size() > 1) throw UsageError(join(several, " and ") + " contradict each other: give one");
-        if (command.given("--size") && !height_range) throw UsageError("--size does nothing without --height-range");
-        if (height_range && !command.given("--size")) throw UsageError("--height-range needs --size");
+        if (command.given("--world-size") && !height_range)
+            throw UsageError("--world-size does nothing without --height-range");
+        if (height_range && !command.given("--world-size")) throw UsageError("--height-range needs --world-size");
     });
 }
 

@@ -34,7 +34,7 @@ struct ColorGroup {
     [[nodiscard]] std::vector<std::string> files() const;
 };
 
-// Strength: --bumpiness, --height-range with --size, --uv-height. At most one of the three.
+// Strength: --bumpiness, --height-range with --world-size, --uv-height. At most one of the three.
 struct StrengthOptions {
     float bumpiness = HeightField{}.bumpiness_x;
     bool measured = false;  // --bumpiness auto

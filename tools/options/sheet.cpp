@@ -65,6 +65,12 @@ void SheetOptions::add(Command& command, SceneOptions& scene) {
     command.flag(no_captions_, "--no-captions", "no captions on sheets");
 }
 
+std::vector<std::string> SheetOptions::names_of_shows() const {
+    std::vector<std::string> names;
+    for (const Show show : shows_) names.emplace_back(name_of(kShowNames, show));
+    return names;
+}
+
 bool SheetOptions::shows(Show show) const { return std::find(shows_.begin(), shows_.end(), show) != shows_.end(); }
 
 void SheetOptions::check(const Task& task) const {

@@ -27,6 +27,7 @@ public:
     [[nodiscard]] bool is_animated() const { return turntable_ > 0; }
     [[nodiscard]] bool is_difference() const { return difference_; }
     [[nodiscard]] bool shows(Show show) const;
+    [[nodiscard]] std::vector<std::string> names_of_shows() const;
 
     // Throws UsageError if a picture needs a mesh, and there is none.
     void check_mesh(bool has_mesh) const;

@@ -88,6 +88,8 @@ std::string sarif_text(const std::vector<JudgedReport>& reports) {
     Json driver;
     driver["name"] = "check-normals";
     driver["version"] = version();
+    constexpr std::string_view kHomepage = TEX_HOMEPAGE;  // of project() in CMakeLists.txt
+    if (!kHomepage.empty()) driver["informationUri"] = kHomepage;
     driver["rules"] = Json::array();
     for (const Rule& rule : rules()) driver["rules"].push_back(rule_json(rule));
 

@@ -24,8 +24,9 @@ namespace {
 // What a strip of the map shows. Sums of doubles depend on their order, so each strip has its own.
 struct StripSums {
     std::int64_t overlaps = 0, texels = 0;
-    double from_normal = 0.0;  // degrees between the vector as stored and the mesh's normal, summed
-    double from_z = 0.0;       // and (0, 0, 1)
+    std::int64_t background = 0;  // texels of it that charts cover
+    double from_normal = 0.0;     // degrees between the vector as stored and the mesh's normal, summed
+    double from_z = 0.0;          // and (0, 0, 1)
 };
 
 using Vector = std::array<double, 3>;
@@ -56,7 +57,8 @@ struct Covering {
     Plane<std::int32_t> charts;          // for each texel, or kNoChart
 };
 
-StripSums sums_of(Covering& mesh, int strip, const Stored& stored) {
+StripSums sums_of(Covering& mesh, int strip, const Subject& subject) {
+    const Stored& stored = subject.stored;
     StripSums sums;
     std::vector<Covered> texels;
     sums.overlaps = mesh.coverage.cover(strip, texels);
@@ -66,6 +68,7 @@ StripSums sums_of(Covering& mesh, int strip, const Stored& stored) {
         const int i = static_cast<int>(k) % width, j = strip * mesh.coverage.strip_rows() + static_cast<int>(k) / width;
         const bool inside = texels[k].inside;
         mesh.charts.at(i, j) = inside ? mesh.chart_of[static_cast<std::size_t>(texels[k].triangle)] : kNoChart;
+        if (inside && subject.background && subject.background->holds(i, j)) ++sums.background;
         if (!inside || !stored.has_z()) continue;  // object space needs z
         const auto component = [&](int channel) { return static_cast<double>(stored.component(channel, i, j)); };
         const Vector n{component(x), component(y), component(z)};
@@ -94,18 +97,28 @@ void check_mirrored(const MeshPart& part, Findings& findings) {
 Result<StripSums> sums_over(Covering& mesh, const Subject& subject) {
     std::vector<StripSums> strips(static_cast<std::size_t>(mesh.coverage.strips()));
     const auto measure = [&](int begin, int end) {
-        for (int k = begin; k < end; ++k) strips[static_cast<std::size_t>(k)] = sums_of(mesh, k, subject.stored);
+        for (int k = begin; k < end; ++k) strips[static_cast<std::size_t>(k)] = sums_of(mesh, k, subject);
     };
     if (const auto done = parallel_for(subject.execution, mesh.coverage.strips(), 1, measure, {1.0, 1.0}); !done)
         return done.error();
     StripSums all;
     for (const StripSums& strip : strips) {
         all.overlaps += strip.overlaps;
+        all.background += strip.background;
         all.texels += strip.texels;
         all.from_normal += strip.from_normal;
         all.from_z += strip.from_z;
     }
     return all;
+}
+
+// Says how much of the background the mesh shows.
+void judge_background(const Subject& subject, std::int64_t covered, Findings& findings) {
+    Finding* const finding = findings.find("N215");
+    if (finding == nullptr || !subject.background) return;
+    const double share = static_cast<double>(covered) / static_cast<double>(subject.background->masked);
+    finding->message += covered == 0 ? "; no chart of the mesh covers any of it"
+                                     : "; charts of the mesh cover " + percent(share) + " of it and its edges";
 }
 
 void check_object_space(const StripSums& all, Findings& findings) {
@@ -152,6 +165,7 @@ Result<void> check_chart_rules(const Subject& subject, Findings& findings) {
             finding.figure = static_cast<double>(all->overlaps);
             finding.unit = "texels";
         }
+        judge_background(subject, all->background, findings);
         check_object_space(*all, findings);
         return check_padding(mesh, subject, findings);
     });

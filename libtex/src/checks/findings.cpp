@@ -37,6 +37,12 @@ Finding& Findings::add(std::string_view id, std::string message) {
     return finding;
 }
 
+Finding* Findings::find(std::string_view id) {
+    const auto found =
+        std::find_if(findings_.begin(), findings_.end(), [&](const Finding& one) { return one.rule->id == id; });
+    return found == findings_.end() ? nullptr : &*found;
+}
+
 std::vector<Finding> Findings::take(int& explained) {
     std::vector<Finding> kept;
     for (const Finding& finding : findings_) {

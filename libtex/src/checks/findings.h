@@ -41,6 +41,8 @@ public:
     [[nodiscard]] bool wants(std::string_view id) const;
     // Adds a finding of rule `id`. If that rule is not wanted, the result is a dummy that is not read.
     Finding& add(std::string_view id, std::string message);
+    // The finding of this rule, or null.
+    Finding* find(std::string_view id);
     // Returns the findings in order, without those that other findings explain; `explained` counts the omitted ones.
     std::vector<Finding> take(int& explained);
 

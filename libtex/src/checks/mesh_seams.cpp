@@ -101,7 +101,7 @@ std::vector<SeamEdge> find_seams(const MeshPart& part) {
 
 namespace {
 
-// A bilinear filter that repeats, on vectors as stored.
+// A bilinear filter that repeats, on vectors as stored, as engines filter them: decoders make them unit vectors.
 class Texels {
 public:
     explicit Texels(const Stored& stored)
@@ -126,8 +126,7 @@ private:
         };
         Vector3 n{component(x_), component(y_), 0.0};
         n.z = z_ >= 0 ? component(z_) : std::sqrt(std::max(0.0, 1.0 - n.x * n.x - n.y * n.y));
-        const double squared = dot(n, n);
-        return std::isfinite(squared) && squared > 1e-12 ? (1.0 / std::sqrt(squared)) * n : Vector3{0.0, 0.0, 1.0};
+        return std::isfinite(dot(n, n)) ? n : Vector3{0.0, 0.0, 1.0};
     }
 
     const Stored& stored_;
@@ -196,7 +195,7 @@ std::vector<Vector3> SeamSamples::gaps(const SeamSpace& space) const {
         }
         Vector3 normal[2];
         for (std::size_t s = 0; s < 2; ++s) {
-            Vector3 t = place.texel[s];
+            Vector3 t = read_texel(space.decoder, place.texel[s]);
             if (!space.y_up) t.y = -t.y;
             normal[s] = decode(frames[s].at(place.weights[s]), t);
         }

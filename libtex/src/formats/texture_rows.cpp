@@ -35,10 +35,19 @@ Result<TextureRows> picture_rows(const InputFile& file, Result<std::unique_ptr<R
     return texture;
 }
 
+// Refuses a file that is too large to be read. What its header claims says more than its size in bytes.
+Result<void> check_size(InputFile& file, const Codec& codec, const ReadOptions& options) {
+    if (!file.size() || *file.size() <= largest_file(options)) return {};
+    const auto size = static_cast<std::size_t>(*file.size());
+    const Result<StoredTexture> claimed = codec.parse(fetch_from(file), size, file.path(), options);
+    if (!claimed) return claimed.error();
+    return file.read_rest(largest_file(options)).error();
+}
+
 // The levels of a file that stores their texels unchanged.
 Result<TextureRows> stored_rows(InputFile& file, const Codec& codec, const ReadOptions& options) {
     if (const Result<void> settled = file.settle(largest_file(options)); !settled) return settled.error();
-    if (*file.size() > largest_file(options)) return file.read_rest(largest_file(options)).error();
+    if (const Result<void> fits = check_size(file, codec, options); !fits) return fits.error();
     Result<StoredTexture> parsed =
         codec.parse(fetch_from(file), static_cast<std::size_t>(*file.size()), file.path(), options);
     if (!parsed) return parsed.error();
@@ -91,6 +100,7 @@ Result<Texture> read_texture(InputFile& file, const ReadOptions& options) {
         const Codec& codec = codec_for(file, options);
         if (const Result<void> fits = check_layer(codec, options); !fits) return fits.error().of(file.path());
         if (codec.parse != nullptr) {
+            if (const Result<void> fits = check_size(file, codec, options); !fits) return fits.error();
             const Result<std::vector<std::byte>> bytes = file.read_rest(largest_file(options));
             if (!bytes) return bytes.error();
             return decode_file(bytes->data(), bytes->size(), file.path(), options);
