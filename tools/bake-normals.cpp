@@ -13,6 +13,7 @@
 #include "cli/usage_error.h"
 #include "options/heights.h"
 #include "options/mips.h"
+#include "options/others.h"
 #include "options/tiles.h"
 #include "tasks/written_levels.h"
 
@@ -47,6 +48,7 @@ private:
     cli::KernelOption kernel_;
     cli::MipChainOptions mips_;
     cli::TileOptions tiles_;
+    cli::OtherOptions others_;
 };
 
 BakeNormals::BakeNormals(const cli::ProgramRow& row) : Converter(row) {
@@ -63,9 +65,12 @@ BakeNormals::BakeNormals(const cli::ProgramRow& row) : Converter(row) {
     reader_.color.add(command);
     output.add(command, cli::default_encodings(), "up");
     output.add_engines(command);
+    others_.add(command, output, true);
     mips_.add(command, false, "all in dds and ktx2, else none");
     running.add(command);
     command.example("bake-normals bricks.png -o bricks.dds --bumpiness 8", "A DXT5nm texture with all its mip levels.");
+    command.example("bake-normals bricks.png -o bricks_nh.png --format rgba8 --alpha height",
+                    "Normals and heights in one file, for parallax mapping.");
     command.example("bake-normals rock.exr -o rock.ktx2 --format bc5 --height-range 0.15 --world-size 2 --y down",
                     "A rock face 2 m wide with 15 cm of relief, as BC5 for a renderer with green down.");
     command.example("bake-normals maps/*.png --out-dir out --kernel scharr --json", "A folder at once, with a report.");
@@ -75,7 +80,10 @@ cli::OutputRules BakeNormals::rules() const {
     cli::OutputRules rules;
     rules.batch = Container::dds;
     rules.shared = reader_.color.files();
-    rules.amend = &cli::HeightReader::add_header_file;
+    rules.amend = [this](cli::Task& task) {
+        cli::HeightReader::add_header_file(task);
+        others_.amend(task);
+    };
     if (files.tiles) rules.relate = [this](std::vector<cli::Task>& tasks) { tiles_.relate(tasks, wrap_); };
     return rules;
 }
@@ -100,6 +108,8 @@ BakeFileOptions BakeNormals::options(cli::Job& job) const {
     options.tile = tiles_.tile_of(job.task);
     options.bake = kernel_.bake;
     options.mip = mips_.options(mips_.levels_for(job.task), wrap_);
+    others_.apply(options.mip);
+    options.others = others_.inputs(job);
     constexpr bool kKnown = true;
     const cli::OutputOptions own = output.of(job.task.engine);
     options.pack = own.pack_options(own.format.value_or(default_encoding(job.task.container)), YAxis::up, kKnown);

@@ -39,7 +39,11 @@ private:
     [[nodiscard]] const std::vector<std::string>& details_of(const cli::Task& task) const {
         return joins() ? task.joined : layers_.details();
     }
-    [[nodiscard]] cli::OutputRules rules() const override { return {{}, Container::dds, joins(), layers_.files()}; }
+    [[nodiscard]] cli::OutputRules rules() const override {
+        cli::OutputRules rules{{}, Container::dds, joins(), layers_.files()};
+        rules.amend = [this](cli::Task& task) { others.amend(task); };
+        return rules;
+    }
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] Result<void> process(cli::Job& job) override;
     [[nodiscard]] BlendFileOptions options(cli::Job& job) const;
@@ -62,6 +66,7 @@ BlendNormals::BlendNormals(const cli::ProgramRow& row) : NormalsConverter(row) {
     normals.add(command);
     output.add(command, "as in the base if it fits, else " + cli::default_encodings(), "as in the base");
     output.add_engines(command);
+    others.add(command, output, false);
     mips_.add(command, false, "all in dds and ktx2, else none");
     wrap_.add(command, "what lies beyond the base's border; two words set x and y separately");
     running.add(command);
@@ -108,6 +113,9 @@ BlendFileOptions BlendNormals::options(cli::Job& job) const {
     options.blend.wrap_x = wrap_.x;
     options.blend.wrap_y = wrap_.y;
     options.mip = mips_.options(mips_.levels_for(job.task), wrap_);
+    others.apply(options.source.unpack);
+    others.apply(options.mip);
+    options.others = others.inputs(job);
     const cli::OutputOptions own = output.of(job.task.engine);
     options.pack = [own, &job](const SourceInfo& base) {
         return own.pack_options(own.format ? *own.format : cli::encoding_of(base, job.task), base.y_axis, base.y_known);

@@ -34,6 +34,7 @@ MipNormals::MipNormals(const cli::ProgramRow& row) : Repacker(row) {
     add_files("normal maps; - is standard input");
     output.add(command, cli::default_encodings(), "as in the input");
     output.add_engines(command);
+    others.add(command, output, false);
     mips_.add(command, false, "all");
     wrap_.add(command, "what lies beyond the border; two words set x and y separately");
     roughness_.add(command, files);
@@ -50,7 +51,10 @@ MipNormals::MipNormals(const cli::ProgramRow& row) : Repacker(row) {
 cli::OutputRules MipNormals::rules() const {
     cli::OutputRules rules;
     rules.batch = Container::dds;
-    rules.amend = [this](cli::Task& task) { roughness_.amend(task); };
+    rules.amend = [this](cli::Task& task) {
+        roughness_.amend(task);
+        others.amend(task);
+    };
     return rules;
 }
 

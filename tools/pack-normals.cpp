@@ -16,7 +16,12 @@ public:
     explicit PackNormals(const cli::ProgramRow& row);
 
 private:
-    [[nodiscard]] cli::OutputRules rules() const override { return {Container::dds}; }
+    [[nodiscard]] cli::OutputRules rules() const override {
+        cli::OutputRules rules;
+        rules.batch = Container::dds;
+        rules.amend = [this](cli::Task& task) { others.amend(task); };
+        return rules;
+    }
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] PackFileOptions options(cli::Job& job) const override;
 
@@ -30,6 +35,7 @@ PackNormals::PackNormals(const cli::ProgramRow& row) : Repacker(row) {
     command.flag(normalize_, "--normalize", "make vectors unit also where that changes codes that could stay");
     output.add(command, cli::default_encodings(), "as in the input");
     output.add_engines(command);
+    others.add(command, output, false);
     mips_.add(command, true, "keep");
     wrap_.add(command, "what lies beyond the border of levels that are built; two words set x and y separately");
     running.add(command);
@@ -39,6 +45,8 @@ PackNormals::PackNormals(const cli::ProgramRow& row) : Repacker(row) {
     });
     command.example("pack-normals bricks_n.png -o bricks.dds --mips all", "DXT5nm with all levels.");
     command.example("pack-normals bricks.dds -o bricks_bc5.ktx2 --format bc5", "Another encoding, the same levels.");
+    command.example("pack-normals rock_n.png -o rock_pbr.png --layout labpbr --blue rock_ao.png --alpha rock_h.png",
+                    "Occlusion and heights beside the normals.");
     command.example("pack-normals directx/*.png --out-dir opengl --format rgb8 --y-in down --y up",
                     "Pictures from one convention to the other.");
 }

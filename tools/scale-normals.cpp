@@ -15,6 +15,11 @@ public:
     explicit ScaleNormals(const cli::ProgramRow& row);
 
 private:
+    [[nodiscard]] cli::OutputRules rules() const override {
+        cli::OutputRules rules;
+        rules.amend = [this](cli::Task& task) { others.amend(task); };
+        return rules;
+    }
     [[nodiscard]] PackFileOptions options(cli::Job&) const override {
         PackFileOptions options;
         options.scale = {scale_, mode_};
@@ -41,6 +46,7 @@ ScaleNormals::ScaleNormals(const cli::ProgramRow& row) : Repacker(row) {
     command.choice(mode_, "--scale-mode", "M", kScaleModeNames, "how normals are scaled");
     normals.add(command);
     output.add(command, "as in the input if it fits, else " + cli::default_encodings(), "as in the input");
+    others.add(command, output, false);
     running.add(command);
     command.example("scale-normals bricks.dds -o strong.dds --scale 2",
                     "Twice as steep, all levels, the same encoding.");

@@ -20,15 +20,21 @@ public:
     explicit UnpackNormals(const cli::ProgramRow& row);
 
 private:
-    [[nodiscard]] cli::OutputRules rules() const override { return {Container::png, Container::png}; }
+    [[nodiscard]] cli::OutputRules rules() const override {
+        cli::OutputRules rules{Container::png, Container::png};
+        rules.amend = [this](cli::Task& task) { apart_.amend(task); };
+        return rules;
+    }
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] PackFileOptions options(cli::Job& job) const override;
+    void report(cli::Job& job, const PackFileReport&) const override { apart_.report(job); }
     [[nodiscard]] Encoding encoding(const SourceInfo& input, const cli::Task& task) const override;
 
     int level_ = 0;
     bool all_levels_ = false;
     float scale_ = 1.0f;
     ScaleMode scale_mode_ = ScaleMode::slope;
+    cli::OtherFiles apart_;
 };
 
 UnpackNormals::UnpackNormals(const cli::ProgramRow& row) : Repacker(row) {
@@ -43,15 +49,20 @@ UnpackNormals::UnpackNormals(const cli::ProgramRow& row) : Repacker(row) {
     option.preset = fmt::format("{}", level_);
     command.number(scale_, "--scale", "S", {-kMaxScale, kMaxScale}, "make normals steeper or flatter; negative: dents");
     command.choice(scale_mode_, "--scale-mode", "M", kScaleModeNames, "how they are scaled");
+    apart_.add(command, files);
     output.add(command, "rgb8 in dds and ktx2, else " + cli::default_encodings(), "as in the input", Container::png);
     running.add(command);
     command.example("unpack-normals bricks.dds -o bricks.png", "The base level as a picture, whatever its layout.");
     command.example("unpack-normals bricks.dds -o bricks.exr --scale 0.5 --scale-mode xy",
                     "What a shader gets from UnpackScaleNormal, as floats.");
+    command.example(
+        "unpack-normals rock_pbr.png -o rock_n.png --swizzle rg --blue-out rock_ao.png --alpha-out rock_h.png",
+        "What a LabPBR texture holds, in three files.");
     command.example("unpack-normals bricks.ktx2 --level all --name '{stem}_mip{level}.png'", "All levels as pictures.");
 }
 
 Result<void> UnpackNormals::check(const std::vector<cli::Task>& tasks) {
+    apart_.check(tasks);
     for (const cli::Task& task : tasks) {
         if (!all_levels_ || can_hold_levels(task.container) || cli::has_level(task.output)) continue;
         throw cli::UsageError(fmt::format("{}: {} files hold one level; --level all needs --name with {{level}}",
@@ -60,8 +71,9 @@ Result<void> UnpackNormals::check(const std::vector<cli::Task>& tasks) {
     return {};
 }
 
-PackFileOptions UnpackNormals::options(cli::Job&) const {
+PackFileOptions UnpackNormals::options(cli::Job& job) const {
     PackFileOptions options;
+    apart_.apply(job.task, options);
     if (!all_levels_) options.level = level_;
     if (command.given("--scale")) options.scale = {scale_, scale_mode_};
     return options;

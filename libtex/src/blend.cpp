@@ -36,6 +36,11 @@ Result<NormalMap> blend_layers(MipChain& base, std::vector<Layer>& layers, const
         for (int j = begin; j < end; ++j) rows.make(j, {result.x.row(j), result.y.row(j), result.z.row(j)});
     });
     if (!blended) return blended.error();
+    NormalMap& own = base.levels.front();
+    if (own.extent() == extent) {
+        result.blue = std::move(own.blue);
+        result.alpha = std::move(own.alpha);
+    }
     return result;
 }
 

@@ -133,6 +133,12 @@ static_assert([] {
 
 FormatInfo format_info(Format format) { return kFormats[static_cast<std::size_t>(format)].info; }
 
+OtherPlanes can_hold(Encoding encoding) {
+    const auto [format, swizzle] = encoding_info(encoding);
+    const FormatInfo info = format_info(format);
+    return {swizzle[2] == Component::z, info.channels == 4 && !info.has_blocks() && swizzle[3] == Component::one};
+}
+
 float steepest_slope(Encoding encoding) {
     const EncodingInfo info = encoding_info(encoding);
     const FormatInfo format = format_info(info.format);

@@ -16,6 +16,7 @@
 #include "rows/border.h"
 #include "rows/mip_rows.h"
 #include "rows/usable.h"
+#include "stream/other_levels.h"
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
@@ -157,6 +158,8 @@ Result<void> validate(const MipOptions& options) {
         return bad_option("fade: first must be 0 or more, and less than last");
     if (options.any_z && (options.domain != MipDomain::vector || options.fade))
         return bad_option("any_z: needs the domain vector and no fade");
+    if (options.follow_normals() && options.domain != MipDomain::vector)
+        return bad_option("blue and alpha: roughness and gloss need the domain vector");
     return {};
 }
 
@@ -186,6 +189,7 @@ Result<MipChain> build_mip_chain(NormalMap base, const MipOptions& options, cons
             const auto last = finish_level(chain.levels.back(), all, count - 1, execution, {done, 1.0});
             if (!last) return last.error();
         }
+        if (const auto added = add_others(chain, all, execution); !added) return added.error();
         chain.levels.erase(chain.levels.begin(), chain.levels.begin() + first);
         return chain;
     });

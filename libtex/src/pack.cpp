@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kernels/encode.h"
+#include "rows/other_rows.h"
 #include "rows/pack_rows.h"
 #include "rows/rdo_rows.h"
 #include "rows/usable.h"
@@ -25,7 +26,8 @@ Result<Texture> pack_chain(const MipChain& chain, const PackOptions& options, co
     const EncodingInfo encoding = encoding_info(options.encoding);
     Texture texture;
     texture.format = encoding.format;
-    texture.swizzle = encoding.swizzle;
+    const OtherPlanes others = others_of(chain.levels[0]);
+    texture.swizzle = swizzle_with(options.encoding, others);
     texture.swizzle_known = true;
     texture.y_axis = options.y_axis;
     texture.y_known = options.y_known;
@@ -51,7 +53,7 @@ Result<Texture> pack_chain(const MipChain& chain, const PackOptions& options, co
         const Result<void> result = parallel_for(
             execution, extent.height, grain,
             [&](int begin, int end) {
-                pack_rows(map, extent.height, options, begin, end, packed.bytes.data(), band_rows, tally);
+                pack_rows(map, others, extent.height, options, begin, end, packed.bytes.data(), band_rows, tally);
             },
             span);
         if (!result) return result.error();

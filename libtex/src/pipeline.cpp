@@ -12,6 +12,18 @@
 
 namespace tex {
 
+namespace {
+
+// Errors: bad_option if a command that bakes nothing is to store heights.
+Result<void> check_no_heights(const OtherInputs& others) {
+    for (const auto* data : {&others.blue, &others.alpha}) {
+        if (*data && (*data)->heights) return bad_option("others: there are no heights, only normals");
+    }
+    return {};
+}
+
+}  // namespace
+
 Result<void> validate(const BakeFileOptions& options) {
     if (auto valid = validate(options.bake); !valid) return valid;
     if (auto valid = validate(options.mip); !valid) return valid;
@@ -24,6 +36,7 @@ Result<void> validate(const PackFileOptions& options) {
         return bad_option("scale: must be at most 1e6 in magnitude");
     if (options.max_side < 0) return bad_option("max_side: must be 0, for no limit, or more");
     if (options.roughness && !options.mip) return bad_option("roughness: needs mip");
+    if (auto valid = check_no_heights(options.others); !valid) return valid;
     return options.mip ? validate(*options.mip) : Result<void>();
 }
 
@@ -32,6 +45,7 @@ Result<void> validate(const BlendFileOptions& options) {
         if (auto valid = validate(layer.layer()); !valid) return valid;
     }
     if (auto valid = validate(options.blend); !valid) return valid;
+    if (auto valid = check_no_heights(options.others); !valid) return valid;
     return validate(options.mip);
 }
 

@@ -1,45 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// Handles memory and threads; kernels/roughness.cpp computes, and the filters are those of mip.cpp. Besides its result,
-// the chain keeps the averages of two levels.
+// Handles memory and threads; kernels/roughness.cpp computes, and the filters are those of mip.cpp.
 
 #include <tex/roughness.h>
 
 #include <algorithm>
-#include <array>
 #include <utility>
 #include <vector>
 
 #include "blocks/extent.h"
-#include "kernels/roughness.h"
 #include "rows/mip_rows.h"
 #include "rows/roughness_rows.h"
 #include "rows/usable.h"
+#include "stream/other_levels.h"
 #include "stream/own_roughness.h"
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
 namespace tex {
 namespace {
-
-constexpr std::size_t kAlpha2 = 3;  // after x, y and z
-
-// x, y, z and alpha^2 of a level, not normalised.
-using Averages = std::array<Plane<float>, 4>;
-using AverageViews = std::array<PlaneView<const float>, 4>;
-
-AverageViews views_of(const Averages& averages) {
-    return {averages[0].view(), averages[1].view(), averages[2].view(), averages[3].view()};
-}
-
-// Filters rows [begin, end) of a plane of the next level.
-void filter_strip(const LevelFilter& filter, PlaneView<const float> from, Plane<float>& to, int begin, int end) {
-    MipRows rows(filter);
-    std::vector<const float*> window(static_cast<std::size_t>(filter.y.taps));
-    for (int j = begin; j < end; ++j) {
-        for (int k = 0; k < filter.y.taps; ++k) window[static_cast<std::size_t>(k)] = from.row(filter.source(j, k));
-        rows.make(window.data(), j, to.row(j));
-    }
-}
 
 // Computes the material's own roughness and alpha^2 at the base level.
 Result<void> fill_base(const Plane<float>& own, const MipOptions& options, const Execution& execution,
@@ -59,36 +37,17 @@ Result<RoughnessChain> build_chain(const NormalMap& base, const Plane<float>& ro
     const Extent extent = base.extent();
     const int first = first_level(options, extent);
     const int count = first + levels_to_build(options, extent);
-    double done = count > 1 ? 0.1 : 1.0;
+    const double done = count > 1 ? 0.1 : 1.0;
     RoughnessChain chain;
     Plane<float> alpha2(extent);
     const auto filled =
         fill_base(roughness, options, execution, {0.0, done}, chain.levels.emplace_back(extent), alpha2);
     if (!filled) return filled.error();
 
-    AverageViews from = {base.x.view(), base.y.view(), base.z.view(), alpha2.view()};
-    Averages held;  // the data that `from` shows, below the base level
-    for (int level = 1; level < count; ++level) {
-        const Extent smaller = level_extent(extent, level);
-        Averages to;
-        for (Plane<float>& plane : to) plane = Plane<float>(smaller);
-        Plane<float>& rougher = chain.levels.emplace_back(smaller);
-        const LevelFilter filter(from[0].extent, options);
-        const auto strip = [&](int begin, int end) {
-            for (std::size_t plane = 0; plane < to.size(); ++plane)
-                filter_strip(filter, from[plane], to[plane], begin, end);
-            for (int j = begin; j < end; ++j) {
-                roughness_of_averages(model, to[0].row(j), to[1].row(j), to[2].row(j), to[kAlpha2].row(j),
-                                      smaller.width, rougher.row(j));
-            }
-        };
-        const double next = level + 1 < count ? done + (1.0 - done) * 0.75 : 1.0;
-        const auto made = parallel_for(execution, smaller.height, rows_per_piece(smaller), strip, {done, next});
-        if (!made) return made.error();
-        held = std::move(to);
-        from = views_of(held);
-        done = next;
-    }
+    auto smaller =
+        smaller_levels(base, std::move(alpha2), OtherKind::roughness, model, options, count, execution, {done, 1.0});
+    if (!smaller) return smaller.error();
+    for (Plane<float>& level : *smaller) chain.levels.push_back(std::move(level));
     chain.levels.erase(chain.levels.begin(), chain.levels.begin() + first);
     return chain;
 }

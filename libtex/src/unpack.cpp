@@ -21,10 +21,12 @@ namespace {
 
 constexpr const char* kChannelNames[] = {"R", "G", "B", "A"};
 constexpr int kMostStripRows = 12;  // the greatest height of a block
+constexpr int kBlue = 2, kAlpha = 3;
 
-// The rows of one strip, for x, y and z, padded to whole vectors. The rows of z are null if there is no z.
+// The rows of one strip, for x, y, z, blue and alpha, padded to whole vectors. The rows of what is not there are null.
+constexpr int kComponents = 5;
 struct StripRows {
-    const float* component[3][kMostStripRows] = {};
+    const float* component[kComponents][kMostStripRows] = {};
 };
 
 // Provides the rows of a texture's level, decoded to scratch memory.
@@ -32,15 +34,17 @@ struct LevelReader {
     Format format;
     const Level& level;
     Sources sources;
+    OtherPlanes others;
 
     [[nodiscard]] Extent extent() const { return level.extent; }
     [[nodiscard]] int strip_rows() const { return strip_rows_of(format); }
 
     StripRows read(int strip, Plane<float>& scratch) const {
-        const int channels[3] = {sources.x, sources.y, sources.z};
+        const int channels[kComponents] = {sources.x, sources.y, sources.z, others.blue ? kBlue : -1,
+                                           others.alpha ? kAlpha : -1};
         ChannelRows rows;
         StripRows out;
-        for (int k = 0; k < 3; ++k) {
+        for (int k = 0; k < kComponents; ++k) {
             if (channels[k] < 0) continue;
             rows.channel[channels[k]] = scratch.row(k * strip_rows());
             for (int r = 0; r < strip_rows(); ++r) out.component[k][r] = scratch.row(k * strip_rows() + r);
@@ -50,9 +54,9 @@ struct LevelReader {
     }
 };
 
-// Provides the rows of three planes unchanged.
+// Provides the rows of planes unchanged.
 struct ImageReader {
-    const Plane<float>* planes[3];  // z may be null
+    const Plane<float>* planes[kComponents];  // all but x and y may be null
 
     [[nodiscard]] Extent extent() const { return planes[0]->extent(); }
     [[nodiscard]] int strip_rows() const { return kBlockEdge; }
@@ -60,7 +64,7 @@ struct ImageReader {
     StripRows read(int strip, Plane<float>&) const {
         const int first = strip * strip_rows();
         StripRows out;
-        for (int k = 0; k < 3; ++k) {
+        for (int k = 0; k < kComponents; ++k) {
             for (int r = 0; planes[k] != nullptr && r < strip_rows() && first + r < extent().height; ++r) {
                 out.component[k][r] = planes[k]->row(first + r);
             }
@@ -82,7 +86,7 @@ Result<bool> weigh_range(const Reader& reader, const Execution& execution) {
     const int strip_rows = reader.strip_rows();
     const int strips = blocks_across(extent.height, strip_rows);
     const auto weighed = parallel_for(silent, strips, strips_at_once(extent, strip_rows), [&](int begin, int end) {
-        Plane<float> scratch = make_scratch(extent, 3 * strip_rows);
+        Plane<float> scratch = make_scratch(extent, kComponents * strip_rows);
         for (int strip = begin; strip < end && !negative; ++strip) {
             const StripRows held = reader.read(strip, scratch);
             const int first = strip * strip_rows;
@@ -107,25 +111,43 @@ Result<bool> is_unsigned(const Reader& reader, SampleKind sample, ValueRange ran
 }
 
 template <class Reader>
-Result<void> unpack_rows(const Reader& reader, const UnpackRule& rule, NormalMap& map, const Execution& execution,
-                         ProgressSpan span) {
+Result<void> unpack_rows(const Reader& reader, const UnpackRule& rule, OtherPlanes others, NormalMap& map,
+                         const Execution& execution, ProgressSpan span) {
     const Extent extent = reader.extent();
     map = NormalMap(extent);
+    if (others.blue) map.blue = Plane<float>(extent);
+    if (others.alpha) map.alpha = Plane<float>(extent);
     const int strip_rows = reader.strip_rows();
     return parallel_for(
         execution, blocks_across(extent.height, strip_rows), strips_at_once(extent, strip_rows),
         [&](int begin, int end) {
-            Plane<float> scratch = make_scratch(extent, 3 * strip_rows);
+            Plane<float> scratch = make_scratch(extent, kComponents * strip_rows);
             for (int strip = begin; strip < end; ++strip) {
                 const StripRows rows = reader.read(strip, scratch);
                 for (int r = 0; r < strip_rows && strip * strip_rows + r < extent.height; ++r) {
                     const int j = strip * strip_rows + r;
                     unpack_row(rows.component[0][r], rows.component[1][r], rows.component[2][r], rule, extent.width,
                                map.x.row(j), map.y.row(j), map.z.row(j));
+                    if (others.blue) std::copy_n(rows.component[3][r], extent.width, map.blue.row(j));
+                    if (others.alpha) std::copy_n(rows.component[4][r], extent.width, map.alpha.row(j));
                 }
             }
         },
         span);
+}
+
+// The channels beside the normals that the options want.
+OtherPlanes others_wanted(const Sources& sources, int channels, const UnpackOptions& options) {
+    const OtherPlanes there = others_beside(sources, channels);
+    return {there.blue && options.others.blue, there.alpha && options.others.alpha};
+}
+
+bool is_one_everywhere(const Plane<float>& plane) {
+    for (int j = 0; j < plane.extent().height; ++j) {
+        const float* const row = plane.row(j);
+        if (!std::all_of(row, row + plane.extent().width, [](float value) { return value == 1.0f; })) return false;
+    }
+    return true;
 }
 
 // The planes for R, G, B and A; null for planes that do not exist. Errors: as normal_channels().
@@ -158,10 +180,11 @@ Result<MipChain> unpack_levels(const Texture& texture, const UnpackOptions& opti
     UnpackRule rule = rule_of(options, info.sample, info.bits, options.y_axis.value_or(texture.y_axis));
     const ValueRange range = range_of(texture.normal_encoding, options);
     const Result<bool> biased =
-        is_unsigned(LevelReader{texture.format, texture.levels.front(), *sources}, info.sample, range, execution);
+        is_unsigned(LevelReader{texture.format, texture.levels.front(), *sources, {}}, info.sample, range, execution);
     if (!biased) return biased.error();
     rule.is_unsigned = *biased;
 
+    const OtherPlanes others = others_wanted(*sources, info.channels, options);
     double texels = 0.0;
     for (const Level& level : texture.levels) texels += static_cast<double>(level.extent.texels());
     MipChain chain;
@@ -170,10 +193,15 @@ Result<MipChain> unpack_levels(const Texture& texture, const UnpackOptions& opti
     for (std::size_t k = 0; k < texture.levels.size(); ++k) {
         const Level& level = texture.levels[k];
         const double next = done + static_cast<double>(level.extent.texels()) / texels;
-        const auto unpacked = unpack_rows(LevelReader{texture.format, level, *sources}, rule, chain.levels[k],
+        NormalMap& map = chain.levels[k];
+        const auto unpacked = unpack_rows(LevelReader{texture.format, level, *sources, others}, rule, others, map,
                                           execution, {done, std::min(1.0, next)});
         if (!unpacked) return unpacked.error();
         done = next;
+    }
+    const auto has_ones = [](const NormalMap& map) { return is_one_everywhere(map.alpha); };
+    if (others.alpha && std::all_of(chain.levels.begin(), chain.levels.end(), has_ones)) {
+        for (NormalMap& map : chain.levels) map.alpha = {};
     }
     return chain;
 }
@@ -188,14 +216,18 @@ Result<NormalMap> unpack_image(const Image& image, const UnpackOptions& options,
         sources_of(options.swizzle.value_or(image.planes.size() == 2 ? kSwizzleXy : kSwizzleXyz), available);
     if (!sources) return sources.error();
     const auto plane = [&](int c) { return c < 0 ? nullptr : planes[static_cast<std::size_t>(c)]; };
-    const ImageReader reader{{plane(sources->x), plane(sources->y), plane(sources->z)}};
+    const int channels = available >= 8 ? 4 : available >= 4 ? 3 : 2;
+    const OtherPlanes others = others_wanted(*sources, channels, options);
+    const ImageReader reader{{plane(sources->x), plane(sources->y), plane(sources->z),
+                              others.blue ? planes[2] : nullptr, others.alpha ? planes[3] : nullptr}};
 
     UnpackRule rule = rule_of(options, image.sample, image.bits, options.y_axis.value_or(YAxis::up));
     const Result<bool> biased = is_unsigned(reader, image.sample, range_of(image.normal_encoding, options), execution);
     if (!biased) return biased.error();
     rule.is_unsigned = *biased;
     NormalMap map;
-    if (const auto unpacked = unpack_rows(reader, rule, map, execution, {}); !unpacked) return unpacked.error();
+    if (const auto unpacked = unpack_rows(reader, rule, others, map, execution, {}); !unpacked) return unpacked.error();
+    if (others.alpha && is_one_everywhere(map.alpha)) map.alpha = {};
     return map;
 }
 

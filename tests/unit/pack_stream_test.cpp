@@ -36,10 +36,14 @@ protected:
         const std::string name(name_of(kContainerNames, kind));
         return write("in." + name, encode_file(texture, kind, options_.write).value());
     }
-    [[nodiscard]] std::string write_map(Extent extent, Container kind, Encoding encoding, int levels = 1) const {
+    [[nodiscard]] std::string write_map(Extent extent, Container kind, Encoding encoding, int levels = 1,
+                                        OtherPlanes beside = {}) const {
         MipOptions mip;
         mip.levels = levels;
-        const MipChain chain = build_mip_chain(wavy_map(extent), mip).value();
+        NormalMap map = wavy_map(extent);
+        if (beside.alpha) map.alpha = wavy_map(extent).x;
+        if (beside.blue) map.blue = wavy_map(extent).y;
+        const MipChain chain = build_mip_chain(std::move(map), mip).value();
         return write(pack(chain, {encoding, YAxis::down, Effort::fast}).value(), kind);
     }
 
@@ -70,7 +74,8 @@ protected:
     void draw_options(std::mt19937& random, int levels) {
         const auto one_in = [&](unsigned n) { return random() % n == 0; };
         options_.source = {};
-        options_.source.drop_others = true;  // verbs on maps in memory have no other channels
+        options_.source.drop_others = one_in(4);
+        options_.source.unpack.others = {one_in(2), one_in(2)};
         options_.source.unpack.snap_flat = one_in(3);
         options_.source.unpack.keep_length = one_in(3);
         options_.source.unpack.range = one_in(2) ? ValueRange::automatic : any_of(kValueRangeNames, random);
@@ -91,6 +96,10 @@ protected:
             if (one_in(3)) options_.mip->fade = Fade{1, 3};
             options_.mip->wrap_x = any_of(kWrapNames, random);
             options_.mip->wrap_y = any_of(kWrapNames, random);
+            if (options_.mip->domain == MipDomain::vector) {
+                options_.mip->alpha = any_of(kOtherKindNames, random);
+                options_.mip->blue = any_of(kOtherKindNames, random);
+            }
         }
         y_ = one_in(2);
         pack_.encoding = any_of(kEncodingNames, random);
@@ -129,7 +138,8 @@ TEST_F(PackStream, GivesTheBytesOfTheVerbs) {
         if (container == Container::exr) {
             if (options_.mip) options_.mip->levels = random() % 2 == 0 ? 0 : 1;
         }
-        const std::string input = write_map(extent, kind, encoding_in(kind, random), levels);
+        const std::string input =
+            write_map(extent, kind, encoding_in(kind, random), levels, {random() % 2 == 0, random() % 2 == 0});
         SCOPED_TRACE(testing::Message() << "round " << round << ", " << extent.width << "x" << extent.height);
         const Result<Bytes> expected = by_verbs(input, container);
         ASSERT_TRUE(expected) << expected.error().message();

@@ -32,6 +32,9 @@ Encoding Repacker::encoding(const SourceInfo&, const Task& task) const { return 
 PackFileOptions Repacker::all_options(Job& job) const {
     PackFileOptions with = options(job);
     with.source = normals.options(job);
+    if (others.is_added()) others.apply(with.source.unpack);
+    with.others = others.inputs(job);
+    if (with.mip) others.apply(*with.mip);
     const OutputOptions own = output.of(job.task.engine);
     with.source.doubt_y = own.y.has_value();  // otherwise y stays as it is, and the output does not state it
     with.pack = [this, own, &job](const SourceInfo& info) {

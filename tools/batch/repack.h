@@ -10,6 +10,7 @@
 
 #include "batch/batch.h"
 #include "options/normals.h"
+#include "options/others.h"
 #include "tasks/job.h"
 
 namespace tex::cli {
@@ -20,6 +21,7 @@ public:
     using Converter::Converter;
 
     NormalsReader normals;
+    OtherOptions others;
 
     void note(Job& job, const StepsReport& done) override;
 

@@ -121,10 +121,16 @@ void NormalsReader::note(Job& job, const std::string& path, const SourceInfo& in
                              path == job.task.input ? "--y-in" : "--y-in, or --detail-y-in for a detail,"),
                  path);
     }
-    if (info.object_space) {
+    if (info.object_space && !info.z_doubtful) {
         job.warn(
             "its vectors face all directions, as in object space, and are read as tangent space; "
             "convert-normals --from object --mesh FILE converts it",
+            path);
+    }
+    if (info.z_doubtful) {
+        job.warn(
+            "what is read as z does not follow x and y; if that channel holds other data, --swizzle rg (x in R, y in "
+            "G) rebuilds z",
             path);
     }
     if (info.background > 0.0 && warns_of_background) {

@@ -243,6 +243,17 @@ struct EncodingInfo {
 
 [[nodiscard]] EncodingInfo encoding_info(Encoding encoding);
 
+// Which channels beside the normals there are: NormalMap::blue and NormalMap::alpha.
+struct OtherPlanes {
+    bool blue = false;
+    bool alpha = false;
+
+    friend bool operator==(const OtherPlanes&, const OtherPlanes&) = default;
+};
+
+// What an encoding can hold beside normals: blue in the place of z, alpha in the place of a constant.
+[[nodiscard]] OtherPlanes can_hold(Encoding encoding);
+
 // The slope from which on all slopes are stored alike. Without z: the component rounds to 1, so that the surface
 // becomes vertical; 11.3 for 8 bits, 32 for the 11 bits of EAC, 181 for 16 bits. With z: z rounds to its least positive
 // code; 127 and 32767. Infinite for half and float.

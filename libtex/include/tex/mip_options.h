@@ -8,6 +8,7 @@
 #include <tex/height_field.h>
 #include <tex/names.h>
 #include <tex/result.h>
+#include <tex/roughness_options.h>
 
 #pragma GCC visibility push(default)
 namespace tex {
@@ -53,6 +54,27 @@ struct Fade {
     int last = 3;
 };
 
+// What data beside the normals are (NormalMap::blue, NormalMap::alpha), and so how smaller levels get them.
+//
+//   height, occlusion, mask    the mean, by the filter of the normals
+//   roughness                  as build_roughness_chain() does: with the variance that the averaged normals lose. Needs
+//                              the domain vector
+//   gloss                      1 - roughness, the same way
+enum class OtherKind { height, occlusion, mask, roughness, gloss };
+
+inline constexpr Named<OtherKind> kOtherKindNames[] = {
+    {OtherKind::height, "height", "smaller levels hold the mean"},
+    {OtherKind::occlusion, "occlusion", "smaller levels hold the mean"},
+    {OtherKind::mask, "mask", "smaller levels hold the mean"},
+    {OtherKind::roughness, "roughness", "smaller levels get the variance that the normals lose"},
+    {OtherKind::gloss, "gloss", "1 - roughness"},
+};
+
+// Whether smaller levels depend on the normals.
+[[nodiscard]] constexpr bool follows_normals(OtherKind kind) {
+    return kind == OtherKind::roughness || kind == OtherKind::gloss;
+}
+
 struct MipOptions {
     int levels = 0;  // number of levels, counting the base level; 0, or more than there can be, is a complete chain
     MipFilter filter = MipFilter::box;
@@ -65,6 +87,12 @@ struct MipOptions {
     int max_side = 0;
     // z may be negative, as in object space; else a z below 0 becomes 0. Needs the domain vector and no fade.
     bool any_z = false;
+    OtherKind blue = OtherKind::mask;  // of the data beside the normals
+    OtherKind alpha = OtherKind::mask;
+    RoughnessModel roughness = RoughnessModel::toksvig;  // of roughness and gloss among them
+
+    // Whether smaller levels of other data depend on the normals.
+    [[nodiscard]] bool follow_normals() const { return follows_normals(blue) || follows_normals(alpha); }
 };
 
 // Whether every option is in its range. The verbs call it first. Errors: bad_option, which names the option.

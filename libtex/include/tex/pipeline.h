@@ -58,6 +58,25 @@ struct TerrainTile {
     std::optional<bool> shared_border;
 };
 
+// Data that go into B or A beside the normals of the base level (NormalMap::blue, NormalMap::alpha). MipOptions says
+// what smaller levels get.
+struct OtherData {
+    float value = 1.0f;  // the same everywhere, from 0 to 1,
+    std::function<Result<Plane<float>>()> map =
+        {};                // or, if set, what this returns: a map of the extent of the base level,
+    bool heights = false;  // or, if set, the heights that are baked; only for bake_file()
+};
+struct OtherInputs {
+    std::optional<OtherData> blue, alpha;
+};
+
+// A file for the data that a source has in B or A beside its normals: one channel, the levels that the container holds.
+struct OtherFile {
+    std::string output;
+    Container container = Container::png;
+    Format format = Format::r8_unorm;
+};
+
 // What bake_file() does: read_image(), to_linear() if color.space is not empty, height_field(), bake(),
 // build_mip_chain(), pack(), write_texture().
 struct BakeFileOptions {
@@ -79,6 +98,7 @@ struct BakeFileOptions {
     WriteOptions write;
     LevelNames level_names;      // one file for each level, and `output` is not written; empty: one file
     std::vector<MoreFile> more;  // appear after `output`, in this order
+    OtherInputs others;          // every output must have room for them
     bool slopes = false;         // whether BakeFileReport::slopes is computed
 };
 
@@ -156,6 +176,10 @@ struct PackFileOptions {
     LevelNames level_names;                  // as in BakeFileOptions
     std::vector<MoreFile> more;              // as in BakeFileOptions
     std::optional<RoughnessFile> roughness;  // only if `mip` is set
+    // Replace what the source has there; every output must have room for them. They are those of the base level, so
+    // smaller levels are not taken from the source: bad_option if there are any, and `mip` is not set.
+    OtherInputs others;
+    std::optional<OtherFile> blue_file, alpha_file;  // appear after the files of normals
 };
 
 // Whether every option is in its range. pack_file() calls it first. Errors: bad_option, which names the option.
@@ -229,6 +253,7 @@ struct BlendFileOptions {
     WriteOptions write;
     LevelNames level_names;      // as in BakeFileOptions
     std::vector<MoreFile> more;  // as in BakeFileOptions
+    OtherInputs others;          // as in PackFileOptions; without them, those of the base go along
 
     std::shared_ptr<SharedMaps> shared;  // where the maps of the layers are kept; null: nowhere
 };

@@ -27,7 +27,8 @@ auto quantize(const PackChannel& channel, int i) {
     const auto one = hn::Set(d, 1.0f);
     const auto half = hn::Set(d, 0.5f);
     const auto top = hn::Set(d, static_cast<float>(kTop));
-    const auto scaled = hn::Add(hn::Mul(hn::Mul(hn::Add(n, one), half), top), half);
+    if (!channel.is_other) n = hn::Mul(hn::Add(n, one), half);
+    const auto scaled = hn::Add(hn::Mul(n, top), half);
     // Clamped first, so that truncating is the same as floor.
     const auto clamped = hn::Min(hn::Max(scaled, hn::Zero(d)), top);
     return hn::DemoteTo(dc, hn::ConvertTo(di, clamped));

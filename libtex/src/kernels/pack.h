@@ -8,10 +8,11 @@
 namespace tex {
 
 // One stored channel of a row: `values` are components in [-1, 1], or null for a channel that is constantly 1. A
-// negated channel stores -values.
+// negated channel stores -values. Other data are in [0, 1].
 struct PackChannel {
     const float* values = nullptr;
     bool negate = false;
+    bool is_other = false;
 };
 
 // The number of bytes (elements, for 16 bits) per channel that a kernel may write past the last texel of an interleaved
@@ -22,8 +23,8 @@ inline constexpr int kPackSlack = 16;
 //
 //     code = floor((n + 1) * 0.5 * (2^bits - 1) + 0.5), clamped to the valid codes
 //
-// computed in float, from left to right. Reads whole vectors: rows are padded like the rows of a Plane. `out` has room
-// for channels * (width + kPackSlack) codes.
+// computed in float, from left to right; of other data, floor(n * (2^bits - 1) + 0.5). Reads whole vectors: rows are
+// padded like the rows of a Plane. `out` has room for channels * (width + kPackSlack) codes.
 void pack_unorm8(const PackChannel* channels, int count, int width, std::uint8_t* out);
 void pack_unorm16(const PackChannel* channels, int count, int width, std::uint16_t* out);
 

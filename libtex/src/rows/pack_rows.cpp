@@ -14,6 +14,7 @@
 #include "kernels/encode.h"
 #include "kernels/encode_astc.h"
 #include "kernels/pack.h"
+#include "rows/other_rows.h"
 
 namespace tex {
 namespace {
@@ -21,20 +22,17 @@ namespace {
 // The rows of a normal map as the channels of a format.
 class Rows {
 public:
-    Rows(const NormalMap& map, int height, const Swizzle& swizzle, YAxis y_axis, const Plane<float>* alpha)
-        : map_(map), alpha_(alpha), extent_{map.extent().width, height}, swizzle_(swizzle),
-          negate_y_(y_axis == YAxis::down) {}
+    Rows(const NormalMap& map, int height, const Swizzle& swizzle, YAxis y_axis)
+        : map_(map), extent_{map.extent().width, height}, swizzle_(swizzle), negate_y_(y_axis == YAxis::down) {}
 
     void channels(int j, PackChannel out[4]) const {
         for (std::size_t k = 0; k < 4; ++k) {
             switch (swizzle_[k]) {
-                case Component::x: out[k] = {map_.x.row(j), false}; break;
+                case Component::x: out[k] = {map_.x.row(j)}; break;
                 case Component::y: out[k] = {map_.y.row(j), negate_y_}; break;
-                case Component::z: out[k] = {map_.z.row(j), false}; break;
-                default:
-                    out[k] = {};
-                    if (k == 3 && alpha_ != nullptr) out[k] = {alpha_->row(j), false};
-                    break;  // every encoding's constants are 1, except in channels that it does not store
+                case Component::z: out[k] = {map_.z.row(j)}; break;
+                case Component::other: out[k] = {(k == 3 ? map_.alpha : map_.blue).row(j), false, true}; break;
+                default: out[k] = {}; break;  // every encoding's constants are 1, except in channels that it lacks
             }
         }
     }
@@ -45,7 +43,6 @@ public:
 
 private:
     const NormalMap& map_;
-    const Plane<float>* const alpha_;
     const Extent extent_;
     const Swizzle swizzle_;
     const bool negate_y_;
@@ -108,16 +105,19 @@ void pack_astc(const Rows& rows, Format format, Effort effort, int j, int count,
 
 }  // namespace
 
-bool can_hold_alpha(Encoding encoding) {
-    const auto [format, swizzle] = encoding_info(encoding);
-    return format_info(format).channels == 4 && !format_info(format).has_blocks() && swizzle[3] == Component::one;
+Swizzle swizzle_with(Encoding encoding, OtherPlanes beside) {
+    Swizzle swizzle = encoding_info(encoding).swizzle;
+    if (beside.blue && can_hold(encoding).blue) swizzle[2] = Component::other;
+    return swizzle;
 }
 
-void pack_rows(const NormalMap& map, int height, const PackOptions& options, int begin, int end, std::byte* out,
-               int band_rows, RdoTally* tally, const Plane<float>* alpha, std::byte* plain) {
-    const auto [format, swizzle] = encoding_info(options.encoding);
+void pack_rows(const NormalMap& map, OtherPlanes others, int height, const PackOptions& options, int begin, int end,
+               std::byte* out, int band_rows, RdoTally* tally, std::byte* plain) {
+    const Format format = encoding_info(options.encoding).format;
     const FormatInfo info = format_info(format);
-    const Rows rows(map, height, swizzle, options.y_axis, alpha);
+    Swizzle channels = swizzle_with(options.encoding, others);
+    if (others.alpha && can_hold(options.encoding).alpha) channels[3] = Component::other;
+    const Rows rows(map, height, channels, options.y_axis);
     if (info.has_blocks()) {
         const std::size_t pitch = level_bytes(format, {rows.extent().width, 1});
         const int block = info.block.height;

@@ -21,12 +21,12 @@ namespace tex {
 //
 // `plain`, unless it is null, gets the blocks as they are without optimisation, at the same places as `out`.
 //
-// Where the encoding stores alpha as 1, it stores `alpha` instead, unless that is null: rows of 2 A - 1.
-void pack_rows(const NormalMap& map, int height, const PackOptions& options, int begin, int end, std::byte* out,
-               int band_rows, RdoTally* tally = nullptr, const Plane<float>* alpha = nullptr,
-               std::byte* plain = nullptr);
+// `others`: the data of the map beside its normals that are stored, in the channels that can_hold() names.
+void pack_rows(const NormalMap& map, OtherPlanes others, int height, const PackOptions& options, int begin, int end,
+               std::byte* out, int band_rows, RdoTally* tally = nullptr, std::byte* plain = nullptr);
 
-// Whether this encoding can store something else in alpha.
-[[nodiscard]] bool can_hold_alpha(Encoding encoding);
+// The swizzle of a texture of this encoding that also holds these data. Alpha stays a constant there: whether it is one
+// is known only after the last row.
+[[nodiscard]] Swizzle swizzle_with(Encoding encoding, OtherPlanes beside);
 
 }  // namespace tex

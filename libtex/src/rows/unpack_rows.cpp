@@ -22,6 +22,13 @@ double length_error(double x, double y, double z, bool has_z) {
 
 }  // namespace
 
+OtherPlanes others_beside(const Sources& sources, int channels) {
+    const auto is_free = [&](int channel) {
+        return channels > channel && sources.x != channel && sources.y != channel && sources.z != channel;
+    };
+    return {is_free(2), is_free(3)};
+}
+
 Result<Sources> sources_of(const Swizzle& swizzle, unsigned available) {
     const Sources sources = {channel_of(swizzle, Component::x), channel_of(swizzle, Component::y),
                              channel_of(swizzle, Component::z)};

@@ -21,6 +21,9 @@ struct Sources {
     int z = -1;
 };
 
+// The channels of a format, which has so many, that hold no part of the normals.
+[[nodiscard]] OtherPlanes others_beside(const Sources& sources, int channels);
+
 // The message for a file with one channel.
 inline constexpr const char* kOneChannel = "has one channel, which holds no normals (bake-normals reads heights)";
 

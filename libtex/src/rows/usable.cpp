@@ -22,9 +22,12 @@ Result<void> check_usable(Extent extent, std::string_view what) {
 }
 
 Result<void> check_usable(const NormalMap& map) {
-    if (map.y.extent() == map.x.extent() && map.z.extent() == map.x.extent())
-        return check_usable(map.x.extent(), "the map");
-    return bad_option("the planes of the map have different extents");
+    for (const Plane<float>* const plane : {&map.y, &map.z, &map.blue, &map.alpha}) {
+        const bool may_be_empty = plane == &map.blue || plane == &map.alpha;
+        if (plane->extent() != map.x.extent() && !(may_be_empty && plane->empty()))
+            return bad_option("the planes of the map have different extents");
+    }
+    return check_usable(map.x.extent(), "the map");
 }
 
 Result<void> check_usable(const Image& image) {

@@ -8,6 +8,7 @@
 #include <tex/mip_chain.h>
 
 #include "rows/mip_rows.h"
+#include "stream/given_others.h"
 #include "stream/height_stage.h"
 #include "stream/level_stage.h"
 #include "stream/open_heights.h"
@@ -43,8 +44,11 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
         report.levels = levels_to_build(options.mip, extent);
     std::vector<FileTarget> files = {{output, options.level_names, container, options.pack, options.write}};
     add_targets(options.more, {}, files);
+    const Result<GivenOthers> given = GivenOthers::read(options.others, extent, files);
+    if (!given) return given.error();
     Targets targets;
-    if (const Result<void> opened = targets.open(files, report.extent, report.levels); !opened) return opened.error();
+    if (const Result<void> opened = targets.open(files, given->planes(), report.extent, report.levels); !opened)
+        return opened.error();
     SlopeCollector slopes(steepest_slope(options.pack.encoding), options.slopes);
     UsualSlope usual(report.extent);
     const WatchRows seen = [&](const LevelRows& rows) {
@@ -58,8 +62,8 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
     Flow flow;
     flow.set_rows_together(targets.rows_together());
     const BakedRows baked = add_bake(flow, *heights, file.path(), options, gradient);
-    const MadeLevels levels{-first, first + report.levels, counted_from_base(options.mip, first)};
-    add_levels(flow, *baked.normals, levels, targets, seen);
+    const MadeLevels levels{-first, first + report.levels, counted_from_base(options.mip, first), given->planes()};
+    add_levels(flow, given->add_to(flow, *baked.normals), levels, targets, seen);
     if (const Result<void> done = flow.run(onward, sizes); !done) return done.error();
     if (const Result<void> done = targets.commit(); !done) return done.error();
     report.bytes = targets.bytes(Content::normals);

@@ -37,16 +37,19 @@ std::vector<Need> BlendStage::needs(int first, int end) const {
         if (map.step.head > 0) needs.push_back({map.rows, 0, map.step.head});
         needs.push_back({map.rows, std::max(0, first - map.step.behind), std::min(height, end + map.step.ahead)});
     }
-    if (alpha_ != nullptr) needs.push_back({alpha_, first, end});
+    if (base_ != nullptr) needs.push_back({base_, first, end});
     return needs;
 }
 
 Result<void> BlendStage::make(Strip& strip) {
     const std::shared_ptr<BlendRows> rows = rows_.take([this] { return std::make_unique<BlendRows>(maps_); });
+    std::vector<int> planes;
+    if (others().alpha) planes.push_back(kAlphaPlane);
+    if (others().blue) planes.push_back(kBluePlane);
     for (int k = 0; k < strip.height; ++k) {
         rows->make(strip.first + k, strip.normals(k));
-        if (alpha_ != nullptr)
-            std::copy_n(alpha_->row(kAlphaPlane, strip.first + k), extent().width, strip.fourth.row(k));
+        for (const int plane : planes)
+            std::copy_n(base_->row(plane, strip.first + k), extent().width, strip.row(plane, k));
     }
     return {};
 }

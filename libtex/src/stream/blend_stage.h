@@ -32,10 +32,11 @@ struct MapInStep {
 // Makes the same normals as blend().
 class BlendStage final : public Stage {
 public:
-    // `maps` read the rows of those in step, and must outlive this object. `alpha`: the stage whose fourth plane goes
-    // along, or null.
-    BlendStage(const PlacedMaps& maps, std::vector<MapInStep> in_step, const Stage* alpha)
-        : Stage(maps.extent, alpha == nullptr ? 3 : 4), maps_(maps), in_step_(std::move(in_step)), alpha_(alpha) {}
+    // `maps` read the rows of those in step, and must outlive this object. `base`: the stage whose other data
+    // go along, or null.
+    BlendStage(const PlacedMaps& maps, std::vector<MapInStep> in_step, const Stage* base)
+        : Stage(maps.extent, base == nullptr ? OtherPlanes() : base->others()), maps_(maps),
+          in_step_(std::move(in_step)), base_(base) {}
 
     [[nodiscard]] std::vector<Need> needs(int first, int end) const override;
     Result<void> make(Strip& strip) override;
@@ -45,7 +46,7 @@ public:
 private:
     const PlacedMaps& maps_;
     const std::vector<MapInStep> in_step_;
-    const Stage* const alpha_;
+    const Stage* const base_;
     Pool<BlendRows> rows_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "rows/mip_rows.h"
 #include "stream/blending.h"
+#include "stream/given_others.h"
 #include "stream/level_stage.h"
 #include "stream/targets.h"
 
@@ -26,15 +27,22 @@ Result<BlendFileReport> blend_stream(MapSource& base, const std::string& output,
     report.pack = packing_for(options.pack, container, blending.source());
     std::vector<FileTarget> files = {{output, options.level_names, container, report.pack, options.write}};
     add_targets(options.more, blending.source(), files);
+    const Result<GivenOthers> given = GivenOthers::read(options.others, blending.extent(), files);
+    if (!given) return given.error();
+    const OtherPlanes own = given->planes(), taken = blending.others_taken(), held = held_by_any(files);
+    const OtherPlanes kept{taken.blue && held.blue && !own.blue, taken.alpha && held.alpha && !own.alpha};
+    const OtherPlanes others{kept.blue || own.blue, kept.alpha || own.alpha};
     Targets targets;
-    if (const Result<void> opened = targets.open(files, report.extent, report.levels); !opened) return opened.error();
+    if (const Result<void> opened = targets.open(files, others, report.extent, report.levels); !opened)
+        return opened.error();
     Flow flow;
     flow.set_rows_together(targets.rows_together());
-    const bool keeps_alpha = blending.has_other_alpha() && any_holds_alpha(files);
-    const MadeLevels levels{-left_out, left_out + report.levels, counted_from_base(options.mip, left_out), keeps_alpha};
-    add_levels(flow, blending.add_to(flow, keeps_alpha), levels, targets);
+    const MadeLevels levels{-left_out, left_out + report.levels, counted_from_base(options.mip, left_out), others};
+    add_levels(flow, given->add_to(flow, blending.add_to(flow, kept)), levels, targets);
     if (const Result<void> done = flow.run(execution, sizes); !done) return done.error();
-    blending.judge(keeps_alpha && all_hold_alpha(files));
+    const OtherPlanes in_all = held_by_all(files);
+    blending.judge({own.blue || (kept.blue && in_all.blue),
+                    own.alpha || (kept.alpha && in_all.alpha) || !options.source.unpack.others.alpha});
     report.source = blending.source();
     report.details = blending.details();
     if (const Result<void> committed = targets.commit(); !committed) return committed.error();

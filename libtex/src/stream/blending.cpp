@@ -93,32 +93,33 @@ Result<PlacedMap> Blending::place(Input& input, const Execution& execution) {
     return PlacedMap{nullptr, row, extent_, input.place, input.wrap_x, input.wrap_y};
 }
 
-bool Blending::has_other_alpha() const {
-    return base_.step && base_.settled.has_other_alpha() && !base_.settled.options().drop_others;
-}
+OtherPlanes Blending::others_taken() const { return base_.step ? base_.settled.others_taken() : OtherPlanes(); }
 
-Stage& Blending::add_to(Flow& flow, bool keeps_alpha) {
+Stage& Blending::add_to(Flow& flow, OtherPlanes kept) {
     std::vector<MapInStep> in_step;
     for (Input& input : inputs_) {
         if (!input.step) continue;
         if (auto inspector = inspector_for(input.settled.options(), input.info, extent_))
             input.inspector.emplace(std::move(*inspector));
         const SourceOptions& source = input.settled.options();
-        if (source.inspect && !source.drop_others) input.others.emplace(input.map().head(), input.settled.sources());
+        if (source.inspect && !source.drop_others)
+            input.others.emplace(input.map().head(), input.map().extent(0), input.settled.sources());
         input.rows = &input.settled.add_to(flow, 0,
                                            {{},
                                             input.inspector ? &*input.inspector : nullptr,
                                             input.others && !input.others->empty() ? &*input.others : nullptr,
-                                            keeps_alpha && &input == &base_});
+                                            &input == &base_ ? kept : OtherPlanes()});
         in_step.push_back({input.rows, *input.step});
     }
-    return flow.add<BlendStage>(*maps_, std::move(in_step), keeps_alpha ? base_.rows : nullptr);
+    return flow.add<BlendStage>(*maps_, std::move(in_step), kept == OtherPlanes() ? nullptr : base_.rows);
 }
 
-void Blending::judge(bool keeps_alpha) {
+void Blending::judge(OtherPlanes accounted_for) {
     for (Input& input : inputs_) {
         if (input.inspector) input.inspector->report(input.info);
-        if (input.others) input.info.others = left_out(input.others->found(), keeps_alpha && &input == &base_);
+        if (!input.others) continue;
+        input.info.z_doubtful = input.others->z_is_something_else();
+        input.info.others = left_out(input.others->found(), &input == &base_ ? accounted_for : OtherPlanes());
     }
 }
 

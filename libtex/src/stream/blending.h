@@ -26,12 +26,12 @@ public:
 
     // Opens all maps, settles how they are read, and reads those that are held in memory.
     Result<void> open(const Execution& execution);
-    // Whether the base has something else in alpha, which can be carried along.
-    [[nodiscard]] bool has_other_alpha() const;
-    // Adds stages that make the rows of the result. To be called once.
-    Stage& add_to(Flow& flow, bool keeps_alpha = false);
-    // Sets what SourceInfo says about the texels, after the last row. `keeps_alpha`: all outputs hold that of the base.
-    void judge(bool keeps_alpha);
+    // The data beside the normals of the base that can go along, as its options say.
+    [[nodiscard]] OtherPlanes others_taken() const;
+    // Adds stages that make the rows of the result, and these data of the base. To be called once.
+    Stage& add_to(Flow& flow, OtherPlanes kept = {});
+    // Sets what SourceInfo says about the texels, after the last row. `accounted_for`: what of the base is not lost.
+    void judge(OtherPlanes accounted_for);
 
     [[nodiscard]] Extent extent() const { return maps_->extent; }
     [[nodiscard]] const std::string& path() const { return base_.map().path(); }

@@ -19,7 +19,8 @@ std::unique_ptr<Strip> Stage::new_strip(int rows) const {
     const Extent extent{extent_.width, rows};
     if (planes_ == 1) strip->map.x = Plane<float>(extent);
     if (planes_ > 1) strip->map = NormalMap(extent);
-    if (planes_ > 3) strip->fourth = Plane<float>(extent);
+    if (others_.alpha) strip->map.alpha = Plane<float>(extent);
+    if (others_.blue) strip->map.blue = Plane<float>(extent);
     return strip;
 }
 

@@ -184,9 +184,10 @@ private:
 // Bakes heights. The normals of a window become those of the tile in it.
 class BakeStage final : public Stage {
 public:
+    // `beside`: where the heights themselves go.
     BakeStage(const HeightInput& input, const Gradient& gradient, const HeightFieldHead& head,
-              const std::optional<TerrainWindow>& window)
-        : Stage(window ? window->tile : input.rows->extent(), 3), input_(input), gradient_(gradient), head_(head),
+              const std::optional<TerrainWindow>& window, OtherPlanes beside)
+        : Stage(window ? window->tile : input.rows->extent(), beside), input_(input), gradient_(gradient), head_(head),
           left_(window ? window->left : 0), top_(window ? window->top : 0) {}
 
     [[nodiscard]] std::vector<Need> needs(int first, int end) const override {
@@ -194,7 +195,13 @@ public:
     }
     Result<void> make(Strip& strip) override {
         std::unique_ptr<Baker> baker = take_baker(strip.first + top_);
-        for (int k = 0; k < strip.height; ++k) bake_row(*baker, strip.first + top_ + k, strip.normals(k));
+        for (int k = 0; k < strip.height; ++k) {
+            const int j = strip.first + top_ + k;
+            bake_row(*baker, j, strip.normals(k));
+            const float* const heights = input_.row(j) + left_;
+            if (others().alpha) std::copy_n(heights, extent().width, strip.map.alpha.row(k));
+            if (others().blue) std::copy_n(heights, extent().width, strip.map.blue.row(k));
+        }
         baker->next = strip.first + top_ + strip.height;
         const std::lock_guard lock(mutex_);
         idle_.push_back(std::move(baker));
@@ -281,7 +288,9 @@ BakedRows add_bake(Flow& flow, Heights& heights, const std::string& input, const
     HeightFieldHead head = head_of(heights.window ? heights.window->tile : extent, options, heights.stated);
     head.wrap_x = heights.options.wrap_x;
     head.wrap_y = heights.options.wrap_y;
-    return {&flow.add<BakeStage>(rows, gradient, head, heights.window), head};
+    const auto takes = [](const std::optional<OtherData>& other) { return other && other->heights; };
+    const OtherPlanes beside{takes(options.others.blue), takes(options.others.alpha)};
+    return {&flow.add<BakeStage>(rows, gradient, head, heights.window, beside), head};
 }
 
 }  // namespace tex

@@ -12,6 +12,7 @@
 #include "kernels/roughness.h"
 #include "rows/border.h"
 #include "rows/mip_rows.h"
+#include "rows/other_rows.h"
 
 namespace tex {
 namespace {
@@ -113,6 +114,11 @@ class TargetStage final : public Stage {
 public:
     using Finish = std::function<void(int j, Strip& strip, int k)>;
 
+    // Of normals, or of their roughness.
+    TargetStage(const Stage& from, OtherPlanes others, int level_in_file, Finish finish, Targets& targets,
+                WatchRows seen)
+        : Stage(from.extent(), others, from.level()), from_(from), content_(Content::normals),
+          level_in_file_(level_in_file), finish_(std::move(finish)), targets_(targets), seen_(std::move(seen)) {}
     TargetStage(const Stage& from, Content content, int level_in_file, int planes, Finish finish, Targets& targets,
                 WatchRows seen)
         : Stage(from.extent(), planes, from.level()), from_(from), content_(content), level_in_file_(level_in_file),
@@ -123,13 +129,7 @@ public:
     Result<void> make(Strip& strip) override {
         for (int k = 0; finish_ && k < strip.height; ++k) finish_(strip.first + k, strip, k);
         const Strip& made = finish_ ? strip : from_.strip_of(strip.first);
-        const LevelRows rows{content_,
-                             level_in_file_,
-                             strip.first,
-                             strip.height,
-                             made.map,
-                             strip.bytes,
-                             made.fourth.empty() ? nullptr : &made.fourth};
+        const LevelRows rows{content_, level_in_file_, strip.first, strip.height, made.map, strip.bytes};
         if (Result<void> written = targets_.write(rows); !written) return written;
         if (seen_) seen_(rows);
         return {};
@@ -144,13 +144,48 @@ private:
     const WatchRows seen_;
 };
 
-// Turns averages of a level into normals. Alpha, if there is any, is the plane after them.
+// Makes what is averaged from other data of the normals.
+class OtherStage final : public Stage {
+public:
+    OtherStage(const Stage& normals, int plane, OtherKind kind)
+        : Stage(normals.extent(), 1), normals_(normals), plane_(plane), kind_(kind) {}
+
+    [[nodiscard]] std::vector<Need> needs(int first, int end) const override { return {{&normals_, first, end}}; }
+    Result<void> make(Strip& strip) override {
+        for (int k = 0; k < strip.height; ++k)
+            values_to_average(kind_, normals_.row(plane_, strip.first + k), extent().width, strip.row(0, k));
+        return {};
+    }
+
+private:
+    const Stage& normals_;
+    const int plane_;
+    const OtherKind kind_;
+};
+
+// The planes of other data, in the order of their averages.
+struct Other {
+    int plane;
+    OtherKind kind;
+};
+std::vector<Other> others_of(const MadeLevels& levels) {
+    std::vector<Other> others;
+    if (levels.others.alpha) others.push_back({kAlphaPlane, levels.options.alpha});
+    if (levels.others.blue) others.push_back({kBluePlane, levels.options.blue});
+    return others;
+}
+
+// Turns averages of a level into normals and, after them, other data.
 TargetStage::Finish finish_averages(const Stage& averages, int level, const MadeLevels& levels) {
     const int width = averages.extent().width, planes = levels.options.domain == MipDomain::vector ? 3 : 2;
-    return [&averages, level, options = levels.options, has_alpha = levels.has_alpha, width, planes](
-               int j, Strip& strip, int k) {
+    return [&averages, level, options = levels.options, others = others_of(levels), width, planes](int j, Strip& strip,
+                                                                                                   int k) {
         for (int plane = 0; plane < planes; ++plane) std::copy_n(averages.row(plane, j), width, strip.row(plane, k));
-        if (has_alpha) std::copy_n(averages.row(planes, j), width, strip.row(kAlphaPlane, k));
+        const VectorRow mean{averages.row(0, j), averages.row(1, j), planes == 3 ? averages.row(2, j) : nullptr};
+        for (std::size_t n = 0; n < others.size(); ++n) {
+            values_of_averages(others[n].kind, options.roughness, mean, averages.row(planes + static_cast<int>(n), j),
+                               width, strip.row(others[n].plane, k));
+        }
         finish_row(strip.normals(k), width, options, level);
     };
 }
@@ -158,20 +193,25 @@ TargetStage::Finish finish_averages(const Stage& averages, int level, const Made
 }  // namespace
 
 void add_levels(Flow& flow, const Stage& normals, const MadeLevels& levels, Targets& targets, const WatchRows& seen) {
-    const int of_target = levels.has_alpha ? 4 : 3;
     if (levels.first >= 0)
         flow.add<TargetStage>(normals, Content::normals, levels.first, 0, TargetStage::Finish(), targets, seen);
     if (levels.count < 2) return;
     const bool averages_vectors = levels.options.domain == MipDomain::vector;
     std::vector<StagePlane> larger =
         averages_vectors ? planes_of(normals, 3) : planes_of(flow.add<SlopeStage>(normals), 2);
-    if (levels.has_alpha) larger.push_back({&normals, kAlphaPlane});
+    for (const Other& other : others_of(levels)) {
+        if (follows_normals(other.kind)) {
+            larger.push_back({&flow.add<OtherStage>(normals, other.plane, other.kind), 0});
+        } else {
+            larger.push_back({&normals, other.plane});
+        }
+    }
     for (int k = 1; k < levels.count; ++k) {
         const Stage& averages = flow.add<MipStage>(larger, k, levels.options);
         larger = planes_of(averages, static_cast<int>(larger.size()));
         if (levels.first + k < 0) continue;
-        flow.add<TargetStage>(averages, Content::normals, levels.first + k, of_target,
-                              finish_averages(averages, k, levels), targets, seen);
+        flow.add<TargetStage>(averages, levels.others, levels.first + k, finish_averages(averages, k, levels), targets,
+                              seen);
     }
 }
 

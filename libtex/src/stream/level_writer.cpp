@@ -162,17 +162,29 @@ private:
 
 bool takes_any_order(Container container) { return codec_of(container).layout != nullptr; }
 
-LevelPacking packing_of(const PackOptions& options, Extent extent, int levels) {
+LevelPacking packing_of(const PackOptions& options, OtherPlanes others, Extent extent, int levels) {
     const EncodingInfo encoding = encoding_info(options.encoding);
     const auto tallies = is_optimised(options) ? std::make_shared<RdoTallies>(levels) : nullptr;
     const int band_rows = rdo_band_rows(options, extent.width);
-    return {{encoding.format, extent, levels, encoding.swizzle, true, options.y_axis, options.y_known},
-            [options, band_rows, tallies](const LevelRows& rows, std::byte* out, std::byte* plain) {
+    const Swizzle swizzle = swizzle_with(options.encoding, others);
+    return {{encoding.format, extent, levels, swizzle, true, options.y_axis, options.y_known},
+            [options, others, band_rows, tallies](const LevelRows& rows, std::byte* out, std::byte* plain) {
                 RdoTally* const tally = tallies ? &tallies->of(rows.level) : nullptr;
-                pack_rows(rows.map, rows.height, options, 0, rows.height, out, band_rows, tally, rows.alpha, plain);
+                pack_rows(rows.map, others, rows.height, options, 0, rows.height, out, band_rows, tally, plain);
             },
             band_rows,
             tallies};
+}
+
+LevelPacking packing_of(const OtherFile& options, bool is_alpha, Extent extent, int levels) {
+    TextureHead head{options.format, extent, levels};
+    head.swizzle = kRoughnessSwizzle;
+    return {head,
+            [format = options.format, is_alpha](const LevelRows& rows, std::byte* out, std::byte*) {
+                const Plane<float>& from = is_alpha ? rows.map.alpha : rows.map.blue;
+                pack_roughness_rows(from, rows.height, format, Effort::normal, 0, rows.height, out);
+            },
+            1, nullptr};
 }
 
 LevelPacking packing_of(const RoughnessFile& options, Extent extent, int levels) {

@@ -29,9 +29,8 @@ struct LevelRows {
     int level;
     int first;
     int height;
-    const NormalMap& map;                 // rows 0 to height - 1, with room for whole blocks; roughness uses x alone
-    std::vector<std::byte>& scratch;      // room for the code that packs the rows
-    const Plane<float>* alpha = nullptr;  // the same rows of 2 A - 1, if alpha holds something else
+    const NormalMap& map;             // rows 0 to height - 1, with room for whole blocks; roughness uses x alone
+    std::vector<std::byte>& scratch;  // room for the code that packs the rows
 };
 
 // How rows are packed into texels.
@@ -42,7 +41,8 @@ struct LevelPacking {
     int rows_together = 1;                // strips consist of so many rows of texels, or of whole blocks
     std::shared_ptr<RdoTallies> tallies;  // of blocks that are optimised; otherwise null
 };
-LevelPacking packing_of(const PackOptions& options, Extent extent, int levels);
+LevelPacking packing_of(const PackOptions& options, OtherPlanes others, Extent extent, int levels);
+LevelPacking packing_of(const OtherFile& options, bool is_alpha, Extent extent, int levels);
 LevelPacking packing_of(const RoughnessFile& options, Extent extent, int levels);
 
 class LevelWriter {

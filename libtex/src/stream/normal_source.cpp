@@ -37,7 +37,7 @@ Result<void> look_at_others(const Texture& texture, Source& source, const Execut
     const int channels = format_info(texture.format).channels;
     const Result<Sources> sources = sources_of(source.info.swizzle, (1u << channels) - 1);
     if (!sources) return sources.error();
-    OtherChannels others(texture, *sources);
+    OtherChannels others(texture, texture.extent(), *sources);
     if (others.empty()) return {};
     const Result<Image> image = decode(texture, 0, {execution.threads, {}});
     if (!image) return image.error();
@@ -45,9 +45,10 @@ Result<void> look_at_others(const Texture& texture, Source& source, const Execut
     for (int j = 0; j < map.extent().height; ++j) {
         const float* row[4] = {};
         for (std::size_t c = 0; c < image->planes.size(); ++c) row[c] = image->planes[c].row(j);
-        others.add_row(row, {map.x.row(j), map.y.row(j), map.z.row(j)}, map.extent().width);
+        others.add_row(j, row, {map.x.row(j), map.y.row(j), map.z.row(j)}, map.extent().width);
     }
     source.info.others = others.found();
+    source.info.z_doubtful = others.z_is_something_else();
     return {};
 }
 
@@ -66,6 +67,7 @@ Result<Source> unpack_source(Texture texture, const SourceOptions& options, bool
     Source source;
     source.info = source_info(texture, *swizzle, options);
     UnpackOptions unpacking = unpack_options(source.info, options);
+    if (options.drop_others) unpacking.others = {};
     if (options.measure_y) unpacking.y_axis = YAxis::up;
     if (filled) {
         unpacking.range = range_of(texture.normal_encoding, unpacking);

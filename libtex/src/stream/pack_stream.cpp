@@ -3,12 +3,15 @@
 #include "stream/pack_stream.h"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include <tex/mip_chain.h>
 
 #include "rows/mip_rows.h"
+#include "rows/usable.h"
+#include "stream/given_others.h"
 #include "stream/level_stage.h"
 #include "stream/map_inspector.h"
 #include "stream/own_roughness.h"
@@ -32,6 +35,8 @@ private:
     Result<void> prepare();
     void choose_level();
     void settle_lengths();
+    Result<void> settle_others();
+    [[nodiscard]] OtherPlanes accounted_for() const;
     Result<void> find_own_roughness();
     Result<void> open_targets();
     Result<void> pack_level(int level, const Execution& execution);
@@ -40,8 +45,10 @@ private:
     }
     [[nodiscard]] Extent extent(int level) const { return map_.map().extent(level); }
     [[nodiscard]] MadeLevels made_levels(int level, int count) const {
-        return {level - first_ - left_out_, count, counted_from_base(mip_.value_or(MipOptions()), left_out_),
-                keeps_alpha_};
+        return {level - first_ - left_out_,
+                count,
+                counted_from_base(mip_.value_or(MipOptions()), left_out_),
+                {kept_.blue || written_.blue, kept_.alpha || written_.alpha}};
     }
 
     SettledMap map_;
@@ -53,10 +60,12 @@ private:
     std::optional<MipOptions> mip_;
     Plane<float> roughness_map_;  // RoughnessFile::map
     std::optional<OwnRoughness> own_;
-    bool keeps_alpha_ = false;
-    int first_ = 0;     // the level that becomes the base level
-    int end_ = 1;       // the end of the levels that are read
-    int left_out_ = 0;  // levels that are built and not written
+    GivenOthers given_;
+    OtherPlanes written_;  // what files of normals get beside them
+    OtherPlanes kept_;     // what of the source goes along: into these files, or into its own
+    int first_ = 0;        // the level that becomes the base level
+    int end_ = 1;          // the end of the levels that are read
+    int left_out_ = 0;     // levels that are built and not written
     std::vector<FileTarget> files_;
     Targets targets_;
     PackFileReport report_;
@@ -90,9 +99,36 @@ Result<void> PackRun::prepare() {
     files_.push_back({output_, options_.level_names, container_, report_.pack, options_.write});
     add_targets(options_.more, report_.source, files_);
     settle_lengths();
-    keeps_alpha_ = map_.has_other_alpha() && !options_.source.drop_others && any_holds_alpha(files_);
     report_.levels = end_ - first_;
     if (mip_ && holds) report_.levels = levels_to_build(*mip_, base);
+    return settle_others();
+}
+
+// Decides what goes along beside the normals, and reads what is given.
+Result<void> PackRun::settle_others() {
+    const OtherPlanes there = map_.others(), taken = map_.others_taken(), held = held_by_any(files_);
+    for (const auto& [file, is_there, name] : {std::tuple(&options_.blue_file, there.blue, "blue"),
+                                               std::tuple(&options_.alpha_file, there.alpha, "alpha")}) {
+        if (*file && !is_there) {
+            return Error{ErrorCode::bad_option, map_.map().path(),
+                         std::string("has no ") + name + " beside the normals, which could be written apart"};
+        }
+    }
+    if (planes_given(options_.others) != OtherPlanes() && end_ - first_ > 1) {
+        return Error{ErrorCode::bad_option, map_.map().path(),
+                     "has smaller levels, and what is given beside the normals has none: build the levels again, or "
+                     "write only the base level"};
+    }
+    Result<GivenOthers> read = GivenOthers::read(options_.others, extent(first_), files_);
+    if (!read) return read.error();
+    given_ = std::move(*read);
+    const OtherPlanes own = given_.planes();
+    kept_ = {taken.blue && held.blue && !own.blue, taken.alpha && held.alpha && !own.alpha};
+    written_ = {kept_.blue || own.blue, kept_.alpha || own.alpha};
+    if ((options_.blue_file && own.blue) || (options_.alpha_file && own.alpha))
+        return bad_option("others: replace what is to be written apart");
+    kept_.blue = kept_.blue || options_.blue_file;
+    kept_.alpha = kept_.alpha || options_.alpha_file;
     return {};
 }
 
@@ -150,9 +186,20 @@ Result<void> PackRun::find_own_roughness() {
 }
 
 Result<void> PackRun::open_targets() {
-    Result<void> opened = targets_.open(files_, report_.extent, report_.levels);
+    Result<void> opened = targets_.open(files_, written_, report_.extent, report_.levels);
+    for (const auto& [file, is_alpha] :
+         {std::pair(&options_.blue_file, false), std::pair(&options_.alpha_file, true)}) {
+        if (opened && *file) opened = targets_.open(**file, is_alpha, options_.write, report_.extent, report_.levels);
+    }
     if (!opened || !options_.roughness) return opened;
     return targets_.open(*options_.roughness, options_.write, report_.extent, roughness_levels());
+}
+
+// The channels whose data are not lost, or were told to go.
+OtherPlanes PackRun::accounted_for() const {
+    const OtherPlanes held = held_by_all(files_), own = given_.planes();
+    return {own.blue || options_.blue_file || (kept_.blue && held.blue),
+            own.alpha || options_.alpha_file || (kept_.alpha && held.alpha) || !options_.source.unpack.others.alpha};
 }
 
 // Packs a level and the levels that are built from it.
@@ -162,10 +209,11 @@ Result<void> PackRun::pack_level(int level, const Execution& execution) {
     flow.set_rows_together(targets_.rows_together());
     std::optional<OtherChannels> others;
     if (level == first_ && options_.source.inspect && !options_.source.drop_others)
-        others.emplace(map_.map().head(), map_.sources());
-    const Stage& normals = map_.add_to(flow, level,
-                                       {options_.scale, inspector ? &*inspector : nullptr,
-                                        others && !others->empty() ? &*others : nullptr, keeps_alpha_});
+        others.emplace(map_.map().head(), extent(level), map_.sources());
+    const Stage& unpacked = map_.add_to(
+        flow, level,
+        {options_.scale, inspector ? &*inspector : nullptr, others && !others->empty() ? &*others : nullptr, kept_});
+    const Stage& normals = given_.add_to(flow, unpacked);
     add_levels(flow, normals, made_levels(level, mip_ ? left_out_ + report_.levels : 1), targets_);
     if (options_.roughness) {
         const MadeLevels levels = made_levels(level, left_out_ + roughness_levels());
@@ -173,7 +221,8 @@ Result<void> PackRun::pack_level(int level, const Execution& execution) {
     }
     if (Result<void> done = flow.run(execution, sizes_); !done) return done;
     if (inspector) inspector->report(report_.source);
-    if (others) report_.source.others = left_out(others->found(), keeps_alpha_ && all_hold_alpha(files_));
+    if (others) report_.source.z_doubtful = others->z_is_something_else();
+    if (others) report_.source.others = left_out(others->found(), accounted_for());
     return {};
 }
 

@@ -91,9 +91,12 @@ Result<void> SettledMap::measure_y(const Execution& execution) {
     return settle();
 }
 
-bool SettledMap::has_other_alpha() const {
-    const bool has_alpha = format_info(map_->head().format).channels > kAlphaPlane;
-    return has_alpha && sources_.x != kAlphaPlane && sources_.y != kAlphaPlane && sources_.z != kAlphaPlane;
+OtherPlanes SettledMap::others() const { return others_beside(sources_, format_info(map_->head().format).channels); }
+
+OtherPlanes SettledMap::others_taken() const {
+    const OtherPlanes there = others(), wanted = options_.unpack.others;
+    if (options_.drop_others) return {};
+    return {there.blue && wanted.blue, there.alpha && wanted.alpha};
 }
 
 Stage& SettledMap::add_to(Flow& flow, int level, const UnpackExtras& extras) const {

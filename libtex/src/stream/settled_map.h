@@ -36,8 +36,10 @@ public:
     void keep_length() { rule_.keep_length = true; }
     [[nodiscard]] const UnpackRule& rule() const { return rule_; }
 
-    // Whether alpha holds something else than normals, which can be carried along.
-    [[nodiscard]] bool has_other_alpha() const;
+    // The channels beside the normals, which may hold other data.
+    [[nodiscard]] OtherPlanes others() const;
+    // Those that go along, as the options say.
+    [[nodiscard]] OtherPlanes others_taken() const;
 
     // Adds stages that make the normals of a level. What the extras name must outlive the flow, as the map must.
     Stage& add_to(Flow& flow, int level, const UnpackExtras& extras = {}) const;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include <tex/format.h>
 #include <tex/image.h>
 #include <tex/normal_map.h>
 #include <tex/result.h>
@@ -16,22 +17,23 @@
 
 namespace tex {
 
-// Of a strip of normals: the plane after x, y and z, for what else is in a map's alpha, as 2 A - 1.
+// The planes of a strip of normals after x, y and z: other data (NormalMap::alpha, NormalMap::blue).
 inline constexpr int kAlphaPlane = 3;
+inline constexpr int kBluePlane = 4;
 
 // Consecutive rows that a stage has made. Which of the members it uses is up to the stage.
 struct Strip {
     int first = 0;   // its first row
     int height = 0;  // the number of its rows
     Image image;     // the values that a file stores, a plane for each channel
-    NormalMap map;   // otherwise: planes 0 to 2,
-    Plane<float> fourth;
+    NormalMap map;   // otherwise: x, y, z, alpha, blue
     std::vector<std::byte> bytes;
 
     // Row k of the strip.
     [[nodiscard]] float* row(int plane, int k) {
         if (!image.planes.empty()) return image.planes[static_cast<std::size_t>(plane)].row(k);
-        return (plane == 0 ? map.x : plane == 1 ? map.y : plane == 2 ? map.z : fourth).row(k);
+        Plane<float>* const planes[] = {&map.x, &map.y, &map.z, &map.alpha, &map.blue};
+        return planes[plane]->row(k);
     }
     [[nodiscard]] NormalRow normals(int k) { return {map.x.row(k), map.y.row(k), map.z.row(k)}; }
 };
@@ -51,12 +53,17 @@ class Stage {
 public:
     // `level`: a strip has as many rows as are made, `level` levels below another picture, of one strip of that one.
     Stage(Extent extent, int planes, int level = 0, int begin = 0)
-        : extent_(extent), planes_(planes), level_(level), begin_(begin) {}
+        : extent_(extent), planes_(planes), others_{planes > kBluePlane, planes > kAlphaPlane}, level_(level),
+          begin_(begin) {}
+    // A stage that makes normals, and these data beside them.
+    Stage(Extent extent, OtherPlanes others, int level = 0)
+        : extent_(extent), planes_(3), others_(others), level_(level), begin_(0) {}
     Stage(const Stage&) = delete;
     Stage& operator=(const Stage&) = delete;
     virtual ~Stage() = default;
 
     [[nodiscard]] Extent extent() const { return extent_; }
+    [[nodiscard]] OtherPlanes others() const { return others_; }
     [[nodiscard]] int level() const { return level_; }
     [[nodiscard]] int begin() const { return begin_; }
 
@@ -94,6 +101,7 @@ private:
 
     const Extent extent_;
     const int planes_;
+    const OtherPlanes others_;
     const int level_;
     const int begin_;
     std::size_t line_ = 0;  // its place in the flow

@@ -13,16 +13,25 @@
 namespace tex {
 namespace {
 
+// The same plane, which keeps no memory. It is only read.
+Plane<float> seen(const Plane<float>& plane) {
+    if (plane.empty()) return {};
+    return {plane.extent(), plane.stride(),
+            std::shared_ptr<float>(std::shared_ptr<void>(), const_cast<float*>(plane.row(0)))};
+}
+
 // Gives vectors unit length before they are packed: in a copy, because the rows go to other files, too.
 void pack_units(LevelPacking& packing, const UnitRule& unit) {
     packing.pack = [unit, pack = std::move(packing.pack)](const LevelRows& rows, std::byte* out, std::byte* plain) {
         const NormalMap& from = rows.map;
         NormalMap to(from.extent());
+        to.blue = seen(from.blue);
+        to.alpha = seen(from.alpha);
         for (int j = 0; j < rows.height; ++j) {
             unpack_row(from.x.row(j), from.y.row(j), unit.has_z ? from.z.row(j) : nullptr, unit.rule,
                        from.extent().width, to.x.row(j), to.y.row(j), to.z.row(j));
         }
-        pack({rows.content, rows.level, rows.first, rows.height, to, rows.scratch, rows.alpha}, out, plain);
+        pack({rows.content, rows.level, rows.first, rows.height, to, rows.scratch}, out, plain);
     };
 }
 
@@ -45,14 +54,22 @@ void add_targets(const std::vector<MoreFile>& more, const SourceInfo& source, st
     }
 }
 
-bool any_holds_alpha(const std::vector<FileTarget>& targets) {
-    return std::any_of(targets.begin(), targets.end(),
-                       [](const FileTarget& target) { return can_hold_alpha(target.pack.encoding); });
+OtherPlanes held_by_any(const std::vector<FileTarget>& targets) {
+    OtherPlanes held;
+    for (const FileTarget& target : targets) {
+        held.blue = held.blue || can_hold(target.pack.encoding).blue;
+        held.alpha = held.alpha || can_hold(target.pack.encoding).alpha;
+    }
+    return held;
 }
 
-bool all_hold_alpha(const std::vector<FileTarget>& targets) {
-    return std::all_of(targets.begin(), targets.end(),
-                       [](const FileTarget& target) { return can_hold_alpha(target.pack.encoding); });
+OtherPlanes held_by_all(const std::vector<FileTarget>& targets) {
+    OtherPlanes held{true, true};
+    for (const FileTarget& target : targets) {
+        held.blue = held.blue && can_hold(target.pack.encoding).blue;
+        held.alpha = held.alpha && can_hold(target.pack.encoding).alpha;
+    }
+    return held;
 }
 
 bool holds_levels(Container container, const LevelNames& names) { return names || can_hold_levels(container); }
@@ -90,11 +107,11 @@ Result<void> Targets::add(Content content, const std::string& output, const Leve
     return {};
 }
 
-Result<void> Targets::open(const std::vector<FileTarget>& targets, Extent extent, int levels) {
+Result<void> Targets::open(const std::vector<FileTarget>& targets, OtherPlanes others, Extent extent, int levels) {
     for (const FileTarget& target : targets) {
         int held = holds_levels(target.container, target.level_names) ? levels : 1;
         if (target.levels > 0) held = std::min(held, target.levels);
-        LevelPacking packing = packing_of(target.pack, extent, held);
+        LevelPacking packing = packing_of(target.pack, others, extent, held);
         if (target.unit) pack_units(packing, *target.unit);
         Result<void> added = add(Content::normals, target.output, target.level_names, target.container,
                                  std::move(packing), target.write, Opened::at_once);
@@ -108,6 +125,14 @@ Result<void> Targets::open(const RoughnessFile& file, const WriteOptions& write,
     if (!can_compress(file.container)) options.zstd = 0;
     return add(Content::roughness, file.output, file.level_names, file.container, packing_of(file, extent, levels),
                options, Opened::late);
+}
+
+Result<void> Targets::open(const OtherFile& file, bool is_alpha, const WriteOptions& write, Extent extent, int levels) {
+    WriteOptions options = write;
+    if (!can_compress(file.container)) options.zstd = 0;
+    const int held = can_hold_levels(file.container) ? levels : 1;
+    return add(Content::normals, file.output, {}, file.container, packing_of(file, is_alpha, extent, held), options,
+               Opened::late);
 }
 
 bool Targets::is_in_order(Content content, int level) const {

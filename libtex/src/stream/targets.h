@@ -40,9 +40,9 @@ void add_targets(const std::vector<MoreFile>& more, const SourceInfo& source, st
 PackOptions packing_for(const std::function<PackOptions(const SourceInfo&)>& pack, Container container,
                         const SourceInfo& source);
 
-// Whether any of the files, or all of them, can hold something else in alpha.
-[[nodiscard]] bool any_holds_alpha(const std::vector<FileTarget>& targets);
-[[nodiscard]] bool all_hold_alpha(const std::vector<FileTarget>& targets);
+// What any of the files, or all of them, can hold beside the normals.
+[[nodiscard]] OtherPlanes held_by_any(const std::vector<FileTarget>& targets);
+[[nodiscard]] OtherPlanes held_by_all(const std::vector<FileTarget>& targets);
 
 // Whether all levels are written, rather than the base level alone.
 [[nodiscard]] bool holds_levels(Container container, const LevelNames& names);
@@ -54,9 +54,11 @@ PackOptions packing_for(const std::function<PackOptions(const SourceInfo&)>& pac
 // All files of a run.
 class Targets {
 public:
-    // Opens files for normals. Rows of levels that a file does not hold are not written to it. Errors: those of
-    // LevelWriter::open().
-    Result<void> open(const std::vector<FileTarget>& targets, Extent extent, int levels);
+    // Opens files for normals, and for these data beside them where a file can hold them. Rows of levels that a file
+    // does not hold are not written to it. Errors: those of LevelWriter::open().
+    Result<void> open(const std::vector<FileTarget>& targets, OtherPlanes others, Extent extent, int levels);
+    // Opens a file for the alpha, or the blue, of the rows of normals.
+    Result<void> open(const OtherFile& file, bool is_alpha, const WriteOptions& write, Extent extent, int levels);
     // Opens a file, or files, for roughness.
     Result<void> open(const RoughnessFile& file, const WriteOptions& write, Extent extent, int levels);
 

@@ -2,6 +2,7 @@
 
 #include "stream/unpack_stage.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "formats/picture.h"
@@ -9,20 +10,26 @@
 
 namespace tex {
 
+namespace {
+
+constexpr int kBlue = 2, kAlpha = 3;
+
+}  // namespace
+
 std::vector<bool> wanted_channels(const Sources& sources, const UnpackExtras& extras) {
     std::vector<bool> wanted(4, false);
     for (int c = 0; c < 4; ++c) {
-        wanted[static_cast<std::size_t>(c)] = c == sources.x || c == sources.y || c == sources.z ||
-                                              (c == kAlphaPlane && extras.takes_alpha) ||
-                                              (extras.others != nullptr && extras.others->wants(c));
+        wanted[static_cast<std::size_t>(c)] =
+            c == sources.x || c == sources.y || c == sources.z || (c == kBlue && extras.takes.blue) ||
+            (c == kAlpha && extras.takes.alpha) || (extras.others != nullptr && extras.others->wants(c));
     }
     return wanted;
 }
 
 UnpackStage::UnpackStage(StoredChannels channels, const Sources& sources, const UnpackRule& rule,
                          const UnpackExtras& extras)
-    : Stage(channels.rows->extent(), extras.takes_alpha ? 4 : 3), channels_(std::move(channels)), sources_(sources),
-      rule_(rule), extras_(extras), wanted_(wanted_channels(sources, extras)) {}
+    : Stage(channels.rows->extent(), extras.takes), channels_(std::move(channels)), sources_(sources), rule_(rule),
+      extras_(extras), wanted_(wanted_channels(sources, extras)) {}
 
 Result<void> UnpackStage::make(Strip& strip) {
     const int width = extent().width;
@@ -49,11 +56,9 @@ void UnpackStage::make_row(int j, const float* const (&channels)[4], Strip& stri
     const NormalRow out = strip.normals(k);
     const float* const z = sources_.z < 0 ? nullptr : channels[sources_.z];
     unpack_row(channels[sources_.x], channels[sources_.y], z, rule_, width, out.x, out.y, out.z);
-    if (extras_.takes_alpha) {
-        float* const alpha = strip.fourth.row(k);
-        for (int i = 0; i < width; ++i) alpha[i] = 2.0f * channels[kAlphaPlane][i] - 1.0f;
-    }
-    if (extras_.others != nullptr) extras_.others->add_row(channels, out, width);
+    if (extras_.takes.alpha) std::copy_n(channels[kAlpha], width, strip.map.alpha.row(k));
+    if (extras_.takes.blue) std::copy_n(channels[kBlue], width, strip.map.blue.row(k));
+    if (extras_.others != nullptr) extras_.others->add_row(j, channels, out, width);
     if (extras_.inspector != nullptr && extras_.inspector->wants(j)) {
         const std::lock_guard lock(inspecting_);
         extras_.inspector->add_row(j, out);

@@ -28,7 +28,7 @@ struct UnpackExtras {
     std::optional<Scaling> scale = {};
     MapInspector* inspector = nullptr;  // is shown normals before they are scaled, unless it is null
     OtherChannels* others = nullptr;    // is shown all channels, unless it is null
-    bool takes_alpha = false;           // the fourth plane becomes 2 A - 1
+    OtherPlanes takes = {};             // what goes along beside the normals
 };
 
 // Whether each of the four channels is read.

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+// Data that are put beside normals: into which encodings, which bytes, which levels, and what is refused.
+
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <tex/bake.h>
+#include <tex/container.h>
+#include <tex/pipeline.h>
+#include <tex/roughness.h>
+#include <tex/unpack.h>
+
+#include "unit/normal_maps.h"
+#include "unit/streams.h"
+
+namespace tex {
+namespace {
+
+constexpr Extent kExtent{48, 32};
+
+// Multiples of 1/255, all of them.
+Plane<float> codes(int factor) {
+    Plane<float> plane(kExtent);
+    for (int j = 0; j < kExtent.height; ++j) {
+        for (int i = 0; i < kExtent.width; ++i)
+            plane.at(i, j) = static_cast<float>(factor * (i + j * kExtent.width) % 256) / 255.0f;
+    }
+    return plane;
+}
+
+std::function<Result<Plane<float>>()> gives(int factor) {
+    return [factor]() -> Result<Plane<float>> { return codes(factor); };
+}
+
+class GivenOthersTest : public StreamTest {
+protected:
+    GivenOthersTest() {
+        options_.write.sync = false;
+        options_.pack = [this](const SourceInfo&) { return PackOptions{encoding_, YAxis::up, Effort::fast}; };
+        const Texture texture = pack(chain_from(wavy_map(kExtent)), {Encoding::float_, YAxis::up}).value();
+        input_ = StreamTest::write("in.exr", encode_file(texture, Container::exr).value());
+    }
+    Result<PackFileReport> run(Container kind) { return pack_file(input_, path("out"), kind, options_); }
+    [[nodiscard]] Texture output() const { return read_texture(path("out")).value(); }
+    // Level `level` of the output, as its file stores it.
+    [[nodiscard]] Image stored(int level = 0) const { return decode(output(), level).value(); }
+
+    PackFileOptions options_;
+    Encoding encoding_ = Encoding::rgba8;
+    std::string input_;
+};
+
+void expect_near(const Plane<float>& a, const Plane<float>& b, float most, const std::string& what) {
+    ASSERT_EQ(a.extent(), b.extent()) << what;
+    for (int j = 0; j < a.extent().height; ++j) {
+        for (int i = 0; i < a.extent().width; ++i) ASSERT_NEAR(a.at(i, j), b.at(i, j), most) << what << i << ' ' << j;
+    }
+}
+
+TEST_F(GivenOthersTest, EveryEncodingHoldsWhatItSays) {
+    options_.others.blue = OtherData{1.0f, gives(3)};
+    for (const auto& row : kEncodingNames) {
+        encoding_ = row.value;
+        const Container kind = can_hold(Container::dds, encoding_) ? Container::dds : Container::ktx2;
+        const OtherPlanes held = can_hold(encoding_);
+        options_.others.alpha.reset();
+        if (held.alpha) options_.others.alpha = OtherData{1.0f, gives(7)};
+        const auto done = run(kind);
+        ASSERT_EQ(static_cast<bool>(done), held.blue) << row.name;
+        if (!done) {
+            EXPECT_EQ(done.error().code, ErrorCode::bad_option);
+            EXPECT_NE(done.error().reason.find("these formats have: rgb8, rgba8"), std::string::npos)
+                << done.error().message();
+            continue;
+        }
+        const Image image = stored();
+        expect_near(image.planes[2], codes(3), 3e-4f, std::string(row.name));
+        if (held.alpha) expect_near(image.planes[3], codes(7), 0.0f, std::string(row.name));
+        EXPECT_NE(output().swizzle[2], Component::z) << "whoever reads the file reconstructs z";
+    }
+}
+
+TEST_F(GivenOthersTest, TheNormalsAreThoseOfAFileWithoutThem) {
+    ASSERT_TRUE(run(Container::dds));
+    const NormalMap plain = std::move(unpack(output())->levels[0]);
+    options_.others = {OtherData{0.25f}, OtherData{1.0f, gives(5)}};
+    ASSERT_TRUE(run(Container::dds));
+    const NormalMap with = std::move(unpack(output())->levels[0]);
+    expect_near(with.x, plain.x, 0.02f, "x");
+    expect_near(with.z, plain.z, 0.02f, "z, which is reconstructed");
+    expect_near(with.alpha, codes(5), 0.0f, "alpha");
+    EXPECT_TRUE(plain.alpha.empty()) << "it is 1 everywhere";
+}
+
+TEST_F(GivenOthersTest, SmallerLevelsFollowTheKind) {
+    const NormalMap base = wavy_map(kExtent);
+    MipOptions mip;
+    const RoughnessChain rough = build_roughness_chain(base, codes(3), RoughnessModel::vmf, mip).value();
+    Plane<float> smooth = codes(3);
+    for (int j = 0; j < kExtent.height; ++j) {
+        for (int i = 0; i < kExtent.width; ++i) smooth.at(i, j) = 1.0f - smooth.at(i, j);
+    }
+    const RoughnessChain inverse = build_roughness_chain(base, smooth, RoughnessModel::vmf, mip).value();
+    options_.others = {OtherData{1.0f, gives(3)}, OtherData{1.0f, gives(3)}};
+    for (const auto& [blue, alpha] :
+         {std::pair(OtherKind::roughness, OtherKind::gloss), std::pair(OtherKind::gloss, OtherKind::roughness),
+          std::pair(OtherKind::height, OtherKind::roughness)}) {
+        mip.roughness = RoughnessModel::vmf;
+        mip.blue = blue;
+        mip.alpha = alpha;
+        options_.mip = mip;
+        ASSERT_TRUE(run(Container::dds));
+        const auto expect_levels = [&](std::size_t channel, OtherKind kind) {
+            for (int level = 1; level < 5; ++level) {
+                const Image image = stored(level);
+                const auto k = static_cast<std::size_t>(level);
+                Plane<float> expected = (kind == OtherKind::gloss ? inverse : rough).levels[k].clone();
+                for (int j = 0; kind == OtherKind::gloss && j < expected.extent().height; ++j) {
+                    for (int i = 0; i < expected.extent().width; ++i) expected.at(i, j) = 1.0f - expected.at(i, j);
+                }
+                expect_near(image.planes[channel], expected, 0.501f / 255.0f,
+                            std::string(name_of(kOtherKindNames, kind)));
+            }
+        };
+        if (blue != OtherKind::height) expect_levels(2, blue);
+        expect_levels(3, alpha);
+    }
+}
+
+TEST_F(GivenOthersTest, VerbsInMemoryGiveTheSameBytes) {
+    for (const auto& kind : kOtherKindNames) {
+        MipOptions mip;
+        mip.alpha = mip.blue = kind.value;
+        options_.mip = mip;
+        options_.others = {OtherData{1.0f, gives(3)}, OtherData{1.0f, gives(7)}};
+        ASSERT_TRUE(run(Container::ktx2));
+        NormalMap map = std::move(unpack(read_texture(input_).value())->levels[0]);
+        map.blue = codes(3);
+        map.alpha = codes(7);
+        const MipChain chain = build_mip_chain(std::move(map), mip).value();
+        const auto bytes =
+            encode_file(pack(chain, {Encoding::rgba8, YAxis::up, Effort::fast}).value(), Container::ktx2);
+        EXPECT_EQ(bytes_of(path("out")), *bytes) << kind.name;
+    }
+}
+
+TEST_F(GivenOthersTest, HeightsThatAreBakedGoBesideTheirNormals) {
+    std::vector<std::byte> grey(static_cast<std::size_t>(kExtent.texels()));
+    for (std::size_t k = 0; k < grey.size(); ++k) grey[k] = static_cast<std::byte>(k * 7);
+    Texture heights;
+    heights.format = Format::r8_unorm;
+    heights.levels.push_back({kExtent, grey});
+    const std::string input = StreamTest::write("h.png", encode_file(heights, Container::png).value());
+    BakeFileOptions options;
+    options.write.sync = false;
+    options.pack.encoding = Encoding::rgba8;
+    options.others = {{}, OtherData{1.0f, {}, true}};
+    ASSERT_TRUE(bake_file(input, path("out"), Container::dds, options));
+    const Texture out = output();
+    for (std::size_t k = 0; k < grey.size(); ++k) ASSERT_EQ(out.levels[0].bytes[4 * k + 3], grey[k]) << k;
+    EXPECT_GT(out.levels.size(), 1u);
+}
+
+TEST_F(GivenOthersTest, WhatCannotBeIsRefused) {
+    const auto refuses = [this](const std::string& words) {
+        const auto done = run(Container::dds);
+        ASSERT_FALSE(done) << words;
+        EXPECT_EQ(done.error().code, ErrorCode::bad_option) << words;
+        EXPECT_NE(done.error().message().find(words), std::string::npos) << done.error().message();
+        EXPECT_FALSE(std::filesystem::exists(path("out")));
+    };
+    options_.others = {{}, OtherData{1.5f}};
+    refuses("alpha: must be from 0 to 1");
+    options_.others = {{}, OtherData{1.0f, []() -> Result<Plane<float>> { return Plane<float>(Extent{3, 2}, 0.0f); }}};
+    refuses("alpha: the map has 3x2 texels, the normals have 48x32");
+    options_.others = {{}, OtherData{1.0f, {}, true}};
+    refuses("there are no heights");
+    options_.others = {};
+    options_.alpha_file = OtherFile{path("apart.png"), Container::png};
+    refuses("has no alpha beside the normals");
+    options_.alpha_file.reset();
+    options_.mip = MipOptions();
+    options_.mip->domain = MipDomain::slope;
+    options_.mip->alpha = OtherKind::roughness;
+    refuses("roughness and gloss need the domain vector");
+    options_.mip.reset();
+    const Texture levels = pack(build_mip_chain(wavy_map(kExtent)).value(), {Encoding::bc5, YAxis::up}).value();
+    input_ = StreamTest::write("in.dds", encode_file(levels, Container::dds).value());
+    options_.others = {OtherData{0.5f}, {}};
+    refuses("has smaller levels");
+}
+
+TEST_F(GivenOthersTest, WhatIsBesideTheNormalsIsWrittenApart) {
+    options_.others = {OtherData{1.0f, gives(3)}, OtherData{1.0f, gives(7)}};
+    ASSERT_TRUE(run(Container::dds));
+    std::filesystem::rename(path("out"), path("both.dds"));
+    input_ = path("both.dds");
+    options_.others = {};
+    encoding_ = Encoding::rgb8;
+    options_.source.inspect = true;
+    options_.blue_file = OtherFile{path("blue.png"), Container::png};
+    options_.alpha_file = OtherFile{path("alpha.tga"), Container::tga};
+    const auto done = run(Container::png);
+    ASSERT_TRUE(done) << done.error().message();
+    EXPECT_TRUE(done->source.others.empty()) << "nothing is lost";
+    expect_near(decode(read_texture(path("blue.png")).value(), 0).value().planes[0], codes(3), 0.0f, "blue");
+    expect_near(decode(read_texture(path("alpha.tga")).value(), 0).value().planes[0], codes(7), 0.0f, "alpha");
+}
+
+}  // namespace
+}  // namespace tex
