@@ -15,8 +15,8 @@
 namespace tex {
 
 // Whether the channel of z follows x and y. In maps of people z correlates with sqrt(1 - x^2 - y^2) by 0.84 and more;
-// occlusion in its place, by 0.55 and less. The sign
-// of z is ignored, so that maps in object space follow, too. Sums are whole numbers, so that the order of rows does not matter.
+// occlusion in its place, by 0.55 and less. The sign of z is ignored, so that maps in object space follow, too. Sums
+// are whole numbers, so that the order of rows does not matter.
 class ZEvidence {
 public:
     void add_row(const float* x, const float* y, const float* z, bool is_unsigned, int width);
