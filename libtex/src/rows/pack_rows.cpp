@@ -26,17 +26,8 @@ public:
           negate_y_(y_axis == YAxis::down) {}
 
     void channels(int j, PackChannel out[4]) const {
-        for (std::size_t k = 0; k < 4; ++k) {
-            switch (swizzle_[k]) {
-                case Component::x: out[k] = {map_.x.row(j), false}; break;
-                case Component::y: out[k] = {map_.y.row(j), negate_y_}; break;
-                case Component::z: out[k] = {map_.z.row(j), false}; break;
-                default:
-                    out[k] = {};
-                    if (k == 3 && alpha_ != nullptr) out[k] = {alpha_->row(j), false};
-                    break;  // every encoding's constants are 1, except in channels that it does not store
-            }
-        }
+        pack_channels({map_.x.row(j), map_.y.row(j), map_.z.row(j)}, swizzle_, negate_y_,
+                      alpha_ == nullptr ? nullptr : alpha_->row(j), out);
     }
 
     [[nodiscard]] BlockRow blocks(int j) const { return block_row(map_.x, map_.y, extent_, j, negate_y_); }
@@ -53,39 +44,29 @@ private:
 
 std::size_t size(int n) { return static_cast<std::size_t>(n); }
 
-// Packs rows [begin, end) as unorm codes. The kernel writes past the end of a row, so it writes into a separate row
-// first.
-template <class Code, class Kernel>
-void pack_codes(const Rows& rows, int channels, int begin, int end, std::byte* out, Kernel kernel) {
-    const int width = rows.extent().width;
-    std::vector<Code> codes(size(channels) * size(width + kPackSlack));
-    const std::size_t row_bytes = size(channels) * size(width) * sizeof(Code);
-    for (int j = begin; j < end; ++j) {
-        PackChannel from[4];
-        rows.channels(j, from);
-        kernel(from, channels, width, codes.data());
-        std::memcpy(out + size(j) * row_bytes, codes.data(), row_bytes);
+// Packs floats, or halves that Imath rounds to nearest even.
+template <class Value>
+void pack_values(const PackChannel* from, int channels, int count, std::byte* out) {
+    for (int k = 0; k < channels; ++k) {
+        const float* source = from[k].values;
+        std::byte* to = out + size(k) * sizeof(Value);
+        // 0 - n, not -n, so that a flat map holds no negative zeros.
+        for (int i = 0; i < count; ++i, to += size(channels) * sizeof(Value)) {
+            const Value value(from[k].negate ? 0.0f - source[i] : source[i]);
+            std::memcpy(to, &value, sizeof value);
+        }
     }
 }
 
-// Packs rows [begin, end) as floats, or as halves that Imath rounds to nearest even.
-template <class Value>
-void pack_values(const Rows& rows, int channels, int begin, int end, std::byte* out) {
+// Packs rows [begin, end). The kernels write past the end of a row, so they write into a separate row first.
+void pack_rows_of_texels(const Rows& rows, const FormatInfo& info, int begin, int end, std::byte* out) {
     const int width = rows.extent().width;
-    std::vector<Value> values(size(channels) * size(width));
-    const std::size_t row_bytes = values.size() * sizeof(Value);
+    std::vector<std::byte> packed(size(width + kPackSlack) * info.block_bytes);
     for (int j = begin; j < end; ++j) {
         PackChannel from[4];
         rows.channels(j, from);
-        for (int k = 0; k < channels; ++k) {
-            const float* source = from[k].values;
-            Value* value = values.data() + k;
-            // 0 - n, not -n, so that a flat map holds no negative zeros.
-            for (int i = 0; i < width; ++i, value += channels) {
-                *value = Value(from[k].negate ? 0.0f - source[i] : source[i]);
-            }
-        }
-        std::memcpy(out + size(j) * row_bytes, values.data(), row_bytes);
+        const std::size_t bytes = pack_texels(info, from, width, packed.data());
+        std::memcpy(out + size(j) * bytes, packed.data(), bytes);
     }
 }
 
@@ -107,6 +88,33 @@ void pack_astc(const Rows& rows, Format format, Effort effort, int j, int count,
 }
 
 }  // namespace
+
+std::size_t pack_texels(const FormatInfo& format, const PackChannel* channels, int count, std::byte* out) {
+    if (format.bits == 8) {
+        pack_unorm8(channels, format.channels, count, reinterpret_cast<std::uint8_t*>(out));
+    } else if (format.bits == 16 && format.sample == SampleKind::unorm) {
+        pack_unorm16(channels, format.channels, count, reinterpret_cast<std::uint16_t*>(out));
+    } else if (format.bits == 16) {
+        pack_values<Imath::half>(channels, format.channels, count, out);
+    } else {
+        pack_values<float>(channels, format.channels, count, out);
+    }
+    return size(count) * format.block_bytes;
+}
+
+void pack_channels(VectorRow normals, const Swizzle& swizzle, bool negate_y, const float* alpha, PackChannel out[4]) {
+    for (std::size_t k = 0; k < 4; ++k) {
+        switch (swizzle[k]) {
+            case Component::x: out[k] = {normals.x, false}; break;
+            case Component::y: out[k] = {normals.y, negate_y}; break;
+            case Component::z: out[k] = {normals.z, false}; break;
+            default:
+                out[k] = {};
+                if (k == 3 && alpha != nullptr) out[k] = {alpha, false};
+                break;  // every encoding's constants are 1, except in channels that it does not store
+        }
+    }
+}
 
 bool can_hold_alpha(Encoding encoding) {
     const auto [format, swizzle] = encoding_info(encoding);
@@ -137,15 +145,7 @@ void pack_rows(const NormalMap& map, int height, const PackOptions& options, int
         }
         return;
     }
-    if (info.bits == 8) {
-        pack_codes<std::uint8_t>(rows, info.channels, begin, end, out, pack_unorm8);
-    } else if (info.bits == 16 && info.sample == SampleKind::unorm) {
-        pack_codes<std::uint16_t>(rows, info.channels, begin, end, out, pack_unorm16);
-    } else if (info.bits == 16) {
-        pack_values<Imath::half>(rows, info.channels, begin, end, out);
-    } else {
-        pack_values<float>(rows, info.channels, begin, end, out);
-    }
+    pack_rows_of_texels(rows, info, begin, end, out);
 }
 
 }  // namespace tex

@@ -8,6 +8,8 @@
 #include <tex/normal_map.h>
 #include <tex/pack_options.h>
 
+#include "kernels/normal_row.h"
+#include "kernels/pack.h"
 #include "rows/rdo_rows.h"
 
 namespace tex {
@@ -25,6 +27,14 @@ namespace tex {
 void pack_rows(const NormalMap& map, int height, const PackOptions& options, int begin, int end, std::byte* out,
                int band_rows, RdoTally* tally = nullptr, const Plane<float>* alpha = nullptr,
                std::byte* plain = nullptr);
+
+// Packs `count` texels of a format without blocks. `channels` are those of the format (kernels/pack.h); whole vectors
+// of them are read. `out` has room for kPackSlack more texels. Returns the bytes of the texels.
+std::size_t pack_texels(const FormatInfo& format, const PackChannel* channels, int count, std::byte* out);
+
+// The channels of an encoding with this swizzle. Where it stores alpha as 1, `alpha` takes its place, unless that is
+// null.
+void pack_channels(VectorRow normals, const Swizzle& swizzle, bool negate_y, const float* alpha, PackChannel out[4]);
 
 // Whether this encoding can store something else in alpha.
 [[nodiscard]] bool can_hold_alpha(Encoding encoding);
