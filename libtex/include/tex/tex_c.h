@@ -381,7 +381,7 @@ TEX_C_API int32_t tex_angles(const tex_map* a, const tex_map* b, int32_t first, 
 // ---- heights: deband and integrate (deband.h, integrate.h) --------------------------------------------------------
 
 // These two solve for whole planes: every height depends on all others, so there are no rows to divide among threads,
-// and scratch is larger than the plane: about 20 bytes for each texel to deband, 28 to integrate.
+// and scratch is larger than the plane: about 16 bytes for each texel to deband, 30 to integrate.
 
 typedef struct tex_deband_report {
     uint32_t size;

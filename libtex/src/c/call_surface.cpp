@@ -9,6 +9,8 @@
 #include "c/call_bake.h"
 #include "kernels/slopes.h"
 #include "kernels/stored.h"
+#include "rows/height_steps.h"
+#include "surface/bending_grid.h"
 #include "surface/debander.h"
 #include "surface/integrator.h"
 
@@ -21,14 +23,21 @@ void copy_rows(const Plane<float>& from, const tex_plane& to) {
     for (int j = 0; j < to.height; ++j) std::copy_n(from.row(j), to.width, row_of(to, j));
 }
 
-// The copy of the heights, then the grids: codes and a quarter of weights, and a third of both for the coarser ones;
-// heights before and after a step, and what weighs a grid while it is made. Rows: those of filters and of strips.
+// At first, the copy of the heights and the different ones of each strip. Then the grids: codes and a quarter of
+// weights, and a third of both for the coarser ones; heights before and after a step, and what weighs a grid while it
+// is made: less than four planes together, and rows of filters and strips.
 std::size_t deband_scratch(std::int64_t width, std::int64_t height) {
-    ScratchSize size;
-    for (int k = 0; k < 6; ++k) size.plane(width, height);
-    size.vector<float>(96 * (width + 256) + 8 * height);
-    size.vector<float>(3 * (std::int64_t{1} << 20));
-    return size.bytes();
+    constexpr std::int64_t kStrips = 64, kTable = 4 * kMostCodes;
+    ScratchSize looks;
+    looks.plane(width, height);
+    for (std::int64_t k = 0; k < std::min(kStrips, height / kBendingStrip + 1) + 2; ++k) looks.vector<float>(kTable);
+    looks.vector<double>(8 * kStrips);
+    ScratchSize grids;
+    for (int k = 0; k < 4; ++k) grids.plane(width, height);
+    for (int k = 0; k < 32; ++k) grids.plane(width + 128, 1);
+    for (int k = 0; k < 20; ++k) grids.plane(64, 16);
+    grids.plane(width + 128, 4 * (height / kBendingStrip + 1));
+    return std::max(looks.bytes(), grids.bytes());
 }
 
 int32_t integrate_options(const tex_integrate_options* options, IntegrateOptions& out) {

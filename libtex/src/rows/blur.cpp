@@ -38,7 +38,7 @@ void blur_down(PlaneView<const float> across, std::span<const float> weights, Wr
                Plane<float>& out) {
     const int radius = static_cast<int>(weights.size()) - 1;
     const auto [width, height] = across.extent;
-    const RowOf row_of = [across](int j) { return across.row(j); };
+    const RowOf row_of = [&across](int j) { return across.row(j); };
     // All rows of the windows, including those beyond the border, which are computed unless they are plain copies.
     const int first = begin - radius, count = end - begin + 2 * radius;
     const int above = std::max(0, -first), below = std::max(0, first + count - height);
