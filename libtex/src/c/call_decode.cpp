@@ -7,6 +7,7 @@
 #include "kernels/unpack.h"
 #include "rows/decode_rows.h"
 #include "rows/unpack_rows.h"
+#include "rows/whole_vectors.h"
 
 namespace tex {
 namespace {
@@ -116,20 +117,18 @@ void unpack_strip(const StoredTexels& from, int j, const Sources& sources, const
     bool wanted[4];
     for (int c = 0; c < 4; ++c) wanted[c] = c == sources.x || c == sources.y || c == sources.z;
     StripOnStack strip;
-    float rebuilt[kDecodeChunk];  // z, where it is not stored
     for (int i = 0; i < from.width; i += kDecodeChunk) {
         const int count = std::min(kDecodeChunk, from.width - i);
         from.decode(j, i, count, strip.rows(wanted), kDecodeChunk);
         for (int r = 0; r < rows; ++r) {
-            float* const x = strip.row(sources.x, r);
-            float* const y = strip.row(sources.y, r);
-            float* const z = sources.z < 0 ? nullptr : strip.row(sources.z, r);
-            float* const made_z = z == nullptr ? rebuilt : z;
-            unpack_row(x, y, z, rule, count, x, y, made_z);
             const NormalRow to = row_of(out, j + r);
-            std::copy_n(x, count, to.x + i);
-            std::copy_n(y, count, to.y + i);
-            std::copy_n(made_z, count, to.z + i);
+            const bool has_z = sources.z >= 0;
+            const float* const from_rows[] = {strip.row(sources.x, r), strip.row(sources.y, r),
+                                              strip.row(has_z ? sources.z : sources.x, r)};
+            float* const to_rows[] = {to.x + i, to.y + i, to.z + i};
+            in_whole_vectors(count, from_rows, to_rows, [&](const float* const* in, float* const* made, int texels) {
+                unpack_row(in[0], in[1], has_z ? in[2] : nullptr, rule, texels, made[0], made[1], made[2]);
+            });
         }
     }
 }
