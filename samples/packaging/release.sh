@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# release.sh [--source-only] VERSION [FOLDER]: makes what a release consists of, from the commit that is checked out in a
-# clean clone, in FOLDER (by default build/release-VERSION):
+# release.sh [--source-only] VERSION [FOLDER]: makes what a release consists of, from the commit that is checked out in
+# a clean clone, in FOLDER (by default build/release-VERSION):
 #
 #     libtex-VERSION.tar.gz        the sources; the same bytes wherever it is made
 #     *.deb, tex-*.whl             the packages, built from that archive, not from the clone
@@ -29,7 +29,8 @@ out=${2:-$here/build/release-$version}
 [ -z "$(git status --porcelain)" ] || fail 'the clone has changes: commit or remove them'
 stated=$(sed -n 's/^project(libtex VERSION \([0-9.]*\) .*/\1/p' CMakeLists.txt)
 [ "$version" = "$stated" ] || fail "CMakeLists.txt states version $stated, not $version"
-[ "$version" = 0.1.0 ] || grep -q "^## \[$version\] - 20" CHANGELOG.md || fail "CHANGELOG.md has no [$version] with a date"
+[ "$source_only" = yes ] || grep -q "^## \[$version\] - 20" CHANGELOG.md ||
+    fail "CHANGELOG.md has no [$version] with a date"
 grep -q "^libtex ($version-" libtex/debian/changelog || fail "libtex/debian/changelog does not begin with $version"
 [ ! -e "$out" ] || fail "$out exists"
 SOURCE_DATE_EPOCH=$(git log -1 --format=%ct)

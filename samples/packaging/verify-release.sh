@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# verify-release.sh FOLDER [--key PUBLIC_KEY] [--clone CLONE] [--rebuild]: checks a release that release.sh made, without
-# trust in the machine that made it:
+# verify-release.sh FOLDER [--key PUBLIC_KEY] [--clone CLONE] [--rebuild]: checks a release that release.sh made,
+# without trust in the machine that made it:
 #
 #     always      SHA256SUMS names every file and agrees with it; the SBOM names the same files and sums; packages and
 #                 sources state the same version

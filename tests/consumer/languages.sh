@@ -36,7 +36,7 @@ for cc in gcc clang-14; do
     same "C-$cc" "$scratch/bake_$cc"
 done
 [ -e "$scratch/wanted.txt" ] || fail "there is no C compiler"
-case $(cat "$scratch/wanted.txt") in "$wanted"*) ;; *) fail "not the bytes of a chain: $(cat "$scratch/wanted.txt")" ;; esac
+grep -q "^$wanted" "$scratch/wanted.txt" || fail "not the bytes of a chain: $(cat "$scratch/wanted.txt")"
 # The header alone, in C and in C++ without exceptions.
 echo '#include <tex/tex_c.h>' >"$scratch/header.c"
 cp "$scratch/header.c" "$scratch/header.cpp"
@@ -63,7 +63,8 @@ fi
 
 # The version script, the header and the library name the same symbols, and each has its version.
 grep -o '\btex_[a-z0-9_]*(' "$build/stage/include/tex/tex_c.h" | tr -d '(' | sort -u >"$scratch/named.txt"
-nm -D --defined-only "$libdir/libtex.so" | sed -n 's/.* T \(tex_[a-z0-9_]*\)@@TEX_1\.0$/\1/p' | sort >"$scratch/exported.txt"
+nm -D --defined-only "$libdir/libtex.so" | sed -n 's/.* T \(tex_[a-z0-9_]*\)@@TEX_1\.0$/\1/p' |
+    sort >"$scratch/exported.txt"
 missing=$(comm -13 "$scratch/named.txt" "$scratch/exported.txt")
 [ -z "$missing" ] || fail "exported, but not in tex_c.h: $missing"
 sed -n 's/^TEX_C_API .*[ *]\(tex_[a-z0-9_]*\)(.*/\1/p' "$build/stage/include/tex/tex_c.h" | sort |

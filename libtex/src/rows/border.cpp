@@ -71,7 +71,8 @@ HeightRows::HeightRows(Extent extent, RowOf heights, Wrap wrap_x, Wrap wrap_y, i
 
 HeightRows::HeightRows(PlaneView<const float> heights, Wrap wrap_x, Wrap wrap_y, int apron, int kept)
     : HeightRows(
-          heights.extent, [data = heights.data, stride = heights.stride](int j) { return data + j * stride; }, wrap_x, wrap_y, apron, kept) {}
+          heights.extent, [data = heights.data, stride = heights.stride](int j) { return data + j * stride; }, wrap_x,
+          wrap_y, apron, kept) {}
 
 const float* HeightRows::row(int j) const { return rows_.row(wrap_around(j, kept_)) + lead_; }
 
