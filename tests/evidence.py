@@ -22,7 +22,7 @@ JUDGES = [
     ("tangents", "the reference implementation of MikkTSpace, meshoptimizer"),
     ("rays", "Embree, by hand (`tests/bench/RAYS.md`)"),
     ("shading and previews", "Mesa; Blender, Godot and three.js by hand (`tests/engines`)"),
-    ("tex_c.h", "the C++ verbs, byte for byte; samples in C, Rust, Python and C# print one sum"),
+    ("tex_c.h", "the C++ verbs, byte for byte; samples in C, Rust and Python print one sum, and in C# where mono is installed"),
 ]
 
 # What is not shown by a test here, so that nobody has to look for it.

@@ -178,7 +178,7 @@ TEST(HelpJson, RangesAreThoseThatTheCommandChecks) {
                 if (command == "scale-normals" && name != "--scale")
                     arguments.insert(arguments.end(), {"--scale", "1"});
                 const Ran ran = run(scratch, command, arguments);
-                return ran.code == 2 && ran.err.find(name + ": " + text + " is not ") != std::string::npos;
+                return ran.code == 2 && ran.err.find("error: " + name + ": ") != std::string::npos;
             };
             const double step = is_integer ? 1.0 : 0.5;
             for (const auto& [key, beyond] : {std::pair("minimum", -step), std::pair("exclusiveMinimum", 0.0)}) {
