@@ -6,10 +6,12 @@
 
 #include <tex/tex_c.h>
 
+#include <sys/mman.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <cstdlib>
 
 #include <gtest/gtest.h>
 #include <tex/normal_map.h>
@@ -18,7 +20,34 @@ namespace tex::c_maps {
 
 inline constexpr float kUntouched = -77.25f;
 
-// Memory of exactly the floats of a plane, so that the address sanitizer sees what reads or writes beyond it.
+// Memory that ends where its page ends; the next page may not be touched. So what reads or writes beyond it crashes, in
+// kernels too, which the sanitizers of some builds leave out.
+template <class T>
+class Guarded {
+public:
+    Guarded(std::size_t count, T value) : count_(count) {
+        const std::size_t bytes = count * sizeof(T), pages = (bytes + kPage - 1) / kPage * kPage;
+        mapped_ = pages + kPage;
+        base_ = static_cast<char*>(mmap(nullptr, mapped_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0));
+        if (base_ == MAP_FAILED || mprotect(base_ + pages, kPage, PROT_NONE) != 0) std::abort();
+        data_ = reinterpret_cast<T*>(base_ + pages - bytes);
+        std::fill_n(data_, count, value);
+    }
+    Guarded(const Guarded& other) : Guarded(other.count_, T{}) { std::copy_n(other.data_, count_, data_); }
+    Guarded& operator=(const Guarded&) = delete;
+    ~Guarded() { munmap(base_, mapped_); }
+
+    [[nodiscard]] T* data() { return data_; }
+    [[nodiscard]] std::size_t size() const { return count_; }
+
+private:
+    static constexpr std::size_t kPage = 4096;
+    std::size_t count_, mapped_ = 0;
+    char* base_ = nullptr;
+    T* data_ = nullptr;
+};
+
+// A plane in memory of exactly its floats.
 struct CallerPlane {
     explicit CallerPlane(Extent extent, int gap = 3)
         : stride(extent.width + gap), width(extent.width), height(extent.height),
@@ -48,7 +77,7 @@ struct CallerPlane {
 
     std::ptrdiff_t stride;
     int width, height;
-    std::vector<float> floats;
+    Guarded<float> floats;
 };
 
 struct CallerMap {
@@ -71,12 +100,12 @@ struct CallerMap {
 // Scratch of exactly the size that a function states, at an odd address.
 class Scratch {
 public:
-    explicit Scratch(std::size_t size) : bytes_(size + 1), size_(size) {}
+    explicit Scratch(std::size_t size) : bytes_(size + 1, 0), size_(size) {}
     [[nodiscard]] void* data() { return bytes_.data() + 1; }
     [[nodiscard]] std::size_t size() const { return size_; }
 
 private:
-    std::vector<unsigned char> bytes_;
+    Guarded<unsigned char> bytes_;
     std::size_t size_;
 };
 

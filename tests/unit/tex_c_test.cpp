@@ -6,6 +6,7 @@
 
 #include <cstring>
 #include <limits>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <tex/tex.h>
@@ -19,6 +20,7 @@ namespace {
 using tex::Extent;
 using tex::c_maps::CallerMap;
 using tex::c_maps::CallerPlane;
+using tex::c_maps::Guarded;
 using tex::c_maps::Scratch;
 
 constexpr Extent kExtents[] = {{1, 1}, {2, 3}, {15, 4}, {16, 16}, {17, 9}, {33, 21}, {130, 67}, {257, 48}};
@@ -150,7 +152,7 @@ void expect_same_texture(Extent extent, int32_t encoding, int32_t effort) {
     ASSERT_EQ(tex_get_format(format, &info), TEX_OK);
     const std::size_t row = tex_row_bytes(format, extent.width), pitch = row + 5;
     const int rows = (extent.height + info.block_height - 1) / info.block_height;
-    std::vector<unsigned char> bytes(pitch * static_cast<std::size_t>(rows - 1) + row, 0xcd);
+    Guarded<unsigned char> bytes(pitch * static_cast<std::size_t>(rows - 1) + row, 0xcd);
     ASSERT_EQ(tex_encode_prepare(&options), TEX_OK);
     Scratch scratch(tex_encode_size(extent.width, &options));
     const int32_t middle = rows / 2 * info.block_height;
@@ -190,12 +192,21 @@ tex::Texture any_texture(tex::Format format, Extent extent) {
     return texture;
 }
 
-tex_texels texels_of(const tex::Texture& texture) {
-    const tex::Level& level = texture.levels[0];
-    const auto format = static_cast<int32_t>(texture.format);
-    return {level.bytes.data(), tex_row_bytes(format, level.extent.width), format, level.extent.width,
-            level.extent.height};
-}
+// The bytes of its base level, and how C sees them.
+struct CallerTexels {
+    explicit CallerTexels(const tex::Texture& texture)
+        : bytes(texture.levels[0].bytes.size(), std::byte{0}), format(static_cast<int32_t>(texture.format)),
+          extent(texture.levels[0].extent) {
+        std::copy(texture.levels[0].bytes.begin(), texture.levels[0].bytes.end(), bytes.data());
+    }
+    [[nodiscard]] tex_texels view() {
+        return {bytes.data(), tex_row_bytes(format, extent.width), format, extent.width, extent.height};
+    }
+
+    Guarded<std::byte> bytes;
+    int32_t format;
+    Extent extent;
+};
 
 TEST(TexC, DecodesEveryFormatAsTheVerbDoes) {
     for (const auto& format : tex::kFormatNames) {
@@ -208,7 +219,8 @@ TEST(TexC, DecodesEveryFormatAsTheVerbDoes) {
             tex_channels out = {};
             out.stride = planes[0].stride;
             for (std::size_t c = 0; c < planes.size(); ++c) out.channel[c] = planes[c].floats.data();
-            const tex_texels texels = texels_of(texture);
+            CallerTexels stored(texture);
+            const tex_texels texels = stored.view();
             ASSERT_EQ(tex_decode(&texels, 0, extent.height, &out), TEX_OK);
             for (std::size_t c = 0; c < planes.size(); ++c) planes[c].expect(wanted->planes[c], 0, extent.height);
         }
@@ -234,7 +246,8 @@ TEST(TexC, UnpacksEveryFormatAsTheVerbDoes) {
             options.snap_flat = 1;
             CallerMap out(extent);
             const tex_map to = out.view();
-            const tex_texels texels = texels_of(texture);
+            CallerTexels stored(texture);
+            const tex_texels texels = stored.view();
             ASSERT_EQ(tex_unpack(&texels, &options, 0, extent.height, &to), TEX_OK);
             out.expect(wanted->levels[0]);
         }
