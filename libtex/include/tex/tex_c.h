@@ -8,17 +8,19 @@
 //
 // Memory. A function reads and writes the memory that it is given, and no other: nothing beyond the last texel of a
 // row, no padding between rows. What it needs besides, it takes from `scratch`, of which tex_..._size() says how many
-// bytes; scratch may start anywhere, and holds nothing between calls. There are three exceptions, each for a reason:
+// bytes; scratch may start anywhere, and holds nothing between calls. Three functions allocate instead, from the heap
+// of C++ (operator new):
 //
-//     tex_tangents()        welds vertices by tables that are as large as the mesh turns out to need
-//     tex_check()           keeps evidence for some 60 rules, as much as the map gives cause for
-//     tex_encode_prepare()  makes the tables of ASTC (about 1 MB for each size of blocks and effort), which stay
+//     tex_tangents()        because the size of its tables depends on which vertices are equal
+//     tex_check()           because the evidence that some 60 rules keep depends on the map
+//     tex_encode_prepare()  because the tables of ASTC stay for later calls
 //
-// These three allocate with the heap of C++ (operator new). No other function allocates; a test counts.
+// A test counts the allocations of all others: there are none.
 //
-// Threads. No function starts a thread or takes a lock. Any number of threads may call any function at the same time,
-// as long as none writes what another reads or writes. Functions with `first` and `end` make the rows [first, end):
-// call them from several threads with different rows, each with its own scratch, and the bytes are those of one call.
+// Threads. No function starts a thread. None takes a lock, except tex_encode_prepare(). Any number of threads may call
+// any function at the same time, as long as none writes what another reads or writes. Functions with `first` and `end`
+// make rows [first, end): call them from several threads with different rows, each with its own scratch, and the bytes
+// are those of one call.
 //
 // Bytes are those of the C++ functions of the same name, on every processor.
 //
@@ -26,7 +28,7 @@
 // length; rows are stored from the top; strides are in floats, pitches in bytes. Extents are from 1 to 1048576 texels.
 //
 // Errors. Functions return an int32_t: TEX_OK or one of tex_error. Nothing is written if arguments or options are
-// wrong. After TEX_BAD_DATA, what was to be written holds anything. tex_error_text() says what a code means.
+// wrong. After TEX_BAD_DATA, the contents of the outputs are unspecified. tex_error_text() says what a code means.
 //
 // The ABI, which is kept until libtex 2:
 //
@@ -380,8 +382,8 @@ TEX_C_API int32_t tex_angles(const tex_map* a, const tex_map* b, int32_t first, 
 
 // ---- heights: deband and integrate (deband.h, integrate.h) --------------------------------------------------------
 
-// These two solve for whole planes: every height depends on all others, so there are no rows to divide among threads,
-// and scratch is larger than the plane: about 16 bytes for each texel to deband, 30 to integrate.
+// Each height depends on all others, so these two take whole planes, run on one thread, and need scratch that is larger
+// than the plane: about 16 bytes for each texel to deband, 30 to integrate.
 
 typedef struct tex_deband_report {
     uint32_t size;
