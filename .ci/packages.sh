@@ -24,6 +24,7 @@ gate_packages=(
 # shellcheck disable=SC2034
 nightly_packages=(
     clang-tidy-14 libbenchmark-dev g++-aarch64-linux-gnu qemu-user-static slurmctld slurmd slurm-client munge lintian
+    rustc mono-mcs abigail-tools
 )
 
 as_root() {

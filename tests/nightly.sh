@@ -4,7 +4,7 @@
 # NIGHTLY.md says when it last ran, on which commit, and with what result. The last line counts all tests.
 #
 #     tests/nightly.sh [STEP...]    all steps, or the named ones: long scalar commands slurm arm64 tsan tidy fuzz
-#                                   package engines
+#                                   package abi engines
 #
 # FUZZ_SECONDS is the time for each fuzzer (default: 60).
 set -euo pipefail
@@ -167,6 +167,18 @@ use_packages() (
 )
 
 # Other programs with our files: Blender, Godot, three.js, Khronos' validator. Each installs what it needs, if it can.
+# The binary interface of libtex.so beside that of the last release, which its release.sh made and its tag has. Symbols
+# may be added; nothing may be removed or changed.
+abi() {
+    local file=tests/golden/libtex.abi
+    if [ ! -e "$file" ]; then
+        echo "abi: no release has a $file yet: nothing to compare"
+        return 0
+    fi
+    release || return 1
+    script abi abidiff --no-added-syms --headers-dir2 libtex/include "$file" build/release/libtex.so
+}
+
 engines() {
     local status=0
     script blender tests/blender.sh || status=1
@@ -189,5 +201,6 @@ step tsan tsan
 step tidy tidy
 step fuzz fuzz
 step package package
+step abi abi
 step engines engines
 finish

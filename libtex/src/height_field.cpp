@@ -45,7 +45,7 @@ float finite(double strength) {
 // Blurs along the rows, then down the columns.
 Result<void> blur(HeightField& field, double sigma, const Execution& execution, ProgressSpan span) {
     const Extent extent = field.height.extent();
-    const std::vector<float> weights = gaussian_weights(sigma);
+    const auto weights = gaussian_weights(sigma);
     const int strip = rows_per_strip(extent);
     const double half = (span.from + span.to) / 2;
     Plane<float> across(extent);

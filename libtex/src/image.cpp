@@ -6,6 +6,7 @@
 #include <cstring>
 #include <new>
 
+#include "memory/lent_memory.h"
 #include "threads/huge_pages.h"
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -31,6 +32,11 @@ void free_rows(void* rows) noexcept {
 // (its bug 14581). The address of the block that contains the rows is stored before them. The address sanitizer watches
 // the end of the rows, so its blocks end there.
 std::shared_ptr<void> allocate_rows(std::size_t bytes) {
+    if (LentMemory* const lent = lent_memory(); lent != nullptr) {
+        void* const rows = lent->allocate(bytes);
+        if (rows == nullptr) throw std::bad_alloc();
+        return {rows, [lent](void* piece) { lent->release(piece); }, WorkingAllocator<char>()};
+    }
 #ifdef TEX_ADDRESS_SANITIZER
     void* const block = std::aligned_alloc(kRowAlignment, bytes + kRowAlignment);
 #else

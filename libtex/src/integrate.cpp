@@ -25,30 +25,14 @@ namespace {
 
 Result<void> check(const Integrator::Count& count, Extent extent) {
     const std::int64_t texels = extent.texels();
-    if (count.behind > texels / 16) {
+    if (!is_unusable(count, extent)) return {};
+    if (count.unused != texels) {
         return Error{ErrorCode::bad_data,
                      {},
                      "z is negative in " + std::to_string(count.behind) + " of " + std::to_string(texels) +
                          " texels, as in object-space maps, which hold no slopes"};
     }
-    if (count.unused == texels)
-        return Error{ErrorCode::bad_data, {}, "no texel has a slope that can be used: z is 0 or not finite everywhere"};
-    return {};
-}
-
-// From heights in texel widths, whose mean is 0, to those of the field.
-Result<void> settle_heights(Integration& result, float larger, const Execution& execution) {
-    Plane<float>& heights = result.field.height;
-    const Extent extent = heights.extent();
-    float low = std::numeric_limits<float>::max();
-    float high = std::numeric_limits<float>::lowest();
-    for (int j = 0; j < extent.height; ++j) widen_range(heights.row(j), extent.width, low, high);
-    result.highest = (high - low) * (1.0f / larger);
-    const auto body = [&](int begin, int end) {
-        for (int j = begin; j < end; ++j) shift_and_scale(low, 1.0f / larger, extent.width, heights.row(j));
-    };
-    const Execution silent{execution.threads, {}};
-    return parallel_for(silent, extent.height, strip_rows(extent.width, 0), body);
+    return Error{ErrorCode::bad_data, {}, "no texel has a slope that can be used: z is 0 or not finite everywhere"};
 }
 
 // The angles between the map and the bake of the heights.
@@ -116,7 +100,9 @@ Result<Integration> integrate(const NormalMap& map, const IntegrateOptions& opti
         if (!heights) return heights.error();
         result.field.height = std::move(*heights);
         const float larger = std::max(std::abs(options.bumpiness_x), std::abs(options.bumpiness_y));
-        if (auto done = settle_heights(result, larger, execution); !done) return done.error();
+        const auto highest = settle_heights(result.field.height, larger, execution);
+        if (!highest) return highest.error();
+        result.highest = *highest;
         if (auto done = measure_curl(map, options.bake, result, execution, {0.8, 1.0}); !done) return done.error();
         return result;
     });

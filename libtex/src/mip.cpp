@@ -36,66 +36,15 @@ struct Halving {
     const MipOptions& options;
     LevelFilter filter;
 
-    [[nodiscard]] int planes() const { return options.domain == MipDomain::vector ? 3 : 2; }
+    [[nodiscard]] int planes() const { return averaged_planes(options); }
     // The base level belongs to the caller: it holds vectors, not averages, and does not change.
     [[nodiscard]] bool from_base() const { return level == 0; }
-};
-
-Plane<float>& plane_of(NormalMap& map, int plane) { return plane == 0 ? map.x : plane == 1 ? map.y : map.z; }
-
-// The rows of averages from which a row of `to` is made. In the slope domain, those of the base level are computed here
-// from its vectors and kept while they are needed.
-class SourceRows {
-public:
-    explicit SourceRows(const Halving& step)
-        : step_(step), taps_(step.filter.y.taps), converts_(step.from_base() && step.planes() == 2),
-          window_(static_cast<std::size_t>(taps_)) {
-        if (!converts_) return;
-        const Extent held{step.from.extent().width, taps_};
-        p_ = Plane<float>(held);
-        q_ = Plane<float>(held);
-        held_.assign(static_cast<std::size_t>(taps_), -1);
-    }
-
-    // Prepares the rows for row j of `to`.
-    void prepare(int j) {
-        for (int k = 0; converts_ && k < taps_; ++k) {
-            const int slot = slot_of(j, k);
-            const int source = step_.filter.source(j, k);
-            int& held = held_[static_cast<std::size_t>(slot)];
-            if (held == source) continue;
-            const NormalMap& from = step_.from;
-            slopes_of_vectors(from.x.row(source), from.y.row(source), from.z.row(source), from.extent().width,
-                              p_.row(slot), q_.row(slot));
-            held = source;
-        }
-    }
-
-    // These rows, for one plane. They stay valid until the next call.
-    const float* const* window(int plane, int j) {
-        for (int k = 0; k < taps_; ++k) {
-            window_[static_cast<std::size_t>(k)] = converts_
-                                                       ? (plane == 0 ? p_ : q_).row(slot_of(j, k))
-                                                       : plane_of(step_.from, plane).row(step_.filter.source(j, k));
-        }
-        return window_.data();
-    }
-
-private:
-    [[nodiscard]] int slot_of(int j, int k) const { return wrap_around(2 * j + step_.filter.y.first + k, taps_); }
-
-    const Halving& step_;
-    const int taps_;
-    const bool converts_;
-    Plane<float> p_, q_;
-    std::vector<int> held_;  // the row of the level in each slot
-    std::vector<const float*> window_;
 };
 
 // Makes rows [begin, end) of step.to. If the filter halves, a row of `from` contributes to only one row of `to`, and is
 // finished as soon as that row is made.
 void make_strip(const Halving& step, int begin, int end) {
-    SourceRows source(step);
+    LevelSource source(step.filter, step.from, step.options, step.from_base());
     MipRows rows(step.filter);
     for (int j = begin; j < end; ++j) {
         source.prepare(j);

@@ -22,7 +22,7 @@ using tex::fields::plane_of;
 constexpr Wrap kBlurWraps[] = {Wrap::repeat, Wrap::clamp, Wrap::mirror};
 
 Plane<float> blurred(const Plane<float>& heights, double sigma, Wrap wrap_x, Wrap wrap_y) {
-    const std::vector<float> weights = tex::gaussian_weights(sigma);
+    const auto weights = tex::gaussian_weights(sigma);
     const int height = heights.extent().height;
     Plane<float> across(heights.extent()), result(heights.extent());
     tex::blur_across(heights.view(), weights, wrap_x, 0, height, across);
@@ -32,7 +32,7 @@ Plane<float> blurred(const Plane<float>& heights, double sigma, Wrap wrap_x, Wra
 
 TEST(Blur, WeightsAreOfAGaussianAndSumToOne) {
     for (const double sigma : {0.01, 0.3, 1.0, 7.7, 256.0}) {
-        const std::vector<float> weights = tex::gaussian_weights(sigma);
+        const auto weights = tex::gaussian_weights(sigma);
         ASSERT_EQ(weights.size(), static_cast<std::size_t>(std::ceil(3.0 * sigma)) + 1);
         double sum = static_cast<double>(weights[0]);
         for (std::size_t k = 1; k < weights.size(); ++k) {

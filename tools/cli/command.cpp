@@ -10,6 +10,7 @@
 
 #include "cli/completion.h"
 #include "cli/help.h"
+#include "cli/help_json.h"
 #include "cli/text.h"
 #include "cli/text_file.h"
 #include "cli/usage_error.h"
@@ -81,7 +82,7 @@ Command::Command(std::string_view name, std::string_view summary) : name_(name),
     // These rows come first because values are taken in the order of the rows. So --help works even if another option
     // is wrong.
     group(kHelpGroup);
-    flag(help_, "-h,--help", "print this help and exit");
+    flag(help_, "-h,--help", "print this help and exit; with --json all options as data");
     flag(version_, "--version", "print the version and exit; with --json also how the program was built");
     choice_row("--completion", "SHELL", "print a completion script and exit", {{"bash", ""}, {"zsh", ""}, {"fish", ""}},
                [this](const std::string& shell) { completion_ = shell; })
@@ -230,7 +231,7 @@ std::optional<ExitCode> Command::parse(Arguments arguments, Console& console) {
     } catch (const UsageError&) {
         if (!help_ && !version_) throw;
     }
-    if (help_) return console.print(help_text(*this));
+    if (help_) return console.print(given("--json") ? help_json(*this) : help_text(*this));
     if (version_) return console.print(given("--json") ? version_json(*this) : version_text(*this));
     if (list_options_) return console.print(option_list(*this));
     if (!completion_.empty()) return console.print(completion_script(*this, completion_));

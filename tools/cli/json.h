@@ -45,9 +45,19 @@ using Clock = std::chrono::steady_clock;
     return json;
 }
 
+// The schema of what --json prints: normal-maps-stability(7) says when it grows.
+inline constexpr int kJsonSchema = 1;
+
 // One line, including its line feed. File names are bytes; bytes in them that are not UTF-8 become U+FFFD.
 [[nodiscard]] inline std::string to_line(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+// A line of --json, with the schema as its first key.
+[[nodiscard]] inline std::string to_report_line(const Json& json) {
+    Json line = {{"schema", kJsonSchema}};
+    line.update(json);
+    return to_line(line);
 }
 
 }  // namespace tex::cli

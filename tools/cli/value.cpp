@@ -13,6 +13,13 @@
 namespace tex::cli {
 namespace {
 
+// Whether asked_number() waits for a number on this thread.
+thread_local bool is_asking = false;
+
+void ask(AskedNumber::Kind kind, Range range) {
+    if (is_asking) throw AskedNumber{kind, range};
+}
+
 void check_range(std::string_view text, double value, Range range) {
     const bool too_small = range.least_too ? value < range.least : value <= range.least;
     if (!too_small && value <= range.greatest) return;
@@ -49,16 +56,24 @@ T parse_real(std::string_view text, Range range) {
 
 }  // namespace
 
-float parse_float(std::string_view text, Range range) { return parse_real<float>(text, range); }
-double parse_double(std::string_view text, Range range) { return parse_real<double>(text, range); }
+float parse_float(std::string_view text, Range range) {
+    ask(AskedNumber::Kind::number, range);
+    return parse_real<float>(text, range);
+}
+double parse_double(std::string_view text, Range range) {
+    ask(AskedNumber::Kind::number, range);
+    return parse_real<double>(text, range);
+}
 
 int parse_int(std::string_view text, int least, int greatest) {
+    ask(AskedNumber::Kind::integer, {static_cast<double>(least), static_cast<double>(greatest)});
     const int value = parse_number<int>(text, "a whole number");
     check_range(text, value, {static_cast<double>(least), static_cast<double>(greatest)});
     return value;
 }
 
 std::int64_t parse_count(std::string_view text) {
+    ask(AskedNumber::Kind::count, {1.0});
     std::string_view digits = text;
     int shift = 0;
     if (!digits.empty()) {
@@ -75,6 +90,19 @@ std::int64_t parse_count(std::string_view text) {
         throw UsageError(fmt::format("'{}' is not a count such as 65536, 512M or 4G", printable(text)));
     }
     return value << shift;
+}
+
+std::optional<AskedNumber> asked_number(const std::function<void()>& take) {
+    is_asking = true;
+    std::optional<AskedNumber> asked;
+    try {
+        take();
+    } catch (const AskedNumber& number) {
+        asked = number;
+    } catch (const UsageError&) {  // a word was expected, or more parts
+    }
+    is_asking = false;
+    return asked;
 }
 
 std::string count_text(std::int64_t count) {

@@ -5,7 +5,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -28,6 +30,18 @@ inline constexpr Range kPositive{0.0, std::numeric_limits<double>::infinity(), f
 // A count of bytes or texels, at least 1, with an optional suffix K, M, G or T (powers of 1024, either case).
 [[nodiscard]] std::int64_t parse_count(std::string_view text);
 [[nodiscard]] std::string count_text(std::int64_t count);  // "4G": the shortest form
+
+// What one of these functions accepts.
+struct AskedNumber {
+    enum class Kind { number, integer, count };
+    Kind kind = Kind::number;
+    Range range;
+};
+
+// Calls take(), and returns what the first number that it parses must be; nullopt if it parses none, or throws
+// UsageError before. Nothing is parsed: take() ends there. So --help --json states the ranges that the parsers of
+// options use.
+[[nodiscard]] std::optional<AskedNumber> asked_number(const std::function<void()>& take);
 
 // `text` cut at the first `separator`; the second part is empty if there is none.
 [[nodiscard]] std::pair<std::string, std::string> cut(std::string_view text, char separator);

@@ -52,7 +52,7 @@ std::string version_json(const Command& command) {
                           {"files", reader->files_restricted ? "restricted" : "not restricted"},
                           {"system_calls", reader->calls_filtered ? "filtered" : "not filtered"}};
     }
-    return to_line(json);
+    return to_report_line(json);
 }
 
 }  // namespace tex::cli

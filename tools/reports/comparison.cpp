@@ -30,7 +30,7 @@ Json json_of(const std::vector<std::string>& inputs) {
 std::string line_of(const ComparisonRun& run, Json line) {
     line["warnings"] = warnings_json(run.warnings);
     line["seconds"] = seconds_since(run.start);
-    return to_line(line);
+    return to_report_line(line);
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ ExitCode print_point(Console& console, const ComparisonRun& run, const std::vect
         line["degrees"] = {{"mean", degrees(e.mean)}, {"p99.9", degrees(e.p999)}, {"max", degrees(e.max)}};
         line["warnings"] = warnings_json(run.warnings);
         line["seconds"] = seconds_since(run.start);
-        return console.print(to_line(line));
+        return console.print(to_report_line(line));
     }
     std::string text;
     if (points.size() == 1) {

@@ -67,7 +67,7 @@ std::string Reporter::json_line(const Outcome& outcome) {
     warnings.insert(warnings.end(), outcome.remarks.begin(), outcome.remarks.end());
     line["warnings"] = warnings_json(warnings);
     line["seconds"] = outcome.seconds;
-    return to_line(line);
+    return to_report_line(line);
 }
 
 void Reporter::print_result(const std::string& text) {

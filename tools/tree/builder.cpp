@@ -308,13 +308,13 @@ ExitCode BuildRun::run() {
 // Prints what happened to the textures: a line of JSON with --json, a line for people without.
 ExitCode BuildRun::print_summary(bool is_interrupted) {
     if (running_.json) {
-        return console_.print(to_line({{"made", totals_.made.load()},
-                                       {"current", totals_.current.load()},
-                                       {"cached", totals_.cached.load()},
-                                       {"failed", totals_.failed.load()},
-                                       {"untried", work_.tasks.size() - finished_.load()},
-                                       {"removed", totals_.pruned.load()},
-                                       {"interrupted", is_interrupted}}));
+        return console_.print(to_report_line({{"made", totals_.made.load()},
+                                              {"current", totals_.current.load()},
+                                              {"cached", totals_.cached.load()},
+                                              {"failed", totals_.failed.load()},
+                                              {"untried", work_.tasks.size() - finished_.load()},
+                                              {"removed", totals_.pruned.load()},
+                                              {"interrupted", is_interrupted}}));
     }
     if (running_.quiet) return ExitCode::done;
     std::string summary = fmt::format("{} {}, {} up to date", totals_.made.load(),

@@ -212,7 +212,7 @@ void Merge::print_texture(const TextureFate& texture, const std::string& input, 
         if (shard > 0) line["shard"] = shard;
         line["again"] = texture.is_sent_again;
         if (!texture.reason.empty()) line["reason"] = texture.reason;
-        lines += to_line(line);
+        lines += to_report_line(line);
     }
     if (texture.fate == Fate::missing && !is_silent)
         console_.error(fmt::format("{}: missing in the report of shard {}", printable(input), shard));
@@ -247,11 +247,11 @@ ExitCode Merge::print() {
     const std::vector<int> numbers(again.begin(), again.end());
     const std::string list = fmt::format("{}", fmt::join(numbers, ","));
     if (running_.json) {
-        lines += to_line({{"shards", shards_},
-                          {"textures", textures_.size()},
-                          {"done", textures_.size() - left},
-                          {"repeated", repeated_},
-                          {"again", numbers}});
+        lines += to_report_line({{"shards", shards_},
+                                 {"textures", textures_.size()},
+                                 {"done", textures_.size() - left},
+                                 {"repeated", repeated_},
+                                 {"again", numbers}});
         return std::max(code_, console_.print(lines));
     }
     if (left > 0) {

@@ -41,12 +41,12 @@ void angle_row_target(const VectorRow& a, const VectorRow& b, int count, float* 
     const auto one = hn::Set(d, 1.0f);
     const auto scale = hn::Set(d, 114.591559026164641754f);  // 2 * 180 / pi
     for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
-        const auto dx = hn::Sub(hn::Load(d, a.x + i), hn::Load(d, b.x + i));
-        const auto dy = hn::Sub(hn::Load(d, a.y + i), hn::Load(d, b.y + i));
-        const auto dz = hn::Sub(hn::Load(d, a.z + i), hn::Load(d, b.z + i));
+        const auto dx = hn::Sub(hn::LoadU(d, a.x + i), hn::LoadU(d, b.x + i));
+        const auto dy = hn::Sub(hn::LoadU(d, a.y + i), hn::LoadU(d, b.y + i));
+        const auto dz = hn::Sub(hn::LoadU(d, a.z + i), hn::LoadU(d, b.z + i));
         const auto square = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
         const auto h = hn::Min(hn::Mul(half, hn::Sqrt(square)), one);
-        hn::Store(hn::Mul(scale, arc_sine(h)), d, degrees + i);
+        hn::StoreU(hn::Mul(scale, arc_sine(h)), d, degrees + i);
     }
 }
 

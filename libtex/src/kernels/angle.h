@@ -7,8 +7,8 @@
 
 namespace tex {
 
-// degrees[i] = 2 asin(min(1, |a[i] - b[i]| / 2)), in degrees, for `count` texels. Rows are those of a Plane: whole
-// vectors are read and written past the last texel.
+// degrees[i] = 2 asin(min(1, |a[i] - b[i]| / 2)), in degrees, for `count` texels. Whole vectors
+// are read and written past the last texel.
 void angle_row(const VectorRow& a, const VectorRow& b, int count, float* degrees);
 
 }  // namespace tex

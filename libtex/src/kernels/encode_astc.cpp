@@ -4,15 +4,16 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <memory>
 #include <mutex>
-#include <vector>
 
 #include "blocks/astc_decode.h"
 #include "blocks/extent.h"
 #include "kernels/astc_guess.h"
+#include "memory/lent_memory.h"
 
 namespace tex {
 namespace {
@@ -56,13 +57,20 @@ public:
 
 private:
     static constexpr std::size_t kAlign = 64;
-    std::vector<float> room_;
+    WorkingVector<float> room_;
 };
 
 struct Candidate {
     int block, plan, pattern;
     float error;
+    int place = 0;  // among the others: std::sort() keeps no order
 };
+
+// The most candidates that a block has.
+int most_candidates(const Spending& spending) {
+    return spending.guesses + spending.patterns[0] * spending.reach.part_grids[0] +
+           spending.patterns[1] * spending.reach.part_grids[1];
+}
 
 struct Found {
     float error = kNone;
@@ -76,7 +84,12 @@ class Batch {
 public:
     Batch(const AstcGuide& guide, const Spending& spending, int most)
         : guide_(guide), spending_(spending), plans_(*guide.plans), lanes_(astc_lanes()),
-          texels_(plans_.block.width * plans_.block.height), values_(place(2 * (most + lanes_) * texels_)) {}
+          texels_(plans_.block.width * plans_.block.height), values_(place(2 * (most + lanes_) * texels_)) {
+        found_.reserve(place(most));
+        range_.reserve(place(most));
+        some_.reserve(place(most));
+        candidates_.reserve(place(most * most_candidates(spending)));
+    }
 
     // The first texel of a channel of a block; the others follow at distances of lanes().
     float* values(int block, int channel) {
@@ -98,6 +111,7 @@ private:
     void guess_parts(int partitions, float worth);
     void fit(const AstcSteps& steps, std::size_t begin);
     void fit_some(const AstcSteps& steps, Candidate* candidates, int used);
+    void number(std::size_t begin);
     void keep_best_candidates();
     void write(int block, std::byte* bytes);
 
@@ -106,9 +120,10 @@ private:
     const AstcPlans& plans_;
     const int lanes_, texels_;
     Values values_;  // of groups of lanes_ blocks: channels, texels, blocks
-    std::vector<Found> found_;
-    std::vector<float> range_;
-    std::vector<Candidate> candidates_;
+    WorkingVector<Found> found_;
+    WorkingVector<float> range_;
+    WorkingVector<Candidate> candidates_;
+    WorkingVector<Candidate> some_;
     alignas(64) float gathered_[3][kAstcMostPlanned * kAstcLanes];
     AstcFits fits_;
     AstcGuesses guesses_;
@@ -139,17 +154,18 @@ void Batch::guess() {
 
 // Guesses several partitions for blocks whose error is greater than `worth`.
 void Batch::guess_parts(int partitions, float worth) {
-    std::vector<Candidate> some;
+    some_.clear();
     for (int block = 0; block < static_cast<int>(found_.size()); ++block) {
-        if (found_[place(block)].error > worth && found_[place(block)].error < kNone) some.push_back({block, 0, 0, 0});
+        if (found_[place(block)].error > worth && found_[place(block)].error < kNone)
+            some_.push_back({block, 0, 0, 0.0f});
     }
-    for (std::size_t at = 0; at < some.size(); at += place(lanes_)) {
-        const int used = std::min(lanes_, static_cast<int>(some.size() - at));
-        gather(&some[at], used);
+    for (std::size_t at = 0; at < some_.size(); at += place(lanes_)) {
+        const int used = std::min(lanes_, static_cast<int>(some_.size() - at));
+        gather(&some_[at], used);
         guess_astc_patterns(guide_, {{gathered_[0], gathered_[1]}, nullptr}, partitions,
                             spending_.patterns[partitions - 2], guesses_);
         for (int l = 0; l < used; ++l) {
-            const int block = some[at + place(l)].block;
+            const int block = some_[at + place(l)].block;
             add(block, l, found_[place(block)].error);
         }
     }
@@ -193,10 +209,18 @@ void Batch::fit_some(const AstcSteps& steps, Candidate* candidates, int used) {
     }
 }
 
+// Candidates from `begin` on know their places.
+void Batch::number(std::size_t begin) {
+    for (std::size_t k = begin; k < candidates_.size(); ++k) candidates_[k].place = static_cast<int>(k);
+}
+
 // Fits the candidates from `begin` on, plan by plan.
 void Batch::fit(const AstcSteps& steps, std::size_t begin) {
     const auto first = candidates_.begin() + static_cast<std::ptrdiff_t>(begin);
-    std::stable_sort(first, candidates_.end(), [](const Candidate& a, const Candidate& b) { return a.plan < b.plan; });
+    number(begin);
+    std::sort(first, candidates_.end(), [](const Candidate& a, const Candidate& b) {
+        return a.plan != b.plan ? a.plan < b.plan : a.place < b.place;
+    });
     for (std::size_t at = begin; at < candidates_.size();) {
         int used = 1;
         while (used < lanes_ && at + place(used) < candidates_.size() &&
@@ -209,16 +233,23 @@ void Batch::fit(const AstcSteps& steps, std::size_t begin) {
 
 // Of each block, those with the least errors.
 void Batch::keep_best_candidates() {
-    std::stable_sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
-        return a.block != b.block ? a.block < b.block : a.error < b.error;
+    number(0);
+    std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
+        if (a.block != b.block) return a.block < b.block;
+        return a.error != b.error ? a.error < b.error : a.place < b.place;
     });
-    std::vector<Candidate> kept;
-    int of_block = 0;
+    int block = -1, of_block = 0;
+    const auto too_many = [&](const Candidate& candidate) {
+        of_block = candidate.block == block ? of_block + 1 : 0;
+        block = candidate.block;
+        return of_block >= spending_.polished;
+    };
+    std::size_t kept = 0;
     for (std::size_t k = 0; k < candidates_.size(); ++k) {
-        of_block = k > 0 && candidates_[k - 1].block == candidates_[k].block ? of_block + 1 : 0;
-        if (of_block < spending_.polished) kept.push_back(candidates_[k]);
+        const Candidate candidate = candidates_[k];
+        if (!too_many(candidate)) candidates_[kept++] = candidate;
     }
-    candidates_ = std::move(kept);
+    candidates_.erase(candidates_.begin() + static_cast<std::ptrdiff_t>(kept), candidates_.end());
 }
 
 // What a decoder makes of a code of 16 bits, in units of endpoints.
@@ -275,22 +306,52 @@ void Batch::encode(int count, std::byte* blocks) {
     for (int block = 0; block < count; ++block) write(block, blocks + kAstcBlockBytes * block);
 }
 
-const AstcGuide& guide_of(Format format, Effort effort) {
-    constexpr std::size_t kSizes = 8;
-    static std::array<std::once_flag, 3 * kSizes> once;
-    static std::array<std::unique_ptr<const AstcGuide>, 3 * kSizes> made;
+// The guides that were made, by size of blocks and effort.
+constexpr std::size_t kGuides = 3 * 8;
+std::array<std::atomic<const AstcGuide*>, kGuides> made_guides;
+
+std::size_t guide_number(Format format, Effort effort) {
     const std::size_t size = static_cast<std::size_t>(format) - static_cast<std::size_t>(Format::astc_4x4_unorm);
-    const std::size_t at = 3 * size + static_cast<std::size_t>(effort);
+    return 3 * size + static_cast<std::size_t>(effort);
+}
+
+const AstcGuide& guide_of(Format format, Effort effort) {
+    static std::array<std::once_flag, kGuides> once;
+    static std::array<std::unique_ptr<const AstcGuide>, kGuides> kept;
+    const std::size_t at = guide_number(format, effort);
+    if (const AstcGuide* const made = made_guides[at].load(std::memory_order_acquire)) return *made;
     std::call_once(once[at], [&] {
         const AstcPlans& plans = astc_plans(format_info(format).block);
-        made[at] = std::make_unique<const AstcGuide>(make_astc_guide(plans, spending_of(effort).reach));
+        kept[at] = std::make_unique<const AstcGuide>(make_astc_guide(plans, spending_of(effort).reach));
+        made_guides[at].store(kept[at].get(), std::memory_order_release);
     });
-    return *made[at];
+    return *kept[at];
 }
 
 }  // namespace
 
 bool encodes_astc(Format format) { return format >= Format::astc_4x4_unorm && format <= Format::astc_8x8_unorm; }
+
+void prepare_astc(Format format, Effort effort) { guide_of(format, effort); }
+
+bool is_astc_prepared(Format format, Effort effort) {
+    return made_guides[guide_number(format, effort)].load(std::memory_order_acquire) != nullptr;
+}
+
+int astc_rows_at_once(Format format, int width) {
+    return std::max(1, kBatch / blocks_across(width, format_info(format).block.width));
+}
+
+std::size_t astc_memory(Format format, Effort effort, int width, int rows) {
+    const Extent block = format_info(format).block;
+    const Spending spending = spending_of(effort);
+    const std::size_t texels = place(width) * place(rows * block.height);
+    const std::size_t most = std::min(place(kBatch), place(blocks_across(width, block.width)) * place(rows));
+    const std::size_t values = 2 * (most + kAstcLanes) * place(block.width * block.height) + 16;
+    const std::size_t candidates = place(most_candidates(spending)) + 1;  // some_ has one for each block
+    return 2 * texels * sizeof(float) + sizeof(Batch) + values * sizeof(float) +
+           most * (sizeof(Found) + sizeof(float) + candidates * sizeof(Candidate)) + 16 * LentMemory::kStep;
+}
 
 void encode_astc(Format format, Effort effort, const float* xy, Extent extent, std::byte* blocks) {
     const Extent block = format_info(format).block;
@@ -298,13 +359,16 @@ void encode_astc(Format format, Effort effort, const float* xy, Extent extent, s
     const int all = across * blocks_across(extent.height, block.height);
     const Spending spending = spending_of(effort);
     const auto texels = static_cast<std::size_t>(extent.texels());
-    std::vector<float> planes[2];
+    WorkingVector<float> planes[2];
     for (std::size_t c = 0; c < 2; ++c) {
         planes[c].resize(texels);
         for (std::size_t k = 0; k < texels; ++k)
             planes[c][k] = (std::clamp(xy[2 * k + c], -1.0f, 1.0f) + 1.0f) * (0.5f * kOne);
     }
-    const auto batch = std::make_unique<Batch>(guide_of(format, effort), spending, std::min(kBatch, all));
+    WorkingVector<Batch> batches;  // exactly one
+    batches.reserve(1);
+    batches.emplace_back(guide_of(format, effort), spending, std::min(kBatch, all));
+    Batch* const batch = &batches.front();
     for (int first = 0; first < all; first += kBatch) {
         const int count = std::min(kBatch, all - first);
         for (int n = 0; n < count; ++n) {

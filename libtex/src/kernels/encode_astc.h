@@ -19,6 +19,15 @@ namespace tex {
 // Encodes rows of blocks. `xy` holds the texels: x and y of a normal for each, clamped to [-1, 1], `extent.height` rows
 // of `extent.width` texels. Blocks that are partly outside repeat the last texels. A block depends on its texels alone.
 // Throws std::bad_alloc.
+//
+// Without lent memory, which takes astc_memory() for at most `rows` rows of blocks at once, it comes from the heap. The
+// first call for a format and an effort, or prepare_astc(), makes tables, which stay on the heap.
 void encode_astc(Format format, Effort effort, const float* xy, Extent extent, std::byte* blocks);
+
+void prepare_astc(Format format, Effort effort);
+[[nodiscard]] bool is_astc_prepared(Format format, Effort effort);
+[[nodiscard]] std::size_t astc_memory(Format format, Effort effort, int width, int rows);
+// So many rows of blocks are encoded together best.
+[[nodiscard]] int astc_rows_at_once(Format format, int width);
 
 }  // namespace tex

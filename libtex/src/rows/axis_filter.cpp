@@ -3,7 +3,9 @@
 #include "rows/axis_filter.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "kernels/mip.h"
 #include "rows/border.h"
@@ -66,18 +68,20 @@ double value_at(MipFilter filter, double x) {
 // The weights that the texels from `first` on have in one texel of the smaller level.
 struct Footprint {
     int first = 0;
-    std::vector<double> weights;
+    int count = 0;
+    std::array<double, kMostTaps> weights = {};
 
-    [[nodiscard]] int end() const { return first + static_cast<int>(weights.size()); }
+    void add(double weight) { weights[static_cast<std::size_t>(count++)] = weight; }
+    [[nodiscard]] int end() const { return first + count; }
 };
 
 // In integers, so that areas are exact: texel i of m covers [i n, (i + 1) n), and texel s of n covers [s m, (s + 1) m).
 Footprint box_footprint(int i, int n, int m) {
     const std::int64_t begin = std::int64_t{i} * n;
     const std::int64_t end = begin + n;
-    Footprint footprint{static_cast<int>(begin / m), {}};
+    Footprint footprint{static_cast<int>(begin / m)};
     for (std::int64_t s = begin / m; s * m < end; ++s) {
-        footprint.weights.push_back(static_cast<double>(std::min(end, (s + 1) * m) - std::max(begin, s * m)));
+        footprint.add(static_cast<double>(std::min(end, (s + 1) * m) - std::max(begin, s * m)));
     }
     return footprint;
 }
@@ -88,49 +92,57 @@ Footprint sampled_footprint(MipFilter filter, int i, int n, int m) {
     const double reach = radius_of(filter) * scale;
     const int first = static_cast<int>(std::floor(centre - reach)) + 1;
     const int end = static_cast<int>(std::ceil(centre + reach));
-    Footprint footprint{first, {}};
-    for (int s = first; s < end; ++s) footprint.weights.push_back(value_at(filter, (s - centre) / scale));
+    Footprint footprint{first};
+    for (int s = first; s < end; ++s) footprint.add(value_at(filter, (s - centre) / scale));
     return footprint;
 }
 
 Footprint footprint_of(MipFilter filter, int i, int n, int m) {
-    if (n == 1) return {0, {1.0}};
+    if (n == 1) return {0, 1, {1.0}};
     Footprint footprint = filter == MipFilter::box ? box_footprint(i, n, m) : sampled_footprint(filter, i, n, m);
     double sum = 0.0;
-    for (const double w : footprint.weights) sum += w;
+    for (int k = 0; k < footprint.count; ++k) sum += footprint.weights[static_cast<std::size_t>(k)];
     for (double& w : footprint.weights) w /= sum;
     return footprint;
 }
 
 }  // namespace
 
+int most_taps(MipFilter filter, int n) {
+    if (n == 1) return 1;
+    if (filter == MipFilter::box) return n % 2 == 0 ? 2 : 4;
+    // The footprint of one texel, and where those of two odd texels begin.
+    const double scale = static_cast<double>(n) / (n / 2);
+    return static_cast<int>(std::ceil(2.0 * radius_of(filter) * scale)) + 2;
+}
+
 AxisFilter make_axis_filter(MipFilter filter, int n) {
     const int m = std::max(1, n / 2);
     AxisFilter axis;
     axis.even = n % 2 == 0;
     axis.stride = aligned_count(m);
-    std::vector<Footprint> footprints;
-    for (int i = 0; i < m; ++i) {
-        if (axis.even && i > 0) {
-            footprints.push_back(footprints.back());
-        } else {
-            footprints.push_back(footprint_of(filter, i, n, m));
-            footprints.back().first -= 2 * i;
-        }
+    // As seen from texel 2 i. Even sizes give all texels the same footprint.
+    const auto seen = [filter, n, m, even = axis.even](int i) {
+        Footprint footprint = footprint_of(filter, even ? 0 : i, n, m);
+        footprint.first -= even ? 0 : 2 * i;
+        return footprint;
+    };
+    Footprint footprint = seen(0);
+    axis.first = footprint.first;
+    int end = footprint.end();
+    for (int i = 1; i < m && !axis.even; ++i) {
+        footprint = seen(i);
+        axis.first = std::min(axis.first, footprint.first);
+        end = std::max(end, footprint.end());
     }
-    const auto begins_before = [](const Footprint& a, const Footprint& b) { return a.first < b.first; };
-    const auto ends_before = [](const Footprint& a, const Footprint& b) { return a.end() < b.end(); };
-    axis.first = std::min_element(footprints.begin(), footprints.end(), begins_before)->first;
-    axis.taps = std::max_element(footprints.begin(), footprints.end(), ends_before)->end() - axis.first;
+    axis.taps = end - axis.first;
 
     axis.weights.resize(static_cast<std::size_t>(axis.stride * axis.taps), 0.0f);
     for (int i = 0; i < m; ++i) {
-        const Footprint& footprint = footprints[static_cast<std::size_t>(i)];
+        if (!axis.even) footprint = seen(i);
         float* weight = axis.weights.data() + (footprint.first - axis.first) * axis.stride + i;
-        for (const double w : footprint.weights) {
-            *weight = static_cast<float>(w);
-            weight += axis.stride;
-        }
+        for (int k = 0; k < footprint.count; ++k, weight += axis.stride)
+            *weight = static_cast<float>(footprint.weights[static_cast<std::size_t>(k)]);
     }
     return axis;
 }
@@ -141,6 +153,7 @@ RowFilter::RowFilter(const AxisFilter& filter, Wrap wrap, int width)
       pairs_(count_ + filter.taps / 2),
       row_(Extent{lead_ + std::max(width + after_, 2 * aligned_count(pairs_)), 1}, 0.0f),
       halves_(Extent{aligned_count(pairs_) + aligned_count(filter.taps), 2}) {
+    weights_.reserve(static_cast<std::size_t>(filter.taps));
     for (int k = 0; k < filter.taps; ++k) weights_.push_back(filter.weight(k, 0));
 }
 

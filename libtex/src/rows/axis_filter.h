@@ -4,12 +4,17 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
 
 #include <tex/image.h>
 #include <tex/mip_options.h>
 
+#include "memory/lent_memory.h"
+
 namespace tex {
+
+// At least the taps of any filter: the widest reaches 3 texels of the smaller level to each side, which has at least a
+// third as many texels as the larger one; footprints of odd sizes may begin one texel apart.
+inline constexpr int kMostTaps = 24;
 
 // Texel i of the smaller level is the sum over k of weight(k, i) texel[2 i + first + k], 0 <= k < taps, of the larger
 // level, in which the texel may lie beyond the border. (If the larger size is odd, texels are a little more than 2
@@ -18,15 +23,18 @@ namespace tex {
 struct AxisFilter {
     int first = 0;
     int taps = 1;
-    bool even = false;           // the larger size is even: all texels have the same weights
-    std::ptrdiff_t stride = 0;   // of the weights: the number of texels, padded to whole vectors
-    std::vector<float> weights;  // [k * stride + i]
+    bool even = false;             // the larger size is even: all texels have the same weights
+    std::ptrdiff_t stride = 0;     // of the weights: the number of texels, padded to whole vectors
+    WorkingVector<float> weights;  // [k * stride + i]
 
     [[nodiscard]] float weight(int k, int i) const { return weights[static_cast<std::size_t>(k * stride + i)]; }
 };
 
 // The filter from n texels to max(1, n / 2).
 AxisFilter make_axis_filter(MipFilter filter, int n);
+
+// At least its number of taps.
+int most_taps(MipFilter filter, int n);
 
 // Filters rows along their length, one after the other, including the texels beyond their ends.
 class RowFilter {
@@ -51,7 +59,7 @@ private:
     const int pairs_;  // texels in each half of the row: even ones, then odd ones
     Plane<float> row_;
     Plane<float> halves_;
-    std::vector<float> weights_;  // the weights that all texels share, if the size is even
+    WorkingVector<float> weights_;  // the weights that all texels share, if the size is even
 };
 
 }  // namespace tex

@@ -8,6 +8,7 @@
 
 #include "rows/blur.h"
 #include "rows/math.h"
+#include "rows/whole_vectors.h"
 
 namespace tex {
 namespace {
@@ -15,7 +16,9 @@ namespace {
 Gradient gaussian_gradient(double sigma) {
     Gradient gradient{0, {}, gaussian_weights(sigma)};
     gradient.radius = static_cast<int>(gradient.smoothing.size()) - 1;
-    std::vector<double> derivative;
+    WorkingVector<double> derivative;
+    derivative.reserve(gradient.smoothing.size());
+    gradient.derivative.reserve(gradient.smoothing.size());
     double moment = 0.0;  // the response of the derivative to a plane of slope 1
     for (int k = 1; k <= gradient.radius; ++k) {
         // g relative to g(1): the factor cancels, and g(1) itself is too small for a double if sigma is small.
@@ -77,16 +80,11 @@ void BakeRows::fetch() {
     ++next_;
 }
 
-void BakeRows::bake(int j, NormalRow out) {
+// Computes what row j needs.
+void BakeRows::prepare(int j) {
     const int radius = gradient_.radius;
     while (next_ <= j + radius) fetch();
-    if (gradient_.is_difference()) {
-        const float* row = rows_.row(j);
-        const float* left = gradient_.forward ? row : row - 1;
-        const float* down = gradient_.forward ? row : rows_.row(j + 1);
-        normals_by_difference(left, row + 1, down, rows_.row(j - 1), scale_x_, scale_y_, extent_.width, out);
-        return;
-    }
+    if (gradient_.is_difference()) return;
     const int window = 2 * radius + 1;
     const int lead = rows_.lead();
     for (int k = 0; k < window; ++k) {
@@ -94,8 +92,38 @@ void BakeRows::bake(int j, NormalRow out) {
         window_du_[static_cast<std::size_t>(k)] = du_.row(wrap_around(j - radius + k, window));
     }
     derive_column(window_rows_.data(), gradient_.derivative.data(), radius, lead + extent_.width + radius, dv_.row(0));
-    normals_by_smoothing(window_du_.data(), dv_.row(0) + lead, gradient_.smoothing.data(), radius, scale_x_, scale_y_,
-                         extent_.width, out);
+}
+
+// Makes `count` texels of row j from `first` on. Rows of derivatives are moved on to the first texel, and back.
+void BakeRows::make(int j, int first, int count, NormalRow out) {
+    if (gradient_.is_difference()) {
+        const float* row = rows_.row(j) + first;
+        const float* left = gradient_.forward ? row : row - 1;
+        const float* down = gradient_.forward ? row : rows_.row(j + 1) + first;
+        normals_by_difference(left, row + 1, down, rows_.row(j - 1) + first, scale_x_, scale_y_, count, out);
+        return;
+    }
+    for (const float*& row : window_du_) row += first;
+    normals_by_smoothing(window_du_.data(), dv_.row(0) + rows_.lead() + first, gradient_.smoothing.data(),
+                         gradient_.radius, scale_x_, scale_y_, count, out);
+    for (const float*& row : window_du_) row -= first;
+}
+
+void BakeRows::bake(int j, NormalRow out) {
+    prepare(j);
+    make(j, 0, extent_.width, out);
+}
+
+void BakeRows::bake_exactly(int j, NormalRow out) {
+    prepare(j);
+    const int whole = extent_.width / kWhole * kWhole, rest = extent_.width - whole;
+    if (whole > 0) make(j, 0, whole, out);
+    if (rest == 0) return;
+    float end[3][kWhole];
+    make(j, whole, rest, {end[0], end[1], end[2]});
+    std::copy_n(end[0], rest, out.x + whole);
+    std::copy_n(end[1], rest, out.y + whole);
+    std::copy_n(end[2], rest, out.z + whole);
 }
 
 }  // namespace tex

@@ -5,11 +5,11 @@
 #pragma once
 
 #include <algorithm>
-#include <vector>
 
 #include <tex/bake_options.h>
 
 #include "kernels/bake.h"
+#include "memory/lent_memory.h"
 #include "rows/border.h"
 
 namespace tex {
@@ -18,8 +18,8 @@ namespace tex {
 // The forward and central kernels are plain differences of two texels, so they have no weights.
 struct Gradient {
     int radius = 1;  // the number of rows that a normal needs above and below its own row
-    std::vector<float> derivative;
-    std::vector<float> smoothing;
+    WorkingVector<float> derivative;
+    WorkingVector<float> smoothing;
     bool forward = false;
 
     [[nodiscard]] bool is_difference() const { return derivative.empty(); }
@@ -51,11 +51,16 @@ public:
     // they may continue past the last row: row `height` is row 0 again.
     void bake(int j, NormalRow out);
 
+    // The same for a row of a caller, which ends with its last texel: nothing beyond that is written.
+    void bake_exactly(int j, NormalRow out);
+
     // Goes on with row j, which need not follow the last one.
     void go_to(int j) { next_ = j - gradient_.radius; }
 
 private:
     void fetch();
+    void prepare(int j);
+    void make(int j, int first, int count, NormalRow out);
 
     const Extent extent_;
     const Gradient& gradient_;
@@ -67,8 +72,8 @@ private:
     // is smoothed down the column, and the derivative down the column is smoothed along the row.
     Plane<float> du_;
     Plane<float> dv_;
-    std::vector<const float*> window_rows_;
-    std::vector<const float*> window_du_;
+    WorkingVector<const float*> window_rows_;
+    WorkingVector<const float*> window_du_;
 };
 
 }  // namespace tex

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "kernels/bake.h"
+#include "rows/whole_vectors.h"
 
 namespace tex {
 namespace {
@@ -70,7 +71,8 @@ HeightRows::HeightRows(Extent extent, RowOf heights, Wrap wrap_x, Wrap wrap_y, i
 
 HeightRows::HeightRows(PlaneView<const float> heights, Wrap wrap_x, Wrap wrap_y, int apron, int kept)
     : HeightRows(
-          heights.extent, [heights](int j) { return heights.row(j); }, wrap_x, wrap_y, apron, kept) {}
+          heights.extent, [data = heights.data, stride = heights.stride](int j) { return data + j * stride; }, wrap_x,
+          wrap_y, apron, kept) {}
 
 const float* HeightRows::row(int j) const { return rows_.row(wrap_around(j, kept_)) + lead_; }
 
@@ -78,11 +80,18 @@ const float* HeightRows::fetch(int j) {
     const int width = extent_.width;
     float* out = rows_.row(wrap_around(j, kept_)) + lead_;
     const HeightIndex at = height_index(wrap_y_, j, extent_.height);
+    float* const to[] = {out};
     if (at.plain()) {
-        limit_heights(heights_(at.index), scale_, width, out);
+        const float* const from[] = {heights_(at.index)};
+        in_whole_vectors(width, from, to, [this](const float* const* row, float* const* limited, int count) {
+            limit_heights(row[0], scale_, count, limited[0]);
+        });
     } else {
-        continue_heights(heights_(at.index), heights_(at.edge), heights_(at.other), at.reflected,
-                         static_cast<float>(at.drift), scale_, width, out);
+        const float* const from[] = {heights_(at.index), heights_(at.edge), heights_(at.other)};
+        in_whole_vectors(width, from, to, [this, at](const float* const* row, float* const* beyond, int count) {
+            continue_heights(row[0], row[1], row[2], at.reflected, static_cast<float>(at.drift), scale_, count,
+                             beyond[0]);
+        });
     }
     for (int k = 1; k <= apron_; ++k) {
         const float left = height_at(out, height_index(wrap_x_, -k, width));

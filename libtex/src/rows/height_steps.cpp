@@ -23,7 +23,7 @@ std::size_t slot_of(float height) {
 static_assert(kSlots == 1 << 14);
 
 // Whether all heights lie on steps of about `step`, which is improved from one height to the next.
-bool lie_on(const std::vector<float>& sorted, double slack, double& step) {
+bool lie_on(std::span<const float> sorted, double slack, double& step) {
     const auto lowest = static_cast<double>(sorted.front());
     for (const float height : sorted) {
         const double rise = static_cast<double>(height) - lowest;
@@ -62,14 +62,15 @@ void DistinctHeights::add(const float* row, int count) {
 
 void DistinctHeights::add(const DistinctHeights& other) { add(other.slots_.data(), kSlots); }
 
-std::vector<float> DistinctHeights::sorted() const {
-    std::vector<float> heights;
+WorkingVector<float> DistinctHeights::sorted() const {
+    WorkingVector<float> heights;
+    heights.reserve(static_cast<std::size_t>(used_));
     std::copy_if(slots_.begin(), slots_.end(), std::back_inserter(heights), [](float h) { return !std::isnan(h); });
     std::sort(heights.begin(), heights.end());
     return heights;
 }
 
-std::optional<HeightSteps> find_steps(const std::vector<float>& sorted) {
+std::optional<HeightSteps> find_steps(std::span<const float> sorted) {
     if (sorted.size() < 2) return std::nullopt;
     const auto lowest = static_cast<double>(sorted.front()), highest = static_cast<double>(sorted.back());
     double least = highest - lowest;

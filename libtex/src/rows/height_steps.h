@@ -5,7 +5,9 @@
 
 #include <cstdint>
 #include <optional>
-#include <vector>
+#include <span>
+
+#include "memory/lent_memory.h"
 
 namespace tex {
 
@@ -20,12 +22,12 @@ public:
     void add(const float* row, int count);  // NaN does not count
     void add(const DistinctHeights& other);
     [[nodiscard]] bool too_many() const { return used_ > kMostCodes; }
-    [[nodiscard]] std::vector<float> sorted() const;
+    [[nodiscard]] WorkingVector<float> sorted() const;
 
 private:
     void insert(float height);
 
-    std::vector<float> slots_;  // an open hash table; NaN: free
+    WorkingVector<float> slots_;  // an open hash table; NaN: free
     int used_ = 0;
 };
 
@@ -36,7 +38,7 @@ struct HeightSteps {
 };
 
 // The steps that all of `sorted` lie on, as deband.h describes them; nullopt if there are none.
-std::optional<HeightSteps> find_steps(const std::vector<float>& sorted);
+std::optional<HeightSteps> find_steps(std::span<const float> sorted);
 
 // Counts the texels of a row that have the height of both neighbours along x or y. `above` and `below` may be null.
 std::int64_t count_terraces(const float* above, const float* row, const float* below, int count);

@@ -4,9 +4,9 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include <tex/mip_options.h>
+#include <tex/normal_map.h>
 
 #include "kernels/normal_row.h"
 #include "rows/axis_filter.h"
@@ -45,6 +45,42 @@ struct LevelFilter {
     bool halves;  // two rows and two columns become one, with no other case
 };
 
+// The planes that are averaged: x, y, z, or only x and y, in the slope domain.
+[[nodiscard]] inline int averaged_planes(const MipOptions& options) {
+    return options.domain == MipDomain::vector ? 3 : 2;
+}
+[[nodiscard]] inline Plane<float>& plane_of(NormalMap& map, int plane) {
+    return plane == 0 ? map.x : plane == 1 ? map.y : map.z;
+}
+[[nodiscard]] inline const Plane<float>& plane_of(const NormalMap& map, int plane) {
+    return plane == 0 ? map.x : plane == 1 ? map.y : map.z;
+}
+
+// The rows of averages from which a row of the smaller level is made. In the slope domain, those of the base level are
+// computed here from its vectors and kept while they are needed.
+class LevelSource {
+public:
+    // `filter` and `from` must outlive this object.
+    LevelSource(const LevelFilter& filter, const NormalMap& from, const MipOptions& options, bool from_base);
+
+    // Prepares the rows for row j of the smaller level.
+    void prepare(int j);
+
+    // These rows, for one plane. They stay valid until the next call.
+    const float* const* window(int plane, int j);
+
+private:
+    [[nodiscard]] int slot_of(int j, int k) const;
+
+    const LevelFilter& filter_;
+    const NormalMap& from_;
+    const int taps_;
+    const bool converts_;
+    Plane<float> p_, q_;
+    WorkingVector<int> held_;  // the row of the level in each slot
+    WorkingVector<const float*> window_;
+};
+
 // Makes rows of one plane with any filter: down the columns first, in whole rows, then along the row.
 class MipRows {
 public:
@@ -53,11 +89,14 @@ public:
 
     // Makes row j of the smaller level from the rows of the larger one that LevelFilter::source() names.
     void make(const float* const* rows, int j, float* out);
+    // The same for rows of a caller, which end with their last texels: nothing beyond these is read or written.
+    void make_exactly(const float* const* rows, int j, float* out);
 
 private:
     const LevelFilter& filter_;
     std::optional<RowFilter> across_;  // unused if the filter halves
-    std::vector<float> weights_;
+    WorkingVector<float> weights_;
+    Plane<float> row_;  // for make_exactly()
 };
 
 }  // namespace tex

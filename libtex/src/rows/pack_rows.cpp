@@ -26,15 +26,8 @@ public:
         : map_(map), extent_{map.extent().width, height}, swizzle_(swizzle), negate_y_(y_axis == YAxis::down) {}
 
     void channels(int j, PackChannel out[4]) const {
-        for (std::size_t k = 0; k < 4; ++k) {
-            switch (swizzle_[k]) {
-                case Component::x: out[k] = {map_.x.row(j)}; break;
-                case Component::y: out[k] = {map_.y.row(j), negate_y_}; break;
-                case Component::z: out[k] = {map_.z.row(j)}; break;
-                case Component::other: out[k] = {(k == 3 ? map_.alpha : map_.blue).row(j), false, true}; break;
-                default: out[k] = {}; break;  // every encoding's constants are 1, except in channels that it lacks
-            }
-        }
+        pack_channels({map_.x.row(j), map_.y.row(j), map_.z.row(j)}, swizzle_, negate_y_, row_of(map_.blue, j),
+                      row_of(map_.alpha, j), out);
     }
 
     [[nodiscard]] BlockRow blocks(int j) const { return block_row(map_.x, map_.y, extent_, j, negate_y_); }
@@ -42,6 +35,8 @@ public:
     [[nodiscard]] Extent extent() const { return extent_; }
 
 private:
+    static const float* row_of(const Plane<float>& plane, int j) { return plane.empty() ? nullptr : plane.row(j); }
+
     const NormalMap& map_;
     const Extent extent_;
     const Swizzle swizzle_;
@@ -50,39 +45,29 @@ private:
 
 std::size_t size(int n) { return static_cast<std::size_t>(n); }
 
-// Packs rows [begin, end) as unorm codes. The kernel writes past the end of a row, so it writes into a separate row
-// first.
-template <class Code, class Kernel>
-void pack_codes(const Rows& rows, int channels, int begin, int end, std::byte* out, Kernel kernel) {
-    const int width = rows.extent().width;
-    std::vector<Code> codes(size(channels) * size(width + kPackSlack));
-    const std::size_t row_bytes = size(channels) * size(width) * sizeof(Code);
-    for (int j = begin; j < end; ++j) {
-        PackChannel from[4];
-        rows.channels(j, from);
-        kernel(from, channels, width, codes.data());
-        std::memcpy(out + size(j) * row_bytes, codes.data(), row_bytes);
+// Packs floats, or halves that Imath rounds to nearest even.
+template <class Value>
+void pack_values(const PackChannel* from, int channels, int count, std::byte* out) {
+    for (int k = 0; k < channels; ++k) {
+        const float* source = from[k].values;
+        std::byte* to = out + size(k) * sizeof(Value);
+        // 0 - n, not -n, so that a flat map holds no negative zeros.
+        for (int i = 0; i < count; ++i, to += size(channels) * sizeof(Value)) {
+            const Value value(from[k].negate ? 0.0f - source[i] : source[i]);
+            std::memcpy(to, &value, sizeof value);
+        }
     }
 }
 
-// Packs rows [begin, end) as floats, or as halves that Imath rounds to nearest even.
-template <class Value>
-void pack_values(const Rows& rows, int channels, int begin, int end, std::byte* out) {
+// Packs rows [begin, end). The kernels write past the end of a row, so they write into a separate row first.
+void pack_rows_of_texels(const Rows& rows, const FormatInfo& info, int begin, int end, std::byte* out) {
     const int width = rows.extent().width;
-    std::vector<Value> values(size(channels) * size(width));
-    const std::size_t row_bytes = values.size() * sizeof(Value);
+    std::vector<std::byte> packed(size(width + kPackSlack) * info.block_bytes);
     for (int j = begin; j < end; ++j) {
         PackChannel from[4];
         rows.channels(j, from);
-        for (int k = 0; k < channels; ++k) {
-            const float* source = from[k].values;
-            Value* value = values.data() + k;
-            // 0 - n, not -n, so that a flat map holds no negative zeros.
-            for (int i = 0; i < width; ++i, value += channels) {
-                *value = Value(from[k].negate ? 0.0f - source[i] : source[i]);
-            }
-        }
-        std::memcpy(out + size(j) * row_bytes, values.data(), row_bytes);
+        const std::size_t bytes = pack_texels(info, from, width, packed.data());
+        std::memcpy(out + size(j) * bytes, packed.data(), bytes);
     }
 }
 
@@ -104,6 +89,32 @@ void pack_astc(const Rows& rows, Format format, Effort effort, int j, int count,
 }
 
 }  // namespace
+
+std::size_t pack_texels(const FormatInfo& format, const PackChannel* channels, int count, std::byte* out) {
+    if (format.bits == 8) {
+        pack_unorm8(channels, format.channels, count, reinterpret_cast<std::uint8_t*>(out));
+    } else if (format.bits == 16 && format.sample == SampleKind::unorm) {
+        pack_unorm16(channels, format.channels, count, reinterpret_cast<std::uint16_t*>(out));
+    } else if (format.bits == 16) {
+        pack_values<Imath::half>(channels, format.channels, count, out);
+    } else {
+        pack_values<float>(channels, format.channels, count, out);
+    }
+    return size(count) * format.block_bytes;
+}
+
+void pack_channels(VectorRow normals, const Swizzle& swizzle, bool negate_y, const float* blue, const float* alpha,
+                   PackChannel out[4]) {
+    for (std::size_t k = 0; k < 4; ++k) {
+        switch (swizzle[k]) {
+            case Component::x: out[k] = {normals.x}; break;
+            case Component::y: out[k] = {normals.y, negate_y}; break;
+            case Component::z: out[k] = {normals.z}; break;
+            case Component::other: out[k] = {k == 3 ? alpha : blue, false, true}; break;
+            default: out[k] = {}; break;  // every encoding's constants are 1, except in channels that it lacks
+        }
+    }
+}
 
 Swizzle swizzle_with(Encoding encoding, OtherPlanes beside) {
     Swizzle swizzle = encoding_info(encoding).swizzle;
@@ -137,15 +148,7 @@ void pack_rows(const NormalMap& map, OtherPlanes others, int height, const PackO
         }
         return;
     }
-    if (info.bits == 8) {
-        pack_codes<std::uint8_t>(rows, info.channels, begin, end, out, pack_unorm8);
-    } else if (info.bits == 16 && info.sample == SampleKind::unorm) {
-        pack_codes<std::uint16_t>(rows, info.channels, begin, end, out, pack_unorm16);
-    } else if (info.bits == 16) {
-        pack_values<Imath::half>(rows, info.channels, begin, end, out);
-    } else {
-        pack_values<float>(rows, info.channels, begin, end, out);
-    }
+    pack_rows_of_texels(rows, info, begin, end, out);
 }
 
 }  // namespace tex

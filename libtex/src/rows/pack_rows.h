@@ -8,6 +8,8 @@
 #include <tex/normal_map.h>
 #include <tex/pack_options.h>
 
+#include "kernels/normal_row.h"
+#include "kernels/pack.h"
 #include "rows/rdo_rows.h"
 
 namespace tex {
@@ -28,5 +30,13 @@ void pack_rows(const NormalMap& map, OtherPlanes others, int height, const PackO
 // The swizzle of a texture of this encoding that also holds these data. Alpha stays a constant there: whether it is one
 // is known only after the last row.
 [[nodiscard]] Swizzle swizzle_with(Encoding encoding, OtherPlanes beside);
+
+// Packs `count` texels of a format without blocks. `channels` are those of the format (kernels/pack.h); whole vectors
+// of them are read. `out` has room for kPackSlack more texels. Returns the bytes of the texels.
+std::size_t pack_texels(const FormatInfo& format, const PackChannel* channels, int count, std::byte* out);
+
+// The channels of a texture with this swizzle; `blue` and `alpha` are what its other channels hold.
+void pack_channels(VectorRow normals, const Swizzle& swizzle, bool negate_y, const float* blue, const float* alpha,
+                   PackChannel out[4]);
 
 }  // namespace tex

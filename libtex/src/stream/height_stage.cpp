@@ -49,7 +49,7 @@ struct HeightInput {
 
 // A blur along each row, as the first half of the blur; no weights, no blur.
 struct AcrossBlur {
-    std::vector<float> weights;
+    WorkingVector<float> weights;
     Wrap wrap_x = Wrap::repeat;
 
     [[nodiscard]] int radius() const { return static_cast<int>(weights.size()) - 1; }
@@ -151,7 +151,7 @@ private:
 // Blurs down the columns what was blurred along the rows.
 class BlurStage final : public Stage {
 public:
-    BlurStage(const HeightInput& input, int begin, const std::vector<float>& weights)
+    BlurStage(const HeightInput& input, int begin, const WorkingVector<float>& weights)
         : Stage(input.rows->extent(), 1, 0, begin), input_(input), weights_(weights),
           radius_(static_cast<int>(weights.size()) - 1) {}
 
@@ -177,7 +177,7 @@ private:
     }
 
     const HeightInput input_;
-    const std::vector<float> weights_;
+    const WorkingVector<float> weights_;
     const int radius_;
 };
 
@@ -255,7 +255,7 @@ private:
     std::vector<std::unique_ptr<Baker>> idle_;
 };
 
-std::vector<float> weights_of(const HeightOptions& options) {
+WorkingVector<float> weights_of(const HeightOptions& options) {
     if (!(options.blur_sigma > 0.0f)) return {};
     return gaussian_weights(static_cast<double>(options.blur_sigma));
 }
@@ -272,7 +272,7 @@ BakedRows add_bake(Flow& flow, Heights& heights, const std::string& input, const
     ConvertRows convert;
     if (heights.linear) convert = [&heights](Image& rows, int count) { return heights.linear->convert(rows, count); };
     const Stage& picture = add_source(flow, *heights.rows, input, std::move(convert));
-    const std::vector<float> weights = weights_of(heights.options);
+    const WorkingVector<float> weights = weights_of(heights.options);
     const AcrossBlur blur{weights, heights.options.wrap_x};
     HeightInput rows{&flow.add<HeightStage>(flow, picture, heights, blur), nullptr, heights.options.wrap_y};
     if (heights.last) {

@@ -8,8 +8,6 @@
 
 #pragma once
 
-#include <vector>
-
 #include "surface/fourier.h"
 
 namespace tex {
@@ -23,7 +21,7 @@ public:
     [[nodiscard]] double frequency(int k) const;
 
     // Values go into the buffer in an order that suits the transform: group i takes texel order()[i].
-    [[nodiscard]] const std::vector<int>& order() const { return order_; }
+    [[nodiscard]] const WorkingVector<int>& order() const { return order_; }
 
     // From values to coefficients, which are in the order of k.
     void forward(Groups& data, Groups& scratch) const;
@@ -35,8 +33,8 @@ private:
     int texels_;
     bool is_mirrored_;
     Fourier fourier_;
-    std::vector<int> order_;
-    std::vector<float> turns_;
+    WorkingVector<int> order_;
+    WorkingVector<float> turns_;
 };
 
 }  // namespace tex

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <vector>
 
 #include "kernels/deband.h"
+#include "memory/lent_memory.h"
 #include "rows/blur.h"
 #include "rows/straight_border.h"
 
@@ -58,7 +58,7 @@ Result<Plane<float>> energies_of(const Plane<float>& codes, const BendingGrid& g
 Result<void> average(const BendingGrid& grid, int radius, Plane<float>& plane, const Execution& execution) {
     // Energies have no slope that could continue beyond a border.
     const auto wrap = [](Wrap given) { return given == Wrap::clamp ? Wrap::mirror : given; };
-    const std::vector<float> weights(static_cast<std::size_t>(radius) + 1, 1.0f / static_cast<float>(2 * radius + 1));
+    const WorkingVector<float> weights(static_cast<std::size_t>(radius) + 1, 1.0f / static_cast<float>(2 * radius + 1));
     const int height = plane.extent().height;
     Plane<float> across(plane.extent());
     const auto rows = [&](int begin, int end) {

@@ -6,12 +6,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "kernels/deband.h"
+#include "memory/lent_memory.h"
 #include "rows/height_steps.h"
 #include "surface/bending_grid.h"
 #include "surface/bending_weights.h"
@@ -25,8 +24,9 @@ namespace {
 constexpr int kFinestSteps = 20;
 constexpr int kHalfSteps = 60;
 constexpr int kMostSteps = 480;
-constexpr int kCoarsestGrid = 8;  // texels of the longer side
-constexpr int kLooks = 64;        // strips whose different heights are collected: 64 KB each
+constexpr int kCoarsestGrid = 8;        // texels of the longer side
+constexpr std::size_t kMostGrids = 20;  // down from kMaxExtent
+constexpr int kLooks = 64;              // strips whose different heights are collected: 64 KB each
 
 struct Found {
     std::optional<HeightSteps> steps;
@@ -37,8 +37,8 @@ Result<Found> look_at(const Plane<float>& heights, const Execution& execution) {
     const Extent extent = heights.extent();
     const int rows = std::max(kBendingStrip, (extent.height + kLooks - 1) / kLooks);
     const auto strips = static_cast<std::size_t>((extent.height + rows - 1) / rows);
-    std::vector<DistinctHeights> distinct(strips);
-    std::vector<std::int64_t> terraces(strips);
+    WorkingVector<DistinctHeights> distinct(strips);
+    WorkingVector<std::int64_t> terraces(strips);
     const auto body = [&](int begin, int end) {
         const auto strip = static_cast<std::size_t>(begin / rows);
         for (int j = begin; j < end; ++j) {
@@ -61,8 +61,9 @@ Result<Found> look_at(const Plane<float>& heights, const Execution& execution) {
 }
 
 // The grids, from the finest to the coarsest, all with their weights.
-Result<std::vector<BendingGrid>> grids_of(BendingGrid finest, const Execution& execution) {
-    std::vector<BendingGrid> grids;
+Result<WorkingVector<BendingGrid>> grids_of(BendingGrid finest, const Execution& execution) {
+    WorkingVector<BendingGrid> grids;
+    grids.reserve(kMostGrids);
     grids.push_back(std::move(finest));
     while (true) {
         BendingGrid& grid = grids.back();
@@ -84,7 +85,7 @@ int steps_on(std::size_t grid) {
 
 // The coarsest heights are the codes; each finer grid begins with the heights of the one before. Progress: the share of
 // each grid is that of its texels, times its steps.
-Result<Plane<float>> solve(std::vector<BendingGrid>& grids, const Execution& execution, ProgressSpan span) {
+Result<Plane<float>> solve(WorkingVector<BendingGrid>& grids, const Execution& execution, ProgressSpan span) {
     double work = 0.0, done = 0.0;
     const auto work_on = [&](std::size_t k) { return static_cast<double>(steps_on(k)) * std::pow(0.25, k); };
     for (std::size_t k = 0; k < grids.size(); ++k) work += work_on(k);
@@ -110,7 +111,8 @@ Result<Plane<float>> solve(std::vector<BendingGrid>& grids, const Execution& exe
     }
 }
 
-Result<void> in_strips(Extent extent, const Execution& execution, const std::function<void(int j)>& row) {
+template <class RowBody>
+Result<void> in_strips(Extent extent, const Execution& execution, const RowBody& row) {
     const Execution silent{execution.threads, {}};
     const auto body = [&](int begin, int end) {
         for (int j = begin; j < end; ++j) row(j);

@@ -24,8 +24,8 @@ float side_of(Wrap continued, int i, int n) {
 }
 
 // The slope of a ramp of slope 1 on a mirrored axis of n texels, in the first texels from the border.
-std::vector<float> mirrored_ramp(const Gradient& gradient, int n) {
-    std::vector<float> slopes;
+WorkingVector<float> mirrored_ramp(const Gradient& gradient, int n) {
+    WorkingVector<float> slopes;
     if (gradient.forward) return slopes;
     for (int i = 0; i < std::min(gradient.radius, n); ++i) {
         float slope = 0.0f;

@@ -16,10 +16,10 @@
 #pragma once
 
 #include <functional>
-#include <vector>
 
 #include <tex/height_field.h>
 
+#include "memory/lent_memory.h"
 #include "rows/bake_rows.h"
 
 namespace tex {
@@ -53,8 +53,8 @@ private:
     bool begun_ = false;
     Plane<float> p_, q_;   // a window of rows, each with an apron
     Plane<float> beside_;  // scratch: one row of p and of q
-    std::vector<const float*> window_;
-    std::vector<float> ramp_x_, ramp_y_;  // the slope of a mirrored ramp in the first texels from a border
+    WorkingVector<const float*> window_;
+    WorkingVector<float> ramp_x_, ramp_y_;  // the slope of a mirrored ramp in the first texels from a border
 };
 
 }  // namespace tex

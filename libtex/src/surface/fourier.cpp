@@ -14,7 +14,7 @@ namespace tex {
 namespace {
 
 // Appends the real and imaginary parts of exp(-2 pi i turn / turns).
-void append_turn(std::vector<float>& factors, std::int64_t turn, std::int64_t turns) {
+void append_turn(WorkingVector<float>& factors, std::int64_t turn, std::int64_t turns) {
     const double angle = -2.0 * math::kPi * static_cast<double>(turn % turns) / static_cast<double>(turns);
     factors.push_back(static_cast<float>(math::cos(angle)));
     factors.push_back(static_cast<float>(math::sin(angle)));
@@ -31,8 +31,8 @@ int rough_part(int length) {
 }
 
 // exp(-i pi k^2 / length). k^2 is reduced in whole numbers, so that long sequences lose no accuracy.
-std::vector<float> chirp_of(int length) {
-    std::vector<float> chirp;
+WorkingVector<float> chirp_of(int length) {
+    WorkingVector<float> chirp;
     chirp.reserve(2 * static_cast<std::size_t>(length));
     for (std::int64_t k = 0; k < length; ++k) append_turn(chirp, k * k, 2 * static_cast<std::int64_t>(length));
     return chirp;
@@ -52,9 +52,11 @@ int smooth_length(int length) {
 
 SmoothFourier::SmoothFourier(int length) : length_(length) {
     int stride = 1;
+    stages_.reserve(32);
     for (const int radix : kRadices) {
         for (; length % radix == 0; length /= radix, stride *= radix) {
             Stage stage{radix, length, stride, {}};
+            stage.twiddles.reserve(2 * static_cast<std::size_t>(length / radix * (radix - 1)));
             for (int p = 0; p < length / radix; ++p) {
                 for (int l = 1; l < radix; ++l) append_turn(stage.twiddles, static_cast<std::int64_t>(p) * l, length);
             }

@@ -11,11 +11,10 @@
 
 #pragma once
 
-#include <vector>
-
 #include <tex/image.h>
 
 #include "kernels/fourier.h"
+#include "memory/lent_memory.h"
 
 namespace tex {
 
@@ -36,10 +35,10 @@ public:
 private:
     struct Stage {
         int radix, length, stride;
-        std::vector<float> twiddles;
+        WorkingVector<float> twiddles;
     };
     int length_;
-    std::vector<Stage> stages_;
+    WorkingVector<Stage> stages_;
 };
 
 // The least length of that form that is at least `length`.
@@ -59,8 +58,8 @@ private:
     int length_;
     SmoothFourier fourier_;
     // Bluestein's; empty if the length needs none.
-    std::vector<float> chirp_;
-    std::vector<float> kernel_;
+    WorkingVector<float> chirp_;
+    WorkingVector<float> kernel_;
 };
 
 }  // namespace tex

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include "kernels/bake.h"
 #include "kernels/slopes.h"
 #include "kernels/stored.h"
+#include "memory/lent_memory.h"
 
 namespace tex {
 namespace {
@@ -54,7 +54,7 @@ Integrator::Integrator(const NormalMap& map, const IntegrateOptions& options)
 
 Result<Integrator::Count> Integrator::count(const Execution& execution) const {
     const int rows = strip_rows(extent_.width, 0);
-    std::vector<Count> counts(static_cast<std::size_t>((extent_.height + rows - 1) / rows));
+    WorkingVector<Count> counts(static_cast<std::size_t>((extent_.height + rows - 1) / rows));
     const auto body = [&](int begin, int end) {
         Count& count = counts[static_cast<std::size_t>(begin / rows)];
         for (int j = begin; j < end; ++j) {
@@ -131,9 +131,10 @@ Result<void> Integrator::refine(Plane<float>& heights, const Execution& executio
                                 int& steps) const {
     constexpr float kEnough = 1e-5f, kLeast = 0.1f;
     Plane<float> p(extent_), q(extent_), change(extent_);
-    const auto slopes = [&](int j, float* to_p, float* to_q) {
-        std::copy_n(p.row(j), extent_.width, to_p);
-        std::copy_n(q.row(j), extent_.width, to_q);
+    // Two references, for which std::function needs no memory.
+    const auto slopes = [&p, &q](int j, float* to_p, float* to_q) {
+        std::copy_n(p.row(j), p.extent().width, to_p);
+        std::copy_n(q.row(j), q.extent().width, to_q);
     };
     const Execution silent{execution.threads, {}};
     const double share = (span.to - span.from) / std::max(1, options_.most_steps);
@@ -155,6 +156,21 @@ Result<void> Integrator::refine(Plane<float>& heights, const Execution& executio
         if (now <= kEnough * (all.high - all.low)) break;
     }
     return {};
+}
+
+bool is_unusable(const Integrator::Count& count, Extent extent) {
+    return count.behind > extent.texels() / 16 || count.unused == extent.texels();
+}
+
+Result<float> settle_heights(Plane<float>& heights, float larger, const Execution& execution) {
+    const Extent extent = heights.extent();
+    const Bounds bounds = bounds_of(heights);
+    const auto body = [&](int begin, int end) {
+        for (int j = begin; j < end; ++j) shift_and_scale(bounds.low, 1.0f / larger, extent.width, heights.row(j));
+    };
+    const Execution silent{execution.threads, {}};
+    if (auto done = parallel_for(silent, extent.height, strip_rows(extent.width, 0), body); !done) return done.error();
+    return (bounds.high - bounds.low) * (1.0f / larger);
 }
 
 }  // namespace tex

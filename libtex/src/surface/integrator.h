@@ -17,6 +17,9 @@
 
 namespace tex {
 
+// From heights in texel widths, whose mean is 0, to those of the field, in place. Returns the highest; the lowest is 0.
+[[nodiscard]] Result<float> settle_heights(Plane<float>& heights, float larger, const Execution& execution);
+
 class Integrator {
 public:
     // `map` and `options` must outlive this object.
@@ -50,5 +53,8 @@ private:
     SurfaceAxis x_, y_;
     PoissonSolver solver_;
 };
+
+// Whether a map has no slopes: z is below 0 in more than one of sixteen texels, or no slope is known.
+[[nodiscard]] bool is_unusable(const Integrator::Count& count, Extent extent);
 
 }  // namespace tex

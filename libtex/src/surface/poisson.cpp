@@ -47,7 +47,7 @@ PoissonSolver::Responses PoissonSolver::responses_of(const Gradient& gradient, c
                                                      const AxisTransform& transform) {
     const int groups = (axis.texels + kGroup - 1) / kGroup;
     const auto padded = static_cast<std::size_t>(groups) * kGroup;
-    Responses responses{std::vector<float>(padded), std::vector<float>(padded), std::vector<float>(padded)};
+    Responses responses{WorkingVector<float>(padded), WorkingVector<float>(padded), WorkingVector<float>(padded)};
     const auto ratio = static_cast<double>(axis.ratio);
     for (int k = 0; k < axis.texels; ++k) {
         const auto at = static_cast<std::size_t>(k);

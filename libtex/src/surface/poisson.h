@@ -7,6 +7,7 @@
 #include <tex/image.h>
 #include <tex/result.h>
 
+#include "memory/lent_memory.h"
 #include "rows/bake_rows.h"
 #include "surface/axis_transform.h"
 #include "threads/parallel.h"
@@ -38,7 +39,7 @@ public:
 private:
     // The squared responses to each frequency of an axis, padded to whole groups.
     struct Responses {
-        std::vector<float> slope, smooth, ideal;
+        WorkingVector<float> slope, smooth, ideal;
     };
     static Responses responses_of(const Gradient& gradient, const AxisOperator& axis, const AxisTransform& transform);
 

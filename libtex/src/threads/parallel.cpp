@@ -75,8 +75,7 @@ int thread_count(const Execution& execution) {
     return execution.threads > 0 ? execution.threads : std::max(1, tbb::info::default_concurrency());
 }
 
-Result<void> parallel_for(const Execution& execution, int count, int grain,
-                          const std::function<void(int begin, int end)>& body, ProgressSpan span) {
+Result<void> parallel_for(const Execution& execution, int count, int grain, const LoopBody& body, ProgressSpan span) {
     grain = std::max(1, grain);
     const int pieces = (count + grain - 1) / grain;
     Ticker ticker(execution, pieces, span);
@@ -91,10 +90,13 @@ Result<void> parallel_for(const Execution& execution, int count, int grain,
         }
         ticker.tick();
     };
+    int threads = std::min(thread_count(execution), pieces);
     // TBB prints a warning to stderr if an arena requests more threads than are allowed (by default, one for each
-    // processor).
-    const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-    const int threads = std::min({thread_count(execution), pieces, static_cast<int>(allowed)});
+    // processor). One thread needs no TBB.
+    if (threads > 1) {
+        const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+        threads = std::min(threads, static_cast<int>(allowed));
+    }
     if (threads <= 1) {
         for (int piece = 0; piece < pieces; ++piece) run(piece);
     } else {
