@@ -17,6 +17,7 @@
 #include <tex/image_io.h>
 #include <tex/mesh_io.h>
 #include <tex/pack.h>
+#include <tex/scale.h>
 #include <tex/tangents.h>
 
 #include "checks/mesh_seams.h"
@@ -253,6 +254,32 @@ TEST(MeshFit, MapsThatFitHaveAMeanUnderTheUsualOne) {
                             right->p99, down->mean);
         }
     }
+}
+
+// normalTexture.scale: what the material multiplies x and y by is a part of what the seams show.
+TEST(MeshFit, SeamsCountTheScaleOfTheMaterial) {
+    const SelectedPart selected = selected_cube();
+    const NormalMap surface = wavy_surface(selected.part, {256, 256}, 1.0);
+    // Of the map, flattened, in a material with this scale.
+    const auto mean = [&](float flattened, double by) {
+        auto map = to_tangent_space(surface, {selected.part, selected.tangents});
+        EXPECT_TRUE(map);
+        auto made = scale(std::move(map->map), flattened);
+        EXPECT_TRUE(made);
+        MipChain chain;
+        chain.levels.push_back(std::move(*made));
+        auto texture = pack(chain, {Encoding::float_});
+        EXPECT_TRUE(texture);
+        const MeshToCheck mesh{selected, Decoder::gltf, "mesh.glb", by};
+        CheckOptions options;
+        options.mesh = &mesh;
+        const auto report = check("map", *texture, options);
+        EXPECT_TRUE(report && report->seams);
+        return report->seams->mean;
+    };
+    const double right = mean(1.0f, 1.0);
+    EXPECT_NEAR(mean(0.25f, 4.0), right, 0.02);
+    EXPECT_LT(mean(0.25f, 1.0), 0.7 * right);  // flatter, and so with smaller gaps
 }
 
 TEST(MeshFit, FindsNothingInTheMapsOfRealModels) {

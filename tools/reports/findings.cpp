@@ -72,8 +72,8 @@ std::string usual_seams(const Extent& extent) {
     constexpr std::pair<int, int> kUsual[] = {{2048, 5}, {1024, 10}, {512, 21}};
     for (const auto& [side, degrees] : kUsual) {
         if (std::max(extent.width, extent.height) < side) continue;
-        return fmt::format("; maps of {} texels that were baked for their mesh and decoder have a mean under {}", side,
-                           degrees);
+        return fmt::format("; usual for a map of {} texels that was baked for its mesh and decoder: a mean under {}",
+                           side, degrees);
     }
     return {};
 }
