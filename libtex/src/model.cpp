@@ -8,6 +8,8 @@
 #include <system_error>
 #include <utility>
 
+#include <tex/container.h>
+
 #include "files/beside.h"
 #include "files/input_file.h"
 #include "formats/reader/reader_mesh.h"

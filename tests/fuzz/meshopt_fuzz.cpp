@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     tex::MeshoptLayout layout;
     layout.mode = static_cast<tex::MeshoptMode>(data[0] % 3);
     layout.filter = static_cast<tex::MeshoptFilter>(data[1] % 5);
-    layout.count = data[2] + std::size_t{256} * (data[3] % 8);
+    layout.count = std::size_t{data[2]} + std::size_t{256} * (std::size_t{data[3]} % 8);
     layout.stride = data[4];
     const std::span bytes(reinterpret_cast<const std::byte*>(data + 5), size - 5);
     const auto decoded = tex::decode_meshopt(layout, bytes);

@@ -87,11 +87,11 @@ void TangentSpaceOptions::add_charts(Command& command) {
 
 MapInputs MapInputs::of(const std::vector<Task>& tasks) {
     MapInputs inputs;
-    const auto add = [&](const std::shared_ptr<const ModelInput>& model) {
-        if (!model)
+    const auto add = [&](const std::shared_ptr<const ModelInput>& map) {
+        if (!map)
             inputs.has_maps = true;
         else if (inputs.model.empty())
-            inputs.model = model->file;
+            inputs.model = map->file;
     };
     for (const Task& task : tasks) {
         add(task.model);

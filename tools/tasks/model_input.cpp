@@ -113,10 +113,10 @@ Result<std::shared_ptr<const Model>> ModelInput::read(LastModel::Part part, cons
 Result<void> ModelInput::open(ReadOptions& options) const {
     const auto model = read(LastModel::Part::maps, options);
     if (!model) return model.error();
-    const ModelImage* const image = image_of(**model, *map);
-    if (image == nullptr) return Error{ErrorCode::bad_data, name(), "its texture has no image"};
-    if (image->error) return image->error->of(path);
-    if (image->file.empty()) options.bytes = std::shared_ptr<const std::vector<std::byte>>(*model, &image->bytes);
+    const ModelImage* const found = image_of(**model, *map);
+    if (found == nullptr) return Error{ErrorCode::bad_data, name(), "its texture has no image"};
+    if (found->error) return found->error->of(path);
+    if (found->file.empty()) options.bytes = std::shared_ptr<const std::vector<std::byte>>(*model, &found->bytes);
     return {};
 }
 
