@@ -20,7 +20,8 @@ constexpr double kGreyShare = 0.999;
 constexpr double kColorShare = 0.9;
 constexpr double kExtremeShare = 0.9;
 constexpr float kExtreme = 8.0f / 255.0f;  // of a stored channel: as near to 0 or 1 as metalness is
-constexpr double kFarMean = 0.5;           // of x: occlusion is near 1, or an unused 0
+// Of x: occlusion is near 1, or an unused 0. Flat maps that went through the sRGB curve have 0.57.
+constexpr double kFarMean = 0.7;
 constexpr double kFlatShare = 0.25;
 constexpr std::int64_t kFlatLeast = 256;  // texels
 constexpr double kLeanDegrees = 10.0;
