@@ -243,6 +243,15 @@ void Maker::values() {
         colors.at(i, j, 2) = static_cast<unsigned char>(mortar ? 140 + shade : 45 + shade);
     }
     png("N214-not-a-normal-map", colors);
+    Codes orm = codes();  // a metal grid on rough stone
+    for (int k = 0; k < 128 * 128; ++k) {
+        const int i = k % 128, j = k / 128, shade = orm.at(i, j, 0) / 8;
+        const bool metal = i % 32 < 3 || j % 16 < 3;
+        orm.at(i, j, 0) = static_cast<unsigned char>(224 + shade);
+        orm.at(i, j, 1) = static_cast<unsigned char>(metal ? 60 + shade : 180 + shade);
+        orm.at(i, j, 2) = metal ? 255 : 0;
+    }
+    png("N216-occlusion-roughness-metal", orm);
     Codes unfilled = codes();
     for (int j = 64; j < 128; ++j) {
         for (int i = 80; i < 128; ++i) {

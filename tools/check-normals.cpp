@@ -54,7 +54,7 @@ CheckNormals::CheckNormals(const cli::ProgramRow& row) : Batch(row) {
     command.input("FILE...", "textures and pictures of normals, and glTF models with their maps; - is standard input");
     command.finds_things();
     rules_.add(command);
-    mesh_.add_input_of_models(command);
+    mesh_.add_input(command);
     documents_.add(command);
     command.check([this] {
         if (running.json && documents_.is_for_github())
@@ -92,7 +92,9 @@ Result<void> CheckNormals::check(const std::vector<cli::Task>& tasks) {
     std::vector<std::string> inputs;
     inputs.reserve(tasks.size());
     for (const cli::Task& task : tasks) inputs.push_back(task.input);
-    mesh_.check_models(command, inputs);
+    const auto model =
+        std::find_if(inputs.begin(), inputs.end(), [](const std::string& name) { return is_model(name); });
+    mesh_.check_models(command, {model == inputs.end() ? std::string() : *model, true});
     std::vector<cli::NamedFile> others = {
         {"--config", rules_.config()}, {"--height", rules_.height_file()}, {"--files-from", files.files_from}};
     if (mesh_.has_mesh()) {

@@ -2,6 +2,10 @@
 // compare-normals: measures the difference between two normal maps.
 
 #include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <tex/tex.h>
@@ -12,6 +16,7 @@
 #include "options/curve.h"
 #include "options/pair.h"
 #include "options/run.h"
+#include "options/tangent_space.h"
 #include "reports/comparison.h"
 #include "reports/curve.h"
 
@@ -25,12 +30,14 @@ public:
     [[nodiscard]] cli::ExitCode work(cli::Console& console) override;
 
 private:
+    [[nodiscard]] std::vector<std::string> sources() const;
     [[nodiscard]] Result<cli::ExitCode> compare_files(cli::Console& console);
     [[nodiscard]] Result<cli::ExitCode> draw_curve(cli::Console& console);
     [[nodiscard]] Result<void> write_page(cli::Console& console, const std::vector<cli::ComparedLevel>& levels,
                                           const Plane<float>& degrees);
 
     cli::PairOptions pair_;
+    cli::TangentSpaceOptions mesh_;
     cli::CompareDocuments documents_;
     cli::CurveOptions curve_;
     cli::RunOptions running_;
@@ -43,6 +50,7 @@ CompareNormals::CompareNormals(const cli::ProgramRow& row) : Program(row) {
     command.input("A B", "two textures or pictures; - is standard input");
     command.finds_things();
     pair_.add(command);
+    mesh_.add_charts(command);
     documents_.add(command);
     curve_.add(command);
     running_.add(command);
@@ -52,13 +60,15 @@ CompareNormals::CompareNormals(const cli::ProgramRow& row) : Program(row) {
         if (curve_.is_asked()) return;
         if (inputs.size() != 2) throw cli::UsageError("two files are compared: A and B");
         if (inputs[0] == "-" && inputs[1] == "-") throw cli::UsageError("standard input can only be read once");
-        documents_.check(inputs);
+        documents_.check(sources());
     });
     command.example("compare-normals bricks.exr bricks.dds", "What the compression of bricks.dds cost.");
     command.example("compare-normals old.dds new.dds --level all --max-p999 2 --heatmap diff.png",
                     "Fails if more than 1 texel in 1000 moved by over 2 degrees, and shows where.");
     command.example("compare-normals bricks.exr bricks.dds --report loss.html",
                     "A page with both maps under a light that can be moved.");
+    command.example("compare-normals mine.png theirs.png --mesh rock.glb",
+                    "Two bakes, without what is between the charts.");
     command.example("compare-normals gl.png dx.png --y-b down", "Two conventions of one map.");
     command.example("compare-normals bricks.exr --rdo-means 0,0.1,0.3,1 --plot curve.svg",
                     "What --rdo-mean saves in bytes, and costs in degrees.");
@@ -70,7 +80,7 @@ cli::ExitCode CompareNormals::work(cli::Console& console) {
     host.begin();
     auto code = curve_.is_asked() ? draw_curve(console) : compare_files(console);
     if (code) {
-        if (auto written = documents_.write_depfile(command.inputs()); !written) code = written.error();
+        if (auto written = documents_.write_depfile(sources()); !written) code = written.error();
     }
     console.clear_progress();
     if (!host.interruption().empty()) host.end_interrupted();
@@ -80,6 +90,14 @@ cli::ExitCode CompareNormals::work(cli::Console& console) {
     return running_.json ? std::max(failed, cli::print_failure(console, run_, code.error())) : failed;
 }
 
+// Everything that is read.
+std::vector<std::string> CompareNormals::sources() const {
+    std::vector<std::string> names = command.inputs();
+    if (!mesh_.has_mesh()) return names;
+    for (std::string& name : mesh_.files()) names.push_back(std::move(name));
+    return names;
+}
+
 Result<cli::ExitCode> CompareNormals::compare_files(cli::Console& console) {
     const std::vector<std::string>& names = command.inputs();
     const auto a = pair_.read_levels(names[0], 0, running_.read, console, running_.step(console, 0.0, 0.3, names[0]));
@@ -87,6 +105,13 @@ Result<cli::ExitCode> CompareNormals::compare_files(cli::Console& console) {
     const auto b = pair_.read_levels(names[1], 1, running_.read, console, running_.step(console, 0.3, 0.6, names[1]));
     if (!b) return b.error();
     pair_.warn_of_doubts(names, console);
+    std::optional<cli::MeshSpace> mesh;
+    if (mesh_.has_mesh()) {
+        auto read = mesh_.charts(running_.read, {running_.threads, {}});
+        if (!read) return read.error();
+        mesh = std::move(*read);
+        for (const std::string& remark : mesh->selected().remarks) pair_.warn(console, mesh->file(), remark);
+    }
     const auto [first, end] = pair_.levels(*a, *b, names, console);
     cli::ExitCode code = cli::ExitCode::done, printed = code;
     std::vector<cli::ComparedLevel> levels;
@@ -95,8 +120,9 @@ Result<cli::ExitCode> CompareNormals::compare_files(cli::Console& console) {
     for (std::size_t k = first; k < end; ++k) {
         if (auto fits = cli::PairOptions::check_level(k, *a, *b, names); !fits) return fits.error();
         const Execution shown = running_.step(console, k == first ? 0.6 : until, until, fmt::format("level {}", k));
-        auto comparison = compare(a->levels[k], b->levels[k], shown);
-        if (!comparison) return comparison.error();
+        auto comparison = mesh ? compare(a->levels[k], b->levels[k], mesh->selected().part, 0, shown)
+                               : compare(a->levels[k], b->levels[k], shown);
+        if (!comparison) return comparison.error().of(mesh ? mesh->file() : names[0]);
         cli::ComparedLevel level{static_cast<int>(k), a->levels[k].extent(), comparison->error};
         if (printed == cli::ExitCode::done) printed = cli::print_level(console, run_, level, running_.json, k == first);
         const std::vector<std::string> violations = pair_.violations(level.number, level.error);

@@ -34,13 +34,16 @@ public:
 
 private:
     [[nodiscard]] cli::OutputRules rules() const override {
-        return {{}, Container::dds, false, conversion_.spaces.files(), {}, usual_encoding()};
+        cli::OutputRules rules{{}, Container::dds, false, conversion_.spaces.files(), {}, usual_encoding()};
+        rules.models = conversion_.spaces.material();
+        return rules;
     }
     [[nodiscard]] Encoding (*usual_encoding() const)(Container) {
         return conversion_.makes_object() ? &object_encoding : &default_encoding;
     }
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] Result<void> process(cli::Job& job) override;
+    [[nodiscard]] Result<void> apply_scale(cli::Job& job, Source& source) const;
     [[nodiscard]] PackOptions packing(const SourceInfo& input, const cli::Task& task) const;
 
     cli::ConversionOptions conversion_;
@@ -50,7 +53,8 @@ private:
 ConvertNormals::ConvertNormals(const cli::ProgramRow& row) : NormalsConverter(row) {
     command.usage("NORMALS... -o FILE --mesh MESH");
     command.usage("NORMALS... --out-dir DIR --mesh MESH");
-    command.input("NORMALS...", "normal maps; - is standard input");
+    command.usage("MODEL... --out-dir DIR");
+    command.input("NORMALS...", "normal maps, or glTF models with their maps; - is standard input");
     files.add(command);
     conversion_.add(command);
     normals.add(command, false, cli::NormalsReader::Others::left_out);
@@ -68,6 +72,8 @@ ConvertNormals::ConvertNormals(const cli::ProgramRow& row) : NormalsConverter(ro
     command.example(
         "convert-normals rock_n.png -o rock_ue.png --mesh rock.glb --decoder-in unity-builtin --decoder unreal",
         "From one engine to another.");
+    command.example("convert-normals model.glb --out-dir out --decoder godot",
+                    "Every normal map that the materials of a model use, each on its mesh.");
     command.check([this] {
         if (conversion_.spaces.from == Space::object && normals.measures_y)
             throw cli::UsageError("--y-in measured needs --from tangent");
@@ -85,6 +91,7 @@ ConvertNormals::ConvertNormals(const cli::ProgramRow& row) : NormalsConverter(ro
 }
 
 Result<void> ConvertNormals::check(const std::vector<cli::Task>& tasks) {
+    conversion_.spaces.check_conversion(command, cli::MapInputs::of(tasks));
     mips_.check(tasks);
     return {};
 }
@@ -99,16 +106,33 @@ PackOptions ConvertNormals::packing(const SourceInfo& input, const cli::Task& ta
     return own.pack_options(encoding, YAxis::up, !conversion_.makes_object());
 }
 
+// What the material makes of the map becomes a part of the map.
+Result<void> ConvertNormals::apply_scale(cli::Job& job, Source& source) const {
+    if (!job.task.model || conversion_.spaces.from == Space::object) return {};
+    const double by = job.task.model->map->scale;
+    if (by == 1.0) return {};
+    const ScaleMode mode = conversion_.spaces.ignores_z(true) ? ScaleMode::xy : ScaleMode::slope;
+    auto scaled = scale(std::move(source.chain.levels.front()), static_cast<float>(by), mode, {job.threads(), {}});
+    if (!scaled) return scaled.error().of(job.task.name());
+    source.chain.levels.front() = std::move(*scaled);
+    if (!conversion_.makes_object())
+        job.warn(fmt::format("the scale {:.4g} of its material is in the output: set it to 1 there", by));
+    return {};
+}
+
 Result<void> ConvertNormals::process(cli::Job& job) {
     // In tangent space, a wrong y gives a wrong result, whichever way green points in the output.
     const bool doubt_y = conversion_.spaces.from == Space::tangent;
-    const bool keep_length = conversion_.spaces.ignores_z();
-    auto source = normals.read(job, job.task.input, job.until(0.2),
-                               {true, false, {}, keep_length, doubt_y, conversion_.spaces.from == Space::object});
+    const cli::ModelInput* const model = job.task.model.get();
+    const bool keep_length = conversion_.spaces.ignores_z(model != nullptr);
+    const bool is_object = conversion_.spaces.from == Space::object;
+    auto source = normals.read(job, job.task.map_path(), job.until(0.2),
+                               {true, false, {}, keep_length, doubt_y, is_object, model});
     if (!source) return source.error();
     cli::report_input(job, source->info);
-    if (conversion_.spaces.from == Space::object && !holds_z(source->info.swizzle))
-        return Error{ErrorCode::bad_option, job.task.input, "stores no z, which object space needs"};
+    if (is_object && !holds_z(source->info.swizzle))
+        return Error{ErrorCode::bad_option, job.task.name(), "stores no z, which object space needs"};
+    if (auto scaled = apply_scale(job, *source); !scaled) return scaled;
     auto converted = conversion_.convert(job, source->chain.levels.front(), 0.8);
     if (!converted) return converted.error();
     source->chain.levels.clear();

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // pack-normals: normal maps to textures in any encoding.
 
+#include <algorithm>
+#include <string>
+
 #include <tex/tex.h>
 
 #include "batch/repack.h"
@@ -17,21 +20,23 @@ public:
 
 private:
     [[nodiscard]] cli::OutputRules rules() const override {
-        cli::OutputRules rules;
-        rules.batch = Container::dds;
+        cli::OutputRules rules{Container::dds};
+        rules.models = material_;
         rules.amend = [this](cli::Task& task) { others.amend(task); };
         return rules;
     }
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] PackFileOptions options(cli::Job& job) const override;
 
+    std::string material_;
     bool normalize_ = false;
     cli::WrapOptions wrap_;
     cli::MipChainOptions mips_;
 };
 
 PackNormals::PackNormals(const cli::ProgramRow& row) : Repacker(row) {
-    add_files("normal maps; - is standard input");
+    add_files("normal maps, and glTF models with their maps; - is standard input");
+    command.text(material_, "--material", "NAME", "of models, only the maps of this material, or of its number from 0");
     command.flag(normalize_, "--normalize", "make vectors unit also where that changes codes that could stay");
     output.add(command, cli::default_encodings(), "as in the input");
     output.add_engines(command);
@@ -47,11 +52,15 @@ PackNormals::PackNormals(const cli::ProgramRow& row) : Repacker(row) {
     command.example("pack-normals bricks.dds -o bricks_bc5.ktx2 --format bc5", "Another encoding, the same levels.");
     command.example("pack-normals rock_n.png -o rock_pbr.png --layout labpbr --blue rock_ao.png --alpha rock_h.png",
                     "Occlusion and heights beside the normals.");
+    command.example("pack-normals model.glb --out-dir out --for unreal --name '{stem}_{material}.{type}'",
+                    "Every normal map that the materials of a model use.");
     command.example("pack-normals directx/*.png --out-dir opengl --format rgb8 --y-in down --y up",
                     "Pictures from one convention to the other.");
 }
 
 Result<void> PackNormals::check(const std::vector<cli::Task>& tasks) {
+    const bool has_models = std::any_of(tasks.begin(), tasks.end(), [](const cli::Task& task) { return task.model; });
+    if (!material_.empty() && !has_models) throw cli::UsageError("--material needs a model");
     mips_.check(tasks);
     mips_.check_builds(command, tasks);
     return {};

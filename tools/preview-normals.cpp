@@ -30,10 +30,18 @@ public:
     explicit PreviewNormals(const cli::ProgramRow& row);
 
 private:
-    [[nodiscard]] cli::OutputRules rules() const override { return {Container::png, Container::png, true, sources()}; }
+    [[nodiscard]] cli::OutputRules rules() const override {
+        cli::OutputRules rules{Container::png, Container::png, true, sources()};
+        rules.models = mesh_.material();
+        return rules;
+    }
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] Result<void> process(cli::Job& job) override;
 
+    // The mesh and the scale that a material has for its map.
+    [[nodiscard]] Result<void> put_on_mesh(cli::Job& job, const cli::ModelInput& model, cli::SampledMap& map) const;
+    [[nodiscard]] Result<cli::SampledMap> read(cli::Job& job, std::size_t number, cli::Sampling sampling,
+                                               const Execution& execution);
     [[nodiscard]] static Result<void> leave_out(cli::Job& job, const cli::SheetOptions::Maps& maps);
 
     // The files besides the maps.
@@ -47,7 +55,8 @@ private:
 PreviewNormals::PreviewNormals(const cli::ProgramRow& row) : NormalsConverter(row) {
     command.usage("MAP... -o PICTURE");
     command.usage("MAP... --out-dir DIR [--name PATTERN]");
-    command.input("MAP...", "normal maps; with -o all go onto one sheet; - is standard input");
+    command.input("MAP...",
+                  "normal maps, and glTF models with theirs; with -o all go onto one sheet; - is standard input");
     files.add(command, true);
     command
         .choice(output.container, "--container", "TYPE", kContainerNames,
@@ -58,11 +67,6 @@ PreviewNormals::PreviewNormals(const cli::ProgramRow& row) : NormalsConverter(ro
     scene_.add(command);
     mesh_.add_input(command, true);
     normals.warns_of_background = false;
-    command.check([this] {
-        sheet_.check_mesh(mesh_.has_mesh());
-        const auto idle = command.given_of({"--shape", "--mirror"});
-        if (mesh_.has_mesh() && !idle.empty()) throw cli::UsageError(idle.front() + " has no meaning with --mesh");
-    });
     running.add(command);
     command.example("preview-normals bricks.dds -o bricks.png", "The map under a light from the upper left.");
     command.example("preview-normals bricks.dds -o sphere.png --shape sphere --detail grain.dds --detail-tiling 8",
@@ -76,6 +80,7 @@ PreviewNormals::PreviewNormals(const cli::ProgramRow& row) : NormalsConverter(ro
                     "Two maps in one picture, and the angles between them.");
     command.example("preview-normals rock_n.dds -o look.png --mesh rock.glb --camera 30,20 --show lit,tangents,seams",
                     "On its mesh, with its tangents and the error along its UV seams.");
+    command.example("preview-normals model.glb -o look.png", "A model with its own maps, a picture for each material.");
 }
 
 std::vector<std::string> PreviewNormals::sources() const {
@@ -86,6 +91,12 @@ std::vector<std::string> PreviewNormals::sources() const {
 }
 
 Result<void> PreviewNormals::check(const std::vector<cli::Task>& tasks) {
+    const cli::MapInputs inputs = cli::MapInputs::of(tasks);
+    mesh_.check_models(command, inputs);
+    sheet_.check_mesh(mesh_.has_mesh() || !inputs.has_maps);
+    const auto idle = command.given_of({"--shape", "--mirror"});
+    if (!idle.empty() && (mesh_.has_mesh() || !inputs.model.empty()))
+        throw cli::UsageError(idle.front() + (mesh_.has_mesh() ? " has no meaning with --mesh" : " is not for models"));
     for (const cli::Task& task : tasks) {
         cli::OutputOptions::check_holds(task.output, task.container, Encoding::rgb8);
         if (cli::has_level(task.output)) throw cli::UsageError("--name: {level} has no meaning for pictures");
@@ -111,8 +122,39 @@ Result<void> PreviewNormals::leave_out(cli::Job& job, const cli::SheetOptions::M
     return {};
 }
 
+Result<void> PreviewNormals::put_on_mesh(cli::Job& job, const cli::ModelInput& model, cli::SampledMap& map) const {
+    auto mesh = mesh_.input(model, job.read_options, {job.threads(), {}});
+    if (!mesh) return mesh.error();
+    map.mesh = std::make_shared<const cli::OwnMesh>(std::move(*mesh));
+    map.scale = static_cast<float>(model.map->scale);
+    return {};
+}
+
+// Reads one of the maps of the job.
+Result<cli::SampledMap> PreviewNormals::read(cli::Job& job, std::size_t number, cli::Sampling sampling,
+                                             const Execution& execution) {
+    const auto& model = number == 0 ? job.task.model : job.task.joined_models[number - 1];
+    if (!model) return cli::read_sampled_map(job, job.task.inputs()[number], normals, sampling, execution);
+    if (model->error) return *model->error;
+    if (!model->map) return Error{ErrorCode::unsupported, model->file, "no material uses a normal map"};
+    cli::SampledMap on_mesh;
+    if (auto put = put_on_mesh(job, *model, on_mesh); !put) return put.error();
+    sampling.reading.model = model.get();
+    if (sampling.reading.object) sampling.from_object = &on_mesh.mesh->mesh;
+    auto map = cli::read_sampled_map(job, model->path, normals, sampling, execution);
+    if (!map) return map;
+    map->mesh = std::move(on_mesh.mesh);
+    map->scale = on_mesh.scale;
+    return map;
+}
+
 Result<void> PreviewNormals::process(cli::Job& job) {
-    const std::vector<std::string> names = job.task.inputs();
+    std::vector<cli::SheetOptions::MapName> names;
+    for (const std::string& input : job.task.inputs()) {
+        const auto& model = names.empty() ? job.task.model : job.task.joined_models[names.size() - 1];
+        names.push_back(model && model->map ? cli::SheetOptions::MapName{model->name(), model->field}
+                                            : cli::SheetOptions::MapName{input});
+    }
     std::optional<cli::MeshSpace> mesh;
     if (mesh_.has_mesh()) {
         auto read = mesh_.input(job.task.tile, job.read_options, {job.threads(), {}});
@@ -128,13 +170,13 @@ Result<void> PreviewNormals::process(cli::Job& job) {
                                     preview.wrap_x,
                                     preview.wrap_y,
                                     with_heights,
-                                    is_object ? &*mesh : nullptr};
+                                    is_object && mesh ? &*mesh : nullptr};
     cli::SheetOptions::Maps maps;
-    for (const std::string& name : names) {
+    for (const auto& name : names) {
         const double share = static_cast<double>(maps.size() + 1) / static_cast<double>(names.size());
-        auto map = cli::read_sampled_map(job, name, normals, sampling, job.until(0.4 * share));
+        auto map = read(job, maps.size(), sampling, job.until(0.4 * share));
         if (!map && !sheet_.can_leave_out(map.error(), names.size())) return map.error();
-        maps.push_back(map ? std::move(map) : map.error().of(name));
+        maps.push_back(map ? std::move(map) : map.error().of(name.file));
     }
     if (!can_show_any(maps)) return leave_out(job, maps);
     auto with = scene_.read(job, normals, job.until(0.5));
@@ -151,7 +193,7 @@ Result<void> PreviewNormals::process(cli::Job& job) {
     if (!bytes) return bytes.error().of(job.task.output);
     if (auto written = write_file(job.task.output, *bytes, job.write_options); !written) return written.error();
     job.wrote(job.task.output);
-    job.report["maps"] = names;
+    for (const auto& name : names) job.report["maps"].push_back(name.file);
     if (!sheet_.is_difference()) job.report["show"] = sheet_.names_of_shows();
     job.report["extent"] = {first.extent().width, first.extent().height};
     job.report["frames"] = frames->size();

@@ -53,7 +53,15 @@ py::object blended(Call& call, BlendOptions& options, Running& running) {
 py::object compared(Call& call, Running& running) {
     const NormalMap a = map_from(call["a"], "a"), b = map_from(call["b"], "b");
     need_equal(b.extent(), a.extent(), "b");
-    Comparison comparison = running.run([&](const Execution& e) { return compare(a, b, e); });
+    const bool on_mesh = call.has("part") && !call["part"].is_none();
+    const MeshPart* part = nullptr;
+    if (on_mesh) {
+        if (!py::isinstance<MeshPart>(call["part"])) raise_type("part", "a MeshPart", call["part"]);
+        part = &call["part"].cast<const MeshPart&>();
+    }
+    const int set = call.has("uv_set") ? Convert<int>::from(call["uv_set"], "uv_set") : 0;
+    Comparison comparison = running.run(
+        [&](const Execution& e) { return part != nullptr ? compare(a, b, *part, set, e) : compare(a, b, e); });
     py::dict result = dict_of(comparison.error);
     result["degrees"] = array_of(std::move(comparison.degrees));
     return result;
@@ -130,9 +138,10 @@ void add_normals(Module& module) {
         "Layer: 'scale', 'tiling', 'offset', 'rotation', 'wrap', 'strength' and 'mask', an array (height, width).",
         blended);
     module.verb<Running>(
-        "compare", {{"a", kMapSource}, {"b", kMapSource}}, "dict[str, Any]",
+        "compare", {{"a", kMapSource}, {"b", kMapSource}, {"part", "MeshPart | None", "None"}, {"uv_set", "int", "0"}},
+        "dict[str, Any]",
         "A dict of the fields of AngularError, and 'degrees': the angle of each texel, an array (height, "
-        "width).",
+        "width). With a part of a mesh, of the texels that it covers.",
         compared);
     add_roughness(module);
 }

@@ -303,7 +303,7 @@ Result<CheckReport> check_map(const Model& model, const ModelMap& map, const Mod
         const MapInModel in{model, map};
         checks.model = &in;
         std::optional<MeshToCheck> mesh;
-        if (selected) mesh.emplace(MeshToCheck{*selected, options.decoder, model.file});
+        if (selected) mesh.emplace(MeshToCheck{*selected, options.decoder, model.file, map.scale});
         checks.mesh = mesh ? &*mesh : nullptr;
         auto report = check(model.file, *texture, checks, execution);
         if (!report && mesh && report.error().code != ErrorCode::cancelled &&

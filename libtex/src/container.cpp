@@ -117,7 +117,7 @@ void remove_unfinished_files() noexcept { UnfinishedFile::remove_all(); }
 
 Result<Texture> read_texture(const std::string& path, const ReadOptions& options) {
     return guarded([&]() -> Result<Texture> {
-        Result<InputFile> file = InputFile::open(path);
+        Result<InputFile> file = open_input(path, options);
         if (!file) return file.error();
         return read_texture(*file, options);
     });

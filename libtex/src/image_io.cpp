@@ -10,7 +10,7 @@ namespace tex {
 
 Result<Image> read_image(const std::string& path, const ReadOptions& options) {
     return guarded([&]() -> Result<Image> {
-        Result<InputFile> file = InputFile::open(path);
+        Result<InputFile> file = open_input(path, options);
         if (!file) return std::move(file).error();
         return read_image(*file, options);
     });

@@ -59,7 +59,7 @@ Result<void> measure_curl(const NormalMap& map, const BakeOptions& bake, Integra
     };
     const int strip = strip_rows(extent.width, 2 * gradient.radius);
     if (auto done = parallel_for(execution, extent.height, strip, body, span); !done) return done;
-    auto error = summarise_angles(result.degrees, sums, execution);
+    auto error = summarise_angles(result.degrees, sums, 0, execution);
     if (!error) return error.error();
     result.curl = *error;
     return {};

@@ -8,18 +8,24 @@
 #include <system_error>
 #include <utility>
 
+#include <tex/container.h>
+
 #include "files/beside.h"
 #include "files/input_file.h"
 #include "formats/reader/reader_mesh.h"
 #include "formats/texture_rows.h"
 #include "mesh/gltf.h"
 #include "mesh/gltf_images.h"
+#include "mesh/gltf_materials.h"
 #include "threads/guard.h"
 
 namespace tex {
 namespace {
 
-Result<Model> parse_model(const std::string& path, std::span<const std::byte> bytes, const MeshReadOptions& options) {
+enum class Geometry { read, left_out };
+
+Result<Model> parse_model(const std::string& path, std::span<const std::byte> bytes, const MeshReadOptions& options,
+                          Geometry geometry) {
     const LoadBeside load = [&](const std::string& name) {
         return read_at_most(beside(path, name), options.max_bytes);
     };
@@ -32,13 +38,20 @@ Result<Model> parse_model(const std::string& path, std::span<const std::byte> by
     if (!document) return document.error();
     const JsonValue root = document->root();
     GltfBuffers buffers(root, chunks->json.size(), chunks->binary, load);
-    auto mesh = parse_gltf(root, buffers, draco);
-    if (!mesh) return mesh.error();
-    auto maps = gltf_maps(root);
-    if (!maps) return maps.error();
     Model model;
     model.file = path;
-    model.mesh = std::move(*mesh);
+    if (geometry == Geometry::read) {
+        auto mesh = parse_gltf(root, buffers, draco);
+        if (!mesh) return mesh.error();
+        model.mesh = std::move(*mesh);
+    } else {
+        if (auto known = check_asset(root); !known) return known.error();
+        auto materials = gltf_materials(root);
+        if (!materials) return materials.error();
+        model.mesh.materials = std::move(*materials);
+    }
+    auto maps = gltf_maps(root);
+    if (!maps) return maps.error();
     model.images = gltf_images(root, buffers, *maps);
     model.maps = std::move(*maps);
     for (ModelImage& image : model.images) {
@@ -67,16 +80,28 @@ bool is_model(const std::string& path) {
     return file && is_gltf(file->head());
 }
 
-Result<Model> read_model(const std::string& path, const MeshReadOptions& options) {
+namespace {
+
+Result<Model> read_model(const std::string& path, const MeshReadOptions& options, Geometry geometry) {
     return guarded([&]() -> Result<Model> {
         if (path == "-") return Error{ErrorCode::unsupported, path, "a model cannot come from standard input"};
         const auto bytes = read_at_most(path, options.max_bytes);
         if (!bytes) return bytes.error();
         if (!is_gltf(*bytes)) return Error{ErrorCode::unsupported, path, "is not a glTF model"};
-        auto model = parse_model(path, *bytes, options);
+        auto model = parse_model(path, *bytes, options, geometry);
         if (!model) return model.error().of(path);
         return model;
     });
+}
+
+}  // namespace
+
+Result<Model> read_model(const std::string& path, const MeshReadOptions& options) {
+    return read_model(path, options, Geometry::read);
+}
+
+Result<Model> read_model_maps(const std::string& path, const MeshReadOptions& options) {
+    return read_model(path, options, Geometry::left_out);
 }
 
 std::string map_name(const Model& model, const ModelMap& map) {

@@ -53,7 +53,7 @@ Result<BakeFileReport> bake_file(const std::string& input, const std::string& ou
                                  const BakeFileOptions& options, const Execution& execution) {
     return guarded([&]() -> Result<BakeFileReport> {
         if (auto valid = validate(options); !valid) return valid.error();
-        Result<InputFile> file = InputFile::open(input);
+        Result<InputFile> file = open_input(input, options.read);
         if (!file) return file.error();
         return bake_stream(*file, output, container, options, execution);
     });
@@ -63,7 +63,7 @@ Result<PackFileReport> pack_file(const std::string& input, const std::string& ou
                                  const PackFileOptions& options, const Execution& execution) {
     return guarded([&]() -> Result<PackFileReport> {
         if (auto valid = validate(options); !valid) return valid.error();
-        Result<InputFile> file = InputFile::open(input);
+        Result<InputFile> file = open_input(input, options.source.read);
         if (!file) return file.error();
         return pack_stream(*file, output, container, options, execution);
     });

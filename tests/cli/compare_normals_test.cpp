@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <tex/tex.h>
@@ -160,6 +163,49 @@ TEST_F(CompareNormals, RefusesWhatCannotBeCompared) {
     const Ran sizes = compare({"up.exr", "small.dds"});
     EXPECT_EQ(sizes.code, 4);
     EXPECT_NE(sizes.err.find("64x64"), std::string::npos);
+}
+
+// Two bakes that agree on the charts and differ between them.
+TEST_F(CompareNormals, PaddingDoesNotCountOnAMesh) {
+    scratch_.write("half.obj",
+                   "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 0.5 0\nvt 0.5 1\nvt 0 1\n"
+                   "f 1/1 2/2 3/3 4/4\n");
+    ASSERT_EQ(shell(scratch_,
+                    "convert -size 128x128 'xc:rgb(128,128,255)' a.png; convert a.png -fill "
+                    "'rgb(255,128,128)' -draw 'rectangle 64,0 127,127' b.png")
+                  .code,
+              0);
+    const Ran all = compare({"a.png", "b.png", "--json"});
+    EXPECT_GT(nlohmann::json::parse(all.out)["degrees"]["mean"], 40.0) << all.err;
+    const Ran covered = compare({"a.png", "b.png", "--mesh", "half.obj", "--json", "--max", "0"});
+    EXPECT_EQ(covered.code, 0) << covered.err;
+    const auto line = nlohmann::json::parse(covered.out);
+    EXPECT_EQ(line["degrees"]["max"], 0.0);
+    EXPECT_EQ(line["texels"], 64 * 128);
+    const Ran text = compare({"a.png", "b.png", "--mesh", "half.obj"});
+    EXPECT_NE(text.out.find("; 8192 texels are covered\n"), std::string::npos) << text.out;
+    const Ran page = compare({"a.png", "b.png", "--mesh", "half.obj", "--report", "p.html", "--depfile", "d"});
+    EXPECT_EQ(page.code, 0) << page.err;
+    EXPECT_NE(scratch_.read("d").find("half.obj"), std::string::npos);
+    for (const auto& [arguments, said] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+             {{"a.png", "b.png", "--material", "x"}, "--material needs --mesh"},
+             {{"a.png", "b.png", "--uv-set", "0"}, "--uv-set needs --mesh"},
+             {{"a.png", "b.png", "--mesh", "half.obj", "--heatmap", "half.obj"}, "is the input"},
+             {{"a.png", "--rdo-means", "0", "--mesh", "half.obj"}, "--mesh and --rdo-means contradict each other"}}) {
+        const Ran ran = compare(arguments);
+        EXPECT_EQ(ran.code, 2) << ran.err;
+        EXPECT_NE(ran.err.find(said), std::string::npos) << ran.err;
+    }
+    EXPECT_EQ(compare({"a.png", "b.png", "--mesh", "half.obj", "--uv-set", "3"}).code, 4);
+}
+
+// The number is that of ../shared/data/SOURCES.md, which another program counted.
+TEST_F(CompareNormals, ModelsOfGltfpackCoverTheTexelsThatTheyDo) {
+    const std::filesystem::path wild = TEX_SOURCE_DIR "/../shared/data/wild";
+    if (!std::filesystem::exists(wild)) GTEST_SKIP() << "no ../shared/data";
+    const std::string map = (wild / "tangent_map_256.png").string();
+    const Ran ran = compare({map, map, "--mesh", (wild / "gltfpack_default_quantized.glb").string(), "--json"});
+    EXPECT_EQ(nlohmann::json::parse(ran.out)["texels"], 52900) << ran.err;
 }
 
 }  // namespace tex::cli

@@ -26,9 +26,10 @@ struct WantedFile {
 constexpr WantedFile kWanted[] = {
     {"unity", "rock.png", "rgb8", "up", 1},         {"unreal", "rock.png", "rgb8", "down", 1},
     {"godot", "rock.png", "rgb8", "up", 1},         {"gltf", "rock.png", "rgb8", "up", 1},
-    {"three", "rock.png", "rgb8", "up", 1},         {"blender", "rock.png", "rgb16", "up", 1},
-    {"bevy", "rock.ktx2", "bc5", "up", 10},         {"o3de", "rock_normal.png", "rgb8", "down", 1},
-    {"android", "rock.ktx2", "eac-rg11", "up", 10}, {"ios", "rock.ktx2", "eac-rg11", "up", 10},
+    {"three", "rock.png", "rgb8", "up", 1},         {"three-packed", "rock.ktx2", "bc5", "up", 10},
+    {"blender", "rock.png", "rgb16", "up", 1},      {"bevy", "rock.ktx2", "bc5", "up", 10},
+    {"o3de", "rock_normal.png", "rgb8", "down", 1}, {"android", "rock.ktx2", "eac-rg11", "up", 10},
+    {"ios", "rock.ktx2", "eac-rg11", "up", 10},
 };
 
 std::string all_engines() {
@@ -144,8 +145,8 @@ TEST_F(Engines, NamesSeparateTheFilesOfSeveralEngines) {
 TEST_F(Engines, MistakesSayWhatIsWrong) {
     fails(
         "bake-normals rock.png -o x.png --for unitty",
-        "--for: must be one of unity, unreal, godot, gltf, three, blender, bevy, o3de, android, ios, not 'unitty'; did "
-        "you mean unity?");
+        "--for: must be one of unity, unreal, godot, gltf, three, three-packed, blender, bevy, o3de, android, ios, not "
+        "'unitty'; did you mean unity?");
     fails("bake-normals rock.png -o x.png --for unity,unity", "unity is named twice");
     fails("bake-normals rock.png -o x.png --for unity,list", "not 'list'");
     fails("bake-normals rock.png -o x.png --for unity,unreal", "-o takes one engine of --for, 2 are given");
@@ -222,6 +223,12 @@ TEST_F(Engines, CheckNormalsAcceptsWhatForMakesAndNamesWhatDoesNotFit) {
     EXPECT_EQ(shell(scratch_, "check-normals --for ios astc.ktx2").code, 0);
     EXPECT_EQ(shell(scratch_, "check-normals --for android astc.ktx2").code, 0);
     says("bevy", "astc.ktx2", "does not read normals from astc-8x6-unorm, ra");
+    says("three-packed", "astc.ktx2",
+         "does not read normals from astc-8x6-unorm, ra but from bc5, eac-rg11, rg8, rgba8");
+    says("three-packed", "out/three/rock.png", "three-packed does not read png but ktx2");
+    says("three", "out/three-packed/rock.ktx2", "three does not read normals from bc5-unorm, rg");
+    // three.js 0.187 draws the file for bevy as it must (tests/engines).
+    EXPECT_EQ(scratch_.read("out/three-packed/rock.ktx2"), scratch_.read("out/bevy/rock.ktx2"));
     says("bevy", "out/godot/rock.png", "bevy needs all 10 levels, and the file has 1");
     does("bake-normals rock.png -o one.dds --mips none");
     says("unity", "one.dds", "unity needs all 10 levels, and the file has 1");

@@ -27,6 +27,23 @@ def wavy():
     return square(normals=lean / np.linalg.norm(lean, axis=1, keepdims=True))
 
 
+def test_compare_counts_only_what_a_part_covers():
+    a = np.zeros((8, 8, 3), np.float32)
+    a[..., 2] = 1
+    b = a.copy()
+    b[:, 4:] = (1, 0, 0)
+    half = [[0, 0], [0.5, 0], [0.5, 1], [0, 1]]
+    chart = tex.MeshPart(positions=[[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], indices=[[0, 1, 2], [0, 2, 3]],
+                         uvs=[half])
+    assert tex.compare(a, b)["max"] > 89.9
+    covered = tex.compare(a, b, part=chart, uv_set=0)
+    assert covered["max"] == 0 and covered["texels"] == 32
+    with pytest.raises(ValueError):
+        tex.compare(a, b, part=chart, uv_set=1)
+    with pytest.raises(TypeError, match="a MeshPart"):
+        tex.compare(a, b, part=3)
+
+
 def test_a_part_keeps_its_arrays():
     part = square(name="square", tangents=[[1, 0, 0, 1]] * 4)
     np.testing.assert_array_equal(part.positions, np.float32(POSITIONS))

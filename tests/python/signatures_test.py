@@ -32,6 +32,7 @@ NOT_BOUND = {
     "name_of": "words are the names",
     "padded_stride": "memory of planes, which arrays keep",
     "read_map": "read_texture() and decode_file() read the image of a map of read_model()",
+    "read_model_maps": "read_model() reads the same, with the mesh",
     "rebuilds_z": "to_object_space() and preview() ask it",
     "reconstruct_z": "a formula for one texel, for numpy: sqrt(1 - clip(x * x + y * y, 0, 1))",
     "reconstruct_z_approximate": "the same, for comparison",

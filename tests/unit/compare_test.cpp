@@ -181,5 +181,71 @@ TEST(Compare, StopsWhenAsked) {
     EXPECT_EQ(comparison.error().code, ErrorCode::cancelled);
 }
 
+// A square of two triangles over [low, high] in u and v.
+MeshPart covering_chart(float low, float high) {
+    MeshPart part;
+    part.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    part.uvs = {{{low, low}, {high, low}, {high, high}, {low, high}}};
+    part.indices = {0, 1, 2, 0, 2, 3};
+    return part;
+}
+
+TEST(Compare, OnAMeshOnlyCoveredTexelsCount) {
+    const Extent extent{64, 64};
+    const NormalMap a = scattered(extent, 3), b = scattered(extent, 4);
+    const auto all = compare(a, b);
+    const auto on_mesh = compare(a, b, covering_chart(0.25f, 0.75f));
+    ASSERT_TRUE(all && on_mesh);
+    std::vector<float> covered;  // the centres in the square are those of columns and rows 16 to 47
+    for (int j = 0; j < 64; ++j) {
+        for (int i = 0; i < 64; ++i) {
+            const bool inside = i >= 16 && i < 48 && j >= 16 && j < 48;
+            EXPECT_EQ(on_mesh->degrees.at(i, j), inside ? all->degrees.at(i, j) : 0.0f) << i << " " << j;
+            if (inside) covered.push_back(all->degrees.at(i, j));
+        }
+    }
+    std::sort(covered.begin(), covered.end());
+    double sum = 0.0, squares = 0.0;
+    for (const float angle : covered) {
+        sum += static_cast<double>(angle);
+        squares += static_cast<double>(angle) * static_cast<double>(angle);
+    }
+    const AngularError& error = on_mesh->error;
+    EXPECT_EQ(error.texels, 1024);
+    EXPECT_NEAR(error.mean, sum / 1024.0, 1e-9);
+    EXPECT_NEAR(error.rms, std::sqrt(squares / 1024.0), 1e-9);
+    EXPECT_EQ(error.p50, static_cast<double>(covered[511]));
+    EXPECT_EQ(error.p99, static_cast<double>(covered[1013]));
+    EXPECT_EQ(error.p999, static_cast<double>(covered[1022]));
+    EXPECT_EQ(error.max, static_cast<double>(covered.back()));
+    EXPECT_EQ(static_cast<double>(on_mesh->degrees.at(error.max_column, error.max_row)), error.max);
+}
+
+TEST(Compare, OnAMeshThreadsChangeNothing) {
+    const NormalMap a = scattered({301, 203}, 5), b = scattered({301, 203}, 6);
+    const MeshPart part = covering_chart(0.1f, 0.83f);
+    const auto one = compare(a, b, part, 0, {1, {}}), many = compare(a, b, part, 0, {5, {}});
+    ASSERT_TRUE(one && many);
+    EXPECT_EQ(one->error.texels, many->error.texels);
+    EXPECT_EQ(one->error.mean, many->error.mean);
+    EXPECT_EQ(one->error.rms, many->error.rms);
+    EXPECT_EQ(one->error.p999, many->error.p999);
+}
+
+TEST(Compare, AMeshThatCoversNothingIsAnError) {
+    const NormalMap map = flat({8, 8});
+    const auto nothing = compare(map, map, covering_chart(0.5f, 0.5f));
+    ASSERT_FALSE(nothing);
+    EXPECT_EQ(nothing.error().code, ErrorCode::bad_option);
+    const auto no_set = compare(map, map, covering_chart(0.0f, 1.0f), 1);
+    ASSERT_FALSE(no_set);
+    EXPECT_EQ(no_set.error().code, ErrorCode::bad_option);
+    MeshPart damaged = covering_chart(0.0f, 1.0f);
+    damaged.indices[2] = 9;
+    const auto refused = compare(map, map, damaged);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::bad_data);
+}
+
 }  // namespace
 }  // namespace tex

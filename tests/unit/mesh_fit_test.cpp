@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -15,6 +17,7 @@
 #include <tex/image_io.h>
 #include <tex/mesh_io.h>
 #include <tex/pack.h>
+#include <tex/scale.h>
 #include <tex/tangents.h>
 
 #include "checks/mesh_seams.h"
@@ -210,6 +213,73 @@ TEST(MeshFit, FindsWrongSpacesOnRealModels) {
         ASSERT_TRUE(selected);
         expect_verdicts(*selected, {model.extent, model.extent}, model.waves, std::string(model.file) + model.material);
     }
+}
+
+// The limits that check-normals prints beside the mean, and the table in its manual, which TEX_SEAMS=all in the
+// environment prints; else a part of it is tested.
+TEST(MeshFit, MapsThatFitHaveAMeanUnderTheUsualOne) {
+    const fs::path folder = TEX_SOURCE_DIR "/../shared/data/mesh";
+    if (!fs::exists(folder)) GTEST_SKIP() << "no shared data";
+    const bool all = std::getenv("TEX_SEAMS") != nullptr;
+    const struct {
+        const char *file, *material;
+        bool always;
+    } models[] = {{"Suzanne/02_suzanne.gltf", "", true},
+                  {"FlightHelmet/FlightHelmet.gltf", "HoseMat", true},
+                  {"FlightHelmet/FlightHelmet.gltf", "RubberWoodMat", false},
+                  {"FlightHelmet/FlightHelmet.gltf", "GlassPlasticMat", false},
+                  {"FlightHelmet/FlightHelmet.gltf", "MetalPartsMat", false},
+                  {"FlightHelmet/FlightHelmet.gltf", "LeatherPartsMat", true},
+                  {"FlightHelmet/FlightHelmet.gltf", "LensesMat", false}};
+    for (const auto& [file, material, always] : models) {
+        if (!always && !all) continue;
+        const auto mesh = read_mesh(folder / file);
+        ASSERT_TRUE(mesh);
+        MeshSelection selection;
+        selection.material = material;
+        const auto selected = select_part(*mesh, selection);
+        ASSERT_TRUE(selected);
+        for (const auto& [side, usual] : {std::pair{512, 21.0}, {1024, 10.0}, {2048, 5.0}}) {
+            if (side != 512 && !all) continue;
+            const NormalMap surface = wavy_surface(selected->part, {side, side}, 6.0);
+            const auto seams_of = [&](YAxis y) {
+                return fit_of(baked(surface, {selected->part, selected->tangents}, y), *selected).seams;
+            };
+            const auto right = seams_of(YAxis::up), down = seams_of(YAxis::down);
+            ASSERT_TRUE(right && down);
+            EXPECT_LT(right->mean, usual) << file << " " << material << " " << side;
+            EXPECT_GT(down->mean, right->mean) << file << " " << material << " " << side;
+            if (all)
+                std::printf("%s %s %d: mean %.2f, p99 %.2f; y down %.2f\n", file, material, side, right->mean,
+                            right->p99, down->mean);
+        }
+    }
+}
+
+// normalTexture.scale: what the material multiplies x and y by is a part of what the seams show.
+TEST(MeshFit, SeamsCountTheScaleOfTheMaterial) {
+    const SelectedPart selected = selected_cube();
+    const NormalMap surface = wavy_surface(selected.part, {256, 256}, 1.0);
+    // Of the map, flattened, in a material with this scale.
+    const auto mean = [&](float flattened, double by) {
+        auto map = to_tangent_space(surface, {selected.part, selected.tangents});
+        EXPECT_TRUE(map);
+        auto made = scale(std::move(map->map), flattened);
+        EXPECT_TRUE(made);
+        MipChain chain;
+        chain.levels.push_back(std::move(*made));
+        auto texture = pack(chain, {Encoding::float_});
+        EXPECT_TRUE(texture);
+        const MeshToCheck mesh{selected, Decoder::gltf, "mesh.glb", by};
+        CheckOptions options;
+        options.mesh = &mesh;
+        const auto report = check("map", *texture, options);
+        EXPECT_TRUE(report && report->seams);
+        return report->seams->mean;
+    };
+    const double right = mean(1.0f, 1.0);
+    EXPECT_NEAR(mean(0.25f, 4.0), right, 0.02);
+    EXPECT_LT(mean(0.25f, 1.0), 0.7 * right);  // flatter, and so with smaller gaps
 }
 
 TEST(MeshFit, FindsNothingInTheMapsOfRealModels) {

@@ -259,6 +259,33 @@ TEST_F(MeshIo, RefusesNumbersThatLeaveTheirPlaceWithOneSentence) {
                    place + "POSITION: an accessor does not exist");
 }
 
+// As Khronos' validator judges them: warnings and valid files are read, errors are refused.
+TEST_F(MeshIo, ReadsWhatIsUnusualAndRefusesWhatIsWrong) {
+    GltfMaker maker = square();
+    const auto skipped = read(maker.glb(R"({"attributes":{"NORMAL":0}},)" + kPrimitive));
+    ASSERT_TRUE(skipped) << "a primitive without positions draws nothing: " << skipped.error().reason;
+    EXPECT_EQ(skipped->parts.size(), 1u);
+    const auto incomplete = read(maker.glb(R"({"attributes":{"POSITION":0}})"));
+    ASSERT_TRUE(incomplete) << "four corners are one triangle: " << incomplete.error().reason;
+    EXPECT_EQ(incomplete->parts[0].triangles(), 1u);
+    const std::string place = "mesh 0, primitive 0: ";
+    expect_refused(maker.glb(R"({"indices":1})"), ErrorCode::bad_data, place + "POSITION: an accessor does not exist");
+    maker.add(std::vector<std::uint8_t>{0, 0, 255, 0, 0, 0, 255, 0, 0, 0, 255, 0, 0, 0, 255, 0}, "VEC4", 5121,
+              ",\"normalized\":true");
+    expect_refused(maker.glb(R"({"attributes":{"POSITION":0,"TANGENT":2},"indices":1})"), ErrorCode::bad_data,
+                   place + "TANGENT has numbers of the wrong type");
+    maker = square();
+    maker.add_accessor(0, "VEC3", 5126, ",\"bufferView\":0");
+    expect_refused(maker.glb(R"({"attributes":{"POSITION":2}})"), ErrorCode::bad_data,
+                   place + "POSITION: accessor 2: is damaged");
+    const auto turned = [&](const std::string& rotation) {
+        return read(square().glb(kPrimitive, ",\"nodes\":[{\"mesh\":0,\"rotation\":[" + rotation + "]}]"));
+    };
+    EXPECT_TRUE(turned("0,0,0.6,0.8001"));
+    EXPECT_FALSE(turned("0,0,0.6,1.8"));
+    EXPECT_FALSE(turned("0,0,0,0"));
+}
+
 // A few bytes of JSON that name the same indices again and again must not become gigabytes.
 TEST_F(MeshIo, RefusesMoreTrianglesThanTheBytesCanHold) {
     GltfMaker maker;

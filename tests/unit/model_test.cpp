@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,8 @@
 #include <tex/check.h>
 #include <tex/container.h>
 #include <tex/pack.h>
+#include <tex/pipeline.h>
+#include <tex/source.h>
 
 #include "unit/gltf_files.h"
 
@@ -107,6 +110,52 @@ TEST_F(Models, ImagesAreInViewsDataUrisAndFiles) {
     EXPECT_EQ(of_second->size(), 2u);
     EXPECT_EQ(maps_of(*model, "leather")->size(), 1u);
     EXPECT_EQ(maps_of(*model, "paint").error().code, ErrorCode::bad_option);
+    // Without geometry, the same maps and images.
+    const auto maps = read_model_maps(model->file);
+    ASSERT_TRUE(maps) << maps.error().message();
+    EXPECT_TRUE(maps->mesh.parts.empty());
+    ASSERT_EQ(maps->maps.size(), 3u);
+    ASSERT_EQ(maps->mesh.materials.size(), 2u);
+    EXPECT_EQ(maps->images[1].bytes, model->images[1].bytes);
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(map_name(*maps, maps->maps[k]), map_name(*model, model->maps[k]));
+}
+
+TEST_F(Models, MapsAreReadWithoutTheGeometryTheyAreOn) {
+    std::ofstream(folder_ / "bad.gltf") << R"({"asset":{"version":"2.0"},"meshes":[{"primitives":[{"attributes":
+        {"POSITION":7}}]}],"materials":[{"normalTexture":{"index":0}}],"textures":[{"source":0}],
+        "images":[{"uri":"n.png"}]})";
+    EXPECT_FALSE(read_model((folder_ / "bad.gltf").string()));
+    const auto maps = read_model_maps((folder_ / "bad.gltf").string());
+    ASSERT_TRUE(maps) << maps.error().message();
+    EXPECT_EQ(maps->maps.size(), 1u);
+    EXPECT_EQ(read_model_maps((folder_ / "missing.glb").string()).error().code, ErrorCode::io);
+    std::ofstream(folder_ / "new.gltf") << R"({"asset":{"version":"2.0"},"extensionsRequired":["ACME_uvs"]})";
+    EXPECT_EQ(read_model_maps((folder_ / "new.gltf").string()).error().code, ErrorCode::unsupported);
+}
+
+TEST_F(Models, BytesInMemoryAreReadAsAFile) {
+    ReadOptions options;
+    options.bytes = std::make_shared<const std::vector<std::byte>>(picture({16, 4}));
+    const auto texture = read_texture("no such file", options);
+    ASSERT_TRUE(texture) << texture.error().message();
+    EXPECT_EQ(texture->extent().width, 16);
+    const auto image = read_image("no such file", options);
+    ASSERT_TRUE(image);
+    EXPECT_EQ(image->planes.size(), 3u);
+    SourceOptions source;
+    source.read = options;
+    const auto normals = read_normals("no such file", source);
+    ASSERT_TRUE(normals);
+    EXPECT_EQ(normals->chain.levels.front().extent().height, 4);
+    PackFileOptions with;
+    with.source = source;
+    const std::string output = (folder_ / "x.dds").string();
+    ASSERT_TRUE(pack_file("no such file", output, Container::dds, with));
+    EXPECT_EQ(read_texture(output)->extent().width, 16);
+    options.bytes = std::make_shared<const std::vector<std::byte>>(4, std::byte{'x'});
+    const auto bad = read_texture("inside", options);
+    ASSERT_FALSE(bad);
+    EXPECT_EQ(bad.error().file, "inside");
 }
 
 TEST_F(Models, ExtensionsOfTexturesAndUsesAreKnown) {

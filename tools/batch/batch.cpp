@@ -97,6 +97,7 @@ private:
             outcome.is_bug = true;
         }
         outcome.input = task.input;
+        outcome.name = task.name();
         outcome.report = std::move(job.report);
         outcome.text = job.text();
         outcome.code = job.code();
@@ -118,8 +119,21 @@ private:
     }
 
     [[nodiscard]] Result<void> make(Job& job) {
+        if (job.task.model && job.task.joined.empty()) {
+            if (job.task.model->error) return *job.task.model->error;
+            if (!job.task.model->map) return without_maps(job);
+            job.task.model->report(job.report);
+        }
         if (would_clobber(job.task)) return Error{ErrorCode::io, job.task.output, "exists, and --no-clobber is given"};
         return process_(job);
+    }
+
+    // Among many models, some may have no map.
+    [[nodiscard]] Result<void> without_maps(Job& job) const {
+        constexpr const char* kNoMaps = "no material uses a normal map";
+        if (tasks_.size() == 1) return Error{ErrorCode::unsupported, job.task.input, kNoMaps};
+        job.warn(kNoMaps);
+        return {};
     }
 
     // The same unless the outputs are up to date. They do not count as such if an input changes meanwhile.
@@ -230,9 +244,15 @@ Task Converter::task_for(const std::string& input, const std::string& output_nam
 }
 
 Result<std::vector<Task>> Converter::plan() const {
-    const auto inputs = files.list_inputs(command);
+    auto inputs = files.list_inputs(command);
     if (!inputs) return inputs.error();
-    return plan_outputs(*inputs, files, output, rules());
+    const OutputRules own = rules();
+    if (own.models) {
+        MeshReadOptions how;
+        how.reader = running.read;
+        *inputs = with_maps_of_models(std::move(*inputs), *own.models, how);
+    }
+    return plan_outputs(std::move(*inputs), files, output, own);
 }
 
 }  // namespace tex::cli

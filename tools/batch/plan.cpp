@@ -24,7 +24,8 @@ namespace fs = std::filesystem;
 bool is_block_encoding(Encoding encoding) { return format_info(encoding_info(encoding).format).has_blocks(); }
 
 // The name pattern for --out-dir if the user gives none.
-std::string default_pattern(const FileOptions& files, const OutputOptions& output, const OutputRules& rules) {
+std::string default_pattern(const Input& input, const FileOptions& files, const OutputOptions& output,
+                            const OutputRules& rules) {
     std::optional<Container> container = output.made_container();
     if (!container && output.format) {
         if (is_block_encoding(*output.format))
@@ -35,14 +36,22 @@ std::string default_pattern(const FileOptions& files, const OutputOptions& outpu
     std::string pattern = output.engines.size() > 1 ? "{engine}/" : "";
     if (!files.root.empty()) pattern += "{dir}/";
     const std::string suffix(output.engine != nullptr ? output.engine->suffix : "");
-    pattern += suffix.empty() ? "{stem}" : fmt::format("{{stem:-{}}}{}", suffix, suffix);
+    if (input.model) {
+        pattern += "{stem}_{material}" + suffix;
+    } else {
+        pattern += suffix.empty() ? "{stem}" : fmt::format("{{stem:-{}}}{}", suffix, suffix);
+    }
     return pattern + (container ? extension_of(*container) : "{ext}");
 }
 
-std::string output_name(const std::string& input, const FileOptions& files, const OutputOptions& output,
+std::string output_name(const Input& input, const FileOptions& files, const OutputOptions& output,
                         const OutputRules& rules) {
-    NameFields fields = files.fields_of(input);
-    const std::string pattern = files.name.empty() ? default_pattern(files, output, rules) : files.name;
+    NameFields fields = files.fields_of(input.name);
+    if (input.model) {
+        fields.material = input.model->map ? input.model->field : "0";  // without a map, nothing is written
+        fields.ext = extension_of(Container::png);                      // the input's own is that of the model
+    }
+    const std::string pattern = files.name.empty() ? default_pattern(input, files, output, rules) : files.name;
     output.fill(fields);
     if (const NamePattern parsed(pattern); !output.format && parsed.uses("format")) {
         const Container container = output.container_for(parsed.expand(fields), rules.standard_output);
@@ -54,6 +63,32 @@ std::string output_name(const std::string& input, const FileOptions& files, cons
 // The name that -o gives for this input.
 std::string output_of(const std::string& pattern, const Input& input) {
     return input.place ? with_grid(pattern, *input.place) : with_tile(pattern, input.tile);
+}
+
+// The number of inputs is too large for -o.
+[[noreturn]] void refuse_many(const std::vector<Input>& inputs) {
+    const bool all_one = std::all_of(inputs.begin(), inputs.end(), [&](const Input& input) {
+        return input.model && input.name == inputs.front().name;
+    });
+    if (!all_one)
+        throw UsageError(fmt::format("-o takes one input, {} are given; --out-dir takes many", inputs.size()));
+    throw UsageError(fmt::format("-o takes one map, and {} has {}; --material chooses one, --out-dir takes all",
+                                 printable(inputs.front().name), inputs.size()));
+}
+
+void set_model(Task& task, const Input& input) {
+    task.model = input.model;
+    if (!input.model) return;
+    for (const std::string& file : input.model->beside) task.own.push_back(file);
+}
+
+void join(Task& task, const Input& input) {
+    task.joined.push_back(input.name);
+    task.joined_models.push_back(input.model);
+    if (!input.model) return;
+    for (const std::string& file : input.model->beside) {
+        if (std::find(task.own.begin(), task.own.end(), file) == task.own.end()) task.own.push_back(file);
+    }
 }
 
 // Throws UsageError if -o names tiles that an input does not have.
@@ -93,16 +128,14 @@ Task task_of(const std::string& input, const std::string& name, const OutputOpti
 
 std::vector<Task> plan_outputs(std::vector<Input> inputs, const FileOptions& files, const OutputOptions& output,
                                const OutputRules& rules) {
-    std::vector<std::string> joined;
+    std::vector<Input> joined;
     if (rules.joins && !files.output.empty() && !inputs.empty()) {
-        for (auto input = inputs.begin() + 1; input != inputs.end(); ++input) joined.push_back(input->name);
+        joined.assign(inputs.begin() + 1, inputs.end());
         inputs.resize(1);
     }
     check_tiles(inputs, files);
     const bool names_each = has_tile(files.output) || (files.tiles && has_grid(files.output));
-    if (!files.output.empty() && inputs.size() > 1 && !names_each) {
-        throw UsageError(fmt::format("-o takes one input, {} are given; --out-dir takes many", inputs.size()));
-    }
+    if (!files.output.empty() && inputs.size() > 1 && !names_each) refuse_many(inputs);
     if (!files.output.empty() && inputs.empty())
         throw UsageError(fmt::format("no input for -o: {} names none", printable(files.files_from)));
     std::vector<Task> tasks;
@@ -110,9 +143,10 @@ std::vector<Task> plan_outputs(std::vector<Input> inputs, const FileOptions& fil
         for (const Engine* const engine : output.engines_or_none()) {
             const OutputOptions own = output.of(engine);
             const std::string name =
-                files.output.empty() ? output_name(input.name, files, own, rules) : output_of(files.output, input);
+                files.output.empty() ? output_name(input, files, own, rules) : output_of(files.output, input);
             Task task = task_of(input.name, name, own, rules);
-            task.joined = joined;
+            set_model(task, input);
+            for (const Input& other : joined) join(task, other);
             task.tile = input.tile;
             task.pattern = input.pattern;
             task.place = input.place;

@@ -26,6 +26,7 @@ struct OutputRules {
     std::function<void(Task& task)> amend = {};  // adds the files that options name for this task; may be empty
     Encoding (*encoding)(Container container) = &default_encoding;  // without --format
     std::function<void(std::vector<Task>& tasks)> relate = {};      // called with all tasks of a command; may be empty
+    std::optional<std::string> models = {};  // inputs may be models: the material whose maps are meant, or "" for all
 };
 
 // The task that makes `name`, which may contain kLevelMark, from `input`. Throws UsageError if the name does not show

@@ -46,10 +46,14 @@ PackFileOptions Repacker::all_options(Job& job) const {
 }
 
 Result<void> Repacker::process(Job& job) {
-    const PackFileOptions with = all_options(job);
-    const auto packed = pack_file(job.task.input, job.task.output, job.task.container, with, job.until(1.0));
+    PackFileOptions with = all_options(job);
+    if (job.task.model) {
+        if (auto opened = job.task.model->open(with.source.read); !opened) return opened;
+    }
+    const std::string& input = job.task.map_path();
+    const auto packed = pack_file(input, job.task.output, job.task.container, with, job.until(1.0));
     if (!packed) return packed.error();
-    normals.note(job, job.task.input, packed->source);
+    normals.note(job, input, packed->source);
     report_input(job, packed->source);
     wrote_levels(job, job.task.output, packed->levels);
     report_texture(job, packed->extent, packed->levels, packed->pack, packed->bytes, packed->rdo);

@@ -26,9 +26,13 @@ void ConversionOptions::add(Command& command) {
 }
 
 Result<ConvertedMap> ConversionOptions::convert(Job& job, const NormalMap& map, double until) const {
-    const auto from = spaces.input(job.task.tile, job.read_options, {job.threads(), {}});
+    const ModelInput* const model = job.task.model.get();
+    const Execution silent{job.threads(), {}};
+    const auto from = model != nullptr ? spaces.input(*model, job.read_options, silent)
+                                       : spaces.input(job.task.tile, job.read_options, silent);
     if (!from) return from.error();
-    const auto to = spaces.output(job.task.tile, job.read_options, {job.threads(), {}});
+    const auto to = model != nullptr ? spaces.output(*model, job.read_options, silent)
+                                     : spaces.output(job.task.tile, job.read_options, silent);
     if (!to) return to.error();
     spaces.note(job, *from);
     if (to->file() != from->file()) spaces.note(job, *to);

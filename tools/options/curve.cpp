@@ -51,7 +51,7 @@ void CurveOptions::check(const Command& command) const {
     }
     if (command.inputs().size() != 1) throw UsageError("--rdo-means takes one file: A");
     const std::vector<std::string> other = command.given_of(
-        {"--y-b", "--level", "--max-mean", "--max-p999", "--max", "--heatmap", "--report", "--depfile"});
+        {"--y-b", "--level", "--mesh", "--max-mean", "--max-p999", "--max", "--heatmap", "--report", "--depfile"});
     if (!other.empty()) throw UsageError(fmt::format("{} and --rdo-means contradict each other", other.front()));
     if (!plot_.empty()) check_document({"--plot", plot_}, command.inputs(), {});
 }

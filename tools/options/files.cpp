@@ -38,8 +38,9 @@ void FileOptions::add(Command& command, bool joins) {
     };
     command.text(out_dir, "--out-dir", "DIR", "the folder for the outputs of many inputs, created if missing")
         .completes = Completes::directories;
-    command.text(name, "--name", "PATTERN",
-                 "names of outputs, made of {dir} {stem} {stem:-SUFFIX} {ext} {level} {format} {engine} {type}");
+    command.text(
+        name, "--name", "PATTERN",
+        "names of outputs, made of {dir} {stem} {stem:-SUFFIX} {ext} {level} {format} {engine} {type} {material}");
     command
         .text(root, "--root", "DIR",
               "{dir} is relative to this folder, which holds the inputs; the default of --name begins with {dir}/")

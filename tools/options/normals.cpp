@@ -38,7 +38,7 @@ Encoding exact_encoding(const SourceInfo& input) {
 }  // namespace
 
 Encoding encoding_of(const SourceInfo& input, const Task& task) {
-    const std::optional<Container> before = container_of(task.input);
+    const std::optional<Container> before = container_of(task.map_path());
     const Encoding encoding = exact_encoding(input);
     if (before && can_hold_blocks(*before) == can_hold_blocks(task.container)) {
         if (can_hold(task.container, encoding)) return encoding;
@@ -118,7 +118,7 @@ void NormalsReader::note(Job& job, const std::string& path, const SourceInfo& in
     if (info.y_doubtful) {
         job.warn(fmt::format("green is taken to point {}, but the texels show the other direction; {} sets it",
                              name_of(kYAxisNames, info.y_axis),
-                             path == job.task.input ? "--y-in" : "--y-in, or --detail-y-in for a detail,"),
+                             path == job.task.map_path() ? "--y-in" : "--y-in, or --detail-y-in for a detail,"),
                  path);
     }
     if (info.object_space && !info.z_doubtful) {
@@ -139,7 +139,7 @@ void NormalsReader::note(Job& job, const std::string& path, const SourceInfo& in
                              std::max(1.0, 100.0 * info.background)),
                  path);
     }
-    if (path == job.task.input && !info.others.empty()) warn_of_others(job, path, info.others);
+    if (path == job.task.map_path() && !info.others.empty()) warn_of_others(job, path, info.others);
     if (!info.guessed) return;
     const std::string name = layout_name(info.swizzle);
     job.remark(guess_text(name), path);
@@ -164,7 +164,11 @@ void NormalsReader::warn_of_others(Job& job, const std::string& path, const std:
 
 Result<Source> NormalsReader::read(Job& job, const std::string& path, const Execution& execution,
                                    const Reading& reading) {
-    auto source = read_normals(path, options(job, reading), reading.base_only, execution);
+    SourceOptions with = options(job, reading);
+    if (reading.model != nullptr) {
+        if (auto opened = reading.model->open(with.read); !opened) return opened.error();
+    }
+    auto source = read_normals(path, with, reading.base_only, execution);
     if (source) note(job, path, source->info);
     return source;
 }

@@ -37,8 +37,9 @@ struct Reading {
     bool is_detail = false;       // the file's own y overrides --y-in, which is the base's
     std::optional<YAxis> y = {};  // overrides all of that
     std::optional<bool> keep_length = {};
-    bool doubt_y = false;  // warn if y is assumed and the texels clearly show the other direction
-    bool object = false;   // the vectors are in object space
+    bool doubt_y = false;               // warn if y is assumed and the texels clearly show the other direction
+    bool object = false;                // the vectors are in object space
+    const ModelInput* model = nullptr;  // the file is this map of a model
 };
 
 class NormalsReader {

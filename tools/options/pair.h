@@ -48,12 +48,11 @@ public:
     // A sentence for each figure of a level that is above its limit.
     [[nodiscard]] std::vector<std::string> violations(int level, const AngularError& error) const;
 
+    void warn(Console& console, const std::string& file, const std::string& sentence);
     // The warnings so far.
     [[nodiscard]] const std::vector<FileWarning>& warnings() const { return warnings_; }
 
 private:
-    void warn(Console& console, const std::string& file, const std::string& sentence);
-
     std::optional<YAxis> y_[2];
     int level_ = 0;
     bool all_levels_ = false;

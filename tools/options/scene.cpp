@@ -299,7 +299,7 @@ PreviewScene SceneFiles::with(const SampledMap& map) const {
     PreviewScene scene;
     scene.map = &map.chain;
     scene.map_without_z = map.without_z;
-    scene.mesh = mesh;
+    scene.mesh = map.mesh ? &map.mesh->space : mesh;
     if (detail) {
         scene.detail = &detail->chain;
         scene.detail_without_z = detail->without_z;

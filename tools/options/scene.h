@@ -3,8 +3,10 @@
 
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <tex/preview.h>
@@ -16,12 +18,22 @@
 
 namespace tex::cli {
 
+// The mesh that one map of a picture is on.
+struct OwnMesh {
+    explicit OwnMesh(MeshSpace its_mesh) : mesh(std::move(its_mesh)), space(mesh.space()) {}
+
+    MeshSpace mesh;
+    TangentSpace space;
+};
+
 // A normal map for sampling: its own levels or, if the file has only one, levels made from it.
 struct SampledMap {
     MipChain chain;
     bool without_z = false;
     Plane<float> heights;  // those that the normals show, in texels, if a picture needs them
     float highest = 0.0f;
+    std::shared_ptr<const OwnMesh> mesh;  // of a map in a model
+    float scale = 1.0f;                   // and what its material multiplies x and y by
 };
 
 // What a picture needs of a map, beyond its levels.
@@ -40,7 +52,7 @@ struct SceneFiles {
     std::optional<SampledMap> detail;
     std::optional<Image> albedo, detail_albedo;
     Plane<float> height;
-    const TangentSpace* mesh = nullptr;  // or none; must outlive this
+    const TangentSpace* mesh = nullptr;  // of maps that have none of their own; or none; must outlive this
 
     [[nodiscard]] PreviewScene with(const SampledMap& map) const;
 };

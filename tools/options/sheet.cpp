@@ -87,17 +87,18 @@ void SheetOptions::check(const Task& task) const {
 void SheetOptions::check_mesh(bool has_mesh) const {
     for (const Show show : {Show::tangents, Show::uv, Show::seams}) {
         if (!has_mesh && shows(show))
-            throw UsageError(fmt::format("--show {} needs --mesh", name_of(kShowNames, show)));
+            throw UsageError(fmt::format("--show {} needs --mesh, or a model", name_of(kShowNames, show)));
     }
 }
 
-std::string SheetOptions::caption(const std::vector<std::string>& names, std::size_t map, Show show) const {
+std::string SheetOptions::caption(const std::vector<MapName>& names, std::size_t map, Show show) const {
     if (no_captions_) return {};
     std::string text;
     if (shows_.size() > 1) text = name_of(kShowNames, show);
     if (names.size() > 1) {
-        const NameFields fields = name_fields(names[map]);
-        text += (text.empty() ? "" : ": ") + fields.stem + fields.ext;
+        const NameFields fields = name_fields(names[map].file);
+        text +=
+            (text.empty() ? "" : ": ") + (names[map].material.empty() ? fields.stem + fields.ext : names[map].material);
     }
     return text;
 }
@@ -121,7 +122,7 @@ bool SheetOptions::can_leave_out(const Error& error, std::size_t maps) const {
            error.code != ErrorCode::cancelled;
 }
 
-Result<Texture> SheetOptions::draw_frame(const std::vector<std::string>& names, Maps& maps, const SceneFiles& with,
+Result<Texture> SheetOptions::draw_frame(const std::vector<MapName>& names, Maps& maps, const SceneFiles& with,
                                          PreviewOptions options, const Execution& execution) const {
     if (options.size == Extent{} && !split_ && (maps.size() * shows_.size() > 1 || difference_))
         options.size = {kPanelSize, 0};
@@ -133,6 +134,7 @@ Result<Texture> SheetOptions::draw_frame(const std::vector<std::string>& names, 
             if (maps[k]) {
                 options.show = show;
                 options.parallax.amount = scene_->parallax_on(*maps[k]);
+                options.bump_scale = scene_->preview.bump_scale * maps[k]->scale;
                 const Execution part = step(execution, panels.size() - 1, maps.size() * shows_.size());
                 auto picture = preview(with.with(*maps[k]), options, part);
                 if (picture) {
@@ -140,7 +142,7 @@ Result<Texture> SheetOptions::draw_frame(const std::vector<std::string>& names, 
                     continue;
                 }
                 const bool names_another = !picture.error().file.empty();  // the mesh, which all maps share
-                const Error error = picture.error().of(names[k]);
+                const Error error = picture.error().of(names[k].file);
                 if (names_another || !can_leave_out(error, maps.size())) return error;
                 maps[k] = error;
             }
@@ -151,14 +153,14 @@ Result<Texture> SheetOptions::draw_frame(const std::vector<std::string>& names, 
         std::vector<Panel> halves;
         for (std::size_t k = 0; k < shows_.size(); ++k) {
             auto joined = split_view(panels[k], panels[k + shows_.size()]);
-            if (!joined) return joined.error().of(names[1]);
+            if (!joined) return joined.error().of(names[1].file);
             halves.push_back({std::move(*joined), {}});
         }
         panels = std::move(halves);
     }
     if (difference_) {
         auto angles =
-            draw_difference(names[1], maps[0]->chain.levels.front(), maps[1]->chain.levels.front(), execution);
+            draw_difference(names[1].file, maps[0]->chain.levels.front(), maps[1]->chain.levels.front(), execution);
         if (!angles) return angles.error();
         panels.push_back({std::move(*angles), no_captions_ ? "" : "difference, degrees"});
     }
@@ -167,8 +169,8 @@ Result<Texture> SheetOptions::draw_frame(const std::vector<std::string>& names, 
     return contact_sheet(panels, row);
 }
 
-Result<std::vector<Texture>> SheetOptions::draw(const std::vector<std::string>& names, Maps& maps,
-                                                const SceneFiles& with, const Execution& execution) const {
+Result<std::vector<Texture>> SheetOptions::draw(const std::vector<MapName>& names, Maps& maps, const SceneFiles& with,
+                                                const Execution& execution) const {
     std::vector<Texture> frames;
     const int count = std::max(1, turntable_);
     for (int k = 0; k < count; ++k) {

@@ -29,11 +29,17 @@ public:
     [[nodiscard]] bool shows(Show show) const;
     [[nodiscard]] std::vector<std::string> names_of_shows() const;
 
-    // Throws UsageError if a picture needs a mesh, and there is none.
+    // Throws UsageError if a picture needs a mesh, and a map has none.
     void check_mesh(bool has_mesh) const;
 
     // The maps of a picture, or why one cannot be shown.
     using Maps = std::vector<Result<SampledMap>>;
+
+    // The file of a map, and its material, if it is a map in a model: the caption.
+    struct MapName {
+        std::string file;
+        std::string material = {};
+    };
 
     // Whether a sheet of so many maps can do without one for which this is the reason.
     [[nodiscard]] bool can_leave_out(const Error& error, std::size_t maps) const;
@@ -41,16 +47,16 @@ public:
     // Draws the frames of the picture: one, unless it is animated. `maps` are the maps of the files `names`, one of
     // which can be shown; one that cannot be drawn becomes its error. `with` holds the other files of the scene.
     // Errors: those of the verbs.
-    [[nodiscard]] Result<std::vector<Texture>> draw(const std::vector<std::string>& names, Maps& maps,
+    [[nodiscard]] Result<std::vector<Texture>> draw(const std::vector<MapName>& names, Maps& maps,
                                                     const SceneFiles& with, const Execution& execution) const;
 
 private:
     void add_shows(Command& command);
-    [[nodiscard]] Result<Texture> draw_frame(const std::vector<std::string>& names, Maps& maps, const SceneFiles& with,
+    [[nodiscard]] Result<Texture> draw_frame(const std::vector<MapName>& names, Maps& maps, const SceneFiles& with,
                                              PreviewOptions options, const Execution& execution) const;
     [[nodiscard]] Result<Texture> draw_difference(const std::string& name, const NormalMap& a, const NormalMap& b,
                                                   const Execution& execution) const;
-    [[nodiscard]] std::string caption(const std::vector<std::string>& names, std::size_t map, Show show) const;
+    [[nodiscard]] std::string caption(const std::vector<MapName>& names, std::size_t map, Show show) const;
 
     const SceneOptions* scene_ = nullptr;
     std::vector<Show> shows_ = {Show::lit};

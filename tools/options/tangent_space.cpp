@@ -48,7 +48,8 @@ Error with_option(const Error& error) {
 }  // namespace
 
 void TangentSpaceOptions::add(Command& command) {
-    add_mesh(command, "the mesh that the map is on: glTF, GLB, OBJ, FBX, PLY ...; required");
+    converts_ = true;
+    add_mesh(command, "the mesh that the map is on: glTF, GLB, OBJ, FBX, PLY ...; required, but for models");
     command.text(to_mesh_, "--to-mesh", "FILE", "another version of the mesh, with the same UVs, which the output fits")
         .completes = Completes::files;
     add_parts(command, kNodeOfMap);
@@ -66,38 +67,54 @@ void TangentSpaceOptions::add(Command& command) {
     command.check([this, &command] { check(command); });
 }
 
-void TangentSpaceOptions::add_input_options(Command& command, bool with_from, const char* meaning) {
-    add_mesh(command, meaning);
+void TangentSpaceOptions::add_input(Command& command, bool with_from) {
+    add_mesh(command, "the mesh that the inputs are on: glTF, GLB, OBJ, FBX, PLY ...; models have their own");
     add_parts(command, kNodeOfMap);
     if (with_from) command.choice(from, "--from", "SPACE", kSpaceNames, "the space of the inputs' vectors");
     add_decoder(command, "the engine that decodes the inputs");
     add_tangents(command);
-}
-
-void TangentSpaceOptions::add_input(Command& command, bool with_from) {
-    add_input_options(command, with_from, "the mesh that the inputs are on: glTF, GLB, OBJ, FBX, PLY ...");
     command.check([this, &command] { check_input(command); });
 }
 
-void TangentSpaceOptions::add_input_of_models(Command& command) {
-    add_input_options(command, false,
-                      "the mesh that the inputs are on: glTF, GLB, OBJ, FBX, PLY ...; models have their own");
+void TangentSpaceOptions::add_charts(Command& command) {
+    add_mesh(command, "only the texels that the triangles of this mesh cover: glTF, GLB, OBJ, FBX, PLY ...");
+    add_parts(command, "only the mesh of this node");
     command.check([this, &command] {
-        if (mesh_ == "-") throw UsageError("--mesh: a mesh cannot come from standard input");
-        const auto idle = command.given_of({"--primitive", "--node", "--uv-set"});
-        if (!has_mesh() && !idle.empty()) throw UsageError(fmt::format("{} needs --mesh", idle.front()));
+        check_input(command);
+        if (!has_mesh() && command.given("--material")) throw UsageError("--material needs --mesh");
     });
 }
 
-void TangentSpaceOptions::check_models(const Command& command, const std::vector<std::string>& inputs) const {
-    const auto model =
-        std::find_if(inputs.begin(), inputs.end(), [](const std::string& name) { return is_model(name); });
-    if (model != inputs.end() && has_mesh())
+MapInputs MapInputs::of(const std::vector<Task>& tasks) {
+    MapInputs inputs;
+    const auto add = [&](const std::shared_ptr<const ModelInput>& map) {
+        if (!map)
+            inputs.has_maps = true;
+        else if (inputs.model.empty())
+            inputs.model = map->file;
+    };
+    for (const Task& task : tasks) {
+        add(task.model);
+        for (const auto& model : task.joined_models) add(model);
+    }
+    return inputs;
+}
+
+void TangentSpaceOptions::check_models(const Command& command, const MapInputs& inputs) const {
+    if (!inputs.model.empty() && has_mesh())
         throw UsageError(
-            fmt::format("--mesh is for maps, and {} is a model with meshes of its own", printable(*model)));
-    if (model != inputs.end() || has_mesh()) return;
-    const auto idle = command.given_of({"--material", "--decoder", "--tangents"});
+            fmt::format("--mesh is for maps, and {} is a model with meshes of its own", printable(inputs.model)));
+    if (!inputs.model.empty() || has_mesh()) return;
+    const auto idle = command.given_of({"--material", "--from", "--decoder", "--tangents"});
     if (!idle.empty()) throw UsageError(fmt::format("{} needs --mesh, or a model", idle.front()));
+}
+
+void TangentSpaceOptions::check_conversion(const Command& command, const MapInputs& inputs) const {
+    if (inputs.has_maps && !has_mesh()) throw UsageError("no mesh: give --mesh FILE");
+    check_models(command, inputs);
+    if (inputs.model.empty() || from != to || !to_mesh_.empty()) return;
+    if (decoder_ == input_decoder(true) && command.given_of({"--tangents-in"}).empty())
+        throw UsageError("nothing changes: give --decoder, --to object, --to-mesh or --tangents-in");
 }
 
 void TangentSpaceOptions::add_low(Command& command) {
@@ -147,22 +164,24 @@ void TangentSpaceOptions::add_parts(Command& command, const char* node) {
 void TangentSpaceOptions::check_input(const Command& command) const {
     if (mesh_ == "-") throw UsageError("--mesh: a mesh cannot come from standard input");
     if (has_mesh()) return;
-    const auto idle =
-        command.given_of({"--material", "--primitive", "--node", "--uv-set", "--from", "--decoder", "--tangents"});
+    const auto idle = command.given_of({"--primitive", "--node", "--uv-set"});
     if (!idle.empty()) throw UsageError(fmt::format("{} needs --mesh", idle.front()));
 }
 
 void TangentSpaceOptions::check(const Command& command) const {
-    if (mesh_.empty()) throw UsageError("no mesh: give --mesh FILE");
+    check_input(command);
+    if (mesh_.empty() && command.inputs().empty() && !command.given("--files-from"))
+        throw UsageError("no mesh: give --mesh FILE");
     for (const auto& [name, file] : {std::pair{"--mesh", &mesh_}, std::pair{"--to-mesh", &to_mesh_}}) {
         if (*file == "-") throw UsageError(fmt::format("{}: a mesh cannot come from standard input", name));
     }
-    if (from == Space::tangent && to == Space::tangent) {
+    if (from == Space::tangent && to == Space::tangent && has_mesh()) {
         const auto changes = command.given_of({"--to-mesh", "--decoder-in", "--tangents-in"});
         if (changes.empty())
             throw UsageError("nothing changes: give --from object, --to object, --to-mesh or --decoder-in");
         return;
     }
+    if (from == Space::tangent && to == Space::tangent) return;  // of models, see check_conversion()
     if (from == to) throw UsageError("nothing changes: both --from and --to are object");
     if (!to_mesh_.empty()) throw UsageError("--to-mesh needs tangent space on both sides");
     if (from == Space::tangent) return;
@@ -185,7 +204,8 @@ std::string TangentSpaceOptions::input_arguments() const {
 }
 
 std::vector<std::string> TangentSpaceOptions::files() const {
-    std::vector<std::string> files = files_of(mesh_);
+    std::vector<std::string> files;
+    if (has_mesh()) files = files_of(mesh_);
     if (to_mesh_.empty()) return files;
     for (std::string& file : files_of(to_mesh_)) {
         if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(std::move(file));
@@ -203,18 +223,66 @@ bool TangentSpaceOptions::Loaded::is_current() const {
                                [](const FileState& state) { return FileState::of(state.file) == state; });
 }
 
+// A model's maps are for glTF's decoder, unless they are only looked at.
+Decoder TangentSpaceOptions::input_decoder(bool of_model) const {
+    return decoder_in_.value_or(of_model && converts_ ? Decoder::gltf : decoder_);
+}
+
 Result<MeshSpace> TangentSpaceOptions::input(int tile, const ReadOptions& options, const Execution& execution) const {
-    return read(mesh_, tangents_in_ ? tangents_in_ : tangents_, decoder_in_.value_or(decoder_), tile, options,
-                execution);
+    return read(mesh_, tangents_in_ ? tangents_in_ : tangents_, input_decoder(false), tile, options, execution);
 }
 
 Result<MeshSpace> TangentSpaceOptions::output(int tile, const ReadOptions& options, const Execution& execution) const {
     return read(to_mesh_.empty() ? mesh_ : to_mesh_, tangents_, decoder_, tile, options, execution);
 }
 
+Result<MeshSpace> TangentSpaceOptions::input(const ModelInput& map, const ReadOptions& options,
+                                             const Execution& execution) const {
+    return read(map, tangents_in_ ? tangents_in_ : tangents_, input_decoder(true), options, execution);
+}
+
+Result<MeshSpace> TangentSpaceOptions::output(const ModelInput& map, const ReadOptions& options,
+                                              const Execution& execution) const {
+    if (to_mesh_.empty()) return read(map, tangents_, decoder_, options, execution);
+    MeshReadOptions how;
+    how.reader = options;
+    const auto mesh = read_mesh(to_mesh_, how);
+    if (!mesh) return mesh.error().of(to_mesh_);
+    MeshSelection selection;
+    if (!mesh->materials.empty()) selection.material = map.material;
+    selection.tangents = tangents_;
+    auto selected = select_part(*mesh, selection, execution);
+    if (!selected) return selected.error().of(to_mesh_);
+    return MeshSpace(std::make_shared<const SelectedPart>(std::move(*selected)), decoder_, to_mesh_);
+}
+
+Result<MeshSpace> TangentSpaceOptions::read(const ModelInput& map, std::optional<TangentSource> tangents,
+                                            Decoder decoder, const ReadOptions& options, const Execution& execution) {
+    const auto model = map.read(LastModel::Part::all, options);
+    if (!model) return model.error();
+    MeshSelection selection = selection_of(**model, *map.map);
+    selection.tangents = tangents;
+    auto selected = select_part((*model)->mesh, selection, execution);
+    if (!selected) return selected.error().of(map.name());
+    return MeshSpace(std::make_shared<const SelectedPart>(std::move(*selected)), decoder, map.file);
+}
+
 Result<MeshSpace> TangentSpaceOptions::of_low(const std::string& file, const ReadOptions& options,
                                               const Execution& execution) const {
     return read(file, tangents_, decoder_, tile_, options, execution);
+}
+
+Result<MeshSpace> TangentSpaceOptions::charts(const ReadOptions& options, const Execution& execution) const {
+    MeshReadOptions how;
+    how.reader = options;
+    auto mesh = read_mesh(mesh_, how);
+    if (!mesh) return mesh.error().of(mesh_);
+    for (MeshPart& part : mesh->parts) give_attributes(part, false);
+    MeshSelection selection = selection_;
+    selection.tangents = TangentSource::file;  // which do not count
+    auto selected = select_part(*mesh, selection, execution);
+    if (!selected) return with_option(selected.error()).of(mesh_);
+    return MeshSpace(std::make_shared<const SelectedPart>(std::move(*selected)), decoder_, mesh_);
 }
 
 Result<MeshSpace> TangentSpaceOptions::cage(const std::string& file, const ReadOptions& options,

@@ -50,6 +50,15 @@ private:
     std::string file_;
 };
 
+// The inputs of a command as far as options for meshes are concerned: maps in files, and models, which have their own
+// meshes.
+struct MapInputs {
+    std::string model = {};  // one of them; empty: there is none
+    bool has_maps = false;
+
+    [[nodiscard]] static MapInputs of(const std::vector<Task>& tasks);
+};
+
 // --mesh, --to-mesh, --from, --to, --decoder, --decoder-in, --tangents, --tangents-in, --material, --primitive, --node,
 // --uv-set.
 class TangentSpaceOptions {
@@ -59,13 +68,15 @@ public:
 
     void add(Command& command);
     // Without those of an output: --mesh, which may be left out, --decoder, --tangents, the choice of parts, and
-    // --from.
+    // --from. --material, --decoder, --tangents and --from are for models, too.
     void add_input(Command& command, bool with_from = false);
 
-    // The same for a command whose inputs may be models: --material, --decoder and --tangents are then for these, too.
-    void add_input_of_models(Command& command);
-    // Throws UsageError if the options do not fit the inputs.
-    void check_models(const Command& command, const std::vector<std::string>& inputs) const;
+    // Throws UsageError if the options do not fit the inputs: those of add_input(), and those of add().
+    void check_models(const Command& command, const MapInputs& inputs) const;
+    void check_conversion(const Command& command, const MapInputs& inputs) const;
+
+    // For a command that only asks which texels a mesh covers: --mesh, which may be left out, and the choice of parts.
+    void add_charts(Command& command);
 
     // For a command whose inputs are meshes, which it places in the scene: --decoder, --tangents, --tile, the choice of
     // parts.
@@ -76,8 +87,8 @@ public:
     [[nodiscard]] Decoder decoder() const { return decoder_; }
     [[nodiscard]] std::optional<TangentSource> tangents() const { return tangents_; }
     // Whether the engine that decodes the input ignores its z, so that x and y must be read as they are stored.
-    [[nodiscard]] bool ignores_z() const {
-        return from == Space::tangent && rebuilds_z(decoder_in_.value_or(decoder_));
+    [[nodiscard]] bool ignores_z(bool of_model) const {
+        return from == Space::tangent && rebuilds_z(input_decoder(of_model));
     }
 
     // --mesh and the options that choose its parts and tangents, as they were given and as a shell reads them: with
@@ -95,6 +106,12 @@ public:
     [[nodiscard]] Result<MeshSpace> input(int tile, const ReadOptions& read, const Execution& execution) const;
     [[nodiscard]] Result<MeshSpace> output(int tile, const ReadOptions& read, const Execution& execution) const;
 
+    // The same of a map in a model, with its own mesh, UVs and transform. --to-mesh has its material by name.
+    [[nodiscard]] Result<MeshSpace> input(const ModelInput& map, const ReadOptions& read,
+                                          const Execution& execution) const;
+    [[nodiscard]] Result<MeshSpace> output(const ModelInput& map, const ReadOptions& read,
+                                           const Execution& execution) const;
+
     // The same of an input that is a mesh.
     [[nodiscard]] Result<MeshSpace> of_low(const std::string& file, const ReadOptions& read,
                                            const Execution& execution) const;
@@ -103,17 +120,22 @@ public:
     // materials. Errors: as of_low().
     [[nodiscard]] Result<MeshSpace> cage(const std::string& file, const ReadOptions& read,
                                          const Execution& execution) const;
+    // The parts of --mesh as far as their UVs are concerned: it needs no normals. Errors: as of_low().
+    [[nodiscard]] Result<MeshSpace> charts(const ReadOptions& read, const Execution& execution) const;
     // Warns of what was left out of a mesh, once in a run. Any thread may call this.
     void note(Job& job, const MeshSpace& mesh) const;
 
 private:
     void check(const Command& command) const;
     void check_input(const Command& command) const;
-    void add_input_options(Command& command, bool with_from, const char* meaning);
     void add_mesh(Command& command, const char* meaning);
     void add_parts(Command& command, const char* node);
     void add_decoder(Command& command, const char* meaning);
     void add_tangents(Command& command);
+    [[nodiscard]] Decoder input_decoder(bool of_model) const;
+    [[nodiscard]] static Result<MeshSpace> read(const ModelInput& map, std::optional<TangentSource> tangents,
+                                                Decoder decoder, const ReadOptions& options,
+                                                const Execution& execution);
     [[nodiscard]] Result<MeshSpace> read(const std::string& file, std::optional<TangentSource> tangents,
                                          Decoder decoder, int tile, const ReadOptions& options,
                                          const Execution& execution) const;
@@ -139,7 +161,8 @@ private:
     };
 
     std::string mesh_, to_mesh_;
-    int tile_ = 0;  // of low meshes; 0: all triangles
+    bool converts_ = false;  // there is an output
+    int tile_ = 0;           // of low meshes; 0: all triangles
     MeshSelection selection_;
     Decoder decoder_ = Decoder::gltf;
     std::optional<Decoder> decoder_in_;

@@ -54,9 +54,11 @@ ExitCode print_level(Console& console, const ComparisonRun& run, const ComparedL
         text = fmt::format("{:>5} {:>11} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}  in degrees; largest at\n", "level",
                            "texels", "mean", "rms", "p50", "p99", "p99.9", "max");
     }
-    text += fmt::format("{:>5} {:>11} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f}  column {}, row {}\n",
+    text += fmt::format("{:>5} {:>11} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f}  column {}, row {}",
                         level.number, fmt::format("{}x{}", level.extent.width, level.extent.height), e.mean, e.rms,
                         e.p50, e.p99, e.p999, e.max, e.max_column, e.max_row);
+    if (e.texels != level.extent.texels()) text += fmt::format("; {} texels are covered", e.texels);
+    text += '\n';
     return console.print(text);
 }
 

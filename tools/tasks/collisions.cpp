@@ -53,16 +53,18 @@ void check_collisions(const std::vector<Task>& tasks, const std::string& depfile
             const Task* const other = *known;
             if (other == &task) {
                 throw UsageError(
-                    fmt::format("two outputs of {} are one file, {}", printable(task.input), printable(path)));
+                    fmt::format("two outputs of {} are one file, {}", printable(task.name()), printable(path)));
             }
-            if (other->engine != task.engine && other->input == task.input) {
+            if (other->engine != task.engine && other->name() == task.name()) {
                 throw UsageError(
                     fmt::format("{} for {} and for {} have the same output {}; {{engine}} in --name separates "
                                 "them",
-                                printable(task.input), other->engine->name, task.engine->name, printable(path)));
+                                printable(task.name()), other->engine->name, task.engine->name, printable(path)));
             }
-            throw UsageError(fmt::format("{} and {} have the same output {}", printable(other->input),
-                                         printable(task.input), printable(path)));
+            const bool is_one_model = task.model && other->input == task.input;
+            throw UsageError(fmt::format("{} and {} have the same output {}{}", printable(other->name()),
+                                         printable(task.name()), printable(path),
+                                         is_one_model ? "; {material} in --name separates them" : ""));
         }
     }
     if (depfile.empty()) return;

@@ -28,6 +28,9 @@ constexpr Container kGodotTypes[] = {png, tga, bmp, jpeg, exr, dds, ktx2};
 constexpr Encoding kGodotEncodings[] = {rgb8, rgba8, rgb16, half, float_, bc5, rg8};
 constexpr Container kGltfTypes[] = {png, jpeg};
 constexpr Container kThreeTypes[] = {png, jpeg, tga, tiff, exr, ktx2};
+// KTX2Loader's formats without Basis Universal; the renderers rebuild z of those of two channels.
+constexpr Container kThreePackedTypes[] = {ktx2};
+constexpr Encoding kThreePackedEncodings[] = {bc5, eac_rg11, rg8, rgba8};
 constexpr Container kBevyTypes[] = {ktx2, dds, png, tiff, tga, bmp, jpeg, exr};
 constexpr Encoding kBevyEncodings[] = {bc5, eac_rg11, rg8, rg16, rgb8, rgba8, rgb16, half, float_};
 constexpr Container kPhoneTypes[] = {ktx2};
@@ -60,6 +63,14 @@ constexpr Engine kEngines[] = {
      "TextureLoader reads PNG, and the renderer builds the levels. Releases before 2026 read z from B, so textures of "
      "two channels do not work in them.",
      kThreeTypes, kRgb},
+    // isPackedRGFormat() in WebGLPrograms.js: RGFormat, RG11_EAC_Format and RED_GREEN_RGTC2_Format; NormalMapNode.js
+    // for
+    // WebGPURenderer (three.js pull requests 31695, 32308, 31713). Neither knows ASTC or signed formats as packed.
+    {"three-packed", ktx2, bc5, YAxis::up, true, "",
+     "KTX2Loader loads BC5, EAC RG11 and RG8 as they are, and renderers of 2026 and later rebuild z for them. BC5 is "
+     "for desktop GPUs, --format eac-rg11 for others. The core of glTF does not allow such files in a model (issue "
+     "2602 of glTF).",
+     kThreePackedTypes, kThreePackedEncodings},
     // Blender's manual, Normal Map node: OpenGL convention by default, Non-Color images.
     {"blender", png, rgb16, YAxis::up, false, "",
      "Blender renders from the texels of the file, so 16 bits avoid steps in reflections. It expects green up.",
@@ -126,11 +137,11 @@ std::vector<Word> engine_words() {
 }
 
 std::string engine_table() {
-    constexpr std::size_t kWidth = 80, kIndent = 9;
+    constexpr std::size_t kWidth = 80, kIndent = 13;
     std::string table =
-        fmt::format("{:<9}{:<7}{:<10}{:<7}{:<8}{}\n", "ENGINE", "FILE", "FORMAT", "GREEN", "LEVELS", "NAME");
+        fmt::format("{:<13}{:<7}{:<10}{:<7}{:<8}{}\n", "ENGINE", "FILE", "FORMAT", "GREEN", "LEVELS", "NAME");
     for (const Engine& engine : kEngines) {
-        table += fmt::format("{:<9}{:<7}{:<10}{:<7}{:<8}{{stem}}{}\n", engine.name, extension_of(engine.container),
+        table += fmt::format("{:<13}{:<7}{:<10}{:<7}{:<8}{{stem}}{}\n", engine.name, extension_of(engine.container),
                              name_of(kEncodingNames, engine.format), name_of(kYAxisNames, engine.y),
                              engine.has_mips ? "all" : "base", engine.suffix);
         for (const std::string& line : wrapped(std::string(engine.reason), kWidth - kIndent))

@@ -56,11 +56,11 @@ public:
 
     // Printed after "FILE: ", the input. `file` is the file that the warning is about, if it is another one.
     void warn(std::string sentence, const std::string& file = {}) {
-        warnings_.push_back({file.empty() ? task.input : file, std::move(sentence)});
+        warnings_.push_back({file.empty() || file == task.input ? task.name() : file, std::move(sentence)});
     }
     // A warning that the command prints once for many files: only --json prints it for each.
     void remark(std::string sentence, const std::string& file = {}) {
-        remarks_.push_back({file.empty() ? task.input : file, std::move(sentence)});
+        remarks_.push_back({file.empty() || file == task.input ? task.name() : file, std::move(sentence)});
     }
     void say(std::string_view text) { text_ += text; }            // on standard output, unless --json is given
     void raise(ExitCode code) { code_ = std::max(code_, code); }  // the run exits with this code or a higher one

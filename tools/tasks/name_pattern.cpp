@@ -17,7 +17,8 @@ namespace {
 constexpr std::string_view kLevelField = "{level}";
 
 const std::vector<std::string>& known_fields() {
-    static const std::vector<std::string> fields = {"dir", "stem", "ext", "level", "format", "engine", "type"};
+    static const std::vector<std::string> fields = {"dir",    "stem",   "ext",  "level",
+                                                    "format", "engine", "type", "material"};
     return fields;
 }
 
@@ -139,6 +140,8 @@ std::string NamePattern::expand(const NameFields& fields) const {
             name += fields.format;
         else if (piece.text == "engine")
             name += known(fields.engine, "{engine} needs --for");
+        else if (piece.text == "material")
+            name += known(fields.material, "{material} needs inputs that are models");
         else if (piece.text == "type")
             name += known(fields.type, "{type} needs --for or --container");
         else

@@ -19,8 +19,9 @@ struct NameFields {
     std::string stem;
     std::string ext;
     std::string format;
-    std::string engine = {};  // of --for
-    std::string type = {};    // the extension of the output without its dot, if --for or --container sets it
+    std::string engine = {};    // of --for
+    std::string material = {};  // of a map in a model
+    std::string type = {};      // the extension of the output without its dot, if --for or --container sets it
 };
 
 // The dir, stem and ext of a path. The stem of "-" is "stdin".
@@ -45,7 +46,7 @@ public:
     // Throws UsageError for unknown fields and unbalanced braces. "{{" and "}}" are literal braces.
     explicit NamePattern(std::string_view text);
 
-    // {level} becomes kLevelMark. Throws UsageError for {engine} and {type} if nothing sets them.
+    // {level} becomes kLevelMark. Throws UsageError for {engine}, {type} and {material} if nothing sets them.
     [[nodiscard]] std::string expand(const NameFields& fields) const;
     [[nodiscard]] bool uses(std::string_view field) const;
 

@@ -25,13 +25,13 @@ void Reporter::report_waiting() {
 
 void Reporter::report(const Outcome& outcome) {
     for (const FileWarning& warning : outcome.warnings) {
-        const bool names_input = !outcome.is_joint && warning.file != outcome.input;
-        const std::string prefix = names_input ? outcome.input + ": " : "";
+        const bool names_input = !outcome.is_joint && warning.file != outcome.name;
+        const std::string prefix = names_input ? outcome.name + ": " : "";
         console_.warning(fmt::format("{}{}: {}", prefix, warning.file, warning.message));
     }
     if (outcome.error) {
         if (outcome.error->code == ErrorCode::cancelled) return;
-        const Error error = outcome.error->of(outcome.input);
+        const Error error = outcome.error->of(outcome.name);
         if (!outcome.is_silent) console_.error(error.message());
         raise(outcome.is_bug ? ExitCode::bug : cli::exit_code(error.code));
     } else {
@@ -54,7 +54,7 @@ std::string Reporter::json_line(const Outcome& outcome) {
     Json line;
     line["input"] = outcome.input;
     if (outcome.error) {
-        line["error"] = error_json(*outcome.error, outcome.input);
+        line["error"] = error_json(*outcome.error, outcome.name);
     } else {
         if (outcome.has_levels) {
             line["output"] = outcome.outputs;

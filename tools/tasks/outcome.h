@@ -24,6 +24,7 @@ namespace tex::cli {
 struct Outcome {  // NOLINT(bugprone-exception-escape): the tool follows the noexcept constructor of a null Json, which
                   // throws only for other values
     std::string input;
+    std::string name;  // of the input in messages
     std::optional<Error> error;
     bool is_bug = false;      // the error is a bug in the program
     bool is_silent = false;   // no message is printed for the error

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include <tex/container.h>
 
 #include "tasks/grid.h"
+#include "tasks/model_input.h"
 
 namespace tex::cli {
 
@@ -30,6 +32,13 @@ struct Task {
     std::optional<GridPlace> place = {};         // of the input, if it is a tile of a terrain (grid.h)
     // The tiles around it, row by row, with an empty name for its own and for those that do not exist.
     std::vector<std::string> around = {};
+    std::shared_ptr<const ModelInput> model = {};  // the input is this map of a model, and not the file itself
+    std::vector<std::shared_ptr<const ModelInput>> joined_models = {};  // the same for each of `joined`
+
+    // The input as messages call it.
+    [[nodiscard]] std::string name() const { return model ? model->name() : input; }
+    // The file of the normal map.
+    [[nodiscard]] const std::string& map_path() const { return model && model->map ? model->path : input; }
 
     // The inputs, without the files that options name.
     [[nodiscard]] std::vector<std::string> inputs() const {

@@ -6,6 +6,7 @@
 
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,14 +18,17 @@
 
 namespace tex::cli {
 
+struct ModelInput;
+
 inline constexpr std::string_view kTileMark = "<UDIM>";
 
 // A file of the command line or of a list.
 struct Input {
     std::string name;
-    int tile = 0;                         // 0: none
-    std::string pattern = {};             // the name with the mark, if there is a tile
-    std::optional<GridPlace> place = {};  // of a tile of a terrain; `pattern` is then the name with its marks
+    int tile = 0;                                  // 0: none
+    std::string pattern = {};                      // the name with the mark, if there is a tile
+    std::optional<GridPlace> place = {};           // of a tile of a terrain; `pattern` is then the name with its marks
+    std::shared_ptr<const ModelInput> model = {};  // the input is this map of a model (model_input.h)
 };
 
 [[nodiscard]] bool has_tile(std::string_view name);

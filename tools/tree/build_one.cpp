@@ -327,7 +327,7 @@ Result<void> BuildRun::bring_up_to_date(std::size_t index, double& counted, Outc
 Outcome BuildRun::outcome_of(std::size_t index) {
     const BuildTask& task = work_.tasks[index];
     Outcome outcome;
-    outcome.input = task.input;
+    outcome.input = outcome.name = task.input;
     outcome.has_levels = true;  // a list of outputs
     double counted = 0.0;       // the part of this file that the progress includes
     const auto start = std::chrono::steady_clock::now();

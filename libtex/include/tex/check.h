@@ -121,6 +121,7 @@ struct MeshToCheck {
     const SelectedPart& selected;     // with at least one triangle
     Decoder decoder = Decoder::gltf;  // the engine that decodes the map
     std::string file = {};            // that errors name; may be empty
+    double scale = 1.0;               // x and y of the map are multiplied by it at seams (normalTexture.scale)
 };
 
 // The model in which a map is, for the rules of the family "model". Refers to the caller's objects.

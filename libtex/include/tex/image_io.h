@@ -8,8 +8,11 @@
 
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include <tex/image.h>
 #include <tex/names.h>
@@ -47,6 +50,10 @@ struct ReadOptions {
     // SKIP is a number of bytes before the first texel. Without an extent, the picture is square. Empty: files called
     // .r16 hold u16le, .r32 f32le, and .hgt, .bil, .bip, .bsq and .flt elevation models; all others have a header.
     std::string raw;
+
+    // The bytes of the file, if they are in memory already, as those of an image in a model are. Nothing is opened
+    // then: the path is the name of the file in messages. Null: the file is at the path.
+    std::shared_ptr<const std::vector<std::byte>> bytes;
 
     // The reader program, started for each file. Empty: the program that was installed (libexec/libtex/tex-reader) or
     // built beside libtex. tex-reader-oiio is in the same folder.

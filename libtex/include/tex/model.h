@@ -76,6 +76,10 @@ struct Model {
 // Errors: those of read_mesh(); unsupported (the file is not glTF; it is "-").
 [[nodiscard]] Result<Model> read_model(const std::string& path, const MeshReadOptions& options = {});
 
+// The same without geometry: of the mesh, the materials alone. Errors: those of read_model() that do not come from
+// geometry.
+[[nodiscard]] Result<Model> read_model_maps(const std::string& path, const MeshReadOptions& options = {});
+
 // The material and the image of a map, as messages name them: "Leather: leather_n.png"; "2 (clearcoat): image 3".
 [[nodiscard]] std::string map_name(const Model& model, const ModelMap& map);
 

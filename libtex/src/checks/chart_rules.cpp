@@ -80,11 +80,13 @@ StripSums sums_of(Covering& mesh, int strip, const Subject& subject) {
     return sums;
 }
 
-void check_mirrored(const MeshPart& part, Findings& findings) {
+// Slivers of less than half a texel show nothing, and rounding their UVs turns them over.
+void check_mirrored(const MeshPart& part, Extent extent, Findings& findings) {
+    const double least = 0.5 / static_cast<double>(extent.texels());
     std::size_t mirrored = 0, upright = 0;
     for (std::size_t t = 0; t < part.triangles(); ++t) {
         const double area = area_in_map(part, t);
-        if (area == 0.0) continue;
+        if (std::abs(area) < least) continue;
         ++(area < 0.0 ? mirrored : upright);
     }
     if (mirrored == 0) return;
@@ -152,7 +154,7 @@ Result<void> check_padding(Covering& mesh, const Subject& subject, Findings& fin
 
 Result<void> check_chart_rules(const Subject& subject, Findings& findings) {
     const MeshPart& part = subject.options.mesh->selected.part;
-    check_mirrored(part, findings);
+    check_mirrored(part, subject.stored.extent(), findings);
     return guarded([&]() -> Result<void> {
         auto coverage = CoverageMap::make(part, 0, subject.stored.extent(), 0);
         if (!coverage) return coverage.error();

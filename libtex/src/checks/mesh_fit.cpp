@@ -117,7 +117,7 @@ Result<std::optional<SeamEvidence>> check_mesh_fit(const Subject& subject, Findi
     const SelectedPart& selected = subject.options.mesh->selected;
     const std::vector<SeamEdge> edges = find_seams(selected.part);
     if (edges.empty()) return std::optional<SeamEvidence>();
-    const SeamSamples samples(selected.part, edges, subject.stored);
+    const SeamSamples samples(selected.part, edges, subject.stored, subject.options.mesh->scale);
     const Extent extent = subject.stored.extent();
     Candidates candidates(subject, samples);
     const bool y_up = y_on_mesh(subject) == YAxis::up;

@@ -104,8 +104,8 @@ namespace {
 // A bilinear filter that repeats, on vectors as stored, as engines filter them: decoders make them unit vectors.
 class Texels {
 public:
-    explicit Texels(const Stored& stored)
-        : stored_(stored), x_(stored.channel(Component::x)), y_(stored.channel(Component::y)),
+    Texels(const Stored& stored, double scale)
+        : stored_(stored), scale_(scale), x_(stored.channel(Component::x)), y_(stored.channel(Component::y)),
           z_(stored.channel(Component::z)) {}
 
     // x and y in texels from the upper left corner of the map.
@@ -126,10 +126,13 @@ private:
         };
         Vector3 n{component(x_), component(y_), 0.0};
         n.z = z_ >= 0 ? component(z_) : std::sqrt(std::max(0.0, 1.0 - n.x * n.x - n.y * n.y));
+        n.x *= scale_;
+        n.y *= scale_;
         return std::isfinite(dot(n, n)) ? n : Vector3{0.0, 0.0, 1.0};
     }
 
     const Stored& stored_;
+    double scale_;
     int x_, y_, z_;
 };
 
@@ -142,9 +145,9 @@ std::array<double, 3> weights_at(const SeamSide& side, double way) {
 
 }  // namespace
 
-SeamSamples::SeamSamples(const MeshPart& part, const std::vector<SeamEdge>& edges, const Stored& stored)
+SeamSamples::SeamSamples(const MeshPart& part, const std::vector<SeamEdge>& edges, const Stored& stored, double scale)
     : SeamSamples(part, edges, stored.extent(),
-                  [texels = Texels(stored)](double x, double y) { return texels.at(x, y); }) {}
+                  [texels = Texels(stored, scale)](double x, double y) { return texels.at(x, y); }) {}
 
 SeamSamples::SeamSamples(const MeshPart& part, const std::vector<SeamEdge>& edges, Extent extent,
                          const TexelAt& texel_at)

@@ -45,8 +45,8 @@ using TexelAt = std::function<Vector3(double x, double y)>;
 class SeamSamples {
 public:
     SeamSamples(const MeshPart& part, const std::vector<SeamEdge>& edges, Extent extent, const TexelAt& texel_at);
-    // With the texels of a bilinear filter that repeats.
-    SeamSamples(const MeshPart& part, const std::vector<SeamEdge>& edges, const Stored& stored);
+    // With the texels of a bilinear filter that repeats, whose x and y are multiplied by `scale`.
+    SeamSamples(const MeshPart& part, const std::vector<SeamEdge>& edges, const Stored& stored, double scale = 1.0);
 
     struct Place {
         std::size_t edge = 0;

@@ -128,6 +128,13 @@ constexpr Rule kRules[] = {
      "other "
      "rules leave it out.",
      "pack-normals FILE --keep-length --fill-background --format SAME -o FIXED", ""},
+    {"N216", "occlusion-roughness-metal", values, error, true, "The picture holds occlusion, roughness and metalness.",
+     "Blue is 0 or 1 nearly everywhere, red is far from the middle, and no vector is of unit length. So are the "
+     "textures that glTF and engines read occlusion, roughness and metalness from (ORM), which stand in the slot of "
+     "the normal map if slots were mixed up. A picture in colours without blue looks the same.",
+     "Give the slot of the normal map the picture that belongs there.",
+     "N115 N201 N202 N205 N207 N208 N209 N213 N214 N215 N301 N302 N303 N304 N305 N306 N308 N309 N310 N401 N402 N403 "
+     "N404 N501 N502 N504"},
 
     // -- damage -----------------------------------------------------------------------------------------------
     {"N301", "srgb-decoded", damage, error, true, "The map went through the sRGB curve: it is too dark.",

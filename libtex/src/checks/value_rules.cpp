@@ -18,6 +18,10 @@ constexpr double kNullShare = 0.0001;
 constexpr double kBehindShare = 0.05;
 constexpr double kGreyShare = 0.999;
 constexpr double kColorShare = 0.9;
+constexpr double kExtremeShare = 0.9;
+constexpr float kExtreme = 8.0f / 255.0f;  // of a stored channel: as near to 0 or 1 as metalness is
+// Of x: occlusion is near 1, or an unused 0. Flat maps that went through the sRGB curve have 0.57.
+constexpr double kFarMean = 0.7;
 constexpr double kFlatShare = 0.25;
 constexpr std::int64_t kFlatLeast = 256;  // texels
 constexpr double kLeanDegrees = 10.0;
@@ -136,6 +140,36 @@ void check_channels(const Subject& subject, Findings& findings) {
     }
 }
 
+// The share of values that are nearly 0 or 1.
+double extreme_share(const Plane<float>& channel) {
+    const Extent extent = channel.extent();
+    std::int64_t count = 0;
+    for (int j = 0; j < extent.height; ++j) {
+        const float* const row = channel.row(j);
+        for (int i = 0; i < extent.width; ++i) count += row[i] <= kExtreme || row[i] >= 1.0f - kExtreme ? 1 : 0;
+    }
+    return static_cast<double>(count) / static_cast<double>(extent.texels());
+}
+
+// Occlusion in red, roughness in green and metalness in blue: blue is 0 or 1, as no z is, and red is far from the 0.5
+// of an upright vector.
+void check_surface_data(const Subject& subject, Findings& findings) {
+    const Stored& stored = subject.stored;
+    if (subject.constant || stored.is_signed || stored.swizzle[0] != Component::x ||
+        stored.swizzle[1] != Component::y || stored.swizzle[2] != Component::z)
+        return;
+    if (subject.counts.share(Property::off_length) <= kColorShare || std::abs(subject.counts.mean_x) <= kFarMean)
+        return;
+    const double share = extreme_share(subject.base.planes[2]);
+    if (share < kExtremeShare) return;
+    Finding& finding =
+        findings.add("N216", "blue is nearly 0 or 1 in " + percent(share) + " of the texels, red is " +
+                                 decimal(0.5 + 0.5 * subject.counts.mean_x, 2) + " in the mean, and " +
+                                 percent(subject.counts.share(Property::off_length)) + " are off unit length");
+    finding.figure = share;
+    finding.unit = "share";
+}
+
 }  // namespace
 
 void check_value_rules(const Subject& subject, Findings& findings) {
@@ -148,6 +182,7 @@ void check_value_rules(const Subject& subject, Findings& findings) {
     check_lengths(subject, findings);
     check_means(subject, findings);
     check_channels(subject, findings);
+    check_surface_data(subject, findings);
 }
 
 }  // namespace tex

@@ -209,6 +209,10 @@ Result<std::vector<std::byte>> InputFile::read_rest(std::int64_t limit) {
     });
 }
 
+Result<InputFile> open_input(const std::string& path, const ReadOptions& options) {
+    return options.bytes ? InputFile::from_memory(path, *options.bytes) : InputFile::open(path);
+}
+
 std::int64_t largest_file(const ReadOptions& options) {
     constexpr std::int64_t kHeader = 1 << 20;
     const std::int64_t texels = std::max<std::int64_t>(options.max_texels, 0);
@@ -217,7 +221,7 @@ std::int64_t largest_file(const ReadOptions& options) {
 }
 
 Result<std::vector<std::byte>> read_whole_file(const std::string& path, const ReadOptions& options) {
-    Result<InputFile> file = InputFile::open(path);
+    Result<InputFile> file = open_input(path, options);
     if (!file) return std::move(file).error();
     return file->read_rest(largest_file(options));
 }

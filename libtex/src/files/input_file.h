@@ -100,6 +100,9 @@ private:
     std::size_t position_ = 0;  // the position of read() in memory_ or head_
 };
 
+// The file that read_texture(path, options) reads: options.bytes, if there are any. Errors: those of InputFile::open().
+Result<InputFile> open_input(const std::string& path, const ReadOptions& options);
+
 // The largest size in bytes of a file with options.max_texels texels: 16 bytes a texel, one third more for a mip chain,
 // and a header.
 std::int64_t largest_file(const ReadOptions& options);

@@ -62,7 +62,7 @@ private:
 // Corners of triangles from those of lists, strips and fans (glTF 2.0, 3.7.2.1).
 Result<std::vector<std::uint32_t>> triangles_of(std::vector<std::uint32_t> corners, std::int64_t mode) {
     if (mode == 4) {
-        if (corners.size() % 3 != 0) return bad_gltf("has " + std::to_string(corners.size()) + " corners of triangles");
+        corners.resize(corners.size() / 3 * 3);  // GPUs draw no incomplete triangle
         return corners;
     }
     std::vector<std::uint32_t> result;
@@ -142,7 +142,10 @@ Result<const GltfAccessor*> PrimitiveReader::attribute(JsonValue primitive, cons
         if (error.file.empty()) error.reason = name + ": " + error.reason;
         return error;
     }
-    if ((*accessor)->components != components || (*accessor)->type == 5125)
+    const GltfAccessor& found = **accessor;
+    const bool is_vector = name == "NORMAL" || name == "TANGENT";  // floats, or fractions with a sign
+    const bool fits_vector = found.type == 5126 || (found.normalized && (found.type == 5120 || found.type == 5122));
+    if (found.components != components || found.type == 5125 || (is_vector && !fits_vector))
         return bad_gltf(name + " has numbers of the wrong type");
     if (vertices_ != 0 && (*accessor)->count != vertices_) {
         return bad_gltf(name + " has " + std::to_string((*accessor)->count) + " elements for " +
@@ -184,6 +187,9 @@ Result<void> PrimitiveReader::read_attributes(JsonValue primitive, const Read& u
 Result<void> PrimitiveReader::read(JsonValue primitive, MeshPart& part) {
     const JsonValue material = primitive["material"];
     vertices_ = 0;
+    // Without positions, nothing is drawn (glTF 2.0, 3.7.2.1).
+    const JsonValue attributes = primitive["attributes"];
+    if (!compressed_.holds(primitive) && !attributes.is_null() && attributes["POSITION"].is_null()) return {};
     const auto positions = attribute(primitive, "POSITION", 3);
     if (!positions) return positions.error();
     vertices_ = (*positions)->count;

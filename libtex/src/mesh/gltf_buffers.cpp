@@ -277,7 +277,8 @@ Result<void> GltfBuffers::make_sparse(JsonValue sparse, GltfAccessor& accessor) 
     const auto count = sparse["count"].count(), type = sparse["indices"]["componentType"].count(),
                index_offset = count_or(sparse["indices"]["byteOffset"], 0),
                value_offset = count_or(sparse["values"]["byteOffset"], 0);
-    if (!count || !index_offset || !value_offset || !type || (*type != 5121 && *type != 5123 && *type != 5125))
+    if (!count || *count == 0 || !index_offset || !value_offset || !type ||
+        (*type != 5121 && *type != 5123 && *type != 5125))
         return bad_gltf("its sparse elements are damaged");
     const auto indices = view(sparse["indices"]["bufferView"]);
     if (!indices) return indices.error();
@@ -295,7 +296,7 @@ Result<void> GltfBuffers::make_sparse(JsonValue sparse, GltfAccessor& accessor) 
             return bad_gltf("its sparse elements are not in ascending order or out of range");
         accessor.replaced_.push_back(element);
     }
-    if (n > 0) accessor.replacements_ = values->bytes.data() + static_cast<std::size_t>(*value_offset);
+    accessor.replacements_ = values->bytes.data() + static_cast<std::size_t>(*value_offset);
     return {};
 }
 
@@ -304,7 +305,7 @@ Result<GltfAccessor> GltfBuffers::make(JsonValue description) {
                offset = count_or(description["byteOffset"], 0);
     GltfAccessor accessor;
     accessor.components = components_of(description["type"].text());
-    if (!count || !type || !offset || size_of_type(*type) == 0 || accessor.components == 0)
+    if (!count || *count == 0 || !type || !offset || size_of_type(*type) == 0 || accessor.components == 0)
         return bad_gltf("is damaged");
     accessor.count = static_cast<std::size_t>(*count);
     accessor.type = static_cast<int>(*type);
@@ -319,7 +320,7 @@ Result<GltfAccessor> GltfBuffers::make(JsonValue description) {
             return bad_gltf("leaves its buffer view: " + std::to_string(accessor.count) + " elements of " +
                             std::to_string(accessor.size_) + " bytes in " + std::to_string(bytes->bytes.size()));
         }
-        if (accessor.count > 0) accessor.data_ = bytes->bytes.data() + static_cast<std::size_t>(*offset);
+        accessor.data_ = bytes->bytes.data() + static_cast<std::size_t>(*offset);
     }
     if (const JsonValue sparse = description["sparse"]; !sparse.is_null()) {
         if (const auto made = make_sparse(sparse, accessor); !made) return made.error();

@@ -40,6 +40,12 @@ std::optional<std::array<double, N>> numbers(JsonValue value, std::array<double,
     return result;
 }
 
+// Whether a quaternion is one of unit length, as exporters round it.
+bool is_rotation(const std::array<double, 4>& q) {
+    const double squared = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    return squared > 0.9 && squared < 1.1;
+}
+
 // Translation after rotation after scale (glTF 2.0, 3.5.3).
 Matrix matrix_of_parts(const std::array<double, 3>& t, const std::array<double, 4>& q, const std::array<double, 3>& s) {
     const auto [x, y, z, w] = q;
@@ -59,7 +65,7 @@ std::optional<Matrix> matrix_of(JsonValue node) {
         const auto t = numbers<3>(node["translation"], {0, 0, 0});
         const auto q = numbers<4>(node["rotation"], {0, 0, 0, 1});
         const auto s = numbers<3>(node["scale"], {1, 1, 1});
-        if (!t || !q || !s) return std::nullopt;
+        if (!t || !q || !s || !is_rotation(*q)) return std::nullopt;
         return matrix_of_parts(*t, *q, *s);
     }
     const auto m = numbers<16>(node["matrix"], {});  // in columns

@@ -125,9 +125,9 @@ AngleSums sum_angles(const float* degrees, int count) {
 }
 
 Result<AngularError> summarise_angles(const Plane<float>& degrees, const std::vector<AngleSums>& rows,
-                                      const Execution& execution) {
+                                      std::int64_t left_out, const Execution& execution) {
     AngularError error;
-    error.texels = degrees.extent().texels();
+    error.texels = degrees.extent().texels() - left_out;
     double sum = 0.0;
     double squares = 0.0;
     float max = -1.0f;
@@ -144,7 +144,9 @@ Result<AngularError> summarise_angles(const Plane<float>& degrees, const std::ve
     error.mean = sum / count;
     error.rms = std::sqrt(squares / count);
     error.max = max;
-    const Ranks ranks = {rank_of(error.texels, 500), rank_of(error.texels, 990), rank_of(error.texels, 999)};
+    // No angle is smaller than those that are left out.
+    const Ranks ranks = {left_out + rank_of(error.texels, 500), left_out + rank_of(error.texels, 990),
+                         left_out + rank_of(error.texels, 999)};
     const auto ranked = values_at(degrees, ranks, execution);
     if (!ranked) return ranked.error();
     error.p50 = (*ranked)[0];

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include <tex/angular_error.h>
@@ -22,8 +23,9 @@ struct AngleSums {
 
 AngleSums sum_angles(const float* degrees, int count);
 
-// Of all rows of `degrees`, whose sums are `rows`. Angles are finite and not negative. Errors: out_of_memory.
+// Of all rows of `degrees`, whose sums are `rows`. Angles are finite and not negative. `left_out` of them are zeros
+// that do not count, and less than all. Errors: out_of_memory.
 [[nodiscard]] Result<AngularError> summarise_angles(const Plane<float>& degrees, const std::vector<AngleSums>& rows,
-                                                    const Execution& execution);
+                                                    std::int64_t left_out, const Execution& execution);
 
 }  // namespace tex

@@ -12,7 +12,7 @@ namespace tex {
 // A stream is read into memory, because the map may have to be read twice.
 Result<void> FileMap::open_file() {
     if (file_ == nullptr) {
-        Result<InputFile> file = InputFile::open(path_);
+        Result<InputFile> file = open_input(path_, options_);
         if (!file) return file.error();
         own_.emplace(std::move(*file));
         file_ = &*own_;

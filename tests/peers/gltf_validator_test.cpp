@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+// Khronos' gltf-validator beside the reader of glTF: what it finds valid is read, and what it calls an error in
+// geometry is refused, apart from the exceptions that are named here.
+//
+// The models are those of ../shared/data and of the samples, and some thousand that are made from small ones by
+// changing one number, or leaving out one member. The validator comes from npm, into a folder of the build; the test is
+// skipped where npm or its registry is missing.
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <tex/tex.h>
+#include <nlohmann/json.hpp>
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+const fs::path kSource = TEX_SOURCE_DIR;
+const fs::path kData = kSource / "../shared/data";
+
+bool shell(const std::string& command) { return std::system((command + " </dev/null").c_str()) == 0; }
+
+// The folder in which npm has installed the validator; empty if it cannot.
+std::string modules() {
+    static const std::string folder = [] {
+        const fs::path place = fs::path(TEX_BINARY_DIR) / "gltf-tools";
+        if (fs::exists(place / "node_modules/gltf-validator")) return place.string();
+        if (!shell("command -v npm >/dev/null")) return std::string();
+        fs::create_directories(place);
+        const bool installed = shell("timeout 300 npm install --no-audit --no-fund --prefix '" + place.string() +
+                                     "' gltf-validator@2.0.0-dev.3.10 >/dev/null 2>&1");
+        return installed ? place.string() : std::string();
+    }();
+    return folder;
+}
+
+std::string read(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void write(const fs::path& file, const std::string& bytes) {
+    std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+}
+
+// A GLB file of its two chunks.
+struct Glb {
+    json document;
+    std::string binary;
+
+    explicit Glb(const std::string& bytes) {
+        std::uint32_t size = 0;
+        std::memcpy(&size, bytes.data() + 12, 4);
+        document = json::parse(bytes.substr(20, size));
+        const std::size_t next = 20 + size;
+        if (next + 8 <= bytes.size()) binary = bytes.substr(next + 8);
+    }
+    [[nodiscard]] std::string bytes() const {
+        std::string text = document.dump();
+        text.resize((text.size() + 3) / 4 * 4, ' ');
+        std::string file;
+        const auto put = [&](std::size_t value) {
+            const auto word = static_cast<std::uint32_t>(value);
+            file.append(reinterpret_cast<const char*>(&word), 4);
+        };
+        put(0x46546C67);
+        put(2);
+        put(12 + 8 + text.size() + (binary.empty() ? 0 : 8 + binary.size()));
+        put(text.size());
+        put(0x4E4F534A);
+        file += text;
+        if (binary.empty()) return file;
+        put(binary.size());
+        put(0x004E4942);
+        return file + binary;
+    }
+};
+
+// Every change of one value below `at`: other numbers, and its absence.
+void change_each(const json& whole, const json::json_pointer& at, std::vector<json>& changed) {
+    const json& value = whole.at(at);
+    if (value.is_object() || value.is_array()) {
+        for (const auto& [key, part] : value.items()) {
+            const json::json_pointer below = value.is_array() ? at / std::stoul(key) : at / key;
+            change_each(whole, below, changed);
+            if (!value.is_object()) continue;
+            json without = whole;
+            without[at].erase(key);
+            changed.push_back(std::move(without));
+        }
+        return;
+    }
+    if (!value.is_number()) return;
+    for (const json& other :
+         {json(0), json(-1), json(value.get<double>() + 1.0), json(1000000000), json(5121), json(5125), json("x")}) {
+        json with = whole;
+        with[at] = other.is_number_float() ? json(static_cast<std::int64_t>(other.get<double>())) : other;
+        if (with != whole) changed.push_back(std::move(with));
+    }
+}
+
+// Errors of the validator on which both need not agree, with the reason.
+struct Exception {
+    std::string_view code;   // the whole code, or its beginning before '*'
+    std::string_view where;  // the beginning of the pointer
+};
+
+// No damage to geometry: such files are read.
+constexpr Exception kHarmless[] = {
+    // Images and materials are judged when a map is read, and by rules of check-normals.
+    {"*", "/images"},
+    {"*", "/materials"},
+    {"*", "/textures"},
+    {"*", "/samplers"},
+    {"MESH_PRIMITIVE_TOO_FEW_TEXCOORDS", ""},  // N803
+    {"ACCESSOR_INVALID_SIGN", ""},             // N703
+    {"ACCESSOR_VECTOR3_NON_UNIT", ""},         // N702
+    // Bounds are for culling. What is read are the vertices.
+    {"MESH_PRIMITIVE_POSITION_ACCESSOR_WITHOUT_BOUNDS", ""},
+    {"ACCESSOR_MIN_MISMATCH", ""},
+    {"ACCESSOR_MAX_MISMATCH", ""},
+    {"ACCESSOR_ELEMENT_OUT_OF_*", ""},
+    // Values are copied byte by byte, so that no processor minds where they are.
+    {"ACCESSOR_TOTAL_OFFSET_ALIGNMENT", ""},
+    {"ACCESSOR_OFFSET_ALIGNMENT", ""},
+    {"MESH_PRIMITIVE_ACCESSOR_UNALIGNED", ""},
+    // What GPUs want of a buffer.
+    {"BUFFER_VIEW_TARGET_*", ""},
+    {"MESH_PRIMITIVE_ACCESSOR_WITHOUT_BYTESTRIDE", ""},
+    {"MESH_PRIMITIVE_INDICES_ACCESSOR_WITH_BYTESTRIDE", ""},
+    // Extensions that are known, where the lists of extensions are incomplete.
+    {"UNSATISFIED_DEPENDENCY", "/extensionsRequired"},
+    {"UNUSED_EXTENSION_REQUIRED", "/extensionsRequired"},
+};
+
+// Such files are read or refused.
+constexpr Exception kEither[] = {
+    {"VALUE_NOT_IN_LIST", ""},    // a type of numbers that glTF does not have is only a warning
+    {"VALUE_*", "/bufferViews"},  // strides that are no multiple of 4 are refused where elements do not fit
+    // The formats of KHR_mesh_quantization are read without it; normals without a sign are refused.
+    {"MESH_PRIMITIVE_ATTRIBUTES_ACCESSOR_INVALID_FORMAT", ""},
+    // TEXCOORD_1 without TEXCOORD_0 is refused, but not COLOR_1 without COLOR_0, which is not read.
+    {"MESH_PRIMITIVE_INDEXED_SEMANTIC_CONTINUITY", ""},
+};
+
+bool matches(const Exception& exception, std::string_view error) {
+    const std::size_t at = error.find('@');
+    const std::string_view code = error.substr(0, at), where = error.substr(at + 1);
+    const std::size_t star = exception.code.find('*');
+    const bool named = star == std::string_view::npos ? code == exception.code
+                                                      : code.substr(0, star) == exception.code.substr(0, star);
+    return named && where.starts_with(exception.where);
+}
+
+template <std::size_t N>
+bool is_one_of(const Exception (&exceptions)[N], std::string_view error) {
+    return std::any_of(std::begin(exceptions), std::end(exceptions),
+                       [&](const Exception& exception) { return matches(exception, error); });
+}
+
+std::vector<std::string> words(const std::string& line) {
+    std::istringstream stream(line);
+    return {std::istream_iterator<std::string>(stream), {}};
+}
+
+// Adds what the seeds lack.
+void make_valid(json& document) {
+    if (document.contains("extensionsRequired")) document["extensionsUsed"] = document["extensionsRequired"];
+    for (const char* const unused : {"materials", "textures", "images"}) document.erase(unused);
+    for (json& mesh : document["meshes"]) {
+        for (json& primitive : mesh["primitives"]) primitive.erase("material");
+    }
+}
+
+class GltfValidator : public testing::Test {
+protected:
+    void SetUp() override {
+        if (modules().empty()) GTEST_SKIP() << "npm cannot install gltf-validator here";
+        std::string name = (fs::temp_directory_path() / "gltf_validator_XXXXXX").string();
+        folder_ = mkdtemp(name.data());
+    }
+    void TearDown() override {
+        if (!folder_.empty()) fs::remove_all(folder_);
+    }
+
+    // Compares both on each of the models.
+    void compare(const std::vector<fs::path>& models) {
+        std::string list;
+        for (const fs::path& model : models) list += model.string() + "\n";
+        write(folder_ / "list", list);
+        ASSERT_TRUE(shell("node '" + (kSource / "tests/peers/gltf_validator.mjs").string() + "' '" + modules() + "' '" +
+                          (folder_ / "list").string() + "' >'" + (folder_ / "said").string() + "'"));
+        std::istringstream said(read(folder_ / "said"));
+        std::string line;
+        std::map<std::string, std::pair<int, std::string>> accepted;  // how often each error was, and the first model
+        for (const fs::path& model : models) {
+            ASSERT_TRUE(std::getline(said, line));
+            std::vector<std::string> errors = words(line);
+            std::erase_if(errors, [](const std::string& error) { return is_one_of(kHarmless, error); });
+            const bool is_valid = errors.empty();
+            std::erase_if(errors, [](const std::string& error) { return is_one_of(kEither, error); });
+            const auto mesh = tex::read_mesh(model.string());
+            if (is_valid) {
+                EXPECT_TRUE(mesh || is_without_triangles(mesh.error())) << model << ": " << mesh.error().message();
+                ++valid_;
+            } else if (!mesh) {
+                ++refused_;
+            }
+            if (!mesh) continue;
+            for (const std::string& error : errors) {
+                auto& [count, first] = accepted[error];
+                if (count++ == 0) first = model.string();
+            }
+        }
+        for (const auto& [error, what] : accepted)
+            ADD_FAILURE() << error << " is accepted " << what.first << " times, first in " << what.second;
+    }
+    // Models need no triangles, but meshes for normal maps do.
+    static bool is_without_triangles(const tex::Error& error) {
+        return error.reason.find("no triangles") != std::string::npos;
+    }
+
+    fs::path folder_;
+    int valid_ = 0, refused_ = 0;
+};
+
+TEST_F(GltfValidator, AgreesOnModelsOfOthers) {
+    if (!fs::exists(kData)) GTEST_SKIP() << "no ../shared/data";
+    std::vector<fs::path> models;
+    for (const fs::path& root : {kData, kSource / "samples", kSource / "tests/fuzz/corpus/gltf"}) {
+        for (const auto& entry : fs::recursive_directory_iterator(root)) {
+            const auto extension = entry.path().extension();
+            if (extension == ".gltf" || extension == ".glb") models.push_back(entry.path());
+        }
+    }
+    std::sort(models.begin(), models.end());
+    EXPECT_GT(models.size(), 20u);
+    compare(models);
+    std::printf("%zu models: %d valid, %d refused by both\n", models.size(), valid_, refused_);
+}
+
+TEST_F(GltfValidator, AgreesOnModelsWithOneChange) {
+    std::vector<fs::path> models;
+    for (const std::string seed : {"quad", "quantised", "sparse_strip"}) {
+        Glb glb(read(kSource / "tests/fuzz/corpus/gltf" / (seed + ".glb")));
+        make_valid(glb.document);
+        std::vector<json> changed;
+        for (const char* const part : {"accessors", "bufferViews", "buffers", "meshes", "nodes"}) {
+            const auto at = json::json_pointer() / part;
+            if (glb.document.contains(at)) change_each(glb.document, at, changed);
+        }
+        for (std::size_t k = 0; k < changed.size(); ++k) {
+            Glb one = glb;
+            one.document = std::move(changed[k]);
+            models.push_back(folder_ / (seed + std::to_string(k) + ".glb"));
+            write(models.back(), one.bytes());
+        }
+    }
+    EXPECT_GT(models.size(), 500u);
+    compare(models);
+    std::printf("%zu models: %d valid, %d refused by both\n", models.size(), valid_, refused_);
+}
+
+}  // namespace

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "tasks/model_input.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <tex/mesh_io.h>
+
+namespace tex::cli {
+namespace {
+
+// A material's name as a part of a file's name: without separators, and not hidden.
+std::string field_of(const Model& model, const ModelMap& map) {
+    std::string text = model.mesh.materials[static_cast<std::size_t>(map.material)].name;
+    for (char& c : text) {
+        const bool is_special = std::string_view("/\\:*?\"<>|").find(c) != std::string_view::npos;
+        if (is_special || static_cast<unsigned char>(c) < ' ') c = '_';
+    }
+    if (text.starts_with('.')) text.front() = '_';
+    if (text.empty()) text = std::to_string(map.material);
+    return text + (map.slot == NormalSlot::clearcoat_normal ? "_clearcoat" : "");
+}
+
+std::vector<std::string> fields_of(const Model& model) {
+    std::vector<std::string> fields;
+    for (const ModelMap& map : model.maps) fields.push_back(field_of(model, map));
+    std::vector<std::string> unique = fields;
+    for (std::size_t k = 0; k < fields.size(); ++k) {
+        if (std::count(fields.begin(), fields.end(), fields[k]) > 1)
+            unique[k] += "_" + std::to_string(model.maps[k].material);
+    }
+    return unique;
+}
+
+// The map's material, as maps_of() finds it.
+std::string material_of(const Model& model, const ModelMap& map) {
+    const auto& materials = model.mesh.materials;
+    const std::string& name = materials[static_cast<std::size_t>(map.material)].name;
+    const auto same = std::count_if(materials.begin(), materials.end(),
+                                    [&](const MeshMaterial& material) { return material.name == name; });
+    return name.empty() || same > 1 ? selection_of(model, map).material : name;
+}
+
+// The files that the map depends on, apart from the model.
+std::vector<std::string> files_beside(const std::string& file, const ModelImage* image,
+                                      const MeshReadOptions& options) {
+    std::vector<std::string> files;
+    if (auto of_mesh = mesh_files(file, options)) files.assign(of_mesh->begin() + 1, of_mesh->end());
+    if (image != nullptr && !image->file.empty()) files.push_back(image->file);
+    return files;
+}
+
+const ModelImage* image_of(const Model& model, const ModelMap& map) {
+    return map.image < 0 ? nullptr : &model.images[static_cast<std::size_t>(map.image)];
+}
+
+std::vector<std::shared_ptr<const ModelInput>> maps_in(const std::string& file, const std::string& material,
+                                                       const MeshReadOptions& options,
+                                                       const std::shared_ptr<LastModel>& last) {
+    const auto one = [](ModelInput input) {
+        return std::vector<std::shared_ptr<const ModelInput>>{std::make_shared<const ModelInput>(std::move(input))};
+    };
+    const auto model = read_model_maps(file, options);
+    if (!model) return one({.file = file, .error = model.error()});
+    const auto chosen = maps_of(*model, material);
+    if (!chosen) return one({.file = file, .error = chosen.error()});
+    if (chosen->empty()) return one({.file = file});
+    const std::vector<std::string> fields = fields_of(*model);
+    std::vector<std::shared_ptr<const ModelInput>> maps;
+    for (std::size_t k = 0; k < fields.size(); ++k) {
+        const ModelMap& map = model->maps[k];
+        if (map.material != chosen->front().material && !material.empty()) continue;
+        const ModelImage* const image = image_of(*model, map);
+        ModelInput input{.file = file, .material = material_of(*model, map), .field = fields[k]};
+        input.map = map;
+        if (image != nullptr) input.image = image->file.empty() ? image->name : image->file;
+        input.path = image != nullptr && !image->file.empty() ? image->file : input.name();
+        input.beside = files_beside(file, image, options);
+        input.last = last;
+        maps.push_back(std::make_shared<const ModelInput>(std::move(input)));
+    }
+    return maps;
+}
+
+}  // namespace
+
+Result<std::shared_ptr<const Model>> LastModel::read(const std::string& path, Part part,
+                                                     const MeshReadOptions& options) {
+    const std::lock_guard lock(mutex_);
+    if (model_ && path_ == path && (part_ == part || part_ == Part::all)) return model_;
+    model_.reset();
+    auto model = part == Part::all ? read_model(path, options) : read_model_maps(path, options);
+    if (!model) return model.error();
+    path_ = path;
+    part_ = part;
+    model_ = std::make_shared<const Model>(std::move(*model));
+    return model_;
+}
+
+Result<std::shared_ptr<const Model>> ModelInput::read(LastModel::Part part, const ReadOptions& options) const {
+    MeshReadOptions how;
+    how.reader = options;
+    auto model = last->read(file, part, how);
+    const auto is_same = [&](const ModelMap& now) {
+        return now.material == map->material && now.slot == map->slot && now.image == map->image;
+    };
+    if (model && std::none_of((*model)->maps.begin(), (*model)->maps.end(), is_same))
+        return Error{ErrorCode::io, file, "changed while it was read"};
+    return model;
+}
+
+Result<void> ModelInput::open(ReadOptions& options) const {
+    const auto model = read(LastModel::Part::maps, options);
+    if (!model) return model.error();
+    const ModelImage* const found = image_of(**model, *map);
+    if (found == nullptr) return Error{ErrorCode::bad_data, name(), "its texture has no image"};
+    if (found->error) return found->error->of(path);
+    if (found->file.empty()) options.bytes = std::shared_ptr<const std::vector<std::byte>>(*model, &found->bytes);
+    return {};
+}
+
+void ModelInput::report(Json& report) const {
+    if (!map) return;
+    report["material"] = material;
+    report["material_number"] = map->material;
+    report["slot"] = name_of(kNormalSlotNames, map->slot);
+    report["image"] = image;
+    report["uv_set"] = map->uv_set;
+    report["scale"] = map->scale;
+}
+
+std::vector<Input> with_maps_of_models(std::vector<Input> inputs, const std::string& material,
+                                       const MeshReadOptions& options) {
+    const auto last = std::make_shared<LastModel>();
+    std::vector<Input> all;
+    for (Input& input : inputs) {
+        if (input.tile != 0 || input.place || !is_model(input.name)) {
+            all.push_back(std::move(input));
+            continue;
+        }
+        for (auto& map : maps_in(input.name, material, options, last)) {
+            Input one = input;
+            one.model = std::move(map);
+            all.push_back(std::move(one));
+        }
+    }
+    return all;
+}
+
+}  // namespace tex::cli
