@@ -28,8 +28,9 @@ fi
 make_root() {
     rm -rf "$root"
     mkdir -p "$(dirname "$root")"
+    # A mirror that stands still has an index of sid that is past its date. It must be signed all the same.
     mmdebstrap --quiet --variant=apt --include=ca-certificates,ccache,git \
-        --aptopt='APT::Install-Recommends "false"' "$1" "$root" "$mirror"
+        --aptopt='Acquire::Check-Valid-Until "false"' "$1" "$root" "$mirror"
 }
 
 # Clones HEAD into the root, or brings the clone there up to date; files that are the same keep their times.

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-# shellcheck shell=bash
+# shellcheck shell=bash disable=SC2154
 # The libraries inside the portable archive for which Debian has no static archive: fetched as Debian source packages,
 # checked by apt against the release's signed index, and built into $prefix. Sourced by portable.sh, which sets $work
-# (where sources and builds lie), $prefix, $mirror and, for a cross-build, $cross (CMake options) and $host (the triplet).
+# (where sources and builds lie), $prefix, $mirror and $hardening (flags of the compiler).
 
 # Of Debian 12: what the packages of Debian 12 link. Its own tar archive alone comes of OpenColorIO and pystring, since
 # Debian's changes to them concern only packaging; of OpenColorIO the next patch release, because mirrors lost 2.1.2.
 sources=(imath openexr libisal onetbb highway fmtlib tiff yaml-cpp)
 bare_sources=(opencolorio pystring)
-# shellcheck disable=SC2034  # what lies in $prefix afterwards; portable.sh lists it in the SPDX document
-built=("${sources[@]}" "${bare_sources[@]}")
+# Linked from Debian's static archives. Whoever passes on the archive must offer these sources, too (LGPL 2.1).
+lgpl_sources=(glibc libseccomp)
 
 # apt_in RELEASE ARGUMENT...: apt-get with lists of its own, so that nothing of this system is touched.
 apt_in() {
@@ -35,6 +35,8 @@ fetch_sources() {
         apt_in trixie update
         apt_in bookworm source "${sources[@]}"
         apt_in trixie source --tar-only --download-only "${bare_sources[@]}"
+        mkdir -p "$work/lgpl-sources"
+        (cd "$work/lgpl-sources" && apt_in bookworm source --download-only "${lgpl_sources[@]}")
         for file in opencolorio*.orig.tar.* pystring*.orig.tar.*; do tar -xf "$file"; done
         touch complete
     ) >"$work/sources.log" 2>&1 || { tail -n 5 "$work/sources.log" >&2; return 1; }
@@ -50,7 +52,7 @@ with_cmake() {
         -DCMAKE_INSTALL_PREFIX="$prefix" -DCMAKE_INSTALL_LIBDIR=lib -DCMAKE_PREFIX_PATH="$prefix" \
         -DCMAKE_POSITION_INDEPENDENT_CODE=ON -DCMAKE_C_FLAGS="$hardening" -DCMAKE_CXX_FLAGS="$hardening" \
         -DCMAKE_CXX_VISIBILITY_PRESET=hidden -DCMAKE_VISIBILITY_INLINES_HIDDEN=ON -DBUILD_TESTING=OFF \
-        ${cross[@]+"${cross[@]}"} "$@" >"$build.log" 2>&1 &&
+        "$@" >"$build.log" 2>&1 &&
         cmake --build "$build" --target install >>"$build.log" 2>&1 ||
         { tail -n 20 "$build.log" >&2; return 1; }
     touch "$build/installed"
@@ -62,8 +64,7 @@ with_isal_makefile() {
     [ ! -e "$build/installed" ] || return 0
     rm -rf "$build"
     cp -r "$(source_of libisal)" "$build"
-    make -C "$build" -f Makefile.unx -j "$(nproc)" lib CFLAGS_="$hardening -fPIC" \
-        ${host:+host_cpu="${host%%-*}" CC="$host-gcc" AR="$host-ar"} >"$build.log" 2>&1 ||
+    make -C "$build" -f Makefile.unx -j "$(nproc)" lib CFLAGS_="$hardening -fPIC" >"$build.log" 2>&1 ||
         { tail -n 20 "$build.log" >&2; return 1; }
     mkdir -p "$prefix/lib/pkgconfig" "$prefix/include/isa-l"
     cp "$build"/bin/isa-l.a "$prefix/lib/libisal.a"
@@ -87,7 +88,8 @@ build_libraries() {
         -DCMAKE_FIND_LIBRARY_SUFFIXES=.a
     with_cmake yaml-cpp -DYAML_CPP_BUILD_TESTS=OFF -DYAML_CPP_BUILD_TOOLS=OFF
     with_pystring
-    with_cmake opencolorio -DOCIO_BUILD_APPS=OFF -DOCIO_BUILD_TESTS=OFF -DOCIO_BUILD_GPU_TESTS=OFF \
+    # Its sources lean on a header that GCC 12 no longer brings with others.
+    with_cmake opencolorio -DCMAKE_CXX_FLAGS="$hardening -include cstring" -DOCIO_BUILD_APPS=OFF -DOCIO_BUILD_TESTS=OFF -DOCIO_BUILD_GPU_TESTS=OFF \
         -DOCIO_BUILD_PYTHON=OFF -DOCIO_BUILD_DOCS=OFF -DOCIO_INSTALL_EXT_PACKAGES=NONE -DOCIO_WARNING_AS_ERROR=OFF \
         -Dyaml-cpp_STATIC_LIBRARY=ON -Dexpat_STATIC_LIBRARY=ON -Dpystring_STATIC_LIBRARY=ON \
         -DImath_STATIC_LIBRARY=ON -DCMAKE_FIND_LIBRARY_SUFFIXES=.a
@@ -99,9 +101,9 @@ with_pystring() {
     [ ! -e "$build/installed" ] || return 0
     mkdir -p "$build" "$prefix/include/pystring"
     # shellcheck disable=SC2086  # flags are words
-    "${host:+$host-}g++" $hardening -O2 -fPIC -c "$(source_of pystring)/pystring.cpp" -o "$build/pystring.o"
+    g++ $hardening -O2 -fPIC -c "$(source_of pystring)/pystring.cpp" -o "$build/pystring.o"
     rm -f "$prefix/lib/libpystring.a"
-    "${host:+$host-}ar" rcs "$prefix/lib/libpystring.a" "$build/pystring.o"
+    ar rcs "$prefix/lib/libpystring.a" "$build/pystring.o"
     cp "$(source_of pystring)/pystring.h" "$prefix/include/pystring"
     touch "$build/installed"
 }
