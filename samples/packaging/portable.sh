@@ -42,8 +42,8 @@ fi
 
 build_libtex() {
     # Libraries of libraries, which CMake's packages of shared libraries do not name. The linker takes what is needed.
-    local others='-lyaml-cpp -lpystring -lexpat -lOpenEXRCore -lwebp -lLerc -llzma -lzstd -ljpeg -ldeflate'
-    others+=' -lImath -lz -Wl,--trace'
+    local others='-lyaml-cpp -lpystring -lexpat -lwebp -lLerc -llzma -lzstd -ljpeg -ldeflate'
+    others+=' -lImath-3_1 -lz -Wl,--trace'
     PKG_CONFIG_PATH=$prefix/lib/pkgconfig cmake --preset release -B "$work/build/libtex" \
         -DTEX_STATIC=ON -DTEX_OIIO_READER=OFF -DTEX_MESH_READER=OFF -DBUILD_TESTING=OFF -DTEX_PYTHON=$wheel \
         -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_INSTALL_LIBDIR=lib -DCMAKE_CXX_STANDARD_LIBRARIES="-L$prefix/lib $others" \
