@@ -24,6 +24,7 @@ if [ "$(uname -m)" != x86_64 ]; then
 fi
 work=$PWD/build/portable
 prefix=$work/libraries
+static=$PWD/build/static  # as deep as other build folders, so that ccache knows what they have compiled
 mirror=${MIRROR:-http://deb.debian.org/debian}
 hardening='-D_FORTIFY_SOURCE=2 -fstack-protector-strong'
 # shellcheck source=samples/packaging/portable/libraries.sh
@@ -44,13 +45,13 @@ build_libtex() {
     # Libraries of libraries, which CMake's packages of shared libraries do not name. The linker takes what is needed.
     local others='-lyaml-cpp -lpystring -lexpat -lwebp -lLerc -llzma -lzstd -ljpeg -ldeflate'
     others+=' -lImath-3_1 -lz -Wl,--trace'
-    PKG_CONFIG_PATH=$prefix/lib/pkgconfig cmake --preset release -B "$work/build/libtex" \
+    PKG_CONFIG_PATH=$prefix/lib/pkgconfig cmake --preset release -B "$static" \
         -DTEX_STATIC=ON -DTEX_OIIO_READER=OFF -DTEX_MESH_READER=OFF -DBUILD_TESTING=OFF -DTEX_PYTHON=$wheel \
         -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_INSTALL_LIBDIR=lib -DCMAKE_CXX_STANDARD_LIBRARIES="-L$prefix/lib $others" \
         -DTIFF_LIBRARY="$prefix/lib/libtiff.a" -DTIFF_INCLUDE_DIR="$prefix/include" \
         >"$work/libtex.log" 2>&1 || { tail -n 20 "$work/libtex.log" >&2; return 1; }
     # What the linker has taken from where (--trace) stays from the run that linked.
-    cmake --build "$work/build/libtex" | tee -a "$work/build/libtex/linked.log" \
+    cmake --build "$static" | tee -a "$static/linked.log" \
         >>"$work/libtex.log" || { tail -n 20 "$work/libtex.log" >&2; return 1; }
 }
 
@@ -58,21 +59,21 @@ build_libtex() {
 install_libtex() {
     local documents=$stage/share/doc/libtex file
     rm -rf "$stage"
-    cmake --install "$work/build/libtex" --prefix "$stage" --component tools --strip >/dev/null
+    cmake --install "$static" --prefix "$stage" --component tools --strip >/dev/null
     mkdir -p "$documents"
     cp -r README.md CHANGELOG.md LICENSE samples "$documents"
     rm -r "$documents/samples/packaging"
     find "$documents" -name '__pycache__' -prune -exec rm -r {} +
     find "$stage/share/man" -name '*.[0-9]' -exec gzip -9n {} +
     python3 samples/packaging/portable/inventory.py --version "$version" --sources "$work/sources" --date "$date" \
-        --trace "$work/build/libtex/linked.log" --out "$documents"
+        --trace "$static/linked.log" --out "$documents"
     chmod -R u=rwX,go=rX "$stage"
 }
 
 # A wheel with the module, what it links, and the reader, from the same objects.
 make_wheel() {
     rm -f "$work"/tex-*.whl
-    (cd libtex/python && TEX_BUILD=$work/build/libtex TEX_NOTICES=$stage/share/doc/libtex/licences /usr/bin/python3 -B -c '
+    (cd libtex/python && TEX_BUILD=$static TEX_NOTICES=$stage/share/doc/libtex/licences /usr/bin/python3 -B -c '
 import sys, build_wheel
 print(build_wheel.build_wheel(sys.argv[1]))' "$work")
 }
