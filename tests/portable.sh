@@ -106,7 +106,7 @@ outputs_in() {
         cp -r "$2" "$root/tmp/any where/libtex"
         cp "$3" "$root/tmp/outputs.sh"
         mkdir -m 1777 "$root/tmp/out"
-        exec env -i PATH=/usr/bin:/bin LANG=C chroot --userspec=4321:4321 "$root" sh -euc "
+        exec env -i PATH=/usr/sbin:/usr/bin:/bin LANG=C chroot --userspec=4321:4321 "$root" sh -euc "
             cd /tmp
             ./any\ where/libtex/libexec/libtex/tex-reader --version >&2
             sh outputs.sh \"/tmp/any where/libtex/bin\" \"/tmp/any where/libtex/share/doc/libtex/samples\" /tmp/out/made"
@@ -134,7 +134,7 @@ wheel_works() {
         mount -t proc proc "$1/proc"
         mount -t tmpfs tmpfs "$1/tmp"
         cp "$2" "$3" samples/bricks.png "$1/tmp"
-        exec env -i PATH=/usr/bin:/bin HOME=/tmp LANG=C chroot --userspec=4321:4321 "$1" sh -euc "
+        exec env -i PATH=/usr/sbin:/usr/bin:/bin HOME=/tmp LANG=C chroot --userspec=4321:4321 "$1" sh -euc "
             cd /tmp
             ! command -v cc && ! command -v g++
             pip install -q --no-index --break-system-packages --user --no-warn-script-location ./*.whl
