@@ -32,7 +32,7 @@ hardening='-D_FORTIFY_SOURCE=2 -fstack-protector-strong'
 
 # What is linked as Debian's own static archive, and headers.
 static_packages=(
-    libpng-dev zlib1g-dev libdeflate-dev libzstd-dev libjpeg62-turbo-dev libseccomp-dev liblzma-dev libwebp-dev
+    zlib1g-dev libdeflate-dev libzstd-dev libjpeg62-turbo-dev libseccomp-dev liblzma-dev libwebp-dev
     liblerc-dev libexpat1-dev nlohmann-json3-dev libtomlplusplus-dev
 )
 if [ "$wheel" = ON ]; then need_packages pybind11-dev python3-dev python3-numpy; fi
@@ -48,6 +48,7 @@ build_libtex() {
     PKG_CONFIG_PATH=$prefix/lib/pkgconfig cmake --preset release -B "$static" \
         -DTEX_STATIC=ON -DTEX_OIIO_READER=OFF -DTEX_MESH_READER=OFF -DBUILD_TESTING=OFF -DTEX_PYTHON=$wheel \
         -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_INSTALL_LIBDIR=lib -DCMAKE_CXX_STANDARD_LIBRARIES="-L$prefix/lib $others" \
+        -DPNG_PNG_INCLUDE_DIR="$prefix/include" -DPNG_LIBRARY="$prefix/lib/libpng.a" \
         -DTIFF_LIBRARY="$prefix/lib/libtiff.a" -DTIFF_INCLUDE_DIR="$prefix/include" \
         >"$work/libtex.log" 2>&1 || { tail -n 20 "$work/libtex.log" >&2; return 1; }
     # What the linker has taken from where (--trace) stays from the run that linked.

@@ -27,7 +27,7 @@ GCC = "GPL-3.0-or-later WITH GCC-exception-3.1"
 PARTS = {  # by the name of the Debian source package
     "glibc": Part("LGPL-2.1-or-later", "c c_nonshared m pthread dl rt mvec m-2.36 crt", "libc6-dev"),
     "gcc-12": Part(GCC, "stdc++ gcc gcc_eh gcc_s atomic", "libgcc-12-dev"),
-    "libpng1.6": Part("libpng-2.0", "png png16", "libpng-dev"),
+    "libpng1.6": Part("libpng-2.0", "png png16"),
     "zlib": Part("Zlib", "z", "zlib1g-dev"),
     "libdeflate": Part("MIT", "deflate", "libdeflate-dev"),
     "libzstd": Part("BSD-3-Clause", "zstd", "libzstd-dev"),

@@ -6,7 +6,7 @@
 
 # Of Debian 12: what the packages of Debian 12 link. Its own tar archive alone comes of OpenColorIO and pystring, since
 # Debian's changes to them concern only packaging; of OpenColorIO the next patch release, because mirrors lost 2.1.2.
-sources=(imath openexr libisal onetbb highway fmtlib tiff yaml-cpp)
+sources=(imath openexr libisal onetbb highway fmtlib tiff yaml-cpp libpng1.6)
 bare_sources=(opencolorio pystring)
 # Linked from Debian's static archives. Whoever passes on the archive must offer these sources, too (LGPL 2.1).
 lgpl_sources=(glibc libseccomp)
@@ -86,6 +86,8 @@ build_libraries() {
     # Without JBIG, whose library is under the GPL.
     with_cmake tiff -Djbig=OFF -Dtiff-tools=OFF -Dtiff-tests=OFF -Dtiff-contrib=OFF -Dtiff-docs=OFF -Dcxx=OFF \
         -DCMAKE_FIND_LIBRARY_SUFFIXES=.a
+    # Debian's static archive cannot be linked into a module, which the wheel needs.
+    with_cmake libpng1.6 -DPNG_SHARED=OFF -DPNG_TESTS=OFF
     with_cmake yaml-cpp -DYAML_CPP_BUILD_TESTS=OFF -DYAML_CPP_BUILD_TOOLS=OFF
     with_pystring
     # Its sources lean on a header that GCC 12 no longer brings with others.
