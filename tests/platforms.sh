@@ -90,7 +90,8 @@ for release in "${releases[@]}"; do
     failed=$((failed + failures))
     skipped=$((skipped + left))
     cp "$file" "build/platforms/$release.xml"
-    sed -n "s/.*<testcase name=\"\([^\"]*\)\".*status=\"\(fail\|notrun\|disabled\)\".*/$release: \2: \1/p" "$file" | sort -u
+    sed -n "s/.*<testcase name=\"\([^\"]*\)\".*status=\"\(fail\|notrun\|disabled\)\".*/$release: \2: \1/p" "$file" |
+        sort -u
 done
 echo "platforms: $passed passed, $failed failed, $skipped skipped"
 [ "$failed" -eq 0 ]

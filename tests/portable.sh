@@ -91,7 +91,7 @@ make_root() {
     if [ ! -e "$root/etc/debian_version" ]; then
         rm -rf "$root"
         mkdir -p build/platforms
-        # A mirror that stands still has an index of forky and sid that is past its date. It must be signed all the same.
+        # A mirror that stands still has an index of forky and sid that is past its date. It must be signed.
         mmdebstrap --quiet --variant=essential --aptopt='Acquire::Check-Valid-Until "false"' "$1" "$root" "$mirror"
     fi
 }
@@ -109,7 +109,8 @@ outputs_in() {
         exec env -i PATH=/usr/sbin:/usr/bin:/bin LANG=C chroot --userspec=4321:4321 "$root" sh -euc "
             cd /tmp
             ./any\ where/libtex/libexec/libtex/tex-reader --version >&2
-            sh outputs.sh \"/tmp/any where/libtex/bin\" \"/tmp/any where/libtex/share/doc/libtex/samples\" /tmp/out/made"
+            sh outputs.sh \"/tmp/any where/libtex/bin\" \"/tmp/any where/libtex/share/doc/libtex/samples\" \\
+                /tmp/out/made"
     ' outputs "$1" "$tree" "$PWD/tests/portable_outputs.sh"
 }
 works_in() {

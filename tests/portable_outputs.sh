@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# portable_outputs.sh BIN SAMPLES FOLDER: bakes, packs, blends and converts samples with the commands in BIN, into the new
-# FOLDER, and prints the SHA-256 of each output. Two builds are the same if they print the same. Needs no more than a
-# POSIX shell and sha256sum, so that it runs where nothing is installed.
+# portable_outputs.sh BIN SAMPLES FOLDER: bakes, packs, blends and converts samples with the commands in BIN, into the
+# new FOLDER, and prints the SHA-256 of each output. Two builds are the same if they print the same. Needs no more than
+# a POSIX shell and sha256sum, so that it runs where nothing is installed.
 set -eu
 bin=$1 samples=$2 out=$3
 mkdir "$out"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# run.sh: installs the packages that the tests need (Debian 12 or 13), builds a release and runs all of its tests. Arguments
-# go to ctest: `tests/run.sh -L unit -R Dds` runs the unit tests whose names contain "Dds".
+# run.sh: installs the packages that the tests need (Debian 12 or 13), builds a release and runs all of its tests.
+# Arguments go to ctest: `tests/run.sh -L unit -R Dds` runs the unit tests whose names contain "Dds".
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=.ci/packages.sh

@@ -47,7 +47,8 @@ build_libtex() {
     others+=' -lImath-3_1 -l:libz.a -Wl,--trace'
     PKG_CONFIG_PATH=$prefix/lib/pkgconfig cmake --preset release -B "$static" \
         -DTEX_STATIC=ON -DTEX_OIIO_READER=OFF -DTEX_MESH_READER=OFF -DBUILD_TESTING=OFF -DTEX_PYTHON=$wheel \
-        -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_INSTALL_LIBDIR=lib -DCMAKE_CXX_STANDARD_LIBRARIES="-L$prefix/lib $others" \
+        -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_INSTALL_LIBDIR=lib \
+        -DCMAKE_CXX_STANDARD_LIBRARIES="-L$prefix/lib $others" \
         -DPNG_PNG_INCLUDE_DIR="$prefix/include" -DPNG_LIBRARY_RELEASE="$prefix/lib/libpng.a" \
         -DTIFF_LIBRARY="$prefix/lib/libtiff.a" -DTIFF_INCLUDE_DIR="$prefix/include" \
         >"$work/libtex.log" 2>&1 || { tail -n 20 "$work/libtex.log" >&2; return 1; }

@@ -31,15 +31,21 @@ std::size_t end_of_header(const std::string& file) {
     return at + 1;
 }
 
-std::string inflated(std::string_view chunk) {
+// The bytes of a chunk before OpenEXR's ZIP: it stores those at even places and then those at odd ones, as differences
+// with 128 added, deflated. A chunk that this would not make smaller is stored as it is.
+std::string unzipped(std::string_view chunk) {
     constexpr std::size_t kMost = std::size_t{8} << 20;
     const std::unique_ptr<libdeflate_decompressor, void (*)(libdeflate_decompressor*)> inflater(
         libdeflate_alloc_decompressor(), libdeflate_free_decompressor);
     std::string out(kMost, '\0');
     std::size_t size = 0;
-    const bool done = libdeflate_zlib_decompress(inflater.get(), chunk.data(), chunk.size(), out.data(), out.size(),
-                                                 &size) == LIBDEFLATE_SUCCESS;
-    return done ? out.substr(0, size) : std::string(chunk);
+    const bool is_zip = libdeflate_zlib_decompress(inflater.get(), chunk.data(), chunk.size(), out.data(), out.size(),
+                                                   &size) == LIBDEFLATE_SUCCESS;
+    if (!is_zip) return std::string(chunk);
+    for (std::size_t k = 1; k < size; ++k) out[k] = static_cast<char>(out[k - 1] + out[k] - 128);
+    std::string bytes(size, '\0');
+    for (std::size_t k = 0; k < size; ++k) bytes[k] = out[k / 2 + (k % 2 == 0 ? 0 : (size + 1) / 2)];
+    return bytes;
 }
 
 }  // namespace
@@ -57,7 +63,7 @@ std::string plain_exr(const std::string& file) {
         const auto size = little_endian<std::uint32_t>(file, at + place);
         if (data > file.size() || size > file.size() - data) return file;
         plain.append(file, at, place);
-        plain += inflated(std::string_view(file).substr(data, size));
+        plain += unzipped(std::string_view(file).substr(data, size));
         at = data + size;
     }
     return plain;

@@ -7,9 +7,9 @@
 
 namespace tex::cli {
 
-// The header and the chunks of an EXR file of one part, the latter inflated where they are zlib streams, and without
-// the table of their places. Releases of libdeflate compress the same texels to different bytes: those of Debian 13
-// differ from those of Debian 12. What is not such a file is returned as it is.
+// The header and the chunks of an EXR file of one part, the latter without ZIP, and without the table of their places.
+// Releases of libdeflate compress the same texels to different bytes: that of Debian 13 differs from that of Debian 12.
+// What is not such a file is returned as it is.
 [[nodiscard]] std::string plain_exr(const std::string& file);
 
 }  // namespace tex::cli

@@ -48,13 +48,16 @@ with_cmake() {
     local name=$1 build=$work/build/$1
     shift
     [ ! -e "$build/installed" ] || return 0
-    cmake -G Ninja -S "$(source_of "$name")" -B "$build" -DCMAKE_BUILD_TYPE=Release -DBUILD_SHARED_LIBS=OFF \
-        -DCMAKE_INSTALL_PREFIX="$prefix" -DCMAKE_INSTALL_LIBDIR=lib -DCMAKE_PREFIX_PATH="$prefix" \
-        -DCMAKE_POSITION_INDEPENDENT_CODE=ON -DCMAKE_C_FLAGS="$hardening" -DCMAKE_CXX_FLAGS="$hardening" \
-        -DCMAKE_CXX_VISIBILITY_PRESET=hidden -DCMAKE_VISIBILITY_INLINES_HIDDEN=ON -DBUILD_TESTING=OFF \
-        "$@" >"$build.log" 2>&1 &&
-        cmake --build "$build" --target install >>"$build.log" 2>&1 ||
-        { tail -n 20 "$build.log" >&2; return 1; }
+    if ! (
+        cmake -G Ninja -S "$(source_of "$name")" -B "$build" -DCMAKE_BUILD_TYPE=Release -DBUILD_SHARED_LIBS=OFF \
+            -DCMAKE_INSTALL_PREFIX="$prefix" -DCMAKE_INSTALL_LIBDIR=lib -DCMAKE_PREFIX_PATH="$prefix" \
+            -DCMAKE_POSITION_INDEPENDENT_CODE=ON -DCMAKE_C_FLAGS="$hardening" -DCMAKE_CXX_FLAGS="$hardening" \
+            -DCMAKE_CXX_VISIBILITY_PRESET=hidden -DCMAKE_VISIBILITY_INLINES_HIDDEN=ON -DBUILD_TESTING=OFF "$@" &&
+            cmake --build "$build" --target install
+    ) >"$build.log" 2>&1; then
+        tail -n 20 "$build.log" >&2
+        return 1
+    fi
     touch "$build/installed"
 }
 
@@ -91,10 +94,11 @@ build_libraries() {
     with_cmake yaml-cpp -DYAML_CPP_BUILD_TESTS=OFF -DYAML_CPP_BUILD_TOOLS=OFF
     with_pystring
     # Its sources lean on a header that GCC 12 no longer brings with others.
-    with_cmake opencolorio -DCMAKE_CXX_FLAGS="$hardening -include cstring" -DOCIO_BUILD_APPS=OFF -DOCIO_BUILD_TESTS=OFF -DOCIO_BUILD_GPU_TESTS=OFF \
-        -DOCIO_BUILD_PYTHON=OFF -DOCIO_BUILD_DOCS=OFF -DOCIO_INSTALL_EXT_PACKAGES=NONE -DOCIO_WARNING_AS_ERROR=OFF \
-        -Dyaml-cpp_STATIC_LIBRARY=ON -Dexpat_STATIC_LIBRARY=ON -Dpystring_STATIC_LIBRARY=ON \
-        -DImath_STATIC_LIBRARY=ON -DCMAKE_FIND_LIBRARY_SUFFIXES=.a
+    with_cmake opencolorio -DCMAKE_CXX_FLAGS="$hardening -include cstring" -DOCIO_BUILD_APPS=OFF \
+        -DOCIO_BUILD_TESTS=OFF -DOCIO_BUILD_GPU_TESTS=OFF -DOCIO_BUILD_PYTHON=OFF -DOCIO_BUILD_DOCS=OFF \
+        -DOCIO_INSTALL_EXT_PACKAGES=NONE -DOCIO_WARNING_AS_ERROR=OFF -Dyaml-cpp_STATIC_LIBRARY=ON \
+        -Dexpat_STATIC_LIBRARY=ON -Dpystring_STATIC_LIBRARY=ON -DImath_STATIC_LIBRARY=ON \
+        -DCMAKE_FIND_LIBRARY_SUFFIXES=.a
 }
 
 # pystring has no CMake files: it is one source.
