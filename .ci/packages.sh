@@ -51,7 +51,8 @@ need_packages() {
     local missing=() package status
     if ! command -v apt-get >/dev/null; then
         echo "$0: this script installs packages with apt-get, for Debian 12 and 13 and their relatives. Elsewhere," \
-             "install what these Debian packages hold, then: cmake --preset release && cmake --build --preset release" >&2
+             "install what these Debian packages hold, then: cmake --preset release &&" \
+             "cmake --build --preset release" >&2
         echo "    $*" >&2
         return 1
     fi
