@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # shellcheck shell=bash
-# The Debian 12 packages that libtex needs, listed once. Sourced by samples/quickstart.sh, tests/run.sh and .ci/run.
+# The packages that libtex needs, listed once, with the names of Debian 12 and 13. Sourced by samples/quickstart.sh,
+# tests/run.sh, .ci/run and others.
 
 # shellcheck disable=SC2034  # used by the scripts that source this file
 build_packages=(
@@ -24,8 +25,22 @@ gate_packages=(
 # shellcheck disable=SC2034
 nightly_packages=(
     clang-tidy-14 libbenchmark-dev g++-aarch64-linux-gnu qemu-user-static slurmctld slurmd slurm-client munge lintian
-    rustc mono-mcs abigail-tools
+    rustc mono-mcs abigail-tools mmdebstrap nasm
 )
+
+# Elsewhere names may differ. Known: Ubuntu has another name for libjpeg-turbo.
+system=$(if [ -r /etc/os-release ]; then . /etc/os-release; echo "${ID:-} ${VERSION_ID:-}"; fi)
+case $system in
+    ubuntu*) build_packages=("${build_packages[@]/libjpeg62-turbo-dev/libjpeg-dev}") ;;
+esac
+
+# Says so on a system on which these scripts were not tried.
+warn_if_untried() {
+    case $system in
+        'debian 12' | 'debian 13') return ;;
+    esac
+    echo "$0: note: tried on Debian 12 and 13, not on ${system:-this system}; packages may have other names here" >&2
+}
 
 as_root() {
     if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi
@@ -35,8 +50,9 @@ as_root() {
 need_packages() {
     local missing=() package status
     if ! command -v apt-get >/dev/null; then
-        echo "$0: this script installs packages with apt-get, for Debian 12 and its relatives. Elsewhere, install" \
-             "what these Debian packages hold, then: cmake --preset release && cmake --build --preset release" >&2
+        echo "$0: this script installs packages with apt-get, for Debian 12 and 13 and their relatives. Elsewhere," \
+             "install what these Debian packages hold, then: cmake --preset release &&" \
+             "cmake --build --preset release" >&2
         echo "    $*" >&2
         return 1
     fi

@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# quickstart.sh: takes you from a fresh clone on Debian 12 to a baked normal map. Installs the packages that the build
-# needs (with sudo if you are not root), builds a release and bakes samples/bricks.png. A second run repeats only the
-# steps whose input has changed.
+# quickstart.sh: takes you from a fresh clone on Debian 12 or 13 to a baked normal map. Installs the packages that the
+# build needs (with sudo if you are not root), builds a release and bakes samples/bricks.png. A second run repeats only
+# the steps whose input has changed.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=.ci/packages.sh
 . .ci/packages.sh
 
+warn_if_untried
 need_packages "${build_packages[@]}"
 
 # An existing build folder keeps its setting for tests. A new one is made without tests, which is faster.

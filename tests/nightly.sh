@@ -4,7 +4,7 @@
 # NIGHTLY.md says when it last ran, on which commit, and with what result. The last line counts all tests.
 #
 #     tests/nightly.sh [STEP...]    all steps, or the named ones: long scalar commands slurm arm64 tsan tidy fuzz
-#                                   package abi engines
+#                                   package abi engines platforms portable
 #
 # FUZZ_SECONDS is the time for each fuzzer (default: 60).
 set -euo pipefail
@@ -188,6 +188,26 @@ engines() {
     return "$status"
 }
 
+# counted NAME COMMAND...: counts a script whose last line is "NAME: N passed, M failed[, K skipped]". 77: not run.
+counted() {
+    local name=$1 status=0 counts
+    shift
+    "$@" | tee "$results/$name.log" || status=$?
+    [ "$status" -ne 77 ] || return 0
+    counts=$(sed -n "s/^$name: \([0-9]*\) passed, \([0-9]*\) failed.*/\1 \2/p" "$results/$name.log" | tail -n 1)
+    [ -n "$counts" ] || return 1
+    count "$name" "$((${counts% *} + ${counts#* }))" "${counts#* }"
+    return "$status"
+}
+
+# Both README commands on Debian 13, and the first of them on sid.
+platforms() { counted platforms tests/platforms.sh trixie sid; }
+
+# The archive for every Linux, on each release of Debian.
+portable() {
+    samples/packaging/portable.sh && counted portable tests/portable.sh
+}
+
 need_packages "${build_packages[@]}" "${test_packages[@]}" "${gate_packages[@]}" "${nightly_packages[@]}"
 if command -v ccache >/dev/null; then export CMAKE_CXX_COMPILER_LAUNCHER=ccache; fi
 
@@ -203,4 +223,6 @@ step fuzz fuzz
 step package package
 step abi abi
 step engines engines
+step platforms platforms
+step portable portable
 finish

@@ -1,13 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
-// main() of every command. build-normals has all commands; the others have their own.
+// main() of every command. build-normals has all commands; the others have their own. In a static build (TEX_STATIC),
+// which has one program for all, TEX_COMMAND is empty: the name by which the program was called tells which to run.
 
 #include <cstddef>
+#include <cstdio>
+#include <string_view>
 
+#include "cli/exit_code.h"
 #include "cli/process.h"
 #include "cli/programs.h"
+
+namespace {
+
+std::string_view wanted(std::string_view called) {
+    const std::string_view fixed = TEX_COMMAND;
+    return fixed.empty() ? called.substr(called.rfind('/') + 1) : fixed;  // npos + 1 is 0
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
     tex::cli::ProcessHost host;
     const auto count = static_cast<std::size_t>(argc > 0 ? argc - 1 : 0);
-    tex::cli::ProcessHost::end(tex::cli::run(*tex::cli::find_program(TEX_COMMAND), {argv + 1, count}, host));
+    const tex::cli::ProgramRow* const program = tex::cli::find_program(wanted(argc > 0 ? argv[0] : ""));
+    if (program == nullptr) {
+        std::fputs("libtex: error: this program acts by its name: call it bake-normals, or as another command\n",
+                   stderr);
+        return static_cast<int>(tex::cli::ExitCode::usage);
+    }
+    tex::cli::ProcessHost::end(tex::cli::run(*program, {argv + 1, count}, host));
 }

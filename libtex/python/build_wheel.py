@@ -2,7 +2,10 @@
 """Makes a wheel of the module tex (PEP 517), with libtex and the reader programs inside.
 
 The libraries that libtex links (libpng, OpenEXR, oneTBB ...) are not inside: the wheel is for machines that have the
-same packages. TEX_BUILD=FOLDER packs what a build folder with TEX_PYTHON=ON holds already.
+same packages. They are inside if the build is static (TEX_STATIC), as that of samples/packaging/portable.sh is: then
+the wheel needs the C library alone, and its name says which versions of it will do (PEP 600).
+TEX_BUILD=FOLDER packs what a build folder with TEX_PYTHON=ON holds already; TEX_NOTICES=FOLDER has the licences of what
+is inside.
 """
 
 import base64
@@ -47,12 +50,32 @@ def version():
     return re.search(r"project\(libtex VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")).group(1)
 
 
+# What PEP 600 lets a wheel expect of every system, as far as libtex needs it.
+ALWAYS_THERE = {"libc.so.6", "libm.so.6", "libpthread.so.0", "libdl.so.2", "libgcc_s.so.1", "ld-linux-x86-64.so.2"}
+
+
+def platform(binaries):
+    """The platform in the name of a wheel with these binaries: manylinux if they need the C library alone."""
+    needed, newest = set(), 5
+    for binary in binaries:
+        dump = subprocess.run(["objdump", "-p", binary], check=True, capture_output=True, text=True).stdout
+        needed |= set(re.findall(r"NEEDED\s+(\S+)", dump))
+        newest = max([newest, *map(int, re.findall(r"\bGLIBC_2\.(\d+)", dump))])
+    plain = re.sub("[-.]", "_", sysconfig.get_platform())  # linux_x86_64
+    return plain if needed - ALWAYS_THERE else plain.replace("linux_", f"manylinux_2_{newest}_", 1)
+
+
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     python = f"cp{sys.version_info.major}{sys.version_info.minor}"
-    tag = f"{python}-{python}-{re.sub('[-.]', '_', sysconfig.get_platform())}"
     facts = f"tex-{version()}.dist-info"
     with tempfile.TemporaryDirectory() as stage:
-        files = {name: path.read_bytes() for name, path in collect(build(), Path(stage)).items()}
+        paths = collect(build(), Path(stage))
+        files = {name: path.read_bytes() for name, path in paths.items()}
+        binaries = [paths[name] for name, data in files.items() if data.startswith(b"\x7fELF")]
+        tag = f"{python}-{python}-{platform(binaries)}"
+    if "TEX_NOTICES" in os.environ:
+        notices = Path(os.environ["TEX_NOTICES"])
+        files |= {f"{facts}/licenses/{path.name}": path.read_bytes() for path in sorted(notices.iterdir())}
     files[f"{facts}/METADATA"] = (
         f"Metadata-Version: 2.1\nName: tex\nVersion: {version()}\n"
         "Summary: Tangent-space normal maps: bake, mip, pack, check\nLicense: Apache-2.0\n"

@@ -57,6 +57,29 @@ TEST_F(CheckNormalsCi, WorkflowsPassAndFail) {
     }
 }
 
+// The steps of the action that are scripts, with a stand-in for the archive: a folder with this build's command.
+TEST_F(CheckNormalsCi, ActionUnpacksAndChecks) {
+    const std::string print =
+        "import yaml\n"
+        "for step in yaml.safe_load(open('samples/ci/action.yml'))['runs']['steps']:\n"
+        "    if 'run' in step: print('(set -eo pipefail; PATH=$(cat path):$PATH\\n' + step['run'] + ')')\n";
+    scratch_.write("print.py", print);
+    const std::string before =
+        "set -e; mkdir -p temp stage/libtex-0/bin; : >path; ln -sf \"$(command -v check-normals)\" stage/libtex-0/bin; "
+        "tar -C stage -cJf libtex.tar.xz libtex-0; export RUNNER_TEMP=$PWD/temp GITHUB_PATH=$PWD/path "
+        "ARCHIVE=libtex.tar.xz FOLDER=art NAME='*_n.*' CONFIG=samples/ci/checks.toml; ";
+    const std::string sum = "export SHA256=$(sha256sum libtex.tar.xz | cut -d' ' -f1); ";
+    const std::string steps = "python3 print.py >steps.sh; . ./steps.sh";
+    bake("art/a_n.dds", "up");
+    const Ran good = shell(scratch_, before + sum + steps);
+    EXPECT_EQ(good.code, 0) << good.out << good.err;
+    EXPECT_TRUE(scratch_.has("temp/normals.html"));
+    bake("art/a_n.dds", "down");
+    EXPECT_EQ(shell(scratch_, before + sum + steps).code, 1);
+    EXPECT_NE(scratch_.read("temp/normals.sarif").find("N401"), std::string::npos);
+    EXPECT_NE(shell(scratch_, before + "export SHA256=00; " + steps).code, 0) << "another archive than the one named";
+}
+
 TEST_F(CheckNormalsCi, HookRefusesWhatIsStaged) {
     EXPECT_EQ(shell(scratch_, "cp samples/ci/pre-commit.sh .git/hooks/pre-commit").code, 0);
     bake("art/a_n.dds", "up");

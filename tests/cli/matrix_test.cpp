@@ -25,6 +25,7 @@
 #include <hwy/targets.h>
 
 #include "cli/meshes.h"
+#include "cli/plain_exr.h"
 #include "cli/program.h"
 
 namespace tex::cli {
@@ -149,7 +150,7 @@ std::string hash_of(const std::string& bytes) {  // FNV-1a
     return fmt::format("{:016x}", hash);
 }
 
-// Maps the name of an output to the hash of its bytes, for all command lines.
+// Maps the name of an output to the hash of its bytes, for all command lines; of EXR files, to that of what is in them.
 using Hashes = std::map<std::string, std::string>;
 
 // All real height maps except those in `without`, sorted by name.
@@ -208,7 +209,7 @@ Hashes run_lines(const std::string& target, int threads, std::span<const Line> l
         if (!writes || !scratch.has(line.name)) continue;
         for (const auto& entry : fs::directory_iterator(scratch.path(line.name))) {
             const std::string name = fmt::format("{}/{}", line.name, entry.path().filename().string());
-            hashes[name] = hash_of(scratch.read(name));
+            hashes[name] = hash_of(plain_exr(scratch.read(name)));
         }
     }
     return hashes;

@@ -95,6 +95,8 @@ int code_of(float value, tex::SampleKind sample) {
 // Every second row of blocks is random; most of these blocks are not valid.
 TEST(Mesa, SamplesAstcAsWeDecodeIt) {
     ASSERT_TRUE(peers::software_gl_works());
+    if (!peers::software_gl_has("GL_KHR_texture_compression_astc_ldr"))
+        GTEST_SKIP() << "the off-screen OpenGL of Mesa 25 (Debian 13) has no ASTC";
     for (const tex::Encoding encoding : {tex::Encoding::astc_4x4, tex::Encoding::astc_6x5, tex::Encoding::astc_8x8}) {
         const tex::Extent extent{91, 86};
         tex::NormalMap map(extent);

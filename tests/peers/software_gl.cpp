@@ -53,6 +53,15 @@ bool software_gl_works() {
     return works;
 }
 
+bool software_gl_has(std::string_view extension) {
+    GLint count = 0;
+    software_gl().GetIntegerv(GL_NUM_EXTENSIONS, &count);
+    for (GLuint k = 0; k < static_cast<GLuint>(count); ++k) {
+        if (extension == reinterpret_cast<const char*>(software_gl().GetStringi(GL_EXTENSIONS, k))) return true;
+    }
+    return false;
+}
+
 const Gl& software_gl() {
     static const Gl gl = [] {
         Gl entries;

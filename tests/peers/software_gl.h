@@ -6,6 +6,7 @@
 
 #include <array>
 #include <functional>
+#include <string_view>
 #include <vector>
 
 #include <GL/osmesa.h>
@@ -47,6 +48,7 @@ struct Gl {
     PEERS_GL(PFNGLACTIVETEXTUREPROC, ActiveTexture);
     PEERS_GL(PFNGLCOMPRESSEDTEXIMAGE2DPROC, CompressedTexImage2D);
     PEERS_GL(PFNGLCLEARBUFFERFVPROC, ClearBufferfv);
+    PEERS_GL(PFNGLGETSTRINGIPROC, GetStringi);
 #undef PEERS_GL
 #define PEERS_GL(result, name, ...) result (*name)(__VA_ARGS__) = load<result (*)(__VA_ARGS__)>("gl" #name)
     PEERS_GL(void, GenTextures, GLsizei, GLuint*);
@@ -60,11 +62,15 @@ struct Gl {
     PEERS_GL(void, Disable, GLenum);
     PEERS_GL(void, ReadPixels, GLint, GLint, GLsizei, GLsizei, GLenum, GLenum, void*);
     PEERS_GL(GLenum, GetError, void);
+    PEERS_GL(void, GetIntegerv, GLenum, GLint*);
 #undef PEERS_GL
 };
 
 // True where Mesa gave a context (once for the process).
 bool software_gl_works();
+
+// Whether Mesa has an extension. Only where software_gl_works().
+bool software_gl_has(std::string_view extension);
 
 // The entry points, with an empty vertex array bound: vertices come from gl_VertexID. Only where software_gl_works().
 const Gl& software_gl();

@@ -32,6 +32,9 @@ void leave_out_own_types(Assimp::Importer& importer) {
     }
 }
 
+// Assimp 5.4 knows FBX by the name of the file alone; libtex goes by the content.
+bool is_fbx(std::string_view bytes) { return bytes.starts_with("Kaydara FBX Binary") || bytes.starts_with("; FBX "); }
+
 bool refuse_mesh(ReaderHeader& header, const std::string& reason) {
     if (reason.find("No suitable reader") == std::string::npos)
         return refuse(header, ErrorCode::bad_data, reason.empty() ? "damaged" : reason);
@@ -74,8 +77,10 @@ bool read_mesh(const Task& task, ReaderHeader& header) {
     leave_out_own_types(importer);
     importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
-    const aiScene* const scene = importer.ReadFileFromMemory(file, bytes, aiProcess_Triangulate | aiProcess_SortByPType,
-                                                             task.format == "-" ? "" : task.format.c_str());
+    std::string hint = task.format == "-" ? "" : task.format;
+    if (is_fbx({static_cast<const char*>(file), bytes})) hint = "fbx";
+    const aiScene* const scene =
+        importer.ReadFileFromMemory(file, bytes, aiProcess_Triangulate | aiProcess_SortByPType, hint.c_str());
     if (scene == nullptr) return refuse_mesh(header, importer.GetErrorString());
     if (scene->mRootNode == nullptr || scene->mNumMeshes == 0)
         return refuse(header, ErrorCode::bad_data, "has no triangles");

@@ -271,10 +271,11 @@ BakedRows add_bake(Flow& flow, Heights& heights, const std::string& input, const
     const Extent extent = heights.rows->extent();
     ConvertRows convert;
     if (heights.linear) convert = [&heights](Image& rows, int count) { return heights.linear->convert(rows, count); };
-    const Stage& picture = add_source(flow, *heights.rows, input, std::move(convert));
+    // A pointer: GCC 14 takes a reference for one to the temporary argument.
+    const Stage* const picture = &add_source(flow, *heights.rows, input, std::move(convert));
     const WorkingVector<float> weights = weights_of(heights.options);
     const AcrossBlur blur{weights, heights.options.wrap_x};
-    HeightInput rows{&flow.add<HeightStage>(flow, picture, heights, blur), nullptr, heights.options.wrap_y};
+    HeightInput rows{&flow.add<HeightStage>(flow, *picture, heights, blur), nullptr, heights.options.wrap_y};
     if (heights.last) {
         const int begin = std::max(0, extent.height - height_reach(heights.options, gradient));
         rows.last = &flow.add<LastHeightStage>(flow, extent, begin, heights, blur);
