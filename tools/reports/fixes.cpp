@@ -200,8 +200,9 @@ Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements
     if (id == "N108" && !require.encoding) return {"Store the file in the format that is required."};
     if (report.more_data) {
         return {
-            "The commands would drop what the other channels hold. Move that to another file, or correct the normals "
-            "in the program that made this file."};
+            "The fix would drop what the other channels hold. unpack-normals --alpha-out or --blue-out writes that to "
+            "a "
+            "file of its own; pack-normals --format rgba8 keeps alpha."};
     }
     if (!is_clear(id, report, require)) {
         return {
