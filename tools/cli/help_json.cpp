@@ -46,6 +46,7 @@ bool takes(const Row& row, const std::string& text) {
 
 std::string type_of(const Row& row, const std::optional<AskedNumber>& asked) {
     if (row.value.empty()) return "flag";
+    if (asked && row.completes == Completes::files) return "text";  // a number or a file
     if (!row.words.empty() && !asked && !has_parts(row.value)) return takes(row, "0") ? "text" : "word";
     if (row.completes == Completes::directories || row.value == "DIR") return "folder";
     if (reads_names(row)) return row.value == "FILE" || row.completes == Completes::files ? "file" : "text";
