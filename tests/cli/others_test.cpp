@@ -76,6 +76,24 @@ TEST_F(Others, ALayoutRoundTrips) {
     EXPECT_TRUE(equal("blend.ktx2", 3, "h.png", 0));
 }
 
+// ImageMagick takes apart what we have put together, and we what it has: alpha is unassociated.
+TEST_F(Others, OtherProgramsSeeTheSameAlpha) {
+    for (const std::string type : {"png", "tga", "dds"}) {
+        run("pack-normals n.png -o both." + type + " --format rgba8 --alpha h.png");
+        ASSERT_EQ(shell(scratch_, "convert both." + type + " -auto-orient -alpha extract -depth 8 a.png").code, 0);
+        EXPECT_TRUE(equal("a.png", 0, "h.png", 0)) << type;
+        ASSERT_EQ(shell(scratch_, "convert both." + type + " -auto-orient -alpha off -depth 8 rgb.png").code, 0);
+        EXPECT_TRUE(equal("rgb.png", 0, "n.png", 0)) << type << ": colours are not multiplied by alpha";
+    }
+    const std::string theirs =
+        "convert n.png h.png -alpha off -compose CopyOpacity -composite -depth 8 PNG32:theirs.png;"
+        "convert theirs.png -alpha extract -depth 8 a.png";
+    ASSERT_EQ(shell(scratch_, theirs).code, 0);
+    run("pack-normals theirs.png -o ours.dds --format rgba8");
+    EXPECT_TRUE(equal("ours.dds", 3, "a.png", 0));
+    EXPECT_TRUE(equal("ours.dds", 0, "n.png", 0));
+}
+
 TEST_F(Others, PatternsNameAFileForEachInput) {
     std::filesystem::create_directory(scratch_.path("in"));
     for (const std::string name : {"a", "b"}) {

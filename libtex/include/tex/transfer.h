@@ -27,7 +27,7 @@
 //
 // Second rays start at each hit of a sample, N = rays_per_hit of them, in directions about n (about the triangle's own
 // normal G if n points into it), each as often as its cosine with n says: the k-th point of Sobol's sequence, which the
-// texel's place scrambles (rays/hemisphere.h). Directions below the triangle's plane are reflected by it, so that no
+// texel's place scrambles (Burley 2020). Directions below the triangle's plane are reflected by it, so that no
 // triangle hides itself. They start off the surface by 2^-32 of the largest coordinate, less than a float can tell.
 // Every triangle blocks them, from both sides, up to occlusion_distance. Without backfaces all is on the side of G;
 // with them, on the side from which the ray came.

@@ -11,7 +11,8 @@ namespace tex {
 namespace {
 
 constexpr float kVaries = 1.5f / 255.0f;
-constexpr int kZRows = 256;                // that are judged, about
+constexpr int kZRows = 64;                 // whose z is judged, about
+constexpr int kZTexels = 256;              // of such a row, about
 constexpr float kRepeats = 8.5f / 255.0f;  // the same value in channels of 5 and 6 bits, and rebuilt z, differ by less
 
 }  // namespace
@@ -19,7 +20,7 @@ constexpr float kRepeats = 8.5f / 255.0f;  // the same value in channels of 5 an
 void ZEvidence::add_row(const float* x, const float* y, const float* z, bool is_unsigned, int width) {
     constexpr float kOne = 1024.0f, kNoDirection = 0.25f;
     const float scale = is_unsigned ? 2.0f : 1.0f, offset = is_unsigned ? 1.0f : 0.0f;
-    for (int i = 0; i < width; ++i) {
+    for (int i = 0; i < width; i += std::max(1, width / kZTexels)) {
         const float a = x[i] * scale - offset, b = y[i] * scale - offset, c = z[i] * scale - offset;
         const float across = a * a + b * b;
         if (across > 1.0f || across + c * c < kNoDirection) continue;  // background
