@@ -161,7 +161,7 @@ enum class Component {
     x,
     y,
     z,      // a component of the normal
-    other,  // anything else (height, gloss, unused): not read, and written as 0
+    other,  // anything else (height, gloss, unused): no part of the normal; see NormalMap::blue and alpha
 };
 
 inline constexpr Named<Component> kComponentNames[] = {

@@ -11,7 +11,7 @@
 
 namespace tex {
 
-// Returns row j of some data, 0 <= j < height. (A function that holds two pointers at most needs no memory of its own.)
+// Returns row j of some data, 0 <= j < height. (One that captures at most two pointers allocates nothing.)
 using RowOf = std::function<const float*(int j)>;
 
 // The texel that a filter of vectors or colours reads at index i, which may be any integer, on an axis of n texels.
