@@ -7,7 +7,9 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -28,12 +30,14 @@ E any_of(const Named<E> (&table)[N], std::mt19937& random) {
 
 class StreamTest : public testing::Test {
 protected:
-    void SetUp() override {
-        std::string pattern = testing::TempDir() + "stream_XXXXXX";
-        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-        folder_ = pattern;
+    // Not in SetUp(), which runs after the constructors of derived fixtures: their files would lie in the root folder.
+    StreamTest() : folder_(testing::TempDir() + "stream_XXXXXX") {
+        if (mkdtemp(folder_.data()) == nullptr) throw std::runtime_error("cannot create " + folder_);
     }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
+    ~StreamTest() override {
+        std::error_code ignored;
+        std::filesystem::remove_all(folder_, ignored);
+    }
 
     [[nodiscard]] std::string path(const std::string& name) const { return folder_ + "/" + name; }
     [[nodiscard]] std::string write(const std::string& name, const Bytes& bytes) const {
