@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cstring>
 #include <random>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "formats/claims.h"
@@ -91,6 +93,26 @@ TEST(ExrRows, ChunksAreWhereTheTableSaysInWhateverOrderTheyAreRead) {
         ASSERT_TRUE(rows);
         std::vector<std::byte> some((*rows)->row_bytes() * 4);
         EXPECT_FALSE((*rows)->decode(chunk_lines(compression), 1, some.data()));
+    }
+}
+
+// A newer OpenEXR writes what ours cannot read: that is no damage.
+TEST(ExrRows, UnknownCompressionsAreCalledSo) {
+    constexpr std::string_view kAttribute("compression\0compression\0\1\0\0\0", 28);
+    const auto bytes = exr_file({5, 7}, {"R"}, Imf::HALF, Imf::ZIP_COMPRESSION);
+    const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const std::size_t at = text.find(kAttribute);
+    ASSERT_NE(at, std::string::npos);
+    for (const int code : {10, 11, 12, 255}) {
+        if (code < Imf::NUM_COMPRESSION_METHODS) continue;
+        auto newer = bytes;
+        newer[at + kAttribute.size()] = static_cast<std::byte>(code);
+        Result<InputFile> file = InputFile::from_memory("newer.exr", newer);
+        const auto rows = open_exr_rows(*file, {});
+        ASSERT_FALSE(rows);
+        EXPECT_EQ(rows.error().code, ErrorCode::unsupported);
+        const std::string what = code < 12 ? "compressed with HTJ2K" : "an unknown compression, number ";
+        EXPECT_EQ(rows.error().reason.rfind(what, 0), 0u) << rows.error().reason;
     }
 }
 

@@ -70,6 +70,19 @@ constexpr FixedType kFixedTypes[] = {
     {"v3i", 12},
 };
 
+// A compression that this OpenEXR does not know.
+struct UnknownCompression : Iex::InputExc {
+    using InputExc::InputExc;
+};
+
+// 10 and 11 came with OpenEXR 3.4.
+void check_compression(int code) {
+    if (code < Imf::NUM_COMPRESSION_METHODS) return;
+    throw UnknownCompression(code == 10 || code == 11 ? "compressed with HTJ2K, which is not supported; exrmetrics of "
+                                                        "OpenEXR 3.4 converts it (--convert -z zip)"
+                                                      : "an unknown compression, number " + std::to_string(code));
+}
+
 // Walks the headers in the same way as OpenEXR. OpenEXR reads most values without using the size that precedes them. A
 // size that differs from that of the value would make the two walks diverge; it counts as damage.
 class HeaderWalk {
@@ -109,7 +122,10 @@ public:
 private:
     void value(const std::string& type, std::uint64_t end) {
         for (const FixedType& fixed : kFixedTypes) {
-            if (type == fixed.name) return skip(fixed.bytes);
+            if (type != fixed.name) continue;
+            skip(fixed.bytes);
+            if (type == "compression") check_compression(last_byte());
+            return;
         }
         if (type == "chlist") {
             constexpr std::uint64_t kChannel = 16;
@@ -125,6 +141,12 @@ private:
         } else {
             stream_.seekg(end);
         }
+    }
+    int last_byte() {
+        char byte = 0;
+        stream_.seekg(stream_.tellg() - 1);
+        stream_.read(&byte, 1);
+        return static_cast<unsigned char>(byte);
     }
     void skip(std::uint64_t bytes) {
         if (bytes > stream_.size() - stream_.tellg()) {
@@ -212,6 +234,8 @@ Result<ExrHeaders> ExrHeaders::read(const InputFile& file) {
         return headers;
     } catch (const std::bad_alloc&) {
         throw;
+    } catch (const UnknownCompression& thrown) {
+        return Error{ErrorCode::unsupported, file.path(), thrown.what()};
     } catch (const std::exception& thrown) {
         if (stream.failure()) return *stream.failure();
         return exr_error(file.path(), thrown);
