@@ -247,6 +247,29 @@ steps = [ {{ bake = {{}} }}, {{ blend = {{ detail = "out/g.exr", mask = "mask.pn
     EXPECT_TRUE(scratch_.read("out/wall_h.png") == watched);
 }
 
+// A pattern names them, and several textures may share one, in a folder without inputs.
+TEST_F(BuildNormalsWatch, FilesOfSomeTexturesAreWatched) {
+    fs::create_directory(scratch_.path("ao"));
+    scratch_.add_sample("ramp.png", "ao/wall_ao.png");
+    scratch_.add_sample("ramp.png", "art/floor_h.png");
+    scratch_.write("normals.toml", R"(version = 1
+[[rule]]
+match = "art/*_h.png"
+name = "out/{stem}.png"
+steps = [ { bake = { format = "rgba8", alpha = "ao/wall_ao.png:r", blue = "{dir}/../ao/{stem:-_h}_ao.png:R" } } ]
+)");
+    scratch_.add_sample("ramp.png", "ao/floor_ao.png");
+    ASSERT_EQ(run(scratch_, "bake-normals", {"art/floor_h.png", "-o", "other.png", "--invert"}).code, 0);
+    Background builder(scratch_, "build-normals", {"--watch", "--no-sync"});
+    ASSERT_TRUE(prints(builder, "2 made, 0 up to date\n")) << builder.err();
+    scratch_.write("ao/floor_ao.png", scratch_.read("other.png"));
+    EXPECT_TRUE(prints(builder, "art/floor_h.png -> out/floor_h.png\n1 made, 0 up to date\n")) << builder.out();
+    scratch_.write("ao/wall_ao.png", scratch_.read("other.png"));
+    EXPECT_TRUE(within_seconds([&] { return passes(builder) == 3; })) << builder.out();
+    EXPECT_TRUE(builder.out().ends_with("2 made, 0 up to date\n")) << builder.out();
+    EXPECT_EQ(ended(builder, SIGINT), 128 + SIGINT);
+}
+
 TEST_F(BuildNormalsWatch, AMeshThatHasChangedIsReadAgain) {
     scratch_.write("sheet.obj", kSheetObj);
     scratch_.write("normals.toml", R"(version = 1

@@ -78,7 +78,7 @@ private:
 
     // Names are relative to the root, or absolute.
     std::unique_ptr<BuildTree> tree_;
-    std::unordered_map<std::string, std::size_t> inputs_;  // the task of each input
+    std::unordered_multimap<std::string, std::size_t> inputs_;  // the tasks that read a file, besides those of all
     std::unordered_set<std::string> outputs_, output_folders_;
     std::unordered_set<std::string> named_;                      // files that the manifest names, and itself
     std::unordered_multimap<std::string, std::string> targets_;  // files behind links: the names of the links
@@ -144,9 +144,13 @@ void Watch::learn_names() {
     for (std::size_t k = 0; k < tree_->work.tasks.size(); ++k) {
         const BuildTask& task = tree_->work.tasks[k];
         inputs_.emplace(task.input, k);
-        for (std::string& part : tree_->recipes[task.recipe].own_files(task.input, path(task.input)))
-            inputs_.emplace(std::move(part), k);
         add_link(task.input);
+        for (const std::string& part : tree_->recipes[task.recipe].own_files(task.input, path(task.input))) {
+            const std::string name = fs::path(part).lexically_normal().string();
+            inputs_.emplace(name, k);
+            add_parent_of(name);
+            add_link(name);
+        }
         for (const std::string& output : task.outputs) {
             outputs_.insert(output);
             fs::path folder = fs::path(output).parent_path();
@@ -193,9 +197,9 @@ void Watch::build_what_is_due() {
     std::set<std::size_t> tasks;
     for (const auto* const names : {&saved_, &created_}) {
         for (const std::string& name : *names) {
-            const auto task = inputs_.find(name);
-            everything_ = everything_ || task == inputs_.end();
-            if (task != inputs_.end()) tasks.insert(task->second);
+            const auto [first, last] = inputs_.equal_range(name);
+            everything_ = everything_ || first == last || named_.contains(name);
+            for (auto task = first; task != last; ++task) tasks.insert(task->second);
         }
     }
     saved_.clear();
@@ -209,6 +213,7 @@ void Watch::build_what_is_due() {
 
 bool Watch::is_input(const std::string& name) const {
     if (named_.contains(name)) return true;
+    if (inputs_.contains(name) && !outputs_.contains(name)) return true;
     if (!tree_ || name.starts_with('/') || outputs_.contains(name)) return false;
     return std::any_of(tree_->recipes.begin(), tree_->recipes.end(),
                        [&](const Recipe& recipe) { return recipe.takes(name); });
