@@ -78,8 +78,7 @@ TEST(Manifest, EveryOptionThatSaysHowNormalsAreMadeIsAKey) {
             const std::string message =
                 refusal_of("[ { " + step + " = { " + option.name().substr(2) + " = \"\\u0001\" } } ]");
             const bool is_key = message.find("has no such option here") == std::string::npos;
-            const bool is_of_runs = option.group == kHelpGroup || option.group == "Files" ||
-                                    option.group == "Terrains" || option.group == "Running";
+            const bool is_of_runs = option.group == kHelpGroup || option.group == "Files" || option.group == "Running";
             EXPECT_EQ(is_key, !is_of_runs) << step << " " << option.name();
         }
     }
@@ -96,8 +95,8 @@ TEST(Manifest, MistakesNameTheirPlaceAndTheRemedy) {
     EXPECT_EQ(refusal_of("[ { bke = {} } ]"), "n.toml: line 4, column 13: unknown key 'bke'; did you mean bake?");
     EXPECT_EQ(refusal_of("[ { bake = { bumpines = 2 } } ]"),
               "n.toml: line 4, column 22: bumpines: bake-normals has no such option here; did you mean bumpiness?");
-    EXPECT_EQ(refusal_of("[ { bake = { tiles = true } } ]").substr(0, 70),
-              "n.toml: line 4, column 22: tiles: bake-normals has no such option here");
+    EXPECT_EQ(refusal_of("[ { bake = { tiles = true } } ]"),
+              "n.toml: line 4, column 22: tiles needs {x} and {y} in match, the place of a tile");
     EXPECT_EQ(refusal_of("[ { bake = { kernel = \"sobl\" } } ]").substr(0, 60),
               "n.toml: line 4, column 22: bake: --kernel: must be one of fo");
     EXPECT_EQ(refusal_of("[ { bake = { invert = 1 } } ]"), "n.toml: line 4, column 22: invert: must be true or false");

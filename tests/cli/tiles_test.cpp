@@ -15,6 +15,8 @@
 namespace tex::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr int kSide = 16, kTiles = 3;
 
 class Tiles : public testing::Test {
@@ -118,6 +120,60 @@ TEST_F(Tiles, WrongOptionsAreRefused) {
     const Ran none = run(scratch_, "bake-normals", {"g_{x}_{y}.r16", "--tiles", "-o", "n_{x}_{y}.exr"});
     EXPECT_EQ(none.code, 3);
     EXPECT_NE(none.err.find("no file has this name with numbers for {x} and {y}"), std::string::npos) << none.err;
+}
+
+// A rule of a manifest whose inputs are tiles; `more` are further steps.
+std::string manifest_of(const std::string& match, const std::string& tiles, const std::string& more = "") {
+    return fmt::format(
+        "version = 1\n[[rule]]\nmatch = \"{}\"\nname = \"out/{{stem}}_n.exr\"\nsteps = [ {{ bake = {{ bumpiness = 9, "
+        "kernel = \"sobel5\", wrap = \"clamp\"{} }} }}{} ]\noutputs = [ {{ format = \"float\" }} ]\n",
+        match, tiles, more);
+}
+
+TEST_F(Tiles, AManifestMakesWhatTheCommandMakes) {
+    fs::create_directory(scratch_.path("land"));
+    write_tiles([](int x, int y) { return fmt::format("land/h_{}_{}.r16", x, y); });
+    scratch_.write("land/h_old_1.r16", "no tile");
+    scratch_.write("normals.toml", manifest_of("land/h_{x}_{y}.r16", ", tiles = true"));
+    const auto build = [&] { return run(scratch_, "build-normals", {"--no-sync"}); };
+    const Ran ran = build();
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    EXPECT_TRUE(ran.out.ends_with("9 made, 0 up to date\n")) << ran.out;
+    const Image expected = whole();
+    for (int y = 0; y < kTiles; ++y) {
+        for (int x = 0; x < kTiles; ++x) expect_part(fmt::format("out/h_{}_{}_n.exr", x, y), expected, x, y);
+    }
+    EXPECT_TRUE(build().out.ends_with("0 made, 9 up to date\n"));
+    // The tiles around a tile are made again with it, and those around one that is new.
+    write_part("land/h_0_0.r16", 5, 7, kSide);
+    EXPECT_TRUE(build().out.ends_with("4 made, 5 up to date\n"));
+    write_part("land/h_3_1.r16", 1, 2, kSide);
+    EXPECT_TRUE(build().out.ends_with("4 made, 6 up to date\n"));
+    // The command that --explain prints makes the same.
+    const Ran explained = run(scratch_, "build-normals", {"--explain", "land/h_0_0.r16"});
+    EXPECT_NE(explained.out.find("reads land/h_1_1.r16"), std::string::npos) << explained.out;
+    const std::size_t at = explained.out.find("bake-normals ");
+    ASSERT_NE(at, std::string::npos) << explained.out;
+    const std::string made = scratch_.read("out/h_2_2_n.exr");
+    fs::remove(scratch_.path("out/h_2_2_n.exr"));
+    const Ran byhand = shell(scratch_, explained.out.substr(at, explained.out.find('\n', at) - at));
+    EXPECT_EQ(byhand.code, 0) << byhand.err;
+    EXPECT_TRUE(scratch_.read("out/h_2_2_n.exr") == made);
+}
+
+TEST_F(Tiles, AManifestRefusesWhatCannotBe) {
+    write_part("h_0_0.r16", 0, 0, kSide);
+    const auto fails = [&](const std::string& manifest, const std::string& reason) {
+        scratch_.write("normals.toml", manifest);
+        const Ran ran = run(scratch_, "build-normals", {});
+        EXPECT_EQ(ran.code, 2) << ran.err;
+        EXPECT_NE(ran.err.find(reason), std::string::npos) << ran.err;
+    };
+    fails(manifest_of("h_*.r16", ", tiles = true"), "tiles needs {x} and {y} in match");
+    fails(manifest_of("h_{x}_{y}.r16", ""), "{x} and {y} in match need bake = { tiles = true }");
+    fails(manifest_of("**/h_{x}_{y}.r16", ", tiles = true"), "has no other wildcards");
+    fails(manifest_of("h_{x}{y}.r16", ", tiles = true"), "something must stand between {x} and {y}");
+    fails(manifest_of("h_{x}_{y}.r16", ", tiles = true", ", { mip = {} }"), "tiles are baked without other steps");
 }
 
 }  // namespace

@@ -234,13 +234,35 @@ ExitCode Batch::run_tasks(const std::vector<Task>& tasks, Console& console) {
 }
 
 OutputOptions Converter::output_for_task() const {
-    if (output.engines.size() > 1) throw UsageError("--for: an output is for one engine");
+    if (output.engines.size() > 1) throw UsageError("--for", "an output is for one engine");
     return output.of(output.engines_or_none().front());
 }
 
 Task Converter::task_for(const std::string& input, const std::string& output_name) const {
     std::call_once(rules_are_known_, [this] { known_rules_ = rules(); });
     return task_of(input, output_name, output_for_task(), known_rules_);
+}
+
+Task Converter::task_for_tile(const std::string& input, const std::string& output_name,
+                              const std::string& pattern) const {
+    Task task = task_for(input, output_name);
+    const auto tiles = grid_files(pattern);
+    if (!tiles) return task;
+    std::vector<Task> all(tiles->size());
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        all[k].input = (*tiles)[k].name;
+        all[k].pattern = pattern;
+        all[k].place = (*tiles)[k].place;
+    }
+    known_rules_.relate(all);
+    const auto place = place_in_grid(pattern, input);
+    for (Task& other : all) {
+        if (!place || other.place->x != place->x || other.place->y != place->y) continue;
+        task.place = other.place;
+        task.around = std::move(other.around);
+        task.own.insert(task.own.end(), other.own.begin(), other.own.end());
+    }
+    return task;
 }
 
 Result<std::vector<Task>> Converter::plan() const {

@@ -86,6 +86,11 @@ Result<void> find_below(const fs::path& folder, fs::path::iterator next, fs::pat
                : Result<void>();
 }
 
+void check_marks(const std::string& pattern) {
+    if (pattern.find("{x}{y}") != std::string::npos || pattern.find("{y}{x}") != std::string::npos)
+        throw UsageError(fmt::format("{}: something must stand between {{x}} and {{y}}", printable(pattern)));
+}
+
 using Tiles = std::map<std::pair<int, int>, const std::string*>;  // by y and x
 
 // The place one step from `at` along an axis: the next tile or, if the heights repeat, the one at the other end. None:
@@ -104,6 +109,19 @@ bool has_grid(std::string_view name) {
     return name.find(kColumnMark) != std::string_view::npos && name.find(kRowMark) != std::string_view::npos;
 }
 
+std::optional<GridPlace> place_in_grid(const std::string& pattern, const std::string& path) {
+    GridPlace place;
+    return match(pattern, path, place) ? std::optional(std::move(place)) : std::nullopt;
+}
+
+std::string grid_glob(const std::string& pattern) {
+    check_marks(pattern);
+    std::string glob = with_grid(pattern, {0, 0, "", ""});
+    if (glob.find_first_of("*?[{\\") != std::string::npos)
+        throw UsageError(fmt::format("{}: a name with {{x}} and {{y}} has no other wildcards", printable(pattern)));
+    return with_grid(pattern, {0, 0, "*", "*"});
+}
+
 std::string with_grid(std::string name, const GridPlace& place) {
     for (const auto& [mark, text] : {std::pair(kColumnMark, place.x_text), std::pair(kRowMark, place.y_text)}) {
         for (std::size_t at = name.find(mark); at != std::string::npos; at = name.find(mark, at + text.size()))
@@ -113,8 +131,7 @@ std::string with_grid(std::string name, const GridPlace& place) {
 }
 
 Result<std::vector<GridFile>> grid_files(const std::string& pattern) {
-    if (pattern.find("{x}{y}") != std::string::npos || pattern.find("{y}{x}") != std::string::npos)
-        throw UsageError(fmt::format("{}: something must stand between {{x}} and {{y}}", printable(pattern)));
+    check_marks(pattern);
     std::vector<GridFile> found;
     const fs::path path(pattern);
     if (const Result<void> done = find_below({}, path.begin(), path.end(), {}, found); !done) return done.error();

@@ -31,6 +31,13 @@ struct GridFile {
 // Whether a name has both marks.
 [[nodiscard]] bool has_grid(std::string_view name);
 
+// The place of the tile that a path with numbers in the place of the marks names; none if it does not match.
+[[nodiscard]] std::optional<GridPlace> place_in_grid(const std::string& pattern, const std::string& path);
+
+// The pattern with * in the place of the marks. Throws UsageError if it has other wildcards, or if no other characters
+// stand between the marks.
+[[nodiscard]] std::string grid_glob(const std::string& pattern);
+
 // The name with the tile's numbers in the place of the marks.
 [[nodiscard]] std::string with_grid(std::string name, const GridPlace& place);
 

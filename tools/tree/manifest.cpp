@@ -14,6 +14,7 @@
 #include "cli/usage_error.h"
 #include "options/toml.h"
 #include "options/toml_bounds.h"
+#include "tasks/grid.h"
 
 namespace tex::cli {
 namespace {
@@ -110,7 +111,8 @@ std::vector<std::string> ManifestReader::patterns_of(const toml::node& node, con
     const auto add = [&](const toml::node& item) {
         patterns.push_back(string_of(item, what));
         try {
-            const Glob checked(patterns.back());
+            const Glob checked(what == "match" && has_grid(patterns.back()) ? grid_glob(patterns.back())
+                                                                            : patterns.back());
         } catch (const UsageError& error) {
             fail(item, error.what());
         }

@@ -41,8 +41,7 @@ const Row* row_of(const Command& command, const std::string& key, const std::vec
 std::vector<std::string> groups_of(const Command& command) {
     std::vector<std::string> groups;
     for (const Row& row : command.rows()) {
-        if (row.group != kHelpGroup && row.group != "Files" && row.group != "Terrains" && row.group != "Running")
-            groups.push_back(row.group);
+        if (row.group != kHelpGroup && row.group != "Files" && row.group != "Running") groups.push_back(row.group);
     }
     return groups;
 }
@@ -64,7 +63,14 @@ std::vector<std::string> step_names() {
 Recipe::Recipe(const Manifest& manifest, const RuleSettings& rule, int number, const std::string& root,
                Console& console)
     : manifest_(manifest), rule_(rule), number_(number), root_(root) {
-    for (const std::string& pattern : rule.match) match_.emplace_back(pattern);
+    for (const std::string& pattern : rule.match) {
+        if (has_grid(pattern)) {
+            grids_.push_back(pattern);
+        } else {
+            match_.emplace_back(pattern);
+        }
+    }
+    for (const std::string& pattern : grids_) match_.emplace_back(grid_glob(pattern));
     for (const std::string& pattern : rule.exclude) exclude_.emplace_back(pattern);
     check_ = std::make_unique<TextureCheck>(manifest, rule.check, console);
     for (std::size_t k = 0; k + 1 < rule.steps.size(); ++k) {
@@ -72,12 +78,36 @@ Recipe::Recipe(const Manifest& manifest, const RuleSettings& rule, int number, c
         check_order(rule.steps[k], before_.back(), k, console);
     }
     for (const OutputSettings& output : rule.outputs) add_output(output, console);
+    check_tiles(before_.empty() ? outputs_.front().last : before_.front());
 }
 
 bool Recipe::takes(const std::string& input) const {
     const auto matches = [&](const Glob& glob) { return glob.matches(input); };
-    return std::any_of(match_.begin(), match_.end(), matches) &&
+    const auto is_tile = [&](const std::string& grid) { return place_in_grid(grid, input).has_value(); };
+    const auto end = match_.end() - static_cast<std::ptrdiff_t>(grids_.size());
+    return (std::any_of(match_.begin(), end, matches) || std::any_of(grids_.begin(), grids_.end(), is_tile)) &&
            std::none_of(exclude_.begin(), exclude_.end(), matches);
+}
+
+void Recipe::check_tiles(const ReadyCommand& first) const {
+    Place place = rule_.place;
+    for (const OptionSetting& setting : rule_.steps.front().settings) {
+        if (setting.key == "tiles") place = setting.place;
+    }
+    const auto fail = [&](const char* reason) { fail_at(manifest_.path, place, reason); };
+    if (first.converter->files.tiles != !grids_.empty())
+        fail(grids_.empty() ? "tiles needs {x} and {y} in match, the place of a tile"
+                            : "{x} and {y} in match need bake = { tiles = true }");
+    if (grids_.empty()) return;
+    if (grids_.size() < rule_.match.size()) fail("tiles needs {x} and {y} in each pattern of match");
+    if (rule_.steps.size() > 1) fail("tiles are baked without other steps");
+}
+
+Task Recipe::first_task(const Converter& converter, const std::string& path, const std::string& out) const {
+    for (const std::string& grid : grids_) {
+        if (place_in_grid(path_to(grid), path)) return converter.task_for_tile(path, out, path_to(grid));
+    }
+    return converter.task_for(path, out);
 }
 
 void Recipe::add_option(const OptionSetting& setting, const Command& command, const std::vector<std::string>& groups,
@@ -147,14 +177,14 @@ ReadyCommand Recipe::ready(const StepSettings& step, const OutputSettings* outpu
     std::vector<const char*> pointers;
     pointers.reserve(line.size());
     for (const std::string& argument : line) pointers.push_back(argument.c_str());
-    const auto place_of = [&](const std::string& message) {
+    const auto place_of = [&](const std::string& subject) {
         for (const auto* settings : {&step.settings, output != nullptr ? &output->settings : nullptr}) {
             if (settings == nullptr) continue;
             for (const OptionSetting& setting : *settings) {
-                if (message.starts_with("--" + setting.key + ":")) return setting.place;
+                if (subject == "--" + setting.key) return setting.place;
             }
         }
-        return output != nullptr && message.starts_with(out) ? output->place : step.place;
+        return output != nullptr && subject == printable(out) ? output->place : step.place;
     };
     table.forbid_answers();
     try {
@@ -164,7 +194,7 @@ ReadyCommand Recipe::ready(const StepSettings& step, const OutputSettings* outpu
         if (const auto checked = command.converter->check_task(task); !checked)
             throw UsageError(checked.error().message());
     } catch (const UsageError& error) {
-        fail_at(manifest_.path, place_of(error.what()), fmt::format("{}: {}", step.command, error.what()));
+        fail_at(manifest_.path, place_of(error.subject()), fmt::format("{}: {}", step.command, error.what()));
     }
     return command;
 }
@@ -248,7 +278,7 @@ std::vector<std::string> Recipe::own_files(const std::string& input, const std::
     std::vector<std::string> files = other_parts(input, path);
     const ReadyCommand& first = before_.empty() ? outputs_.front().last : before_.front();
     const std::string out = before_.empty() ? first_out_ : kBetween;
-    for (const std::string& file : first.converter->task_for(path, out).prerequisites()) {
+    for (const std::string& file : first_task(*first.converter, path, out).prerequisites()) {
         std::string name = below_root(file);
         const bool is_known = std::find(files_.begin(), files_.end(), name) != files_.end() ||
                               std::find(files.begin(), files.end(), name) != files.end();
@@ -323,6 +353,9 @@ std::string Recipe::output_name(const std::string& input, std::size_t index) con
 }
 
 std::vector<std::string> Recipe::command_lines(const std::string& input, std::size_t index) const {
+    for (const std::string& grid : grids_) {  // one command makes all tiles
+        if (input != grid && place_in_grid(grid, input)) return command_lines(grid, index);
+    }
     std::vector<std::string> lines;
     std::string from = input;
     for (std::size_t k = 0; k < rule_.steps.size(); ++k) {

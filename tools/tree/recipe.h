@@ -62,6 +62,9 @@ public:
     // Throws UsageError if it leads out of the root.
     [[nodiscard]] std::string output_name(const std::string& input, std::size_t output) const;
 
+    // The task of the first step, with the tiles around `path` if it is a tile of a terrain. `path` leads to the input.
+    [[nodiscard]] Task first_task(const Converter& converter, const std::string& path, const std::string& out) const;
+
     [[nodiscard]] const TextureCheck& check() const { return *check_; }
 
     // The files that options name and every output depends on, relative to the root.
@@ -85,6 +88,7 @@ private:
     void add_option(const OptionSetting& setting, const Command& command, const std::vector<std::string>& groups,
                     std::vector<std::string>& arguments) const;
     [[nodiscard]] std::string with_root(const std::string& argument, const Command& command) const;
+    void check_tiles(const ReadyCommand& first) const;
     void check_order(const StepSettings& step, const ReadyCommand& command, std::size_t index, Console& console) const;
     void add_output(const OutputSettings& output, Console& console);
     [[nodiscard]] std::string below_root(const std::string& file) const;
@@ -98,6 +102,7 @@ private:
     const std::string root_;
     std::string first_out_;  // the first output of an input called "name"
     std::vector<Glob> match_, exclude_;
+    std::vector<std::string> grids_;  // the patterns of match_ with {x} and {y}: tiles of terrains
     std::unique_ptr<TextureCheck> check_;
     std::vector<ReadyCommand> before_;
     std::vector<RecipeOutput> outputs_;

@@ -141,7 +141,7 @@ Result<Made> make_texture(const Recipe& recipe, const std::string& input, const 
     std::vector<Ending> endings;
     for (const WantedOutput& output : wanted) {
         Converter& converter = *recipe.outputs()[output.index].last.converter;
-        Task task = converter.task_for(from, output.path);
+        Task task = recipe.first_task(converter, from, output.path);
         if (!output.write_to.empty()) task.output = output.write_to;
         Job& job = jobs.add(std::move(task));
         std::optional<Step> step = converter.step(job);
