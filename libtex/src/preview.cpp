@@ -226,20 +226,23 @@ Result<Texture> show_mips(const Job& job) {
     return std::move(canvas).take();
 }
 
+// The pictures that are neither of a mesh nor false colours of a measure.
+struct Picture {
+    Show show;
+    Result<Texture> (*draw)(const Job& job);
+};
+constexpr Picture kPictures[] = {
+    {Show::lit, show_lit},        {Show::plain, show_lit},         {Show::world_normals, show_lit},
+    {Show::normals, show_colors}, {Show::channels, show_channels}, {Show::mips, show_mips},
+    {Show::height, show_height},
+};
+
 Result<Texture> show(const Job& job) {
-    switch (job.options.show) {
-        case Show::lit:
-        case Show::plain:
-        case Show::world_normals: return show_lit(job);
-        case Show::normals: return show_colors(job);
-        case Show::channels: return show_channels(job);
-        case Show::mips: return show_mips(job);
-        case Show::height: return show_height(job);
-        case Show::tangents:
-        case Show::uv:
-        case Show::seams: return show_mesh(job.scene, job.options, job.stage, job.execution);
-        default: return show_measure(job);
+    if (needs_mesh(job.options.show)) return show_mesh(job.scene, job.options, job.stage, job.execution);
+    for (const Picture& picture : kPictures) {
+        if (picture.show == job.options.show) return picture.draw(job);
     }
+    return show_measure(job);
 }
 
 }  // namespace
@@ -253,7 +256,7 @@ Result<Texture> preview(const PreviewScene& scene, const PreviewOptions& options
         if (!(scene.white > 0.0f) || !finite({scene.white})) return bad("the height of white must be above 0");
         const Extent map = scene.map->levels.front().extent();
         if (scene.mesh == nullptr) {
-            if (is_of_mesh(options.show)) return bad("there is no mesh to show");
+            if (needs_mesh(options.show)) return bad("there is no mesh to show");
             return show({scene, options, execution, stage(options, nullptr, map, size_of(options, map))});
         }
         if (auto sound = check_part(scene.mesh->part); !sound) return sound.error().of(scene.mesh->file);

@@ -75,7 +75,7 @@ bool SheetOptions::shows(Show show) const { return std::find(shows_.begin(), sho
 
 void SheetOptions::check(const Task& task) const {
     if (turntable_ > 0 && task.container != Container::png) {
-        throw UsageError(fmt::format("{}: --turntable writes PNG", printable(task.output)));
+        throw UsageError(printable(task.output), "--turntable writes PNG");
     }
     const std::size_t maps = 1 + task.joined.size();
     if ((split_ || difference_) && maps != 2) {
@@ -85,8 +85,8 @@ void SheetOptions::check(const Task& task) const {
 }
 
 void SheetOptions::check_mesh(bool has_mesh) const {
-    for (const Show show : {Show::tangents, Show::uv, Show::seams}) {
-        if (!has_mesh && shows(show))
+    for (const Show show : shows_) {
+        if (!has_mesh && needs_mesh(show))
             throw UsageError(fmt::format("--show {} needs --mesh, or a model", name_of(kShowNames, show)));
     }
 }

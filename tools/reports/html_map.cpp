@@ -30,7 +30,6 @@ struct View {
     const char* caption;
     const char* alt;
     bool needs_z = false;
-    bool needs_mesh = false;
 };
 constexpr View kViews[] = {
     {Show::normals, "normals", "the colours of the map with green up: x, y and z as red, green and blue"},
@@ -41,9 +40,8 @@ constexpr View kViews[] = {
      "down"},
     {Show::length, "length", "length of the stored vectors minus 1, pale where it is right", true},
     {Show::z_error, "z error", "stored z minus the z that x and y imply, pale where it is right", true},
-    {Show::seams, "seams", "the mesh, with its UV seams coloured by the angle between both sides in degrees", false,
-     true},
-    {Show::uv, "UVs", "the outlines of the mesh's triangles over the map; mirrored ones in orange", false, true},
+    {Show::seams, "seams", "the mesh, with its UV seams coloured by the angle between both sides in degrees"},
+    {Show::uv, "UVs", "the outlines of the mesh's triangles over the map; mirrored ones in orange"},
 };
 
 Result<HtmlPicture> draw(const HtmlMap& map, const TangentSpace* mesh, Show show, int size, const std::string& caption,
@@ -84,8 +82,8 @@ Result<void> add_view(HtmlMap& map, const View& view, const MapOnMesh* mesh, con
     if (view.show == Show::curl && map.y == YAxis::down) caption += ", with green read as down";
     const bool is_wide = view.show == Show::mips || view.show == Show::seams;
     const int size = (is_wide ? 2 : 1) * sizes.view;
-    auto drawn = view.needs_mesh ? draw_on_mesh(map, *mesh, view.show, size, view.caption, view.alt, execution)
-                                 : draw(map, nullptr, view.show, size, caption, view.alt, execution);
+    auto drawn = needs_mesh(view.show) ? draw_on_mesh(map, *mesh, view.show, size, view.caption, view.alt, execution)
+                                       : draw(map, nullptr, view.show, size, caption, view.alt, execution);
     if (!drawn) return drawn.error();
     map.views.push_back(std::move(*drawn));
     return {};
@@ -116,7 +114,7 @@ Result<void> draw_pictures(HtmlMap& map, const MapOnMesh* mesh, const HtmlSizes&
     for (const View& view : kViews) {
         if (view.needs_z && map.without_z()) continue;
         if (view.show == Show::mips && map.stored_levels == 1) continue;
-        if (view.needs_mesh && mesh == nullptr) continue;
+        if (needs_mesh(view.show) && mesh == nullptr) continue;
         if (view.show == Show::seams && !mesh->has_seams) continue;
         if (auto added = add_view(map, view, mesh, sizes, execution); !added) return added;
     }

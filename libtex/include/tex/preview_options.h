@@ -84,6 +84,9 @@ inline constexpr Named<Show> kShowNames[] = {
     {Show::seams, "seams", "of a mesh: the error along UV seams, degrees"},
 };
 
+// Whether a picture shows the mesh itself, so that there must be one (PreviewScene::mesh).
+[[nodiscard]] bool needs_mesh(Show show);
+
 // The shape that carries the map, if that is no mesh.
 //
 //   plane    2 high, as wide as the proportions of the map (and its tiles) require, in z = 0; u to the right, v up

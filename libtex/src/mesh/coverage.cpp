@@ -6,6 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
+
+#include "mesh/triangle_edge.h"
 
 namespace tex {
 namespace {
@@ -20,8 +23,6 @@ constexpr double kMaxTexels = 1 << 22;
 constexpr double kMaxUv = 1e6;
 constexpr std::int64_t kMaxLayers = 1024;  // of triangles over the whole map
 constexpr int kStripTexels = 1 << 17;
-
-std::int64_t floor_div(std::int64_t a, std::int64_t b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 
 struct Point {
     double x = 0.0, y = 0.0;
@@ -151,39 +152,33 @@ CoverageMap::Box CoverageMap::box_of(const Placed& t, int margin, int strip) con
             clamp(texel(y0) - margin, top, bottom), clamp(texel(y1) + margin, top - 1, bottom - 1)};
 }
 
-// The top-left rule: a texel whose centre is on an edge belongs to the triangle if the edge is a top or a left one.
 std::int64_t CoverageMap::cover_inside(const Placed& t, int strip, std::vector<Covered>& texels) const {
-    std::int64_t x[3] = {t.x[0], t.x[1], t.x[2]}, y[3] = {t.y[0], t.y[1], t.y[2]};
-    const std::int64_t area = (x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0]);
-    if (area == 0) return 0;
-    const std::int64_t sign = area > 0 ? 1 : -1;
+    TrianglePoint corner[3] = {{t.x[0], t.y[0]}, {t.x[1], t.y[1]}, {t.x[2], t.y[2]}};
+    const std::int64_t area = twice_area(corner[0], corner[1], corner[2]);
     const Box box = box_of(t, 0, strip);
+    if (area == 0 || box.left > box.right || box.top > box.bottom) return 0;
+    const bool is_turned = area < 0;
+    if (is_turned) std::swap(corner[1], corner[2]);
+    const TrianglePoint start{box.left * kSteps + kSteps / 2, box.top * kSteps + kSteps / 2};
+    // Each opposite of the corner with its number.
+    TriangleEdge edges[3] = {{corner[1], corner[2], start, kSteps},
+                             {corner[2], corner[0], start, kSteps},
+                             {corner[0], corner[1], start, kSteps}};
+    const auto whole = static_cast<double>(is_turned ? -area : area);
     std::int64_t overlaps = 0;
     for (int j = box.top; j <= box.bottom; ++j) {
-        const std::int64_t py = j * kSteps + kSteps / 2;
-        for (int i = box.left; i <= box.right; ++i) {
-            const std::int64_t px = i * kSteps + kSteps / 2;
-            std::int64_t edge[3];
-            bool inside = true;
-            for (int k = 0; k < 3 && inside; ++k) {
-                const int a = (k + 1) % 3, b = (k + 2) % 3;  // the edge opposite of corner k
-                const std::int64_t dx = sign * (x[b] - x[a]), dy = sign * (y[b] - y[a]);
-                edge[k] = dx * (py - y[a]) - dy * (px - x[a]);
-                const bool owned = dy < 0 || (dy == 0 && dx > 0);
-                inside = edge[k] > 0 || (edge[k] == 0 && owned);
-            }
-            if (!inside) continue;
-            Covered& texel = texels[place_of(i, j, strip)];
+        std::int64_t first = 0, last = box.right - box.left;
+        for (const TriangleEdge& edge : edges) edge.clip(first, last);
+        for (std::int64_t k = first; k <= last; ++k) {
+            Covered& texel = texels[place_of(box.left + static_cast<int>(k), j, strip)];
             if (texel.inside) {
                 ++overlaps;
                 continue;
             }
-            const auto whole = static_cast<double>(sign * area);
-            texel = {t.triangle,
-                     true,
-                     {static_cast<double>(edge[0]) / whole, static_cast<double>(edge[1]) / whole,
-                      static_cast<double>(edge[2]) / whole}};
+            const auto weight = [&](int n) { return static_cast<double>(edges[n].at(k)) / whole; };
+            texel = {t.triangle, true, {weight(0), weight(is_turned ? 2 : 1), weight(is_turned ? 1 : 2)}};
         }
+        for (TriangleEdge& edge : edges) edge.next_row();
     }
     return overlaps;
 }

@@ -31,18 +31,15 @@ Vec2 slopes_at(const NormalMap& map, int i, int j) {
     return {-n.x / z, -n.y / z};
 }
 
-double value_at(Show show, const NormalMap& map, int i, int j) {
+double slope_at(const NormalMap& map, int i, int j) { return length(slopes_at(map, i, j)); }
+double tilt_at(const NormalMap& map, int i, int j) {
     const Vec3 n = normal_at(map, i, j);
-    switch (show) {
-        case Show::slope: return length(slopes_at(map, i, j));
-        case Show::tilt: return degrees(angle_of(length(Vec2{n.x, n.y}), n.z));
-        case Show::length: return length(n) - 1.0;
-        case Show::z_error: {
-            const double square = std::min(n.x * n.x + n.y * n.y, 1.0);
-            return n.z - std::sqrt(1.0 - square);
-        }
-        default: return 0.0;
-    }
+    return degrees(angle_of(length(Vec2{n.x, n.y}), n.z));
+}
+double length_error_at(const NormalMap& map, int i, int j) { return length(normal_at(map, i, j)) - 1.0; }
+double z_error_at(const NormalMap& map, int i, int j) {
+    const Vec3 n = normal_at(map, i, j);
+    return n.z - std::sqrt(1.0 - std::min(n.x * n.x + n.y * n.y, 1.0));
 }
 
 Result<Plane<float>> fill(Extent extent, const Execution& execution, const std::function<double(int i, int j)>& value) {
@@ -160,11 +157,6 @@ Result<Measure> measure_curvature(const PreviewOptions& options, const NormalMap
 
 }  // namespace
 
-bool is_measure(Show show) {
-    return show == Show::slope || show == Show::tilt || show == Show::length || show == Show::z_error ||
-           show == Show::curl || show == Show::curvature;
-}
-
 double round_maximum(const Plane<float>& values, double least) { return nice(std::max(quantile(values, 995), least)); }
 
 double round_angle(double degrees) {
@@ -172,37 +164,46 @@ double round_angle(double degrees) {
     return *std::lower_bound(std::begin(kAngles), std::end(kAngles) - 1, degrees);
 }
 
-Result<Measure> measure(const PreviewOptions& options, const NormalMap& map, const Execution& execution) {
-    const Show show = options.show;
-    const float maximum = options.maximum;
-    if (show == Show::curl) return measure_curl_of(map, maximum, execution);
-    if (show == Show::curvature) return measure_curvature(options, map, execution);
-    Measure result;
-    auto values = fill(map.extent(), execution, [&](int i, int j) { return value_at(show, map, i, j); });
+namespace {
+
+// A measure of each texel by itself.
+struct TexelMeasure {
+    Show show;
+    const char* title;
+    Palette palette;
+    double (*value)(const NormalMap& map, int i, int j);
+    double (*greatest)(const Plane<float>& values);  // of the scale, if nobody chose it
+};
+
+double hundredths(const Plane<float>& values) { return round_maximum(values, 0.01); }
+double angle(const Plane<float>& values) { return round_angle(quantile(values, 999)); }
+
+constexpr TexelMeasure kTexelMeasures[] = {
+    {Show::slope, "slope, rise per texel", Palette::viridis, slope_at, hundredths},
+    {Show::tilt, "tilt, degrees", Palette::viridis, tilt_at, angle},
+    {Show::length, "length - 1", Palette::diverging, length_error_at, hundredths},
+    {Show::z_error, "z - z(x, y)", Palette::diverging, z_error_at, hundredths},
+};
+
+Result<Measure> measure_texels(const TexelMeasure& how, const NormalMap& map, float maximum,
+                               const Execution& execution) {
+    auto values = fill(map.extent(), execution, [&](int i, int j) { return how.value(map, i, j); });
     if (!values) return values.error();
+    Measure result;
     result.values = std::move(*values);
-    ColorScale& scale = result.scale;
-    scale.greatest = static_cast<double>(maximum);
-    const bool choose = !(maximum > 0.0f);
-    switch (show) {
-        case Show::slope:
-            scale.title = "slope, rise per texel";
-            if (choose) scale.greatest = round_maximum(result.values, 0.01);
-            break;
-        case Show::tilt:
-            scale.title = "tilt, degrees";
-            if (choose) scale.greatest = round_angle(quantile(result.values, 999));
-            break;
-        case Show::length:
-        case Show::z_error:
-            scale.title = show == Show::length ? "length - 1" : "z - z(x, y)";
-            if (choose) scale.greatest = round_maximum(result.values, 0.01);
-            scale.palette = Palette::diverging;
-            break;
-        default: break;
-    }
-    if (scale.palette == Palette::diverging) scale.least = -scale.greatest;
+    const double greatest = maximum > 0.0f ? static_cast<double>(maximum) : how.greatest(result.values);
+    result.scale = {how.title, how.palette == Palette::diverging ? -greatest : 0.0, greatest, how.palette};
     return result;
+}
+
+}  // namespace
+
+Result<Measure> measure(const PreviewOptions& options, const NormalMap& map, const Execution& execution) {
+    if (options.show == Show::curl) return measure_curl_of(map, options.maximum, execution);
+    if (options.show == Show::curvature) return measure_curvature(options, map, execution);
+    const auto* const how = std::find_if(std::begin(kTexelMeasures), std::end(kTexelMeasures),
+                                         [&](const TexelMeasure& row) { return row.show == options.show; });
+    return measure_texels(*how, map, options.maximum, execution);
 }
 
 }  // namespace tex::render

@@ -16,11 +16,8 @@ struct Measure {
     ColorScale scale;
 };
 
-// True for slope, tilt, length, z_error, curl and curvature.
-[[nodiscard]] bool is_measure(Show show);
-
 // The measure options.show of preview.h, with a scale up to options.maximum, or up to a suitable value if that is 0.
-// Errors: cancelled, out_of_memory.
+// Precondition: it is slope, tilt, length, z_error, curl or curvature. Errors: cancelled, out_of_memory.
 [[nodiscard]] Result<Measure> measure(const PreviewOptions& options, const NormalMap& map, const Execution& execution);
 
 // The least number of the form 1, 2 or 5 times a power of ten that is not below the 99.5th percentile of |values|, and

@@ -2,6 +2,8 @@
 
 #include "preview/mesh_shows.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "preview/canvas.h"
@@ -33,12 +35,18 @@ Result<Texture> draw_bare(const Stage& stage, const PreviewOptions& options, con
         lines, execution);
 }
 
-Result<Texture> show_tangents(const PreviewOptions& options, const Stage& stage, const Execution& execution) {
+Result<Texture> show_tangents(const PreviewScene&, const PreviewOptions& options, const Stage& stage,
+                              const Execution& execution) {
     const MeshLines lines = tangent_lines(*stage.mesh, stage.view, 1.5 * text_scale(stage.size.width));
     auto picture = draw_bare(stage, options, lines, execution);
     if (!picture || !options.legend) return picture;
     return with_key(std::move(*picture),
                     {{"tangent", kTangentColor}, {"binormal", kBinormalColor}, {"normal", kNormalColor}});
+}
+
+Result<Texture> show_uvs(const PreviewScene& scene, const PreviewOptions& options, const Stage& stage,
+                         const Execution& execution) {
+    return uv_layout(*stage.mesh, scene, options, stage.size, execution);
 }
 
 Result<Texture> show_seams(const PreviewScene& scene, const PreviewOptions& options, const Stage& stage,
@@ -50,17 +58,34 @@ Result<Texture> show_seams(const PreviewScene& scene, const PreviewOptions& opti
     return with_legend(std::move(*picture), seams.scale);
 }
 
-}  // namespace
+struct MeshPicture {
+    Show show;
+    Result<Texture> (*draw)(const PreviewScene& scene, const PreviewOptions& options, const Stage& stage,
+                            const Execution& execution);
+};
+constexpr MeshPicture kMeshPictures[] = {
+    {Show::tangents, show_tangents},
+    {Show::uv, show_uvs},
+    {Show::seams, show_seams},
+};
 
-bool is_of_mesh(Show show) { return show == Show::tangents || show == Show::uv || show == Show::seams; }
+const MeshPicture* picture_of(Show show) {
+    const auto* const row = std::find_if(std::begin(kMeshPictures), std::end(kMeshPictures),
+                                         [show](const MeshPicture& picture) { return picture.show == show; });
+    return row == std::end(kMeshPictures) ? nullptr : row;
+}
+
+}  // namespace
 
 Result<Texture> show_mesh(const PreviewScene& scene, const PreviewOptions& options, const Stage& stage,
                           const Execution& execution) {
-    switch (options.show) {
-        case Show::uv: return uv_layout(*stage.mesh, scene, options, stage.size, execution);
-        case Show::seams: return show_seams(scene, options, stage, execution);
-        default: return show_tangents(options, stage, execution);
-    }
+    return picture_of(options.show)->draw(scene, options, stage, execution);
 }
 
 }  // namespace tex::render
+
+namespace tex {
+
+bool needs_mesh(Show show) { return render::picture_of(show) != nullptr; }
+
+}  // namespace tex

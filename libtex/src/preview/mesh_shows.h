@@ -9,10 +9,7 @@
 
 namespace tex::render {
 
-// True for tangents, uv and seams.
-[[nodiscard]] bool is_of_mesh(Show show);
-
-// The picture options.show, with its legend. Preconditions: is_of_mesh(options.show), stage.mesh. Errors: as preview().
+// The picture options.show, with its legend. Preconditions: needs_mesh(options.show), stage.mesh. Errors: as preview().
 [[nodiscard]] Result<Texture> show_mesh(const PreviewScene& scene, const PreviewOptions& options, const Stage& stage,
                                         const Execution& execution);
 

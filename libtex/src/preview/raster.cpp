@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "mesh/triangle_edge.h"
+
 namespace tex::render {
 namespace {
 
@@ -14,15 +16,13 @@ constexpr int kFirst = kSpacing / 2;                      // the place of the fi
 // So many samples may be tested in pictures of any size: this takes seconds.
 constexpr double kFreeTests = 4294967296.0;
 
-std::int64_t floor_div(std::int64_t a, std::int64_t b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
-
 // The first sample of an axis at or beyond a place, and the last one at or before it.
 int sample_from(std::int32_t place) { return static_cast<int>(floor_div(place - kFirst + kSpacing - 1, kSpacing)); }
 int sample_to(std::int32_t place) { return static_cast<int>(floor_div(place - kFirst, kSpacing)); }
 
-// Twice the area: positive if the corners are clockwise in the picture.
+TrianglePoint point_of(const RasterVertex& vertex) { return {vertex.x, vertex.y}; }
 std::int64_t area_of(const RasterVertex& a, const RasterVertex& b, const RasterVertex& c) {
-    return std::int64_t{b.x - a.x} * (c.y - a.y) - std::int64_t{c.x - a.x} * (b.y - a.y);
+    return twice_area(point_of(a), point_of(b), point_of(c));
 }
 
 // Samples, first and last included.
@@ -37,33 +37,6 @@ Box box_of(const RasterVertex& a, const RasterVertex& b, const RasterVertex& c, 
             std::max(0, sample_from(std::min({a.y, b.y, c.y}))),
             std::min(picture.height * Raster::kSide - 1, sample_to(std::max({a.y, b.y, c.y})))};
 }
-
-// An edge of a triangle whose corners are clockwise. value + k step >= 0 at sample k of a row if it is inside.
-class Edge {
-public:
-    Edge(const RasterVertex& from, const RasterVertex& to, int left, int top)
-        : step_(std::int64_t{kSpacing} * (from.y - to.y)), down_(std::int64_t{kSpacing} * (to.x - from.x)) {
-        const std::int64_t x = std::int64_t{kSpacing} * left + kFirst - from.x;
-        const std::int64_t y = std::int64_t{kSpacing} * top + kFirst - from.y;
-        const bool is_top_left = to.y < from.y || (to.y == from.y && to.x > from.x);
-        value_ = (to.x - from.x) * y - (to.y - from.y) * x - (is_top_left ? 0 : 1);
-    }
-
-    // Shortens the samples first to last of this row, counted from the left of the box, to those inside.
-    void clip(std::int64_t& first, std::int64_t& last) const {
-        if (step_ > 0) {
-            if (value_ < 0) first = std::max(first, floor_div(-value_ + step_ - 1, step_));
-        } else if (step_ < 0) {
-            last = std::min(last, floor_div(value_, -step_));
-        } else if (value_ < 0) {
-            last = -1;
-        }
-    }
-    void next_row() { value_ += down_; }
-
-private:
-    std::int64_t step_, down_, value_ = 0;
-};
 
 }  // namespace
 
@@ -164,7 +137,10 @@ void Raster::draw_triangle(const RasterTriangle& t, Band& band) const {
     box.top = std::max(box.top, band.first * kSide);
     box.bottom = std::min(box.bottom, (band.first + band.rows) * kSide - 1);
     if (box.empty()) return;
-    Edge edges[3] = {{a, *b, box.left, box.top}, {*b, *c, box.left, box.top}, {*c, a, box.left, box.top}};
+    const TrianglePoint start{kSpacing * box.left + kFirst, kSpacing * box.top + kFirst};
+    TriangleEdge edges[3] = {{point_of(a), point_of(*b), start, kSpacing},
+                             {point_of(*b), point_of(*c), start, kSpacing},
+                             {point_of(*c), point_of(a), start, kSpacing}};
 
     // The plane of nearness over the picture.
     const double bx = b->x - a.x, by = b->y - a.y, cx = c->x - a.x, cy = c->y - a.y;
@@ -173,7 +149,7 @@ void Raster::draw_triangle(const RasterTriangle& t, Band& band) const {
     const double down = (nc * bx - nb * cx) / static_cast<double>(area);
     for (int row = box.top; row <= box.bottom; ++row) {
         std::int64_t first = 0, last = box.right - box.left;
-        for (Edge& edge : edges) {
+        for (TriangleEdge& edge : edges) {
             edge.clip(first, last);
             edge.next_row();
         }
