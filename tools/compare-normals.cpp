@@ -157,8 +157,7 @@ Result<cli::ExitCode> CompareNormals::draw_curve(cli::Console& console) {
         code = std::max(code, cli::print_point(console, run_, points, options, running_.json));
     }
     if (curve_.plot().empty()) return code;
-    const std::string title =
-        fmt::format("{}, {}, zstd -19", name, name_of(cli::kCurveFormatNames, settings.front().encoding));
+    const std::string title = fmt::format("{}, {}, zstd -19", name, name_of(kEncodingNames, settings.front().encoding));
     if (auto written = cli::write_document(curve_.plot(), cli::plot_curve(title, points)); !written)
         return written.error();
     return code;

@@ -83,7 +83,7 @@ IntegrateNormals::IntegrateNormals(const cli::ProgramRow& row) : NormalsConverte
         if (strength_.bumpiness == 0.0f || strength_.height_range == 0.0 || strength_.uv_height == 0.0)
             throw cli::UsageError("a strength of 0 makes every height flat: no normals show them");
         if (!files.name.empty() && cli::NamePattern(files.name).uses("format"))
-            throw cli::UsageError("--name: {format} has no meaning for heights");
+            throw cli::UsageError("--name", "{format} has no meaning for heights");
     });
 }
 
@@ -110,8 +110,9 @@ Result<void> IntegrateNormals::check(const std::vector<cli::Task>& tasks) {
     for (const cli::Task& task : tasks) {
         std::ignore = stored_.format_in(task);
         if (!all_levels_ || can_hold_levels(task.container) || cli::has_level(task.output)) continue;
-        throw cli::UsageError(fmt::format("{}: {} files hold one level; --level all needs --name with {{level}}",
-                                          cli::printable(task.output), name_of(kContainerNames, task.container)));
+        throw cli::UsageError(cli::printable(task.output),
+                              fmt::format("{} files hold one level; --level all needs --name with {{level}}",
+                                          name_of(kContainerNames, task.container)));
     }
     return {};
 }

@@ -65,8 +65,9 @@ Result<void> UnpackNormals::check(const std::vector<cli::Task>& tasks) {
     apart_.check(tasks);
     for (const cli::Task& task : tasks) {
         if (!all_levels_ || can_hold_levels(task.container) || cli::has_level(task.output)) continue;
-        throw cli::UsageError(fmt::format("{}: {} files hold one level; --level all needs --name with {{level}}",
-                                          cli::printable(task.output), name_of(kContainerNames, task.container)));
+        throw cli::UsageError(cli::printable(task.output),
+                              fmt::format("{} files hold one level; --level all needs --name with {{level}}",
+                                          name_of(kContainerNames, task.container)));
     }
     return {};
 }

@@ -92,6 +92,7 @@ constexpr Attribute kAttributes[] = {
     {"tex:stored", ignore},
     {"tex:layout", ignore},
     {"tex:remarks", ignore},
+    {"tex:trailing_bytes", ignore},
     {"tex:unpack", ignore},
 };
 
@@ -209,6 +210,7 @@ void describe(const Texture& texture, const std::optional<Swizzle>& pixels, Imag
     std::string remarks;
     for (const std::string& remark : texture.remarks) remarks.append(remarks.empty() ? "" : "; ").append(remark);
     if (!remarks.empty()) word("tex:remarks", remarks);
+    if (texture.trailing_bytes > 0) word("tex:trailing_bytes", std::to_string(texture.trailing_bytes));
 }
 
 }  // namespace tex::oiio

@@ -189,6 +189,7 @@ void each_part(Texture& o, F& f) {
     f(o.y_known);
     f(o.normal_encoding);
     f(o.srgb);
+    f(o.trailing_bytes);
     f(o.remarks);
 }
 

@@ -139,6 +139,11 @@ OtherPlanes can_hold(Encoding encoding) {
     return {swizzle[2] == Component::z, info.channels == 4 && !info.has_blocks() && swizzle[3] == Component::one};
 }
 
+bool can_optimise(Encoding encoding) {
+    const auto [format, swizzle] = encoding_info(encoding);
+    return format_info(format).has_blocks() && swizzle != kSwizzleXxxy;
+}
+
 float steepest_slope(Encoding encoding) {
     const EncodingInfo info = encoding_info(encoding);
     const FormatInfo format = format_info(info.format);

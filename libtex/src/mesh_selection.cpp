@@ -123,7 +123,7 @@ Result<void> leave_out_parts_without_uvs(Choice& choice) {
     if (std::none_of(choice.parts.begin(), choice.parts.end(), has_set)) {
         const MeshPart& part = *choice.parts.front();
         const std::string name = part.name.empty() ? "" : quoted(part.name) + " ";
-        if (part.uvs.empty()) return unfit(name + "has no UVs, which say where the map is");
+        if (part.uvs.empty()) return unfit(name + "has no UVs, which say where the map is", ErrorDetail::no_uvs);
         return unfit(name + "has no UV set " + std::to_string(choice.uv_set) + "; the last one is " +
                      std::to_string(part.uvs.size() - 1));
     }

@@ -78,7 +78,8 @@ TEST_F(RdoOption, WhatDoesNotFitIsAUsageError) {
         {"-o b.dds --rdo-max 1", "pack-normals: error: --rdo-max needs --rdo-mean\n"},
         {"-o b.dds --rdo-window 1024", "pack-normals: error: --rdo-window needs --rdo-mean\n"},
         {"-o b.dds --rdo-mean 1 --format rgba8",
-         "pack-normals: error: --rdo-mean needs --format dxt5nm, bc5, bc5-snorm, eac-rg11 or eac-rg11-snorm\n"}};
+         "pack-normals: error: --rdo-mean needs --format to be one of dxt5nm, bc5, bc5-snorm, eac-rg11, "
+         "eac-rg11-snorm\n"}};
     for (const auto& [arguments, message] : cases) {
         const Ran ran = shell(scratch_, std::string("pack-normals n.exr ") + arguments);
         EXPECT_EQ(ran.code, 2) << arguments;

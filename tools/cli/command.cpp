@@ -214,7 +214,7 @@ void Command::take_values() {
             try {
                 row.take(text);
             } catch (const UsageError& error) {
-                throw UsageError(fmt::format("{}: {}", row.name(), error.what()));
+                throw UsageError(row.name(), error.what());
             }
         }
     }

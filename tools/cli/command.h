@@ -38,10 +38,13 @@ struct Word {
     std::string meaning;
 };
 
+// The rows of a table, or those whose value `fits`.
 template <class E, std::size_t N>
-[[nodiscard]] std::vector<Word> words_of(const Named<E> (&table)[N]) {
+[[nodiscard]] std::vector<Word> words_of(const Named<E> (&table)[N], bool (*fits)(E) = nullptr) {
     std::vector<Word> words;
-    for (const Named<E>& row : table) words.push_back({std::string(row.name), std::string(row.meaning)});
+    for (const Named<E>& row : table) {
+        if (fits == nullptr || fits(row.value)) words.push_back({std::string(row.name), std::string(row.meaning)});
+    }
     return words;
 }
 [[nodiscard]] std::vector<std::string> names_of(const std::vector<Word>& words);
@@ -98,8 +101,8 @@ public:
     Row& number(int& target, const std::string& names, std::string value, int least, int greatest, std::string help);
     template <class E, std::size_t N>
     Row& choice(E& target, const std::string& names, const std::string& value, const Named<E> (&table)[N],
-                const std::string& help) {
-        Row& row = choice_row(names, value, help, words_of(table),
+                const std::string& help, bool (*fits)(E) = nullptr) {
+        Row& row = choice_row(names, value, help, words_of(table, fits),
                               [&target, &table](const std::string& name) { target = *find_by_name(table, name); });
         row.preset = name_of(table, target);
         return row;

@@ -5,6 +5,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace tex::cli {
 
@@ -13,6 +14,14 @@ namespace tex::cli {
 class UsageError : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
+    // `subject`: the option, such as "--size", or the file that the reason is about; it stands before the reason.
+    UsageError(std::string subject, const std::string& reason)
+        : std::runtime_error(subject + ": " + reason), subject_(std::move(subject)) {}
+
+    [[nodiscard]] const std::string& subject() const { return subject_; }
+
+private:
+    std::string subject_;
 };
 
 }  // namespace tex::cli

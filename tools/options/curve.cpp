@@ -24,7 +24,7 @@ void CurveOptions::add(Command& command) {
                        if (std::adjacent_find(means_.begin(), means_.end(), std::greater_equal<>()) != means_.end())
                            throw UsageError("its angles must rise");
                    });
-    command.choice(format_, "--format", "F", kCurveFormatNames, "the encoding");
+    command.choice(format_, "--format", "F", kEncodingNames, "the encoding", can_optimise);
     command.number(rdo_.max, "--rdo-max", "DEG", kAngle, "no texel's angle grows beyond DEG").preset =
         "four times the mean";
     command.number(rdo_.window, "--rdo-window", "BYTES", kLeastRdoWindow, kMostRdoWindow,

@@ -6,21 +6,11 @@
 #include <string>
 #include <vector>
 
-#include <tex/names.h>
 #include <tex/pack_options.h>
 
 #include "cli/command.h"
 
 namespace tex::cli {
-
-// The encodings that can be optimised.
-inline constexpr Named<Encoding> kCurveFormatNames[] = {
-    {Encoding::dxt5nm, "dxt5nm", "x in alpha, y in green of BC3"},
-    {Encoding::bc5, "bc5", "x and y, each with 8 values"},
-    {Encoding::bc5_snorm, "bc5-snorm", "BC5, signed"},
-    {Encoding::eac_rg11, "eac-rg11", "11 bits, for phones"},
-    {Encoding::eac_rg11_snorm, "eac-rg11-snorm", "the same, signed"},
-};
 
 // --rdo-means, --format, --rdo-max, --rdo-window, --plot.
 class CurveOptions {

@@ -62,7 +62,7 @@ void FileOptions::check(const Command& command) const {
         throw UsageError("--root has no effect, because --name does not contain {dir}");
     check_inputs(command);
     if (output.empty() && out_dir.empty() && name.empty()) throw UsageError("no output: give -o FILE or --out-dir DIR");
-    if (depfile == "-") throw UsageError("--depfile: needs a file, not standard output");
+    if (depfile == "-") throw UsageError("--depfile", "needs a file, not standard output");
     if (is_folder(output)) {
         throw UsageError(fmt::format("-o {}: is a folder; --out-dir writes into one", printable(output)));
     }
@@ -124,8 +124,8 @@ Result<std::vector<Input>> FileOptions::list_inputs(const Command& command) cons
         if (!list) return list.error();
         for (std::string& input : list_of(*list)) inputs.push_back({std::move(input)});
         if (inputs.empty() && !allow_empty) {
-            throw UsageError(
-                fmt::format("--files-from: {} names no input; --allow-empty accepts that", printable(files_from)));
+            throw UsageError("--files-from",
+                             fmt::format("{} names no input; --allow-empty accepts that", printable(files_from)));
         }
     }
     return inputs;
@@ -150,8 +150,7 @@ std::string FileOptions::place(const std::string& pattern, const NameFields& fie
     if (out_dir.empty()) return file;
     const fs::path dir = fs::path(fields.dir).lexically_normal();
     if (parsed.uses("dir") && (dir.is_absolute() || *dir.begin() == "..")) {
-        throw UsageError(fmt::format("{}: its {{dir}} leads out of --out-dir",
-                                     printable(fields.dir + "/" + fields.stem + fields.ext)));
+        throw UsageError(printable(fields.dir + "/" + fields.stem + fields.ext), "its {dir} leads out of --out-dir");
     }
     return (fs::path(out_dir) / fs::path(file).relative_path()).string();
 }

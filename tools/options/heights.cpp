@@ -42,7 +42,7 @@ Result<void> ColorGroup::check() const {
     texel.names = {"Y"};
     auto converted = to_linear(texel, options());
     if (!converted && converted.error().code == ErrorCode::bad_option) {
-        throw UsageError(fmt::format("--color-space: {}", converted.error().reason));
+        throw UsageError("--color-space", fmt::format("{}", converted.error().reason));
     }
     return converted;
 }
@@ -159,7 +159,7 @@ ChannelFile parse_channel_file(const std::string& text) {
     if (text.empty()) throw UsageError("needs a value that is not empty");
     ChannelFile source{text};
     if (const std::size_t colon = text.rfind(':'); colon != std::string::npos) {
-        const auto channel = find_by_name(kHeightChannelNames, std::string_view(text).substr(colon + 1));
+        const auto channel = find_by_name(kHeightChannelNames, common_word(text.substr(colon + 1)));
         if (!channel) return source;  // the colon is part of the file's name
         source.channel = *channel;
         source.file.resize(colon);

@@ -134,7 +134,7 @@ Result<void> HighMeshes::match(Job& job, const SelectedPart& low, const HighPart
 }
 
 Error HighMeshes::with_order(const Error& error) {
-    if (error.reason.find("has no UVs") == std::string::npos) return error;
+    if (error.detail != ErrorDetail::no_uvs) return error;
     return {error.code, error.file, error.reason + "; is it the high mesh? The low one comes first"};
 }
 

@@ -38,10 +38,10 @@ std::string MapOutput::path_of(const Task& task) const { return files_->place(pa
 
 Container MapOutput::container_of_path(const std::string& path) const {
     const auto container = container_of(path);
-    if (!container) throw UsageError(fmt::format("{}: {}: unsupported output format", name_, printable(path)));
+    if (!container) throw UsageError(name_, fmt::format("{}: unsupported output format", printable(path)));
     if (can_hold(*container, map_format(*container))) return *container;
-    throw UsageError(fmt::format("{}: {}: {} files cannot hold such a map", name_, printable(path),
-                                 name_of(kContainerNames, *container)));
+    throw UsageError(name_, fmt::format("{}: {} files cannot hold such a map", printable(path),
+                                        name_of(kContainerNames, *container)));
 }
 
 void MapOutput::amend(Task& task) const {

@@ -168,7 +168,7 @@ void OtherFiles::add(Command& command, const FileOptions& files) {
     command.check([this, &command] {
         for (const auto& [option, pattern] : {std::pair("--blue-out", &blue_), std::pair("--alpha-out", &alpha_)}) {
             if (command.given(option) && (pattern->empty() || *pattern == "-"))
-                throw UsageError(fmt::format("{}: needs the name of a file", option));
+                throw UsageError(option, "needs the name of a file");
         }
     });
 }
@@ -178,7 +178,7 @@ std::optional<OtherFile> OtherFiles::file(const std::string& pattern, const Task
     OtherFile file;
     file.output = files_->place(pattern, name_fields(task.input));
     const auto container = container_of(file.output);
-    if (!container) throw UsageError(fmt::format("{}: unsupported output format", printable(file.output)));
+    if (!container) throw UsageError(printable(file.output), "unsupported output format");
     file.container = *container;
     const FormatInfo info = format_info(encoding_info(default_encoding(*container)).format);
     file.format = info.has_blocks() ? Format::r8_unorm : *format_of(info.sample, info.bits, 1);
@@ -196,8 +196,8 @@ void OtherFiles::check(const std::vector<Task>& tasks) const {
         for (const std::string* pattern : {&blue_, &alpha_}) {
             const auto out = file(*pattern, task);
             if (out && !can_hold(out->container, out->format)) {
-                throw UsageError(fmt::format("{}: {} files cannot hold a single channel", printable(out->output),
-                                             name_of(kContainerNames, out->container)));
+                throw UsageError(printable(out->output), fmt::format("{} files cannot hold a single channel",
+                                                                     name_of(kContainerNames, out->container)));
             }
         }
     }

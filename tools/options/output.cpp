@@ -56,10 +56,6 @@ int parse_zstd(const std::string& text) {
         fmt::format("'{}' is neither zstd nor zstd:N with N from 1 to {}", printable(text), kHighestZstdLevel));
 }
 
-// The encodings whose blocks can be optimised.
-constexpr Encoding kOptimised[] = {Encoding::dxt5nm, Encoding::bc5, Encoding::bc5_snorm, Encoding::eac_rg11,
-                                   Encoding::eac_rg11_snorm};
-
 }  // namespace
 
 std::string default_encodings() {
@@ -111,10 +107,9 @@ void OutputOptions::add_rdo(Command& command) {
     command.check([this, &command] {
         const std::vector<std::string> more = command.given_of({"--rdo-max", "--rdo-window"});
         if (rdo.mean == 0.0f && !more.empty()) throw UsageError(fmt::format("{} needs --rdo-mean", more.front()));
-        const bool fits =
-            !format || std::find(std::begin(kOptimised), std::end(kOptimised), *format) != std::end(kOptimised);
-        if (rdo.mean > 0.0f && !fits)
-            throw UsageError("--rdo-mean needs --format dxt5nm, bc5, bc5-snorm, eac-rg11 or eac-rg11-snorm");
+        if (rdo.mean > 0.0f && format && !can_optimise(*format))
+            throw UsageError("--rdo-mean needs --format to be one of " +
+                             join(names_of(words_of(kEncodingNames, can_optimise))));
     });
 }
 
@@ -155,12 +150,10 @@ void OutputOptions::fill(NameFields& fields) const {
 
 Container OutputOptions::container_for(const std::string& output, Container standard_output) const {
     const Container chosen = container_of_output(output, standard_output);
-    if (zstd != 0 && !can_compress(chosen))
-        throw UsageError(fmt::format("{}: --supercompress needs a KTX2 file", printable(output)));
+    if (zstd != 0 && !can_compress(chosen)) throw UsageError(printable(output), "--supercompress needs a KTX2 file");
     if (rdo.mean > 0.0f && !can_hold(chosen, Encoding::dxt5nm))
-        throw UsageError(fmt::format("{}: --rdo-mean needs a DDS or KTX2 file", printable(output)));
-    if (quality && chosen != Container::jpeg)
-        throw UsageError(fmt::format("{}: --quality needs a JPEG file", printable(output)));
+        throw UsageError(printable(output), "--rdo-mean needs a DDS or KTX2 file");
+    if (quality && chosen != Container::jpeg) throw UsageError(printable(output), "--quality needs a JPEG file");
     return chosen;
 }
 
@@ -176,16 +169,17 @@ Container OutputOptions::container_of_output(const std::string& output, Containe
     if (named) return *named;
     if (output == "-") return made_container().value_or(standard_output);
     const std::string extension = std::filesystem::path(output).extension().string();
-    throw UsageError(fmt::format("{}: {}; it must be one of {}, or give --container", printable(output),
-                                 extension.empty()
-                                     ? "a name without an extension"
-                                     : fmt::format("unsupported output format '{}'", printable(extension)),
-                                 known_extensions()));
+    throw UsageError(printable(output), fmt::format("{}; it must be one of {}, or give --container",
+                                                    extension.empty() ? "a name without an extension"
+                                                                      : fmt::format("unsupported output format '{}'",
+                                                                                    printable(extension)),
+                                                    known_extensions()));
 }
 
 void OutputOptions::check_holds(const std::string& output, Container container, Encoding encoding) {
     if (can_hold(container, encoding)) return;
-    throw UsageError(fmt::format("{}: {} files cannot hold {}, they hold {}; {} goes into {}", printable(output),
+    throw UsageError(printable(output),
+                     fmt::format("{} files cannot hold {}, they hold {}; {} goes into {}",
                                  name_of(kContainerNames, container), name_of(kEncodingNames, encoding),
                                  encodings_in(container), name_of(kEncodingNames, encoding), containers_for(encoding)));
 }

@@ -217,7 +217,7 @@ void TransferMaps::amend(Task& task) const {
     for (const MapOutput* map : {&object_, &heights_, &positions_, &occlusion_, &bent_, &thickness_, &color_})
         map->amend(task);
     if (positions_.is_given() && !can_hold(positions_.container_for(task), Encoding::float_))
-        throw UsageError("--position-out: only exr, dds and ktx2 files hold floats");
+        throw UsageError("--position-out", "only exr, dds and ktx2 files hold floats");
 }
 
 void TransferMaps::request(TransferOptions& options) const {

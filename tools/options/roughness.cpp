@@ -20,7 +20,7 @@ namespace {
 // Throws UsageError if the name does not show the container.
 Container container_for(const std::string& path) {
     if (const auto container = container_of(path)) return *container;
-    throw UsageError(fmt::format("--roughness-out: {}: unsupported output format", printable(path)));
+    throw UsageError("--roughness-out", fmt::format("{}: unsupported output format", printable(path)));
 }
 
 }  // namespace
@@ -44,8 +44,8 @@ void RoughnessOptions::add(Command& command, const FileOptions& files) {
     command.check([this, &command] {
         const auto idle = command.given_of({"--roughness-in", "--roughness-model", "--roughness-format"});
         if (command.given("--roughness-out") && output_.empty())
-            throw UsageError("--roughness-out: needs a value that is not empty");
-        if (output_ == "-") throw UsageError("--roughness-out: needs a file, not standard output");
+            throw UsageError("--roughness-out", "needs a value that is not empty");
+        if (output_ == "-") throw UsageError("--roughness-out", "needs a file, not standard output");
         if (!is_given() && !idle.empty()) throw UsageError(idle.front() + " does nothing without --roughness-out");
     });
 }
@@ -93,13 +93,13 @@ void RoughnessOptions::check(const std::vector<Task>& tasks, int levels) const {
         const Container container = container_for(path);
         const auto kind = name_of(kContainerNames, container);
         if (!can_hold(container, format_in(container))) {
-            throw UsageError(fmt::format("{}: {} files cannot hold roughness as {}", printable(path), kind,
-                                         name_of(kRoughnessFormatNames, format_in(container))));
+            throw UsageError(printable(path), fmt::format("{} files cannot hold roughness as {}", kind,
+                                                          name_of(kRoughnessFormatNames, format_in(container))));
         }
         if (levels == 1 || can_hold_levels(container) || has_level(path)) continue;
         throw UsageError(
-            fmt::format("{}: {} files hold one level; --roughness-out needs .dds, .ktx2 or .exr, or {{level}}",
-                        printable(path), kind));
+            printable(path),
+            fmt::format("{} files hold one level; --roughness-out needs .dds, .ktx2 or .exr, or {{level}}", kind));
     }
 }
 

@@ -55,8 +55,9 @@ void StoredHeights::parse(const std::string& text) {
 Format StoredHeights::format_in(const Task& task) const {
     const Format chosen = format.value_or(map_format(task.container));
     if (can_hold(task.container, chosen)) return chosen;
-    throw UsageError(fmt::format("{}: {} files cannot hold heights as {}", printable(task.output),
-                                 name_of(kContainerNames, task.container), name_of(kHeightFormatNames, chosen)));
+    throw UsageError(printable(task.output),
+                     fmt::format("{} files cannot hold heights as {}", name_of(kContainerNames, task.container),
+                                 name_of(kHeightFormatNames, chosen)));
 }
 
 StoredHeights::Span StoredHeights::span_of(const std::vector<Integration>& levels, Format in) const {

@@ -162,7 +162,7 @@ void TangentSpaceOptions::add_parts(Command& command, const char* node) {
 }
 
 void TangentSpaceOptions::check_input(const Command& command) const {
-    if (mesh_ == "-") throw UsageError("--mesh: a mesh cannot come from standard input");
+    if (mesh_ == "-") throw UsageError("--mesh", "a mesh cannot come from standard input");
     if (has_mesh()) return;
     const auto idle = command.given_of({"--primitive", "--node", "--uv-set"});
     if (!idle.empty()) throw UsageError(fmt::format("{} needs --mesh", idle.front()));
@@ -173,7 +173,7 @@ void TangentSpaceOptions::check(const Command& command) const {
     if (mesh_.empty() && command.inputs().empty() && !command.given("--files-from"))
         throw UsageError("no mesh: give --mesh FILE");
     for (const auto& [name, file] : {std::pair{"--mesh", &mesh_}, std::pair{"--to-mesh", &to_mesh_}}) {
-        if (*file == "-") throw UsageError(fmt::format("{}: a mesh cannot come from standard input", name));
+        if (*file == "-") throw UsageError(name, "a mesh cannot come from standard input");
     }
     if (from == Space::tangent && to == Space::tangent && has_mesh()) {
         const auto changes = command.given_of({"--to-mesh", "--decoder-in", "--tangents-in"});

@@ -97,7 +97,7 @@ void CompareDocuments::check(const std::vector<std::string>& inputs) const {
         check_document(heat_map_file, inputs, {});
         const auto container = container_of(heat_map_path_);
         if (!container || !can_hold(*container, Encoding::rgb8))
-            throw UsageError(fmt::format("--heatmap: {}: unsupported picture format", printable(heat_map_path_)));
+            throw UsageError("--heatmap", fmt::format("{}: unsupported picture format", printable(heat_map_path_)));
     }
     if (!depfile_.empty()) {
         if (heat_map_path_.empty() && page_path_.empty()) throw UsageError("--depfile needs --heatmap or --report");

@@ -23,46 +23,37 @@ void replace_word(std::string& text, std::string_view word, std::string_view by)
     }
 }
 
-// The encoding that holds every stored component of this layout with as many bits; none if there is no such encoding.
-// ASTC, whose layout is always the same, rebuilds z.
-std::optional<Encoding> same_encoding(Format format, const Swizzle& swizzle) {
-    const auto is_at = [&](std::size_t channel, Component component) { return swizzle[channel] == component; };
-    const bool xyz = is_at(0, Component::x) && is_at(1, Component::y) && is_at(2, Component::z);
-    const bool ag = is_at(3, Component::x) && is_at(1, Component::y) && !is_at(2, Component::z);
-    const bool xy = is_at(0, Component::x) && is_at(1, Component::y) && !is_at(2, Component::z);
-    const bool is_yx = is_at(0, Component::y) && is_at(1, Component::x) && !is_at(2, Component::z);
-    const auto if_holds = [](bool holds, Encoding encoding) {
-        return holds ? std::optional<Encoding>(encoding) : std::nullopt;
-    };
-    switch (format) {
-        case Format::bc3_unorm: return if_holds(ag, Encoding::dxt5nm);
-        // ATI2 holds y first; BC5 with x first says so in its header.
-        case Format::bc5_unorm: return if_holds(xy || is_yx, Encoding::bc5);
-        case Format::bc5_snorm: return if_holds(xy, Encoding::bc5_snorm);
-        case Format::eac_rg11_unorm: return if_holds(xy, Encoding::eac_rg11);
-        case Format::eac_rg11_snorm: return if_holds(xy, Encoding::eac_rg11_snorm);
-        case Format::astc_4x4_unorm: return Encoding::astc_4x4;
-        case Format::astc_5x4_unorm: return Encoding::astc_5x4;
-        case Format::astc_5x5_unorm: return Encoding::astc_5x5;
-        case Format::astc_6x5_unorm: return Encoding::astc_6x5;
-        case Format::astc_6x6_unorm: return Encoding::astc_6x6;
-        case Format::astc_8x5_unorm: return Encoding::astc_8x5;
-        case Format::astc_8x6_unorm: return Encoding::astc_8x6;
-        case Format::astc_8x8_unorm: return Encoding::astc_8x8;
-        case Format::rg8_unorm: return if_holds(xy, Encoding::rg8);
-        case Format::rg16_unorm: return if_holds(xy, Encoding::rg16);
-        case Format::rgb8_unorm: return if_holds(xyz, Encoding::rgb8);
-        case Format::rgba8_unorm: return ag ? Encoding::ag8 : if_holds(xyz, Encoding::rgba8);
-        case Format::rgb16_unorm:
-        case Format::rgba16_unorm: return if_holds(xyz, Encoding::rgb16);
-        case Format::rg16_float:
-        case Format::rgb16_float:
-        case Format::rgba16_float: return if_holds(xyz || xy, Encoding::half);
-        case Format::rg32_float:
-        case Format::rgb32_float:
-        case Format::rgba32_float: return if_holds(xyz || xy, Encoding::float_);
-        default: return std::nullopt;
+// Whether a texel of `made` holds all that is stored: x and y where they were (ATI2 is BC5 with y first), z if it was
+// stored. ASTC's layout is always the same, and floats may hold z too.
+bool holds(const EncodingInfo& made, const FormatInfo& format, const Swizzle& stored) {
+    if (made.swizzle == kSwizzleXxxy) return true;
+    const bool is_float = format.sample == SampleKind::floating;
+    if (made.format == Format::bc5_unorm && stored == kSwizzleYx) return true;
+    for (std::size_t channel = 0; channel < 4; ++channel) {
+        const auto is = [&](const Swizzle& layout, Component component) { return layout[channel] == component; };
+        for (const Component component : {Component::x, Component::y}) {
+            if (is(made.swizzle, component) != is(stored, component)) return false;
+        }
+        if (is(made.swizzle, Component::z) != is(stored, Component::z) && !(is_float && channel == 2)) return false;
     }
+    return true;
+}
+
+// The encoding that holds every stored component of this layout with as many bits: in the same format, or else without
+// what the other channels hold. None if there is no such encoding.
+std::optional<Encoding> same_encoding(Format format, const Swizzle& swizzle) {
+    const FormatInfo info = format_info(format);
+    std::optional<Encoding> found;
+    for (const Named<Encoding>& encoding : kEncodingNames) {
+        const EncodingInfo made = encoding_info(encoding.value);
+        const FormatInfo its = format_info(made.format);
+        const bool is_alike = !info.has_blocks() && !its.has_blocks() && its.sample == info.sample &&
+                              its.bits == info.bits && info.bits > 8;
+        if ((made.format != format && !is_alike) || !holds(made, info, swizzle)) continue;
+        if (made.format == format) return encoding.value;
+        if (!found) found = encoding.value;
+    }
+    return found;
 }
 
 // The encoding of heights with as many bits.

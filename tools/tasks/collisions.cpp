@@ -70,7 +70,7 @@ void check_collisions(const std::vector<Task>& tasks, const std::string& depfile
     if (depfile.empty()) return;
     check_not_an_input(depfile);
     if (outputs.find(depfile) != nullptr)
-        throw UsageError(fmt::format("--depfile: {} is an output", printable(depfile)));
+        throw UsageError("--depfile", fmt::format("{} is an output", printable(depfile)));
 }
 
 void check_document(const NamedFile& document, const std::vector<std::string>& inputs,
@@ -83,7 +83,7 @@ void check_document(const NamedFile& document, const std::vector<std::string>& i
     for (const std::string& input : inputs) known.add(input, "is the input " + printable(input));
     for (const NamedFile& other : others) known.add(other.path, "is the file of " + other.option);
     if (const std::string* const what = known.find(path))
-        throw UsageError(fmt::format("{}: {} {}", option, printable(path), *what));
+        throw UsageError(option, fmt::format("{} {}", printable(path), *what));
 }
 
 void check_read_twice(const std::string& option, const std::vector<std::string>& inputs) {

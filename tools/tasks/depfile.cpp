@@ -48,7 +48,7 @@ void check_depfile_names(const std::vector<Task>& tasks) {
         for (const std::string& input : task.inputs()) paths.push_back(input);
         for (const std::string& file : task.prerequisites()) paths.push_back(file);
         const auto bad = std::find_if(paths.begin(), paths.end(), has_no_spelling);
-        if (bad != paths.end()) throw UsageError(fmt::format("--depfile: {}: {}", printable(*bad), kNoSpelling));
+        if (bad != paths.end()) throw UsageError("--depfile", fmt::format("{}: {}", printable(*bad), kNoSpelling));
     }
 }
 

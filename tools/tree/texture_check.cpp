@@ -49,7 +49,7 @@ TextureCheck::TextureCheck(const Manifest& manifest, const Settings& settings, C
         std::ignore = rules_.read(command_, {}, {});
     } catch (const UsageError& error) {
         const auto at = std::find_if(settings.begin(), settings.end(), [&](const OptionSetting& setting) {
-            return std::string_view(error.what()).starts_with("--" + setting.key);
+            return error.subject() == "--" + setting.key;
         });
         fail_at(manifest.path, at == settings.end() ? settings.front().place : at->place,
                 fmt::format("check: {}", error.what()));

@@ -143,6 +143,7 @@ struct FormatInfo {
     std::size_t block_bytes;  // bytes of a block (of a texel if the format has no blocks)
 
     [[nodiscard]] bool has_blocks() const { return block != Extent{1, 1}; }
+    friend bool operator==(const FormatInfo&, const FormatInfo&) = default;
 };
 
 [[nodiscard]] FormatInfo format_info(Format format);
@@ -253,6 +254,9 @@ struct OtherPlanes {
 
 // What an encoding can hold beside normals: blue in the place of z, alpha in the place of a constant.
 [[nodiscard]] OtherPlanes can_hold(Encoding encoding);
+
+// Whether pack() can choose blocks of this encoding that compress better (RdoOptions): x and y have a half each.
+[[nodiscard]] bool can_optimise(Encoding encoding);
 
 // The slope from which on all slopes are stored alike. Without z: the component rounds to 1, so that the surface
 // becomes vertical; 11.3 for 8 bits, 32 for the 11 bits of EAC, 181 for 16 bits. With z: z rounds to its least positive

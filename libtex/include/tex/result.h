@@ -44,6 +44,7 @@ enum class ErrorDetail {
     uastc_without_alpha,  // unsupported: a KTX2 file without the channel that y is transcoded from
     several_materials,    // bad_option: MeshSelection::material must choose one
     no_tangents,          // bad_option: the mesh has no tangents of its own (TangentSource)
+    no_uvs,               // what was selected of the mesh has no UVs
 };
 
 // A failure. `file` is the path concerned, as the caller gave it, or empty if no file is involved; `reason` is one

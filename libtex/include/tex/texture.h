@@ -51,7 +51,10 @@ struct Texture {
     // vectors in them are as they are stored.
     int orientation = 1;
 
-    // Faults that the reader ignored ("mip count says 3, the data end after 2"), one sentence each.
+    // Bytes after the last level, which were not read.
+    std::uint64_t trailing_bytes = 0;
+
+    // Other faults that the reader ignored ("mip count says 3, the data end after 2"), one sentence each.
     std::vector<std::string> remarks;
 
     [[nodiscard]] Extent extent() const { return levels.empty() ? Extent{} : levels.front().extent; }

@@ -23,7 +23,7 @@ inline constexpr int kHalfBytes = 8;
 
 enum class HalfKind { bc4_unorm, bc4_snorm, green, eac_unorm, eac_snorm };
 
-// The kind of half 0 (x) or 1 (y) of an encoding's blocks. Precondition: one of the five that pack_options.h names.
+// The kind of half 0 (x) or 1 (y) of an encoding's blocks. Precondition: can_optimise(encoding).
 HalfKind half_kind(Encoding encoding, int half);
 
 // Decodes a half into components in [-1, 1], as unpack() does, and in the same order.

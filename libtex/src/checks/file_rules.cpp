@@ -9,11 +9,10 @@
 #include <tex/swizzle.h>
 
 #include "blocks/astc_decode.h"
+#include "formats/row_source.h"
 
 namespace tex {
 namespace {
-
-constexpr std::string_view kTrailing = "after the last level";
 
 bool is_power_of_two(int n) { return (n & (n - 1)) == 0; }
 
@@ -127,9 +126,8 @@ void check_astc_layout(const Subject& subject, Findings& findings) {
 void check_file_rules(const Subject& subject, Findings& findings) {
     const Texture& texture = subject.texture;
     const Requirements& require = subject.options.require;
-    for (const std::string& remark : texture.remarks) {
-        findings.add(remark.find(kTrailing) != std::string::npos ? "N104" : "N102", remark);
-    }
+    for (const std::string& remark : texture.remarks) findings.add("N102", remark);
+    if (texture.trailing_bytes > 0) findings.add("N104", trailing_text(texture.trailing_bytes));
     if (texture.orientation != 1)
         findings.add("N116", "the orientation is " + std::to_string(texture.orientation) + " instead of 1");
     check_format(texture, subject.stored.swizzle, require, findings);

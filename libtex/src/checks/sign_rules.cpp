@@ -2,6 +2,7 @@
 
 #include "checks/sign_rules.h"
 
+#include <optional>
 #include <string>
 
 #include <tex/unpack.h>
@@ -13,32 +14,24 @@ namespace {
 constexpr double kWrongShare = 0.01;
 constexpr double kRightShare = 0.002;
 
-struct Twins {
-    Format unorm, snorm;
-};
-
-// Formats of x and y alone, whose vectors show by themselves whether they can be right.
-constexpr Twins kTwins[] = {
-    {Format::bc5_unorm, Format::bc5_snorm},
-    {Format::eac_rg11_unorm, Format::eac_rg11_snorm},
-    {Format::rg8_unorm, Format::rg8_snorm},
-    {Format::rg16_unorm, Format::rg16_snorm},
-};
-
-const Format* twin_of(Format format) {
-    for (const Twins& twins : kTwins) {
-        if (format == twins.unorm) return &twins.snorm;
-        if (format == twins.snorm) return &twins.unorm;
+// The same format with the other sign, of formats with two channels: vectors of x and y alone show by themselves
+// whether they can be right.
+std::optional<Format> twin_of(Format format) {
+    FormatInfo info = format_info(format);
+    if (info.channels != 2 || info.sample == SampleKind::floating) return std::nullopt;
+    info.sample = info.sample == SampleKind::unorm ? SampleKind::snorm : SampleKind::unorm;
+    for (const auto& row : kFormatNames) {
+        if (format_info(row.value) == info) return row.value;
     }
-    return nullptr;
+    return std::nullopt;
 }
 
 }  // namespace
 
 Result<void> check_sign_rules(const Subject& subject, Findings& findings) {
-    const Format* const twin = twin_of(subject.texture.format);
+    const std::optional<Format> twin = twin_of(subject.texture.format);
     const double share = subject.counts.share(Property::beyond_unit);
-    if (twin == nullptr || !subject.has_vectors || share < kWrongShare || !findings.wants("N311")) return {};
+    if (!twin || !subject.has_vectors || share < kWrongShare || !findings.wants("N311")) return {};
     Texture other;
     other.format = *twin;
     other.levels = {subject.texture.levels.front()};

@@ -20,6 +20,11 @@ std::string orientation_text(int orientation) {
     return "the picture was turned or mirrored, as its orientation (" + std::to_string(orientation) + ") says";
 }
 
+std::string trailing_text(std::uint64_t bytes) {
+    return std::to_string(bytes) + (bytes == 1 ? " byte" : " bytes") + " after the last level " +
+           (bytes == 1 ? "was" : "were") + " not read";
+}
+
 void RowSource::describe_mark(std::string mark) {
     strength_ = strength_in_mark(mark);
     if (!strength_) normal_mark_ = std::move(mark);

@@ -28,6 +28,9 @@ namespace tex {
 // What a picture's orientation, which is not 1, means for it, as a sentence.
 std::string orientation_text(int orientation);
 
+// What Texture::trailing_bytes, which is not 0, means, as a sentence.
+std::string trailing_text(std::uint64_t bytes);
+
 class RowSource {
 public:
     RowSource() = default;

@@ -191,16 +191,7 @@ RdoReport RdoTallies::report() const {
     return report_of(all.sum());
 }
 
-bool is_optimised(const PackOptions& options) {
-    switch (options.encoding) {
-        case Encoding::dxt5nm:
-        case Encoding::bc5:
-        case Encoding::bc5_snorm:
-        case Encoding::eac_rg11:
-        case Encoding::eac_rg11_snorm: return options.rdo.mean > 0.0f;
-        default: return false;
-    }
-}
+bool is_optimised(const PackOptions& options) { return can_optimise(options.encoding) && options.rdo.mean > 0.0f; }
 
 int rdo_band_rows(const PackOptions& options, int base_width) {
     constexpr std::int64_t kBandBlocks = 16384;

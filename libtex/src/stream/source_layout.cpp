@@ -46,6 +46,7 @@ SourceInfo source_info(const Texture& head, const Swizzle& swizzle, const Source
     info.y_axis = told ? head.y_axis : options.unpack.y_axis.value_or(head.y_axis);
     info.srgb = head.srgb;
     info.remarks = head.remarks;
+    if (head.trailing_bytes > 0) info.remarks.push_back(trailing_text(head.trailing_bytes));
     if (head.orientation != 1)
         info.remarks.push_back(orientation_text(head.orientation) + "; vectors stay as they are stored");
     return info;

@@ -72,9 +72,7 @@ Result<StoredTexture> parse_astc(const FetchBytes& fetch, std::size_t size, cons
     StoredTexture stored;
     stored.head.format = *format;
     stored.head.swizzle = likely_swizzle(*format);
-    if (bytes < left) {
-        stored.head.remarks.push_back(std::to_string(left - bytes) + " bytes after the last block were not read");
-    }
+    stored.head.trailing_bytes = left - bytes;
     stored.levels = {{*extent, kHeaderBytes, bytes}};
     return stored;
 }

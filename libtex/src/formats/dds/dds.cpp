@@ -321,9 +321,7 @@ Result<StoredTexture> parse_dds(const FetchBytes& fetch, std::size_t size, const
         stored.levels.push_back({level, size - left});
         left -= bytes;
     }
-    if (left > 0) {
-        texture.remarks.push_back(std::to_string(left) + " bytes after the last level were not read");
-    }
+    texture.trailing_bytes = left;
     return stored;
 }
 

@@ -163,8 +163,7 @@ Result<void> find_ktx_levels(const FetchBytes& fetch, std::size_t size, const Kt
         stored.levels.push_back({its, at + image * layer, image});
         at += image * count.layers;  // blocks and aligned rows leave no padding
     }
-    if (at < size)
-        stored.head.remarks.push_back(std::to_string(size - at) + " bytes after the last level were not read");
+    stored.head.trailing_bytes = size - at;
     return {};
 }
 
