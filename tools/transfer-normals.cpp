@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // transfer-normals: makes the normal map of a low mesh from a high one.
 
+#include <algorithm>
+#include <cstddef>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -18,6 +21,7 @@
 #include "options/part_ids.h"
 #include "options/rays.h"
 #include "options/tangent_space.h"
+#include "reports/transfer_report.h"
 #include "tasks/written_levels.h"
 
 namespace {
@@ -31,9 +35,22 @@ public:
 private:
     [[nodiscard]] cli::OutputRules rules() const override;
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
+    // Tiles of a mesh share the high one, and each has a tree of it.
+    [[nodiscard]] std::size_t most_at_once(const std::vector<cli::Task>& tasks) const override {
+        const auto is_tile = [](const cli::Task& task) { return task.is_tile_of_mesh(); };
+        return std::any_of(tasks.begin(), tasks.end(), is_tile) ? 1 : cli::kMostFilesAtOnce;
+    }
     [[nodiscard]] Result<void> process(cli::Job& job) override;
-    [[nodiscard]] Result<TransferredMaps> cast(cli::Job& job, const cli::HighParts& high) const;
-    [[nodiscard]] Result<void> write(cli::Job& job, NormalMap map) const;
+    // The meshes of a job.
+    struct Meshes {
+        cli::MeshSpace low;
+        std::shared_ptr<const cli::HighParts> high;
+    };
+    [[nodiscard]] Result<Meshes> read(cli::Job& job) const;
+    [[nodiscard]] Result<TransferredMaps> cast(cli::Job& job, const Meshes& meshes) const;
+    [[nodiscard]] Result<void> make(cli::Job& job);
+    [[nodiscard]] Result<void> write(cli::Job& job, const Meshes& meshes, TransferredMaps& maps);
+    [[nodiscard]] cli::ExitCode finish(cli::Console& console) override { return report_.write(console); }
 
     cli::HighMeshes high_;
     cli::TangentSpaceOptions low_;
@@ -43,6 +60,7 @@ private:
     cli::PartIds ids_;
     cli::TransferMaps maps_;
     cli::MipChainOptions mips_;
+    cli::TransferReport report_;
 };
 
 TransferNormals::TransferNormals(const cli::ProgramRow& row) : Converter(row) {
@@ -51,6 +69,7 @@ TransferNormals::TransferNormals(const cli::ProgramRow& row) : Converter(row) {
     command.input("LOW HIGH...",
                   "meshes (glTF, GLB, OBJ, FBX, PLY ...): the one that gets the map, then those that rays hit");
     files.add(command, true);
+    report_.add(command);
     high_.add(command);
     low_.add_low(command);
     rays_.add(command);
@@ -78,6 +97,10 @@ TransferNormals::TransferNormals(const cli::ProgramRow& row) : Converter(row) {
         "transfer-normals scan_low.glb scan_high.glb -o scan_n.png --high-normals scan_fine.png "
         "--high-color scan_base.png --color-out scan_c.png",
         "A scan's base colour and its own fine normals beside its shape.");
+    command.example("transfer-normals set_low.glb set_high.glb -o 'set_n.<UDIM>.png' --height-out 'set_h.<UDIM>.exr'",
+                    "A map for each UDIM tile that the low mesh uses.");
+    command.example("transfer-normals rock_low.glb rock_high.glb -o rock_n.png --report rock.html",
+                    "A page with the result beside the high mesh, missed texels in red.");
     command.example(
         "transfer-normals meshes/*_low.glb --high '{dir}/{stem:-_low}_high.glb' --out-dir out "
         "--name '{stem:-_low}_n.png'",
@@ -89,6 +112,7 @@ cli::OutputRules TransferNormals::rules() const {
     rules.batch = Container::dds;
     rules.joins = !high_.is_given();
     if (rules.joins) rules.shared = high_.buffers_of(command.inputs());
+    rules.tiles = [this](const std::string& input) { return low_.tiles_of_low(input, running.read); };
     rules.amend = [this](cli::Task& task) {
         high_.amend(task);
         guides_.amend(task);
@@ -105,18 +129,33 @@ Result<void> TransferNormals::check(const std::vector<cli::Task>& tasks) {
         if (task.joined.empty() && !high_.is_given())
             throw cli::UsageError("no high mesh: give LOW HIGH... -o FILE, or --high PATTERN");
     }
+    report_.check(tasks, {{"--depfile", files.depfile}, {"--files-from", files.files_from}});
     return {};
 }
 
-Result<TransferredMaps> TransferNormals::cast(cli::Job& job, const cli::HighParts& high) const {
-    const auto low = low_.of_low(job.task.input, job.read_options, {job.threads(), {}});
+Result<TransferNormals::Meshes> TransferNormals::read(cli::Job& job) const {
+    auto high = high_.read(job, {pictures_.is_given(), maps_.wants_vertex_colors()});
+    if (!high) return high.error();
+    auto low = low_.of_low(job.task, job.read_options, {job.threads(), {}});
     if (!low) return high_.with_order(low.error());
+    if (cli::has_tile(job.task.output))
+        return Error{ErrorCode::bad_option, job.task.input,
+                     "has no triangle in a UDIM tile, for which the output would be: u or v is negative, or u is 10 or "
+                     "more"};
+    if (job.task.is_tile_of_mesh()) job.report["tile"] = job.task.tile;
     low_.note(job, *low);
-    cli::HighMeshes::compare(job, low->selected().part, high.parts);
-    job.report["tangents"] = name_of(kTangentSourceNames, low->source());
+    return Meshes{std::move(*low), std::move(*high)};
+}
+
+Result<TransferredMaps> TransferNormals::cast(cli::Job& job, const Meshes& meshes) const {
+    const cli::MeshSpace& low = meshes.low;
+    const cli::HighParts& high = *meshes.high;
+    cli::HighMeshes::compare(job, low.selected().part, high.parts);
+    job.report["tangents"] = name_of(kTangentSourceNames, low.source());
     TransferInputs inputs;
-    if (auto matched = high_.match(job, low->selected(), high, inputs); !matched) return matched.error();
-    const auto guides = guides_.read(job, low_, *low);
+    if (const MeshPart& rest = low.selected().rest; !rest.indices.empty()) inputs.around = &rest;
+    if (auto matched = high_.match(job, low.selected(), high, inputs); !matched) return matched.error();
+    const auto guides = guides_.read(job, low_, low);
     if (!guides) return guides.error();
     guides->fill(inputs);
     const auto pictures = pictures_.read(job, high);
@@ -130,15 +169,16 @@ Result<TransferredMaps> TransferNormals::cast(cli::Job& job, const cli::HighPart
     cli::RaySpeed speed;
     inputs.rays = &speed.rays();
     job.show([&speed] { return speed.short_words(); });
-    auto maps = transfer(rays_.extent(), low->space(), high.parts, inputs, with, job.until(0.8));
+    auto maps = transfer(rays_.extent(), low.space(), high.parts, inputs, with, job.until(0.8));
     job.show({});
     if (maps && with.has_second_rays() && job.task.output != "-")
         job.say(fmt::format("{}: {}\n", cli::printable(job.task.output), speed.words()));
     return maps;
 }
 
-Result<void> TransferNormals::write(cli::Job& job, NormalMap map) const {
-    const auto chain = build_mip_chain(std::move(map), mips_.options(mips_.levels_for(job.task), {}), job.until(0.85));
+Result<void> TransferNormals::write(cli::Job& job, const Meshes& meshes, TransferredMaps& maps) {
+    const auto chain =
+        build_mip_chain(std::move(maps.map), mips_.options(mips_.levels_for(job.task), {}), job.until(0.85));
     if (!chain) return chain.error();
     const cli::OutputOptions own = output.of(job.task.engine);
     constexpr bool kKnown = true;
@@ -148,23 +188,35 @@ Result<void> TransferNormals::write(cli::Job& job, NormalMap map) const {
     if (with.rdo.mean > 0.0f) rdo.emplace();
     auto texture = pack(*chain, with, job.until(0.95), rdo ? &*rdo : nullptr);
     if (!texture) return texture.error();
+    if (report_.is_given()) {
+        const std::string arguments = low_.low_arguments(meshes.low);
+        const cli::TransferReport::Entry entry{meshes.low, arguments, *meshes.high, maps, *texture};
+        if (auto added = report_.add(job, entry); !added) return added;
+    }
     const auto written = cli::write_levels(job, std::move(*texture), own.write_options(job));
     if (!written) return written.error();
     cli::report_texture(job, rays_.extent(), written->levels, with, written->bytes, rdo);
     return {};
 }
 
-Result<void> TransferNormals::process(cli::Job& job) {
-    const auto high = high_.read(job, pictures_.is_given());
-    if (!high) return high.error();
-    auto maps = cast(job, *high);
+Result<void> TransferNormals::make(cli::Job& job) {
+    const auto meshes = read(job);
+    if (!meshes) return meshes.error();
+    auto maps = cast(job, *meshes);
     if (!maps) return maps.error();
     if (auto judged = rays_.judge(job, *maps); !judged) return judged;
-    if (auto written = ids_.write(job, *high, *maps); !written) return written;
+    if (auto written = write(job, *meshes, *maps); !written) return written;
+    if (auto written = ids_.write(job, *meshes->high, *maps); !written) return written;
     const YAxis y = output.of(job.task.engine).y.value_or(YAxis::up);
     if (auto written = maps_.write(job, *maps, y); !written) return written;
     if (job.task.output != "-") job.say(fmt::format("{}: {}\n", cli::printable(job.task.output), cli::reach_of(*maps)));
-    return write(job, std::move(maps->map));
+    return {};
+}
+
+Result<void> TransferNormals::process(cli::Job& job) {
+    auto made = make(job);
+    if (!made && report_.is_given()) report_.add_failure(job, made.error());
+    return made;
 }
 
 const cli::Registered<TransferNormals> kRegistered(

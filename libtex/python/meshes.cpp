@@ -93,6 +93,7 @@ MeshPart make_part(Call& call) {
     if (call.has("normals")) part.normals = rows_from<Float3>(call["normals"], "normals");
     if (call.has("tangents")) part.tangents = rows_from<Float4>(call["tangents"], "tangents");
     if (call.has("uvs")) part.uvs = uv_sets_from(call["uvs"]);
+    if (call.has("colors")) part.colors = rows_from<Float3>(call["colors"], "colors");
     value_of(check_part(part));
     return part;
 }
@@ -126,7 +127,8 @@ void add_part(Module& module) {
                       {"uvs", "ArrayLike | Sequence[ArrayLike] | None", "None"},
                       {"tangents", "ArrayLike | None", "None"},
                       {"v_axis", "str", "'up'"},
-                      {"name", "str", "''"}},
+                      {"name", "str", "''"},
+                      {"colors", "ArrayLike | None", "None"}},
                      2, make_part)
         .property("name", "str", "Of the mesh or object; may be empty.",
                   [](const MeshPart& p) { return str_of(p.name); })
@@ -146,6 +148,8 @@ void add_part(Module& module) {
                   [](const py::object& self) { return some_rows_of(self.cast<const MeshPart&>().tangents, self); })
         .property("uvs", "list[NDArray[np.float32]]", "The sets of UVs, (vertices, 2) each.", uvs_of)
         .property("indices", "NDArray[np.uint32]", "(triangles, 3): the vertices of each triangle.", indices_of)
+        .property("colors", "NDArray[np.float32] | None", "(vertices, 3): red, green and blue, as stored.",
+                  [](const py::object& self) { return some_rows_of(self.cast<const MeshPart&>().colors, self); })
         .property("quads", "list[int]", "Triangles that, each with the next one, were a quad in the file.",
                   [](const MeshPart& p) { return p.quads; })
         .method("__repr__", "(self) -> str",
@@ -262,6 +266,12 @@ void add_mesh(Module& module) {
                   })
         .property("has_tangents", "bool", "Every part has stored tangents.",
                   [](const SelectedPart& s) { return s.has_tangents; })
+        .property("rest", "MeshPart | None", "What in_tile() left out, for transfer(around=...).",
+                  [](const py::object& self) -> py::object {
+                      const MeshPart& rest = self.cast<const SelectedPart&>().rest;
+                      if (rest.indices.empty()) return py::none();
+                      return py::cast(rest, py::return_value_policy::reference_internal, self);
+                  })
         .property("has_transform", "bool", "UVs were moved: they are not those of the file.",
                   [](const SelectedPart& s) { return s.has_transform; })
         .property("remarks", "list[str]", "Those of the mesh, and what the choice left out.",

@@ -206,6 +206,7 @@ void each_part(MeshPart& o, F& f) {
     f(o.uvs);
     f(o.indices);
     f(o.quads);
+    f(o.colors);
 }
 
 template <class F>
@@ -241,6 +242,7 @@ void each_part(SelectedPart& o, F& f) {
     f(o.has_normal_map);
     f(o.has_tangents);
     f(o.has_transform);
+    f(o.rest);
     f(o.remarks);
 }
 

@@ -19,6 +19,7 @@ template <class F>
 void each_field(MeshReadOptions& o, F& f) {
     f("reader", o.reader);
     f("max_bytes", o.max_bytes);
+    f("colors", o.colors);
 }
 
 template <class F>
@@ -175,6 +176,16 @@ void add_parts(Module& module) {
             return py::cast(
                 std::make_shared<SelectedPart>(value_of(without_gil([&] { return in_tile(selected, tile); }))));
         });
+    module.verb<>("tiles_of", {{"selected", "SelectedPart"}}, "dict[str, Any]", "A dict of the fields of UvTiles.",
+                  [](Call& call) -> py::object {
+                      const SelectedPart& selected = selected_from(call["selected"], "selected");
+                      const UvTiles found = value_of(without_gil([&] { return tiles_of(selected); }));
+                      py::dict result;
+                      result["tiles"] = found.tiles;
+                      result["outside"] = found.outside;
+                      result["crossing"] = found.crossing;
+                      return result;
+                  });
     module.verb<>("decoder_kind", {{"decoder", "str"}}, "str", "'per-vertex', 'per-fragment' or 'normalized'.",
                   [](Call& call) -> py::object {
                       return word_of(decoder_kind(Convert<Decoder>::from(call["decoder"], "decoder")));

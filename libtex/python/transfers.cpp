@@ -66,6 +66,7 @@ void each_field(TransferOptions& o, F& f) {
     f("occlusion", o.occlusion);
     f("bent", o.bent);
     f("thickness", o.thickness);
+    f("vertex_colors", o.vertex_colors);
     f("rays_per_hit", o.rays_per_hit);
     f("occlusion_distance", o.occlusion_distance);
 }
@@ -83,12 +84,14 @@ void each_field(LowDecoder& o, F& f) {
 
 // TransferInputs, as Python gives them.
 struct GivenInputs {
+    py::object around = py::none();
     py::object cage = py::none(), skew = py::none(), offset = py::none();
     py::object low_groups = py::none(), high_groups = py::none(), high_ids = py::none(), high_details = py::none();
 };
 
 template <class F>
 void each_field(GivenInputs& o, F& f) {
+    f("around", o.around, "MeshPart | None");
     f("cage", o.cage, "MeshPart | None");
     f("skew", o.skew, "ArrayLike | None");
     f("offset", o.offset, "ArrayLike | None");
@@ -124,6 +127,7 @@ struct OwnInputs {
     std::list<Picture> pictures;
 
     explicit OwnInputs(const GivenInputs& given) {
+        if (!given.around.is_none()) inputs.around = &part_from(given.around, "around");
         if (!given.cage.is_none()) inputs.cage = &part_from(given.cage, "cage");
         if (!given.skew.is_none()) inputs.skew = &(skew = plane_from(given.skew, "skew"));
         if (!given.offset.is_none()) inputs.offset = &(offset = plane_from(given.offset, "offset"));
@@ -204,7 +208,8 @@ void add_maps(py::dict& result, TransferredMaps& maps) {
     position.y = std::move(maps.position[1]);
     position.z = std::move(maps.position[2]);
     vectors("position", position);
-    result["color"] = maps.color.planes.empty() ? py::object(py::none()) : object_of(std::move(maps.color));
+    for (const auto& [name, image] : {std::pair{"color", &maps.color}, std::pair{"vertex_color", &maps.vertex_color}})
+        result[name] = image->planes.empty() ? py::object(py::none()) : object_of(std::move(*image));
 }
 
 py::dict dict_of(TransferredMaps maps) {

@@ -102,6 +102,7 @@ Result<void> check_part(const MeshPart& part) {
         if (auto checked = check_attribute(part.positions, vertices, "position"); !checked) return checked;
         if (auto checked = check_attribute(part.normals, vertices, "normal"); !checked) return checked;
         if (auto checked = check_attribute(part.tangents, vertices, "tangent"); !checked) return checked;
+        if (auto checked = check_attribute(part.colors, vertices, "color"); !checked) return checked;
         for (const std::vector<Float2>& set : part.uvs) {
             if (set.empty()) return bad("a set of UVs is empty");
             if (auto checked = check_attribute(set, vertices, "UV"); !checked) return checked;

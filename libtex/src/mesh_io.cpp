@@ -18,13 +18,13 @@
 namespace tex {
 namespace {
 
-Result<Mesh> parse_other(const std::string& path, const std::vector<std::byte>& bytes, const ReadOptions& options) {
-    const auto glb = read_with_mesh_reader(path, bytes, options);
+Result<Mesh> parse_other(const std::string& path, const std::vector<std::byte>& bytes, const MeshReadOptions& options) {
+    const auto glb = read_with_mesh_reader(path, bytes, options.reader);
     if (!glb) return glb.error();
     const LoadBeside nothing = [](const std::string&) -> Result<std::vector<std::byte>> {
         return Error{ErrorCode::bad_data, {}, "the mesh reader handed over nonsense"};
     };
-    auto mesh = parse_gltf(*glb, nothing);
+    auto mesh = parse_gltf(*glb, nothing, {}, options.colors);
     if (!mesh) return mesh;
     for (MeshPart& part : mesh->parts) part.v_axis = YAxis::up;
     return mesh;
@@ -36,9 +36,9 @@ Result<Mesh> parse(const std::string& path, const std::vector<std::byte>& bytes,
     const DecodeDraco draco = [&](std::span<const std::byte> request) {
         return decode_draco_with_reader(path, request, options.reader);
     };
-    if (is_gltf(bytes)) return parse_gltf(bytes, load, draco);
-    if (!is_obj(text)) return parse_other(path, bytes, options.reader);
-    auto mesh = parse_obj(text);
+    if (is_gltf(bytes)) return parse_gltf(bytes, load, draco, options.colors);
+    if (!is_obj(text)) return parse_other(path, bytes, options);
+    auto mesh = parse_obj(text, options.colors);
     if (!mesh) return mesh;
     for (const MeshPart& part : mesh->parts) {
         if (const auto checked = check_part(part); !checked) return checked.error();

@@ -7,11 +7,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <utility>
 
 #include <tex/tangents.h>
 
 #include "mesh/part_names.h"
+#include "mesh/uv_tiles.h"
 #include "mesh/uv_transform.h"
 #include "rows/usable.h"
 #include "threads/guard.h"
@@ -274,34 +276,12 @@ Result<SelectedPart> joined_parts(const Mesh& mesh, const Choice& choice, const 
     return joined;
 }
 
-// The UDIM tile of the centre of a triangle's UVs, or 0.
-int tile_of(const MeshPart& part, std::size_t triangle) {
-    double u = 0.0, v = 0.0;
-    for (std::size_t c = 3 * triangle; c < 3 * triangle + 3; ++c) {
-        const Float2& uv = part.uvs.front()[part.indices[c]];
-        u += static_cast<double>(uv.x) / 3.0;
-        v += (part.v_axis == YAxis::up ? static_cast<double>(uv.y) : 1.0 - static_cast<double>(uv.y)) / 3.0;
-    }
-    if (!(u >= 0.0 && u < 10.0 && v >= 0.0 && v < 900.0)) return 0;
-    return 1001 + static_cast<int>(u) + 10 * static_cast<int>(v);
-}
-
 // The numbers of the names, which their stems have or get.
 std::vector<int> numbered(const std::vector<std::string>& names, PartSide side, std::map<std::string, int>& numbers) {
     std::vector<int> found;
     for (const std::string& name : names)
         found.push_back(numbers.try_emplace(stem_of_part(name, side), static_cast<int>(numbers.size())).first->second);
     return found;
-}
-
-std::vector<std::string> lone(const std::vector<std::string>& names, const std::vector<int>& own,
-                              const std::vector<int>& others) {
-    std::vector<std::string> left;
-    for (std::size_t k = 0; k < names.size(); ++k) {
-        const bool has_partner = std::find(others.begin(), others.end(), own[k]) != others.end();
-        if (!has_partner && std::find(left.begin(), left.end(), names[k]) == left.end()) left.push_back(names[k]);
-    }
-    return left;
 }
 
 // Drops those without triangles.
@@ -351,13 +331,19 @@ Result<SelectedPart> in_tile(const SelectedPart& selected, int tile) {
         SelectedPart cut = selected;
         MeshPart& part = cut.part;
         std::vector<std::uint32_t> kept;  // triangles
+        std::vector<std::uint32_t>& rest = cut.rest.indices;
         for (std::size_t t = 0; t < selected.part.triangles(); ++t) {
-            if (tile_of(selected.part, t) != tile) continue;
+            if (tile_of(selected.part, t) != tile) {
+                rest.insert(rest.end(), &selected.part.indices[3 * t], &selected.part.indices[3 * t] + 3);
+                continue;
+            }
             std::copy_n(&selected.part.indices[3 * t], 3, &part.indices[3 * kept.size()]);
             std::copy_n(&selected.tangents[3 * t], 3, &cut.tangents[3 * kept.size()]);
             kept.push_back(static_cast<std::uint32_t>(t));
         }
         if (kept.empty()) return unfit("has no triangle in UDIM tile " + std::to_string(tile));
+        if (!rest.empty()) cut.rest.positions = part.positions;
+        if (!rest.empty()) cut.rest.normals = part.normals;
         part.indices.resize(3 * kept.size());
         cut.tangents.resize(3 * kept.size());
         for (SelectedPiece& piece : cut.pieces) {
@@ -375,13 +361,32 @@ Result<SelectedPart> in_tile(const SelectedPart& selected, int tile) {
     });
 }
 
+Result<UvTiles> tiles_of(const SelectedPart& selected) {
+    return guarded([&]() -> Result<UvTiles> {
+        if (auto sound = check_part(selected.part); !sound) return sound.error();
+        UvTiles found;
+        std::set<int> tiles;
+        for (std::size_t t = 0; t < selected.part.triangles(); ++t) {
+            const int tile = tile_of(selected.part, t);
+            if (tile == 0) {
+                ++found.outside;
+                continue;
+            }
+            tiles.insert(tile);
+            if (leaves_tile(selected.part, t, tile)) ++found.crossing;
+        }
+        found.tiles.assign(tiles.begin(), tiles.end());
+        return found;
+    });
+}
+
 MatchedNames match_names(const std::vector<std::string>& low, const std::vector<std::string>& high) {
     std::map<std::string, int> numbers;
     MatchedNames matched;
     matched.low = numbered(low, PartSide::low, numbers);
     matched.high = numbered(high, PartSide::high, numbers);
-    matched.lone_low = lone(low, matched.low, matched.high);
-    matched.lone_high = lone(high, matched.high, matched.low);
+    matched.lone_low = lone_names(low, matched.low, matched.high);
+    matched.lone_high = lone_names(high, matched.high, matched.low);
     return matched;
 }
 

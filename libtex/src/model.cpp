@@ -41,7 +41,7 @@ Result<Model> parse_model(const std::string& path, std::span<const std::byte> by
     Model model;
     model.file = path;
     if (geometry == Geometry::read) {
-        auto mesh = parse_gltf(root, buffers, draco);
+        auto mesh = parse_gltf(root, buffers, draco, options.colors);
         if (!mesh) return mesh.error();
         model.mesh = std::move(*mesh);
     } else {

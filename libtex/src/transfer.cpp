@@ -41,6 +41,20 @@ double length_of(const Reach& reach, double diagonal, double automatic) {
     return automatic;
 }
 
+// The whole low mesh, with the triangles that get texels first.
+MeshPart with_rest(const MeshPart& part, const MeshPart& rest) {
+    MeshPart whole;
+    whole.positions = part.positions;
+    whole.normals = part.normals;
+    whole.indices = part.indices;
+    const auto first = static_cast<std::uint32_t>(part.positions.size());
+    whole.positions.insert(whole.positions.end(), rest.positions.begin(), rest.positions.end());
+    whole.normals.insert(whole.normals.end(), rest.normals.begin(), rest.normals.end());
+    whole.normals.resize(whole.positions.size(), Float3{0.0f, 0.0f, 1.0f});
+    for (const std::uint32_t v : rest.indices) whole.indices.push_back(first + v);
+    return whole;
+}
+
 // Fills missed texels and the padding from the nearest texel with a hit. The others become background.
 Result<void> fill_rest(TransferredMaps& result, std::int64_t width, const Execution& execution, ProgressSpan span) {
     struct Filled {
@@ -60,7 +74,9 @@ Result<void> fill_rest(TransferredMaps& result, std::int64_t width, const Execut
         add(*plane, 0.0f);
     add(result.occlusion, 1.0f);
     add(result.thickness, 0.0f);
-    for (Plane<float>& plane : result.color.planes) add(plane, 0.0f);
+    for (Image* colors : {&result.color, &result.vertex_color}) {
+        for (Plane<float>& plane : colors->planes) add(plane, 0.0f);
+    }
     const auto fill = [&](const NearestTexel& hole) {
         TexelOrigin& origin = result.origin.at(hole.i, hole.j);
         const bool is_background = origin == TexelOrigin::none && hole.squared > width * width;
@@ -92,17 +108,26 @@ Error no_hit(const TangentSpace& low, const RayGroups& groups, const Transferred
 }
 
 // Sets result.front and result.back.
-Result<void> set_reach(const TangentSpace& low, const RayDirections& directions, const RayGroups& groups,
+Result<void> set_reach(const MeshPart& low, const RayDirections& directions, const RayGroups& groups,
                        const TransferOptions& options, const Execution& execution, TransferredMaps& result) {
     FoundReach found;
     if (options.front.unit == Reach::Unit::automatic || options.back.unit == Reach::Unit::automatic) {
-        const auto reach = found_reach(low.part, directions, groups, result.diagonal, execution);
+        const auto reach = found_reach(low, directions, groups, result.diagonal, execution);
         if (!reach) return reach.error();
         found = *reach;
     }
     result.front = length_of(options.front, result.diagonal, found.front);
     result.back = length_of(options.back, result.diagonal, found.back);
     return {};
+}
+
+Image colors_of(Extent extent) {
+    Image colors;
+    for (const char* const name : {"R", "G", "B"}) {
+        colors.planes.emplace_back(extent);
+        colors.names.emplace_back(name);
+    }
+    return colors;
 }
 
 void make_room(Extent extent, const TransferOptions& options, TransferredMaps& result) {
@@ -124,11 +149,15 @@ Result<TransferredMaps> cast_all(Extent extent, const TangentSpace& low, const s
     const auto groups = RayGroups::make(low.part, high, inputs, options.has_second_rays(), execution, {0.0, 0.1});
     if (!groups) return groups.error();
     TransferredMaps result;
-    result.diagonal = diagonal_of(low.part);
+    std::optional<MeshPart> joined;
+    if (inputs.around != nullptr) joined = with_rest(low.part, *inputs.around);
+    const MeshPart& whole = joined ? *joined : low.part;
+    result.diagonal = diagonal_of(whole);
     const double width = length_of(options.straight_width, result.diagonal, 0.05 * result.diagonal);
-    const auto directions = RayDirections::make(low.part, options.rays, width, options.straight_angle, execution);
+    const auto directions = RayDirections::make(whole, options.rays, width, options.straight_angle, execution);
     if (!directions) return directions.error();
-    if (auto set = set_reach(low, *directions, *groups, options, execution, result); !set) return set.error();
+    const MeshPart& reaching = groups->has_all() ? whole : low.part;
+    if (auto set = set_reach(reaching, *directions, *groups, options, execution, result); !set) return set.error();
     const RayStarts starts(*directions, inputs, result.front, result.diagonal);
     const HighSurface surface(high, inputs);
     result.front = starts.farthest(low.part);
@@ -138,10 +167,8 @@ Result<TransferredMaps> cast_all(Extent extent, const TangentSpace& low, const s
     if (!coverage) return coverage.error().of(low.file);
     make_room(extent, options, result);
     if (surface.has_ids()) result.ids = Plane<std::int32_t>(extent);
-    for (std::size_t k = 0; k < 3 && surface.has_colors(); ++k) {
-        result.color.planes.emplace_back(extent);
-        result.color.names.emplace_back(1, "RGB"[k]);
-    }
+    if (surface.has_colors()) result.color = colors_of(extent);
+    if (options.vertex_colors) result.vertex_color = colors_of(extent);
     std::vector<RayCaster> casters;
     for (const RayGroup& group : groups->all())
         casters.emplace_back(group.triangles, group.tree, options.hit, options.backfaces, result.back);

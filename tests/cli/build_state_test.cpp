@@ -15,6 +15,8 @@
 namespace tex::cli {
 namespace {
 
+OutputFiles one_file(const std::string& path) { return {{}, {path}}; }
+
 BuildState some_state() {
     BuildState state;
     Memo memo{{1, 2, 3, 4, -5}, digest_of("a"), true};
@@ -108,9 +110,9 @@ TEST(Cache, FindsDamagedEntries) {
     ASSERT_TRUE(cache.open(false));
     const Digest key = digest_of("key");
     const WriteOptions write;
-    EXPECT_TRUE(cache.fetch(key, scratch.path("b"), write)->empty());
-    ASSERT_TRUE(cache.store(key, scratch.path("a"), {"contents"}));
-    EXPECT_FALSE(cache.fetch(key, scratch.path("b"), write)->empty());
+    EXPECT_TRUE(cache.fetch(key, one_file(scratch.path("b")), write)->empty());
+    ASSERT_TRUE(cache.store(key, one_file(scratch.path("a")), {"contents"}));
+    EXPECT_FALSE(cache.fetch(key, one_file(scratch.path("b")), write)->empty());
     EXPECT_EQ(scratch.read("b"), "contents");
     const std::string entry = "cache/" + key.hex().substr(0, 2) + "/" + key.hex();
     const std::string whole = scratch.read(entry);
@@ -118,9 +120,9 @@ TEST(Cache, FindsDamagedEntries) {
         std::string damaged = whole;
         damaged[k] = static_cast<char>(damaged[k] ^ 4);
         scratch.write(entry, damaged);
-        ASSERT_TRUE(cache.fetch(key, scratch.path("c"), write)->empty()) << k;
+        ASSERT_TRUE(cache.fetch(key, one_file(scratch.path("c")), write)->empty()) << k;
         scratch.write(entry, whole.substr(0, k));
-        ASSERT_TRUE(cache.fetch(key, scratch.path("c"), write)->empty()) << k;
+        ASSERT_TRUE(cache.fetch(key, one_file(scratch.path("c")), write)->empty()) << k;
     }
     EXPECT_FALSE(scratch.has("c"));
     EXPECT_EQ(cache.damaged(), 2 * whole.size());
@@ -131,16 +133,16 @@ TEST(Cache, RemovesWhatWasUsedLongestAgo) {
     Cache cache(scratch.path("cache"));
     ASSERT_TRUE(cache.open(false));
     for (const char* name : {"1", "2", "3"}) {
-        ASSERT_TRUE(cache.store(digest_of(name), scratch.path("a"), {std::string(1000, 'a')}));
+        ASSERT_TRUE(cache.store(digest_of(name), one_file(scratch.path("a")), {std::string(1000, 'a')}));
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
-    EXPECT_FALSE(cache.fetch(digest_of("1"), scratch.path("b"), {})->empty());
+    EXPECT_FALSE(cache.fetch(digest_of("1"), one_file(scratch.path("b")), {})->empty());
     MemoryHost host;
     Console console("test", host);
     cache.shrink(2500, console);
-    EXPECT_FALSE(cache.fetch(digest_of("1"), scratch.path("b"), {})->empty());
-    EXPECT_TRUE(cache.fetch(digest_of("2"), scratch.path("b"), {})->empty());
-    EXPECT_FALSE(cache.fetch(digest_of("3"), scratch.path("b"), {})->empty());
+    EXPECT_FALSE(cache.fetch(digest_of("1"), one_file(scratch.path("b")), {})->empty());
+    EXPECT_TRUE(cache.fetch(digest_of("2"), one_file(scratch.path("b")), {})->empty());
+    EXPECT_FALSE(cache.fetch(digest_of("3"), one_file(scratch.path("b")), {})->empty());
 }
 
 }  // namespace tex::cli

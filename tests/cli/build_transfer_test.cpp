@@ -80,8 +80,6 @@ TEST_F(BuildTransfer, IsOutOfDateIfEitherMeshChanges) {
 TEST_F(BuildTransfer, RefusesWhatCannotBe) {
     write_manifest("meshes/*_low.glb", "subsamples = 1");
     fails(2, "transfer: no high mesh: give LOW HIGH... -o FILE, or --high PATTERN");
-    write_manifest("meshes/*_low.glb", "high = \"{dir}/{stem:-_low}_high.glb\", height-out = \"h.png\"");
-    fails(2, "a manifest cannot name a second file to write yet");
     write_manifest("meshes/*_low.glb", "high = \"{dir}/{stem:-_low}_high.glb\", rays = \"straigt\"");
     fails(2, "did you mean straight?");
     scratch_.write("normals.toml",
@@ -100,6 +98,156 @@ TEST_F(BuildTransfer, FailsIfMoreIsMissedThanTheLimit) {
     write_manifest("meshes/crate_low.glb",
                    "high = \"{dir}/{stem:-_low}_high.glb\", front = \"1%\", back = 0.02, max-missed = 0.5");
     fails(4, "more texels are missed than --max-missed 0.5 allows");
+}
+
+class BuildTransferMaps : public BuildTransfer {
+protected:
+    // A rule for both crates and sheets, with maps beside the output.
+    void write_rule(const std::string& more, const std::string& name = "{stem:-_low}_n.png",
+                    const std::string& high = "{dir}/{stem:-_low}_high.glb",
+                    const std::string& match = "meshes/crate_low.glb") const {
+        scratch_.write("normals.toml", "version = 1\n[defaults]\nout-dir = \"out\"\n[[rule]]\nmatch = \"" + match +
+                                           "\"\nname = \"" + name +
+                                           "\"\nsteps = [ { transfer = { size = \"64\", high = \"" + high + "\", " +
+                                           more + " } } ]\n");
+    }
+    void write_sheets() const {
+        scratch_.write("meshes/set_low.obj", std::string(kSheetObj) + kSecondTile);
+        scratch_.write("meshes/set_high.obj", kSheetObj);
+        write_rule("height-out = \"h/{stem:-_low}.<UDIM>.exr\", front = 3, back = 3", "{stem:-_low}_n.<UDIM>.png",
+                   "meshes/set_high.obj", "meshes/set_low.obj");
+    }
+    // A triangle of the sheet in tile 1012.
+    static constexpr const char* kSecondTile = "vt 1.1 1.1\nvt 1.9 1.1\nvt 1.1 1.9\nf 1/10/1 2/11/2 5/12/5\n";
+};
+
+TEST_F(BuildTransferMaps, WritesThemAsTheCommandDoes) {
+    write_rule("height-out = \"h/{stem:-_low}.exr\", occlusion-out = \"{stem:-_low}_ao.png\", rays-per-hit = 4");
+    ASSERT_EQ(build({"--depfile", "d"}).code, 0);
+    ASSERT_EQ(run(scratch_, "transfer-normals",
+                  {"meshes/crate_low.glb", "meshes/crate_high.glb", "-o", "n.png", "--size", "64", "--no-sync",
+                   "--height-out", "h.exr", "--occlusion-out", "ao.png", "--rays-per-hit", "4"})
+                  .code,
+              0);
+    EXPECT_EQ(scratch_.read("out/crate_n.png"), scratch_.read("n.png"));
+    EXPECT_EQ(scratch_.read("out/h/crate.exr"), scratch_.read("h.exr"));
+    EXPECT_EQ(scratch_.read("out/crate_ao.png"), scratch_.read("ao.png"));
+    EXPECT_NE(scratch_.read("d").find("out/h/crate.exr"), std::string::npos) << scratch_.read("d");
+    ASSERT_EQ(build().code, 0);
+    EXPECT_EQ(done_.at("meshes/crate_low.glb"), "current");
+    // One that is lost or changed is made again.
+    fs::remove(scratch_.path("out/h/crate.exr"));
+    const Ran lost = build();
+    EXPECT_NE(lost.out.find("out/h/crate.exr is missing"), std::string::npos) << lost.out;
+    EXPECT_EQ(scratch_.read("out/h/crate.exr"), scratch_.read("h.exr"));
+    scratch_.write("out/crate_ao.png", "other");
+    ASSERT_EQ(build().code, 0);
+    EXPECT_EQ(scratch_.read("out/crate_ao.png"), scratch_.read("ao.png"));
+    const Ran explained = run(scratch_, "build-normals", {"--explain", "out/h/crate.exr"});
+    EXPECT_NE(explained.out.find("--height-out out/h/crate.exr"), std::string::npos) << explained.out;
+}
+
+TEST_F(BuildTransferMaps, ComeFromTheCacheAndAreCleaned) {
+    write_rule("height-out = \"h/{stem:-_low}.exr\"");
+    ASSERT_EQ(build({"--cache", "cache"}).code, 0);
+    const std::string height = scratch_.read("out/h/crate.exr"), normals = scratch_.read("out/crate_n.png");
+    fs::remove_all(scratch_.path("out"));
+    ASSERT_EQ(build({"--cache", "cache"}).code, 0);
+    EXPECT_EQ(done_.at("meshes/crate_low.glb"), "cached");
+    EXPECT_EQ(scratch_.read("out/h/crate.exr"), height);
+    EXPECT_EQ(scratch_.read("out/crate_n.png"), normals);
+    // Another name: the old file is an output that no rule makes.
+    write_rule("height-out = \"{stem:-_low}_h.exr\"");
+    ASSERT_EQ(build({"--prune"}).code, 0);
+    EXPECT_EQ(scratch_.read("out/crate_h.exr"), height);
+    EXPECT_FALSE(scratch_.has("out/h/crate.exr"));
+    write_rule("subsamples = 1");
+    ASSERT_EQ(build({"--prune"}).code, 0);
+    EXPECT_FALSE(scratch_.has("out/crate_h.exr"));
+    EXPECT_TRUE(scratch_.has("out/crate_n.png"));
+}
+
+TEST_F(BuildTransferMaps, AreOfTheFirstOfSeveralOutputs) {
+    scratch_.write(
+        "normals.toml",
+        "version = 1\n[[rule]]\nmatch = \"meshes/crate_low.glb\"\nout-dir = \"out\"\nsteps = [ { transfer = { "
+        "size = \"64\", high = \"{dir}/{stem:-_low}_high.glb\", height-out = \"h.exr\" } } ]\n"
+        "outputs = [ { name = \"a.png\" }, { name = \"b.dds\", y = \"down\" } ]\n");
+    const Ran ran = build();
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(outputs().size(), 3u);
+}
+
+TEST_F(BuildTransferMaps, OtherRulesMayReadThem) {
+    scratch_.write("normals.toml",
+                   "version = 1\n[defaults]\nout-dir = \"out\"\n"
+                   "[[rule]]\nmatch = \"meshes/wall.png\"\nname = \"wall_n.png\"\nsteps = [ { bake = {} }, { blend = { "
+                   "detail = \"out/obj.png\" } } ]\n"
+                   "[[rule]]\nmatch = \"meshes/crate_low.glb\"\nname = \"n.png\"\nsteps = [ { transfer = { size = "
+                   "\"64\", high = \"meshes/crate_high.glb\", bent-out = \"obj.png\", rays-per-hit = 1 } } ]\n");
+    scratch_.add_sample("ramp.png", "meshes/wall.png");
+    const Ran ran = build({"-j", "2"});
+    const Ran first = ran.code == 0 ? ran : build();
+    EXPECT_EQ(first.code, 0) << first.err;
+    EXPECT_TRUE(scratch_.has("out/wall_n.png"));
+    fs::remove(scratch_.path("out/obj.png"));
+    ASSERT_EQ(build().code, 0);
+    EXPECT_EQ(done_.at("meshes/crate_low.glb"), "made");
+}
+
+TEST_F(BuildTransferMaps, RefuseNamesThatDestroy) {
+    write_rule("height-out = \"../../h.exr\"");
+    fails(2, "leads out of the folder of the manifest");
+    write_rule("height-out = \"{stem:-_low}_n.png\"");
+    fails(2, "crate_n.png");
+    write_rule("height-out = \"../meshes/crate_high.exr\"");
+    fs::copy(scratch_.path("meshes/crate_high.glb"), scratch_.path("meshes/crate_high.exr"));
+    write_rule("height-out = \"../meshes/crate_high.exr\"", "n.png", "meshes/crate_high.exr");
+    EXPECT_NE(build().code, 0);
+    EXPECT_TRUE(scratch_.read("meshes/crate_high.exr").starts_with("glTF"));
+    write_rule("height-out = \"h.txt\"");
+    fails(2, "height-out");
+    // Two inputs with one file.
+    scratch_.add_sample("crate_low.glb", "meshes/box_low.glb");
+    write_rule("height-out = \"h.exr\"", "{stem}_n.png", "meshes/crate_high.glb", "meshes/*_low.glb");
+    fails(4, "rename or exclude one");
+    write_rule("height-out = \"h.exr\"", "{stem}_n.<UDIM>.png");
+    fails(2, "--height-out: h.exr: needs <UDIM>, as the output has it");
+    write_rule("subsamples = 1", "{stem}_{level}.<UDIM>.png");
+    fails(2, "<UDIM> and {level} contradict each other");
+}
+
+TEST_F(BuildTransferMaps, FollowTheTilesOfTheMesh) {
+    write_sheets();
+    const Ran ran = build();
+    ASSERT_EQ(ran.code, 0) << ran.err << ran.out;
+    for (const char* name : {"out/set_n.1001.png", "out/set_n.1012.png", "out/h/set.1001.exr", "out/h/set.1012.exr"})
+        EXPECT_TRUE(scratch_.has(name)) << name;
+    EXPECT_EQ(outputs().size(), 4u);
+    ASSERT_EQ(run(scratch_, "transfer-normals",
+                  {"meshes/set_low.obj", "meshes/set_high.obj", "-o", "n.<UDIM>.png", "--size", "64", "--no-sync",
+                   "--front", "3", "--back", "3", "--quiet"})
+                  .code,
+              0);
+    EXPECT_EQ(scratch_.read("out/set_n.1012.png"), scratch_.read("n.1012.png"));
+    ASSERT_EQ(build().code, 0);
+    EXPECT_EQ(done_.at("meshes/set_low.obj"), "current");
+    fs::remove(scratch_.path("out/h/set.1012.exr"));
+    ASSERT_EQ(build({"--cache", "cache"}).code, 0);
+    EXPECT_EQ(done_.at("meshes/set_low.obj"), "made");
+    fs::remove_all(scratch_.path("out"));
+    ASSERT_EQ(build({"--cache", "cache"}).code, 0);
+    EXPECT_EQ(done_.at("meshes/set_low.obj"), "cached");
+    EXPECT_EQ(scratch_.read("out/set_n.1012.png"), scratch_.read("n.1012.png"));
+    // The mesh loses a tile.
+    scratch_.write("meshes/set_low.obj", kSheetObj);
+    ASSERT_EQ(build({"--prune"}).code, 0);
+    EXPECT_EQ(outputs().size(), 2u);
+    EXPECT_TRUE(scratch_.has("out/h/set.1001.exr"));
+    // A mesh that cannot be read fails alone, with the file's name.
+    scratch_.write("meshes/set_low.obj", "f 1 2\n");
+    fails(4, "meshes/set_low.obj");
+    EXPECT_EQ(outputs().size(), 2u);
 }
 
 }  // namespace

@@ -294,6 +294,37 @@ steps = [ { convert = { mesh = "sheet.obj", to = "object" } } ]
     EXPECT_TRUE(scratch_.read("out/n.exr") == watched);
 }
 
+TEST_F(BuildNormalsWatch, AHighMeshThatHasChangedIsTransferredAgain) {
+    scratch_.write("art/sheet_low.obj", kSheetObj);
+    fs::create_directories(scratch_.path("sculpts"));
+    scratch_.write("sculpts/sheet_high.obj", kSheetObj);
+    scratch_.write("normals.toml", R"(version = 1
+[[rule]]
+match = "art/*_low.obj"
+name = "out/{stem:-_low}_n.<UDIM>.png"
+steps = [ { transfer = { high = "sculpts/{stem:-_low}_high.obj", size = "32", height-out = "out/h.<UDIM>.exr" } } ]
+)");
+    Background builder(scratch_, "build-normals", {"--watch", "--no-sync"});
+    ASSERT_TRUE(prints(builder, "1 made, 0 up to date\n"));
+    const std::string before = scratch_.read("out/h.1001.exr");
+    std::string bent = kSheetObj;
+    bent.replace(bent.find("v 1 1 0.4"), 9, "v 1 1 0.5");
+    scratch_.write("sculpts/sheet_high.obj", bent);
+    EXPECT_TRUE(within_seconds([&] { return passes(builder) == 2; }));
+    EXPECT_FALSE(scratch_.read("out/h.1001.exr") == before);
+    // The low mesh gets another tile.
+    scratch_.write("art/sheet_low.obj",
+                   std::string(kSheetObj) + "vt 1.1 0.1\nvt 1.9 0.1\nvt 1.1 0.9\nf 1/10/1 2/11/2 5/12/5\n");
+    EXPECT_TRUE(within_seconds([&] { return passes(builder) == 3; }));
+    EXPECT_EQ(ended(builder, SIGINT), 128 + SIGINT);
+    ASSERT_TRUE(scratch_.has("out/h.1002.exr"));
+    const std::string watched = scratch_.read("out/h.1002.exr");
+    EXPECT_EQ(run(scratch_, "build-normals", {"--no-sync"}).out, "0 made, 1 up to date\n");
+    fs::remove_all(scratch_.path("out"));
+    ASSERT_EQ(run(scratch_, "build-normals", {"--no-sync"}).code, 0);
+    EXPECT_TRUE(scratch_.read("out/h.1002.exr") == watched);
+}
+
 TEST_F(BuildNormalsWatch, VanishedInputsArePruned) {
     Background builder(scratch_, "build-normals", {"--watch", "--no-sync", "--prune"});
     ASSERT_TRUE(prints(builder, "watching "));

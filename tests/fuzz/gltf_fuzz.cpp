@@ -62,7 +62,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const auto buffer = request.subspan(std::min<std::size_t>(4, request.size()));
         return std::vector<std::byte>(buffer.begin(), buffer.end());
     };
-    if (const auto mesh = tex::parse_gltf(bytes, load, draco)) {
+    if (const auto mesh = tex::parse_gltf(bytes, load, draco, true)) {
         expect_whole(*mesh);
         expect_selected(*mesh);
     }

@@ -10,7 +10,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view text(reinterpret_cast<const char*>(data), size);
-    const auto mesh = tex::parse_obj(text);
+    const auto mesh = tex::parse_obj(text, true);
     if (mesh && tex::is_obj(text)) expect_whole(*mesh);
     return 0;
 }

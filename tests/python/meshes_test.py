@@ -200,6 +200,8 @@ def test_check_finds_what_check_normals_finds(rule):
 def test_tiles():
     selected = tex.select_part(tex.Mesh([square(uvs=np.float32(UVS) + [1, 0])]))
     assert tex.in_tile(selected, 1002).part.indices.shape == (2, 3)
+    assert tex.in_tile(selected, 1002).rest is None
+    assert tex.tiles_of(selected) == {"tiles": [1002], "outside": 0, "crossing": 0}
     with pytest.raises(tex.BadOptionError):
         tex.in_tile(selected, 1001)
     with pytest.raises(ValueError, match="tile: must be 1001 or more"):

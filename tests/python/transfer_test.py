@@ -36,6 +36,19 @@ def test_heights_are_distances():
     assert maps["rays"] == 48 * 32
 
 
+def test_colors_of_vertices(tmp_path):
+    high = plane(0.25, colors=[[0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])
+    maps = tex.transfer(EXTENT, low(), high, front=1, back=1, vertex_colors=True)
+    across, down = np.meshgrid((np.arange(48) + 0.5) / 48, 1 - (np.arange(32) + 0.5) / 32)
+    colors = np.stack([np.asarray(maps["vertex_color"].planes[k]) for k in range(3)], axis=-1)
+    np.testing.assert_allclose(colors, np.stack([across, down, np.ones_like(down)], axis=-1), atol=1e-6)
+    assert plane().colors is None and high.colors.shape == (4, 3)
+    file = tmp_path / "c.obj"
+    file.write_text("v 0 0 0 1 0 0.5\nv 1 0 0 0 0 0\nv 0 1 0 0 0 0\nf 1 2 3\n")
+    assert tex.read_mesh(str(file)).parts[0].colors is None
+    np.testing.assert_array_equal(tex.read_mesh(str(file), colors=True).parts[0].colors[0], [1, 0, 0.5])
+
+
 def test_second_rays():
     wall = tex.MeshPart([[0, -4000, 0], [0, 4000, 0], [0, 4000, 4000], [0, -4000, 4000]], [[0, 1, 2], [0, 2, 3]])
     maps = tex.transfer(EXTENT, low(), [plane(), wall], front=0.01, back=0.01, occlusion=True, bent=True,
@@ -52,6 +65,9 @@ def test_inputs():
     maps = tex.transfer(EXTENT, low(), high, low_groups=[0, 1], high_groups=[1, 0], high_ids=[4, 7], **near)
     assert set(np.unique(maps["heights"])) == {np.float32(0.25), np.float32(0.5)}
     assert ((maps["ids"] == 7) == (maps["heights"] == 0.5)).all()
+    with pytest.raises(TypeError, match="around: expected tex.MeshPart"):
+        tex.transfer(EXTENT, low(), high, around=low())
+    assert tex.transfer(EXTENT, low(), high, around=plane(3.0))["diagonal"] == pytest.approx(np.sqrt(17))
     caged = tex.transfer(EXTENT, low(), high[:1], cage=plane(0.5), heights=True)
     assert caged["front"] == 0.5 and caged["missed"] == 0
     offset = tex.transfer(EXTENT, low(), high, offset=[[0.3]], **near)

@@ -2,6 +2,7 @@
 
 #include <tex/mesh_selection.h>
 
+#include <cmath>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -231,11 +232,29 @@ TEST(MeshSelection, CutsOutUdimTiles) {
         ASSERT_EQ(tile->part.triangles(), 4u);
         ASSERT_EQ(tile->tangents.size(), 12u);
         EXPECT_EQ(tile->part.quads, (std::vector<std::uint32_t>{0, 2}));
+        EXPECT_EQ(tile->rest.triangles(), selected.part.triangles() - 4);
+        EXPECT_TRUE(check_part(tile->rest));
+        EXPECT_EQ(tile->rest.normals.size(), selected.part.normals.size());
         ASSERT_EQ(tile->pieces.size(), selected.pieces.size());
         EXPECT_EQ(tile->pieces.front().triangle, 0u);
         EXPECT_LE(tile->pieces.back().triangle, 4u);
         for (std::size_t c = 0; c < 12; ++c) EXPECT_GE(tile->part.uvs[0][tile->part.indices[c]].x, 4.0f);
         EXPECT_TRUE(in_tile(selected, 1024));
+        auto tiles = tiles_of(selected);
+        ASSERT_TRUE(tiles);
+        EXPECT_EQ(tiles->tiles, (std::vector<int>{1024, 1025}));
+        EXPECT_EQ(tiles->outside, 0u);
+        SelectedPart moved = selected;  // to the borders of the tiles and their middles
+        for (Float2& uv : moved.part.uvs[0]) uv = {std::round(2.0f * uv.x) / 2.0f, std::round(2.0f * uv.y) / 2.0f};
+        tiles = tiles_of(moved);
+        EXPECT_EQ(tiles->outside + tiles->crossing, 0u);
+        for (Float2& uv : moved.part.uvs[0]) uv.x -= 0.3f;
+        tiles = tiles_of(moved);
+        EXPECT_GT(tiles->crossing, 0u);
+        for (Float2& uv : moved.part.uvs[0]) uv.x -= 10.0f;
+        tiles = tiles_of(moved);
+        EXPECT_TRUE(tiles->tiles.empty());
+        EXPECT_EQ(tiles->outside, moved.part.triangles());
         const auto empty = in_tile(selected, 1001);
         ASSERT_FALSE(empty);
         EXPECT_EQ(empty.error().code, ErrorCode::bad_option);

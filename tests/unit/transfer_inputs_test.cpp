@@ -53,6 +53,56 @@ TEST(TransferInputs, ACageAlongTheNormalsIsAConstantFront) {
     });
 }
 
+// A part of the low mesh gets what the whole gets there: its rays turn at its border as if the rest were there.
+TEST(TransferInputs, ThePartsOfAMeshMakeTheMapOfTheWhole) {
+    const Solid ball = sphere();
+    const auto high = only(grid_part(60, 30, ball.normal, ball.normal));
+    for (const RayMode rays : {RayMode::smooth, RayMode::straight}) {
+        TransferOptions options = all_maps();
+        options.rays = rays;
+        options.straight_angle = 5.0;  // most edges are hard
+        const auto whole = guided(ball.part, high, {96, 64}, {}, options);
+        ASSERT_TRUE(whole) << whole.error().message();
+        std::int64_t hits = 0;
+        const std::size_t half = ball.part.indices.size() / 6 * 3;
+        for (const bool is_first : {true, false}) {
+            MeshPart own = ball.part, rest = ball.part;
+            MeshPart &head = is_first ? own : rest, &tail = is_first ? rest : own;
+            own.quads.clear();
+            rest.quads.clear();
+            head.indices.resize(half);
+            tail.indices.erase(tail.indices.begin(), tail.indices.begin() + static_cast<std::ptrdiff_t>(half));
+            rest.uvs.clear();
+            TransferInputs inputs;
+            inputs.around = &rest;
+            const auto part = guided(own, high, {96, 64}, inputs, options);
+            ASSERT_TRUE(part) << part.error().message();
+            EXPECT_NEAR(part->front, whole->front, 1e-9);
+            EXPECT_NEAR(part->back, whole->back, 1e-9);
+            EXPECT_EQ(part->diagonal, whole->diagonal);
+            hits += for_hits(*part, [&](int i, int j) {
+                ASSERT_LT(degrees_between(vector_at(part->object, i, j), vector_at(whole->object, i, j)), 1e-4);
+                ASSERT_NEAR(part->heights.at(i, j), whole->heights.at(i, j), 1e-6f);
+            });
+            inputs.around = nullptr;
+            const auto alone = guided(own, high, {96, 64}, inputs, options);
+            ASSERT_TRUE(alone);
+            double most = 0.0;
+            for_hits(*alone, [&](int i, int j) {
+                const double height = static_cast<double>(alone->heights.at(i, j));
+                most = std::max(most, std::abs(height - static_cast<double>(whole->heights.at(i, j))));
+            });
+            EXPECT_GT(most, 1e-4) << "without the rest, rays lean at the border";
+        }
+        EXPECT_EQ(hits, whole->covered);
+    }
+    MeshPart broken = ball.part;
+    broken.indices[0] = 1u << 20;
+    TransferInputs inputs;
+    inputs.around = &broken;
+    EXPECT_EQ(guided(ball.part, high, {96, 64}, inputs).error().code, ErrorCode::bad_data);
+}
+
 TEST(TransferInputs, RaysRunFromTheCageToTheLowMesh) {
     const Extent extent{16, 16};
     const MeshPart low = flat_square(extent);

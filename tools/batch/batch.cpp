@@ -32,9 +32,9 @@ using Process = std::function<Result<void>(Job& job)>;
 class Runner {
 public:
     Runner(const std::vector<Task>& tasks, Console& console, const WriteOptions& write, const RunOptions& running,
-           bool update, Process process)
+           bool update, std::size_t most_at_once, Process process)
         : tasks_(tasks), console_(console), write_(write), running_(running), update_(update),
-          process_(std::move(process)), reporter_(console, tasks.size(), running.json),
+          most_at_once_(most_at_once), process_(std::move(process)), reporter_(console, tasks.size(), running.json),
           shows_progress_(running.shows_progress(console.host())) {}
 
     // Every worker takes the next file that no worker has taken yet, so files are started in the order of the inputs.
@@ -42,7 +42,7 @@ public:
         const int threads = running_.threads > 0 ? running_.threads : tbb::info::default_concurrency();
         // TBB allows fewer threads if another run in this process has a smaller --threads.
         const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-        const std::size_t most = std::min({tasks_.size(), kMostFilesAtOnce, allowed});
+        const std::size_t most = std::min({tasks_.size(), most_at_once_, allowed});
         const int workers = std::min(threads, static_cast<int>(most));
         const auto work = [this](int) {
             for (std::size_t k = next_++; k < tasks_.size() && !stopped() && !is_full_; k = next_++)
@@ -161,6 +161,7 @@ private:
     const WriteOptions& write_;
     const RunOptions& running_;
     const bool update_;
+    const std::size_t most_at_once_;
     Process process_;
     Reporter reporter_;
     bool shows_progress_;
@@ -211,7 +212,8 @@ ExitCode Batch::run_tasks(const std::vector<Task>& tasks, Console& console) {
     write.sync = !files.no_sync;
     write.no_clobber = files.no_clobber;
     write.reader = running.read;
-    Runner runner(tasks, console, write, running, files.update, [this](Job& job) { return process(job); });
+    Runner runner(tasks, console, write, running, files.update, most_at_once(tasks),
+                  [this](Job& job) { return process(job); });
     runner.run();
     const Reporter& reporter = runner.reporter();
     if (const std::string_view by = host.interruption(); !by.empty()) {
@@ -238,10 +240,16 @@ OutputOptions Converter::output_for_task() const {
     return output.of(output.engines_or_none().front());
 }
 
-Task Converter::task_for(const std::string& input, const std::string& output_name) const {
+const OutputRules& Converter::known_rules() const {
     std::call_once(rules_are_known_, [this] { known_rules_ = rules(); });
-    return task_of(input, output_name, output_for_task(), known_rules_);
+    return known_rules_;
 }
+
+Task Converter::task_for(Task task) const { return complete(std::move(task), output_for_task(), known_rules()); }
+
+bool Converter::makes_tiles() const { return static_cast<bool>(known_rules().tiles); }
+
+std::vector<int> Converter::tiles_of(const std::string& input) const { return known_rules().tiles(input); }
 
 Task Converter::task_for_tile(const std::string& input, const std::string& output_name,
                               const std::string& pattern) const {
@@ -254,7 +262,7 @@ Task Converter::task_for_tile(const std::string& input, const std::string& outpu
         all[k].pattern = pattern;
         all[k].place = (*tiles)[k].place;
     }
-    known_rules_.relate(all);
+    known_rules().relate(all);
     const auto place = place_in_grid(pattern, input);
     for (Task& other : all) {
         if (!place || other.place->x != place->x || other.place->y != place->y) continue;

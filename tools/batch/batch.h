@@ -48,6 +48,9 @@ protected:
     // Processes one task. Called from several threads at once.
     [[nodiscard]] virtual Result<void> process(Job& job) = 0;
 
+    // How many of them may be processed at once.
+    [[nodiscard]] virtual std::size_t most_at_once(const std::vector<Task>&) const { return kMostFilesAtOnce; }
+
     // Called once at the end, for results that concern the whole run.
     [[nodiscard]] virtual ExitCode finish(Console&) { return ExitCode::done; }
 
@@ -67,7 +70,15 @@ public:
 
     // The task that makes `output` from `input`. Throws UsageError if the name does not show the file type, or if the
     // file type cannot hold the format.
-    [[nodiscard]] Task task_for(const std::string& input, const std::string& output) const;
+    [[nodiscard]] Task task_for(const std::string& input, const std::string& output) const {
+        return task_for(Task{input, output});
+    }
+    // The same of a task that has more than these.
+    [[nodiscard]] Task task_for(Task task) const;
+    // Whether outputs with <UDIM> in their names are made for each tile of a mesh, and which tiles it has
+    // (OutputRules::tiles).
+    [[nodiscard]] bool makes_tiles() const;
+    [[nodiscard]] std::vector<int> tiles_of(const std::string& input) const;
     // The same for a tile of a terrain, with the tiles around it: `pattern` names them (grid.h). Throws also what
     // grid_files() throws; its errors leave the tile alone. Precondition: files.tiles.
     [[nodiscard]] Task task_for_tile(const std::string& input, const std::string& output,
@@ -94,6 +105,8 @@ protected:
     [[nodiscard]] Result<std::vector<Task>> plan() const override;
 
 private:
+    [[nodiscard]] const OutputRules& known_rules() const;
+
     // rules(), for task_for(): they may come from files.
     mutable std::once_flag rules_are_known_;
     mutable OutputRules known_rules_;

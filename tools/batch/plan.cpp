@@ -57,7 +57,7 @@ std::string output_name(const Input& input, const FileOptions& files, const Outp
         const Container container = output.container_for(parsed.expand(fields), rules.standard_output);
         fields.format = name_of(kEncodingNames, rules.encoding(container));
     }
-    return files.place(pattern, fields);
+    return with_tile(files.place(pattern, fields), rules.tiles ? input.tile : 0);
 }
 
 // The name that -o gives for this input.
@@ -101,6 +101,21 @@ void check_tiles(const std::vector<Input>& inputs, const FileOptions& files) {
     }
 }
 
+// Meshes with an input for each of their tiles, if outputs are made for tiles.
+std::vector<Input> with_tiles(std::vector<Input> inputs, const FileOptions& files, const OutputRules& rules) {
+    if (!has_tile(files.output) && !has_tile(files.name)) return inputs;
+    std::vector<Input> all;
+    for (Input& input : inputs) {
+        const std::vector<int> tiles = input.tile == 0 ? rules.tiles(input.name) : std::vector<int>();
+        for (const int tile : tiles) {
+            all.push_back(input);
+            all.back().tile = tile;
+        }
+        if (tiles.empty()) all.push_back(std::move(input));
+    }
+    return all;
+}
+
 // Throws UsageError if the outputs for several engines cannot be made in one run.
 void check_engines(const std::vector<Task>& tasks, const FileOptions& files, std::size_t engines) {
     if (engines < 2) return;
@@ -116,12 +131,12 @@ void check_engines(const std::vector<Task>& tasks, const FileOptions& files, std
 
 }  // namespace
 
-Task task_of(const std::string& input, const std::string& name, const OutputOptions& output, const OutputRules& rules) {
-    Task task{input, name};
+Task complete(Task task, const OutputOptions& output, const OutputRules& rules) {
+    const std::string first = with_level(task.output, 0);
     task.engine = output.engine;
     task.shared = rules.shared;
-    task.container = output.container_for(with_level(name, 0), rules.standard_output);
-    if (output.format) OutputOptions::check_holds(with_level(name, 0), task.container, *output.format);
+    task.container = output.container_for(first, rules.standard_output);
+    if (output.format) OutputOptions::check_holds(first, task.container, *output.format);
     if (rules.amend) rules.amend(task);
     return task;
 }
@@ -133,7 +148,11 @@ std::vector<Task> plan_outputs(std::vector<Input> inputs, const FileOptions& fil
         joined.assign(inputs.begin() + 1, inputs.end());
         inputs.resize(1);
     }
-    check_tiles(inputs, files);
+    if (rules.tiles) {
+        inputs = with_tiles(std::move(inputs), files, rules);
+    } else {
+        check_tiles(inputs, files);
+    }
     const bool names_each = has_tile(files.output) || (files.tiles && has_grid(files.output));
     if (!files.output.empty() && inputs.size() > 1 && !names_each) refuse_many(inputs);
     if (!files.output.empty() && inputs.empty())
@@ -144,11 +163,12 @@ std::vector<Task> plan_outputs(std::vector<Input> inputs, const FileOptions& fil
             const OutputOptions own = output.of(engine);
             const std::string name =
                 files.output.empty() ? output_name(input, files, own, rules) : output_of(files.output, input);
-            Task task = task_of(input.name, name, own, rules);
+            Task planned{input.name, name};
+            planned.tile = input.tile;
+            planned.pattern = input.pattern;
+            Task task = complete(std::move(planned), own, rules);
             set_model(task, input);
             for (const Input& other : joined) join(task, other);
-            task.tile = input.tile;
-            task.pattern = input.pattern;
             task.place = input.place;
             tasks.push_back(std::move(task));
         }

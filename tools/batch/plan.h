@@ -27,16 +27,18 @@ struct OutputRules {
     Encoding (*encoding)(Container container) = &default_encoding;  // without --format
     std::function<void(std::vector<Task>& tasks)> relate = {};      // called with all tasks of a command; may be empty
     std::optional<std::string> models = {};  // inputs may be models: the material whose maps are meant, or "" for all
+    // Inputs are meshes, and outputs with <UDIM> in their names are made for each of the tiles that this returns. None:
+    // the mesh has none, or cannot be read, of which its job complains. Empty: the inputs' names say the tiles.
+    std::function<std::vector<int>(const std::string& input)> tiles = {};
 };
 
-// The task that makes `name`, which may contain kLevelMark, from `input`. Throws UsageError if the name does not show
-// its file type, or if that cannot hold the format.
-[[nodiscard]] Task task_of(const std::string& input, const std::string& name, const OutputOptions& output,
-                           const OutputRules& rules);
+// Completes a task that has its input and its output, which may contain kLevelMark; it may have a tile and places.
+// Throws UsageError if the output's name does not show its file type, or if that cannot hold the format.
+[[nodiscard]] Task complete(Task task, const OutputOptions& output, const OutputRules& rules);
 
 // Pairs every input with its output. Throws UsageError if two inputs have the same output, if an output is an input
-// (links are followed), or if a name does not show its file type. <UDIM> in the name of -o becomes the input's tile.
-// Creates nothing.
+// (links are followed), or if a name does not show its file type. <UDIM> in the name of -o becomes the input's tile, or
+// each tile of a mesh. Creates nothing.
 [[nodiscard]] std::vector<Task> plan_outputs(std::vector<Input> inputs, const FileOptions& files,
                                              const OutputOptions& output, const OutputRules& rules);
 

@@ -62,6 +62,7 @@ struct Row {
     Completes completes = Completes::nothing;
     bool hidden = false;      // left out of the help
     bool repeatable = false;  // may be given more than once
+    bool writes = false;      // the value names a file that is written
 
     std::vector<std::string> given;                     // the values on the command line, in order; empty for a flag
     std::function<void(const std::string& text)> take;  // called with each value; throws UsageError

@@ -76,6 +76,13 @@ private:
         return add_array(values, components, kFloat, components == 3 ? "VEC3" : "VEC2");
     }
 
+    int add_colors(const aiColor4D* from, unsigned count) {
+        std::vector<float> values;
+        values.reserve(std::size_t{count} * 3);
+        for (unsigned k = 0; k < count; ++k) values.insert(values.end(), {from[k].r, from[k].g, from[k].b});
+        return add_array(values, 3, kFloat, "VEC3");
+    }
+
     // w is 1 if the bitangent, which points to greater v, is on the side of cross(N, T).
     int add_tangents(const aiMesh& mesh) {
         std::vector<float> values;
@@ -95,6 +102,7 @@ private:
         if (mesh.HasNormals() && mesh.HasTangentsAndBitangents()) attributes["TANGENT"] = add_tangents(mesh);
         for (unsigned k = 0; k < AI_MAX_NUMBER_OF_TEXTURECOORDS && mesh.HasTextureCoords(k); ++k)
             attributes["TEXCOORD_" + std::to_string(k)] = add_vectors(mesh.mTextureCoords[k], mesh.mNumVertices, 2);
+        if (mesh.HasVertexColors(0)) attributes["COLOR_0"] = add_colors(mesh.mColors[0], mesh.mNumVertices);
         std::vector<std::uint32_t> indices;
         indices.reserve(std::size_t{mesh.mNumFaces} * 3);
         for (unsigned k = 0; k < mesh.mNumFaces; ++k) {

@@ -78,7 +78,7 @@ void GuideOptions::add(Command& command) {
 }
 
 std::string GuideOptions::name_of(const std::string& pattern, const Task& task) {
-    return pattern.empty() ? std::string() : NamePattern(pattern).expand(name_fields(task.input));
+    return pattern.empty() ? std::string() : with_tile(NamePattern(pattern).expand(name_fields(task.input)), task.tile);
 }
 
 void GuideOptions::amend(Task& task) const {
@@ -91,7 +91,7 @@ void GuideOptions::amend(Task& task) const {
 
 Result<MeshSpace> GuideOptions::read_cage(Job& job, const TangentSpaceOptions& low, const MeshSpace& space) const {
     const std::string file = name_of(cage_, job.task);
-    auto cage = low.cage(file, job.read_options, {job.threads(), {}});
+    auto cage = low.cage(file, job.task, job.read_options, {job.threads(), {}});
     if (!cage) return cage.error();
     const std::size_t triangles = space.selected().part.triangles();
     if (cage->selected().part.triangles() != triangles) {

@@ -48,9 +48,7 @@ void HighMeshes::add(Command& command) {
 std::vector<std::string> HighMeshes::buffers_of(const std::vector<std::string>& meshes) {
     std::vector<std::string> buffers;
     for (const std::string& mesh : meshes) {
-        auto files = mesh_files(mesh);
-        if (!files) continue;  // reading it will say why
-        for (std::string& file : *files) {
+        for (std::string& file : files_of_mesh(mesh)) {
             if (file != mesh && std::find(buffers.begin(), buffers.end(), file) == buffers.end())
                 buffers.push_back(std::move(file));
         }
@@ -73,18 +71,42 @@ void HighMeshes::amend(Task& task) const {
     for (std::string& buffer : buffers_of(meshes)) task.own.push_back(std::move(buffer));
 }
 
-Result<HighParts> HighMeshes::read(Job& job, bool with_uvs) const {
+Result<std::shared_ptr<const HighParts>> HighMeshes::read(Job& job, const Wanted& wanted) const {
+    const std::vector<std::string> names = names_of(job.task);
+    const bool shares = job.task.is_tile_of_mesh();
+    const std::unique_lock lock = shares ? std::unique_lock(mutex_) : std::unique_lock<std::mutex>();
+    if (shares && last_ && last_->names == names && are_current(last_files_)) {
+        for (const FileWarning& remark : last_->remarks) job.remark(remark.message, remark.file);
+        return last_;
+    }
+    if (shares) last_.reset();
+    std::vector<FileState> files = states_of(shares ? names : std::vector<std::string>());
+    auto high = read(names, job.read_options, wanted);
+    if (!high) return high.error();
+    for (const FileWarning& remark : high->remarks) job.warn(remark.message, remark.file);
+    auto shared = std::make_shared<const HighParts>(std::move(*high));
+    if (shares) {
+        last_ = shared;
+        last_files_ = std::move(files);
+    }
+    return shared;
+}
+
+Result<HighParts> HighMeshes::read(const std::vector<std::string>& names, const ReadOptions& options,
+                                   const Wanted& wanted) {
     HighParts high;
     MeshReadOptions how;
-    how.reader = job.read_options;
+    how.reader = options;
+    how.colors = wanted.colors;
     int file = 0;
-    for (const std::string& name : names_of(job.task)) {
+    for (const std::string& name : names) {
         auto mesh = read_mesh(name, how);
         if (!mesh) return mesh.error().of(name);
-        for (const std::string& remark : mesh->remarks) job.warn(remark, name);
-        for (MeshPart& part : mesh->parts) {  // not needed
-            if (!with_uvs) part.uvs.clear();
-            if (!with_uvs) part.tangents.clear();
+        for (const std::string& remark : mesh->remarks) high.remarks.push_back({name, remark});
+        for (MeshPart& part : mesh->parts) {
+            if (wanted.uvs) continue;
+            part.uvs.clear();
+            part.tangents.clear();
         }
         const std::vector<MeshMaterial> materials = mesh->materials;
         auto placed = parts_in_scene(std::move(*mesh));
@@ -122,7 +144,8 @@ Result<void> HighMeshes::match(Job& job, const SelectedPart& low, const HighPart
     if (!matched.lone_low.empty())
         job.warn(fmt::format("no {} of the high mesh belongs to {}: their texels are missed", what,
                              quoted_list(matched.lone_low)));
-    if (!matched.lone_high.empty())
+    // Of tiles, each has its own parts.
+    if (!matched.lone_high.empty() && !job.task.is_tile_of_mesh())
         job.warn(fmt::format("no {} of the low mesh belongs to {} of the high one: no ray meets them", what,
                              quoted_list(matched.lone_high)));
     inputs.high_groups = matched.high;

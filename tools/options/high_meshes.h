@@ -4,6 +4,8 @@
 
 #pragma once
 
+#include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -12,6 +14,7 @@
 #include <tex/transfer.h>
 
 #include "cli/command.h"
+#include "options/mesh_files.h"
 #include "tasks/job.h"
 
 namespace tex::cli {
@@ -31,6 +34,7 @@ struct HighParts {
     std::vector<std::string> materials;  // their names; may be empty
     std::vector<int> files;              // the number of the file
     std::vector<std::string> names;      // of the files
+    std::vector<FileWarning> remarks;    // what may matter about them
 };
 
 // The first names, each once, in quotes, for a message.
@@ -49,9 +53,15 @@ public:
     // Adds the files of --high, and what holds buffers of all meshes, to the task.
     void amend(Task& task) const;
 
-    // Reads the meshes of a job, as the nodes of their scenes place them, without UVs and tangents if nobody needs
-    // them.
-    [[nodiscard]] Result<HighParts> read(Job& job, bool with_uvs) const;
+    // What is read of the meshes besides positions and normals.
+    struct Wanted {
+        bool uvs = false;  // and tangents
+        bool colors = false;
+    };
+
+    // Reads the meshes of a job, as the nodes of their scenes place them. Jobs for the tiles of a low mesh share them.
+    // Any thread may call this.
+    [[nodiscard]] Result<std::shared_ptr<const HighParts>> read(Job& job, const Wanted& wanted) const;
 
     // Numbers the parts as --match says, and reports those without partner.
     [[nodiscard]] Result<void> match(Job& job, const SelectedPart& low, const HighParts& high,
@@ -64,9 +74,15 @@ public:
 
 private:
     [[nodiscard]] std::vector<std::string> names_of(const Task& task) const;
+    [[nodiscard]] static Result<HighParts> read(const std::vector<std::string>& names, const ReadOptions& options,
+                                                const Wanted& wanted);
 
     std::vector<std::string> patterns_;
     Match match_ = Match::all;
+    mutable std::mutex mutex_;
+    // What was read last for a tile, and the states of its files before.
+    mutable std::shared_ptr<const HighParts> last_;
+    mutable std::vector<FileState> last_files_;
 };
 
 }  // namespace tex::cli

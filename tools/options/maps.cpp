@@ -25,7 +25,9 @@ Format map_format(Container container) {
 void MapOutput::add(Command& command, const FileOptions& files, std::string name, std::string help) {
     files_ = &files;
     name_ = std::move(name);
-    command.text(pattern_, name_, "FILE", std::move(help)).completes = Completes::files;
+    Row& row = command.text(pattern_, name_, "FILE", std::move(help));
+    row.completes = Completes::files;
+    row.writes = true;
     command.check([this, &command] {
         if (command.given(name_) && pattern_.empty()) throw UsageError(name_ + ": needs a value that is not empty");
         if (pattern_ == "-") throw UsageError(name_ + ": needs a file, not standard output");
@@ -34,7 +36,11 @@ void MapOutput::add(Command& command, const FileOptions& files, std::string name
     });
 }
 
-std::string MapOutput::path_of(const Task& task) const { return files_->place(pattern_, name_fields(task.input)); }
+std::string MapOutput::path_of(const Task& task) const {
+    const auto place = task.places.find(name_);
+    return with_tile(place != task.places.end() ? place->second : files_->place(pattern_, name_fields(task.input)),
+                     task.tile);
+}
 
 Container MapOutput::container_of_path(const std::string& path) const {
     const auto container = container_of(path);
@@ -46,6 +52,11 @@ Container MapOutput::container_of_path(const std::string& path) const {
 
 void MapOutput::amend(Task& task) const {
     if (!is_given()) return;
+    if (task.is_tile_of_mesh() && !has_tile(pattern_))
+        throw UsageError(name_, fmt::format("{}: needs <UDIM>, as the output has it: each tile has a file of its own",
+                                            printable(pattern_)));
+    if (task.tile == 0 && has_tile(pattern_) && !has_tile(task.output))
+        throw UsageError(name_, fmt::format("{}: <UDIM> needs it in the name of the output, too", printable(pattern_)));
     std::string path = path_of(task);
     std::ignore = container_of_path(path);
     task.more_outputs.push_back(std::move(path));

@@ -16,7 +16,7 @@
 
 namespace tex::cli {
 
-// An option such as --curl-out FILE. Of many inputs it is a pattern, as --name.
+// An option such as --curl-out FILE. Of many inputs it is a pattern, as --name. <UDIM> becomes the task's tile.
 class MapOutput {
 public:
     // `files` must outlive this. `name`: the option.

@@ -13,6 +13,7 @@
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "cli/value.h"
+#include "options/missed_texels.h"
 
 namespace tex::cli {
 namespace {
@@ -211,10 +212,13 @@ void TransferMaps::add(Command& command, const FileOptions& files) {
     bent_.add(command, files, "--bent-out", "write bent normals, the mean directions that are open, in tangent space");
     thickness_.add(command, files, "--thickness-out", "write the mean thickness of the high mesh, stored as heights");
     color_.add(command, files, "--color-out", "write the colours that --high-color names");
+    vertex_color_.add(command, files, "--vertex-color-out", "write the colours of the high mesh's vertices");
+    missed_out_.add(command, files, "--missed-out", "write a picture whose missed texels are red, and those hit grey");
 }
 
 void TransferMaps::amend(Task& task) const {
-    for (const MapOutput* map : {&object_, &heights_, &positions_, &occlusion_, &bent_, &thickness_, &color_})
+    for (const MapOutput* map :
+         {&object_, &heights_, &positions_, &occlusion_, &bent_, &thickness_, &color_, &vertex_color_, &missed_out_})
         map->amend(task);
     if (positions_.is_given() && !can_hold(positions_.container_for(task), Encoding::float_))
         throw UsageError("--position-out", "only exr, dds and ktx2 files hold floats");
@@ -227,6 +231,7 @@ void TransferMaps::request(TransferOptions& options) const {
     options.occlusion = occlusion_.is_given();
     options.bent = bent_.is_given();
     options.thickness = thickness_.is_given();
+    options.vertex_colors = vertex_color_.is_given();
 }
 
 Result<void> TransferMaps::write(Job& job, TransferredMaps& maps, YAxis y) const {
@@ -257,7 +262,15 @@ Result<void> TransferMaps::write(Job& job, TransferredMaps& maps, YAxis y) const
         auto done = write_lengths(job, thickness_, std::move(maps.thickness), maps.thinnest, maps.thickest, report);
         if (!done) return done;
     }
-    return color_.is_given() ? write_colors(job, std::move(maps.color)) : Result<void>();
+    if (color_.is_given()) {
+        if (auto done = write_colors(job, color_, std::move(maps.color), "colors"); !done) return done;
+    }
+    if (vertex_color_.is_given()) {
+        auto done = write_colors(job, vertex_color_, std::move(maps.vertex_color), "vertex_colors");
+        if (!done) return done;
+    }
+    if (!missed_out_.is_given()) return {};
+    return write_colors(job, missed_out_, missed_picture(maps.origin, kMaxExtent), "missed_picture");
 }
 
 // Into report[key].
@@ -298,7 +311,7 @@ Result<void> TransferMaps::write_occlusion(Job& job, TransferredMaps& maps) cons
 
 // Three planes as they are, which are no normals.
 Result<void> TransferMaps::write_floats(Job& job, const MapOutput& output, std::vector<Plane<float>> planes,
-                                        Json& report) const {
+                                        Json& report) {
     MipChain chain;
     chain.levels.emplace_back();
     chain.levels.front().x = std::move(planes[0]);
@@ -313,12 +326,13 @@ Result<void> TransferMaps::write_floats(Job& job, const MapOutput& output, std::
     return output.write(job, *texture, report);
 }
 
-Result<void> TransferMaps::write_colors(Job& job, Image colors) const {
+// Into report[key].
+Result<void> TransferMaps::write_colors(Job& job, const MapOutput& output, Image colors, const char* key) {
     Json report;
-    auto done = color_.holds_floats(job) ? write_floats(job, color_, std::move(colors.planes), report)
-                                         : color_.write(job, colors, report);
+    auto done = output.holds_floats(job) ? write_floats(job, output, std::move(colors.planes), report)
+                                         : output.write(job, colors, report);
     if (!done) return done;
-    job.report["colors"] = std::move(report);
+    job.report[key] = std::move(report);
     return {};
 }
 

@@ -63,11 +63,13 @@ private:
 // "rays reach 0.1 in front and 0.2 behind; heights are from -0.05 to 0.06"
 [[nodiscard]] std::string reach_of(const TransferredMaps& maps);
 
-// --object-out, --height-out, --position-out, --occlusion-out, --bent-out, --thickness-out, --color-out.
+// --object-out, --height-out, --position-out, --occlusion-out, --bent-out, --thickness-out, --color-out,
+// --vertex-color-out, --missed-out.
 class TransferMaps {
 public:
     void add(Command& command, const FileOptions& files);
     void amend(Task& task) const;
+    [[nodiscard]] bool wants_vertex_colors() const { return vertex_color_.is_given(); }
     // Sets the maps that are wanted.
     void request(TransferOptions& options) const;
 
@@ -80,11 +82,11 @@ private:
     [[nodiscard]] Result<void> write_lengths(Job& job, const MapOutput& output, Plane<float> lengths, float lowest,
                                              float highest, Json& report) const;
     [[nodiscard]] Result<void> write_occlusion(Job& job, TransferredMaps& maps) const;
-    [[nodiscard]] Result<void> write_floats(Job& job, const MapOutput& output, std::vector<Plane<float>> planes,
-                                            Json& report) const;
-    [[nodiscard]] Result<void> write_colors(Job& job, Image colors) const;
+    [[nodiscard]] static Result<void> write_floats(Job& job, const MapOutput& output, std::vector<Plane<float>> planes,
+                                                   Json& report);
+    [[nodiscard]] static Result<void> write_colors(Job& job, const MapOutput& output, Image colors, const char* key);
 
-    MapOutput object_, heights_, positions_, occlusion_, bent_, thickness_, color_;
+    MapOutput object_, heights_, positions_, occlusion_, bent_, thickness_, color_, vertex_color_, missed_out_;
 };
 
 }  // namespace tex::cli

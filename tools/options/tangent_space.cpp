@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <system_error>
 
 #include <fmt/format.h>
 #include <tex/mesh_io.h>
@@ -18,14 +17,6 @@
 
 namespace tex::cli {
 namespace {
-
-namespace fs = std::filesystem;
-
-// The files of a mesh. If it cannot be read, only the file itself: reading it will say why.
-std::vector<std::string> files_of(const std::string& mesh) {
-    auto files = mesh_files(mesh);
-    return files ? std::move(*files) : std::vector<std::string>{mesh};
-}
 
 constexpr const char* kNodeOfMap = "only the mesh of this node; object space is then the space of the scene";
 
@@ -122,7 +113,8 @@ void TangentSpaceOptions::add_low(Command& command) {
     selection_.in_scene = true;
     add_parts(command, "only the mesh of this node");
     command
-        .option("--tile", "N", "only the triangles in this UDIM tile, such as 1002",
+        .option("--tile", "N",
+                "only the triangles in this UDIM tile, such as 1002; <UDIM> in names of outputs makes all",
                 [this](const std::string& text) { tile_ = parse_int(text, 1001, 9999); })
         .preset = "all";
     add_decoder(command, "the engine that decodes the map");
@@ -189,38 +181,38 @@ void TangentSpaceOptions::check(const Command& command) const {
     if (!idle.empty()) throw UsageError(fmt::format("{} needs --from tangent", idle.front()));
 }
 
-std::string TangentSpaceOptions::input_arguments() const {
-    std::string text = "--mesh " + shell_file(mesh_);
+std::string TangentSpaceOptions::arguments_for(const std::string& mesh, const std::string& node,
+                                               std::optional<TangentSource> tangents) const {
+    std::string text = "--mesh " + shell_file(mesh);
     const auto add = [&](const char* name, const std::string& value) {
         text += fmt::format(" {} {}", name, shell_word(value));
     };
     if (!selection_.material.empty()) add("--material", selection_.material);
     if (selection_.primitive) add("--primitive", std::to_string(*selection_.primitive));
-    if (!selection_.node.empty()) add("--node", selection_.node);
+    if (!node.empty()) add("--node", node);
     if (selection_.uv_set) add("--uv-set", std::to_string(*selection_.uv_set));
-    if (const auto tangents = tangents_in_ ? tangents_in_ : tangents_)
-        add("--tangents", std::string(name_of(kTangentSourceNames, *tangents)));
+    if (tangents) add("--tangents", std::string(name_of(kTangentSourceNames, *tangents)));
     return text;
+}
+
+std::string TangentSpaceOptions::input_arguments() const {
+    return arguments_for(mesh_, selection_.node, tangents_in_ ? tangents_in_ : tangents_);
+}
+
+std::string TangentSpaceOptions::low_arguments(const MeshSpace& low) const {
+    const std::vector<SelectedPiece>& pieces = low.selected().pieces;
+    const bool names_node = selection_.node.empty() && pieces.size() == 1;
+    return arguments_for(low.file(), names_node ? pieces.front().name : selection_.node, tangents_);
 }
 
 std::vector<std::string> TangentSpaceOptions::files() const {
     std::vector<std::string> files;
-    if (has_mesh()) files = files_of(mesh_);
+    if (has_mesh()) files = files_of_mesh(mesh_);
     if (to_mesh_.empty()) return files;
-    for (std::string& file : files_of(to_mesh_)) {
+    for (std::string& file : files_of_mesh(to_mesh_)) {
         if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(std::move(file));
     }
     return files;
-}
-
-TangentSpaceOptions::FileState TangentSpaceOptions::FileState::of(const std::string& file) {
-    std::error_code error;
-    return {file, fs::last_write_time(file, error), fs::file_size(file, error)};
-}
-
-bool TangentSpaceOptions::Loaded::is_current() const {
-    return part && std::all_of(files.begin(), files.end(),
-                               [](const FileState& state) { return FileState::of(state.file) == state; });
 }
 
 // A model's maps are for glTF's decoder, unless they are only looked at.
@@ -267,9 +259,9 @@ Result<MeshSpace> TangentSpaceOptions::read(const ModelInput& map, std::optional
     return MeshSpace(std::make_shared<const SelectedPart>(std::move(*selected)), decoder, map.file);
 }
 
-Result<MeshSpace> TangentSpaceOptions::of_low(const std::string& file, const ReadOptions& options,
+Result<MeshSpace> TangentSpaceOptions::of_low(const Task& task, const ReadOptions& options,
                                               const Execution& execution) const {
-    return read(file, tangents_, decoder_, tile_, options, execution);
+    return read(task.input, tangents_, decoder_, tile_of_low(task), options, execution);
 }
 
 Result<MeshSpace> TangentSpaceOptions::charts(const ReadOptions& options, const Execution& execution) const {
@@ -285,32 +277,23 @@ Result<MeshSpace> TangentSpaceOptions::charts(const ReadOptions& options, const 
     return MeshSpace(std::make_shared<const SelectedPart>(std::move(*selected)), decoder_, mesh_);
 }
 
-Result<MeshSpace> TangentSpaceOptions::cage(const std::string& file, const ReadOptions& options,
+Result<MeshSpace> TangentSpaceOptions::cage(const std::string& file, const Task& task, const ReadOptions& options,
                                             const Execution& execution) const {
+    const int tile = tile_of_low(task);
     MeshReadOptions how;
     how.reader = options;
     auto mesh = read_mesh(file, how);
     if (!mesh) return mesh.error().of(file);
-    for (MeshPart& part : mesh->parts) give_attributes(part, tile_ == 0);
+    for (MeshPart& part : mesh->parts) give_attributes(part, tile == 0);
     MeshSelection selection = selection_;
     selection.tangents = TangentSource::file;  // which do not count
     selection.uv_set.reset();
     if (mesh->materials.empty()) selection.material.clear();
     if (mesh->nodes.size() <= 1) selection.node.clear();
     auto selected = select_part(*mesh, selection, execution);
-    if (selected && tile_ != 0) selected = in_tile(*selected, tile_);
+    if (selected && tile != 0) selected = in_tile(*selected, tile);
     if (!selected) return with_option(selected.error()).of(file);
     return MeshSpace(std::make_shared<const SelectedPart>(std::move(*selected)), decoder_, file);
-}
-
-void TangentSpaceOptions::note(Job& job, const MeshSpace& mesh) const {
-    const std::lock_guard lock(mutex_);
-    for (const std::string& remark : mesh.selected().remarks) {
-        if (noted_.insert(mesh.file() + '\n' + remark).second)
-            job.warn(remark, mesh.file());
-        else
-            job.remark(remark, mesh.file());
-    }
 }
 
 Result<MeshSpace> TangentSpaceOptions::read(const std::string& file, std::optional<TangentSource> tangents,
@@ -329,10 +312,11 @@ Result<std::shared_ptr<const SelectedPart>> TangentSpaceOptions::load(const std:
                                                                       const ReadOptions& options,
                                                                       const Execution& execution) const {
     const std::lock_guard lock(mutex_);
+    constexpr std::size_t kMostLoaded = 16;  // of a tree of meshes, not all stay in memory
+    if (loaded_.size() >= kMostLoaded && !loaded_.contains({file, tangents})) loaded_.clear();
     Loaded& loaded = loaded_[{file, tangents}];
-    if (loaded.is_current()) return loaded.part;
-    std::vector<FileState> files;
-    for (const std::string& one : files_of(file)) files.push_back(FileState::of(one));
+    if (loaded.part && are_current(loaded.files)) return loaded.part;
+    std::vector<FileState> files = states_of({file});
     MeshReadOptions how;
     how.reader = options;
     const auto mesh = read_mesh(file, how);

@@ -3,7 +3,6 @@
 
 #pragma once
 
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -19,6 +18,7 @@
 #include <tex/mesh_selection.h>
 
 #include "cli/command.h"
+#include "options/mesh_files.h"
 #include "tasks/job.h"
 
 namespace tex::cli {
@@ -95,6 +95,9 @@ public:
     // them, and with --decoder, another command decodes an input in the same way.
     [[nodiscard]] std::string input_arguments() const;
 
+    // The same for a mesh of of_low(): preview-normals then draws it, as far as it needs one node at most.
+    [[nodiscard]] std::string low_arguments(const MeshSpace& low) const;
+
     // The mesh files, with those that hold buffers of them.
     [[nodiscard]] std::vector<std::string> files() const;
 
@@ -112,17 +115,19 @@ public:
     [[nodiscard]] Result<MeshSpace> output(const ModelInput& map, const ReadOptions& read,
                                            const Execution& execution) const;
 
-    // The same of an input that is a mesh.
-    [[nodiscard]] Result<MeshSpace> of_low(const std::string& file, const ReadOptions& read,
-                                           const Execution& execution) const;
+    // The same of an input that is a mesh: its triangles in the tile of --tile, of the task, or all.
+    [[nodiscard]] Result<MeshSpace> of_low(const Task& task, const ReadOptions& read, const Execution& execution) const;
+    // The tiles of such a mesh that outputs are made for: that of --tile, or those that have triangles.
+    [[nodiscard]] std::vector<int> tiles_of_low(const std::string& file, const ReadOptions& read) const;
 
-    // The parts of a cage that belong to those of of_low(). It needs neither normals nor UVs, except with --tile, nor
+    // The parts of a cage that belong to those of of_low(). It needs neither normals nor UVs, except for tiles, nor
     // materials. Errors: as of_low().
-    [[nodiscard]] Result<MeshSpace> cage(const std::string& file, const ReadOptions& read,
+    [[nodiscard]] Result<MeshSpace> cage(const std::string& file, const Task& task, const ReadOptions& read,
                                          const Execution& execution) const;
     // The parts of --mesh as far as their UVs are concerned: it needs no normals. Errors: as of_low().
     [[nodiscard]] Result<MeshSpace> charts(const ReadOptions& read, const Execution& execution) const;
-    // Warns of what was left out of a mesh, once in a run. Any thread may call this.
+    // Warns of what was left out of a mesh, and, if outputs are for tiles, of triangles that do not fit into them, once
+    // in a run. Any thread may call this.
     void note(Job& job, const MeshSpace& mesh) const;
 
 private:
@@ -133,6 +138,11 @@ private:
     void add_decoder(Command& command, const char* meaning);
     void add_tangents(Command& command);
     [[nodiscard]] Decoder input_decoder(bool of_model) const;
+    [[nodiscard]] std::string arguments_for(const std::string& mesh, const std::string& node,
+                                            std::optional<TangentSource> tangents) const;
+    [[nodiscard]] int tile_of_low(const Task& task) const;
+    [[nodiscard]] Result<UvTiles> all_tiles_of_low(const std::string& file, const ReadOptions& read) const;
+    [[nodiscard]] std::vector<std::string> remarks_on_tiles(const Job& job) const;
     [[nodiscard]] static Result<MeshSpace> read(const ModelInput& map, std::optional<TangentSource> tangents,
                                                 Decoder decoder, const ReadOptions& options,
                                                 const Execution& execution);
@@ -144,20 +154,10 @@ private:
                                                                    const ReadOptions& options,
                                                                    const Execution& execution) const;
 
-    struct FileState {
-        std::string file;
-        std::filesystem::file_time_type time;
-        std::uintmax_t size = 0;
-
-        [[nodiscard]] static FileState of(const std::string& file);
-        friend bool operator==(const FileState&, const FileState&) = default;
-    };
     // A mesh that was read, and the states of its files before.
     struct Loaded {
         std::vector<FileState> files;
         std::shared_ptr<const SelectedPart> part;
-
-        [[nodiscard]] bool is_current() const;
     };
 
     std::string mesh_, to_mesh_;
@@ -169,6 +169,12 @@ private:
     std::optional<TangentSource> tangents_, tangents_in_;
     mutable std::mutex mutex_;
     mutable std::map<std::pair<std::string, std::optional<TangentSource>>, Loaded> loaded_;
+    // The tiles of low meshes, and the states of their files before.
+    struct KnownTiles {
+        std::vector<FileState> files;
+        UvTiles tiles;
+    };
+    mutable std::map<std::string, KnownTiles> tiles_;
     mutable std::set<std::string> noted_;
 };
 

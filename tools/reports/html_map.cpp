@@ -186,6 +186,7 @@ std::size_t HtmlMap::picture_size() const {
     std::size_t sum = base64_size(thumbnail.png.size()) + base64_size(lit.png.size());
     for (const HtmlPicture& view : views) sum += base64_size(view.png.size());
     if (on_mesh) sum += base64_size(on_mesh->still.png.size());
+    if (beside) sum += base64_size(beside->still.png.size()) + base64_size(beside->missed.size());
     return sum;
 }
 

@@ -64,6 +64,14 @@ struct HtmlOnMesh {
     std::string map;      // as preview-normals names it, for a shell
 };
 
+// A mesh that the map is compared with, drawn beside it and turned with it.
+struct HtmlBeside {
+    HtmlPicture still;
+    std::shared_ptr<const HtmlMesh> mesh;  // for the reader's GPU; null if it is too large for a page
+    std::string remark;                    // what the page says about it
+    std::vector<std::byte> missed;         // a PNG that is white where the map lacks what that mesh has; may be empty
+};
+
 struct HtmlMap {
     std::string file;
     Format format = Format::rgba8_unorm;
@@ -76,6 +84,7 @@ struct HtmlMap {
     HtmlPicture thumbnail, lit;
     std::vector<HtmlPicture> views;
     std::optional<HtmlOnMesh> on_mesh;
+    std::optional<HtmlBeside> beside;
     HtmlLevels packed;   // for block formats
     HtmlLevels decoded;  // for other formats, and if the packed levels end before they are small
 

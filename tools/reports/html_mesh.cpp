@@ -126,10 +126,13 @@ Json HtmlMesh::json() const {
     json["decoder"] = name_of(kDecoderNames, decoder);
     json["vertices"] = vertices;
     json["triangles"] = triangles;
+    if (place[3] != 1.0 || place[0] != 0.0 || place[1] != 0.0 || place[2] != 0.0) json["place"] = place;
     return json;
 }
 
-std::shared_ptr<const HtmlMesh> html_mesh(const TangentSpace& space, std::string arguments) {
+namespace {
+
+std::shared_ptr<HtmlMesh> encoded_mesh(const TangentSpace& space, std::string arguments) {
     if (space.part.triangles() > kMostTriangles) return nullptr;
     const std::vector<Corner> corners = corners_of(space);
     const std::vector<std::uint32_t> firsts = first_equals(corners);
@@ -157,6 +160,21 @@ std::shared_ptr<const HtmlMesh> html_mesh(const TangentSpace& space, std::string
         else
             append(mesh->bytes, number);
     }
+    return mesh;
+}
+
+}  // namespace
+
+std::shared_ptr<const HtmlMesh> html_mesh(const TangentSpace& space, std::string arguments) {
+    return encoded_mesh(space, std::move(arguments));
+}
+
+std::shared_ptr<const HtmlMesh> html_mesh_beside(const TangentSpace& space, const MeshPart& other) {
+    std::shared_ptr<HtmlMesh> mesh = encoded_mesh(space, {});
+    if (mesh == nullptr) return mesh;
+    const Sphere own(space.part), around(other);
+    for (std::size_t c = 0; c < 3; ++c) mesh->place[c] = (own.centre[c] - around.centre[c]) / around.radius;
+    mesh->place[3] = own.radius / around.radius;
     return mesh;
 }
 

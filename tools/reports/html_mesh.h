@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -32,6 +33,8 @@ struct HtmlMesh {
     std::size_t vertices = 0;
     std::size_t triangles = 0;
     std::vector<std::byte> bytes;
+    // Where the page draws it: at x, y, z in the sphere of another mesh, with its radius as a part of that one's.
+    std::array<double, 4> place = {0.0, 0.0, 0.0, 1.0};
 
     // The number of characters that the bytes take in a page.
     [[nodiscard]] std::size_t size() const;
@@ -45,5 +48,8 @@ inline constexpr std::size_t kHtmlVertexSize = 28;
 // The mesh for a page, or null if it alone would take more than kHtmlMeshBudget. Depends on the arguments alone.
 // Precondition: preview() accepts the space.
 [[nodiscard]] std::shared_ptr<const HtmlMesh> html_mesh(const TangentSpace& space, std::string arguments);
+
+// The same of a mesh that the page draws as it lies beside another one: both have the same scale.
+[[nodiscard]] std::shared_ptr<const HtmlMesh> html_mesh_beside(const TangentSpace& space, const MeshPart& other);
 
 }  // namespace tex::cli

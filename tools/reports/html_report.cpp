@@ -39,18 +39,34 @@ std::string figures(const std::vector<HtmlPicture>& pictures, const std::string&
     return html + "</div>\n";
 }
 
+// Whether the page has the mesh of the map, and the map's levels.
+bool is_live(const HtmlMap& map, const HtmlReport::MeshNumbers& meshes) {
+    return map.on_mesh && meshes.contains(map.on_mesh->mesh.get()) && !map.shown().levels.empty();
+}
+
+// The stage of the mesh that the one before it is compared with.
+std::string stage_beside(const HtmlMap& map, std::size_t number, const HtmlReport::MeshNumbers& meshes) {
+    const HtmlBeside& beside = *map.beside;
+    const auto mesh = meshes.find(beside.mesh.get());
+    std::string html = "<div class=\"stage mesh beside\" style=\"--shape: 1 / 1\"";
+    if (mesh != meshes.end() && is_live(map, meshes))
+        html += fmt::format(" data-map=\"{}\" data-mesh=\"{}\" data-beside", number, mesh->second);
+    html += ">\n" + figure(beside.still, map.file);
+    return html + fmt::format("<p class=\"remark\">{}</p>\n</div>\n", html_text(beside.remark));
+}
+
 // The stage of the map on its mesh. If the page lacks the mesh or the map's levels, it stays a still picture.
 std::string mesh_stage(const HtmlMap& map, std::size_t number, const HtmlReport::MeshNumbers& meshes) {
     const HtmlOnMesh& on_mesh = *map.on_mesh;
-    const auto mesh = meshes.find(on_mesh.mesh.get());
-    const bool is_live = mesh != meshes.end() && !map.shown().levels.empty();
+    const bool live = is_live(map, meshes);
     std::string html = "<div class=\"stage mesh\" style=\"--shape: 1 / 1\"";
-    if (is_live) {
-        html += fmt::format(" data-map=\"{}\" data-mesh=\"{}\" data-y=\"{}\" data-file=\"{}\"", number, mesh->second,
-                            name_of(kYAxisNames, on_mesh.y), html_text(on_mesh.map));
+    if (live) {
+        html += fmt::format(" data-map=\"{}\" data-mesh=\"{}\" data-y=\"{}\" data-file=\"{}\"", number,
+                            meshes.at(on_mesh.mesh.get()), name_of(kYAxisNames, on_mesh.y), html_text(on_mesh.map));
+        if (map.beside && !map.beside->missed.empty()) html += fmt::format(" data-missed=\"missed-{}\"", number);
     }
     html += ">\n" + figure(on_mesh.still, map.file);
-    if (!is_live && !map.shown().levels.empty()) {
+    if (!live && !map.shown().levels.empty()) {
         html += fmt::format("<p class=\"remark\">The light on this mesh cannot be moved, because {}.</p>\n",
                             on_mesh.mesh == nullptr
                                 ? fmt::format("its {} triangles would make this report too large", on_mesh.triangles)
@@ -66,15 +82,21 @@ std::string stages(const HtmlEntry& entry, std::size_t number, const HtmlReport:
     const HtmlMap& map = entry.maps.front();
     const HtmlPicture& still = map.lit.png.empty() ? map.thumbnail : map.lit;
     const bool has_levels = !map.shown().levels.empty();
-    std::string html = fmt::format("<div class=\"stages\">\n<div class=\"stage\" style=\"--shape: {} / {}\"",
-                                   map.extent.width, map.extent.height);
+    std::string html;
+    if (map.beside) {  // both meshes side by side, and the map below them
+        html += "<div class=\"pair\">\n";
+        if (map.on_mesh) html += mesh_stage(map, number, meshes);
+        html += stage_beside(map, number, meshes) + "</div>\n";
+    }
+    html += fmt::format("<div class=\"stages\">\n<div class=\"stage\" style=\"--shape: {} / {}\"", map.extent.width,
+                        map.extent.height);
     if (has_levels) html += fmt::format(" data-map=\"{}\"", number);
     if (has_levels && entry.maps.size() > 1) html += fmt::format(" data-other=\"{}\"", number + 1);
     html += ">\n";
     html += figure(still, map.file);
     if (!has_levels) html += "<p class=\"remark\">This report has too many files for a light that you can move.</p>\n";
     html += "</div>\n";
-    if (map.on_mesh) html += mesh_stage(map, number, meshes);
+    if (map.on_mesh && !map.beside) html += mesh_stage(map, number, meshes);
     return html + "</div>\n";
 }
 
@@ -104,6 +126,7 @@ void HtmlReport::add(const std::string& key, HtmlEntry entry) {
         map.chain = {};
         map.limit(side_);
         if (map.on_mesh) share_mesh(map.on_mesh->mesh);
+        if (map.beside) share_mesh(map.beside->mesh);
     }
     HtmlEntry& kept = entries_[key];
     size_ += size_of(entry) - size_of(kept);
@@ -132,10 +155,12 @@ HtmlReport::MeshNumbers HtmlReport::mesh_numbers() const {
     for (const auto& [key, entry] : entries_) {
         for (const HtmlMap& map : entry.maps) {
             if (!map.on_mesh || map.on_mesh->mesh == nullptr || map.shown().levels.empty()) continue;
-            const HtmlMesh& mesh = *map.on_mesh->mesh;
-            if (numbers.count(&mesh) != 0 || size + mesh.size() > kHtmlMeshBudget) continue;
-            size += mesh.size();
-            numbers.emplace(&mesh, numbers.size());
+            for (const HtmlMesh* const mesh :
+                 {map.on_mesh->mesh.get(), map.beside ? map.beside->mesh.get() : nullptr}) {
+                if (mesh == nullptr || numbers.count(mesh) != 0 || size + mesh->size() > kHtmlMeshBudget) continue;
+                size += mesh->size();
+                numbers.emplace(mesh, numbers.size());
+            }
         }
     }
     return numbers;
@@ -248,6 +273,9 @@ std::string HtmlReport::data() const {
             for (const HtmlLevels::One& level : map.shown().levels)
                 all.insert(all.end(), level.bytes.begin(), level.bytes.end());
             bytes += fmt::format("<script type=\"text/plain\" id=\"map-{}\">{}</script>\n", maps.size(), base64(all));
+            if (map.beside && !map.beside->missed.empty())
+                bytes += fmt::format("<script type=\"text/plain\" id=\"missed-{}\">{}</script>\n", maps.size(),
+                                     base64(map.beside->missed));
             maps.push_back(map.json());
         }
     }

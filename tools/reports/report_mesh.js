@@ -7,8 +7,9 @@ const kMeshVertexShader = `#version 300 es
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 tangent;
-layout(location = 3) in vec2 place;
+layout(location = 3) in vec2 texel;
 uniform mat4 camera;
+uniform vec4 place;
 uniform int kind;
 out vec3 point, normalAcross, tangentAcross, binormalAcross;
 out vec2 uv;
@@ -16,21 +17,22 @@ out float sign;
 
 vec3 unitOrNull(vec3 v) { return dot(v, v) > 1e-12 ? normalize(v) : vec3(0.0); }
 void main() {
-  point = position;
-  uv = place;
+  point = position * place.w + place.xyz;
+  uv = texel;
   sign = tangent.w < 0.0 ? -1.0 : 1.0;
   normalAcross = unitOrNull(normal);
   tangentAcross = unitOrNull(tangent.xyz);
   binormalAcross = sign * cross(normalAcross, tangentAcross);
   if (kind == 2) binormalAcross = unitOrNull(binormalAcross);
-  gl_Position = camera * vec4(position, 1.0);
+  gl_Position = camera * vec4(point, 1.0);
 }`;
 
 // The numbers of `kind` are those of kDecoderKinds.
 const kMeshShader = kShading + `
 uniform highp int kind;
 uniform bool rebuildsZ;
-uniform sampler2D textureA;
+uniform sampler2D textureA, missed;
+uniform bool showsMissed;
 uniform Map a;
 uniform float bump;
 in vec3 point, normalAcross, tangentAcross, binormalAcross;
@@ -61,7 +63,9 @@ void main() {
   vec3 t = tangentAcross, across = normalAcross;
   vec3 b = kind == 1 ? (sign < 0.0 ? -1.0 : 1.0) * cross(across, t) : binormalAcross;
   if (kind == 2) { t = unitOrSame(t); b = unitOrSame(b); across = unitOrSame(across); }
-  color = vec4(linearLight(unitOf(n.x * t + n.y * b + n.z * across), point), 1.0);
+  vec3 lit = linearLight(unitOf(n.x * t + n.y * b + n.z * across), point);
+  bool isMissed = showsMissed && texture(missed, uv).r > 0.5;
+  color = vec4(isMissed ? vec3(0.6, 0.02, 0.02) * (0.3 + dot(lit, vec3(0.4))) : lit, 1.0);
 }`;
 
 // Makes sRGB of a finished picture, whose samples were averaged as light.
@@ -79,11 +83,12 @@ const sumOf = (vectors, factors) => [0, 1, 2].map((c) => vectors.reduce((sum, v,
 
 // The camera of preview-normals for a square picture of a mesh: its axes, half the height of the picture plane through
 // the origin, the eye, and the matrix that WebGL needs.
-function viewOf(yaw, pitch) {
+// `reach`: of what is drawn, from the origin.
+function viewOf(yaw, pitch, reach = 1) {
   const [sy, cy, sp, cp] = [yaw, pitch].flatMap((angle) => [Math.sin(angle * Math.PI / 180), Math.cos(angle * Math.PI / 180)]);
   const right = [cy, 0, -sy], up = [-sy * sp, cp, -cy * sp], toward = [sy * cp, sp, cy * cp];
   const slope = Math.tan(Math.PI / 12), half = 1.06 * Math.hypot(1, slope), distance = half / slope;
-  const near = distance - 1.01, far = distance + 1.01;
+  const near = Math.max(distance - 1.01 * reach, 0.1), far = distance + 1.01 * reach;
   const depth = (far + near) / (far - near), shift = 2 * far * near / (far - near);
   const rows = [[...right.map((c) => c / slope), 0], [...up.map((c) => c / slope), 0],
     [...toward.map((c) => -c * depth), depth * distance - shift], [...toward.map((c) => -c), distance]];
@@ -93,7 +98,7 @@ function viewOf(yaw, pitch) {
 // Draws meshes by number, with the maps of a Lighting.
 class MeshLighting {
   constructor(lighting, meshes) {
-    Object.assign(this, {lighting, meshes, loaded: new Map(), size: 0});
+    Object.assign(this, {lighting, meshes, loaded: new Map(), masks: new Map(), size: 0});
     const gl = this.gl = lighting.gl;
     this.program = new Program(gl, kMeshVertexShader, kMeshShader);
     this.display = new Program(gl, kPictureShader, kDisplayShader);
@@ -117,6 +122,23 @@ class MeshLighting {
     gl.bindVertexArray(null);
     this.loaded.set(number, array);
     return array;
+  }
+
+  // A promise of the texture of a mask: the PNG in #id.
+  mask(id) {
+    if (!this.masks.has(id)) this.masks.set(id, this.loadMask(id));
+    return this.masks.get(id);
+  }
+
+  async loadMask(id) {
+    const gl = this.gl, picture = await createImageBitmap(new Blob([bytesOf(id)], {type: "image/png"}));
+    const texture = gl.createTexture();
+    gl.activeTexture(gl.TEXTURE1);
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, picture);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+    return texture;
   }
 
   // Prepares framebuffers: this.many has several samples for each pixel, this.one has their averages.
@@ -145,13 +167,14 @@ class MeshLighting {
   }
 
   // Draws `scene` and copies it to the square `canvas`: {map, mesh, y, kind (a word of kDecoderKinds), rebuildsZ, view,
-  // bump, light: [x, y, z] in the world, point}. Returns what the GPU was given.
+  // bump, light: [x, y, z] in the world, point, missed (the id of a mask, or null)}. Returns what the GPU was given.
   async draw(canvas, scene) {
     const gl = this.gl, texture = await this.lighting.texture(scene.map);
+    const mask = scene.missed ? await this.mask(scene.missed) : null;
     this.lighting.begin(canvas, this.program);
     const array = this.mesh(scene.mesh);
     this.prepare(canvas.width);
-    this.drawMesh(array, texture, scene);
+    this.drawMesh(array, texture, mask, scene);
     const all = [0, 0, this.size, this.size];
     gl.bindFramebuffer(gl.READ_FRAMEBUFFER, this.many);
     gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, this.one);
@@ -166,11 +189,16 @@ class MeshLighting {
     return texture;
   }
 
-  drawMesh(array, texture, {map, mesh, y, kind, rebuildsZ, view, bump, light, point}) {
+  drawMesh(array, texture, mask, {map, mesh, y, kind, rebuildsZ, view, bump, light, point}) {
     const gl = this.gl, program = this.program, {vertices, triangles} = this.meshes[mesh];
     this.lighting.setMap(program, "a", 0, map, texture, y);
     this.lighting.setLight(program, light, point, view.eye);
     gl.uniformMatrix4fv(program.uniform("camera"), false, view.matrix);
+    gl.uniform4fv(program.uniform("place"), this.meshes[mesh].place || [0, 0, 0, 1]);
+    gl.activeTexture(gl.TEXTURE1);
+    gl.bindTexture(gl.TEXTURE_2D, mask || texture.id);
+    gl.uniform1i(program.uniform("missed"), 1);
+    gl.uniform1i(program.uniform("showsMissed"), mask ? 1 : 0);
     gl.uniform1i(program.uniform("kind"), kDecoderKinds.indexOf(kind));
     gl.uniform1i(program.uniform("rebuildsZ"), rebuildsZ ? 1 : 0);
     gl.uniform1f(program.uniform("bump"), bump);

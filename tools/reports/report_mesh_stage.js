@@ -23,6 +23,7 @@ class MeshStage extends Stage {
     Object.assign(this, {height: dot(kFirstLight, toward), point: false, bump: 1, b: null, show: "lit"});
     this.yA = this.root.dataset.y;
     this.decoder = this.mesh.decoder;
+    this.missed = this.root.dataset.missed || null;
     this.last = null;  // where the pointer was
   }
 
@@ -40,7 +41,20 @@ class MeshStage extends Stage {
       labelled("decoder", select(decoders, this.decoder, this.change("decoder"), {name: "decoder"}), "wide"),
       labelled("green points", this.greenA), labelled("bump scale", this.controls.bump),
       labelled("light", this.lightKind()), labelled("light's height", this.controls.height),
-      labelled("camera yaw", this.controls.yaw), labelled("camera pitch", this.controls.pitch), ...this.lastRows());
+      labelled("camera yaw", this.controls.yaw), labelled("camera pitch", this.controls.pitch), ...this.missedRow(), ...this.lastRows());
+  }
+
+  // Missed texels are red as long as the reader wants it.
+  missedRow() {
+    const mask = this.root.dataset.missed;
+    if (!mask) return [];
+    return [labelled("missed texels", select([[mask, "red"], ["", "as they were filled"]], this.missed || "", this.change("missed", (id) => id || null), {name: "missed"}))];
+  }
+
+  // The stage of the other mesh follows.
+  changed() {
+    super.changed();
+    if (this.follower) this.follower.changed();
   }
 
   // Turns the camera by degrees: to the right and up.
@@ -51,8 +65,8 @@ class MeshStage extends Stage {
 
   // Dragging turns the mesh with the pointer, half a turn from edge to edge.
   move(event) {
-    if (event.type === "pointerdown") this.canvas.setPointerCapture(event.pointerId);
-    const box = this.canvas.getBoundingClientRect(), now = [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
+    if (event.type === "pointerdown") event.target.setPointerCapture(event.pointerId);
+    const box = event.target.getBoundingClientRect(), now = [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
     if (event.type === "pointermove" && event.buttons & 1) {
       if (this.last) this.turn(Math.round(-1800 * (now[0] - this.last[0])) / 10, Math.round(1800 * (now[1] - this.last[1])) / 10);
     } else {
@@ -72,9 +86,9 @@ class MeshStage extends Stage {
   state() { return `${super.state()}; camera ${this.yaw}, ${this.pitch}`; }
 
   paint() {
-    const {map, number: mesh, yA: y, camera: view, bump, light, point} = this;
+    const {map, number: mesh, yA: y, camera: view, bump, light, point, missed} = this;
     const [, kind, , rebuildsZ] = this.page.decoders.find(([name]) => name === this.decoder);
-    return this.page.onMesh.draw(this.canvas, {map, mesh, y, kind, rebuildsZ, view, bump, light, point});
+    return this.page.onMesh.draw(this.canvas, {map, mesh, y, kind, rebuildsZ, view, bump, light, point, missed});
   }
 
   tell() {
@@ -92,4 +106,29 @@ class MeshStage extends Stage {
     if (this.bump !== 1) words.push("--bump-scale", this.bump);
     return words.concat("--size", this.size.join("x")).join(" ");
   }
+}
+
+// The mesh that the one before it is compared with: without a map, under the same light, turned with it.
+class BesideStage extends MeshStage {
+  constructor(root, page) {
+    super(root, page);
+    this.leader = root.previousElementSibling.stage || (root.previousElementSibling.stage = makeStage(root.previousElementSibling, page));
+    this.leader.follower = this;
+  }
+
+  get what() { return "and the mesh that it was made from"; }
+  get camera() {
+    const [x, y, z, radius] = this.mesh.place || [0, 0, 0, 1];
+    return viewOf(this.leader.yaw, this.leader.pitch, Math.max(1, Math.hypot(x, y, z) + radius));
+  }
+  reset() {}
+  fillPanel() { this.gpu = this.root.querySelector(".remark"); }
+  move(event) { this.leader.move(event); }
+  key(event) { this.leader.key(event); }
+
+  paint() {
+    const {map, number: mesh, camera: view, leader: {light, point, yA: y}} = this;
+    return this.page.onMesh.draw(this.canvas, {map, mesh, y, kind: "per-vertex", rebuildsZ: true, view, bump: 0, light, point, missed: null});
+  }
+  tell() { this.caption.textContent = this.stillCaption; }
 }

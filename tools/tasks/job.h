@@ -56,11 +56,11 @@ public:
 
     // Printed after "FILE: ", the input. `file` is the file that the warning is about, if it is another one.
     void warn(std::string sentence, const std::string& file = {}) {
-        warnings_.push_back({file.empty() || file == task.input ? task.name() : file, std::move(sentence)});
+        warnings_.push_back({name_for(file), std::move(sentence)});
     }
     // A warning that the command prints once for many files: only --json prints it for each.
     void remark(std::string sentence, const std::string& file = {}) {
-        remarks_.push_back({file.empty() || file == task.input ? task.name() : file, std::move(sentence)});
+        remarks_.push_back({name_for(file), std::move(sentence)});
     }
     void say(std::string_view text) { text_ += text; }            // on standard output, unless --json is given
     void raise(ExitCode code) { code_ = std::max(code_, code); }  // the run exits with this code or a higher one
@@ -73,6 +73,11 @@ public:
     [[nodiscard]] ExitCode code() const { return code_; }
 
 private:
+    // A warning about the whole mesh is not one about a tile of it.
+    [[nodiscard]] std::string name_for(const std::string& file) const {
+        const bool is_input = file.empty() || (file == task.input && !task.is_tile_of_mesh());
+        return is_input ? task.name() : file;
+    }
     [[nodiscard]] bool advance(double fraction) const { return advance_(fraction, words_ ? words_() : std::string()); }
 
     int threads_;

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,17 +27,24 @@ struct Task {
     std::vector<std::string> shared = {};        // files that options name and every output depends on
     std::vector<std::string> own = {};           // files that options name and only this output depends on
     std::vector<std::string> more_outputs = {};  // outputs besides the first one
-    const Engine* engine = nullptr;              // what the output is for, if --for says it
-    int tile = 0;                                // the UDIM tile of the input (udim.h), or 0
-    std::string pattern = {};                    // the input's name with the mark, if there is a tile
-    std::optional<GridPlace> place = {};         // of the input, if it is a tile of a terrain (grid.h)
+    // The files of options that write, such as --height-out, where the caller decides about names; else empty.
+    std::map<std::string, std::string> places = {};
+    const Engine* engine = nullptr;       // what the output is for, if --for says it
+    int tile = 0;                         // the UDIM tile (udim.h), or 0
+    std::string pattern = {};             // the input's name with the mark, if that says the tile
+    std::optional<GridPlace> place = {};  // of the input, if it is a tile of a terrain (grid.h)
     // The tiles around it, row by row, with an empty name for its own and for those that do not exist.
     std::vector<std::string> around = {};
     std::shared_ptr<const ModelInput> model = {};  // the input is this map of a model, and not the file itself
     std::vector<std::shared_ptr<const ModelInput>> joined_models = {};  // the same for each of `joined`
 
     // The input as messages call it.
-    [[nodiscard]] std::string name() const { return model ? model->name() : input; }
+    [[nodiscard]] std::string name() const {
+        if (model) return model->name();
+        return is_tile_of_mesh() ? input + " (tile " + std::to_string(tile) + ")" : input;
+    }
+    // The input is a mesh, and the output is for its triangles in one tile.
+    [[nodiscard]] bool is_tile_of_mesh() const { return tile != 0 && pattern.empty(); }
     // The file of the normal map.
     [[nodiscard]] const std::string& map_path() const { return model && model->map ? model->path : input; }
 

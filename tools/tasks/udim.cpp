@@ -38,6 +38,7 @@ bool has_tile(std::string_view name) { return name.find(kTileMark) != std::strin
 
 std::string with_tile(const std::string& name, int tile) {
     std::string text = name;
+    if (tile == 0) return text;
     for (std::size_t mark = text.find(kTileMark); mark != std::string::npos; mark = text.find(kTileMark))
         text.replace(mark, kTileMark.size(), std::to_string(tile));
     return text;

@@ -33,7 +33,7 @@ struct Input {
 
 [[nodiscard]] bool has_tile(std::string_view name);
 
-// The name with the tile's number in the place of every mark.
+// The name with the tile's number in the place of every mark; the name itself if there is no tile.
 [[nodiscard]] std::string with_tile(const std::string& name, int tile);
 
 // The files that a name stands for: itself, or those that exist, in the order of their tiles. Errors: io (there is

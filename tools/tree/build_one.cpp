@@ -44,10 +44,11 @@ private:
 };
 
 // The output of `maker` that the recipe reads.
-std::string needed_file(const BuildTask& maker, const Recipe& recipe) {
+std::string needed_file(const BuildTask& maker, const std::vector<Recipe>& recipes, const Recipe& recipe) {
+    const std::vector<std::string> made = files_of(maker, recipes[maker.recipe]);
     for (const std::string& file : recipe.files()) {
         std::string name = fs::path(file).lexically_normal().string();
-        if (std::find(maker.outputs.begin(), maker.outputs.end(), name) != maker.outputs.end()) return name;
+        if (std::find(made.begin(), made.end(), name) != made.end()) return name;
     }
     return maker.outputs.front();
 }
@@ -71,7 +72,9 @@ Result<Made> BuildRun::make(const BuildTask& task, const std::vector<Stale>& sta
     std::vector<WantedOutput> wanted;
     for (const Stale& one : stale) {
         const std::string target = contents_.path(task.outputs[one.index]);
-        if (const auto created = create_folders_of(target); !created) return created.error();
+        for (const std::string& file : recipe.files_of(task.input, one.index).all()) {
+            if (const auto created = create_folders_of(contents_.path(file)); !created) return created.error();
+        }
         wanted.push_back({one.index, target, is_checked ? in_memory() : std::string()});
     }
     MakeSettings settings{running_, write, [&](double fraction) {
@@ -111,12 +114,13 @@ Result<void> BuildRun::fetch(const BuildTask& task, Judgement& judgement, Placem
     if (!cache_.is_used()) return {};
     std::vector<Stale> left;
     for (Stale& stale : judgement.stale) {
-        const std::string& output = task.outputs[stale.index];
-        const std::string path = contents_.path(output);
-        if (auto created = create_folders_of(path); !created) return created;
+        const OutputFiles files = paths_of(task, stale.index);
+        for (const std::string& path : files.all()) {
+            if (auto created = create_folders_of(path); !created) return created;
+        }
         const auto found =
-            cache_.fetch(key_of(stale.settings, judgement.inputs.digest), path, placement.watched(write_));
-        if (!found) return with_remedy(found.error(), path);
+            cache_.fetch(key_of(stale.settings, judgement.inputs.digest), files, placement.watched(write_));
+        if (!found) return with_remedy(found.error(), contents_.path(task.outputs[stale.index]));
         if (found->empty()) {
             left.push_back(std::move(stale));
         } else {
@@ -125,6 +129,14 @@ Result<void> BuildRun::fetch(const BuildTask& task, Judgement& judgement, Placem
     }
     judgement.stale = std::move(left);
     return {};
+}
+
+// The files of an output as paths.
+OutputFiles BuildRun::paths_of(const BuildTask& task, std::size_t output) const {
+    OutputFiles files = recipes_[task.recipe].files_of(task.input, output);
+    if (!files.levels.empty()) files.levels = contents_.path(files.levels);
+    for (std::string& file : files.files) file = contents_.path(file);
+    return files;
 }
 
 std::string BuildRun::name_of_path(const std::string& path) const {
@@ -150,13 +162,13 @@ void BuildRun::record(const BuildTask& task, const Stale& made, const Inputs& in
 
 // Records what has taken its place although the whole failed, so that it can be found and replaced.
 void BuildRun::record_parts(const BuildTask& task, const Placement& placement) {
-    for (const std::string& output : task.outputs) {
+    for (std::size_t k = 0; k < task.outputs.size(); ++k) {
         PlacedFiles files;
-        for (const std::string& path : with_all_levels(contents_.path(output))) {
+        for (const std::string& path : paths_of(task, k).all()) {
             const auto placed = placement.placed().find(path);
             if (placed != placement.placed().end()) files.emplace_back(name_of_path(path), placed->second);
         }
-        if (!files.empty()) judge_.record_part(task, output, files);
+        if (!files.empty()) judge_.record_part(task, task.outputs[k], files);
     }
 }
 
@@ -175,7 +187,8 @@ std::vector<std::optional<FileStamp>> BuildRun::stamps_of(const BuildTask& task)
     const auto is_made = [&](const std::string& file) {
         const std::string name = fs::path(file).lexically_normal().string();
         return std::any_of(task.needs.begin(), task.needs.end(), [&](std::size_t needed) {
-            const std::vector<std::string>& outputs = work_.tasks[needed].outputs;
+            const BuildTask& maker = work_.tasks[needed];
+            const std::vector<std::string> outputs = files_of(maker, recipes_[maker.recipe]);
             return std::find(outputs.begin(), outputs.end(), name) != outputs.end();
         });
     };
@@ -259,7 +272,7 @@ void BuildRun::store(const BuildTask& task, const Stale& made, const Inputs& inp
         if (!bytes || placed == placement.placed().end() || digest_of(*bytes) != placed->second.digest) return;
         contents.push_back(std::move(*bytes));
     }
-    const auto stored = cache_.store(key_of(made.settings, inputs.digest), task.outputs[made.index], contents);
+    const auto stored = cache_.store(key_of(made.settings, inputs.digest), paths_of(task, made.index), contents);
     if (stored || (stored.error().detail == ErrorDetail::no_space && cache_is_full_.exchange(true))) return;
     outcome.warnings.push_back({task.input, "the cache does not take it: " + stored.error().message() +
                                                 (cache_is_full_ ? "; nothing else is put there" : "")});
@@ -283,7 +296,7 @@ Result<void> BuildRun::bring_up_to_date(std::size_t index, double& counted, Outc
     outcome.report["rule"] = recipe.number();
     if (!task.refusal.empty()) return Error{ErrorCode::bad_option, task.input, task.refusal};
     for (const std::size_t needed : task.needs) {
-        const std::string name = printable(needed_file(work_.tasks[needed], recipe));
+        const std::string name = printable(needed_file(work_.tasks[needed], recipes_, recipe));
         if (const ExitCode cause = failed_[needed]; cause != ExitCode::done)
             return fail_with(cause, task, name, outcome);
         if (!stale_[needed]) continue;

@@ -63,6 +63,7 @@ private:
     Result<bool> are_unchanged(const BuildTask& task, const std::vector<std::optional<FileStamp>>& stamps,
                                const Digest& inputs);
     Result<void> fetch(const BuildTask& task, Judgement& judgement, Placement& placement, Outcome& outcome);
+    [[nodiscard]] OutputFiles paths_of(const BuildTask& task, std::size_t output) const;
     [[nodiscard]] std::string name_of_path(const std::string& path) const;
     void record(const BuildTask& task, const Stale& made, const Inputs& inputs, const std::vector<std::string>& paths,
                 const Placement& placement, Outcome& outcome);

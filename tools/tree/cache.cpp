@@ -23,17 +23,20 @@ std::string first_line(const Digest& key, std::string_view body) {
     return cache_head() + key.hex() + " " + digest_of(body).hex() + "\n";
 }
 
-// If each level has its file, there is an entry for each of them, and one with their number.
+// If an output has several files, there is an entry for each of them, and one with their number.
+bool has_parts(const OutputFiles& output) { return !output.levels.empty() || output.files.size() != 1; }
 Digest key_of_part(const Digest& key, const std::string& part) {
     return Sha256().add(key.bytes.data(), key.bytes.size()).add(part).finish();
 }
 Digest count_key(const Digest& key) { return key_of_part(key, "levels"); }
-Digest level_key(const Digest& key, std::size_t level) { return key_of_part(key, std::to_string(level)); }
+Digest part_key(const Digest& key, std::size_t part) { return key_of_part(key, std::to_string(part)); }
 
-std::size_t level_count(const std::string& entry) {
+constexpr std::size_t kMostParts = 100'000;
+
+std::size_t part_count(const std::string& entry) {
     std::size_t count = 0;
     const auto [end, error] = std::from_chars(entry.data(), entry.data() + entry.size(), count);
-    return error == std::errc() && end == entry.data() + entry.size() && count <= 32 ? count : 0;
+    return error == std::errc() && end == entry.data() + entry.size() && count <= kMostParts ? count : 0;
 }
 
 }  // namespace
@@ -60,16 +63,18 @@ Result<void> Cache::write(const Digest& key, const std::string& bytes) const {
     return write_cache_entry(folder_, key.hex(), first_line(key, bytes) + bytes);
 }
 
-Result<std::vector<std::string>> Cache::fetch(const Digest& key, const std::string& output, const WriteOptions& write) {
-    const bool has_levels = has_level(output);
+Result<std::vector<std::string>> Cache::fetch(const Digest& key, const OutputFiles& output, const WriteOptions& write) {
     std::size_t count = 1;
-    if (has_levels) count = level_count(read(count_key(key)).value_or(""));
+    if (has_parts(output)) count = part_count(read(count_key(key)).value_or(""));
+    const std::size_t others = output.files.size();
+    if (count < others || (output.levels.empty() && count != others)) return std::vector<std::string>();
     std::vector<std::string> files, contents;
     for (std::size_t k = 0; k < count; ++k) {
-        std::optional<std::string> bytes = read(has_levels ? level_key(key, k) : key);
+        std::optional<std::string> bytes = read(has_parts(output) ? part_key(key, k) : key);
         if (!bytes) return std::vector<std::string>();
         contents.push_back(std::move(*bytes));
-        files.push_back(has_levels ? with_level(output, static_cast<int>(k)) : output);
+        const std::size_t levels = count - others;
+        files.push_back(k < levels ? with_level(output.levels, static_cast<int>(k)) : output.files[k - levels]);
     }
     for (std::size_t k = 0; k < count; ++k) {
         if (const auto written = write_text_file(files[k], contents[k], write); !written) return written.error();
@@ -77,13 +82,12 @@ Result<std::vector<std::string>> Cache::fetch(const Digest& key, const std::stri
     return files;
 }
 
-Result<void> Cache::store(const Digest& key, const std::string& output,
+Result<void> Cache::store(const Digest& key, const OutputFiles& output,
                           const std::vector<std::string>& contents) const {
-    const bool has_levels = has_level(output);
     for (std::size_t k = 0; k < contents.size(); ++k) {
-        if (auto written = write(has_levels ? level_key(key, k) : key, contents[k]); !written) return written;
+        if (auto written = write(has_parts(output) ? part_key(key, k) : key, contents[k]); !written) return written;
     }
-    return has_levels ? write(count_key(key), std::to_string(contents.size())) : Result<void>();
+    return has_parts(output) ? write(count_key(key), std::to_string(contents.size())) : Result<void>();
 }
 
 void Cache::shrink(std::int64_t bytes, Console& console) const {

@@ -23,6 +23,7 @@
 #include <tex/result.h>
 
 #include "cli/console.h"
+#include "tree/recipe.h"
 #include "tree/sha256.h"
 
 namespace tex::cli {
@@ -39,12 +40,12 @@ public:
     // UsageError: the folder holds other files and is not marked as a cache, or is one of another version. Errors: io.
     [[nodiscard]] Result<void> open(bool is_read_only) const;
 
-    // Writes the output `key` to the file `output`, or to a file for each level if the name contains {level}. Returns
-    // the files; none if there is no such entry, or if it is damaged. Errors: those of writing.
-    [[nodiscard]] Result<std::vector<std::string>> fetch(const Digest& key, const std::string& output,
+    // Writes the output `key` to its files. Returns them, those of levels first; none if there is no such entry, or if
+    // it is damaged. Errors: those of writing.
+    [[nodiscard]] Result<std::vector<std::string>> fetch(const Digest& key, const OutputFiles& output,
                                                          const WriteOptions& write);
     // Keeps the contents of the files that fetch() returns. Errors: io.
-    [[nodiscard]] Result<void> store(const Digest& key, const std::string& output,
+    [[nodiscard]] Result<void> store(const Digest& key, const OutputFiles& output,
                                      const std::vector<std::string>& contents) const;
     // Removes the entries that have not been used for the longest time until the others take at most `bytes`.
     void shrink(std::int64_t bytes, Console& console) const;

@@ -10,6 +10,7 @@
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "tasks/name_pattern.h"
+#include "tree/tree_files.h"
 
 namespace tex::cli {
 namespace {
@@ -103,11 +104,9 @@ std::string task_text(const BuildTask& task, const Recipe& recipe) {
 std::string explanation_of(const std::string& file, const std::vector<Recipe>& recipes, const WorkList& work) {
     const std::string name = std::filesystem::path(file).lexically_normal().string();
     const auto task = std::find_if(work.tasks.begin(), work.tasks.end(), [&](const BuildTask& candidate) {
-        return candidate.input == name ||
-               std::any_of(candidate.outputs.begin(), candidate.outputs.end(), [&](const std::string& output) {
-                   const std::vector<std::string> files = with_all_levels(output);
-                   return std::find(files.begin(), files.end(), name) != files.end();
-               });
+        if (candidate.input == name) return true;
+        const std::vector<std::string> files = files_of(candidate, recipes[candidate.recipe]);
+        return std::find(files.begin(), files.end(), name) != files.end();
     });
     std::string text;
     if (task != work.tasks.end()) text = task_text(*task, recipes[task->recipe]);

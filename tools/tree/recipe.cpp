@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <utility>
 #include <variant>
 
@@ -11,7 +12,7 @@
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
-#include "tasks/other_parts.h"
+#include "tasks/udim.h"
 
 namespace tex::cli {
 namespace {
@@ -20,8 +21,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSuffix = "-normals";
 constexpr const char* kOutputGroup = "Output";
-// An intermediate result, of which only the type and the encoding count. No such file exists.
-constexpr const char* kBetween = "between.exr";
 
 Converter* converter_of(Program& program) {
     auto* const converter = dynamic_cast<Converter*>(&program);
@@ -47,6 +46,8 @@ std::vector<std::string> groups_of(const Command& command) {
 }
 
 bool names_a_file(const Row& row) { return row.completes == Completes::files; }
+
+constexpr int kAnyTile = 1001;  // to try whether options fit tiles
 
 }  // namespace
 
@@ -141,9 +142,9 @@ void Recipe::add_option(const OptionSetting& setting, const Command& command, co
 std::string Recipe::with_root(const std::string& argument, const Command& command) const {
     const auto [name, value] = cut(argument, '=');
     const Row* const row = row_of(command, name.substr(2), groups_of(command));
-    // {dir} is that of the input, which is below the root.
-    const bool is_below = !root_.empty() && row != nullptr && names_a_file(*row) && !fs::path(value).is_absolute() &&
-                          !value.starts_with("{dir}");
+    // {dir} is that of the input, which is below the root. Files to write get their places later.
+    const bool is_below = !root_.empty() && row != nullptr && names_a_file(*row) && !row->writes &&
+                          !fs::path(value).is_absolute() && !value.starts_with("{dir}");
     return is_below ? fmt::format("{}={}/{}", name, root_, value) : argument;
 }
 
@@ -161,7 +162,11 @@ ReadyCommand Recipe::ready(const StepSettings& step, const OutputSettings* outpu
         return output != nullptr && std::any_of(output->settings.begin(), output->settings.end(),
                                                 [&](const OptionSetting& setting) { return setting.key == key; });
     };
+    // The first of several outputs has the maps beside it.
+    const bool is_first = outputs_.empty();
     for (const OptionSetting& setting : step.settings) {
+        const Row* const row = row_of(table, setting.key, groups);
+        if (row != nullptr && row->writes && !is_first) continue;
         if (!overrides(setting.key)) add_option(setting, table, groups, command.arguments);
     }
     if (output != nullptr) {
@@ -189,8 +194,14 @@ ReadyCommand Recipe::ready(const StepSettings& step, const OutputSettings* outpu
     table.forbid_answers();
     try {
         std::ignore = table.parse(pointers, console);
-        const Task task = command.converter->task_for(before_.empty() ? "input" : kBetween, out);
-        if (!task.more_outputs.empty()) throw UsageError("a manifest cannot name a second file to write yet");
+        Task task{before_.empty() ? "input" : kBetween, out};
+        if (has_tile(out) && command.converter->makes_tiles()) task.tile = kAnyTile;
+        task = command.converter->task_for(std::move(task));
+        for (const Row& row : table.rows()) {
+            if (row.writes && !row.given.empty())
+                command.writes.emplace_back(row.name(), NamePattern(row.given.back()));
+        }
+        check_writes(command);
         if (const auto checked = command.converter->check_task(task); !checked)
             throw UsageError(checked.error().message());
     } catch (const UsageError& error) {
@@ -228,6 +239,8 @@ void Recipe::add_output(const OutputSettings& output, Console& console) {
     } catch (const UsageError& error) {
         fail_at(manifest_.path, output.place, fmt::format("name: {}", error.what()));
     }
+    if (has_tile(out) && has_level(out))
+        fail_at(manifest_.path, output.place, "name: <UDIM> and {level} contradict each other");
     const bool names_engine = name->uses("engine");
     if (check_->is_given() && has_level(out))
         fail_at(manifest_.path, output.place, "check needs all levels in one file");
@@ -258,42 +271,6 @@ void Recipe::add_output(const OutputSettings& output, Console& console) {
         for (const std::string& file : files) files_.push_back(below_root(file));
     }
     outputs_.push_back(std::move(made));
-}
-
-std::string Recipe::below_root(const std::string& file) const {
-    const bool is_below = !root_.empty() && file.starts_with(root_ + "/");
-    return is_below ? file.substr(root_.size() + 1) : file;
-}
-
-// What an input has and another has not is its own.
-std::vector<std::string> Recipe::files_for_all(const Converter& converter, const std::string& out) const {
-    std::vector<std::string> files = converter.task_for("input", out).prerequisites();
-    const std::vector<std::string> others = converter.task_for("other/name", out).prerequisites();
-    std::erase_if(
-        files, [&](const std::string& file) { return std::find(others.begin(), others.end(), file) == others.end(); });
-    return files;
-}
-
-std::vector<std::string> Recipe::own_files(const std::string& input, const std::string& path) const {
-    std::vector<std::string> files = other_parts(input, path);
-    const ReadyCommand& first = before_.empty() ? outputs_.front().last : before_.front();
-    const std::string out = before_.empty() ? first_out_ : kBetween;
-    for (const std::string& file : first_task(*first.converter, path, out).prerequisites()) {
-        std::string name = below_root(file);
-        const bool is_known = std::find(files_.begin(), files_.end(), name) != files_.end() ||
-                              std::find(files.begin(), files.end(), name) != files.end();
-        if (!is_known) files.push_back(std::move(name));
-    }
-    return files;
-}
-
-// An output that leads out of the root whatever its input is called is a mistake in the manifest.
-void Recipe::check_folder(const NamePattern& name, const std::string& out, const Place& place) const {
-    const fs::path whole = (fs::path(rule_.out_dir) / fs::path(out).relative_path()).lexically_normal();
-    if (!name.uses("dir") && *whole.begin() == "..") {
-        fail_at(manifest_.path, place,
-                fmt::format("name: {} leads out of the folder of the manifest", printable(whole.string())));
-    }
 }
 
 NamedValues Recipe::named_settings(const ReadyCommand& last, const Task& task) const {
@@ -334,24 +311,6 @@ std::string Recipe::preset_of(const std::string& name) const {
     return {};
 }
 
-std::string Recipe::output_name(const std::string& input, std::size_t index) const {
-    const RecipeOutput& output = outputs_[index];
-    NameFields fields = name_fields(input);
-    const OutputOptions options = output.last.converter->output_for_task();
-    options.fill(fields);
-    if (!options.format && output.name.uses("format")) {
-        const Task task = output.last.converter->task_for(input, output.name.expand(fields));
-        fields.format = name_of(kEncodingNames, default_encoding(task.container));
-    }
-    const fs::path name = fs::path(output.name.expand(fields)).relative_path();
-    const fs::path whole = (fs::path(rule_.out_dir) / name).lexically_normal();
-    if (!whole.is_absolute() && *whole.begin() == "..") {
-        throw UsageError(
-            fmt::format("the output {} leads out of the folder of the manifest", printable(whole.string())));
-    }
-    return whole.string();
-}
-
 std::vector<std::string> Recipe::command_lines(const std::string& input, std::size_t index) const {
     for (const std::string& grid : grids_) {  // one command makes all tiles
         if (input != grid && place_in_grid(grid, input)) return command_lines(grid, index);
@@ -366,8 +325,13 @@ std::vector<std::string> Recipe::command_lines(const std::string& input, std::si
             fmt::format("{} {} -o {}", command.program->command.name(), shell_file(from), shell_file(to));
         for (const std::string& argument : command.arguments) {
             const auto [name, value] = cut(argument, '=');
-            line += " " + name;
-            if (argument.size() > name.size()) line += " " + shell_word(value);
+            const auto write = std::find_if(command.writes.begin(), command.writes.end(),
+                                            [name = name](const auto& one) { return one.first == name; });
+            line += fmt::format(" {}", name);
+            if (write != command.writes.end())
+                line += " " + shell_file(below_out_dir(write->second.expand(name_fields(input))));
+            else if (argument.size() > name.size())
+                line += " " + shell_word(std::string(value));
         }
         lines.push_back(line + (is_last ? "" : " --format float"));
         from = to;

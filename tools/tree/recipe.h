@@ -8,6 +8,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "batch/batch.h"
@@ -21,6 +22,9 @@
 
 namespace tex::cli {
 
+// An intermediate result, of which only the type and the encoding count. No such file exists.
+inline constexpr const char* kBetween = "between.exr";
+
 // The names of steps: "bake" for bake-normals. These are the commands that make an output from each input.
 [[nodiscard]] std::vector<std::string> step_names();
 
@@ -29,6 +33,17 @@ struct ReadyCommand {
     std::unique_ptr<Program> program;
     Converter* converter = nullptr;      // the program
     std::vector<std::string> arguments;  // the options as the manifest gives them, sorted by name
+    // Those of them that name files to write, such as --height-out, and the patterns of their names.
+    std::vector<std::pair<std::string, NamePattern>> writes = {};
+};
+
+// The files of an output, below the root or as paths.
+struct OutputFiles {
+    std::string levels;              // with kLevelMark: there is a file for each level. Or empty
+    std::vector<std::string> files;  // the others: the output itself, maps beside it; for each UDIM tile
+
+    // All that may exist.
+    [[nodiscard]] std::vector<std::string> all() const;
 };
 
 // One output of a rule.
@@ -58,9 +73,15 @@ public:
 
     [[nodiscard]] const std::vector<ReadyCommand>& before() const { return before_; }  // the steps before the last
     [[nodiscard]] const std::vector<RecipeOutput>& outputs() const { return outputs_; }
-    // The name of an output of `input`, relative to the root. It contains kLevelMark if each level has its own file.
-    // Throws UsageError if it leads out of the root.
+    // The name of an output of `input`, relative to the root. It contains kLevelMark if each level has its own file,
+    // and <UDIM> if each tile of a mesh has. Throws UsageError if it leads out of the root.
     [[nodiscard]] std::string output_name(const std::string& input, std::size_t output) const;
+    // The files of such an output, relative to the root. Those of tiles depend on the mesh, which is read if it has
+    // changed. Throws UsageError if one leads out of the root.
+    [[nodiscard]] OutputFiles files_of(const std::string& input, std::size_t output) const;
+    // The tasks that make the output `to` from the file `path`: one, or one for each tile of a mesh. Only for commands
+    // that are no steps; they write each file of files_of(), in this order.
+    [[nodiscard]] std::vector<Task> tasks_of(const std::string& path, std::size_t output, const std::string& to) const;
 
     // The task of the first step, with the tiles around `path` if it is a tile of a terrain. `path` leads to the input.
     [[nodiscard]] Task first_task(const Converter& converter, const std::string& path, const std::string& out) const;
@@ -85,6 +106,10 @@ public:
 private:
     [[nodiscard]] ReadyCommand ready(const StepSettings& step, const OutputSettings* output, bool is_last,
                                      const std::string& out, Console& console) const;
+    void check_writes(const ReadyCommand& command) const;
+    [[nodiscard]] std::vector<int> tiles_of(const ReadyCommand& command, const std::string& path,
+                                            const std::string& to) const;
+    [[nodiscard]] std::string below_out_dir(const std::string& name) const;
     void add_option(const OptionSetting& setting, const Command& command, const std::vector<std::string>& groups,
                     std::vector<std::string>& arguments) const;
     [[nodiscard]] std::string with_root(const std::string& argument, const Command& command) const;

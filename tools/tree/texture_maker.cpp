@@ -102,19 +102,32 @@ std::vector<std::string> files_of(const std::string& path, int levels) {
     return files;
 }
 
+// Adds the files that the command writes, in the order of Recipe::files_of().
+Result<void> run_command(Converter& converter, Job& job, std::vector<std::string>& files) {
+    if (Result<void> done = converter.process_task(job); !done) return done;
+    if (job.code() != ExitCode::done) {
+        return Error{ErrorCode::bad_data, job.task.input,
+                     job.warnings().empty() ? "has findings" : job.warnings().back().message};
+    }
+    const std::vector<std::string>& more = job.task.more_outputs;
+    for (const std::string& file : job.outputs()) {
+        if (std::find(more.begin(), more.end(), file) == more.end()) files.push_back(file);
+    }
+    files.insert(files.end(), more.begin(), more.end());
+    return {};
+}
+
 // Commands that are no steps make their outputs one after the other.
 Result<Made> run_commands(const Recipe& recipe, const std::string& input, const std::vector<WantedOutput>& wanted,
                           Jobs& jobs) {
     Made made;
     for (const WantedOutput& output : wanted) {
-        Converter& converter = *recipe.outputs()[output.index].last.converter;
-        Job& job = jobs.add(converter.task_for(input, output.path));
-        if (const Result<void> done = converter.process_task(job); !done) return done.error();
-        if (job.code() != ExitCode::done) {
-            return Error{ErrorCode::bad_data, input,
-                         job.warnings().empty() ? "has findings" : job.warnings().back().message};
+        std::vector<std::string>& files = made.files.emplace_back();
+        for (Task& task : recipe.tasks_of(input, output.index, output.path)) {
+            Job& job = jobs.add(std::move(task));
+            if (auto done = run_command(*recipe.outputs()[output.index].last.converter, job, files); !done)
+                return done.error();
         }
-        made.files.push_back(job.outputs());
     }
     jobs.add_warnings(made);
     return made;

@@ -10,7 +10,6 @@
 #include "cli/text.h"
 #include "cli/text_file.h"
 #include "cli/usage_error.h"
-#include "tasks/name_pattern.h"
 #include "tree/state.h"
 
 namespace tex::cli {
@@ -19,6 +18,14 @@ namespace {
 std::string normal_name(const std::string& file) { return std::filesystem::path(file).lexically_normal().string(); }
 
 }  // namespace
+
+std::vector<std::string> files_of(const BuildTask& task, const Recipe& recipe) {
+    std::vector<std::string> files;
+    for (std::size_t k = 0; k < task.outputs.size() && task.refusal.empty(); ++k) {
+        for (std::string& file : recipe.files_of(task.input, k).all()) files.push_back(std::move(file));
+    }
+    return files;
+}
 
 TreeFiles::TreeFiles(const std::vector<Recipe>& recipes, const std::vector<BuildTask>& tasks, const std::string& root,
                      const RunDocuments& documents) {
@@ -37,7 +44,7 @@ void TreeFiles::add_inputs(const std::vector<Recipe>& recipes, const std::vector
         for (const std::string& part : recipes[task.recipe].own_files(task.input, path))
             read_.add(path_from(root, part),
                       fmt::format("{}, which belongs to {}", printable(part), printable(task.input)));
-        made.insert(task.outputs.begin(), task.outputs.end());
+        for (const std::string& file : files_of(task, recipes[task.recipe])) made.insert(file);
     }
     for (const Recipe& recipe : recipes) {
         for (const std::string& file : recipe.files()) {
@@ -51,15 +58,13 @@ void TreeFiles::add_outputs(const std::vector<Recipe>& recipes, const std::vecto
                             const std::string& root) {
     for (const BuildTask& task : tasks) {
         if (!task.refusal.empty()) continue;
-        for (const std::string& output : task.outputs) {
-            for (const std::string& file : with_all_levels(output)) {
-                const std::string path = path_from(root, file);
-                if (const std::string* const known = read_.find(path)) {
-                    recipes[task.recipe].fail(
-                        fmt::format("the output {} of {} is {}", printable(file), printable(task.input), *known));
-                }
-                written_.add_place(path, "an output of " + printable(task.input));
+        for (const std::string& file : files_of(task, recipes[task.recipe])) {
+            const std::string path = path_from(root, file);
+            if (const std::string* const known = read_.find(path)) {
+                recipes[task.recipe].fail(
+                    fmt::format("the output {} of {} is {}", printable(file), printable(task.input), *known));
             }
+            written_.add_place(path, "an output of " + printable(task.input));
         }
     }
 }

@@ -21,6 +21,9 @@ struct RunDocuments {
     std::vector<NamedFile> written;  // the state, a plan, a depfile, a report
 };
 
+// All files that the outputs of a task may have, relative to the root; none if it cannot be made.
+[[nodiscard]] std::vector<std::string> files_of(const BuildTask& task, const Recipe& recipe);
+
 // Files are compared as in file_table.h. Any thread may call the members that are const.
 class TreeFiles {
 public:

@@ -151,7 +151,9 @@ void Watch::learn_names() {
             add_parent_of(name);
             add_link(name);
         }
-        for (const std::string& output : task.outputs) {
+        std::vector<std::string> outputs = task.outputs;
+        for (std::string& file : files_of(task, tree_->recipes[task.recipe])) outputs.push_back(std::move(file));
+        for (const std::string& output : outputs) {
             outputs_.insert(output);
             fs::path folder = fs::path(output).parent_path();
             while (!folder.empty() && output_folders_.insert(folder.string()).second) folder = folder.parent_path();

@@ -58,6 +58,7 @@ public:
 private:
     void find_inputs();
     void find_collisions();
+    std::vector<std::string> files_of(std::size_t index, std::size_t output);
     void refuse(std::size_t index, std::size_t earlier, const char* what, const std::string& output);
     void find_needs();
     void check_cycle(std::size_t recipe, std::vector<std::size_t>& open);
@@ -109,16 +110,33 @@ void Lister::find_collisions() {
     FileTable<std::size_t> places;
     std::unordered_map<std::string, std::size_t> folded;
     for (std::size_t k = 0; k < work_.tasks.size(); ++k) {
-        for (const std::string& output : work_.tasks[k].outputs) {
+        for (std::size_t n = 0; n < work_.tasks[k].outputs.size(); ++n) {
+            const std::string& output = work_.tasks[k].outputs[n];
             const bool has_name = makers_.emplace(output, k).second;
             const auto [same, is_new] = folded.emplace(in_lower_case(output), k);
             if (!is_new)
                 refuse(k, same->second, has_name ? "outputs that differ only in the case of letters," : kSame, output);
-            for (const std::string& file : with_all_levels(output)) {
+            for (const std::string& file : files_of(k, n)) {
+                const bool is_beside = file != output && !has_level(output);
+                if (is_beside) makers_.emplace(file, k);
                 const std::size_t* const other = places.add_place(path_from(root_, file), k);
                 if (other != nullptr && is_new) refuse(k, *other, kSame, file);
+                if (other != nullptr || !is_beside) continue;
+                const auto [alike, is_other] = folded.emplace(in_lower_case(file), k);
+                if (!is_other) refuse(k, alike->second, "outputs that differ only in the case of letters,", file);
             }
         }
+    }
+}
+
+// The files of an output that may exist.
+std::vector<std::string> Lister::files_of(std::size_t index, std::size_t output) {
+    BuildTask& task = work_.tasks[index];
+    try {
+        return recipes_[task.recipe].files_of(task.input, output).all();
+    } catch (const UsageError& error) {
+        task.refusal = error.what();
+        return with_all_levels(task.outputs[output]);
     }
 }
 

@@ -39,8 +39,9 @@ struct Float4 {
 
 // Triangles that share a material: a primitive of glTF, or the faces of one object and material of OBJ.
 //
-// positions, normals, tangents and each set of uvs have one element for each vertex. Normals and tangents may be
-// missing (empty), and there may be no set of UVs. Normals are as stored, so they may differ from unit length.
+// positions, normals, tangents, colors and each set of uvs have one element for each vertex. Normals, tangents and
+// colours may be missing (empty), and there may be no set of UVs. Normals are as stored, so they may differ from unit
+// length.
 struct MeshPart {
     std::string name;   // of the mesh (glTF) or object (OBJ); may be empty
     int mesh = 0;       // parts of the same mesh of the file have the same number
@@ -56,6 +57,8 @@ struct MeshPart {
     // Triangles that, each with the next one, were a quad in the file (OBJ): its corners 0, 1, 2 and 0, 2, 3.
     // Ascending.
     std::vector<std::uint32_t> quads;
+    // Red, green and blue as stored: most files have them from 0 to 1. Read if MeshReadOptions::colors asks for them.
+    std::vector<Float3> colors;
 
     [[nodiscard]] std::size_t triangles() const { return indices.size() / 3; }
 };

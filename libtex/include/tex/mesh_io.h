@@ -15,9 +15,11 @@
 //        say how textures move them (KHR_texture_transform). Ignored: skins, morph targets (the base shape is read),
 //        animations, cameras. Other extensions: refused if the file requires them and they are not known to leave
 //        triangles alone; else Mesh::remarks says if one was ignored where it might change UVs, normals or tangents.
+//        Colours of vertices are COLOR_0 without its alpha, as floats or normalised integers.
 // OBJ    v, vt, vn, f, o, usemtl. Polygons become fans around their first corner. Faces of the same object and material
-//        are one part; those of them without UVs are another. A part has normals if all of its corners have them. All
-//        else is ignored.
+//        are one part; those of them without UVs are another. A part has normals if all of its corners have them.
+//        Colours are the three numbers after a position ("v x y z r g b"), which many programs write; a part has them
+//        if all of its corners do. All else is ignored.
 // other  What Assimp reads from one file: FBX, PLY, Collada, STL and more. As Assimp has crashed on damaged files, it
 //        runs in a separate process, tex-mesh-reader, under the limits of memory and time that ReadOptions states,
 //        and can open no other file. Polygons become triangles as Assimp divides them. Tangents count if the file has
@@ -43,6 +45,8 @@ struct MeshReadOptions {
     ReadOptions reader;
     // The largest size in bytes of the file and of each file beside it.
     std::int64_t max_bytes = std::int64_t{4} << 30;
+    // Read colours of vertices, which only transfer() uses.
+    bool colors = false;
 };
 
 // Reads a mesh. `path` "-" reads standard input; glTF from there can have no buffers in other files. Every part of the

@@ -57,6 +57,8 @@ struct SelectedPart {
     std::vector<SelectedPiece> pieces;  // in the order of their triangles
     // Those of the mesh, and what the choice left out, as sentences that follow the name of the file.
     std::vector<std::string> remarks = {};
+    // Positions, normals and triangles that in_tile() left out, for TransferInputs::around; otherwise empty.
+    MeshPart rest = {};
 };
 
 // Joins the parts that `selection` names. Tangents are made for each part, from the moved UVs, before a node transforms
@@ -93,12 +95,22 @@ struct MatchedNames {
 // _high.)
 [[nodiscard]] MatchedNames match_names(const std::vector<std::string>& low, const std::vector<std::string>& high);
 
-// The triangles whose UVs have their centre in a UDIM tile, with their tangents. Tile 1001 + u + 10 v is the square
-// from (u, v) to (u + 1, v + 1), where v points up and u is 0 to 9 (Foundry, Mari).
+// The triangles whose UVs have their centre in a UDIM tile, with their tangents, and the others as `rest`. Tile 1001 +
+// u + 10 v is the square from (u, v) to (u + 1, v + 1), where v points up and u is 0 to 9 (Foundry, Mari).
 //
 // Errors: bad_data (check_part(selected.part) fails), bad_option (tile is below 1001; no triangle is there),
 //         out_of_memory
 [[nodiscard]] Result<SelectedPart> in_tile(const SelectedPart& selected, int tile);
+
+// The UDIM tiles of a part, and what does not fit into them.
+struct UvTiles {
+    std::vector<int> tiles;    // those with triangles, as in_tile() takes them, ascending
+    std::size_t outside = 0;   // triangles in no tile, because u or v is negative or u is 10 or more
+    std::size_t crossing = 0;  // triangles in a tile that reach more than 1e-4 out of it
+};
+
+// Errors: bad_data (check_part(selected.part) fails), out_of_memory
+[[nodiscard]] Result<UvTiles> tiles_of(const SelectedPart& selected);
 
 }  // namespace tex
 #pragma GCC visibility pop

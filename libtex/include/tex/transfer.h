@@ -82,6 +82,9 @@ struct TransferredMaps {
     // If the inputs have them. The id is that of most hits of a texel, the smallest one of several; colours are means.
     Plane<std::int32_t> ids;  // kNoId: background
     Image color;              // R, G, B; background is 0
+    // If the options ask for them: the mean of MeshPart::colors at the hits, interpolated. R, G, B; parts without
+    // colours are white, and background is 0.
+    Image vertex_color;
     Plane<TexelOrigin> origin;
 
     // Counts of texels; those of samples say so.
@@ -124,6 +127,10 @@ struct HighDetail {
 
 // What transfer() may be given beside the two meshes. What pointers show must stay as it is until it returns.
 struct TransferInputs {
+    // The rest of the low mesh if `low` is a part of it, such as a UDIM tile. Its triangles get no texels, but count
+    // for everything else: the directions of rays, which leave no gap between both parts, hard edges, the diagonal and,
+    // if there are no groups, automatic reach. Only positions and normals are read.
+    const MeshPart* around = nullptr;
     // The low mesh, pushed outwards: the same triangles, of which only the positions count. Rays start at O = C, the
     // same place of the cage's triangle, with D = normalize(C - P) and |C - P| in place of `front`, and a millionth of
     // the low mesh's diagonal more, so that they meet what lies on the cage. Where C is P, D is that of `rays`.
@@ -157,7 +164,7 @@ struct TransferInputs {
 //         unsupported  as to_tangent_space(); more than kMaxTriangles triangles in `high`
 //         out_of_memory, cancelled
 // The same bytes for every number of threads, processor and compiler.
-// Memory: 13 bytes for each texel, 12 more for object space, for positions and for bent normals, 4 for heights,
+// Memory: 13 bytes for each texel, 12 more for object space, positions, bent normals and colours, 4 for heights,
 // occlusion and thickness, and 4 while borders are filled; about 100 bytes for each triangle of the high mesh (twice
 // that for groups with second rays) and 200 for each of the low one.
 [[nodiscard]] Result<TransferredMaps> transfer(Extent extent, const TangentSpace& low,

@@ -53,6 +53,7 @@ struct TransferOptions {
     // The maps to make besides the one in tangent space: from the rays, and from second rays that start where they hit.
     bool object = false, heights = false, positions = false;
     bool occlusion = false, bent = false, thickness = false;
+    bool vertex_colors = false;
 
     int rays_per_hit = 64;     // second rays: 1 to kMaxRaysPerHit; as many again for thickness
     Reach occlusion_distance;  // how far second rays reach; automatic: without limit

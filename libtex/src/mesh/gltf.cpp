@@ -18,6 +18,8 @@
 namespace tex {
 namespace {
 
+constexpr const char* kColors = "COLOR_0";
+
 Error unsupported(std::string reason) { return {ErrorCode::unsupported, {}, std::move(reason)}; }
 
 std::uint32_t load_u32(std::span<const std::byte> bytes, std::size_t at) {
@@ -34,8 +36,8 @@ std::string_view text_of(std::span<const std::byte> bytes) {
 // would take memory out of proportion.
 class PrimitiveReader {
 public:
-    PrimitiveReader(JsonValue root, GltfBuffers& buffers, DracoTriangles& compressed)
-        : materials_(root["materials"].size()), buffers_(buffers), compressed_(compressed) {}
+    PrimitiveReader(JsonValue root, GltfBuffers& buffers, DracoTriangles& compressed, bool colors)
+        : materials_(root["materials"].size()), buffers_(buffers), compressed_(compressed), colors_(colors) {}
 
     Result<void> read(JsonValue primitive, MeshPart& part);
 
@@ -48,10 +50,12 @@ private:
     template <class T>
     Result<void> fill(JsonValue primitive, const std::string& name, const Read& used, std::vector<T>& values);
     Result<void> read_attributes(JsonValue primitive, const Read& used, MeshPart& part);
+    Result<void> read_colors(JsonValue primitive, const Read& used, MeshPart& part);
 
     std::size_t materials_;
     GltfBuffers& buffers_;
     DracoTriangles& compressed_;
+    bool colors_;
     std::size_t vertices_ = 0;  // of this primitive
     std::size_t corners_ = 0;   // of all primitives so far
     std::uint32_t round_ = 0;
@@ -144,8 +148,12 @@ Result<const GltfAccessor*> PrimitiveReader::attribute(JsonValue primitive, cons
     }
     const GltfAccessor& found = **accessor;
     const bool is_vector = name == "NORMAL" || name == "TANGENT";  // floats, or fractions with a sign
+    const bool is_color = name == kColors;                         // floats, or fractions without one; alpha may follow
     const bool fits_vector = found.type == 5126 || (found.normalized && (found.type == 5120 || found.type == 5122));
-    if (found.components != components || found.type == 5125 || (is_vector && !fits_vector))
+    const bool fits_color = found.type == 5126 || (found.normalized && (found.type == 5121 || found.type == 5123));
+    const bool has_alpha = is_color && found.components == components + 1;
+    if ((found.components != components && !has_alpha) || found.type == 5125 || (is_vector && !fits_vector) ||
+        (is_color && !fits_color))
         return bad_gltf(name + " has numbers of the wrong type");
     if (vertices_ != 0 && (*accessor)->count != vertices_) {
         return bad_gltf(name + " has " + std::to_string((*accessor)->count) + " elements for " +
@@ -162,6 +170,11 @@ Result<void> PrimitiveReader::fill(JsonValue primitive, const std::string& name,
     values.resize(used.size());
     for (std::size_t k = 0; k < used.size(); ++k) assign(**accessor, used[k], values[k]);
     return {};
+}
+
+Result<void> PrimitiveReader::read_colors(JsonValue primitive, const Read& used, MeshPart& part) {
+    if (!colors_ || primitive["attributes"][kColors].is_null()) return {};
+    return fill(primitive, kColors, used, part.colors);
 }
 
 Result<void> PrimitiveReader::read_attributes(JsonValue primitive, const Read& used, MeshPart& part) {
@@ -181,7 +194,7 @@ Result<void> PrimitiveReader::read_attributes(JsonValue primitive, const Read& u
         part.uvs.emplace_back();
         if (const auto done = fill(primitive, name, used, part.uvs.back()); !done) return done.error();
     }
-    return {};
+    return read_colors(primitive, used, part);
 }
 
 Result<void> PrimitiveReader::read(JsonValue primitive, MeshPart& part) {
@@ -207,8 +220,9 @@ Result<void> PrimitiveReader::read(JsonValue primitive, MeshPart& part) {
     return read_attributes(primitive, used, part);
 }
 
-Result<void> read_primitives(JsonValue root, GltfBuffers& buffers, DracoTriangles& compressed, Mesh& mesh) {
-    PrimitiveReader reader(root, buffers, compressed);
+Result<void> read_primitives(JsonValue root, GltfBuffers& buffers, DracoTriangles& compressed, bool colors,
+                             Mesh& mesh) {
+    PrimitiveReader reader(root, buffers, compressed, colors);
     const JsonValue meshes = root["meshes"];
     for (std::size_t m = 0; m < meshes.size(); ++m) {
         const JsonValue primitives = meshes[m]["primitives"];
@@ -288,7 +302,7 @@ Result<std::vector<std::string>> gltf_buffer_files(std::span<const std::byte> by
     return files;
 }
 
-Result<Mesh> parse_gltf(JsonValue root, GltfBuffers& buffers, const DecodeDraco& draco) {
+Result<Mesh> parse_gltf(JsonValue root, GltfBuffers& buffers, const DecodeDraco& draco, bool colors) {
     if (const auto checked = check_asset(root); !checked) return checked.error();
     Mesh mesh;
     auto nodes = gltf_nodes(root, buffers);
@@ -296,7 +310,7 @@ Result<Mesh> parse_gltf(JsonValue root, GltfBuffers& buffers, const DecodeDraco&
     mesh.nodes = std::move(*nodes);
     auto compressed = DracoTriangles::decode(root, buffers, draco);
     if (!compressed) return compressed.error();
-    if (const auto read = read_primitives(root, buffers, *compressed, mesh); !read) return read.error();
+    if (const auto read = read_primitives(root, buffers, *compressed, colors, mesh); !read) return read.error();
     if (mesh.parts.empty()) return bad_gltf("has no triangles");
     auto materials = gltf_materials(root);
     if (!materials) return materials.error();
@@ -305,13 +319,14 @@ Result<Mesh> parse_gltf(JsonValue root, GltfBuffers& buffers, const DecodeDraco&
     return mesh;
 }
 
-Result<Mesh> parse_gltf(std::span<const std::byte> bytes, const LoadBeside& load, const DecodeDraco& draco) {
+Result<Mesh> parse_gltf(std::span<const std::byte> bytes, const LoadBeside& load, const DecodeDraco& draco,
+                        bool colors) {
     const auto chunks = gltf_chunks(bytes);
     if (!chunks) return chunks.error();
     const auto document = JsonDocument::parse(chunks->json);
     if (!document) return document.error();
     GltfBuffers buffers(document->root(), chunks->json.size(), chunks->binary, load);
-    return parse_gltf(document->root(), buffers, draco);
+    return parse_gltf(document->root(), buffers, draco, colors);
 }
 
 }  // namespace tex

@@ -31,11 +31,12 @@ struct GltfChunks {
 Result<GltfChunks> gltf_chunks(std::span<const std::byte> bytes);
 
 // Errors: those of read_mesh() (mesh_io.h), without a file unless `load` names one; unsupported if triangles are
-// compressed by Draco and `draco` is empty.
-Result<Mesh> parse_gltf(std::span<const std::byte> bytes, const LoadBeside& load, const DecodeDraco& draco = {});
+// compressed by Draco and `draco` is empty. `colors`: whether colours of vertices are read.
+Result<Mesh> parse_gltf(std::span<const std::byte> bytes, const LoadBeside& load, const DecodeDraco& draco = {},
+                        bool colors = false);
 
 // The same of a file that is already parsed.
-Result<Mesh> parse_gltf(JsonValue root, GltfBuffers& buffers, const DecodeDraco& draco);
+Result<Mesh> parse_gltf(JsonValue root, GltfBuffers& buffers, const DecodeDraco& draco, bool colors);
 
 // Errors: bad_data, unsupported (the version; a required extension).
 Result<void> check_asset(JsonValue root);

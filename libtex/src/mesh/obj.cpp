@@ -81,6 +81,8 @@ struct ObjPart {
 
 class ObjReader {
 public:
+    explicit ObjReader(bool colors) : reads_colors_(colors) {}
+
     Result<Mesh> read(std::string_view text);
 
 private:
@@ -93,12 +95,15 @@ private:
     Result<std::uint32_t> index_of(std::string_view word, std::size_t count, const char* what) const;
     Result<ObjCorner> corner_of(std::string_view word) const;
     Result<void> read_face(std::string_view line);
+    void read_color(std::string_view line);
     ObjPart& part(bool has_uvs);
     Mesh finish();
     [[nodiscard]] MeshPart finished(const ObjPart& part) const;
 
+    const bool reads_colors_;
     std::size_t line_ = 0;
     std::vector<Float3> positions_, normals_;
+    std::vector<std::optional<Float3>> colors_;  // of the positions
     std::vector<Float2> uvs_;
     std::string object_;
     int material_ = -1;
@@ -111,7 +116,7 @@ private:
     std::vector<std::uint32_t> polygon_;
 };
 
-// At least `required` numbers; the others are 0, and more are ignored (colours of vertices, w).
+// At least `required` numbers; the others are 0, and more are ignored (w).
 template <std::size_t N>
 Result<std::array<float, N>> ObjReader::numbers(std::string_view line, std::size_t required) {
     std::array<float, N> values{};
@@ -201,6 +206,21 @@ Result<void> ObjReader::read_face(std::string_view line) {
     return {};
 }
 
+// The three numbers after a position. Fewer are none (w), and what is no number is ignored as without colours.
+void ObjReader::read_color(std::string_view line) {
+    std::array<float, 3> values{};
+    for (int k = 0; k < 3; ++k) take_word(line);
+    for (float& channel : values) {
+        const std::optional<float> value = number_of(take_word(line));
+        if (!value) {
+            colors_.emplace_back();
+            return;
+        }
+        channel = *value;
+    }
+    colors_.push_back(Float3{values[0], values[1], values[2]});
+}
+
 Result<void> ObjReader::read_line(std::string_view line) {
     line = line.substr(0, line.find('#'));
     const std::string_view keyword = take_word(line);
@@ -208,6 +228,7 @@ Result<void> ObjReader::read_line(std::string_view line) {
         const auto v = numbers<3>(line, 3);
         if (!v) return v.error();
         (keyword == "v" ? positions_ : normals_).push_back({(*v)[0], (*v)[1], (*v)[2]});
+        if (keyword == "v" && reads_colors_) read_color(line);
     } else if (keyword == "vt") {
         const auto v = numbers<2>(line, 1);
         if (!v) return v.error();
@@ -243,6 +264,10 @@ MeshPart ObjReader::finished(const ObjPart& from) const {
         if (from.has_normals) to.normals.push_back(normals_[c.normal]);
         if (from.has_uvs) to.uvs[0].push_back(uvs_[c.uv]);
     }
+    const auto has_color = [&](const ObjCorner& c) { return colors_[c.position].has_value(); };
+    if (!reads_colors_ || !std::all_of(from.vertices.begin(), from.vertices.end(), has_color)) return to;
+    to.colors.reserve(from.vertices.size());
+    for (const ObjCorner& c : from.vertices) to.colors.push_back(*colors_[c.position]);
     return to;
 }
 
@@ -305,6 +330,6 @@ bool is_obj(std::string_view head) {
     return false;
 }
 
-Result<Mesh> parse_obj(std::string_view text) { return ObjReader().read(without_mark(text)); }
+Result<Mesh> parse_obj(std::string_view text, bool colors) { return ObjReader(colors).read(without_mark(text)); }
 
 }  // namespace tex

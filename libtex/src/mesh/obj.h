@@ -13,7 +13,7 @@ namespace tex {
 // Whether a text begins as an OBJ file does: with a comment or a known keyword.
 bool is_obj(std::string_view head);
 
-// Errors: bad_data, without a file.
-Result<Mesh> parse_obj(std::string_view text);
+// `colors`: whether those of vertices are read. Errors: bad_data, without a file.
+Result<Mesh> parse_obj(std::string_view text, bool colors = false);
 
 }  // namespace tex

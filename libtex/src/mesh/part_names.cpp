@@ -38,4 +38,14 @@ std::string stem_of_part(const std::string& name, PartSide side) {
     return text;
 }
 
+std::vector<std::string> lone_names(const std::vector<std::string>& names, const std::vector<int>& own,
+                                    const std::vector<int>& others) {
+    std::vector<std::string> left;
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        const bool has_partner = std::find(others.begin(), others.end(), own[k]) != others.end();
+        if (!has_partner && std::find(left.begin(), left.end(), names[k]) == left.end()) left.push_back(names[k]);
+    }
+    return left;
+}
+
 }  // namespace tex

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace tex {
 
@@ -11,5 +12,9 @@ enum class PartSide { low, high };
 
 // The name in lower case, without the last mark of its side and what follows it.
 [[nodiscard]] std::string stem_of_part(const std::string& name, PartSide side);
+
+// The names, each once, whose numbers are none of `others`. `own` are their numbers.
+std::vector<std::string> lone_names(const std::vector<std::string>& names, const std::vector<int>& own,
+                                    const std::vector<int>& others);
 
 }  // namespace tex

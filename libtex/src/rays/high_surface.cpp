@@ -106,6 +106,13 @@ Vector3 HighSurface::color_at(const Triangles::Place& place, const Weights& weig
     return {at.of(planes[0]), at.of(planes[1]), at.of(planes[2])};
 }
 
+Vector3 HighSurface::vertex_color_at(const Triangles::Place& place, const Weights& weights) {
+    if (place.part.colors.empty()) return {1.0, 1.0, 1.0};
+    Vector3 sum;
+    for (std::size_t k = 0; k < 3; ++k) sum = sum + weights[k] * vector_of(place.part.colors[place.vertex(k)]);
+    return sum;
+}
+
 Result<void> check_details(const TransferInputs& inputs, const std::vector<MeshPart>& high) {
     if (!inputs.high_ids.empty() && inputs.high_ids.size() != high.size())
         return bad_option("high_ids: must have a number for each part of the high mesh");

@@ -27,6 +27,9 @@ public:
     [[nodiscard]] bool has_colors() const { return has_colors_; }
     [[nodiscard]] Vector3 color_at(const Triangles::Place& place, const Weights& weights) const;
 
+    // The colour of the vertices; white if the part has none.
+    [[nodiscard]] static Vector3 vertex_color_at(const Triangles::Place& place, const Weights& weights);
+
     [[nodiscard]] bool has_ids() const { return !inputs_.high_ids.empty(); }
     [[nodiscard]] std::int32_t id_of(const Triangles::Place& place) const { return inputs_.high_ids[index_of(place)]; }
 

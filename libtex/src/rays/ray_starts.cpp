@@ -79,6 +79,9 @@ Result<void> check_inputs(const TransferInputs& inputs, const MeshPart& low, std
         if (inputs.skew != nullptr || inputs.offset != nullptr)
             return bad_option("cage: decides where rays start, so skew and offset mean nothing");
     }
+    if (inputs.around != nullptr) {
+        if (auto sound = check_part(*inputs.around); !sound) return sound;
+    }
     if (inputs.skew != nullptr && rays != RayMode::straight) return bad_option("skew: needs RayMode::straight");
     if (auto sound = check_picture(inputs.skew, 1.0f, "skew"); !sound) return sound;
     if (auto sound = check_picture(inputs.offset, std::numeric_limits<float>::max(), "offset"); !sound) return sound;

@@ -187,6 +187,8 @@ void TransferStrips::add_hit(Strip& strip, int i, int j, std::size_t k, Hits& hi
     hits.height += ray.height;
     ++hits.count;
     if (scene_.surface.has_colors()) hits.color = hits.color + scene_.surface.color_at(hit, ray.weights);
+    if (!result_.vertex_color.planes.empty())
+        hits.vertex_color = hits.vertex_color + HighSurface::vertex_color_at(hit, ray.weights);
     if (scene_.surface.has_ids()) strip.ids.push_back(scene_.surface.id_of(hit));
     if (scene_.second == nullptr) return;
     HitPlace place{caster.point_of(ray), normal, HighSurface::face_normal(hit)};
@@ -220,9 +222,13 @@ void TransferStrips::put_values(Strip& strip, int i, int j, const Hits& hits) co
 
 void TransferStrips::put_surface(Strip& strip, int i, int j, const Hits& hits) const {
     if (scene_.surface.has_ids()) result_.ids.at(i, j) = most_frequent(strip.ids);
-    if (!scene_.surface.has_colors()) return;
-    const double part = 1.0 / hits.count, color[3] = {hits.color.x, hits.color.y, hits.color.z};
-    for (std::size_t k = 0; k < 3; ++k) result_.color.planes[k].at(i, j) = static_cast<float>(part * color[k]);
+    const double part = 1.0 / hits.count;
+    for (const auto& [image, sum] :
+         {std::pair{&result_.color, &hits.color}, std::pair{&result_.vertex_color, &hits.vertex_color}}) {
+        if (image->planes.empty()) continue;
+        const double color[3] = {sum->x, sum->y, sum->z};
+        for (std::size_t k = 0; k < 3; ++k) image->planes[k].at(i, j) = static_cast<float>(part * color[k]);
+    }
 }
 
 void TransferStrips::miss_texel(Strip& strip, int i, int j, std::size_t begin) const {

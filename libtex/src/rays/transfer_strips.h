@@ -95,7 +95,7 @@ private:
         int count = 0;
         Vector3 normal, position;
         double height = 0.0;
-        Vector3 color;
+        Vector3 color, vertex_color;
         SecondRays::Sums second;
     };
 
