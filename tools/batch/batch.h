@@ -75,14 +75,14 @@ public:
     }
     // The same of a task that has more than these.
     [[nodiscard]] Task task_for(Task task) const;
-    // Whether outputs with <UDIM> in their names are made for each tile of a mesh, and which tiles it has
-    // (OutputRules::tiles).
-    [[nodiscard]] bool makes_tiles() const;
-    [[nodiscard]] std::vector<int> tiles_of(const std::string& input) const;
     // The same for a tile of a terrain, with the tiles around it: `pattern` names them (grid.h). Throws also what
     // grid_files() throws; its errors leave the tile alone. Precondition: files.tiles.
     [[nodiscard]] Task task_for_tile(const std::string& input, const std::string& output,
                                      const std::string& pattern) const;
+    // Whether outputs with <UDIM> in their names are made for each tile of a mesh, and which tiles it has
+    // (OutputRules::tiles).
+    [[nodiscard]] bool makes_tiles() const;
+    [[nodiscard]] std::vector<int> tiles_of(const std::string& input) const;
     // The output options of such a task. Throws UsageError if --for names several engines.
     [[nodiscard]] OutputOptions output_for_task() const;
     // As check(), for such a task.
