@@ -238,9 +238,9 @@ OutputOptions Converter::output_for_task() const {
     return output.of(output.engines_or_none().front());
 }
 
-Task Converter::task_for(const std::string& input, const std::string& output_name) const {
+Task Converter::task_for(const std::string& input, const std::string& output_name, const std::string& origin) const {
     std::call_once(rules_are_known_, [this] { known_rules_ = rules(); });
-    return task_of(input, output_name, output_for_task(), known_rules_);
+    return task_of(input, output_name, output_for_task(), known_rules_, origin);
 }
 
 Task Converter::task_for_tile(const std::string& input, const std::string& output_name,

@@ -67,7 +67,8 @@ public:
 
     // The task that makes `output` from `input`. Throws UsageError if the name does not show the file type, or if the
     // file type cannot hold the format.
-    [[nodiscard]] Task task_for(const std::string& input, const std::string& output) const;
+    [[nodiscard]] Task task_for(const std::string& input, const std::string& output,
+                                const std::string& origin = {}) const;
     // The same for a tile of a terrain, with the tiles around it: `pattern` names them (grid.h). Throws also what
     // grid_files() throws; its errors leave the tile alone. Precondition: files.tiles.
     [[nodiscard]] Task task_for_tile(const std::string& input, const std::string& output,

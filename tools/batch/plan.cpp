@@ -116,8 +116,10 @@ void check_engines(const std::vector<Task>& tasks, const FileOptions& files, std
 
 }  // namespace
 
-Task task_of(const std::string& input, const std::string& name, const OutputOptions& output, const OutputRules& rules) {
+Task task_of(const std::string& input, const std::string& name, const OutputOptions& output, const OutputRules& rules,
+             const std::string& origin) {
     Task task{input, name};
+    task.origin = origin;
     task.engine = output.engine;
     task.shared = rules.shared;
     task.container = output.container_for(with_level(name, 0), rules.standard_output);

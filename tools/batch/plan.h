@@ -29,10 +29,10 @@ struct OutputRules {
     std::optional<std::string> models = {};  // inputs may be models: the material whose maps are meant, or "" for all
 };
 
-// The task that makes `name`, which may contain kLevelMark, from `input`. Throws UsageError if the name does not show
-// its file type, or if that cannot hold the format.
+// The task that makes `name`, which may contain kLevelMark, from `input`. `origin` is Task::origin. Throws UsageError
+// if the name does not show its file type, or if that cannot hold the format.
 [[nodiscard]] Task task_of(const std::string& input, const std::string& name, const OutputOptions& output,
-                           const OutputRules& rules);
+                           const OutputRules& rules, const std::string& origin = {});
 
 // Pairs every input with its output. Throws UsageError if two inputs have the same output, if an output is an input
 // (links are followed), or if a name does not show its file type. <UDIM> in the name of -o becomes the input's tile.

@@ -11,7 +11,6 @@
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
-#include "tasks/other_parts.h"
 
 namespace tex::cli {
 namespace {
@@ -20,8 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSuffix = "-normals";
 constexpr const char* kOutputGroup = "Output";
-// An intermediate result, of which only the type and the encoding count. No such file exists.
-constexpr const char* kBetween = "between.exr";
+constexpr const char* kDataGroup = "Data beside the normals";
 
 Converter* converter_of(Program& program) {
     auto* const converter = dynamic_cast<Converter*>(&program);
@@ -47,6 +45,13 @@ std::vector<std::string> groups_of(const Command& command) {
 }
 
 bool names_a_file(const Row& row) { return row.completes == Completes::files; }
+
+// Whether a value of such an option is a file: it may be a word or a number, too.
+bool is_file(const std::string& value, const Row& row) {
+    const std::vector<std::string> words = names_of(row.words);
+    return std::find(words.begin(), words.end(), value) == words.end() &&
+           value.find_first_not_of("+-.0123456789eE") != std::string::npos;
+}
 
 }  // namespace
 
@@ -79,6 +84,7 @@ Recipe::Recipe(const Manifest& manifest, const RuleSettings& rule, int number, c
     }
     for (const OutputSettings& output : rule.outputs) add_output(output, console);
     check_tiles(before_.empty() ? outputs_.front().last : before_.front());
+    find_files();
 }
 
 bool Recipe::takes(const std::string& input) const {
@@ -142,9 +148,19 @@ std::string Recipe::with_root(const std::string& argument, const Command& comman
     const auto [name, value] = cut(argument, '=');
     const Row* const row = row_of(command, name.substr(2), groups_of(command));
     // {dir} is that of the input, which is below the root.
-    const bool is_below = !root_.empty() && row != nullptr && names_a_file(*row) && !fs::path(value).is_absolute() &&
-                          !value.starts_with("{dir}");
+    const bool is_below = !root_.empty() && row != nullptr && names_a_file(*row) && is_file(value, *row) &&
+                          !fs::path(value).is_absolute() && !value.starts_with("{dir}");
     return is_below ? fmt::format("{}={}/{}", name, root_, value) : argument;
+}
+
+// Floats, with alpha unless only heights without alpha come before.
+std::string_view Recipe::format_between(const std::vector<std::string>& arguments) const {
+    const auto has_alpha = [](const std::vector<std::string>& given) {
+        return std::any_of(given.begin(), given.end(), [](const auto& one) { return one.starts_with("--alpha="); });
+    };
+    bool any_has = has_alpha(arguments) || rule_.steps.front().command != "bake";
+    for (const ReadyCommand& command : before_) any_has = any_has || has_alpha(command.arguments);
+    return name_of(kEncodingNames, any_has ? Encoding::rgba32f : Encoding::float_);
 }
 
 // `out` is the name of an output; its extension says the file type.
@@ -156,23 +172,28 @@ ReadyCommand Recipe::ready(const StepSettings& step, const OutputSettings* outpu
     command.converter = converter_of(*command.program);
     Command& table = command.program->command;
     std::vector<std::string> groups = groups_of(table);
-    if (!is_last) std::erase(groups, kOutputGroup);
+    if (!is_last) std::erase(groups, kOutputGroup);  // of data beside the normals, alpha goes along
+    const auto stays_behind = [&](const OptionSetting& setting) {
+        return !is_last && setting.key != "alpha" && row_of(table, setting.key, {kDataGroup}) != nullptr;
+    };
     const auto overrides = [&](const std::string& key) {
         return output != nullptr && std::any_of(output->settings.begin(), output->settings.end(),
                                                 [&](const OptionSetting& setting) { return setting.key == key; });
     };
     for (const OptionSetting& setting : step.settings) {
-        if (!overrides(setting.key)) add_option(setting, table, groups, command.arguments);
+        if (stays_behind(setting) && !setting.is_default)
+            fail_at(manifest_.path, setting.place, fmt::format("{}: only the last step can have it", setting.key));
+        if (!overrides(setting.key) && !stays_behind(setting)) add_option(setting, table, groups, command.arguments);
     }
     if (output != nullptr) {
         for (const OptionSetting& setting : output->settings)
-            add_option(setting, table, {kOutputGroup}, command.arguments);
+            add_option(setting, table, {kOutputGroup, kDataGroup}, command.arguments);
     }
     std::sort(command.arguments.begin(), command.arguments.end(),
               [](const std::string& a, const std::string& b) { return cut(a, '=').first < cut(b, '=').first; });
     std::vector<std::string> line;
     for (const std::string& argument : command.arguments) line.push_back(with_root(argument, table));
-    if (!is_last) line.emplace_back("--format=float");
+    if (!is_last) line.push_back(fmt::format("--format={}", format_between(command.arguments)));
     line.insert(line.end(), {"-o", out, "--", "input"});
     std::vector<const char*> pointers;
     pointers.reserve(line.size());
@@ -189,7 +210,7 @@ ReadyCommand Recipe::ready(const StepSettings& step, const OutputSettings* outpu
     table.forbid_answers();
     try {
         std::ignore = table.parse(pointers, console);
-        const Task task = command.converter->task_for(before_.empty() ? "input" : kBetween, out);
+        const Task task = command.converter->task_for(before_.empty() ? "input" : kBetween, out, "input");
         if (!task.more_outputs.empty()) throw UsageError("a manifest cannot name a second file to write yet");
         if (const auto checked = command.converter->check_task(task); !checked)
             throw UsageError(checked.error().message());
@@ -232,7 +253,8 @@ void Recipe::add_output(const OutputSettings& output, Console& console) {
     if (check_->is_given() && has_level(out))
         fail_at(manifest_.path, output.place, "check needs all levels in one file");
     check_folder(*name, out, output.place);
-    RecipeOutput made{ready(rule_.steps.back(), &output, true, out, console), std::move(*name), {}, {}, output.place};
+    RecipeOutput made{
+        ready(rule_.steps.back(), &output, true, out, console), std::move(*name), {}, {}, out, {}, output.place};
     if (names_engine && made.last.converter->output_for_task().engine == nullptr)
         fail_at(manifest_.path, output.place, "name: {engine} needs the key for");
     const std::size_t last = rule_.steps.size() - 1;
@@ -247,44 +269,17 @@ void Recipe::add_output(const OutputSettings& output, Console& console) {
     const Task task = made.last.converter->task_for("input", out);
     made.settings += fmt::format("{} {}\n", name_of(kContainerNames, task.container), has_level(out) ? "levels" : "");
     made.settings += check_->text();
-    made.named = named_settings(made.last, task);
-    if (outputs_.empty()) {
-        first_out_ = out;
-        std::vector<std::string> files;
-        for (const ReadyCommand& command : before_) {
-            for (std::string& file : files_for_all(*command.converter, kBetween)) files.push_back(std::move(file));
-        }
-        for (std::string& file : files_for_all(*made.last.converter, out)) files.push_back(std::move(file));
-        for (const std::string& file : files) files_.push_back(below_root(file));
+    const Command& table = made.last.program->command;
+    for (const std::string& argument : made.last.arguments) {
+        if (row_of(table, cut(argument, '=').first.substr(2), {kDataGroup}) != nullptr) made.data += argument + "\n";
     }
+    made.named = named_settings(made.last, task);
     outputs_.push_back(std::move(made));
 }
 
 std::string Recipe::below_root(const std::string& file) const {
     const bool is_below = !root_.empty() && file.starts_with(root_ + "/");
     return is_below ? file.substr(root_.size() + 1) : file;
-}
-
-// What an input has and another has not is its own.
-std::vector<std::string> Recipe::files_for_all(const Converter& converter, const std::string& out) const {
-    std::vector<std::string> files = converter.task_for("input", out).prerequisites();
-    const std::vector<std::string> others = converter.task_for("other/name", out).prerequisites();
-    std::erase_if(
-        files, [&](const std::string& file) { return std::find(others.begin(), others.end(), file) == others.end(); });
-    return files;
-}
-
-std::vector<std::string> Recipe::own_files(const std::string& input, const std::string& path) const {
-    std::vector<std::string> files = other_parts(input, path);
-    const ReadyCommand& first = before_.empty() ? outputs_.front().last : before_.front();
-    const std::string out = before_.empty() ? first_out_ : kBetween;
-    for (const std::string& file : first_task(*first.converter, path, out).prerequisites()) {
-        std::string name = below_root(file);
-        const bool is_known = std::find(files_.begin(), files_.end(), name) != files_.end() ||
-                              std::find(files.begin(), files.end(), name) != files.end();
-        if (!is_known) files.push_back(std::move(name));
-    }
-    return files;
 }
 
 // An output that leads out of the root whatever its input is called is a mistake in the manifest.
@@ -369,7 +364,7 @@ std::vector<std::string> Recipe::command_lines(const std::string& input, std::si
             line += " " + name;
             if (argument.size() > name.size()) line += " " + shell_word(value);
         }
-        lines.push_back(line + (is_last ? "" : " --format float"));
+        lines.push_back(line + (is_last ? "" : fmt::format(" --format {}", format_between(command.arguments))));
         from = to;
     }
     return lines;
