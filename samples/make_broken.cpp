@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <limits>
@@ -252,6 +253,21 @@ void Maker::values() {
         orm.at(i, j, 2) = metal ? 255 : 0;
     }
     png("N216-occlusion-roughness-metal", orm);
+    // Alpha: the cut-out of a disc; x once more. Blue: occlusion of a grid of hollows.
+    Texture mask = packed(part(64, 64), Encoding::rgba8), twice = packed(part(64, 64), Encoding::rgba8);
+    for (std::size_t k = 0; k < 64 * 64; ++k) {
+        const int i = static_cast<int>(k % 64) - 32, j = static_cast<int>(k / 64) - 32;
+        mask.levels[0].bytes[4 * k + 3] = std::byte{i * i + j * j < 900 ? std::uint8_t{255} : std::uint8_t{0}};
+        twice.levels[0].bytes[4 * k + 3] = twice.levels[0].bytes[4 * k];
+    }
+    write("N217-alpha-is-mask.png", encoded(mask, Container::png));
+    write("N218-alpha-repeats.png", encoded(twice, Container::png));
+    Codes occluded = codes();
+    for (int k = 0; k < 128 * 128; ++k) {
+        const int i = k % 128, j = k / 128;
+        occluded.at(i, j, 2) = static_cast<unsigned char>(235 - 4 * std::abs(i % 28 - 14) - 4 * std::abs(j % 22 - 11));
+    }
+    png("N219-blue-other-data", occluded);
     Codes unfilled = codes();
     for (int j = 64; j < 128; ++j) {
         for (int i = 80; i < 128; ++i) {

@@ -65,7 +65,7 @@ BakeNormals::BakeNormals(const cli::ProgramRow& row) : Converter(row) {
     reader_.color.add(command);
     output.add(command, cli::default_encodings(), "up");
     output.add_engines(command);
-    others_.add(command, output, true);
+    others_.add(command, output, nullptr);
     mips_.add(command, false, "all in dds and ktx2, else none");
     running.add(command);
     command.example("bake-normals bricks.png -o bricks.dds --bumpiness 8", "A DXT5nm texture with all its mip levels.");

@@ -66,7 +66,7 @@ BlendNormals::BlendNormals(const cli::ProgramRow& row) : NormalsConverter(row) {
     normals.add(command);
     output.add(command, "as in the base if it fits, else " + cli::default_encodings(), "as in the base");
     output.add_engines(command);
-    others.add(command, output, false);
+    others.add(command, output, &normals);
     mips_.add(command, false, "all in dds and ktx2, else none");
     wrap_.add(command, "what lies beyond the base's border; two words set x and y separately");
     running.add(command);

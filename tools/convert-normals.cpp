@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <tex/tex.h>
 
 #include "batch/repack.h"
+#include "cli/text.h"
 #include "cli/usage_error.h"
 #include "options/conversion.h"
 #include "options/mips.h"
@@ -21,6 +24,14 @@ using cli::Space;
 
 bool holds_z(const Swizzle& swizzle) {
     return std::find(swizzle.begin(), swizzle.end(), Component::z) != swizzle.end();
+}
+
+std::string encodings_with_z() {
+    std::vector<std::string> names;
+    for (const auto& row : kEncodingNames) {
+        if (holds_z(encoding_info(row.value).swizzle)) names.emplace_back(row.name);
+    }
+    return cli::join(names, ", ");
 }
 
 // Without --format: block encodings store no z.
@@ -36,6 +47,7 @@ private:
     [[nodiscard]] cli::OutputRules rules() const override {
         cli::OutputRules rules{{}, Container::dds, false, conversion_.spaces.files(), {}, usual_encoding()};
         rules.models = conversion_.spaces.material();
+        rules.amend = [this](cli::Task& task) { others.amend(task); };
         return rules;
     }
     [[nodiscard]] Encoding (*usual_encoding() const)(Container) {
@@ -57,10 +69,11 @@ ConvertNormals::ConvertNormals(const cli::ProgramRow& row) : NormalsConverter(ro
     command.input("NORMALS...", "normal maps, or glTF models with their maps; - is standard input");
     files.add(command);
     conversion_.add(command);
-    normals.add(command, false, cli::NormalsReader::Others::left_out);
+    normals.add(command, false);
     output.add(command, cli::default_encodings() + "; rgb8 in dds and ktx2 for object space",
                "as in the input; up if the space changes");
     output.add_engines(command);
+    others.add(command, output, &normals);
     mips_.add(command, false, "all in dds and ktx2, else none");
     running.add(command);
     command.example("convert-normals obj_n.exr -o rock_n.dds --mesh rock.glb --from object --decoder unreal --y down",
@@ -78,14 +91,14 @@ ConvertNormals::ConvertNormals(const cli::ProgramRow& row) : NormalsConverter(ro
         if (conversion_.spaces.from == Space::object && normals.measures_y)
             throw cli::UsageError("--y-in measured needs --from tangent");
         if (!conversion_.makes_object()) return;
+        if (!others.stores_z()) throw cli::UsageError("--blue needs tangent space: object space needs z");
         if (mips_.mip.fade || mips_.mip.domain == MipDomain::slope)
             throw cli::UsageError("--fade and --mip-domain slope need tangent space");
         for (const cli::Engine* const engine : output.engines_or_none()) {
             const auto format = output.of(engine).format;
             if (!format || holds_z(encoding_info(*format).swizzle)) continue;
-            throw cli::UsageError(
-                fmt::format("--format {} stores no z, which object space needs; rgb8, rgba8, rgb16, half and float do",
-                            name_of(kEncodingNames, *format)));
+            throw cli::UsageError(fmt::format("--format {} stores no z, which object space needs; these formats do: {}",
+                                              name_of(kEncodingNames, *format), encodings_with_z()));
         }
     });
 }
@@ -124,10 +137,16 @@ Result<void> ConvertNormals::process(cli::Job& job) {
     // In tangent space, a wrong y gives a wrong result, whichever way green points in the output.
     const bool doubt_y = conversion_.spaces.from == Space::tangent;
     const cli::ModelInput* const model = job.task.model.get();
-    const bool keep_length = conversion_.spaces.ignores_z(model != nullptr);
+    const bool keep_length = conversion_.spaces.ignores_z(model != nullptr) && !normals.length_in;
     const bool is_object = conversion_.spaces.from == Space::object;
-    auto source = normals.read(job, job.task.map_path(), job.until(0.2),
-                               {true, false, {}, keep_length, doubt_y, is_object, model});
+    cli::Reading reading{true, false, {}, keep_length, doubt_y, is_object, model};
+    UnpackOptions wanted = normals.options(job).unpack;
+    others.apply(wanted);
+    reading.others = wanted.others;
+    reading.holds = [this, &job](const SourceInfo& info) {
+        return others.accounted_for(can_hold(packing(info, job.task).encoding));
+    };
+    auto source = normals.read(job, job.task.map_path(), job.until(0.2), reading);
     if (!source) return source.error();
     cli::report_input(job, source->info);
     if (is_object && !holds_z(source->info.swizzle))
@@ -136,11 +155,14 @@ Result<void> ConvertNormals::process(cli::Job& job) {
     auto converted = conversion_.convert(job, source->chain.levels.front(), 0.8);
     if (!converted) return converted.error();
     source->chain.levels.clear();
+    const PackOptions pack_with = packing(source->info, job.task);
+    if (auto put = put_others(converted->map, others.inputs(job), pack_with.encoding); !put)
+        return put.error().of(job.task.name());
     MipOptions mip = mips_.options(mips_.levels_for(job.task), {});
     mip.any_z = conversion_.makes_object();
+    others.apply(mip);
     const auto chain = build_mip_chain(std::move(converted->map), mip, job.until(0.85));
     if (!chain) return chain.error();
-    const PackOptions pack_with = packing(source->info, job.task);
     std::optional<RdoReport> rdo;
     if (pack_with.rdo.mean > 0.0f) rdo.emplace();
     auto texture = pack(*chain, pack_with, job.until(0.95), rdo ? &*rdo : nullptr);

@@ -51,7 +51,7 @@ IntegrateNormals::IntegrateNormals(const cli::ProgramRow& row) : NormalsConverte
     command.usage("NORMALS... --out-dir DIR [--name PATTERN]");
     command.input("NORMALS...", "normal maps; - is standard input");
     files.add(command);
-    normals.add(command, false, cli::NormalsReader::Others::none);
+    normals.add(command, false, false);
     normals.unpack.keep_invalid = true;  // to tell unknown slopes from flat ones
     add_level();
     strength_.add(command);

@@ -34,7 +34,7 @@ MipNormals::MipNormals(const cli::ProgramRow& row) : Repacker(row) {
     add_files("normal maps; - is standard input");
     output.add(command, cli::default_encodings(), "as in the input");
     output.add_engines(command);
-    others.add(command, output, false);
+    others.add(command, output, &normals);
     mips_.add(command, false, "all");
     wrap_.add(command, "what lies beyond the border; two words set x and y separately");
     roughness_.add(command, files);

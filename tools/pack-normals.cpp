@@ -40,7 +40,7 @@ PackNormals::PackNormals(const cli::ProgramRow& row) : Repacker(row) {
     command.flag(normalize_, "--normalize", "make vectors unit also where that changes codes that could stay");
     output.add(command, cli::default_encodings(), "as in the input");
     output.add_engines(command);
-    others.add(command, output, false);
+    others.add(command, output, &normals);
     mips_.add(command, true, "keep");
     wrap_.add(command, "what lies beyond the border of levels that are built; two words set x and y separately");
     running.add(command);

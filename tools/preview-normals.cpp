@@ -63,7 +63,7 @@ PreviewNormals::PreviewNormals(const cli::ProgramRow& row) : NormalsConverter(ro
                 "the file type, if the output's name does not say it (a pipe)")
         .preset = "by extension; png for -";
     sheet_.add(command, scene_);
-    normals.add(command, false, cli::NormalsReader::Others::none);
+    normals.add(command, false, false);
     scene_.add(command);
     mesh_.add_input(command, true);
     normals.warns_of_background = false;

@@ -46,7 +46,7 @@ ScaleNormals::ScaleNormals(const cli::ProgramRow& row) : Repacker(row) {
     command.choice(mode_, "--scale-mode", "M", kScaleModeNames, "how normals are scaled");
     normals.add(command);
     output.add(command, "as in the input if it fits, else " + cli::default_encodings(), "as in the input");
-    others.add(command, output, false);
+    others.add(command, output, &normals);
     running.add(command);
     command.example("scale-normals bricks.dds -o strong.dds --scale 2",
                     "Twice as steep, all levels, the same encoding.");

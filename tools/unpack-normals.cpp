@@ -49,7 +49,7 @@ UnpackNormals::UnpackNormals(const cli::ProgramRow& row) : Repacker(row) {
     option.preset = fmt::format("{}", level_);
     command.number(scale_, "--scale", "S", {-kMaxScale, kMaxScale}, "make normals steeper or flatter; negative: dents");
     command.choice(scale_mode_, "--scale-mode", "M", kScaleModeNames, "how they are scaled");
-    apart_.add(command, files);
+    apart_.add(command, files, normals);
     output.add(command, "rgb8 in dds and ktx2, else " + cli::default_encodings(), "as in the input", Container::png);
     running.add(command);
     command.example("unpack-normals bricks.dds -o bricks.png", "The base level as a picture, whatever its layout.");

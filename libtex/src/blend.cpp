@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "rows/blend_rows.h"
+#include "rows/other_rows.h"
 #include "rows/usable.h"
 #include "stream/placed_map.h"
 #include "threads/guard.h"
@@ -30,17 +31,21 @@ Result<NormalMap> blend_layers(MipChain& base, std::vector<Layer>& layers, const
         maps.layers.push_back({layer, *detail});
     }
     NormalMap result(extent);
+    const OtherPlanes beside = others_of(base.levels.front());
+    for (const OtherPlace& place : kOtherPlaces) {
+        if (beside.*place.has) result.*place.plane = Plane<float>(extent);
+    }
     const int grain = std::max(1, (1 << 15) / extent.width);
     const auto blended = parallel_for(execution, extent.height, grain, [&](int begin, int end) {
         BlendRows rows(maps);
-        for (int j = begin; j < end; ++j) rows.make(j, {result.x.row(j), result.y.row(j), result.z.row(j)});
+        for (int j = begin; j < end; ++j) {
+            rows.make(j, {result.x.row(j), result.y.row(j), result.z.row(j)});
+            for (const OtherPlace& place : kOtherPlaces) {
+                if (beside.*place.has) rows.make_other(place.plane, (result.*place.plane).row(j));
+            }
+        }
     });
     if (!blended) return blended.error();
-    NormalMap& own = base.levels.front();
-    if (own.extent() == extent) {
-        result.blue = std::move(own.blue);
-        result.alpha = std::move(own.alpha);
-    }
     return result;
 }
 

@@ -21,6 +21,7 @@
 #include "checks/mesh_rules.h"
 #include "checks/mip_rules.h"
 #include "checks/model_rules.h"
+#include "checks/other_rules.h"
 #include "checks/pair_rules.h"
 #include "checks/rules.h"
 #include "checks/sign_rules.h"
@@ -226,6 +227,7 @@ Result<CheckReport> check(const std::string& file, const Texture& texture, const
         Findings findings(options);
         check_file_rules(subject, findings);
         check_value_rules(subject, findings);
+        if (auto done = check_other_rules(subject, findings); !done) return done.error();
         if (auto done = check_damage_rules(subject, findings); !done) return done.error();
         if (auto done = check_sign_rules(subject, findings); !done) return done.error();
         if (auto done = check_field_rules(subject, findings); !done) return done.error();

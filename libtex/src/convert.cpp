@@ -11,6 +11,7 @@
 
 #include "mesh/coverage.h"
 #include "mesh/frames.h"
+#include "rows/other_rows.h"
 #include "rows/usable.h"
 #include "surface/nearest.h"
 #include "threads/guard.h"
@@ -181,6 +182,9 @@ Result<ConvertedMap> convert(const NormalMap& map, const TangentSpace& space, Di
             return Error{ErrorCode::bad_option, space.file, "its triangles cover no texel of the map"};
         const std::int64_t width = std::min(padding, 2 * kMaxExtent) - gutter;
         if (const auto padded = pad(result, width, execution, {0.7, 1.0}); !padded) return padded.error();
+        for (const OtherPlace& place : kOtherPlaces) {
+            if (!(map.*place.plane).empty()) result.map.*place.plane = (map.*place.plane).clone();
+        }
         return result;
     });
 }

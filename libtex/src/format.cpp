@@ -116,6 +116,9 @@ constexpr EncodingRow kEncodings[] = {
     {Encoding::rg16, {Format::rg16_unorm, kSwizzleXy}},
     {Encoding::half, {Format::rgb16_float, kXyz1}},
     {Encoding::float_, {Format::rgb32_float, kXyz1}},
+    {Encoding::rgba16, {Format::rgba16_unorm, kXyz1}},
+    {Encoding::rgba16f, {Format::rgba16_float, kXyz1}},
+    {Encoding::rgba32f, {Format::rgba32_float, kXyz1}},
 };
 
 static_assert([] {
@@ -136,7 +139,8 @@ FormatInfo format_info(Format format) { return kFormats[static_cast<std::size_t>
 OtherPlanes can_hold(Encoding encoding) {
     const auto [format, swizzle] = encoding_info(encoding);
     const FormatInfo info = format_info(format);
-    return {swizzle[2] == Component::z, info.channels == 4 && !info.has_blocks() && swizzle[3] == Component::one};
+    const bool has_z = swizzle[2] == Component::z;
+    return {has_z, info.channels == 4 && !info.has_blocks() && swizzle[3] == Component::one, has_z};
 }
 
 bool can_optimise(Encoding encoding) {

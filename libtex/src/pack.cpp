@@ -77,6 +77,8 @@ Result<Texture> pack(const MipChain& chain, const PackOptions& options, const Ex
     return guarded([&]() -> Result<Texture> {
         if (auto usable = check_usable(chain); !usable) return usable.error();
         if (auto valid = validate(options); !valid) return valid.error();
+        if (const NormalMap& base = chain.levels.front(); !base.blue.empty() && !base.length.empty())
+            return bad_option("blue and length exclude each other: without z, a vector has no length");
         RdoTally tally;
         Result<Texture> texture = pack_chain(chain, options, execution, &tally);
         if (texture && rdo != nullptr && is_optimised(options)) *rdo = report_of(tally.sum());

@@ -16,7 +16,7 @@ namespace {
 
 // Errors: bad_option if a command that bakes nothing is to store heights.
 Result<void> check_no_heights(const OtherInputs& others) {
-    for (const auto* data : {&others.blue, &others.alpha}) {
+    for (const auto* data : {&others.blue, &others.alpha, &others.length}) {
         if (*data && (*data)->heights) return bad_option("others: there are no heights, only normals");
     }
     return {};

@@ -115,8 +115,9 @@ Result<void> unpack_rows(const Reader& reader, const UnpackRule& rule, OtherPlan
                          const Execution& execution, ProgressSpan span) {
     const Extent extent = reader.extent();
     map = NormalMap(extent);
-    if (others.blue) map.blue = Plane<float>(extent);
-    if (others.alpha) map.alpha = Plane<float>(extent);
+    for (const OtherPlace& place : kOtherPlaces) {
+        if (others.*place.has) map.*place.plane = Plane<float>(extent);
+    }
     const int strip_rows = reader.strip_rows();
     return parallel_for(
         execution, blocks_across(extent.height, strip_rows), strips_at_once(extent, strip_rows),
@@ -128,6 +129,10 @@ Result<void> unpack_rows(const Reader& reader, const UnpackRule& rule, OtherPlan
                     const int j = strip * strip_rows + r;
                     unpack_row(rows.component[0][r], rows.component[1][r], rows.component[2][r], rule, extent.width,
                                map.x.row(j), map.y.row(j), map.z.row(j));
+                    if (others.length) {
+                        values_of_lengths(rows.component[0][r], rows.component[1][r], rows.component[2][r],
+                                          rule.is_unsigned, extent.width, map.length.row(j));
+                    }
                     if (others.blue) std::copy_n(rows.component[3][r], extent.width, map.blue.row(j));
                     if (others.alpha) std::copy_n(rows.component[4][r], extent.width, map.alpha.row(j));
                 }
@@ -138,8 +143,7 @@ Result<void> unpack_rows(const Reader& reader, const UnpackRule& rule, OtherPlan
 
 // The channels beside the normals that the options want.
 OtherPlanes others_wanted(const Sources& sources, int channels, const UnpackOptions& options) {
-    const OtherPlanes there = others_beside(sources, channels);
-    return {there.blue && options.others.blue, there.alpha && options.others.alpha};
+    return others_beside(sources, channels) & options.others;
 }
 
 bool is_one_everywhere(const Plane<float>& plane) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// --blue, --alpha, --kind, --layout, --blue-out, --alpha-out: data beside the normals, from file to file.
+// --blue, --alpha, --length, --kind, --layout, --blue-out, --alpha-out, --length-in, --length-out: data beside the
+// normals, from file to file.
 
 #include <cmath>
 #include <filesystem>
@@ -9,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <tex/tex.h>
 
+#include "cli/meshes.h"
 #include "cli/program.h"
 
 namespace tex::cli {
@@ -33,14 +35,15 @@ protected:
         EXPECT_EQ(scratch_.list(), before) << line;
     }
     [[nodiscard]] Image image(const std::string& name) const { return read_image(scratch_.path(name)).value(); }
-    // Whether a channel of a file equals one of another file, to the last code of 8 bits.
-    [[nodiscard]] bool equal(const std::string& a, std::size_t channel, const std::string& b, std::size_t other) const {
+    // Whether a channel of a file equals one of another file, to so many codes of 8 bits.
+    [[nodiscard]] bool equal(const std::string& a, std::size_t channel, const std::string& b, std::size_t other,
+                             float codes = 0.51f) const {
         const Image left = image(a), right = image(b);
         if (left.extent() != right.extent() || left.planes.size() <= channel || right.planes.size() <= other)
             return false;
         for (int j = 0; j < left.extent().height; ++j) {
             for (int i = 0; i < left.extent().width; ++i) {
-                if (std::abs(left.planes[channel].at(i, j) - right.planes[other].at(i, j)) > 0.51f / 255.0f)
+                if (std::abs(left.planes[channel].at(i, j) - right.planes[other].at(i, j)) > codes / 255.0f)
                     return false;
             }
         }
@@ -74,6 +77,96 @@ TEST_F(Others, ALayoutRoundTrips) {
     EXPECT_TRUE(equal("flat.dds", 2, "ao.png", 1));
     run("blend-normals pbr.dds n.png -o blend.ktx2 --format rgba8");
     EXPECT_TRUE(equal("blend.ktx2", 3, "h.png", 0));
+}
+
+// Terrain3D: 8 bits of each component hold occlusion near 1 to seven codes.
+TEST_F(Others, OcclusionGoesIntoLengths) {
+    constexpr float kCodes = 7.5f;
+    run("pack-normals n.png -o t.png --layout terrain3d --alpha h.png --length ao.png:g");
+    EXPECT_TRUE(equal("t.png", 3, "h.png", 0));
+    const Ran judged = shell(scratch_, "check-normals t.png");
+    EXPECT_NE(judged.out.find("N201"), std::string::npos) << judged.out;
+    const Ran known = shell(scratch_, "check-normals t.png --length-in occlusion");
+    EXPECT_EQ(known.out.find("N201"), std::string::npos) << known.out;
+    scratch_.write("check.toml", "[[rule]]\nmatch = \"t.*\"\nlength-in = \"occlusion\"\n");
+    const Ran matched = shell(scratch_, "check-normals t.png --config check.toml");
+    EXPECT_EQ(matched.out, known.out);
+    run("unpack-normals t.png -o back.png --length-in occlusion --length-out ao2.png");
+    EXPECT_TRUE(equal("ao2.png", 0, "ao.png", 1, kCodes));
+    EXPECT_EQ(shell(scratch_, "compare-normals n.png back.png --max 2").code, 0);
+    // It stays through levels, scaling, blending and another depth.
+    for (const std::string line :
+         {"mip-normals t.png -o u.dds --format rgba8", "scale-normals t.png -o u.dds --scale 2 --format rgb16",
+          "blend-normals t.png n.png -o u.dds --format half", "pack-normals t.png -o u.dds --format rgba16"}) {
+        run(line + " --length-in occlusion");
+        run("unpack-normals u.dds -o v.png --length-in occlusion --length-out ao3.png");
+        EXPECT_TRUE(equal("ao3.png", 0, "ao2.png", 0, kCodes)) << line;
+    }
+    run("pack-normals t.png -o same.png --format rgba8 --length-in occlusion");
+    for (const std::size_t channel : {0u, 1u, 2u, 3u}) EXPECT_TRUE(equal("same.png", channel, "t.png", channel, 0.0f));
+    for (const std::string word : {"--length-in ignore", "--length-in occlusion --length none"}) {
+        run("pack-normals t.png -o unit.png --format rgb8 " + word);
+        EXPECT_EQ(shell(scratch_, "check-normals unit.png").out.find("N201"), std::string::npos) << word;
+    }
+    const Ran lost = shell(scratch_, "pack-normals t.png -o t.dds --format bc5 --alpha none --length-in occlusion");
+    EXPECT_NE(lost.err.find("the lengths of vectors"), std::string::npos) << lost.err;
+    EXPECT_NE(lost.err.find("hold data beside the normals"), std::string::npos) << lost.err;
+}
+
+TEST_F(Others, GoThroughAConversion) {
+    scratch_.write("sheet.obj", kSheetObj);
+    run("pack-normals n.png -o nh.png --format rgba8 --alpha h.png --length ao.png:g");
+    run("convert-normals nh.png -o o.png --mesh sheet.obj --to object --format rgba8 --length-in occlusion");
+    EXPECT_TRUE(equal("o.png", 3, "h.png", 0));
+    run("convert-normals o.png -o t.dds --mesh sheet.obj --from object --format rgba8 --length-in occlusion --kind "
+        "height");
+    EXPECT_TRUE(equal("t.dds", 3, "h.png", 0));
+    run("unpack-normals t.dds -o t.png --length-in occlusion --length-out ao2.png");
+    EXPECT_TRUE(equal("ao2.png", 0, "ao.png", 1, 2 * 7.5f));
+    EXPECT_EQ(shell(scratch_, "compare-normals n.png t.png --max-mean 1").code, 0);
+    run("convert-normals n.png -o pbr.png --mesh sheet.obj --decoder-in gltf --decoder unity-builtin --layout labpbr "
+        "--blue ao.png:g --alpha h.png");
+    EXPECT_TRUE(equal("pbr.png", 2, "ao.png", 1));
+    EXPECT_TRUE(equal("pbr.png", 3, "h.png", 0));
+    const Ran lost =
+        shell(scratch_,
+              "convert-normals nh.png -o t.dds --mesh sheet.obj --decoder-in gltf --decoder unity-builtin --no-sync");
+    EXPECT_NE(lost.err.find("A (0"), std::string::npos) << lost.err;
+    EXPECT_NE(lost.err.find("--format rgba8 keeps A"), std::string::npos) << lost.err;
+    const Ran kept = shell(scratch_,
+                           "convert-normals nh.png -o t.png --mesh sheet.obj --format rgba8 --decoder-in gltf "
+                           "--decoder unity-builtin --no-sync");
+    EXPECT_EQ(kept.err.find("left out"), std::string::npos) << kept.err;
+    refuses("convert-normals n.png -o x.png --mesh sheet.obj --to object --blue h.png", 2, "object space needs z");
+    refuses("convert-normals n.png -o x.dds --mesh sheet.obj --decoder-in gltf --decoder unity-builtin --alpha h.png",
+            4, "dxt5nm has no alpha for data beside the normals; these formats have: rgba8");
+}
+
+TEST_F(Others, ABlendOfAnotherExtentHasThem) {
+    run("pack-normals n.png -o nh.png --format rgba8 --alpha h.png");
+    run("blend-normals nh.png n.png -o half.png --format rgba8 --extent 256x256");
+    ASSERT_EQ(shell(scratch_, "convert h.png -filter box -resize 50% half_h.png").code, 0);
+    EXPECT_TRUE(equal("half.png", 3, "half_h.png", 0, 1.01f));
+}
+
+TEST_F(Others, SixteenBitsStaySixteen) {
+    ASSERT_EQ(shell(scratch_, "convert h.png -blur 0x3 -depth 16 deep.png").code, 0);
+    for (const std::string type : {"png", "tif"}) {
+        run("bake-normals deep.png -o nh." + type + " --format rgba16 --alpha height --bumpiness 6");
+        ASSERT_EQ(shell(scratch_, "convert nh." + type + " -alpha extract -depth 16 a.png").code, 0);
+        const Ran same = shell(scratch_, "compare -metric AE a.png deep.png null:");
+        EXPECT_EQ(same.err, "0") << type << ": ImageMagick sees the same alpha";
+    }
+    run("bake-normals deep.png -o nh.exr --format rgba32f --alpha height --bumpiness 6");
+    EXPECT_TRUE(equal("nh.exr", 3, "deep.png", 0, 0.0f));
+    // Without --format the encoding stays, alpha too.
+    run("scale-normals nh.tif -o s.png --scale 2");
+    EXPECT_TRUE(equal("s.png", 3, "deep.png", 0, 0.0f));
+    EXPECT_EQ(read_texture(scratch_.path("s.png"))->format, Format::rgba16_unorm);
+    run("scale-normals nh.exr -o s.exr --scale 2");
+    EXPECT_TRUE(equal("s.exr", 3, "deep.png", 0, 0.0f));
+    const Ran lost = shell(scratch_, "pack-normals nh.exr -o s.png --no-sync");
+    EXPECT_NE(lost.err.find("--format rgba32f keeps A"), std::string::npos) << lost.err;
 }
 
 // ImageMagick takes apart what we have put together, and we what it has: alpha is unassociated.
@@ -115,6 +208,13 @@ TEST_F(Others, WhatCannotBeIsOneError) {
     refuses("pack-normals n.png -o h.png --format rgba8 --alpha h.png", 2, "h.png");
     refuses("unpack-normals n.png -o x.png --alpha-out y.png", 4, "has no alpha beside the normals");
     refuses("unpack-normals n.png -o x.png --alpha-out n.png", 2, "n.png");
+    refuses("pack-normals n.png -o x.png --length occlusion", 2, "--length occlusion needs --length-in occlusion");
+    refuses("pack-normals n.png -o x.png --blue ao.png --length 0.5", 2, "--blue and --length exclude each other");
+    refuses("pack-normals n.png -o x.dds --format bc5 --length 0.5", 2, "bc5 has no room for --length");
+    refuses("pack-normals n.png -o x.png --keep-length --length 0.5", 2, "--length and --keep-length exclude");
+    refuses("pack-normals n.png -o x.png --keep-length --length-in ignore", 2, "--length-in and --keep-length");
+    refuses("unpack-normals n.png -o x.png --length-out y.png", 2, "--length-out needs --length-in occlusion");
+    refuses("pack-normals n.png -o x.png --length-in height", 2, "occlusion");
 }
 
 }  // namespace

@@ -32,6 +32,7 @@ NOT_BOUND = {
     "maps_of": "a filter of a list",
     "name_of": "words are the names",
     "padded_stride": "memory of planes, which arrays keep",
+    "put_others": "arrays hold normals alone",
     "read_map": "read_texture() and decode_file() read the image of a map of read_model()",
     "read_model_maps": "read_model() reads the same, with the mesh",
     "rebuilds_z": "to_object_space() and preview() ask it",

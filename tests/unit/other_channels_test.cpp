@@ -5,8 +5,10 @@
 
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include <tex/blend.h>
 #include <tex/container.h>
 #include <tex/pipeline.h>
 
@@ -158,6 +160,50 @@ TEST_F(OtherChannelsTest, TheAlphaOfTheBaseStaysInABlend) {
     EXPECT_EQ(names(done->source), "");
     const Texture out = output();
     for (std::size_t k = 0; k < 512; ++k) ASSERT_EQ(out.levels[0].bytes[4 * k + 3], alpha(k)) << k;
+}
+
+// The alpha of the base is sampled as its normals are: bilinearly, or from means if the result is smaller.
+TEST_F(OtherChannelsTest, TheAlphaOfTheBaseFollowsTheExtentOfABlend) {
+    const std::string base = write(texture(), Container::png);
+    BlendFileOptions blend;
+    blend.source.inspect = true;
+    blend.write.sync = false;
+    blend.pack = [](const SourceInfo&) { return PackOptions{Encoding::rgba8, YAxis::up}; };
+    blend.layers.emplace_back().input = base;
+    blend.mip.levels = 1;
+    blend.blend.extent = {kExtent.width / 2, kExtent.height / 2};
+    const auto done = blend_file(base, path("out"), Container::dds, blend);
+    ASSERT_TRUE(done) << done.error().message();
+    EXPECT_EQ(names(done->source), "");
+    const auto at = [](int i, int j) {
+        return std::to_integer<int>(alpha(static_cast<std::size_t>(j * kExtent.width + i)));
+    };
+    const Texture half = output();
+    for (int j = 0; j < kExtent.height / 2; ++j) {
+        for (int i = 0; i < kExtent.width / 2; ++i) {
+            const double mean =
+                (at(2 * i, 2 * j) + at(2 * i + 1, 2 * j) + at(2 * i, 2 * j + 1) + at(2 * i + 1, 2 * j + 1)) / 4.0;
+            const auto texel = static_cast<std::size_t>(j * kExtent.width / 2 + i);
+            ASSERT_NEAR(std::to_integer<int>(half.levels[0].bytes[4 * texel + 3]), mean, 0.5001) << i << ' ' << j;
+        }
+    }
+    blend.blend.extent = {kExtent.width * 2, kExtent.height};
+    ASSERT_TRUE(blend_file(base, path("out"), Container::dds, blend));
+    const Texture wide = output();
+    for (int i = 0; i + 1 < kExtent.width; ++i) {
+        const auto between = static_cast<std::size_t>(2 * i + 1);  // a quarter of the way to the next texel
+        ASSERT_NEAR(std::to_integer<int>(wide.levels[0].bytes[4 * between + 3]), 0.75 * at(i, 0) + 0.25 * at(i + 1, 0),
+                    0.5001);
+    }
+    // The verb in memory, and an output that has no room.
+    MipChain maps = std::move(read_normals(base)->chain), again = std::move(read_normals(base)->chain);
+    std::vector<Layer> layers(1);
+    layers[0].detail = std::move(again);
+    NormalMap result = tex::blend(std::move(maps), std::move(layers), blend.blend).value();
+    const Texture packed = pack(chain_from(std::move(result)), {Encoding::rgba8, YAxis::up}).value();
+    EXPECT_EQ(packed.levels[0].bytes, wide.levels[0].bytes);
+    blend.pack = [](const SourceInfo&) { return PackOptions{Encoding::rgb8, YAxis::up}; };
+    EXPECT_EQ(names(blend_file(base, path("out"), Container::png, blend)->source), "A");
 }
 
 TEST_F(OtherChannelsTest, BytesDoNotDependOnSizesAndThreads) {

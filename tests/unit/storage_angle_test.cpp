@@ -150,14 +150,14 @@ TEST(StorageAngle, OfThreeComponentsIsTheManuals) {
         const auto corner = [&] { return (2.0 * static_cast<double>(random() % 65535) + 1) / top - 1; };
         vectors.add(corner(), corner());
     }
-    expect_row("rgb16", Encoding::rgb16, vectors, 0.09);
+    expect_row("rgb16 , rgba16", Encoding::rgb16, vectors, 0.09);
     // Halves are coarsest from 1/2 on, where x and y lie in the middle between two of them.
     Vectors halves;
     for (int k = 0; k < 2'000'000; ++k) {
         const auto middle = [&] { return 0.5 + (static_cast<double>(random() % 512) + 0.5) / 2048; };
         halves.add(middle(), random() % 2 == 0 ? middle() : -middle());
     }
-    expect_row("half", Encoding::half, halves, 0.06);
+    expect_row("half , rgba16f", Encoding::half, halves, 0.06);
 }
 
 }  // namespace

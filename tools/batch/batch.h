@@ -70,8 +70,11 @@ public:
 
     // The task that makes `output` from `input`. Throws UsageError if the name does not show the file type, or if the
     // file type cannot hold the format.
-    [[nodiscard]] Task task_for(const std::string& input, const std::string& output) const {
-        return task_for(Task{input, output});
+    [[nodiscard]] Task task_for(const std::string& input, const std::string& output,
+                                const std::string& origin = {}) const {
+        Task task{input, output};
+        task.origin = origin;
+        return task_for(std::move(task));
     }
     // The same of a task that has more than these.
     [[nodiscard]] Task task_for(Task task) const;

@@ -33,6 +33,8 @@ PackFileOptions Repacker::all_options(Job& job) const {
     PackFileOptions with = options(job);
     with.source = normals.options(job);
     if (others.is_added()) others.apply(with.source.unpack);
+    // Lengths that are data do not stay in the codes if they are told to go.
+    if (normals.length_in && !with.source.unpack.others.length) with.keep_codes = false;
     with.others = others.inputs(job);
     if (with.mip) others.apply(*with.mip);
     const OutputOptions own = output.of(job.task.engine);

@@ -11,6 +11,7 @@
 #include "cli/text.h"
 #include "cli/text_file.h"
 #include "cli/usage_error.h"
+#include "options/normals.h"
 #include "options/toml.h"
 #include "options/toml_bounds.h"
 
@@ -42,7 +43,7 @@ private:
     }
 
     void check_keys(const toml::table& table, const std::vector<std::string>& more) const {
-        std::vector<std::string> known = {"require", "enable", "disable", "fail-on", "severity"};
+        std::vector<std::string> known = {"require", "length-in", "enable", "disable", "fail-on", "severity"};
         known.insert(known.end(), more.begin(), more.end());
         for (const auto& [key, node] : table) {
             const std::string name(key.str());
@@ -81,6 +82,12 @@ private:
         for (const auto& [text, node] : strings(table, "require")) {
             if (auto added = add_common_requirement(options.require, text); !added)
                 fail(*node, printable(added.error().reason));
+        }
+        if (const toml::node* node = table.get("length-in")) {
+            const auto found =
+                node->is_string() ? find_by_name(kLengthInNames, node->as_string()->get()) : std::nullopt;
+            if (!found) fail(*node, fmt::format("length-in must be {}", join(names_of(words_of(kLengthInNames)))));
+            options.any_length = true;
         }
         for (const auto& [text, node] : strings(table, "enable")) {
             options.enable.push_back(rule_name(text, *node));

@@ -22,17 +22,37 @@ std::string guess_text(const std::string& layout) {
     return fmt::format("layout not stated; guessed {} from the texels{}; --swizzle sets it", layout, evidence);
 }
 
-Encoding exact_encoding(const SourceInfo& input) {
+// The encoding of the same format. One with alpha is right for its format unless the file states that A is 1, and 8
+// bits are widened by no container.
+std::optional<Encoding> same_format(const SourceInfo& input) {
     const FormatInfo info = format_info(input.format);
     for (const auto& row : kEncodingNames) {
-        const Format format = encoding_info(row.value).format;
-        if (format == input.format && (info.has_blocks() || info.channels == 2)) return row.value;
+        const EncodingInfo encoding = encoding_info(row.value);
+        if (encoding.format != input.format) continue;
+        if (info.has_blocks() || info.channels == 2) return row.value;
+        const bool has_x_there = input.swizzle[3] == Component::x, wants_x_there = encoding.swizzle[3] == Component::x;
+        const bool is_widened = info.bits > 8 && input.swizzle[3] == Component::one;
+        if (info.channels == 4 && has_x_there == wants_x_there && !is_widened) return row.value;
     }
+    return std::nullopt;
+}
+
+Encoding exact_encoding(const SourceInfo& input) {
+    const FormatInfo info = format_info(input.format);
+    if (const auto same = same_format(input)) return *same;
     if (info.channels == 2 && info.sample == SampleKind::snorm) return info.bits == 8 ? Encoding::rg8 : Encoding::rg16;
     if (info.sample == SampleKind::floating) return info.bits == 16 ? Encoding::half : Encoding::float_;
-    if (info.bits == 16) return Encoding::rgb16;
-    if (!info.has_blocks() && input.swizzle[3] == Component::x) return Encoding::ag8;
-    return input.format == Format::rgba8_unorm ? Encoding::rgba8 : Encoding::rgb8;
+    return info.bits == 16 ? Encoding::rgb16 : Encoding::rgb8;
+}
+
+// The name of the encoding that keeps alpha with as many bits.
+std::string_view alpha_encoding(const SourceInfo& input) {
+    const FormatInfo info = format_info(input.format);
+    for (const auto& row : kEncodingNames) {
+        const FormatInfo format = format_info(encoding_info(row.value).format);
+        if (can_hold(row.value).alpha && format.sample == info.sample && format.bits == info.bits) return row.name;
+    }
+    return name_of(kEncodingNames, Encoding::rgba8);
 }
 
 }  // namespace
@@ -51,8 +71,13 @@ void report_input(Job& job, const SourceInfo& info) {
     job.report["source"] = {{"format", name_of(kFormatNames, info.format)}, {"swizzle", layout_name(info.swizzle)}};
 }
 
-void NormalsReader::add(Command& command, bool with_keep_length, Others others) {
-    others_ = others;
+void add_length_in(Command& command, std::optional<LengthIn>& length_in) {
+    command.choice(length_in, "--length-in", "WHAT", kLengthInNames, "what the lengths of vectors in the input hold")
+        .preset = "nothing: they are 1";
+}
+
+void NormalsReader::add(Command& command, bool with_keep_length, bool keeps_others) {
+    keeps_others_ = keeps_others;
     command.group("Input");
     Row& y = command.option("--y-in", "AXIS", "which way green points in the input", [this](const std::string& text) {
         std::vector<std::string> names = names_of(words_of(kYAxisNames));
@@ -83,7 +108,11 @@ void NormalsReader::add(Command& command, bool with_keep_length, Others others) 
     command.flag(unpack.snap_flat, "--snap-flat", "read 127 and 128 of 8-bit files as 0");
     command.flag(fills_background, "--fill-background", "fill the background around charts with the nearest normals");
     if (with_keep_length) command.flag(unpack.keep_length, "--keep-length", "do not normalise what is read");
-    if (others == Others::none) return;
+    if (!keeps_others) return;
+    add_length_in(command, length_in);
+    command.check([this] {
+        if (length_in && unpack.keep_length) throw UsageError("--length-in and --keep-length exclude each other");
+    });
     command.flag(drops_others, "--drop", "leave out channels that hold no normals, and do not warn of it");
 }
 
@@ -106,7 +135,9 @@ SourceOptions NormalsReader::options(const Job& job, const Reading& reading) con
     options.r_or_a = rg_or_ag;
     options.doubt_y = reading.doubt_y;
     options.inspect = !reading.object;
-    options.drop_others = drops_others || others_ == Others::none;
+    options.unpack.others.length = length_in == LengthIn::occlusion;
+    if (reading.others) options.unpack.others = *reading.others;
+    options.drop_others = drops_others || !keeps_others_;
     options.fill_background = fills_background;
     options.file_y_first = reading.is_detail && !reading.y;
     return options;
@@ -127,7 +158,7 @@ void NormalsReader::note(Job& job, const std::string& path, const SourceInfo& in
             "convert-normals --from object --mesh FILE converts it",
             path);
     }
-    if (info.z_doubtful) {
+    if (info.z_doubtful && !length_in) {
         job.warn(
             "what is read as z does not follow x and y; if that channel holds other data, --swizzle rg (x in R, y in "
             "G) rebuilds z",
@@ -139,7 +170,7 @@ void NormalsReader::note(Job& job, const std::string& path, const SourceInfo& in
                              std::max(1.0, 100.0 * info.background)),
                  path);
     }
-    if (path == job.task.map_path() && !info.others.empty()) warn_of_others(job, path, info.others);
+    if (path == job.task.map_path() && !info.others.empty()) warn_of_others(job, path, info);
     if (!info.guessed) return;
     const std::string name = layout_name(info.swizzle);
     job.remark(guess_text(name), path);
@@ -150,16 +181,20 @@ void NormalsReader::note(Job& job, const std::string& path, const SourceInfo& in
 }
 
 // Says which channels an output lacks.
-void NormalsReader::warn_of_others(Job& job, const std::string& path, const std::vector<OtherChannel>& others) const {
+void NormalsReader::warn_of_others(Job& job, const std::string& path, const SourceInfo& info) const {
     std::vector<std::string> names;
-    for (const OtherChannel& other : others)
-        names.push_back(fmt::format("{} ({:.2g} to {:.2g})", other.name, other.least, other.greatest));
-    const bool is_alpha = others.back().name == 'A' && others_ == Others::kept_in_alpha;
+    for (const OtherChannel& other : info.others) {
+        const std::string name = other.name == 'L' ? "the lengths of vectors" : std::string(1, other.name);
+        names.push_back(fmt::format("{} ({:.2g} to {:.2g})", name, other.least, other.greatest));
+    }
+    const bool is_alpha = std::any_of(info.others.begin(), info.others.end(),
+                                      [](const OtherChannel& other) { return other.name == 'A'; });
     const bool is_one = names.size() == 1;
-    job.warn(fmt::format("{} {} data beside the normals, which {} left out ({}--drop: without this warning)",
-                         join(names, " and "), is_one ? "holds" : "hold", is_one ? "is" : "are",
-                         is_alpha ? "--format rgba8 keeps A; " : ""),
-             path);
+    job.warn(
+        fmt::format("{} {} data beside the normals, which {} left out ({}--drop: without this warning)",
+                    join(names, " and "), is_one && names[0].front() != 't' ? "holds" : "hold", is_one ? "is" : "are",
+                    is_alpha ? fmt::format("--format {} keeps A; ", alpha_encoding(info)) : ""),
+        path);
 }
 
 Result<Source> NormalsReader::read(Job& job, const std::string& path, const Execution& execution,
@@ -169,6 +204,13 @@ Result<Source> NormalsReader::read(Job& job, const std::string& path, const Exec
         if (auto opened = reading.model->open(with.read); !opened) return opened.error();
     }
     auto source = read_normals(path, with, reading.base_only, execution);
+    if (source && reading.holds) {
+        const OtherPlanes held = reading.holds(source->info);
+        std::erase_if(source->info.others, [held](const OtherChannel& other) {
+            return (other.name == 'A' && held.alpha) || (other.name == 'B' && held.blue) ||
+                   (other.name == 'L' && held.length);
+        });
+    }
     if (source) note(job, path, source->info);
     return source;
 }

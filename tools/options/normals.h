@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -31,15 +32,29 @@ inline constexpr Named<Bc5Order> kBc5OrderNames[] = {
     {Bc5Order::yx, "yx", "y first, as ATI2 files"},
 };
 
+// What the lengths of stored vectors are, if they are not 1 by intention.
+enum class LengthIn { occlusion, ignore };
+
+inline constexpr Named<LengthIn> kLengthInNames[] = {
+    {LengthIn::occlusion, "occlusion", "occlusion, as Terrain3D packs it: 0.5 + 0.5 sqrt(occlusion)"},
+    {LengthIn::ignore, "ignore", "nothing: vectors become unit"},
+};
+
+// --length-in.
+void add_length_in(Command& command, std::optional<LengthIn>& length_in);
+
 // How one file is read, if this differs from the options.
 struct Reading {
     bool base_only = false;       // without the smaller levels
     bool is_detail = false;       // the file's own y overrides --y-in, which is the base's
     std::optional<YAxis> y = {};  // overrides all of that
     std::optional<bool> keep_length = {};
-    bool doubt_y = false;               // warn if y is assumed and the texels clearly show the other direction
-    bool object = false;                // the vectors are in object space
-    const ModelInput* model = nullptr;  // the file is this map of a model
+    bool doubt_y = false;                    // warn if y is assumed and the texels clearly show the other direction
+    bool object = false;                     // the vectors are in object space
+    const ModelInput* model = nullptr;       // the file is this map of a model
+    std::optional<OtherPlanes> others = {};  // what goes along beside the normals
+    // What of it is not lost; empty: nothing.
+    std::function<OtherPlanes(const SourceInfo& info)> holds = {};
 };
 
 class NormalsReader {
@@ -48,16 +63,15 @@ public:
     bool rg_or_ag = false;           // x in R or A, whichever is not constant
     std::optional<Bc5Order> bc5_order;
     UnpackOptions unpack;
+    std::optional<LengthIn> length_in;
     bool measures_y = false;  // the texels show which way green points
     bool fills_background = false;
     bool warns_of_background = true;  // where the output may mix it into the charts
     bool drops_others = false;        // channels that hold no normals are left out, and no warning says so
 
-    // What becomes of channels that hold no normals, if the command writes a map.
-    enum class Others { none, kept_in_alpha, left_out };
-
-    // `with_keep_length`: --keep-length is an option. Otherwise the command itself chooses.
-    void add(Command& command, bool with_keep_length = true, Others others = Others::kept_in_alpha);
+    // `with_keep_length`: --keep-length is an option. Otherwise the command itself chooses. `keeps_others`: the command
+    // writes a map, and what the input holds beside its normals goes along.
+    void add(Command& command, bool with_keep_length = true, bool keeps_others = true);
 
     // The same, as options of the library.
     [[nodiscard]] SourceOptions options(const Job& job, const Reading& reading = {}) const;
@@ -81,9 +95,9 @@ private:
         int count = 0;
     };
 
-    void warn_of_others(Job& job, const std::string& path, const std::vector<OtherChannel>& others) const;
+    void warn_of_others(Job& job, const std::string& path, const SourceInfo& info) const;
 
-    Others others_ = Others::none;
+    bool keeps_others_ = false;
     std::mutex mutex_;
     std::map<std::string, Guesses> guesses_;  // by the name of the swizzle
 };

@@ -30,17 +30,29 @@ constexpr LayoutRow kLayouts[] = {
 
 // The pattern as the name of a file for this task.
 std::string name_for(const std::string& pattern, const Task& task) {
-    return NamePattern(pattern).expand(name_fields(task.input));
+    return NamePattern(pattern).expand(name_fields(task.named()));
 }
 
 }  // namespace
 
-void OtherOptions::take(const std::string& text, bool bakes, Choice& choice) {
+const std::array<OtherOptions::Place, 3> OtherOptions::kPlaces = {{
+    {"--blue", "what blue holds instead of z, as --alpha", "z", &OtherPlanes::blue, &OtherInputs::blue,
+     &OtherOptions::blue_, "keep", "height", false},
+    {"--alpha", "what alpha holds: FILE[:CHANNEL], a number from 0 to 1, or a word", "nothing: it is 1",
+     &OtherPlanes::alpha, &OtherInputs::alpha, &OtherOptions::alpha_, "keep", "height", true},
+    {"--length", "the occlusion that the lengths of vectors hold, as --alpha", "nothing: vectors are unit",
+     &OtherPlanes::length, &OtherInputs::length, &OtherOptions::length_, "occlusion", nullptr, true},
+}};
+
+void OtherOptions::take(const std::string& text, const Place& place) {
+    Choice& choice = this->*place.choice;
     choice = {};
     const bool is_number = !text.empty() && text.find_first_not_of("+-.0123456789eE") == std::string::npos;
     if (text == "none") return;
-    if (text == (bakes ? "height" : "keep")) {
-        choice.from = bakes ? Choice::From::heights : Choice::From::kept;
+    if (reads_ != nullptr && text == place.kept) {
+        choice.from = Choice::From::kept;
+    } else if (reads_ == nullptr && place.heights != nullptr && text == place.heights) {
+        choice.from = Choice::From::heights;
     } else if (is_number) {
         choice.from = Choice::From::number;
         choice.number = parse_float(text, {0.0, 1.0});
@@ -52,28 +64,26 @@ void OtherOptions::take(const std::string& text, bool bakes, Choice& choice) {
     }
 }
 
-void OtherOptions::add_channel(Command& command, const char* option, Choice& choice, bool bakes) {
-    const bool is_alpha = &choice == &alpha_;
-    Row& row = command.option(option, "WHAT",
-                              is_alpha ? "what alpha holds: FILE[:CHANNEL], a number from 0 to 1, or a word"
-                                       : "what blue holds instead of z, as --alpha",
-                              [&choice, bakes](const std::string& text) { take(text, bakes, choice); });
-    if (bakes) {
-        row.words = {{"height", "the heights that are baked, 0 to 1"}};
-    } else {
-        row.words = {{"keep", "what it holds in the input"}};
+void OtherOptions::add_place(Command& command, const Place& place) {
+    Row& row = command.option(place.option, "WHAT", place.help,
+                              [this, &place](const std::string& text) { take(text, place); });
+    row.preset = "none";
+    if (reads_ != nullptr) {
+        row.words = {{place.kept, "what it holds in the input"}};
+        if (place.is_kept) row.preset = place.kept;
+        if (place.is_kept) (this->*place.choice).from = Choice::From::kept;
+    } else if (place.heights != nullptr) {
+        row.words = {{place.heights, "the heights that are baked, 0 to 1"}};
     }
-    row.words.push_back({"none", is_alpha ? "nothing: it is 1" : "z"});
-    row.preset = is_alpha && !bakes ? "keep" : "none";
+    row.words.push_back({"none", place.nothing});
     row.completes = Completes::files;
 }
 
-void OtherOptions::add(Command& command, OutputOptions& output, bool bakes) {
+void OtherOptions::add(Command& command, OutputOptions& output, const NormalsReader* reads) {
     is_added_ = true;
-    if (!bakes) alpha_.from = Choice::From::kept;
+    reads_ = reads;
     command.group("Data beside the normals");
-    add_channel(command, "--blue", blue_, bakes);
-    add_channel(command, "--alpha", alpha_, bakes);
+    for (const Place& place : kPlaces) add_place(command, place);
     Row& kind = command.option("--kind", "KIND[,KIND]", "what blue and alpha hold, which decides about smaller levels",
                                [this](const std::string& text) {
                                    const auto [first, second] = cut(text, ',');
@@ -87,6 +97,7 @@ void OtherOptions::add(Command& command, OutputOptions& output, bool bakes) {
     command.check([this, &command, &output] {
         set_layout(command, output);
         check_room(output);
+        check_lengths(command);
     });
 }
 
@@ -109,25 +120,32 @@ void OtherOptions::set_layout(const Command& command, OutputOptions& output) {
 
 void OtherOptions::check_room(const OutputOptions& output) const {
     if (!output.format) return;
-    const auto has_room = [](Encoding encoding, bool is_alpha) {
-        return is_alpha ? can_hold(encoding).alpha : can_hold(encoding).blue;
-    };
-    for (const auto& [choice, option] : {std::pair(&blue_, "--blue"), std::pair(&alpha_, "--alpha")}) {
-        const bool is_alpha = choice == &alpha_;
-        const bool is_given = choice->from != Choice::From::nothing && choice->from != Choice::From::kept;
-        if (!is_given || has_room(*output.format, is_alpha)) continue;
+    for (const Place& place : kPlaces) {
+        if (!(this->*place.choice).is_given() || can_hold(*output.format).*place.has) continue;
         std::vector<std::string> able;
         for (const auto& row : kEncodingNames) {
-            if (has_room(row.value, is_alpha)) able.emplace_back(row.name);
+            if (can_hold(row.value).*place.has) able.emplace_back(row.name);
         }
         throw UsageError(fmt::format("{} has no room for {}; these formats have: {}",
-                                     name_of(kEncodingNames, *output.format), option, join(able, ", ")));
+                                     name_of(kEncodingNames, *output.format), place.option, join(able, ", ")));
     }
 }
 
+void OtherOptions::check_lengths(const Command& command) const {
+    if (length_.is_given() && blue_.from != Choice::From::nothing)
+        throw UsageError("--blue and --length exclude each other: without z, a vector has no length");
+    if (reads_ == nullptr) return;
+    const bool keeps = length_.from == Choice::From::kept;
+    if (keeps && command.given("--length") && reads_->length_in != LengthIn::occlusion)
+        throw UsageError("--length occlusion needs --length-in occlusion");
+    if (length_.is_given() && reads_->unpack.keep_length)
+        throw UsageError("--length and --keep-length exclude each other");
+}
+
 void OtherOptions::amend(Task& task) const {
-    for (const Choice* choice : {&blue_, &alpha_}) {
-        if (choice->from == Choice::From::file) task.own.push_back(file_for(*choice, task).file);
+    for (const Place& place : kPlaces) {
+        const Choice& choice = this->*place.choice;
+        if (choice.from == Choice::From::file) task.own.push_back(file_for(choice, task).file);
     }
 }
 
@@ -148,10 +166,28 @@ std::optional<OtherData> OtherOptions::data(const Choice& choice, Job& job) cons
     return data;
 }
 
-OtherInputs OtherOptions::inputs(Job& job) const { return {data(blue_, job), data(alpha_, job)}; }
+OtherInputs OtherOptions::inputs(Job& job) const {
+    OtherInputs inputs;
+    for (const Place& place : kPlaces) inputs.*place.data = data(this->*place.choice, job);
+    return inputs;
+}
 
 void OtherOptions::apply(UnpackOptions& unpack) const {
-    unpack.others = {blue_.from == Choice::From::kept, alpha_.from == Choice::From::kept};
+    OtherPlanes kept;
+    for (const Place& place : kPlaces) kept.*place.has = (this->*place.choice).from == Choice::From::kept;
+    kept.length = kept.length && unpack.others.length;  // if lengths are data
+    unpack.others = kept;
+}
+
+OtherPlanes OtherOptions::accounted_for(OtherPlanes held) const {
+    OtherPlanes planes;
+    for (const Place& place : kPlaces) {
+        const Choice& choice = this->*place.choice;
+        const bool is_told_to_go = choice.from == Choice::From::nothing && place.is_kept;
+        planes.*place.has = choice.is_given() || is_told_to_go || held.*place.has;
+    }
+    planes.blue = planes.blue && !stores_z();
+    return planes;
 }
 
 void OtherOptions::apply(MipOptions& mip) const {
@@ -159,17 +195,27 @@ void OtherOptions::apply(MipOptions& mip) const {
     mip.alpha = alpha_kind_.value_or(mip.alpha);
 }
 
-void OtherFiles::add(Command& command, const FileOptions& files) {
+const std::array<OtherFiles::Apart, 3> OtherFiles::kApart = {{
+    {"--blue-out", "blue", "what blue holds beside the normals", &OtherFiles::blue_, &PackFileOptions::blue_file},
+    {"--alpha-out", "alpha", "what alpha holds beside the normals", &OtherFiles::alpha_, &PackFileOptions::alpha_file},
+    {"--length-out", "length", "the occlusion in the lengths of vectors", &OtherFiles::length_,
+     &PackFileOptions::length_file},
+}};
+
+void OtherFiles::add(Command& command, const FileOptions& files, const NormalsReader& reads) {
     files_ = &files;
-    const char* help = "write what {} holds beside the normals to a file; of many inputs a pattern as --name";
-    for (const auto& [option, pattern, channel] :
-         {std::tuple("--blue-out", &blue_, "blue"), std::tuple("--alpha-out", &alpha_, "alpha")})
-        command.text(*pattern, option, "FILE", fmt::format(fmt::runtime(help), channel)).completes = Completes::files;
-    command.check([this, &command] {
-        for (const auto& [option, pattern] : {std::pair("--blue-out", &blue_), std::pair("--alpha-out", &alpha_)}) {
-            if (command.given(option) && (pattern->empty() || *pattern == "-"))
-                throw UsageError(option, "needs the name of a file");
+    for (const Apart& apart : kApart) {
+        const std::string help = fmt::format("write {} to a file; of many inputs a pattern as --name", apart.what);
+        command.text(this->*apart.pattern, apart.option, "FILE", help).completes = Completes::files;
+    }
+    command.check([this, &command, &reads] {
+        for (const Apart& apart : kApart) {
+            const std::string& pattern = this->*apart.pattern;
+            if (command.given(apart.option) && (pattern.empty() || pattern == "-"))
+                throw UsageError(apart.option, "needs the name of a file");
         }
+        if (!length_.empty() && reads.length_in != LengthIn::occlusion)
+            throw UsageError("--length-out needs --length-in occlusion");
     });
 }
 
@@ -186,15 +232,15 @@ std::optional<OtherFile> OtherFiles::file(const std::string& pattern, const Task
 }
 
 void OtherFiles::amend(Task& task) const {
-    for (const std::string* pattern : {&blue_, &alpha_}) {
-        if (const auto out = file(*pattern, task)) task.more_outputs.push_back(out->output);
+    for (const Apart& apart : kApart) {
+        if (const auto out = file(this->*apart.pattern, task)) task.more_outputs.push_back(out->output);
     }
 }
 
 void OtherFiles::check(const std::vector<Task>& tasks) const {
     for (const Task& task : tasks) {
-        for (const std::string* pattern : {&blue_, &alpha_}) {
-            const auto out = file(*pattern, task);
+        for (const Apart& apart : kApart) {
+            const auto out = file(this->*apart.pattern, task);
             if (out && !can_hold(out->container, out->format)) {
                 throw UsageError(printable(out->output), fmt::format("{} files cannot hold a single channel",
                                                                      name_of(kContainerNames, out->container)));
@@ -204,15 +250,14 @@ void OtherFiles::check(const std::vector<Task>& tasks) const {
 }
 
 void OtherFiles::apply(const Task& task, PackFileOptions& options) const {
-    options.blue_file = file(blue_, task);
-    options.alpha_file = file(alpha_, task);
+    for (const Apart& apart : kApart) options.*apart.file = file(this->*apart.pattern, task);
 }
 
 void OtherFiles::report(Job& job) const {
-    for (const auto& [pattern, key] : {std::pair(&blue_, "blue"), std::pair(&alpha_, "alpha")}) {
-        if (const auto out = file(*pattern, job.task)) {
+    for (const Apart& apart : kApart) {
+        if (const auto out = file(this->*apart.pattern, job.task)) {
             job.wrote(out->output);
-            job.report[key] = out->output;
+            job.report[apart.key] = out->output;
         }
     }
 }

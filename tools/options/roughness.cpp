@@ -69,7 +69,7 @@ void RoughnessOptions::take_input(const std::string& text) {
 }
 
 ChannelFile RoughnessOptions::input_of(const Task& task) const {
-    return {NamePattern(input_.file).expand(name_fields(task.input)), input_.channel};
+    return {NamePattern(input_.file).expand(name_fields(task.named())), input_.channel};
 }
 
 std::string RoughnessOptions::output_of(const Task& task) const {

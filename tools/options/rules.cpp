@@ -59,6 +59,7 @@ void RuleOptions::add(Command& command) {
             names.push_back(text);
         };
     };
+    add_length_in(command, length_in_);
     command.option("--enable", "ID", "check a rule (id or name) that is off by default", name_into(given_.enable))
         .repeatable = true;
     command.option("--disable", "ID", "do not check a rule", name_into(given_.disable)).repeatable = true;
@@ -92,6 +93,7 @@ Demands RuleOptions::merged(const CheckSettings& settings, const Command& comman
         checks.require.engine = needs_of(*engine_);
         if (!checks.require.y) checks.require.y = engine_->y;
     }
+    checks.any_length = checks.any_length || length_in_;
     append(checks.enable, given_.enable);
     append(checks.severity, given_.severity);
     // A rule may appear with its id in one place and with its name in the other.

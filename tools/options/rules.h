@@ -12,6 +12,7 @@
 
 #include "cli/command.h"
 #include "options/check_config.h"
+#include "options/normals.h"
 #include "tasks/engines.h"
 #include "tasks/task.h"
 
@@ -25,7 +26,7 @@ struct Demands {
     [[nodiscard]] bool fails(const Finding& finding) const { return finding.severity >= fail_on; }
 };
 
-// --require, --for, --enable, --disable, --severity, --config, --fail-on, --height, --list, --explain.
+// --require, --for, --length-in, --enable, --disable, --severity, --config, --fail-on, --height, --list, --explain.
 class RuleOptions {
 public:
     void add(Command& command);
@@ -49,9 +50,10 @@ private:
     [[nodiscard]] Result<void> merge_config(const Command& command);
     [[nodiscard]] Demands merged(const CheckSettings& settings, const Command& command) const;
 
-    CheckOptions given_;                        // from the command line, without `require`
-    std::vector<std::string> required_;         // --require
-    const Engine* engine_ = nullptr;            // --for
+    CheckOptions given_;                 // from the command line, without `require`
+    std::vector<std::string> required_;  // --require
+    const Engine* engine_ = nullptr;     // --for
+    std::optional<LengthIn> length_in_;
     std::string config_, height_file_;          // paths, or empty
     Severity least_failing_ = Severity::error;  // --fail-on
     bool list_ = false;

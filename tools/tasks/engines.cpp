@@ -18,21 +18,22 @@ using enum Encoding;
 
 // What importers take: pictures with z in B.
 constexpr Container kPictures[] = {png, tiff, tga, bmp, jpeg, exr};
-constexpr Encoding kRgb[] = {rgb8, rgba8, rgb16, half, float_};
-constexpr Encoding kRgbCodes[] = {rgb8, rgba8, rgb16};
+constexpr Encoding kRgb[] = {rgb8, rgba8, rgb16, rgba16, half, float_, rgba16f, rgba32f};
+constexpr Encoding kRgbCodes[] = {rgb8, rgba8, rgb16, rgba16};
 // Unity imports DDS as it is; its shaders multiply R by A, so they read x from DXT5nm and BC5.
 constexpr Container kUnityTypes[] = {png, tiff, tga, bmp, jpeg, exr, dds};
-constexpr Encoding kUnityEncodings[] = {rgb8, rgba8, rgb16, half, float_, dxt5nm, bc5};
+constexpr Encoding kUnityEncodings[] = {rgb8, rgba8, rgb16, rgba16, half, float_, rgba16f, rgba32f, dxt5nm, bc5};
 // Godot's materials rebuild z from R and G.
 constexpr Container kGodotTypes[] = {png, tga, bmp, jpeg, exr, dds, ktx2};
-constexpr Encoding kGodotEncodings[] = {rgb8, rgba8, rgb16, half, float_, bc5, rg8};
+constexpr Encoding kGodotEncodings[] = {rgb8, rgba8, rgb16, rgba16, half, float_, rgba16f, rgba32f, bc5, rg8};
 constexpr Container kGltfTypes[] = {png, jpeg};
 constexpr Container kThreeTypes[] = {png, jpeg, tga, tiff, exr, ktx2};
 // KTX2Loader's formats without Basis Universal; the renderers rebuild z of those of two channels.
 constexpr Container kThreePackedTypes[] = {ktx2};
 constexpr Encoding kThreePackedEncodings[] = {bc5, eac_rg11, rg8, rgba8};
 constexpr Container kBevyTypes[] = {ktx2, dds, png, tiff, tga, bmp, jpeg, exr};
-constexpr Encoding kBevyEncodings[] = {bc5, eac_rg11, rg8, rg16, rgb8, rgba8, rgb16, half, float_};
+constexpr Encoding kBevyEncodings[] = {bc5,   eac_rg11, rg8,    rg16,   rgb8,    rgba8,
+                                       rgb16, half,     float_, rgba16, rgba16f, rgba32f};
 constexpr Container kPhoneTypes[] = {ktx2};
 constexpr Encoding kPhoneEncodings[] = {eac_rg11, eac_rg11_snorm, astc_4x4, astc_5x4, astc_5x5, astc_6x5, astc_6x6,
                                         astc_8x5, astc_8x6,       astc_8x8, rg8,      rgb8,     rgba8};

@@ -26,6 +26,7 @@ struct Task {
     std::vector<std::string> joined = {};        // the inputs after the first one that go into the same output
     std::vector<std::string> shared = {};        // files that options name and every output depends on
     std::vector<std::string> own = {};           // files that options name and only this output depends on
+    std::string origin = {};                     // of a later step: the input of the first one; else empty
     std::vector<std::string> more_outputs = {};  // outputs besides the first one
     // The files of options that write, such as --height-out, where the caller decides about names; else empty.
     std::map<std::string, std::string> places = {};
@@ -38,6 +39,8 @@ struct Task {
     std::shared_ptr<const ModelInput> model = {};  // the input is this map of a model, and not the file itself
     std::vector<std::shared_ptr<const ModelInput>> joined_models = {};  // the same for each of `joined`
 
+    // The input after which patterns name files.
+    [[nodiscard]] const std::string& named() const { return origin.empty() ? input : origin; }
     // The input as messages call it.
     [[nodiscard]] std::string name() const {
         if (model) return model->name();

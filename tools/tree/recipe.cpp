@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSuffix = "-normals";
 constexpr const char* kOutputGroup = "Output";
+constexpr const char* kDataGroup = "Data beside the normals";
 
 Converter* converter_of(Program& program) {
     auto* const converter = dynamic_cast<Converter*>(&program);
@@ -48,6 +49,13 @@ std::vector<std::string> groups_of(const Command& command) {
 bool names_a_file(const Row& row) { return row.completes == Completes::files; }
 
 constexpr int kAnyTile = 1001;  // to try whether options fit tiles
+
+// Whether a value of such an option is a file: it may be a word or a number, too.
+bool is_file(const std::string& value, const Row& row) {
+    const std::vector<std::string> words = names_of(row.words);
+    return std::find(words.begin(), words.end(), value) == words.end() &&
+           value.find_first_not_of("+-.0123456789eE") != std::string::npos;
+}
 
 }  // namespace
 
@@ -80,6 +88,7 @@ Recipe::Recipe(const Manifest& manifest, const RuleSettings& rule, int number, c
     }
     for (const OutputSettings& output : rule.outputs) add_output(output, console);
     check_tiles(before_.empty() ? outputs_.front().last : before_.front());
+    find_files();
 }
 
 bool Recipe::takes(const std::string& input) const {
@@ -144,8 +153,18 @@ std::string Recipe::with_root(const std::string& argument, const Command& comman
     const Row* const row = row_of(command, name.substr(2), groups_of(command));
     // {dir} is that of the input, which is below the root. Files to write get their places later.
     const bool is_below = !root_.empty() && row != nullptr && names_a_file(*row) && !row->writes &&
-                          !fs::path(value).is_absolute() && !value.starts_with("{dir}");
+                          is_file(value, *row) && !fs::path(value).is_absolute() && !value.starts_with("{dir}");
     return is_below ? fmt::format("{}={}/{}", name, root_, value) : argument;
+}
+
+// Floats, with alpha unless only heights without alpha come before.
+std::string_view Recipe::format_between(const std::vector<std::string>& arguments) const {
+    const auto has_alpha = [](const std::vector<std::string>& given) {
+        return std::any_of(given.begin(), given.end(), [](const auto& one) { return one.starts_with("--alpha="); });
+    };
+    bool any_has = has_alpha(arguments) || rule_.steps.front().command != "bake";
+    for (const ReadyCommand& command : before_) any_has = any_has || has_alpha(command.arguments);
+    return name_of(kEncodingNames, any_has ? Encoding::rgba32f : Encoding::float_);
 }
 
 // `out` is the name of an output; its extension says the file type.
@@ -157,7 +176,10 @@ ReadyCommand Recipe::ready(const StepSettings& step, const OutputSettings* outpu
     command.converter = converter_of(*command.program);
     Command& table = command.program->command;
     std::vector<std::string> groups = groups_of(table);
-    if (!is_last) std::erase(groups, kOutputGroup);
+    if (!is_last) std::erase(groups, kOutputGroup);  // of data beside the normals, alpha goes along
+    const auto stays_behind = [&](const OptionSetting& setting) {
+        return !is_last && setting.key != "alpha" && row_of(table, setting.key, {kDataGroup}) != nullptr;
+    };
     const auto overrides = [&](const std::string& key) {
         return output != nullptr && std::any_of(output->settings.begin(), output->settings.end(),
                                                 [&](const OptionSetting& setting) { return setting.key == key; });
@@ -167,17 +189,19 @@ ReadyCommand Recipe::ready(const StepSettings& step, const OutputSettings* outpu
     for (const OptionSetting& setting : step.settings) {
         const Row* const row = row_of(table, setting.key, groups);
         if (row != nullptr && row->writes && !is_first) continue;
-        if (!overrides(setting.key)) add_option(setting, table, groups, command.arguments);
+        if (stays_behind(setting) && !setting.is_default)
+            fail_at(manifest_.path, setting.place, fmt::format("{}: only the last step can have it", setting.key));
+        if (!overrides(setting.key) && !stays_behind(setting)) add_option(setting, table, groups, command.arguments);
     }
     if (output != nullptr) {
         for (const OptionSetting& setting : output->settings)
-            add_option(setting, table, {kOutputGroup}, command.arguments);
+            add_option(setting, table, {kOutputGroup, kDataGroup}, command.arguments);
     }
     std::sort(command.arguments.begin(), command.arguments.end(),
               [](const std::string& a, const std::string& b) { return cut(a, '=').first < cut(b, '=').first; });
     std::vector<std::string> line;
     for (const std::string& argument : command.arguments) line.push_back(with_root(argument, table));
-    if (!is_last) line.emplace_back("--format=float");
+    if (!is_last) line.push_back(fmt::format("--format={}", format_between(command.arguments)));
     line.insert(line.end(), {"-o", out, "--", "input"});
     std::vector<const char*> pointers;
     pointers.reserve(line.size());
@@ -195,6 +219,7 @@ ReadyCommand Recipe::ready(const StepSettings& step, const OutputSettings* outpu
     try {
         std::ignore = table.parse(pointers, console);
         Task task{before_.empty() ? "input" : kBetween, out};
+        task.origin = "input";
         if (has_tile(out) && command.converter->makes_tiles()) task.tile = kAnyTile;
         task = command.converter->task_for(std::move(task));
         for (const Row& row : table.rows()) {
@@ -245,7 +270,8 @@ void Recipe::add_output(const OutputSettings& output, Console& console) {
     if (check_->is_given() && has_level(out))
         fail_at(manifest_.path, output.place, "check needs all levels in one file");
     check_folder(*name, out, output.place);
-    RecipeOutput made{ready(rule_.steps.back(), &output, true, out, console), std::move(*name), {}, {}, output.place};
+    RecipeOutput made{
+        ready(rule_.steps.back(), &output, true, out, console), std::move(*name), {}, {}, out, {}, output.place};
     if (names_engine && made.last.converter->output_for_task().engine == nullptr)
         fail_at(manifest_.path, output.place, "name: {engine} needs the key for");
     const std::size_t last = rule_.steps.size() - 1;
@@ -260,16 +286,11 @@ void Recipe::add_output(const OutputSettings& output, Console& console) {
     const Task task = made.last.converter->task_for("input", out);
     made.settings += fmt::format("{} {}\n", name_of(kContainerNames, task.container), has_level(out) ? "levels" : "");
     made.settings += check_->text();
-    made.named = named_settings(made.last, task);
-    if (outputs_.empty()) {
-        first_out_ = out;
-        std::vector<std::string> files;
-        for (const ReadyCommand& command : before_) {
-            for (std::string& file : files_for_all(*command.converter, kBetween)) files.push_back(std::move(file));
-        }
-        for (std::string& file : files_for_all(*made.last.converter, out)) files.push_back(std::move(file));
-        for (const std::string& file : files) files_.push_back(below_root(file));
+    const Command& table = made.last.program->command;
+    for (const std::string& argument : made.last.arguments) {
+        if (row_of(table, cut(argument, '=').first.substr(2), {kDataGroup}) != nullptr) made.data += argument + "\n";
     }
+    made.named = named_settings(made.last, task);
     outputs_.push_back(std::move(made));
 }
 
@@ -333,7 +354,7 @@ std::vector<std::string> Recipe::command_lines(const std::string& input, std::si
             else if (argument.size() > name.size())
                 line += " " + shell_word(std::string(value));
         }
-        lines.push_back(line + (is_last ? "" : " --format float"));
+        lines.push_back(line + (is_last ? "" : fmt::format(" --format {}", format_between(command.arguments))));
         from = to;
     }
     return lines;

@@ -8,6 +8,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -21,9 +22,6 @@
 #include "tree/texture_check.h"
 
 namespace tex::cli {
-
-// An intermediate result, of which only the type and the encoding count. No such file exists.
-inline constexpr const char* kBetween = "between.exr";
 
 // The names of steps: "bake" for bake-normals. These are the commands that make an output from each input.
 [[nodiscard]] std::vector<std::string> step_names();
@@ -51,6 +49,8 @@ struct RecipeOutput {
     ReadyCommand last;     // the last step, with the settings of this output
     NamePattern name;      // below out_dir
     std::string settings;  // what its bytes depend on, besides the contents of files
+    std::string data;      // the same of what is beside the normals: outputs of one flow have the same
+    std::string out;       // its name, if the input is called "name"
     NamedValues named;     // the same for people
     Place place;
 };
@@ -104,20 +104,25 @@ public:
     [[nodiscard]] std::vector<std::string> command_lines(const std::string& input, std::size_t output) const;
 
 private:
+    // An intermediate result, of which only the type and the encoding count. No such file exists.
+    static constexpr const char* kBetween = "between.exr";
+
     [[nodiscard]] ReadyCommand ready(const StepSettings& step, const OutputSettings* output, bool is_last,
                                      const std::string& out, Console& console) const;
     void check_writes(const ReadyCommand& command) const;
     [[nodiscard]] std::vector<int> tiles_of(const ReadyCommand& command, const std::string& path,
                                             const std::string& to) const;
     [[nodiscard]] std::string below_out_dir(const std::string& name) const;
+    [[nodiscard]] std::string_view format_between(const std::vector<std::string>& arguments) const;
     void add_option(const OptionSetting& setting, const Command& command, const std::vector<std::string>& groups,
                     std::vector<std::string>& arguments) const;
     [[nodiscard]] std::string with_root(const std::string& argument, const Command& command) const;
     void check_tiles(const ReadyCommand& first) const;
     void check_order(const StepSettings& step, const ReadyCommand& command, std::size_t index, Console& console) const;
     void add_output(const OutputSettings& output, Console& console);
+    void find_files();
     [[nodiscard]] std::string below_root(const std::string& file) const;
-    [[nodiscard]] std::vector<std::string> files_for_all(const Converter& converter, const std::string& out) const;
+    [[nodiscard]] std::vector<std::string> prerequisites_of(const std::string& path) const;
     void check_folder(const NamePattern& name, const std::string& out, const Place& place) const;
     [[nodiscard]] NamedValues named_settings(const ReadyCommand& last, const Task& task) const;
 
@@ -125,7 +130,6 @@ private:
     const RuleSettings& rule_;
     const int number_;
     const std::string root_;
-    std::string first_out_;  // the first output of an input called "name"
     std::vector<Glob> match_, exclude_;
     std::vector<std::string> grids_;  // the patterns of match_ with {x} and {y}: tiles of terrains
     std::unique_ptr<TextureCheck> check_;

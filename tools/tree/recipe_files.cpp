@@ -19,6 +19,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 }  // namespace
 
 std::vector<std::string> OutputFiles::all() const {
@@ -63,31 +67,46 @@ void Recipe::check_writes(const ReadyCommand& command) const {
     }
 }
 
-// What an input has and another has not is its own.
-std::vector<std::string> Recipe::files_for_all(const Converter& converter, const std::string& out) const {
-    std::vector<std::string> files = converter.task_for("input", out).prerequisites();
-    const std::vector<std::string> others = converter.task_for("other/name", out).prerequisites();
-    std::erase_if(
-        files, [&](const std::string& file) { return std::find(others.begin(), others.end(), file) == others.end(); });
+// The files that options of all steps name for an input.
+std::vector<std::string> Recipe::prerequisites_of(const std::string& path) const {
+    std::vector<std::string> files;
+    const auto add = [&](const Task& task) {
+        for (const std::string& file : task.prerequisites()) {
+            std::string name = below_root(file);
+            if (!contains(files, name)) files.push_back(std::move(name));
+        }
+    };
+    for (std::size_t k = 0; k < before_.size(); ++k) {
+        const Converter& converter = *before_[k].converter;
+        add(k == 0 ? first_task(converter, path, kBetween) : converter.task_for(kBetween, kBetween, path));
+    }
+    for (const RecipeOutput& output : outputs_) {
+        const Converter& converter = *output.last.converter;
+        if (!before_.empty()) {
+            add(converter.task_for(kBetween, output.out, path));
+            continue;
+        }
+        for (const int tile : tiles_of(output.last, path, output.out)) {
+            Task task{path, output.out};
+            task.tile = tile;
+            add(tile == 0 ? first_task(converter, path, output.out) : converter.task_for(std::move(task)));
+        }
+    }
     return files;
+}
+
+// What an input has and another has not is its own.
+void Recipe::find_files() {
+    const std::vector<std::string> others = prerequisites_of("other/name");
+    for (std::string& file : prerequisites_of("input")) {
+        if (contains(others, file)) files_.push_back(std::move(file));
+    }
 }
 
 std::vector<std::string> Recipe::own_files(const std::string& input, const std::string& path) const {
     std::vector<std::string> files = other_parts(input, path);
-    const ReadyCommand& first = before_.empty() ? outputs_.front().last : before_.front();
-    const std::string out = before_.empty() ? first_out_ : kBetween;
-    const auto add = [&](const Task& task) {
-        for (const std::string& file : task.prerequisites()) {
-            std::string name = below_root(file);
-            const bool is_known = std::find(files_.begin(), files_.end(), name) != files_.end() ||
-                                  std::find(files.begin(), files.end(), name) != files.end();
-            if (!is_known) files.push_back(std::move(name));
-        }
-    };
-    for (const int tile : tiles_of(first, path, out)) {
-        Task task{path, out};
-        task.tile = tile;
-        add(tile == 0 ? first_task(*first.converter, path, out) : first.converter->task_for(std::move(task)));
+    for (std::string& name : prerequisites_of(path)) {
+        if (!contains(files_, name) && !contains(files, name)) files.push_back(std::move(name));
     }
     return files;
 }

@@ -133,17 +133,16 @@ Result<Made> run_commands(const Recipe& recipe, const std::string& input, const 
     return made;
 }
 
-}  // namespace
-
-Result<Made> make_texture(const Recipe& recipe, const std::string& input, const std::vector<WantedOutput>& wanted,
-                          const MakeSettings& settings, Console& console) {
+// Makes outputs with the same data beside the normals, in one flow.
+Result<Made> make_together(const Recipe& recipe, const std::string& input, const std::vector<WantedOutput>& wanted,
+                           const MakeSettings& settings, Console& console) {
     Jobs jobs(settings, console);
     // The files between two steps do not exist; their names say that they are EXR files.
     const std::string between = "between.exr";
     std::vector<Step> steps;
     std::string from = input;
     for (const ReadyCommand& command : recipe.before()) {
-        steps.push_back(*command.converter->step(jobs.add(command.converter->task_for(from, between))));
+        steps.push_back(*command.converter->step(jobs.add(command.converter->task_for(from, between, input))));
         from = between;
     }
     // The output with the most levels is made by the last step itself, and the others beside it.
@@ -154,7 +153,8 @@ Result<Made> make_texture(const Recipe& recipe, const std::string& input, const 
     std::vector<Ending> endings;
     for (const WantedOutput& output : wanted) {
         Converter& converter = *recipe.outputs()[output.index].last.converter;
-        Task task = recipe.first_task(converter, from, output.path);
+        Task task = from == input ? recipe.first_task(converter, from, output.path)
+                                  : converter.task_for(from, output.path, input);
         if (!output.write_to.empty()) task.output = output.write_to;
         Job& job = jobs.add(std::move(task));
         std::optional<Step> step = converter.step(job);
@@ -196,6 +196,57 @@ Result<Made> make_texture(const Recipe& recipe, const std::string& input, const 
     for (const WantedOutput& file : wanted) {
         // A file that holds one level has no other names.
         made.files.push_back(files_of(file.path, made.report.levels));
+    }
+    return made;
+}
+
+// Adds warnings that are not there yet: two flows have read the same files.
+void add_new(std::vector<FileWarning>&& more, std::vector<FileWarning>& all) {
+    for (FileWarning& warning : more) {
+        const auto is_same = [&](const FileWarning& other) {
+            return other.file == warning.file && other.message == warning.message;
+        };
+        if (std::none_of(all.begin(), all.end(), is_same)) all.push_back(std::move(warning));
+    }
+}
+
+}  // namespace
+
+Result<Made> make_texture(const Recipe& recipe, const std::string& input, const std::vector<WantedOutput>& wanted,
+                          const MakeSettings& settings, Console& console) {
+    const auto data_of = [&](const WantedOutput& output) { return recipe.outputs()[output.index].data; };
+    std::vector<std::string> groups;
+    for (const WantedOutput& output : wanted) {
+        if (std::find(groups.begin(), groups.end(), data_of(output)) == groups.end()) groups.push_back(data_of(output));
+    }
+    if (groups.size() < 2) return make_together(recipe, input, wanted, settings, console);
+    Made made;
+    made.files.resize(wanted.size());
+    made.packs.resize(wanted.size());
+    MakeSettings own = settings;
+    for (std::size_t group = 0; group < groups.size(); ++group) {
+        std::vector<WantedOutput> together;
+        std::vector<std::size_t> places;
+        for (std::size_t k = 0; k < wanted.size(); ++k) {
+            if (data_of(wanted[k]) != groups[group]) continue;
+            together.push_back(wanted[k]);
+            places.push_back(k);
+        }
+        const auto count = static_cast<double>(groups.size());
+        own.advance = [&settings, group, count](double fraction) {
+            return settings.advance((static_cast<double>(group) + fraction) / count);
+        };
+        Result<Made> some = make_together(recipe, input, together, own, console);
+        if (!some) return some;
+        for (std::size_t k = 0; k < places.size(); ++k) {
+            made.files[places[k]] = std::move(some->files[k]);
+            if (k < some->packs.size()) made.packs[places[k]] = some->packs[k];
+        }
+        some->report.bytes += made.report.bytes;
+        made.report = std::move(some->report);
+        add_new(std::move(some->warnings), made.warnings);
+        add_new(std::move(some->remarks), made.remarks);
+        own.source.clear();  // the normals before packing are the same
     }
     return made;
 }

@@ -21,6 +21,9 @@ namespace tex {
 // of 1/256. If a chain has one level, the other levels are made as needed (box filter, averages of vectors); if it has
 // more but too few, the last one is used. Sampled vectors are normalised, then scaled, rotated and blended.
 //
+// The result has the data beside the normals of the base (NormalMap::blue, alpha, length), sampled as its normals are;
+// levels that are made hold the means.
+//
 // The result is one level. Build its mip levels from it; do not blend level by level.
 //
 // Precondition: masks are finite.

@@ -135,6 +135,7 @@ struct CheckOptions {
     std::vector<std::string> enable;                         // ids or names
     std::vector<std::string> disable;                        // takes precedence over enable
     std::vector<std::pair<std::string, Severity>> severity;  // by id or name; the last one applies
+    bool any_length = false;                                 // lengths are data, or do not matter: no rule judges them
     const HeightField* height = nullptr;                     // the map's heights, for the rules of the pair; not owned
     const MeshToCheck* mesh = nullptr;                       // the mesh that the map is on; not owned
     const MapInModel* model = nullptr;                       // the model that uses the map; not owned

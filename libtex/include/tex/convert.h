@@ -62,6 +62,8 @@ struct ConvertedMap {
 // beyond -1. All others are copies of the nearest texel. A map in object space often has no valid texels outside of its
 // charts, so to_tangent_space() reads none of them: its border consists of copies alone.
 //
+// Data beside the normals (NormalMap::blue, alpha, length) stay where they are, as they are.
+//
 // Errors: bad_data     check_part(space.part) fails
 //         bad_option   the map has no texels; as validate(options); no normals, no such set of UVs, not as many
 //         tangents as corners; no triangle covers a texel unsupported  UVs beyond a million; a triangle covers more
@@ -69,8 +71,8 @@ struct ConvertedMap {
 //                      texels, in one direction
 //         out_of_memory, cancelled
 // The same bytes for every number of threads, processor and compiler.
-// Memory: 12 bytes for each texel of the result and 1 for its coverage; 4 more while the border is filled; and about 80
-// bytes for each triangle.
+// Memory: 12 bytes for each texel of the result, 4 for each of its other data, and 1 for its coverage; 4 more while the
+// border is filled; and about 80 bytes for each triangle.
 [[nodiscard]] Result<ConvertedMap> to_object_space(const NormalMap& map, const TangentSpace& space,
                                                    const ConvertOptions& options = {}, const Execution& execution = {});
 [[nodiscard]] Result<ConvertedMap> to_tangent_space(const NormalMap& map, const TangentSpace& space,

@@ -210,7 +210,10 @@ enum class Encoding {
     rg8,
     rg16,
     half,
-    float_
+    float_,
+    rgba16,
+    rgba16f,
+    rgba32f
 };
 
 inline constexpr Named<Encoding> kEncodingNames[] = {
@@ -235,6 +238,9 @@ inline constexpr Named<Encoding> kEncodingNames[] = {
     {Encoding::rg16, "rg16", "x and y with 16 bits each"},
     {Encoding::half, "half", "x, y, z as 16-bit floats"},
     {Encoding::float_, "float", "x, y, z as 32-bit floats"},
+    {Encoding::rgba16, "rgba16", "x, y, z and A = 1 with 16 bits each"},
+    {Encoding::rgba16f, "rgba16f", "x, y, z and A = 1 as 16-bit floats"},
+    {Encoding::rgba32f, "rgba32f", "x, y, z and A = 1 as 32-bit floats"},
 };
 
 struct EncodingInfo {
@@ -244,15 +250,17 @@ struct EncodingInfo {
 
 [[nodiscard]] EncodingInfo encoding_info(Encoding encoding);
 
-// Which channels beside the normals there are: NormalMap::blue and NormalMap::alpha.
+// Which data beside the normals there are: NormalMap::blue, alpha and length.
 struct OtherPlanes {
     bool blue = false;
     bool alpha = false;
+    bool length = false;
 
     friend bool operator==(const OtherPlanes&, const OtherPlanes&) = default;
 };
 
-// What an encoding can hold beside normals: blue in the place of z, alpha in the place of a constant.
+// What an encoding can hold beside normals: blue in the place of z, alpha in the place of a constant, and data in the
+// length of vectors whose z is stored; so blue and length exclude each other.
 [[nodiscard]] OtherPlanes can_hold(Encoding encoding);
 
 // Whether pack() can choose blocks of this encoding that compress better (RdoOptions): x and y have a half each.

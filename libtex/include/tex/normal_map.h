@@ -29,17 +29,23 @@ inline constexpr Named<YAxis> kYAxisNames[] = {
 // Three planes of one extent. The constructor takes them from one piece of memory, equally far apart, so that all three
 // can be seen as one array of rows, columns and components. Memory is released with the last plane.
 //
-// `blue` and `alpha` are other data that a texture holds in B and A beside the normals: heights, occlusion, roughness,
-// a mask. They are empty, or have the extent of the normals and values from 0 to 1. pack() stores `blue` instead of z,
-// so that whoever reads the texture must reconstruct z; unpack() finds them again; build_mip_chain() averages them
-// (OtherKind); scale() and blend() (the base's, if it keeps its extent) leave them as they are. Other verbs ignore
-// them.
+// `blue`, `alpha` and `length` are other data that a texture holds beside the normals: heights, occlusion, roughness, a
+// mask. They are empty, or have the extent of the normals and values from 0 to 1. pack() stores `alpha` in A and `blue`
+// in B instead of z, so that whoever reads the texture must reconstruct z. `length` is occlusion c (1 where nothing
+// occludes), stored as the length of the vector:
+//
+//     length = 0.5 + 0.5 sqrt(c), c = clamp(2 length - 1, 0, 1)^2     (Terrain3D for Godot, pull request 868, 2025)
+//
+// unpack() finds all of them again; build_mip_chain() averages them (OtherKind; `length` as occlusion). scale() and the
+// conversions of convert.h leave them as they are. blend() keeps those of the base, sampled as its normals are. Other
+// verbs ignore them.
 struct NormalMap {
     Plane<float> x;
     Plane<float> y;
     Plane<float> z;
     Plane<float> blue;
     Plane<float> alpha;
+    Plane<float> length;
 
     NormalMap() = default;
     explicit NormalMap(Extent extent) {

@@ -27,8 +27,8 @@ namespace tex {
 // and if an error occurs, it stays as it is.
 //
 // Precondition: components are finite.
-// Errors: bad_option (the chain has no level, or levels of other extents than those of level_extent(); as
-//         validate(options)), out_of_memory, cancelled
+// Errors: bad_option (the chain has no level, or levels of other extents than those of level_extent(), or both blue and
+//         length; as validate(options)), out_of_memory, cancelled
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] Result<Texture> pack(const MipChain& chain, const PackOptions& options = {},
                                    const Execution& execution = {}, RdoReport* rdo = nullptr);

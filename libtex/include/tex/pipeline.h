@@ -58,8 +58,8 @@ struct TerrainTile {
     std::optional<bool> shared_border;
 };
 
-// Data that go into B or A beside the normals of the base level (NormalMap::blue, NormalMap::alpha). MipOptions says
-// what smaller levels get.
+// Data that go into B, A or the lengths of the vectors, beside the normals of the base level (NormalMap::blue, alpha
+// and length). MipOptions says what smaller levels get.
 struct OtherData {
     float value = 1.0f;  // the same everywhere, from 0 to 1,
     std::function<Result<Plane<float>>()> map =
@@ -67,10 +67,15 @@ struct OtherData {
     bool heights = false;  // or, if set, the heights that are baked; only for bake_file()
 };
 struct OtherInputs {
-    std::optional<OtherData> blue, alpha;
+    std::optional<OtherData> blue = {}, alpha = {}, length = {};
 };
 
-// A file for the data that a source has in B or A beside its normals: one channel, the levels that the container holds.
+// Puts data beside the normals of a map in memory, which is to be packed in this encoding, as the functions below do.
+// Errors: bad_option (the encoding cannot hold them; a value is not from 0 to 1; a map has another extent; heights,
+// which are not here; blue together with length), those of OtherData::map, out_of_memory.
+[[nodiscard]] Result<void> put_others(NormalMap& map, const OtherInputs& inputs, Encoding encoding);
+
+// A file for the data that a source has beside its normals: one channel, the levels that the container holds.
 struct OtherFile {
     std::string output;
     Container container = Container::png;
@@ -179,7 +184,8 @@ struct PackFileOptions {
     // Replace what the source has there; every output must have room for them. They are those of the base level, so
     // smaller levels are not taken from the source: bad_option if there are any, and `mip` is not set.
     OtherInputs others;
-    std::optional<OtherFile> blue_file, alpha_file;  // appear after the files of normals
+    // Appear after the files of normals. What goes into length_file is no longer in the lengths of the normals.
+    std::optional<OtherFile> blue_file, alpha_file, length_file;
 };
 
 // Whether every option is in its range. pack_file() calls it first. Errors: bad_option, which names the option.

@@ -41,7 +41,7 @@ struct SourceOptions {
 
 // A channel of a file that holds other data beside the normals: heights, gloss, a mask.
 struct OtherChannel {
-    char name = 'A';                      // R, G, B or A
+    char name = 'A';                      // R, G, B, A, or L: the lengths of vectors
     float least = 0.0f, greatest = 0.0f;  // as decode() gives its values
 
     friend bool operator==(const OtherChannel&, const OtherChannel&) = default;
@@ -59,8 +59,8 @@ struct SourceInfo {
     bool z_doubtful = false;    // z is stored, but does not follow x and y: other data may be in its place
     double background = 0.0;    // the share of those that are black, grey or white, if it is 1 % or more
     // Channels of the base level, whose values differ by more than 1.5 of 255 and repeat none of x, y and z. After
-    // pack_file() and blend_file(): those of them that are not in every output. The encoding rgba8 takes alpha along;
-    // smaller levels hold its mean.
+    // pack_file() and blend_file(): those of them that are not in every output. Encodings with four channels take alpha
+    // along (can_hold()).
     std::vector<OtherChannel> others;
     bool srgb = false;  // this and remarks: as in Texture
     std::vector<std::string> remarks;

@@ -41,12 +41,13 @@ struct StepsReport {
 
 // Applies `steps` one after the other: the first to the file `input`, each further one to the result of the one before.
 // The last one writes `output`, and the files of its option `more`. The bytes are the same as if each step before the
-// last had written a file of floats (EXR, Encoding::float_) that the next one reads.
+// last had written a file of floats (EXR, Encoding::float_, or rgba32f if there is alpha beside the normals) that the
+// next one reads.
 //
 // Of the steps before the last, only the settings that concern normals count: source, heights, strength, bake, level,
-// scale, layers and blend, and the direction of y that `pack` gives. Rows go from step to step, so memory holds what
-// bake_file(), pack_file() and blend_file() say for each. If the layout of a file depends on its texels, a step before
-// the last reads the file once more.
+// scale, layers and blend, others.alpha, and the direction of y that `pack` gives. Rows go from step to step, so memory
+// holds what bake_file(), pack_file() and blend_file() say for each. If the layout of a file depends on its texels, a
+// step before the last reads the file once more.
 //
 // Errors: bad_option (as validate(steps)), and those of the three functions.
 [[nodiscard]] Result<StepsReport> apply_steps(const std::string& input, const std::vector<Step>& steps,

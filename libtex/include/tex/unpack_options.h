@@ -32,9 +32,10 @@ struct UnpackOptions {
     bool snap_flat = false;                    // 8-bit unorm values from 127/255 to 128/255 are 0, not -+0.0039
     bool keep_length = false;                  // do not normalise vectors, to pack them again without loss
     bool keep_invalid = false;                 // vectors that are not finite become NaN, not (0, 0, 1)
-    // Which channels beside the normals go along: NormalMap::blue is B as it is stored, if it holds no part of the
-    // normals, and so is NormalMap::alpha, unless it is 1 everywhere.
-    OtherPlanes others = {false, true};
+    // Which data beside the normals go along: NormalMap::blue is B as it is stored, if it holds no part of the normals,
+    // and so is NormalMap::alpha, unless it is 1 everywhere; NormalMap::length is what the lengths of vectors hold, if
+    // z is stored. Lengths are data only if this says so.
+    OtherPlanes others = {false, true, false};
 
     friend bool operator==(const UnpackOptions&, const UnpackOptions&) = default;
 };

@@ -133,7 +133,8 @@ Result<void> check_mip_rules(const Subject& subject, Findings& findings) {
         if (auto done = measure_level(stored, *averages, k, subject.execution, measure); !done) return done.error();
         if (measure.signal > kLeastSignal) levels.push_back(measure);
     }
-    check_lengths(levels, subject.counts.mean_length, subject.stored.has_z(), findings);
+    if (!subject.options.any_length)
+        check_lengths(levels, subject.counts.mean_length, subject.stored.has_z(), findings);
     check_relations(levels, findings);
     check_fade(levels, findings);
     return {};

@@ -69,7 +69,8 @@ constexpr Rule kRules[] = {
     // -- the vectors ------------------------------------------------------------------------------------------
     {"N201", "not-unit-length", values, note, true, "Vectors are not of unit length.",
      "More than 5 % of the vectors are shorter or longer than 1 by more than two codes of 8 bits. Shaders that do not "
-     "normalise light them wrongly. Filters and blends without renormalisation do this, painting too.",
+     "normalise light them wrongly. Filters and blends without renormalisation do this, painting too. Some maps hold "
+     "occlusion in the lengths (Terrain3D); --length-in occlusion says so.",
      "pack-normals FILE --normalize --format SAME -o FIXED", ""},
     {"N202", "z-below-zero", values, warning, true, "Vectors point into the surface.",
      "z is below zero by more than two codes. Encodings that rebuild z cannot hold that, and lighting from the front "
@@ -86,7 +87,7 @@ constexpr Rule kRules[] = {
      "gives NaN in a shader.",
      "pack-normals FILE --normalize --format SAME -o FIXED", "N201"},
     {"N206", "constant", values, note, true, "All texels are the same.",
-     "A placeholder or a failed bake: a texture of 1x1 would do.", "", "N201 N207 N208 N209 N305 N403"},
+     "A placeholder or a failed bake: a texture of 1x1 would do.", "", "N201 N207 N208 N209 N305 N403 N219"},
     {"N207", "leaning", values, warning, true, "The map leans as a whole.",
      "The mean of the normals is more than 10 degrees off (0, 0, 1). A map over a flat surface has no lean; one "
      "channel was shifted, or the surface behind a bake was not flat.",
@@ -105,7 +106,7 @@ constexpr Rule kRules[] = {
      "bake-normals FILE --bumpiness TEXELS --format SAME -o FIXED",
      "N115 N201 N202 N203 N205 N206 N207 N208 N209 N213 N214 N215 N301 N302 N303 N304 N305 N306 N308 N309 N310 N401 "
      "N402 "
-     "N403 N404 N501 N502 N503 N504"},
+     "N403 N404 N501 N502 N503 N504 N219"},
     {"N211", "dxt5nm-red", values, note, true, "R is not 255 in the layout of DXT5nm.",
      "Unity's shaders multiply R and A to read x from either; where R is not 255, x comes out too small (or 0). "
      "Shaders that read A and G alone are right. Require format=dxt5nm where R matters.",
@@ -134,19 +135,37 @@ constexpr Rule kRules[] = {
      "the normal map if slots were mixed up. A picture in colours without blue looks the same.",
      "Give the slot of the normal map the picture that belongs there.",
      "N115 N201 N202 N205 N207 N208 N209 N213 N214 N215 N301 N302 N303 N304 N305 N306 N308 N309 N310 N401 N402 N403 "
-     "N404 N501 N502 N504"},
+     "N404 N501 N502 N504 N219"},
+
+    {"N217", "alpha-is-mask", values, note, true, "Alpha is a mask of 0 and 1.",
+     "Most often it is the cut-out of the colour texture, which nobody reads here. It takes 8 bits a texel where 1 "
+     "would do, levels blur its border, and Unity's UnpackNormalmapRGorAG takes x for 0 where A is 0.",
+     "If nothing reads the mask, pack-normals --drop leaves it out; unpack-normals --alpha-out writes it to a file of "
+     "its own.",
+     "N212"},
+    {"N218", "alpha-repeats", values, note, true, "Alpha repeats another channel.",
+     "A equals R, G or B in every texel, so that it says nothing new. Exporters that fill A with a grey copy do this, "
+     "and channel packers that were given the same file twice.",
+     "pack-normals FILE --keep-length --drop --format SAME -o FIXED", "N212"},
+    {"N219", "blue-other-data", values, warning, true, "Blue holds other data than z.",
+     "It varies, and does not follow x and y as the z of unit vectors does: occlusion, roughness or heights, as in "
+     "LabPBR. It falls below 0, or with a rebuilt z the slopes have less curl. Readers that do not rebuild z get bent "
+     "normals. Floats are not judged.",
+     "Read the map with --swizzle rg, which rebuilds z; unpack-normals --swizzle rg --blue-out writes the data to a "
+     "file of its own.",
+     "N201 N202 N205 N213 N214 N305 N308 N309 N310 N402 N403 N404"},
 
     // -- damage -----------------------------------------------------------------------------------------------
     {"N301", "srgb-decoded", damage, error, true, "The map went through the sRGB curve: it is too dark.",
      "x and y centre on 0.21 instead of 0.5: somebody read the file as colour and stored linear values.", "",
-     "N201 N202 N203 N205 N206 N207 N213 N214 N215 N305 N307 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504"},
+     "N201 N202 N203 N205 N206 N207 N213 N214 N215 N305 N307 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504 N219"},
     {"N302", "srgb-encoded", damage, error, true, "The map went through the sRGB curve: it is too light.",
      "x and y centre on 0.74 instead of 0.5: linear values were stored as if they were colour.", "",
-     "N201 N202 N203 N205 N206 N207 N214 N215 N305 N307 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504"},
+     "N201 N202 N203 N205 N206 N207 N214 N215 N305 N307 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504 N219"},
     {"N303", "premultiplied", damage, error, true, "R, G and B were multiplied by alpha.",
      "No channel exceeds alpha, and dividing by it makes the vectors longer and even. Image libraries do this on "
      "reading unless told otherwise (OpenImageIO: oiio:UnassociatedAlpha).",
-     "", "N201 N202 N205 N207 N212 N213 N214 N215 N301 N305 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504"},
+     "", "N201 N202 N205 N207 N212 N213 N214 N215 N301 N305 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504 N219"},
     {"N304", "jpeg-blocks", damage, warning, true, "The map shows the 8x8 blocks of lossy JPEG.",
      "The cosine transform of aligned blocks is quantised as JPEG of about quality 65 or less does it, or steps stand "
      "out at every eighth column and row. Chroma subsampling halves the resolution of x; go back to a lossless source.",

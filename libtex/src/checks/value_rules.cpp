@@ -54,7 +54,7 @@ void check_lengths(const Subject& subject, Findings& findings) {
     if (counts.share(Property::null_vector) > kNullShare) {
         add_counted(subject, findings, "N205", Property::null_vector, " are shorter than 0.1");
     }
-    if (counts.share(Property::off_length) > kOffLengthShare) {
+    if (!subject.options.any_length && counts.share(Property::off_length) > kOffLengthShare) {
         add_counted(subject, findings, "N201", Property::off_length,
                     " are off unit length by more than two codes (mean length " + decimal(counts.mean_length, 3) +
                         ", " + decimal(static_cast<double>(counts.min_length), 2) + " to " +
@@ -135,7 +135,7 @@ void check_channels(const Subject& subject, Findings& findings) {
     if (counts.share(Property::z_behind) > kBehindShare) {
         add_counted(subject, findings, "N213", Property::z_behind, " point away from the surface");
         // Object-space maps hold unit vectors, although rounded or compressed ones.
-        if (counts.share(Property::off_length) > kColorShare)
+        if (!subject.options.any_length && counts.share(Property::off_length) > kColorShare)
             add_counted(subject, findings, "N214", Property::off_length, " are off unit length by more than two codes");
     }
 }
@@ -155,7 +155,7 @@ double extreme_share(const Plane<float>& channel) {
 // of an upright vector.
 void check_surface_data(const Subject& subject, Findings& findings) {
     const Stored& stored = subject.stored;
-    if (subject.constant || stored.is_signed || stored.swizzle[0] != Component::x ||
+    if (subject.constant || subject.options.any_length || stored.is_signed || stored.swizzle[0] != Component::x ||
         stored.swizzle[1] != Component::y || stored.swizzle[2] != Component::z)
         return;
     if (subject.counts.share(Property::off_length) <= kColorShare || std::abs(subject.counts.mean_x) <= kFarMean)

@@ -52,6 +52,12 @@ public:
         scale_row(map_.chain == nullptr ? between_rows(out) : between_texels(out), 1.0f, ScaleMode::slope, width_, out);
     }
 
+    // Samples other data at the row that was made last.
+    void other(Plane<float> NormalMap::*plane, float* out) {
+        const float* const made = component(plane, out);
+        if (made != out) std::copy_n(made, width_, out);
+    }
+
 private:
     [[nodiscard]] Sampler sampler(std::size_t level, Extent result) const {
         const Extent extent = map_.chain == nullptr ? map_.extent : map_.chain->levels[level].extent();
@@ -147,5 +153,7 @@ void BlendRows::make(int j, NormalRow out) {
     if (options.base_scale != 1.0f) scale_row(out, options.base_scale, options.scale_mode, maps_.extent.width, out);
     for (LayerRows& layer : layers_) layer.blend(j, out);
 }
+
+void BlendRows::make_other(Plane<float> NormalMap::*plane, float* out) { base_.front().other(plane, out); }
 
 }  // namespace tex

@@ -22,12 +22,21 @@ namespace {
 // The rows of a normal map as the channels of a format.
 class Rows {
 public:
-    Rows(const NormalMap& map, int height, const Swizzle& swizzle, YAxis y_axis)
-        : map_(map), extent_{map.extent().width, height}, swizzle_(swizzle), negate_y_(y_axis == YAxis::down) {}
+    // `lengthens`: vectors get the lengths that hold NormalMap::length.
+    Rows(const NormalMap& map, int height, const Swizzle& swizzle, bool lengthens, YAxis y_axis)
+        : map_(map), extent_{map.extent().width, height}, swizzle_(swizzle), lengthens_(lengthens),
+          negate_y_(y_axis == YAxis::down) {}
 
-    void channels(int j, PackChannel out[4]) const {
-        pack_channels({map_.x.row(j), map_.y.row(j), map_.z.row(j)}, swizzle_, negate_y_, row_of(map_.blue, j),
-                      row_of(map_.alpha, j), out);
+    // The channels refer to the map, or to `scratch`.
+    void channels(int j, PackChannel out[4], NormalMap& scratch) const {
+        VectorRow normals{map_.x.row(j), map_.y.row(j), map_.z.row(j)};
+        if (lengthens_) {
+            if (scratch.x.empty()) scratch = NormalMap({extent_.width, 1});
+            lengthen(normals, map_.length.row(j), extent_.width,
+                     {scratch.x.row(0), scratch.y.row(0), scratch.z.row(0)});
+            normals = {scratch.x.row(0), scratch.y.row(0), scratch.z.row(0)};
+        }
+        pack_channels(normals, swizzle_, negate_y_, row_of(map_.blue, j), row_of(map_.alpha, j), out);
     }
 
     [[nodiscard]] BlockRow blocks(int j) const { return block_row(map_.x, map_.y, extent_, j, negate_y_); }
@@ -40,6 +49,7 @@ private:
     const NormalMap& map_;
     const Extent extent_;
     const Swizzle swizzle_;
+    const bool lengthens_;
     const bool negate_y_;
 };
 
@@ -53,7 +63,7 @@ void pack_values(const PackChannel* from, int channels, int count, std::byte* ou
         std::byte* to = out + size(k) * sizeof(Value);
         // 0 - n, not -n, so that a flat map holds no negative zeros.
         for (int i = 0; i < count; ++i, to += size(channels) * sizeof(Value)) {
-            const Value value(from[k].negate ? 0.0f - source[i] : source[i]);
+            const Value value(source == nullptr ? 1.0f : from[k].negate ? 0.0f - source[i] : source[i]);
             std::memcpy(to, &value, sizeof value);
         }
     }
@@ -63,9 +73,10 @@ void pack_values(const PackChannel* from, int channels, int count, std::byte* ou
 void pack_rows_of_texels(const Rows& rows, const FormatInfo& info, int begin, int end, std::byte* out) {
     const int width = rows.extent().width;
     std::vector<std::byte> packed(size(width + kPackSlack) * info.block_bytes);
+    NormalMap scratch;
     for (int j = begin; j < end; ++j) {
         PackChannel from[4];
-        rows.channels(j, from);
+        rows.channels(j, from, scratch);
         const std::size_t bytes = pack_texels(info, from, width, packed.data());
         std::memcpy(out + size(j) * bytes, packed.data(), bytes);
     }
@@ -76,9 +87,10 @@ void pack_astc(const Rows& rows, Format format, Effort effort, int j, int count,
     const int width = rows.extent().width;
     std::vector<float> xy(2 * size(width) * size(count));
     float* to = xy.data();
+    NormalMap scratch;
     for (int k = j; k < j + count; ++k) {
         PackChannel from[4];
-        rows.channels(k, from);
+        rows.channels(k, from, scratch);
         const auto& [x, y] = std::pair(from[0], from[3]);
         for (int i = 0; i < width; ++i) {
             *to++ = x.values[i];
@@ -128,7 +140,8 @@ void pack_rows(const NormalMap& map, OtherPlanes others, int height, const PackO
     const FormatInfo info = format_info(format);
     Swizzle channels = swizzle_with(options.encoding, others);
     if (others.alpha && can_hold(options.encoding).alpha) channels[3] = Component::other;
-    const Rows rows(map, height, channels, options.y_axis);
+    const bool lengthens = others.length && can_hold(options.encoding).length;
+    const Rows rows(map, height, channels, lengthens, options.y_axis);
     if (info.has_blocks()) {
         const std::size_t pitch = level_bytes(format, {rows.extent().width, 1});
         const int block = info.block.height;

@@ -26,7 +26,7 @@ OtherPlanes others_beside(const Sources& sources, int channels) {
     const auto is_free = [&](int channel) {
         return channels > channel && sources.x != channel && sources.y != channel && sources.z != channel;
     };
-    return {is_free(2), is_free(3)};
+    return {is_free(2), is_free(3), sources.z >= 0};
 }
 
 Result<Sources> sources_of(const Swizzle& swizzle, unsigned available) {

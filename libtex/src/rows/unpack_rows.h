@@ -21,7 +21,8 @@ struct Sources {
     int z = -1;
 };
 
-// The channels of a format, which has so many, that hold no part of the normals.
+// What a format, which has so many channels, may hold beside the normals: channels that hold no part of them, and the
+// lengths of vectors.
 [[nodiscard]] OtherPlanes others_beside(const Sources& sources, int channels);
 
 // The message for a file with one channel.

@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "rows/other_rows.h"
+
 namespace tex {
 namespace {
 
@@ -22,11 +24,11 @@ Result<void> check_usable(Extent extent, std::string_view what) {
 }
 
 Result<void> check_usable(const NormalMap& map) {
-    for (const Plane<float>* const plane : {&map.y, &map.z, &map.blue, &map.alpha}) {
-        const bool may_be_empty = plane == &map.blue || plane == &map.alpha;
-        if (plane->extent() != map.x.extent() && !(may_be_empty && plane->empty()))
-            return bad_option("the planes of the map have different extents");
-    }
+    const auto fits = [&map](const Plane<float>& plane) { return plane.extent() == map.x.extent(); };
+    bool all_fit = fits(map.y) && fits(map.z);
+    for (const OtherPlace& place : kOtherPlaces)
+        all_fit = all_fit && ((map.*place.plane).empty() || fits(map.*place.plane));
+    if (!all_fit) return bad_option("the planes of the map have different extents");
     return check_usable(map.x.extent(), "the map");
 }
 

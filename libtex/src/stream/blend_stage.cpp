@@ -43,13 +43,15 @@ std::vector<Need> BlendStage::needs(int first, int end) const {
 
 Result<void> BlendStage::make(Strip& strip) {
     const std::shared_ptr<BlendRows> rows = rows_.take([this] { return std::make_unique<BlendRows>(maps_); });
-    std::vector<int> planes;
-    if (others().alpha) planes.push_back(kAlphaPlane);
-    if (others().blue) planes.push_back(kBluePlane);
     for (int k = 0; k < strip.height; ++k) {
         rows->make(strip.first + k, strip.normals(k));
-        for (const int plane : planes)
-            std::copy_n(base_->row(plane, strip.first + k), extent().width, strip.row(plane, k));
+        int plane = kFirstOtherPlane;
+        for (const OtherPlace& place : kOtherPlaces) {
+            if (others().*place.has && base_ != nullptr)
+                std::copy_n(base_->row(plane, strip.first + k), extent().width, strip.row(plane, k));
+            if (others().*place.has && base_ == nullptr) rows->make_other(place.plane, strip.row(plane, k));
+            ++plane;
+        }
     }
     return {};
 }

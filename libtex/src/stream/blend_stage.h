@@ -32,11 +32,10 @@ struct MapInStep {
 // Makes the same normals as blend().
 class BlendStage final : public Stage {
 public:
-    // `maps` read the rows of those in step, and must outlive this object. `base`: the stage whose other data
-    // go along, or null.
-    BlendStage(const PlacedMaps& maps, std::vector<MapInStep> in_step, const Stage* base)
-        : Stage(maps.extent, base == nullptr ? OtherPlanes() : base->others()), maps_(maps),
-          in_step_(std::move(in_step)), base_(base) {}
+    // `maps` read the rows of those in step, and must outlive this object. `kept`: other data of the base that go
+    // along; `base` has their rows, or is null if they are sampled as the normals are.
+    BlendStage(const PlacedMaps& maps, std::vector<MapInStep> in_step, OtherPlanes kept, const Stage* base)
+        : Stage(maps.extent, kept), maps_(maps), in_step_(std::move(in_step)), base_(base) {}
 
     [[nodiscard]] std::vector<Need> needs(int first, int end) const override;
     Result<void> make(Strip& strip) override;

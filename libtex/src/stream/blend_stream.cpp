@@ -29,9 +29,15 @@ Result<BlendFileReport> blend_stream(MapSource& base, const std::string& output,
     add_targets(options.more, blending.source(), files);
     const Result<GivenOthers> given = GivenOthers::read(options.others, blending.extent(), files);
     if (!given) return given.error();
-    const OtherPlanes own = given->planes(), taken = blending.others_taken(), held = held_by_any(files);
-    const OtherPlanes kept{taken.blue && held.blue && !own.blue, taken.alpha && held.alpha && !own.alpha};
-    const OtherPlanes others{kept.blue || own.blue, kept.alpha || own.alpha};
+    const OtherPlanes own = given->planes();
+    OtherPlanes kept = blending.others_taken() & held_by_any(files) & !own;
+    if (kept.alpha && may_change_ones(options.mip, files)) {
+        const Result<bool> is_one = blending.alpha_is_one();
+        if (!is_one) return is_one.error();
+        kept.alpha = !*is_one;
+    }
+    const OtherPlanes others = kept | own;
+    if (const Result<void> fit = check_together(others); !fit) return fit.error();
     Targets targets;
     if (const Result<void> opened = targets.open(files, others, report.extent, report.levels); !opened)
         return opened.error();
@@ -40,9 +46,8 @@ Result<BlendFileReport> blend_stream(MapSource& base, const std::string& output,
     const MadeLevels levels{-left_out, left_out + report.levels, counted_from_base(options.mip, left_out), others};
     add_levels(flow, given->add_to(flow, blending.add_to(flow, kept)), levels, targets);
     if (const Result<void> done = flow.run(execution, sizes); !done) return done.error();
-    const OtherPlanes in_all = held_by_all(files);
-    blending.judge({own.blue || (kept.blue && in_all.blue),
-                    own.alpha || (kept.alpha && in_all.alpha) || !options.source.unpack.others.alpha});
+    const OtherPlanes not_wanted{false, !options.source.unpack.others.alpha, false};
+    blending.judge(own | (kept & held_by_all(files)) | not_wanted);
     report.source = blending.source();
     report.details = blending.details();
     if (const Result<void> committed = targets.commit(); !committed) return committed.error();

@@ -93,7 +93,9 @@ Result<PlacedMap> Blending::place(Input& input, const Execution& execution) {
     return PlacedMap{nullptr, row, extent_, input.place, input.wrap_x, input.wrap_y};
 }
 
-OtherPlanes Blending::others_taken() const { return base_.step ? base_.settled.others_taken() : OtherPlanes(); }
+OtherPlanes Blending::others_taken() const {
+    return base_.step ? base_.settled.others_taken() : others_of(base_.chain.levels.front());
+}
 
 Stage& Blending::add_to(Flow& flow, OtherPlanes kept) {
     std::vector<MapInStep> in_step;
@@ -103,7 +105,8 @@ Stage& Blending::add_to(Flow& flow, OtherPlanes kept) {
             input.inspector.emplace(std::move(*inspector));
         const SourceOptions& source = input.settled.options();
         if (source.inspect && !source.drop_others)
-            input.others.emplace(input.map().head(), input.map().extent(0), input.settled.sources());
+            input.others.emplace(input.map().head(), input.map().extent(0), input.settled.sources(),
+                                 source.unpack.others.length);
         input.rows = &input.settled.add_to(flow, 0,
                                            {{},
                                             input.inspector ? &*input.inspector : nullptr,
@@ -111,15 +114,17 @@ Stage& Blending::add_to(Flow& flow, OtherPlanes kept) {
                                             &input == &base_ ? kept : OtherPlanes()});
         in_step.push_back({input.rows, *input.step});
     }
-    return flow.add<BlendStage>(*maps_, std::move(in_step), kept == OtherPlanes() ? nullptr : base_.rows);
+    return flow.add<BlendStage>(*maps_, std::move(in_step), kept, base_.rows);
 }
 
 void Blending::judge(OtherPlanes accounted_for) {
     for (Input& input : inputs_) {
         if (input.inspector) input.inspector->report(input.info);
-        if (!input.others) continue;
-        input.info.z_doubtful = input.others->z_is_something_else();
-        input.info.others = left_out(input.others->found(), &input == &base_ ? accounted_for : OtherPlanes());
+        if (input.others) {
+            input.info.z_doubtful = input.others->z_is_something_else();
+            input.info.others = input.others->found();
+        }
+        if (&input == &base_) input.info.others = left_out(std::move(input.info.others), accounted_for);
     }
 }
 

@@ -19,8 +19,9 @@ std::unique_ptr<Strip> Stage::new_strip(int rows) const {
     const Extent extent{extent_.width, rows};
     if (planes_ == 1) strip->map.x = Plane<float>(extent);
     if (planes_ > 1) strip->map = NormalMap(extent);
-    if (others_.alpha) strip->map.alpha = Plane<float>(extent);
-    if (others_.blue) strip->map.blue = Plane<float>(extent);
+    for (const OtherPlace& place : kOtherPlaces) {
+        if (others_.*place.has) strip->map.*place.plane = Plane<float>(extent);
+    }
     return strip;
 }
 

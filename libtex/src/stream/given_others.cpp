@@ -4,29 +4,43 @@
 
 #include <algorithm>
 #include <string>
-#include <tuple>
 #include <utility>
 
 #include "rows/usable.h"
+#include "threads/guard.h"
 
 namespace tex {
 namespace {
 
-// Joins normals and planes of other data.
+// Where a place's data come from.
+struct GivenPlace {
+    const OtherPlace& place;
+    std::optional<OtherData> OtherInputs::*data;
+};
+constexpr GivenPlace kGivenPlaces[] = {
+    {kOtherPlaces[0], &OtherInputs::alpha},
+    {kOtherPlaces[1], &OtherInputs::blue},
+    {kOtherPlaces[2], &OtherInputs::length},
+};
+
+// Joins normals and planes of other data. Planes that are empty come with the normals.
 class JoinStage final : public Stage {
 public:
-    JoinStage(const Stage& normals, OtherPlanes others, const Plane<float>& blue, const Plane<float>& alpha)
-        : Stage(normals.extent(), others), normals_(normals), blue_(blue), alpha_(alpha) {}
+    JoinStage(const Stage& normals, OtherPlanes others, const NormalMap& given)
+        : Stage(normals.extent(), others), normals_(normals), given_(given) {}
 
     [[nodiscard]] std::vector<Need> needs(int first, int end) const override { return {{&normals_, first, end}}; }
     Result<void> make(Strip& strip) override {
         for (int k = 0; k < strip.height; ++k) {
             const int j = strip.first + k;
             for (const int plane : {0, 1, 2}) copy(normals_.row(plane, j), strip.row(plane, k));
-            if (others().alpha)
-                copy(alpha_.empty() ? normals_.row(kAlphaPlane, j) : alpha_.row(j), strip.row(kAlphaPlane, k));
-            if (others().blue)
-                copy(blue_.empty() ? normals_.row(kBluePlane, j) : blue_.row(j), strip.row(kBluePlane, k));
+            int plane = kFirstOtherPlane;
+            for (const OtherPlace& place : kOtherPlaces) {
+                const Plane<float>& given = given_.*place.plane;
+                if (others().*place.has)
+                    copy(given.empty() ? normals_.row(plane, j) : given.row(j), strip.row(plane, k));
+                ++plane;
+            }
         }
         return {};
     }
@@ -35,19 +49,20 @@ private:
     void copy(const float* from, float* to) const { std::copy_n(from, extent().width, to); }
 
     const Stage& normals_;
-    const Plane<float>&blue_, &alpha_;
+    const NormalMap& given_;
 };
 
-Error cannot_hold(const char* channel, Encoding encoding) {
-    std::string able;
-    for (const auto& row : kEncodingNames) {
-        if (channel[0] == 'b' ? can_hold(row.value).blue : can_hold(row.value).alpha)
-            able.append(able.empty() ? "" : ", ").append(row.name);
+Result<void> check_room(OtherPlanes given, Encoding encoding) {
+    for (const OtherPlace& place : kOtherPlaces) {
+        if (!(given.*place.has) || can_hold(encoding).*place.has) continue;
+        std::string able;
+        for (const auto& row : kEncodingNames) {
+            if (can_hold(row.value).*place.has) able.append(able.empty() ? "" : ", ").append(row.name);
+        }
+        return bad_option(std::string(name_of(kEncodingNames, encoding)) + " has no " + place.name +
+                          " for data beside the normals; these formats have: " + able);
     }
-    return Error{ErrorCode::bad_option,
-                 {},
-                 std::string(name_of(kEncodingNames, encoding)) + " has no " + channel +
-                     " for data beside the normals; these formats have: " + able};
+    return {};
 }
 
 Result<Plane<float>> plane_of(const OtherData& given, Extent base, const std::string& name) {
@@ -64,33 +79,65 @@ Result<Plane<float>> plane_of(const OtherData& given, Extent base, const std::st
     return plane;
 }
 
+// Reads what is given, apart from heights that are baked, into the planes of `map`.
+Result<void> read_given(const OtherInputs& inputs, Extent base, NormalMap& map) {
+    for (const auto& [place, data] : kGivenPlaces) {
+        const std::optional<OtherData>& given = inputs.*data;
+        if (!given || given->heights) continue;
+        Result<Plane<float>> read = plane_of(*given, base, place.name);
+        if (!read) return read.error();
+        map.*place.plane = std::move(*read);
+    }
+    return {};
+}
+
 }  // namespace
 
-OtherPlanes planes_given(const OtherInputs& inputs) { return {inputs.blue.has_value(), inputs.alpha.has_value()}; }
+OtherPlanes planes_given(const OtherInputs& inputs) {
+    OtherPlanes planes;
+    for (const auto& [place, data] : kGivenPlaces) planes.*place.has = (inputs.*data).has_value();
+    return planes;
+}
+
+Result<void> check_together(OtherPlanes beside) {
+    if (!beside.blue || !beside.length) return {};
+    return bad_option("blue and length exclude each other: without z, a vector has no length");
+}
+
+bool may_change_ones(const MipOptions& mip, const std::vector<FileTarget>& files) {
+    return follows_normals(mip.alpha) || std::any_of(files.begin(), files.end(), [](const FileTarget& file) {
+               const Format format = encoding_info(file.pack.encoding).format;
+               return can_hold(file.pack.encoding).alpha && format_info(format).sample == SampleKind::floating;
+           });
+}
 
 Result<GivenOthers> GivenOthers::read(const OtherInputs& inputs, Extent base, const std::vector<FileTarget>& files) {
     GivenOthers given;
     given.planes_ = planes_given(inputs);
+    if (auto fits = check_together(given.planes_); !fits) return fits.error();
     for (const FileTarget& file : files) {
-        const OtherPlanes held = can_hold(file.pack.encoding);
-        if (inputs.alpha && !held.alpha) return cannot_hold("alpha", file.pack.encoding);
-        if (inputs.blue && !held.blue) return cannot_hold("blue", file.pack.encoding);
+        if (auto fits = check_room(given.planes_, file.pack.encoding); !fits) return fits.error();
     }
-    for (const auto& [data, plane, name] :
-         {std::tuple(&inputs.blue, &given.blue_, "blue"), std::tuple(&inputs.alpha, &given.alpha_, "alpha")}) {
-        if (!*data || (*data)->heights) continue;
-        Result<Plane<float>> read = plane_of(**data, base, name);
-        if (!read) return read.error();
-        *plane = std::move(*read);
-    }
+    if (auto read = read_given(inputs, base, given.map_); !read) return read.error();
     return given;
 }
 
 const Stage& GivenOthers::add_to(Flow& flow, const Stage& normals) const {
-    if (blue_.empty() && alpha_.empty()) return normals;
-    const OtherPlanes own = normals.others();
-    const OtherPlanes all{own.blue || planes_.blue, own.alpha || planes_.alpha};
-    return flow.add<JoinStage>(normals, all, blue_, alpha_);
+    if (others_of(map_) == OtherPlanes()) return normals;
+    return flow.add<JoinStage>(normals, normals.others() | planes_, map_);
+}
+
+Result<void> put_others(NormalMap& map, const OtherInputs& inputs, Encoding encoding) {
+    return guarded([&]() -> Result<void> {
+        if (auto usable = check_usable(map); !usable) return usable;
+        for (const auto& [place, data] : kGivenPlaces) {
+            if (inputs.*data && (inputs.*data)->heights)
+                return bad_option("others: there are no heights, only normals");
+        }
+        if (auto fits = check_together(others_of(map) | planes_given(inputs)); !fits) return fits;
+        if (auto fits = check_room(planes_given(inputs), encoding); !fits) return fits;
+        return read_given(inputs, map.extent(), map);
+    });
 }
 
 }  // namespace tex

@@ -7,12 +7,19 @@
 
 #include <tex/pipeline.h>
 
+#include "rows/other_rows.h"
 #include "stream/flow.h"
 #include "stream/targets.h"
 
 namespace tex {
 
 [[nodiscard]] OtherPlanes planes_given(const OtherInputs& inputs);
+
+// Whether one file can hold all these data. Errors: bad_option.
+[[nodiscard]] Result<void> check_together(OtherPlanes beside);
+
+// Whether levels that are built of an alpha of 1 may differ from 1: by the variance of normals, or by rounding.
+[[nodiscard]] bool may_change_ones(const MipOptions& mip, const std::vector<FileTarget>& files);
 
 class GivenOthers {
 public:
@@ -27,7 +34,7 @@ public:
 
 private:
     OtherPlanes planes_;
-    Plane<float> blue_, alpha_;  // empty: the stage of normals has them
+    NormalMap map_;  // its other data; what is empty comes with the stage of normals
 };
 
 }  // namespace tex

@@ -199,8 +199,9 @@ public:
             const int j = strip.first + top_ + k;
             bake_row(*baker, j, strip.normals(k));
             const float* const heights = input_.row(j) + left_;
-            if (others().alpha) std::copy_n(heights, extent().width, strip.map.alpha.row(k));
-            if (others().blue) std::copy_n(heights, extent().width, strip.map.blue.row(k));
+            for (const OtherPlace& place : kOtherPlaces) {
+                if (others().*place.has) std::copy_n(heights, extent().width, (strip.map.*place.plane).row(k));
+            }
         }
         baker->next = strip.first + top_ + strip.height;
         const std::lock_guard lock(mutex_);
@@ -290,7 +291,7 @@ BakedRows add_bake(Flow& flow, Heights& heights, const std::string& input, const
     head.wrap_x = heights.options.wrap_x;
     head.wrap_y = heights.options.wrap_y;
     const auto takes = [](const std::optional<OtherData>& other) { return other && other->heights; };
-    const OtherPlanes beside{takes(options.others.blue), takes(options.others.alpha)};
+    const OtherPlanes beside{takes(options.others.blue), takes(options.others.alpha), takes(options.others.length)};
     return {&flow.add<BakeStage>(rows, gradient, head, heights.window, beside), head};
 }
 

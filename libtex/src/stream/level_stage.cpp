@@ -170,8 +170,11 @@ struct Other {
 };
 std::vector<Other> others_of(const MadeLevels& levels) {
     std::vector<Other> others;
-    if (levels.others.alpha) others.push_back({kAlphaPlane, levels.options.alpha});
-    if (levels.others.blue) others.push_back({kBluePlane, levels.options.blue});
+    int plane = kFirstOtherPlane;
+    for (const OtherPlace& place : kOtherPlaces) {
+        if (levels.others.*place.has) others.push_back({plane, kind_of(place, levels.options)});
+        ++plane;
+    }
     return others;
 }
 

@@ -176,13 +176,12 @@ LevelPacking packing_of(const PackOptions& options, OtherPlanes others, Extent e
             tallies};
 }
 
-LevelPacking packing_of(const OtherFile& options, bool is_alpha, Extent extent, int levels) {
+LevelPacking packing_of(const OtherFile& options, const OtherPlace& place, Extent extent, int levels) {
     TextureHead head{options.format, extent, levels};
     head.swizzle = kRoughnessSwizzle;
     return {head,
-            [format = options.format, is_alpha](const LevelRows& rows, std::byte* out, std::byte*) {
-                const Plane<float>& from = is_alpha ? rows.map.alpha : rows.map.blue;
-                pack_roughness_rows(from, rows.height, format, Effort::normal, 0, rows.height, out);
+            [format = options.format, plane = place.plane](const LevelRows& rows, std::byte* out, std::byte*) {
+                pack_roughness_rows(rows.map.*plane, rows.height, format, Effort::normal, 0, rows.height, out);
             },
             1, nullptr};
 }

@@ -17,6 +17,7 @@
 #include "blocks/extent.h"
 #include "files/output_file.h"
 #include "formats/file_layout.h"
+#include "rows/other_rows.h"
 #include "rows/rdo_rows.h"
 
 namespace tex {
@@ -42,7 +43,7 @@ struct LevelPacking {
     std::shared_ptr<RdoTallies> tallies;  // of blocks that are optimised; otherwise null
 };
 LevelPacking packing_of(const PackOptions& options, OtherPlanes others, Extent extent, int levels);
-LevelPacking packing_of(const OtherFile& options, bool is_alpha, Extent extent, int levels);
+LevelPacking packing_of(const OtherFile& options, const OtherPlace& place, Extent extent, int levels);
 LevelPacking packing_of(const RoughnessFile& options, Extent extent, int levels);
 
 class LevelWriter {

@@ -8,7 +8,9 @@
 #include <tex/pack.h>
 
 #include "formats/channels.h"
+#include "rows/usable.h"
 #include "stream/blending.h"
+#include "stream/given_others.h"
 #include "stream/height_stage.h"
 #include "stream/open_heights.h"
 #include "stream/settled_map.h"
@@ -31,6 +33,7 @@ public:
             std::copy_n(row.x, width, map_.x.row(j));
             std::copy_n(row.y, width, map_.y.row(j));
             std::copy_n(row.z, width, map_.z.row(j));
+            if (!map_.alpha.empty()) std::copy_n(from_.row(kFirstOtherPlane, j), width, map_.alpha.row(j));
         }
         return {};
     }
@@ -41,13 +44,15 @@ private:
 };
 
 // A map that a step makes: what an EXR file of floats would be between this step and the next, but its rows are handed
-// over as they are.
+// over as they are. Alpha goes along.
 class MadeMap : public MapSource {
 public:
     [[nodiscard]] const Texture& head() const final { return head_; }
     [[nodiscard]] bool has_y_up() const final { return true; }
     StoredChannels add_to(Flow& flow, int level, const std::vector<bool>&) final {
-        return {&add_normals(flow, level), {0, 1, 2}};
+        std::vector<std::size_t> planes = {0, 1, 2};
+        if (beside_.alpha) planes.push_back(kFirstOtherPlane);
+        return {&add_normals(flow, level), std::move(planes)};
     }
     // The layout of floats is known.
     Result<void> look(const TakeChannels&) final { return {}; }
@@ -56,10 +61,13 @@ public:
         MipChain chain;
         for (int k = 0; k < (base_only ? 1 : levels()); ++k) {
             Flow flow;
-            flow.add<KeepStage>(add_normals(flow, k), chain.levels.emplace_back(extent(k)));
+            NormalMap& map = chain.levels.emplace_back(extent(k));
+            if (beside_.alpha) map.alpha = Plane<float>(extent(k));
+            flow.add<KeepStage>(add_normals(flow, k), map);
             if (Result<void> made = flow.run({execution.threads, {}}); !made) return made.error();
         }
-        Result<Texture> texture = pack(chain, {Encoding::float_, head_.y_axis}, {execution.threads, {}});
+        const Encoding encoding = beside_.alpha ? Encoding::rgba32f : Encoding::float_;
+        Result<Texture> texture = pack(chain, {encoding, head_.y_axis}, {execution.threads, {}});
         if (!texture) return texture;
         std::vector<Level> levels = std::move(texture->levels);
         *texture = head_;
@@ -69,7 +77,25 @@ public:
     Error after_all_rows(const Error& error) final { return error; }
 
 protected:
-    virtual Stage& add_normals(Flow& flow, int level) = 0;
+    virtual const Stage& add_normals(Flow& flow, int level) = 0;
+    // Settles what is beside the normals: alpha, as the options give it, or else if `kept`. `levels`: those of the map.
+    Result<void> settle_others(const OtherInputs& inputs, bool kept, int levels) {
+        if (inputs.blue || inputs.length)
+            return bad_option("steps: only the last one can put data into blue or the lengths of vectors");
+        if (inputs.alpha && levels > 1)
+            return Error{ErrorCode::bad_option, path(),
+                         "has smaller levels, and what is given beside the normals none"};
+        Result<GivenOthers> given = GivenOthers::read(inputs, extent(0), {});
+        if (!given) return given.error().of(path());
+        given_ = std::move(*given);
+        beside_ = {false, kept || inputs.alpha, false};
+        head_.format = beside_.alpha ? Format::rgba32_float : Format::rgb32_float;
+        head_.swizzle = likely_swizzle(head_.format);
+        return {};
+    }
+    // What goes along from the map before.
+    [[nodiscard]] OtherPlanes taken() const { return beside_ & !given_.planes(); }
+    [[nodiscard]] const GivenOthers& given() const { return given_; }
     // How the command would pack the map into a file.
     void describe(const std::function<PackOptions(const SourceInfo&)>& pack, const SourceInfo& source) {
         describe(packing_for(pack, Container::exr, source));
@@ -86,6 +112,8 @@ protected:
 
 private:
     Texture head_;
+    OtherPlanes beside_;
+    GivenOthers given_;
 };
 
 class BakedMap final : public MadeMap {
@@ -111,7 +139,7 @@ public:
         if (!heights) return heights.error().of(input_);
         heights_.emplace(std::move(*heights));
         describe(options_.pack);
-        return {};
+        return settle_others(options_.others, false, 1);
     }
     [[nodiscard]] int levels() const override { return 1; }
     [[nodiscard]] Extent extent(int) const override { return heights_->rows->extent(); }
@@ -122,10 +150,10 @@ public:
     }
 
 private:
-    Stage& add_normals(Flow& flow, int) override {
+    const Stage& add_normals(Flow& flow, int) override {
         const BakedRows baked = add_bake(flow, *heights_, input_, options_, gradient_);
         strength_ = {baked.head.bumpiness_x, baked.head.bumpiness_y};
-        return *baked.normals;
+        return given().add_to(flow, *baked.normals);
     }
 
     const std::string& input_;
@@ -150,7 +178,7 @@ public:
         first_ = options_.level.value_or(0);
         levels_ = options_.level ? 1 : held;
         describe(options_.pack, map_.info());
-        if (first_ < held) return {};
+        if (first_ < held) return settle_others(options_.others, map_.others_taken().alpha, levels_);
         return Error{ErrorCode::bad_option, path(),
                      "has no level " + std::to_string(first_) + ", only " + std::to_string(held)};
     }
@@ -162,7 +190,9 @@ public:
     }
 
 private:
-    Stage& add_normals(Flow& flow, int level) override { return map_.add_to(flow, first_ + level, {options_.scale}); }
+    const Stage& add_normals(Flow& flow, int level) override {
+        return given().add_to(flow, map_.add_to(flow, first_ + level, {options_.scale, nullptr, nullptr, taken()}));
+    }
 
     const std::unique_ptr<MapSource> before_;
     const PackFileOptions& options_;
@@ -181,7 +211,7 @@ public:
         blending_.emplace(*before_, options_);
         if (Result<void> opened = blending_->open(execution_); !opened) return opened.error().of(path());
         describe(options_.pack, blending_->source());
-        return {};
+        return settle_others(options_.others, blending_->others_taken().alpha, 1);
     }
     [[nodiscard]] int levels() const override { return 1; }
     [[nodiscard]] Extent extent(int) const override { return blending_->extent(); }
@@ -193,7 +223,9 @@ public:
     }
 
 private:
-    Stage& add_normals(Flow& flow, int) override { return blending_->add_to(flow); }
+    const Stage& add_normals(Flow& flow, int) override {
+        return given().add_to(flow, blending_->add_to(flow, taken()));
+    }
 
     const std::unique_ptr<MapSource> before_;
     const BlendFileOptions& options_;

@@ -33,11 +33,11 @@ Result<void> turn_up(Source& source) {
 }
 
 // Sets SourceInfo::others.
-Result<void> look_at_others(const Texture& texture, Source& source, const Execution& execution) {
+Result<void> look_at_others(const Texture& texture, bool lengths, Source& source, const Execution& execution) {
     const int channels = format_info(texture.format).channels;
     const Result<Sources> sources = sources_of(source.info.swizzle, (1u << channels) - 1);
     if (!sources) return sources.error();
-    OtherChannels others(texture, texture.extent(), *sources);
+    OtherChannels others(texture, texture.extent(), *sources, lengths);
     if (others.empty()) return {};
     const Result<Image> image = decode(texture, 0, {execution.threads, {}});
     if (!image) return image.error();
@@ -84,7 +84,8 @@ Result<Source> unpack_source(Texture texture, const SourceOptions& options, bool
     }
     inspect(source.chain.levels.front(), options, source.info);
     if (options.inspect && !options.drop_others) {
-        if (const Result<void> looked = look_at_others(texture, source, execution); !looked) return looked.error();
+        const Result<void> looked = look_at_others(texture, options.unpack.others.length, source, execution);
+        if (!looked) return looked.error();
     }
     return source;
 }

@@ -7,61 +7,21 @@
 #include <cstring>
 #include <limits>
 
+#include "rows/other_rows.h"
+
 namespace tex {
 namespace {
 
 constexpr float kVaries = 1.5f / 255.0f;
-constexpr int kZRows = 64;                 // whose z is judged, about
-constexpr int kZTexels = 256;              // of such a row, about
 constexpr float kRepeats = 8.5f / 255.0f;  // the same value in channels of 5 and 6 bits, and rebuilt z, differ by less
 
 }  // namespace
 
-void ZEvidence::add_row(const float* x, const float* y, const float* z, bool is_unsigned, int width) {
-    constexpr float kOne = 1024.0f, kNoDirection = 0.25f;
-    const float scale = is_unsigned ? 2.0f : 1.0f, offset = is_unsigned ? 1.0f : 0.0f;
-    for (int i = 0; i < width; i += std::max(1, width / kZTexels)) {
-        const float a = x[i] * scale - offset, b = y[i] * scale - offset, c = z[i] * scale - offset;
-        const float across = a * a + b * b;
-        if (across > 1.0f || across + c * c < kNoDirection) continue;  // background
-        const auto stored = static_cast<std::int64_t>(std::lround(std::abs(c) * kOne));
-        const auto rebuilt = static_cast<std::int64_t>(std::lround(std::sqrt(1.0f - across) * kOne));
-        ++count_;
-        off_ += std::abs(stored - rebuilt);
-        z_ += stored;
-        rebuilt_ += rebuilt;
-        z_square_ += stored * stored;
-        rebuilt_square_ += rebuilt * rebuilt;
-        product_ += stored * rebuilt;
-    }
-}
-
-void ZEvidence::add(const ZEvidence& other) {
-    count_ += other.count_;
-    off_ += other.off_;
-    z_ += other.z_;
-    rebuilt_ += other.rebuilt_;
-    z_square_ += other.z_square_;
-    rebuilt_square_ += other.rebuilt_square_;
-    product_ += other.product_;
-}
-
-bool ZEvidence::is_something_else() const {
-    constexpr std::int64_t kLeastTexels = 1024;
-    constexpr double kOff = 0.03 * 1024, kVaries = 0.005 * 1024, kFollows = 0.7;
-    if (count_ < kLeastTexels) return false;
-    const auto n = static_cast<double>(count_);
-    const auto mean = [n](std::int64_t sum) { return static_cast<double>(sum) / n; };
-    const double stored = mean(z_square_) - mean(z_) * mean(z_);
-    const double rebuilt = mean(rebuilt_square_) - mean(rebuilt_) * mean(rebuilt_);
-    if (mean(off_) < kOff || rebuilt < kVaries * kVaries) return false;
-    const double both = mean(product_) - mean(z_) * mean(rebuilt_);
-    return both < kFollows * std::sqrt(std::max(stored, 0.0) * rebuilt) || !(stored > 0.0);
-}
-
-OtherChannels::OtherChannels(const Texture& head, Extent extent, const Sources& sources)
-    : sources_(sources), judges_z_(sources.z >= 0 && format_info(head.format).sample != SampleKind::floating),
-      is_unsigned_(format_info(head.format).sample == SampleKind::unorm), z_step_(std::max(1, extent.height / kZRows)) {
+OtherChannels::OtherChannels(const Texture& head, Extent extent, const Sources& sources, bool lengths)
+    : sources_(sources),
+      judges_z_(!lengths && sources.z >= 0 && format_info(head.format).sample != SampleKind::floating),
+      is_unsigned_(format_info(head.format).sample == SampleKind::unorm), z_step_(z_step(extent.height)),
+      lengths_(lengths && sources.z >= 0) {
     constexpr float kNone = std::numeric_limits<float>::infinity();
     constexpr int kAlpha = 3;
     for (int c = 0; c < format_info(head.format).channels; ++c) {
@@ -94,6 +54,16 @@ void OtherChannels::look(Seen& seen, const float* const (&channels)[4], const Ve
     }
 }
 
+void OtherChannels::look_at_lengths(const float* const (&channels)[4], int width) {
+    Plane<float> row(Extent{width, 1});
+    values_of_lengths(channels[sources_.x], channels[sources_.y], channels[sources_.z], is_unsigned_, width,
+                      row.row(0));
+    const auto [least, greatest] = std::minmax_element(row.row(0), row.row(0) + width);
+    const std::lock_guard lock(mutex_);
+    shortest_ = std::min(shortest_, *least);
+    longest_ = std::max(longest_, *greatest);
+}
+
 void OtherChannels::add_row(int j, const float* const (&channels)[4], const VectorRow& normals, int width) {
     if (judges_z_ && j % z_step_ == 0) {
         ZEvidence z;
@@ -101,6 +71,7 @@ void OtherChannels::add_row(int j, const float* const (&channels)[4], const Vect
         const std::lock_guard lock(mutex_);
         z_.add(z);
     }
+    if (lengths_) look_at_lengths(channels, width);
     if (seen_.empty()) return;
     std::vector<Seen> row;
     {
@@ -125,12 +96,14 @@ std::vector<OtherChannel> OtherChannels::found() const {
         if (seen.greatest - seen.least > kVaries && !repeats)
             found.push_back({"RGBA"[seen.channel], seen.least, seen.greatest});
     }
+    if (longest_ - shortest_ > kVaries) found.push_back({'L', shortest_, longest_});
     return found;
 }
 
 std::vector<OtherChannel> left_out(std::vector<OtherChannel> channels, OtherPlanes accounted_for) {
     std::erase_if(channels, [&](const OtherChannel& channel) {
-        return (channel.name == 'A' && accounted_for.alpha) || (channel.name == 'B' && accounted_for.blue);
+        return (channel.name == 'A' && accounted_for.alpha) || (channel.name == 'B' && accounted_for.blue) ||
+               (channel.name == 'L' && accounted_for.length);
     });
     return channels;
 }

@@ -78,8 +78,10 @@ Result<std::vector<Plane<float>>> smaller_levels(const NormalMap& normals, Plane
 }
 
 Result<void> add_others(MipChain& chain, const MipOptions& options, const Execution& execution) {
-    if (Result<void> done = add_other(chain, &NormalMap::alpha, options.alpha, options, execution); !done) return done;
-    return add_other(chain, &NormalMap::blue, options.blue, options, execution);
+    for (const OtherPlace& place : kOtherPlaces) {
+        if (auto done = add_other(chain, place.plane, kind_of(place, options), options, execution); !done) return done;
+    }
+    return {};
 }
 
 }  // namespace tex

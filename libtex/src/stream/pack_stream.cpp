@@ -3,7 +3,6 @@
 #include "stream/pack_stream.h"
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -21,6 +20,16 @@
 
 namespace tex {
 namespace {
+
+struct ApartFile {
+    const OtherPlace& place;
+    std::optional<OtherFile> PackFileOptions::*file;
+};
+constexpr ApartFile kFiles[] = {
+    {kOtherPlaces[1], &PackFileOptions::blue_file},
+    {kOtherPlaces[0], &PackFileOptions::alpha_file},
+    {kOtherPlaces[2], &PackFileOptions::length_file},
+};
 
 class PackRun {
 public:
@@ -45,10 +54,8 @@ private:
     }
     [[nodiscard]] Extent extent(int level) const { return map_.map().extent(level); }
     [[nodiscard]] MadeLevels made_levels(int level, int count) const {
-        return {level - first_ - left_out_,
-                count,
-                counted_from_base(mip_.value_or(MipOptions()), left_out_),
-                {kept_.blue || written_.blue, kept_.alpha || written_.alpha}};
+        return {level - first_ - left_out_, count, counted_from_base(mip_.value_or(MipOptions()), left_out_),
+                kept_ | written_};
     }
 
     SettledMap map_;
@@ -61,11 +68,12 @@ private:
     Plane<float> roughness_map_;  // RoughnessFile::map
     std::optional<OwnRoughness> own_;
     GivenOthers given_;
-    OtherPlanes written_;  // what files of normals get beside them
-    OtherPlanes kept_;     // what of the source goes along: into these files, or into its own
-    int first_ = 0;        // the level that becomes the base level
-    int end_ = 1;          // the end of the levels that are read
-    int left_out_ = 0;     // levels that are built and not written
+    OtherPlanes written_;    // what files of normals get beside them
+    OtherPlanes kept_;       // what of the source goes along: into these files, or into its own
+    bool in_codes_ = false;  // lengths stay as they are, with what they hold
+    int first_ = 0;          // the level that becomes the base level
+    int end_ = 1;            // the end of the levels that are read
+    int left_out_ = 0;       // levels that are built and not written
     std::vector<FileTarget> files_;
     Targets targets_;
     PackFileReport report_;
@@ -106,13 +114,12 @@ Result<void> PackRun::prepare() {
 
 // Decides what goes along beside the normals, and reads what is given.
 Result<void> PackRun::settle_others() {
-    const OtherPlanes there = map_.others(), taken = map_.others_taken(), held = held_by_any(files_);
-    for (const auto& [file, is_there, name] : {std::tuple(&options_.blue_file, there.blue, "blue"),
-                                               std::tuple(&options_.alpha_file, there.alpha, "alpha")}) {
-        if (*file && !is_there) {
-            return Error{ErrorCode::bad_option, map_.map().path(),
-                         std::string("has no ") + name + " beside the normals, which could be written apart"};
-        }
+    OtherPlanes apart;
+    for (const auto& [place, file] : kFiles) {
+        apart.*place.has = (options_.*file).has_value();
+        if (!(apart.*place.has) || map_.others().*place.has) continue;
+        return Error{ErrorCode::bad_option, map_.map().path(),
+                     std::string("has no ") + place.name + " beside the normals, which could be written apart"};
     }
     if (planes_given(options_.others) != OtherPlanes() && end_ - first_ > 1) {
         return Error{ErrorCode::bad_option, map_.map().path(),
@@ -123,13 +130,21 @@ Result<void> PackRun::settle_others() {
     if (!read) return read.error();
     given_ = std::move(*read);
     const OtherPlanes own = given_.planes();
-    kept_ = {taken.blue && held.blue && !own.blue, taken.alpha && held.alpha && !own.alpha};
-    written_ = {kept_.blue || own.blue, kept_.alpha || own.alpha};
-    if ((options_.blue_file && own.blue) || (options_.alpha_file && own.alpha))
-        return bad_option("others: replace what is to be written apart");
-    kept_.blue = kept_.blue || options_.blue_file;
-    kept_.alpha = kept_.alpha || options_.alpha_file;
-    return {};
+    if ((apart & own) != OtherPlanes()) return bad_option("others: replace what is to be written apart");
+    kept_ = map_.others_taken() & held_by_any(files_) & !own;
+    kept_.length = kept_.length && !apart.length;
+    if (kept_.alpha && mip_ && may_change_ones(*mip_, files_)) {
+        const Result<bool> is_one = map_.alpha_is_one();
+        if (!is_one) return is_one.error();
+        kept_.alpha = !*is_one;
+    }
+    in_codes_ = kept_.length && map_.rule().keep_length && !mip_ && !options_.scale;
+    written_ = kept_ | own;
+    written_.length = written_.length && !in_codes_;
+    if (written_.length && map_.rule().keep_length)
+        return bad_option("keep_length: vectors have unit length if their lengths get other data");
+    kept_ = kept_ | apart;
+    return check_together(written_);
 }
 
 // Decides which outputs get vectors of unit length. If some do not, rows are read as they are.
@@ -141,13 +156,17 @@ void PackRun::settle_lengths() {
     unit.snap_flat = false;
     UnpackRule again = rule_of(unit, info.sample, info.bits, YAxis::up);
     again.is_unsigned = false;
-    bool any_keeps = false;
+    bool any_keeps = false, all_keep = true;
     for (FileTarget& file : files_) {
         const bool keeps = can_keep_codes(report_.source.format, has_z, file.pack.encoding);
         if (!keeps) file.unit = UnitRule{again, has_z};
         any_keeps = any_keeps || keeps;
+        all_keep = all_keep && keeps;
     }
-    if (any_keeps) return map_.keep_length();
+    // Data in the lengths stay in the codes, or are read, and stored in all files again.
+    const bool moves_lengths =
+        options_.others.length || options_.length_file || (map_.others_taken().length && !all_keep);
+    if (any_keeps && !moves_lengths) return map_.keep_length();
     for (FileTarget& file : files_) file.unit.reset();
 }
 
@@ -187,19 +206,20 @@ Result<void> PackRun::find_own_roughness() {
 
 Result<void> PackRun::open_targets() {
     Result<void> opened = targets_.open(files_, written_, report_.extent, report_.levels);
-    for (const auto& [file, is_alpha] :
-         {std::pair(&options_.blue_file, false), std::pair(&options_.alpha_file, true)}) {
-        if (opened && *file) opened = targets_.open(**file, is_alpha, options_.write, report_.extent, report_.levels);
+    for (const auto& [place, file] : kFiles) {
+        if (opened && options_.*file)
+            opened = targets_.open(*(options_.*file), place, options_.write, report_.extent, report_.levels);
     }
     if (!opened || !options_.roughness) return opened;
     return targets_.open(*options_.roughness, options_.write, report_.extent, roughness_levels());
 }
 
-// The channels whose data are not lost, or were told to go.
+// Where data are not lost, or were told to go.
 OtherPlanes PackRun::accounted_for() const {
-    const OtherPlanes held = held_by_all(files_), own = given_.planes();
-    return {own.blue || options_.blue_file || (kept_.blue && held.blue),
-            own.alpha || options_.alpha_file || (kept_.alpha && held.alpha) || !options_.source.unpack.others.alpha};
+    OtherPlanes apart;
+    for (const auto& [place, file] : kFiles) apart.*place.has = (options_.*file).has_value();
+    const OtherPlanes not_wanted{false, !options_.source.unpack.others.alpha, false};
+    return given_.planes() | apart | (kept_ & held_by_all(files_)) | not_wanted;
 }
 
 // Packs a level and the levels that are built from it.
@@ -209,7 +229,7 @@ Result<void> PackRun::pack_level(int level, const Execution& execution) {
     flow.set_rows_together(targets_.rows_together());
     std::optional<OtherChannels> others;
     if (level == first_ && options_.source.inspect && !options_.source.drop_others)
-        others.emplace(map_.map().head(), extent(level), map_.sources());
+        others.emplace(map_.map().head(), extent(level), map_.sources(), options_.source.unpack.others.length);
     const Stage& unpacked = map_.add_to(
         flow, level,
         {options_.scale, inspector ? &*inspector : nullptr, others && !others->empty() ? &*others : nullptr, kept_});

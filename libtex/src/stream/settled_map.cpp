@@ -2,6 +2,7 @@
 
 #include "stream/settled_map.h"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -93,10 +94,23 @@ Result<void> SettledMap::measure_y(const Execution& execution) {
 
 OtherPlanes SettledMap::others() const { return others_beside(sources_, format_info(map_->head().format).channels); }
 
+Result<bool> SettledMap::alpha_is_one() {
+    constexpr int kAlpha = 3;
+    if (map_->has_y_up()) return false;  // another step makes it
+    const int width = map_->extent(0).width;
+    bool is_one = true;
+    const Result<void> seen = map_->look([&](const float* const(&channels)[4]) {
+        const float* const alpha = channels[kAlpha];
+        is_one = alpha != nullptr && std::all_of(alpha, alpha + width, [](float value) { return value == 1.0f; });
+        return is_one;
+    });
+    if (!seen) return seen.error();
+    if (Result<void> again = map_->open(); !again) return again.error();
+    return is_one;
+}
+
 OtherPlanes SettledMap::others_taken() const {
-    const OtherPlanes there = others(), wanted = options_.unpack.others;
-    if (options_.drop_others) return {};
-    return {there.blue && wanted.blue, there.alpha && wanted.alpha};
+    return options_.drop_others ? OtherPlanes() : others() & options_.unpack.others;
 }
 
 Stage& SettledMap::add_to(Flow& flow, int level, const UnpackExtras& extras) const {

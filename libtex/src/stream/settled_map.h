@@ -36,8 +36,11 @@ public:
     void keep_length() { rule_.keep_length = true; }
     [[nodiscard]] const UnpackRule& rule() const { return rule_; }
 
-    // The channels beside the normals, which may hold other data.
+    // Where other data may be beside the normals.
     [[nodiscard]] OtherPlanes others() const;
+    // Whether alpha is 1 in every texel of the base level, which then holds no data. If rows cannot be looked at, it is
+    // not. Rows can be read once more afterwards.
+    Result<bool> alpha_is_one();
     // Those that go along, as the options say.
     [[nodiscard]] OtherPlanes others_taken() const;
 

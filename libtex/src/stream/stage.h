@@ -13,26 +13,26 @@
 #include <tex/result.h>
 
 #include "kernels/normal_row.h"
+#include "rows/other_rows.h"
 #include "threads/pool.h"
 
 namespace tex {
 
-// The planes of a strip of normals after x, y and z: other data (NormalMap::alpha, NormalMap::blue).
-inline constexpr int kAlphaPlane = 3;
-inline constexpr int kBluePlane = 4;
+// The planes of a strip of normals after x, y and z are other data, in the order of kOtherPlaces.
+inline constexpr int kFirstOtherPlane = 3;
 
 // Consecutive rows that a stage has made. Which of the members it uses is up to the stage.
 struct Strip {
     int first = 0;   // its first row
     int height = 0;  // the number of its rows
     Image image;     // the values that a file stores, a plane for each channel
-    NormalMap map;   // otherwise: x, y, z, alpha, blue
+    NormalMap map;   // otherwise: x, y, z, alpha, blue, length
     std::vector<std::byte> bytes;
 
     // Row k of the strip.
     [[nodiscard]] float* row(int plane, int k) {
         if (!image.planes.empty()) return image.planes[static_cast<std::size_t>(plane)].row(k);
-        Plane<float>* const planes[] = {&map.x, &map.y, &map.z, &map.alpha, &map.blue};
+        Plane<float>* const planes[] = {&map.x, &map.y, &map.z, &map.alpha, &map.blue, &map.length};
         return planes[plane]->row(k);
     }
     [[nodiscard]] NormalRow normals(int k) { return {map.x.row(k), map.y.row(k), map.z.row(k)}; }
@@ -53,8 +53,9 @@ class Stage {
 public:
     // `level`: a strip has as many rows as are made, `level` levels below another picture, of one strip of that one.
     Stage(Extent extent, int planes, int level = 0, int begin = 0)
-        : extent_(extent), planes_(planes), others_{planes > kBluePlane, planes > kAlphaPlane}, level_(level),
-          begin_(begin) {}
+        : extent_(extent), planes_(planes), others_{planes > kFirstOtherPlane + 1, planes > kFirstOtherPlane,
+                                                    planes > kFirstOtherPlane + 2},
+          level_(level), begin_(begin) {}
     // A stage that makes normals, and these data beside them.
     Stage(Extent extent, OtherPlanes others, int level = 0)
         : extent_(extent), planes_(3), others_(others), level_(level), begin_(0) {}

@@ -8,6 +8,7 @@
 
 #include <tex/mip_chain.h>
 
+#include "rows/other_rows.h"
 #include "rows/pack_rows.h"
 
 namespace tex {
@@ -25,8 +26,7 @@ void pack_units(LevelPacking& packing, const UnitRule& unit) {
     packing.pack = [unit, pack = std::move(packing.pack)](const LevelRows& rows, std::byte* out, std::byte* plain) {
         const NormalMap& from = rows.map;
         NormalMap to(from.extent());
-        to.blue = seen(from.blue);
-        to.alpha = seen(from.alpha);
+        for (const OtherPlace& place : kOtherPlaces) to.*place.plane = seen(from.*place.plane);
         for (int j = 0; j < rows.height; ++j) {
             unpack_row(from.x.row(j), from.y.row(j), unit.has_z ? from.z.row(j) : nullptr, unit.rule,
                        from.extent().width, to.x.row(j), to.y.row(j), to.z.row(j));
@@ -56,19 +56,13 @@ void add_targets(const std::vector<MoreFile>& more, const SourceInfo& source, st
 
 OtherPlanes held_by_any(const std::vector<FileTarget>& targets) {
     OtherPlanes held;
-    for (const FileTarget& target : targets) {
-        held.blue = held.blue || can_hold(target.pack.encoding).blue;
-        held.alpha = held.alpha || can_hold(target.pack.encoding).alpha;
-    }
+    for (const FileTarget& target : targets) held = held | can_hold(target.pack.encoding);
     return held;
 }
 
 OtherPlanes held_by_all(const std::vector<FileTarget>& targets) {
-    OtherPlanes held{true, true};
-    for (const FileTarget& target : targets) {
-        held.blue = held.blue && can_hold(target.pack.encoding).blue;
-        held.alpha = held.alpha && can_hold(target.pack.encoding).alpha;
-    }
+    OtherPlanes held{true, true, true};
+    for (const FileTarget& target : targets) held = held & can_hold(target.pack.encoding);
     return held;
 }
 
@@ -127,11 +121,12 @@ Result<void> Targets::open(const RoughnessFile& file, const WriteOptions& write,
                options, Opened::late);
 }
 
-Result<void> Targets::open(const OtherFile& file, bool is_alpha, const WriteOptions& write, Extent extent, int levels) {
+Result<void> Targets::open(const OtherFile& file, const OtherPlace& place, const WriteOptions& write, Extent extent,
+                           int levels) {
     WriteOptions options = write;
     if (!can_compress(file.container)) options.zstd = 0;
     const int held = can_hold_levels(file.container) ? levels : 1;
-    return add(Content::normals, file.output, {}, file.container, packing_of(file, is_alpha, extent, held), options,
+    return add(Content::normals, file.output, {}, file.container, packing_of(file, place, extent, held), options,
                Opened::late);
 }
 

@@ -57,8 +57,9 @@ public:
     // Opens files for normals, and for these data beside them where a file can hold them. Rows of levels that a file
     // does not hold are not written to it. Errors: those of LevelWriter::open().
     Result<void> open(const std::vector<FileTarget>& targets, OtherPlanes others, Extent extent, int levels);
-    // Opens a file for the alpha, or the blue, of the rows of normals.
-    Result<void> open(const OtherFile& file, bool is_alpha, const WriteOptions& write, Extent extent, int levels);
+    // Opens a file for what is beside the rows of normals in one place.
+    Result<void> open(const OtherFile& file, const OtherPlace& place, const WriteOptions& write, Extent extent,
+                      int levels);
     // Opens a file, or files, for roughness.
     Result<void> open(const RoughnessFile& file, const WriteOptions& write, Extent extent, int levels);
 

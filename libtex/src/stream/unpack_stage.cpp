@@ -56,6 +56,10 @@ void UnpackStage::make_row(int j, const float* const (&channels)[4], Strip& stri
     const NormalRow out = strip.normals(k);
     const float* const z = sources_.z < 0 ? nullptr : channels[sources_.z];
     unpack_row(channels[sources_.x], channels[sources_.y], z, rule_, width, out.x, out.y, out.z);
+    if (extras_.takes.length) {
+        values_of_lengths(channels[sources_.x], channels[sources_.y], z, rule_.is_unsigned, width,
+                          strip.map.length.row(k));
+    }
     if (extras_.takes.alpha) std::copy_n(channels[kAlpha], width, strip.map.alpha.row(k));
     if (extras_.takes.blue) std::copy_n(channels[kBlue], width, strip.map.blue.row(k));
     if (extras_.others != nullptr) extras_.others->add_row(j, channels, out, width);

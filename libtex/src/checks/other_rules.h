@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// other_rules.h: what is in alpha and blue beside the normals.
+
+#pragma once
+
+#include "checks/findings.h"
+
+namespace tex {
+
+// Errors: cancelled, out_of_memory.
+Result<void> check_other_rules(const Subject& subject, Findings& findings);
+
+}  // namespace tex
