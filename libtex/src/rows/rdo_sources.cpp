@@ -8,18 +8,22 @@
 
 namespace tex {
 
-RdoSources::RdoSources(Encoding encoding, int window, std::size_t most, float lambda)
-    : lambda_(lambda), reach_(std::max(1, window / 16)) {
+RdoSources::RdoSources(Encoding encoding, int window, std::size_t most) : reach_(std::max(1, window / 16)) {
     for (int h = 0; h < 2; ++h) halves_.emplace_back(half_kind(encoding, h), most);
     const auto farthest = static_cast<std::size_t>(std::min(reach_, static_cast<int>(most)));
     prices_.resize(farthest + kVectorSlack);
-    for (std::size_t k = 0; k < farthest; ++k) prices_[k] = lambda * match_bits(static_cast<int>(16 * (farthest - k)));
     for (std::size_t to = 0; to < 2; ++to) {
         for (std::size_t from = 0; from < 2; ++from) {
             products_[to][from].resize(farthest + kVectorSlack);
             least_[to][from].resize(farthest + kVectorSlack);
         }
     }
+}
+
+void RdoSources::set_lambda(float lambda) {
+    lambda_ = lambda;
+    const std::size_t farthest = prices_.size() - kVectorSlack;
+    for (std::size_t k = 0; k < farthest; ++k) prices_[k] = lambda * match_bits(static_cast<int>(16 * (farthest - k)));
 }
 
 // Scores all halves in the window as sources of both halves of a block.

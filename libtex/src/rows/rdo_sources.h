@@ -33,7 +33,9 @@ struct RdoSearcher {
 class RdoSources {
 public:
     // `window` is in bytes, `most` the number of blocks of the band. Throws std::bad_alloc.
-    RdoSources(Encoding encoding, int window, std::size_t most, float lambda);
+    RdoSources(Encoding encoding, int window, std::size_t most);
+
+    void set_lambda(float lambda);
 
     [[nodiscard]] HalfKind kind(int half) const { return halves_[static_cast<std::size_t>(half % 2)].kind(); }
     // The next half of the band.
@@ -48,7 +50,7 @@ private:
     void add(const CopyScores& scores, const CopyScores* more, float rest, float scale, int from,
              std::vector<RdoSource>& sources) const;
 
-    const float lambda_;
+    float lambda_ = 0.0f;
     const int reach_;  // blocks
     std::vector<RdoHalves> halves_;
     std::vector<float> prices_;  // of matches in the window, the farthest first

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "rows/rdo_budget.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "rows/math.h"
+
+namespace tex {
+namespace {
+
+constexpr double kTarget = 0.99;  // of the growth that is allowed
+
+double power_of(double base, double exponent) { return base <= 0.0 ? 0.0 : math::pow(base, exponent); }
+
+}  // namespace
+
+int rdo_runs(std::size_t blocks) { return static_cast<int>((blocks + kRdoRun - 1) / kRdoRun); }
+
+int rdo_sample_stride(int runs) { return std::clamp(runs / 8, 1, 8); }
+
+bool RdoLambdaSearch::add(double growth) {
+    constexpr double kClose = 0.15;
+    const double ratio = growth / most_;
+    const double off = std::abs(ratio - 1.0);
+    const bool is_closest = off < closest_;
+    closest_ = std::min(closest_, off);
+    is_done_ = off < kClose;
+    if (last_.growth > 0.0 && growth > 0.0 && last_.growth != growth) {
+        const double measured = math::log(growth / last_.growth) / math::log(lambda_ / last_.lambda);
+        power_ = std::clamp(measured, 1.0, 5.0);
+    }
+    last_ = {lambda_, growth};
+    (ratio <= 1.0 ? low_ : high_) = last_;
+    if (low_.lambda == 0.0 || high_.lambda == 0.0) {
+        lambda_ *= std::clamp(power_of(1.0 / std::max(ratio, 1e-3), 1.0 / power_), 0.3, 3.0);
+    } else {
+        // Between both, where a straight line reaches the limit, but not too close to either.
+        const double part = (most_ - low_.growth) / (high_.growth - low_.growth);
+        lambda_ = low_.lambda + std::clamp(part, 0.1, 0.9) * (high_.lambda - low_.lambda);
+    }
+    return is_closest;
+}
+
+RdoBudget::RdoBudget(RdoGrowth plan, double most) : plan_(std::move(plan)), most_(most) {
+    for (double& growth : plan_.runs) {
+        growth = std::max(growth, 1e-6 * most / static_cast<double>(plan_.runs.size()));
+        rest_ += growth;
+    }
+    trust_ = 0.03 * rest_;
+}
+
+void RdoBudget::end_run(double growth) {
+    if (factors_.empty()) return;
+    growths_.push_back(growth - before_);
+    const double planned = plan_.runs[growths_.size() - 1];
+    done_ += planned * power_of(factors_.back(), plan_.power);
+    rest_ -= planned;
+}
+
+float RdoBudget::next(double growth) {
+    end_run(growth);
+    before_ = growth;
+    const double more = (std::max(0.0, growth) + trust_) / (done_ + trust_);
+    const double rest = std::max(rest_, plan_.runs[factors_.size()]);
+    const double factor = power_of((kTarget * most_ - growth) / (more * rest), 1.0 / plan_.power);
+    factors_.push_back(std::clamp(factor, 0.25, 4.0));
+    return plan_.lambda * static_cast<float>(factors_.back());
+}
+
+bool RdoBudget::has_wandered() const {
+    constexpr double kUsual = 1.2;
+    // The last runs have little left to correct with, and weigh little.
+    const auto end = factors_.end() - static_cast<std::ptrdiff_t>(factors_.size() / 8);
+    const auto [least, greatest] = std::minmax_element(factors_.begin(), end);
+    return *greatest > kUsual * *least;
+}
+
+RdoGrowth RdoBudget::seen(double growth) {
+    end_run(growth);
+    RdoGrowth better{0.0f, plan_.power, growths_};
+    double sum = 0.0;
+    for (std::size_t run = 0; run < growths_.size(); ++run) {
+        double& at = better.runs[run];
+        at = std::max(0.0, at) / power_of(factors_[run], plan_.power);
+        sum += at;
+    }
+    // At this factor of lambda, the sum is what is allowed.
+    const double factor = power_of(kTarget * most_ / std::max(sum, 1e-6 * most_), 1.0 / plan_.power);
+    better.lambda = plan_.lambda * static_cast<float>(std::clamp(factor, 0.25, 4.0));
+    for (double& at : better.runs) at *= power_of(factor, plan_.power);
+    return better;
+}
+
+}  // namespace tex
