@@ -86,7 +86,7 @@ float angle_scale(const RdoBlock& texels) {
 // Finds candidates for both halves that do not depend on each other.
 void Pass::start(int block) {
     const RdoBlock& texels = band_.blocks[static_cast<std::size_t>(block)];
-    RdoSearcher searcher{block, {texels.x, texels.y}, {}, angle_scale(texels)};
+    RdoSearcher searcher{block, {texels.x, texels.y}, {}, angle_scale(texels), {}};
     for (int to = 0; to < 2; ++to) {
         Choice& choice = plain_[to];
         std::memcpy(choice.candidate.half, plain(2 * block + to), kHalfBytes);
@@ -97,6 +97,8 @@ void Pass::start(int block) {
             const float d = choice.values[k] - searcher.values[to][k];
             searcher.rests[1 - to] += d * d;
         }
+        for (const std::byte byte : choice.candidate.half)
+            searcher.literal_bits[to] += literal_bits_[std::to_integer<std::size_t>(byte)];
     }
     sources_.find(searcher);
     for (int to = 0; to < 2; ++to) {
