@@ -21,10 +21,15 @@ constexpr float kCosineSlack = 16.0f;
 constexpr float kSquare = kCosine * kCosine / 32768.0f;
 constexpr float kSquareSlack = 48.0f;
 
-// What cosines must exceed, and the squares of those of pairs.
+// What a cosine must exceed for a cost below the bound (for a pair: the weighted sum of the squares of its cosines).
+struct CopyLimit {
+    std::int16_t fitted;        // if endpoints may change
+    std::int16_t whole;         // if all 8 bytes are copied: then the sizes, too, may differ by
+    std::int16_t mean, length;  // less than this
+};
 struct CopyLimits {
-    std::int16_t single[2][2];
-    std::int16_t pair;
+    CopyLimit single[2][2];
+    CopyLimit pair;
     std::int16_t share[2];  // of x and y in the squares of pairs, in units of 1/32768
 };
 
@@ -32,16 +37,28 @@ float spread_of(const CopyValues& values) {
     return std::max(0.0f, values.squares - values.sum * values.sum * (1.0f / 16.0f));
 }
 
-// The square of the cosine from which on costs may be below the bound: those of the least error, at least extra cost.
-float least_square(float spread, float rest, float room, float scale) {
-    if (room <= 0.0f) return 2.0f;
-    // Rounding must not dismiss what is below the bound, so this leaves room for it.
-    const float length = 1.0001f * room / scale;
-    return (spread + rest - length * length) / std::max(1e-12f, spread) - 1e-5f;
+std::int16_t to_word(float value) {
+    return static_cast<std::int16_t>(std::floor(std::min(std::max(value, -32768.0f), 32767.0f)));
 }
 
-std::int16_t limit_of(float value) {
-    return static_cast<std::int16_t>(std::floor(std::min(std::max(value, -32768.0f), 32767.0f)));
+// `extra` is that of the three types of copy, `room` what the bound leaves for the angles and them.
+CopyLimit limit_of(float spread, float rest, float room, const float extra[3], float scale, bool is_pair) {
+    // The square of the error that is left. Rounding must not dismiss what is below the bound, so this leaves room.
+    const auto square = [&](float more) {
+        const float length = 1.0001f * (room - more) / scale;
+        return room <= more ? -1.0f : length * length - rest + 1e-7f;
+    };
+    const auto cosine = [&](float error) {
+        if (error < 0.0f) return std::int16_t{32767};
+        const float least = (spread - error) / std::max(1e-12f, spread) - 1e-5f;
+        if (least <= 0.0f) return std::int16_t{-32768};
+        return to_word(is_pair ? kSquare * least - kSquareSlack : kCosine * std::sqrt(least) - kCosineSlack);
+    };
+    const float whole = square(extra[2]);
+    const float length = std::sqrt(std::max(0.0f, whole));
+    constexpr float kSizeSlack = 3.0f;
+    return {cosine(square(extra[1])), cosine(whole), to_word(0.25f * kMeanUnit * length + kSizeSlack),
+            to_word(kLengthUnit * length + kSizeSlack)};
 }
 
 CopyLimits limits_of(const CopySearch& search, const FoundCopies& found, float price) {
@@ -49,17 +66,13 @@ CopyLimits limits_of(const CopySearch& search, const FoundCopies& found, float p
     float spreads[2];
     for (int to = 0; to < 2; ++to) {
         spreads[to] = spread_of(*search.values[to]);
-        for (int from = 0; from < 2; ++from) {
-            const float room = found.of[to][from].bound() - price - search.extra[to][2];
-            const float square = least_square(spreads[to], search.rests[to], room, search.scale);
-            limits.single[to][from] = limit_of(square <= 0.0f ? -32768.0f : kCosine * std::sqrt(square) - kCosineSlack);
-        }
+        for (int from = 0; from < 2; ++from)
+            limits.single[to][from] = limit_of(spreads[to], search.rests[to], found.of[to][from].bound() - price,
+                                               search.extra[to], search.scale, false);
     }
     const float both = spreads[0] + spreads[1];
-    const float room = found.pairs.bound() - price - search.extra[2][2];
-    const float square = least_square(both, 0.0f, room, search.scale);
-    limits.pair = limit_of(square <= 0.0f ? -32768.0f : kSquare * square - kSquareSlack);
-    for (int to = 0; to < 2; ++to) limits.share[to] = limit_of(32767.0f * (both > 0.0f ? spreads[to] / both : 0.5f));
+    limits.pair = limit_of(both, 0.0f, found.pairs.bound() - price, search.extra[2], search.scale, true);
+    for (int to = 0; to < 2; ++to) limits.share[to] = to_word(32767.0f * (both > 0.0f ? spreads[to] / both : 0.5f));
     return limits;
 }
 
@@ -132,17 +145,40 @@ WordVector pair_square(WordVector x, WordVector y, const CopyLimits& limits) {
                    hn::MulFixedPoint15(hn::MulFixedPoint15(py, py), hn::Set(d, limits.share[1])));
 }
 
-std::uint32_t bits_of(WordVector value, std::int16_t limit) {
-    const Words d;
+using WordMask = hn::Mask<Words>;
+
+std::uint32_t bits_of(WordMask mask) {
     std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(d, hn::Gt(value, hn::Set(d, limit)), bytes);
+    hn::StoreMaskBits(Words(), mask, bytes);
     return static_cast<std::uint32_t>(bytes[0]) | static_cast<std::uint32_t>(bytes[1]) << 8 |
            static_cast<std::uint32_t>(bytes[2]) << 16 | static_cast<std::uint32_t>(bytes[3]) << 24;
 }
 
+WordMask exceeds(WordVector value, std::int16_t limit) { return hn::Gt(value, hn::Set(Words(), limit)); }
+
+// How much sizes of halves differ from those of the values.
+struct SizeGap {
+    WordVector mean, length;
+};
+SizeGap size_gap(const CopyTable& table, int i, CopySize size) {
+    const Words d;
+    return {hn::Abs(hn::SaturatedSub(hn::LoadU(d, table.means + i), hn::Set(d, size.mean))),
+            hn::Abs(hn::SaturatedSub(hn::LoadU(d, table.lengths + i), hn::Set(d, size.length)))};
+}
+
+WordMask is_close(SizeGap gap, const CopyLimit& limit) {
+    const Words d;
+    return hn::And(hn::Lt(gap.mean, hn::Set(d, limit.mean)), hn::Lt(gap.length, hn::Set(d, limit.length)));
+}
+
+// Whether a cost may be below the bound. `close` is where sizes are.
+WordMask may_gain(WordVector value, WordMask close, const CopyLimit& limit) {
+    return hn::Or(exceeds(value, limit.fitted), hn::And(exceeds(value, limit.whole), close));
+}
+
 // From the last block on, because near ones cost least: so the bounds are soon low. A block counts only if a cosine is
-// large enough. The first three parts, with the product of the lengths of the others, which is never less than the sum
-// of their products, dismiss most; all parts dismiss most of the rest.
+// large enough and, for copies of all 8 bytes, the sizes agree. The first three parts, with the product of the lengths
+// of the others, which is never less than the sum of their products, dismiss most; all parts dismiss most of the rest.
 void find_copies_target(const CopySearch& search, FoundCopies& found) {
     const Words d;
     const int lanes = static_cast<int>(hn::Lanes(d));
@@ -150,6 +186,10 @@ void find_copies_target(const CopySearch& search, FoundCopies& found) {
     for (int to = 0; to < 2; ++to) {
         for (int k = 0; k < 16; ++k) hn::Store(hn::Set(d, search.values[to]->direction.parts[k]), d, wide[to][k]);
     }
+    const CopyTable& of_x = *search.tables[0];
+    const CopyTable& of_y = *search.tables[1];
+    const CopySize size_x = search.values[0]->size;
+    const CopySize size_y = search.values[1]->size;
     CopyLimits limits{};
     float limits_price = -1.0f;
     for (int i = (search.count - 1) / lanes * lanes; i >= 0; i -= lanes) {
@@ -161,42 +201,57 @@ void find_copies_target(const CopySearch& search, FoundCopies& found) {
         }
         WordVector xx = hn::Zero(d), xy = xx, yx = xx, yy = xx;  // of x from x, of x from y ...
         const auto add_part = [&](int k) {
-            const WordVector x = hn::LoadU(d, search.tables[0]->parts[k] + i);
-            const WordVector y = hn::LoadU(d, search.tables[1]->parts[k] + i);
+            const WordVector x = hn::LoadU(d, of_x.parts[k] + i);
+            const WordVector y = hn::LoadU(d, of_y.parts[k] + i);
             xx = hn::Add(xx, times(x, wide[0][k]));
             yy = hn::Add(yy, times(y, wide[1][k]));
             xy = hn::Add(xy, times(y, wide[0][k]));
             yx = hn::Add(yx, times(x, wide[1][k]));
         };
         for (int k = 0; k < 3; ++k) add_part(k);
-        const WordVector rest_x = hn::LoadU(d, search.tables[0]->parts[3] + i);
-        const WordVector rest_y = hn::LoadU(d, search.tables[1]->parts[3] + i);
+        const WordVector rest_x = hn::LoadU(d, of_x.parts[3] + i);
+        const WordVector rest_y = hn::LoadU(d, of_y.parts[3] + i);
         const WordVector most_xx = hn::Add(xx, times(rest_x, wide[0][3]));
         const WordVector most_yy = hn::Add(yy, times(rest_y, wide[1][3]));
         const WordVector most_xy = hn::Add(xy, times(rest_y, wide[0][3]));
         const WordVector most_yx = hn::Add(yx, times(rest_x, wide[1][3]));
-        auto any =
-            hn::Or(hn::Gt(most_xx, hn::Set(d, limits.single[0][0])), hn::Gt(most_yy, hn::Set(d, limits.single[1][1])));
-        any = hn::Or(any, hn::Gt(pair_square(most_xx, most_yy, limits), hn::Set(d, limits.pair)));
+        const WordVector most_pair = pair_square(most_xx, most_yy, limits);
+        auto any = hn::Or(exceeds(most_xx, limits.single[0][0].whole), exceeds(most_yy, limits.single[1][1].whole));
+        any = hn::Or(any, exceeds(most_pair, limits.pair.whole));
         if (search.is_across) {
-            any = hn::Or(any, hn::Or(hn::Gt(most_xy, hn::Set(d, limits.single[0][1])),
-                                     hn::Gt(most_yx, hn::Set(d, limits.single[1][0]))));
+            any = hn::Or(
+                any, hn::Or(exceeds(most_xy, limits.single[0][1].whole), exceeds(most_yx, limits.single[1][0].whole)));
+        }
+        if (hn::AllFalse(d, any)) continue;
+        const SizeGap gap_xx = size_gap(of_x, i, size_x);
+        const SizeGap gap_yy = size_gap(of_y, i, size_y);
+        const WordMask close_xx = is_close(gap_xx, limits.single[0][0]);
+        const WordMask close_yy = is_close(gap_yy, limits.single[1][1]);
+        const WordMask close_xy = is_close(size_gap(of_y, i, size_x), limits.single[0][1]);
+        const WordMask close_yx = is_close(size_gap(of_x, i, size_y), limits.single[1][0]);
+        const WordMask close_pair = hn::And(is_close(gap_xx, limits.pair), is_close(gap_yy, limits.pair));
+        any =
+            hn::Or(may_gain(most_xx, close_xx, limits.single[0][0]), may_gain(most_yy, close_yy, limits.single[1][1]));
+        any = hn::Or(any, may_gain(most_pair, close_pair, limits.pair));
+        if (search.is_across) {
+            any = hn::Or(any, hn::Or(may_gain(most_xy, close_xy, limits.single[0][1]),
+                                     may_gain(most_yx, close_yx, limits.single[1][0])));
         }
         if (hn::AllFalse(d, any)) continue;
         for (int k = 4; k < 16; ++k) add_part(k);
         const std::uint32_t inside = end - i == 32 ? ~0u : (1u << (end - i)) - 1u;
         const std::uint32_t across = search.is_across ? inside : 0u;
-        const std::uint32_t of_xx = inside & bits_of(xx, limits.single[0][0]);
-        const std::uint32_t of_yy = inside & bits_of(yy, limits.single[1][1]);
-        const std::uint32_t of_xy = across & bits_of(xy, limits.single[0][1]);
-        const std::uint32_t of_yx = across & bits_of(yx, limits.single[1][0]);
-        const std::uint32_t pairs = inside & bits_of(pair_square(xx, yy, limits), limits.pair);
-        std::uint32_t all = of_xx | of_yy | of_xy | of_yx | pairs;
+        const std::uint32_t is_xx = inside & bits_of(may_gain(xx, close_xx, limits.single[0][0]));
+        const std::uint32_t is_yy = inside & bits_of(may_gain(yy, close_yy, limits.single[1][1]));
+        const std::uint32_t is_xy = across & bits_of(may_gain(xy, close_xy, limits.single[0][1]));
+        const std::uint32_t is_yx = across & bits_of(may_gain(yx, close_yx, limits.single[1][0]));
+        const std::uint32_t pairs = inside & bits_of(may_gain(pair_square(xx, yy, limits), close_pair, limits.pair));
+        std::uint32_t all = is_xx | is_yy | is_xy | is_yx | pairs;
         if (all == 0) continue;
         while (all != 0) {
             const int lane = std::bit_width(all) - 1;
             const auto has = [&](std::uint32_t bits) { return (bits >> lane & 1u) != 0; };
-            add_block_at(search, i + lane, {{{has(of_xx), has(of_xy)}, {has(of_yx), has(of_yy)}}, has(pairs)}, found);
+            add_block_at(search, i + lane, {{{has(is_xx), has(is_xy)}, {has(is_yx), has(is_yy)}}, has(pairs)}, found);
             all &= ~(1u << lane);
         }
         limits_price = -1.0f;
@@ -306,13 +361,21 @@ CopyDirection copy_direction(const float values[16]) {
     return direction;
 }
 
+CopySize copy_size(float mean, float length) {
+    const auto word = [](float value) {
+        return static_cast<std::int16_t>(std::floor(std::min(std::max(value, -32767.0f), 32767.0f) + 0.5f));
+    };
+    return {word(kMeanUnit * mean), word(kLengthUnit * length)};
+}
+
 CopyValues copy_values(const float values[16]) {
-    CopyValues found{{}, 0.0f, 0.0f, copy_direction(values)};
+    CopyValues found{{}, 0.0f, 0.0f, copy_direction(values), {}};
     for (int k = 0; k < 16; ++k) {
         found.values[k] = values[k];
         found.sum += values[k];
         found.squares += values[k] * values[k];
     }
+    found.size = copy_size(found.sum * (1.0f / 16.0f), std::sqrt(spread_of(found)));
     return found;
 }
 

@@ -30,10 +30,21 @@ struct CopyDirection {
 };
 [[nodiscard]] CopyDirection copy_direction(const float values[16]);
 
-// Halves that may be copied: their directions, an array for each part, and their shapes. The arrays of directions can
-// be read a whole vector (64 bytes) past their last value.
+// The mean of 16 numbers, and the root of the sum of the squares of their distances from it, in units of 1/kMeanUnit
+// and 1/kLengthUnit, rounded and limited to what 16 bits hold.
+inline constexpr float kMeanUnit = 32000.0f;
+inline constexpr float kLengthUnit = 8000.0f;
+struct CopySize {
+    std::int16_t mean, length;
+};
+[[nodiscard]] CopySize copy_size(float mean, float length);
+
+// Halves that may be copied: directions and sizes of what they decode to, an array for each part, and their shapes. The
+// arrays can be read a whole vector (64 bytes) past their last value.
 struct CopyTable {
     const std::int16_t* parts[16];
+    const std::int16_t* means;
+    const std::int16_t* lengths;
     const CopyHalf* halves;
 };
 
@@ -42,6 +53,7 @@ struct CopyValues {
     float values[16];
     float sum, squares;  // of the values, and of their squares
     CopyDirection direction;
+    CopySize size;
 };
 [[nodiscard]] CopyValues copy_values(const float values[16]);
 

@@ -24,7 +24,7 @@ public:
 
 private:
     const HalfKind kind_;
-    std::vector<std::int16_t> parts_[16];
+    std::vector<std::int16_t> parts_[16], means_, lengths_;
     std::vector<CopyHalf> halves_;
 };
 
