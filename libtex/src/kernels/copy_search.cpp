@@ -76,6 +76,11 @@ CopyLimits limits_of(const CopySearch& search, const FoundCopies& found, float p
     return limits;
 }
 
+float sum_of_bounds(const FoundCopies& found) {
+    return found.of[0][0].bound() + found.of[0][1].bound() + found.of[1][0].bound() + found.of[1][1].bound() +
+           found.pairs.bound();
+}
+
 // Adds a copy with each of its errors.
 void add_errors(const std::array<float, 3>& errors, float rest, float scale, float price, const float extra[3], int at,
                 CheapCopies& cheapest) {
@@ -191,7 +196,7 @@ void find_copies_target(const CopySearch& search, FoundCopies& found) {
     const CopySize size_x = search.values[0]->size;
     const CopySize size_y = search.values[1]->size;
     CopyLimits limits{};
-    float limits_price = -1.0f;
+    float limits_price = -1.0f, bounds = sum_of_bounds(found);
     for (int i = (search.count - 1) / lanes * lanes; i >= 0; i -= lanes) {
         const int end = std::min(i + lanes, search.count);
         const float price = search.prices[end - 1];
@@ -254,7 +259,10 @@ void find_copies_target(const CopySearch& search, FoundCopies& found) {
             add_block_at(search, i + lane, {{{has(is_xx), has(is_xy)}, {has(is_yx), has(is_yy)}}, has(pairs)}, found);
             all &= ~(1u << lane);
         }
-        limits_price = -1.0f;
+        // Bounds only fall.
+        const float new_bounds = sum_of_bounds(found);
+        if (new_bounds != bounds) limits_price = -1.0f;
+        bounds = new_bounds;
     }
 }
 

@@ -105,6 +105,7 @@ RdoAngles rdo_angles(const RdoBand& band, std::size_t index, const std::byte* by
 
 RdoBand read_band(const std::function<BlockRow(int row)>& rows, int count, const PackOptions& options,
                   const std::byte* blocks) {
+    constexpr int kReach = 2;  // farther steps gain little
     RdoBand band{options.encoding, options.rdo.window, {}, {}, {}, {}, 0.0, 0.0, 0.0, {}};
     for (int r = 0; r < count; ++r) {
         const BlockRow row = rows(r);
@@ -114,7 +115,7 @@ RdoBand read_band(const std::function<BlockRow(int row)>& rows, int count, const
         band.plain.insert(band.plain.end(), blocks + r * pitch, blocks + (r + 1) * pitch);
         band.improved.insert(band.improved.end(), blocks + r * pitch, blocks + (r + 1) * pitch);
         const bool is_eac = keeps_slope(half_kind(band.encoding, 0));
-        if (!is_eac) improve_angles(row, options.encoding, band.improved.data() + r * pitch);
+        if (!is_eac) improve_angles(row, options.encoding, kReach, band.improved.data() + r * pitch);
     }
     band.plain_chords.resize(16 * band.blocks.size());
     for (std::size_t index = 0; index < band.blocks.size(); ++index) {

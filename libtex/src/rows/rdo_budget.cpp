@@ -11,7 +11,13 @@
 namespace tex {
 namespace {
 
-constexpr double kTarget = 0.99;  // of the growth that is allowed
+constexpr double kTarget = 0.99;                          // of the growth that is allowed
+constexpr double kLeastFactor = 0.25, kMostFactor = 4.0;  // by which a pass changes lambda
+// A pass is repeated if lambda changes by more than this between any two runs, or is off the plan by more than this
+// after the first part of the runs.
+constexpr double kMostWandering = 1.25;
+constexpr double kMostOff = 1.1;
+constexpr std::size_t kFirstPart = 5;
 
 double power_of(double base, double exponent) { return base <= 0.0 ? 0.0 : math::pow(base, exponent); }
 
@@ -27,7 +33,7 @@ bool RdoLambdaSearch::add(double growth) {
     const double off = std::abs(ratio - 1.0);
     const bool is_closest = off < closest_;
     closest_ = std::min(closest_, off);
-    is_done_ = off < kClose;
+    is_done_ = off < kClose || (ratio < 1.0 && lambda_ >= most_lambda_);
     if (last_.growth > 0.0 && growth > 0.0 && last_.growth != growth) {
         const double measured = math::log(growth / last_.growth) / math::log(lambda_ / last_.lambda);
         power_ = std::clamp(measured, 1.0, 5.0);
@@ -41,6 +47,7 @@ bool RdoLambdaSearch::add(double growth) {
         const double part = (most_ - low_.growth) / (high_.growth - low_.growth);
         lambda_ = low_.lambda + std::clamp(part, 0.1, 0.9) * (high_.lambda - low_.lambda);
     }
+    lambda_ = std::min(lambda_, most_lambda_);
     return is_closest;
 }
 
@@ -66,30 +73,36 @@ float RdoBudget::next(double growth) {
     const double more = (std::max(0.0, growth) + trust_) / (done_ + trust_);
     const double rest = std::max(rest_, plan_.runs[factors_.size()]);
     const double factor = power_of((kTarget * most_ - growth) / (more * rest), 1.0 / plan_.power);
-    factors_.push_back(std::clamp(factor, 0.25, 4.0));
+    const double most = std::min(kMostFactor, static_cast<double>(plan_.most_lambda / plan_.lambda));
+    factors_.push_back(std::max(kLeastFactor, std::min(factor, most)));
     return plan_.lambda * static_cast<float>(factors_.back());
 }
 
 bool RdoBudget::has_wandered() const {
-    constexpr double kUsual = 1.2;
     // The last runs have little left to correct with, and weigh little.
-    const auto end = factors_.end() - static_cast<std::ptrdiff_t>(factors_.size() / 8);
-    const auto [least, greatest] = std::minmax_element(factors_.begin(), end);
-    return *greatest > kUsual * *least;
+    const std::size_t all = plan_.runs.size();
+    const std::size_t last = std::min(factors_.size(), all - all / 8);
+    const auto [least, greatest] =
+        std::minmax_element(factors_.begin(), factors_.begin() + static_cast<std::ptrdiff_t>(last));
+    if (factors_.size() == all) return *greatest > kMostWandering * *least;
+    const double off = std::max(factors_.back(), 1.0 / factors_.back());
+    return factors_.size() == all / kFirstPart + 1 && off > kMostOff;
 }
 
-RdoGrowth RdoBudget::seen(double growth) {
+RdoGrowth RdoBudget::better_plan(double growth) {
     end_run(growth);
-    RdoGrowth better{0.0f, plan_.power, growths_};
+    const double more = (std::max(0.0, growth) + trust_) / (done_ + trust_);
+    RdoGrowth better{0.0f, plan_.most_lambda, plan_.power, plan_.runs};
     double sum = 0.0;
-    for (std::size_t run = 0; run < growths_.size(); ++run) {
+    for (std::size_t run = 0; run < better.runs.size(); ++run) {
         double& at = better.runs[run];
-        at = std::max(0.0, at) / power_of(factors_[run], plan_.power);
+        at = run < growths_.size() ? std::max(0.0, growths_[run]) / power_of(factors_[run], plan_.power) : more * at;
         sum += at;
     }
     // At this factor of lambda, the sum is what is allowed.
-    const double factor = power_of(kTarget * most_ / std::max(sum, 1e-6 * most_), 1.0 / plan_.power);
-    better.lambda = plan_.lambda * static_cast<float>(std::clamp(factor, 0.25, 4.0));
+    const double factor = std::clamp(power_of(kTarget * most_ / std::max(sum, 1e-6 * most_), 1.0 / plan_.power),
+                                     kLeastFactor, kMostFactor);
+    better.lambda = std::min(plan_.most_lambda, plan_.lambda * static_cast<float>(factor));
     for (double& at : better.runs) at *= power_of(factor, plan_.power);
     return better;
 }

@@ -3,9 +3,9 @@
 //
 // The growth rises steeply with lambda, about as a power of it. So passes over a sample of the blocks search for a
 // lambda first. Then a pass over all blocks follows the plan that the closest sample gives, and corrects lambda where
-// the sum grows more or less than planned. If lambda had to change much on the way, a second pass follows a plan made
-// from the first one. Growth is counted from the improved literals, which are what a lambda of 0 writes, so that a
-// block that would exceed the limit can always stay as it is.
+// the sum grows more or less than planned. If lambda has to change much on the way, another pass begins, with a plan
+// made from the one before. Growth is counted from the improved literals, which are what a lambda of 0 writes, so that
+// a block that would exceed the limit can always stay as it is.
 
 #pragma once
 
@@ -23,7 +23,8 @@ inline constexpr int kRdoRun = 128;
 // How the sum of angles grows at a lambda, run by run.
 struct RdoGrowth {
     float lambda;
-    double power;  // of lambda
+    float most_lambda;  // beyond it, the angles grow, and hardly a bit is saved
+    double power;       // of lambda
     std::vector<double> runs;
 };
 
@@ -31,9 +32,10 @@ struct RdoGrowth {
 class RdoLambdaSearch {
 public:
     // `most` is the growth that is allowed for the sample; `first` is where the search begins.
-    RdoLambdaSearch(double most, double first) : most_(most), lambda_(first) {}
+    RdoLambdaSearch(double most, double first) : most_(most), most_lambda_(6.0 * first), lambda_(first) {}
 
     [[nodiscard]] float lambda() const { return static_cast<float>(lambda_); }
+    [[nodiscard]] float most_lambda() const { return static_cast<float>(most_lambda_); }
     // Says how a sample with lambda() has grown. Returns whether it is the closest one so far.
     bool add(double growth);
     [[nodiscard]] bool is_done() const { return is_done_; }
@@ -44,7 +46,7 @@ private:
     struct Tried {
         double lambda, growth;
     };
-    const double most_;
+    const double most_, most_lambda_;
     double lambda_;
     Tried low_{0.0, 0.0};   // kept the limit
     Tried high_{0.0, 0.0};  // did not
@@ -62,9 +64,11 @@ public:
     // The lambda of the next run, after all runs before have grown by `growth` in all.
     float next(double growth);
     [[nodiscard]] bool allows(double growth) const { return growth <= most_; }
-    // After the last run: whether lambda had to change much, and the growths that a better plan expects.
+    // Whether lambda had to change so much that a better plan is worth another pass. Says so early if it can: after the
+    // first runs, or after the last one.
     [[nodiscard]] bool has_wandered() const;
-    [[nodiscard]] RdoGrowth seen(double growth);
+    // That plan, after the runs so far have grown by `growth`.
+    [[nodiscard]] RdoGrowth better_plan(double growth);
 
 private:
     void end_run(double growth);

@@ -29,7 +29,7 @@ struct Choice {
 class Pass {
 public:
     Pass(const RdoBand& band, const ByteCounts& literals);
-    RdoResult run(RdoBudget& budget);
+    RdoResult run(RdoBudget& budget, bool may_stop);
     RdoSample sample(float lambda, int stride);
 
 private:
@@ -230,9 +230,12 @@ void Pass::write(int half, const Choice& choice) {
     sources_.add(half, candidate.half);
 }
 
-RdoResult Pass::run(RdoBudget& budget) {
+RdoResult Pass::run(RdoBudget& budget, bool may_stop) {
     for (int block = 0; block < static_cast<int>(band_.blocks.size()); ++block) {
-        if (block % kRdoRun == 0) set_lambda(budget.next(result_.growth));
+        if (block % kRdoRun == 0) {
+            set_lambda(budget.next(result_.growth));
+            if (may_stop && budget.has_wandered()) break;
+        }
         choose_block(block, &budget);
     }
     return std::move(result_);
@@ -255,8 +258,8 @@ RdoSample Pass::sample(float lambda, int stride) {
 
 }  // namespace
 
-RdoResult rdo_pass(const RdoBand& band, RdoBudget& budget, const ByteCounts& literals) {
-    return Pass(band, literals).run(budget);
+RdoResult rdo_pass(const RdoBand& band, RdoBudget& budget, bool may_stop, const ByteCounts& literals) {
+    return Pass(band, literals).run(budget, may_stop);
 }
 
 RdoSample rdo_sample(const RdoBand& band, float lambda, int stride, const ByteCounts& literals) {

@@ -34,8 +34,8 @@ struct RdoResult {
 };
 
 // Optimises all blocks. Those for which the budget has nothing left become improved literals. `literals` are those of
-// the pass before. Throws std::bad_alloc.
-RdoResult rdo_pass(const RdoBand& band, RdoBudget& budget, const ByteCounts& literals);
+// the pass before. If `may_stop` is set, it returns as soon as the budget has wandered. Throws std::bad_alloc.
+RdoResult rdo_pass(const RdoBand& band, RdoBudget& budget, bool may_stop, const ByteCounts& literals);
 
 // Optimises one of `stride` runs of blocks, at one lambda, in degrees for each bit; the others become improved
 // literals.

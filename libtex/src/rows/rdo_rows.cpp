@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 #include <vector>
 
@@ -51,14 +52,17 @@ RdoPlan plan_of(const RdoBand& band, double most) {
     RdoLambdaSearch search(part * most, 0.6 * std::sqrt(allowed * (mean + 0.1 * allowed)));
     ByteCounts plain{};
     for (const std::byte byte : band.plain) ++plain[std::to_integer<std::size_t>(byte)];
-    RdoPlan plan{{search.lambda(), search.power(), std::vector<double>(static_cast<std::size_t>(runs))}, plain};
+    RdoPlan plan{
+        {search.lambda(), search.most_lambda(), search.power(), std::vector<double>(static_cast<std::size_t>(runs))},
+        plain};
     constexpr int kMostSamples = 5;
     for (int k = 0; k < kMostSamples && !search.is_done(); ++k) {
         const float lambda = search.lambda();
         const RdoSample sample = rdo_sample(band, lambda, stride, plan.literals);
         double growth = 0.0;
         for (const double one : sample.growths) growth += one;
-        if (search.add(growth)) plan = {{lambda, 0.0, spread_runs(sample.growths, stride, runs)}, sample.literals};
+        if (search.add(growth))
+            plan = {{lambda, search.most_lambda(), 0.0, spread_runs(sample.growths, stride, runs)}, sample.literals};
     }
     plan.growth.power = search.power();
     return plan;
@@ -67,11 +71,15 @@ RdoPlan plan_of(const RdoBand& band, double most) {
 // Spends `most` degrees.
 RdoResult optimised(const RdoBand& band, double most) {
     const RdoPlan plan = plan_of(band, most);
-    RdoBudget budget(plan.growth, most);
-    RdoResult result = rdo_pass(band, budget, plan.literals);
-    if (!budget.has_wandered()) return result;
-    RdoBudget better(budget.seen(result.growth), most);
-    return rdo_pass(band, better, result.literals);
+    RdoGrowth growth = plan.growth;
+    constexpr int kMostPasses = 3;
+    for (int pass = 1;; ++pass) {
+        RdoBudget budget(growth, most);
+        RdoResult result = rdo_pass(band, budget, pass < kMostPasses, plan.literals);
+        fprintf(stderr, "pass %d lambda %g wandered %d\n", pass, growth.lambda, budget.has_wandered());
+        if (pass == kMostPasses || !budget.has_wandered()) return result;
+        growth = budget.better_plan(result.growth);
+    }
 }
 
 }  // namespace
