@@ -17,7 +17,10 @@ constexpr double kLeastFactor = 0.25, kMostFactor = 4.0;  // by which a pass cha
 // after the first part of the runs.
 constexpr double kMostWandering = 1.25;
 constexpr double kMostOff = 1.1;
+constexpr double kSurePower = 1.5;  // of single runs, whose powers differ
+constexpr double kSlowly = 0.2;     // of the whole growth
 constexpr std::size_t kFirstPart = 5;
+constexpr std::size_t kManyRuns = 64;  // the first part of fewer is not like the others
 
 double power_of(double base, double exponent) { return base <= 0.0 ? 0.0 : math::pow(base, exponent); }
 
@@ -36,7 +39,7 @@ bool RdoLambdaSearch::add(double growth) {
     is_done_ = off < kClose || (ratio < 1.0 && lambda_ >= most_lambda_);
     if (last_.growth > 0.0 && growth > 0.0 && last_.growth != growth) {
         const double measured = math::log(growth / last_.growth) / math::log(lambda_ / last_.lambda);
-        power_ = std::clamp(measured, 1.0, 5.0);
+        power_ = std::clamp(measured, 1.0, 4.0);
     }
     last_ = {lambda_, growth};
     (ratio <= 1.0 ? low_ : high_) = last_;
@@ -72,7 +75,10 @@ float RdoBudget::next(double growth) {
     before_ = growth;
     const double more = (std::max(0.0, growth) + trust_) / (done_ + trust_);
     const double rest = std::max(rest_, plan_.runs[factors_.size()]);
-    const double factor = power_of((kTarget * most_ - growth) / (more * rest), 1.0 / plan_.power);
+    const double off = (kTarget * most_ - growth) / more - rest;
+    // What is left is spent slowly: the last few runs cannot make up for all others.
+    const double ratio = 1.0 + off / (off > 0.0 ? std::max(rest, kSlowly * (done_ + rest)) : rest);
+    const double factor = power_of(ratio, 1.0 / plan_.power);
     const double most = std::min(kMostFactor, static_cast<double>(plan_.most_lambda / plan_.lambda));
     factors_.push_back(std::max(kLeastFactor, std::min(factor, most)));
     return plan_.lambda * static_cast<float>(factors_.back());
@@ -81,12 +87,12 @@ float RdoBudget::next(double growth) {
 bool RdoBudget::has_wandered() const {
     // The last runs have little left to correct with, and weigh little.
     const std::size_t all = plan_.runs.size();
-    const std::size_t last = std::min(factors_.size(), all - all / 8);
+    const std::size_t last = std::min(factors_.size(), all - all / 6);
     const auto [least, greatest] =
         std::minmax_element(factors_.begin(), factors_.begin() + static_cast<std::ptrdiff_t>(last));
     if (factors_.size() == all) return *greatest > kMostWandering * *least;
     const double off = std::max(factors_.back(), 1.0 / factors_.back());
-    return factors_.size() == all / kFirstPart + 1 && off > kMostOff;
+    return all >= kManyRuns && factors_.size() == all / kFirstPart + 1 && off > kMostOff;
 }
 
 RdoGrowth RdoBudget::better_plan(double growth) {
@@ -96,7 +102,11 @@ RdoGrowth RdoBudget::better_plan(double growth) {
     double sum = 0.0;
     for (std::size_t run = 0; run < better.runs.size(); ++run) {
         double& at = better.runs[run];
-        at = run < growths_.size() ? std::max(0.0, growths_[run]) / power_of(factors_[run], plan_.power) : more * at;
+        if (run < growths_.size()) {
+            at = std::max(0.0, growths_[run]) / power_of(factors_[run], std::min(kSurePower, plan_.power));
+        } else {
+            at *= more;
+        }
         sum += at;
     }
     // At this factor of lambda, the sum is what is allowed.

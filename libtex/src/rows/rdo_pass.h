@@ -31,6 +31,7 @@ struct RdoResult {
     ByteCounts literals{};
     double growth = 0.0;       // of the sum of angles, in degrees, from that of the improved literals
     double most_raised = 0.0;  // see RdoAngles
+    bool is_whole = false;     // unless the pass stopped early
 };
 
 // Optimises all blocks. Those for which the budget has nothing left become improved literals. `literals` are those of

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 #include <vector>
 
@@ -68,18 +67,31 @@ RdoPlan plan_of(const RdoBand& band, double most) {
     return plan;
 }
 
+// A result and its size.
+struct Optimised {
+    RdoResult result;
+    std::size_t size;
+};
+
 // Spends `most` degrees.
-RdoResult optimised(const RdoBand& band, double most) {
-    const RdoPlan plan = plan_of(band, most);
-    RdoGrowth growth = plan.growth;
+Optimised optimise(const RdoBand& band, double most) {
+    RdoPlan plan = plan_of(band, most);
+    Optimised best{{}, zstd_size(band.plain)};
     constexpr int kMostPasses = 3;
-    for (int pass = 1;; ++pass) {
-        RdoBudget budget(growth, most);
-        RdoResult result = rdo_pass(band, budget, pass < kMostPasses, plan.literals);
-        fprintf(stderr, "pass %d lambda %g wandered %d\n", pass, growth.lambda, budget.has_wandered());
-        if (pass == kMostPasses || !budget.has_wandered()) return result;
-        growth = budget.better_plan(result.growth);
+    for (int pass = 1; pass <= kMostPasses; ++pass) {
+        RdoBudget budget(plan.growth, most);
+        RdoResult result = rdo_pass(band, budget, pass == 1, plan.literals);
+        const bool has_wandered = budget.has_wandered();
+        plan = {budget.better_plan(result.growth), result.literals};
+        if (result.is_whole) {
+            // The rate is an estimate: where copies are dear, what it saves may be less than nothing.
+            const std::size_t size = zstd_size(result.blocks);
+            if (size >= best.size) break;
+            best = {std::move(result), size};
+        }
+        if (!has_wandered) break;
     }
+    return best;
 }
 
 }  // namespace
@@ -131,19 +143,15 @@ void optimise_band(const std::function<BlockRow(int row)>& rows, int count, cons
     assert(is_optimised(options));
     const RdoBand band = read_band(rows, count, options, blocks);
     const double most = static_cast<double>(options.rdo.mean) * band.texels;
-    const RdoResult result = optimised(band, most + band.plain_sum - band.improved_sum);
-    double sum = band.improved_sum + result.growth;
-    double most_raised = result.most_raised;
-    // The rate is an estimate: where copies are dear, what it saves may be less than nothing.
-    if (zstd_size(result.blocks) < zstd_size(band.plain)) {
-        std::copy(result.blocks.begin(), result.blocks.end(), blocks);
-    } else {
-        sum = band.plain_sum;
-        most_raised = 0.0;
+    const Optimised best = optimise(band, most + band.plain_sum - band.improved_sum);
+    double sum = band.plain_sum;
+    if (best.result.is_whole) {
+        std::copy(best.result.blocks.begin(), best.result.blocks.end(), blocks);
+        sum = band.improved_sum + best.result.growth;
     }
     if (tally == nullptr) return;
     tally->add({static_cast<std::int64_t>(band.texels), std::llround(kMillionths * band.plain_sum),
-                std::llround(kMillionths * sum), (sum - band.plain_sum) / band.texels, most_raised});
+                std::llround(kMillionths * sum), (sum - band.plain_sum) / band.texels, best.result.most_raised});
 }
 
 }  // namespace tex
