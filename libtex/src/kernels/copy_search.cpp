@@ -57,7 +57,7 @@ CopyLimit limit_of(float spread, float rest, float room, const float extra[3], f
     const float whole = square(extra[2]);
     const float length = std::sqrt(std::max(0.0f, whole));
     constexpr float kSizeSlack = 3.0f;
-    return {cosine(square(extra[1])), cosine(whole), to_word(0.25f * kMeanUnit * length + kSizeSlack),
+    return {cosine(square(extra[0])), cosine(whole), to_word(0.25f * kMeanUnit * length + kSizeSlack),
             to_word(kLengthUnit * length + kSizeSlack)};
 }
 
@@ -84,7 +84,7 @@ float sum_of_bounds(const FoundCopies& found) {
 // Adds a copy with each of its errors.
 void add_errors(const std::array<float, 3>& errors, float rest, float scale, float price, const float extra[3], int at,
                 CheapCopies& cheapest) {
-    for (int q = 2; q >= 0; --q) {
+    for (int q = 2; q >= 0; q -= 2) {
         const float square = errors[static_cast<std::size_t>(q)] + rest;
         const float room = 1.0001f * (cheapest.bound() - price - extra[q]);
         if (room <= 0.0f || 0.9999f * scale * scale * square > room * room) continue;

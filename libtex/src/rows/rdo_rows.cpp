@@ -73,10 +73,21 @@ struct Optimised {
     std::size_t size;
 };
 
-// Spends `most` degrees.
+// Whether what zstd -19 makes of the result is smaller than what it makes of the plain blocks. Where a fast level saves
+// much, so does -19; otherwise it takes a try: the rate is an estimate, and where copies are dear, what it saves may be
+// less than nothing.
+bool is_gain(const RdoBand& band, const Optimised& best, std::size_t plain_size) {
+    if (!best.result.is_whole) return false;
+    if (static_cast<double>(best.size) < 0.95 * static_cast<double>(plain_size)) return true;
+    return zstd_size(best.result.blocks) < zstd_size(band.plain);
+}
+
+// Spends `most` degrees. The result is not whole if nothing is gained.
 Optimised optimise(const RdoBand& band, double most) {
     RdoPlan plan = plan_of(band, most);
-    Optimised best{{}, zstd_size(band.plain)};
+    constexpr int kFastLevel = 5;
+    const std::size_t plain_size = zstd_size(band.plain, kFastLevel);
+    Optimised best{{}, plain_size + plain_size / 50};
     constexpr int kMostPasses = 3;
     for (int pass = 1; pass <= kMostPasses; ++pass) {
         RdoBudget budget(plan.growth, most);
@@ -84,13 +95,13 @@ Optimised optimise(const RdoBand& band, double most) {
         const bool has_wandered = budget.has_wandered();
         plan = {budget.better_plan(result.growth), result.literals};
         if (result.is_whole) {
-            // The rate is an estimate: where copies are dear, what it saves may be less than nothing.
-            const std::size_t size = zstd_size(result.blocks);
+            const std::size_t size = zstd_size(result.blocks, kFastLevel);
             if (size >= best.size) break;
             best = {std::move(result), size};
         }
         if (!has_wandered) break;
     }
+    if (!is_gain(band, best, plain_size)) best.result.is_whole = false;
     return best;
 }
 
@@ -145,13 +156,15 @@ void optimise_band(const std::function<BlockRow(int row)>& rows, int count, cons
     const double most = static_cast<double>(options.rdo.mean) * band.texels;
     const Optimised best = optimise(band, most + band.plain_sum - band.improved_sum);
     double sum = band.plain_sum;
+    double most_raised = 0.0;
     if (best.result.is_whole) {
         std::copy(best.result.blocks.begin(), best.result.blocks.end(), blocks);
         sum = band.improved_sum + best.result.growth;
+        most_raised = best.result.most_raised;
     }
     if (tally == nullptr) return;
     tally->add({static_cast<std::int64_t>(band.texels), std::llround(kMillionths * band.plain_sum),
-                std::llround(kMillionths * sum), (sum - band.plain_sum) / band.texels, best.result.most_raised});
+                std::llround(kMillionths * sum), (sum - band.plain_sum) / band.texels, most_raised});
 }
 
 }  // namespace tex
