@@ -42,7 +42,8 @@ std::int16_t to_word(float value) {
 }
 
 // `extra` is that of the three types of copy, `room` what the bound leaves for the angles and them.
-CopyLimit limit_of(float spread, float rest, float room, const float extra[3], float scale, bool is_pair) {
+CopyLimit limit_of(const CopySearch& search, float spread, float rest, float room, const float extra[3], bool is_pair) {
+    const float scale = search.scale;
     // The square of the error that is left. Rounding must not dismiss what is below the bound, so this leaves room.
     const auto square = [&](float more) {
         const float length = 1.0001f * (room - more) / scale;
@@ -57,8 +58,8 @@ CopyLimit limit_of(float spread, float rest, float room, const float extra[3], f
     const float whole = square(extra[2]);
     const float length = std::sqrt(std::max(0.0f, whole));
     constexpr float kSizeSlack = 3.0f;
-    return {cosine(square(extra[0])), cosine(whole), to_word(0.25f * kMeanUnit * length + kSizeSlack),
-            to_word(kLengthUnit * length + kSizeSlack)};
+    return {cosine(square(extra[search.keeps_slope ? 1 : 0])), cosine(whole),
+            to_word(0.25f * kMeanUnit * length + kSizeSlack), to_word(kLengthUnit * length + kSizeSlack)};
 }
 
 CopyLimits limits_of(const CopySearch& search, const FoundCopies& found, float price) {
@@ -67,11 +68,11 @@ CopyLimits limits_of(const CopySearch& search, const FoundCopies& found, float p
     for (int to = 0; to < 2; ++to) {
         spreads[to] = spread_of(*search.values[to]);
         for (int from = 0; from < 2; ++from)
-            limits.single[to][from] = limit_of(spreads[to], search.rests[to], found.of[to][from].bound() - price,
-                                               search.extra[to], search.scale, false);
+            limits.single[to][from] = limit_of(search, spreads[to], search.rests[to],
+                                               found.of[to][from].bound() - price, search.extra[to], false);
     }
     const float both = spreads[0] + spreads[1];
-    limits.pair = limit_of(both, 0.0f, found.pairs.bound() - price, search.extra[2], search.scale, true);
+    limits.pair = limit_of(search, both, 0.0f, found.pairs.bound() - price, search.extra[2], true);
     for (int to = 0; to < 2; ++to) limits.share[to] = to_word(32767.0f * (both > 0.0f ? spreads[to] / both : 0.5f));
     return limits;
 }
@@ -81,10 +82,13 @@ float sum_of_bounds(const FoundCopies& found) {
            found.pairs.bound();
 }
 
-// Adds a copy with each of its errors.
-void add_errors(const std::array<float, 3>& errors, float rest, float scale, float price, const float extra[3], int at,
+// Adds a copy with each of its errors that count.
+void add_errors(const CopySearch& search, const std::array<float, 3>& errors, float rest, const float extra[3], int at,
                 CheapCopies& cheapest) {
-    for (int q = 2; q >= 0; q -= 2) {
+    const float scale = search.scale;
+    const float price = search.prices[at];
+    for (int q = 2; q >= 0; --q) {
+        if (q == 1 && !search.keeps_slope) continue;
         const float square = errors[static_cast<std::size_t>(q)] + rest;
         const float room = 1.0001f * (cheapest.bound() - price - extra[q]);
         if (room <= 0.0f || 0.9999f * scale * scale * square > room * room) continue;
@@ -100,7 +104,6 @@ struct CopyBits {
 
 void add_block_at(const CopySearch& search, int at, const CopyBits& bits, FoundCopies& found) {
     std::array<float, 3> errors[2]{};  // of x from x, and of y from y
-    const float price = search.prices[at];
     for (int to = 0; to < 2; ++to) {
         for (int from = 1; from >= 0; --from) {
             if (!bits.single[to][from] && !(to == from && bits.pair)) continue;
@@ -108,12 +111,12 @@ void add_block_at(const CopySearch& search, int at, const CopyBits& bits, FoundC
                 copy_errors(search.tables[from]->halves[at], *search.values[to], search.keeps_slope);
             if (to == from) errors[to] = own;
             if (bits.single[to][from])
-                add_errors(own, search.rests[to], search.scale, price, search.extra[to], at, found.of[to][from]);
+                add_errors(search, own, search.rests[to], search.extra[to], at, found.of[to][from]);
         }
     }
     if (!bits.pair) return;
     for (std::size_t q = 0; q < 3; ++q) errors[0][q] += errors[1][q];
-    add_errors(errors[0], 0.0f, search.scale, price, search.extra[2], at, found.pairs);
+    add_errors(search, errors[0], 0.0f, search.extra[2], at, found.pairs);
 }
 
 }  // namespace

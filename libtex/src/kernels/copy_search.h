@@ -103,7 +103,8 @@ private:
 // for x (to = 0) and y, which take from their own channel and, if `is_across` is set, from the other one. That of a
 // pair, where x and y copy from the same block, is
 //     scale * sqrt(errors of x[q] + errors of y[q]) + prices[k] + extra[2][q]
-// The last `extra` is the least. Of equal costs, the later half comes first, then that of y.
+// The last `extra` is the least. Errors [1] count only if keeps_slope is set: elsewhere such copies hardly gain. Of
+// equal costs, the later half comes first, then that of y.
 struct CopySearch {
     const CopyTable* tables[2];
     const CopyValues* values[2];

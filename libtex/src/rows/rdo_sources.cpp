@@ -23,7 +23,7 @@ void RdoSources::set_lambda(float lambda) {
 
 void RdoSources::find(const RdoSearcher& block) {
     // Estimates err: so what seems to cost a little more than the literals is still tried.
-    constexpr float kOverLiterals = 1.1f;
+    constexpr float kOverLiterals = 1.3f;
     const int first = std::max(0, block.number - reach_);
     const int count = block.number - first;
     const CopyTable tables[2] = {halves_[0].from(static_cast<std::size_t>(first)),
