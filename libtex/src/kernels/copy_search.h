@@ -76,16 +76,16 @@ class CheapCopies {
 public:
     static constexpr int kMost = 6;
 
-    // Takes no copies whose cost is not below `limit`.
-    explicit CheapCopies(float limit = 3e38f) : limit_(limit) {}
+    // Takes no copies whose cost is not below `limit`, and at most `most`.
+    explicit CheapCopies(float limit = 3e38f, int most = kMost) : most_(most), limit_(limit) {}
 
     void add(CheapCopy copy) {
         if (copy.cost >= bound()) return;
-        int k = count_ == kMost ? kMost - 1 : count_++;
+        int k = count_ == most_ ? most_ - 1 : count_++;
         for (; k > 0 && copies_[static_cast<std::size_t>(k - 1)].cost > copy.cost; --k)
             copies_[static_cast<std::size_t>(k)] = copies_[static_cast<std::size_t>(k - 1)];
         copies_[static_cast<std::size_t>(k)] = copy;
-        if (count_ == kMost) limit_ = std::min(limit_, copies_[kMost - 1].cost);
+        if (count_ == most_) limit_ = std::min(limit_, copies_[static_cast<std::size_t>(most_ - 1)].cost);
     }
     // Costs that are not below this one need not be added.
     [[nodiscard]] float bound() const { return limit_; }
@@ -94,6 +94,7 @@ public:
 
 private:
     std::array<CheapCopy, kMost> copies_{};
+    int most_;
     float limit_;
     int count_ = 0;
 };

@@ -164,11 +164,9 @@ void Pass::find_firsts(int block) {
     firsts_.clear();
     Choice best;
     if (choose(x, plain_[1], matches_, best) < kTooLong) firsts_.push_back(best);
-    constexpr std::size_t kPairs = 3;
-    const std::vector<RdoSource>& pairs = sources_.pairs();
-    for (std::size_t k = 0; k < std::min(kPairs, pairs.size()); ++k) {
+    for (const RdoSource& pair : sources_.pairs()) {
         const int count = candidates_[0].count();
-        candidates_[0].add_copies(written(pairs[k].at), kHalfBytes * (x - pairs[k].at), pairs[k].copied, 1);
+        candidates_[0].add_copies(written(pair.at), kHalfBytes * (x - pair.at), pair.copied, 1);
         if (candidates_[0].count() > count) firsts_.push_back(take(candidates_[0], count, matches_));
         candidates_[0].keep(count);
     }

@@ -51,7 +51,8 @@ void RdoSources::find(const RdoSearcher& block) {
         const CheapCopies none(kOverLiterals * (length + lambda_ * block.literal_bits[to]));
         for (CheapCopies& copies : found.of[to]) copies = none;
     }
-    found.pairs = CheapCopies(kOverLiterals * (length + lambda_ * (block.literal_bits[0] + block.literal_bits[1])));
+    found.pairs =
+        CheapCopies(kOverLiterals * (length + lambda_ * (block.literal_bits[0] + block.literal_bits[1])), kMostPairs);
     find_copies(search, found);
     for (int to = 0; to < 2; ++to) {
         sources_[to].clear();

@@ -33,6 +33,8 @@ struct RdoSearcher {
 
 class RdoSources {
 public:
+    static constexpr int kMostPairs = 3;
+
     // `window` is in bytes, `most` the number of blocks of the band. Throws std::bad_alloc.
     RdoSources(Encoding encoding, int window, std::size_t most);
 
