@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -173,11 +174,11 @@ void Batch::guess_parts(int partitions, float worth) {
 
 // Puts the blocks of candidates side by side; the last one fills what is left.
 void Batch::gather(const Candidate* candidates, int used) {
-    for (int l = 0; l < lanes_; ++l) {
-        const int block = candidates[std::min(l, used - 1)].block;
-        for (int c = 0; c < 2; ++c) {
-            const float* const from = values(block, c);
-            for (int k = 0; k < texels_ * lanes_; k += lanes_) gathered_[c][k + l] = from[k];
+    for (int c = 0; c < 2; ++c) {
+        const float* from[kAstcLanes];
+        for (int l = 0; l < lanes_; ++l) from[l] = values(candidates[std::min(l, used - 1)].block, c);
+        for (int k = 0; k < texels_ * lanes_; k += lanes_) {
+            for (int l = 0; l < lanes_; ++l) gathered_[c][k + l] = from[l][k];
         }
     }
 }
@@ -255,13 +256,24 @@ void Batch::keep_best_candidates() {
 // What a decoder makes of a code of 16 bits, in units of endpoints.
 float decoded(int code) { return astc_value(code) * kOne; }
 
-// The code of which it makes the value that is nearest.
+// The code of which it makes the value that is nearest. A decoder keeps 11 bits of a code, so that codes which differ
+// in the others are one value: that of `code`, the one before and the one after are what the nearest can be.
 int void_code(float value) {
     const auto code = static_cast<int>(std::clamp(value * 257.0f, 0.0f, 65535.0f));
+    // How many codes are one value.
+    const auto step_of = [](int of) {
+        return 1 << std::max(0, static_cast<int>(std::bit_width(static_cast<unsigned>(of))) - 11);
+    };
+    const auto first_like = [&](int of) { return of & ~(step_of(of) - 1); };
+    const int first = first_like(code);
     int best = code;
-    for (int other = std::max(code - 32, 0); other <= std::min(code + 32, 0xffff); ++other) {
+    const auto take_nearer = [&](int other) {
         if (std::abs(decoded(other) - value) < std::abs(decoded(best) - value)) best = other;
-    }
+    };
+    if (first > 0) take_nearer(std::max(code - 32, first_like(first - 1)));
+    const int after = first + step_of(code);
+    if (after <= 0xffff) take_nearer(after);
+    if (code < 0xffff && code + 32 >= 0xffff) take_nearer(0xffff);
     return best;
 }
 
@@ -363,22 +375,29 @@ void encode_astc(Format format, Effort effort, const float* xy, Extent extent, s
     for (std::size_t c = 0; c < 2; ++c) {
         planes[c].resize(texels);
         for (std::size_t k = 0; k < texels; ++k)
-            planes[c][k] = (std::clamp(xy[2 * k + c], -1.0f, 1.0f) + 1.0f) * (0.5f * kOne);
+            planes[c][k] = (std::min(std::max(xy[2 * k + c], -1.0f), 1.0f) + 1.0f) * (0.5f * kOne);
     }
     WorkingVector<Batch> batches;  // exactly one
     batches.reserve(1);
     batches.emplace_back(guide_of(format, effort), spending, std::min(kBatch, all));
     Batch* const batch = &batches.front();
+    const int lanes = batch->lanes();
     for (int first = 0; first < all; first += kBatch) {
         const int count = std::min(kBatch, all - first);
         for (int n = 0; n < count; ++n) {
             const int left = (first + n) % across * block.width, top = (first + n) / across * block.height;
             for (int c = 0; c < 2; ++c) {
                 float* to = batch->values(n, c);
+                const bool is_inside = left + block.width <= extent.width;
                 for (int j = top; j < top + block.height; ++j) {
                     const float* const row = planes[c].data() + place(std::min(j, extent.height - 1) * extent.width);
-                    for (int i = left; i < left + block.width; ++i, to += batch->lanes())
-                        *to = row[std::min(i, extent.width - 1)];
+                    if (is_inside) {
+                        for (int i = 0; i < block.width; ++i) to[place(i * lanes)] = row[left + i];
+                    } else {
+                        for (int i = 0; i < block.width; ++i)
+                            to[place(i * lanes)] = row[std::min(left + i, extent.width - 1)];
+                    }
+                    to += block.width * lanes;
                 }
             }
         }
