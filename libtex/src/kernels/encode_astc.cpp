@@ -74,6 +74,7 @@ int most_candidates(const Spending& spending) {
 }
 
 struct Found {
+    Found() {}  // not all of the content is set, which would take time
     float error = kNone;
     int plan = -1;
     AstcContent content;
@@ -300,7 +301,8 @@ void Batch::write(int block, std::byte* bytes) {
 }
 
 void Batch::encode(int count, std::byte* blocks) {
-    found_.assign(place(count), {});
+    found_.resize(place(count));
+    for (Found& found : found_) found.error = kNone;  // the first candidate sets all else
     range_.assign(place(count), 0.0f);
     candidates_.clear();
     guess();
@@ -372,11 +374,8 @@ void encode_astc(Format format, Effort effort, const float* xy, Extent extent, s
     const Spending spending = spending_of(effort);
     const auto texels = static_cast<std::size_t>(extent.texels());
     WorkingVector<float> planes[2];
-    for (std::size_t c = 0; c < 2; ++c) {
-        planes[c].resize(texels);
-        for (std::size_t k = 0; k < texels; ++k)
-            planes[c][k] = (std::min(std::max(xy[2 * k + c], -1.0f), 1.0f) + 1.0f) * (0.5f * kOne);
-    }
+    for (WorkingVector<float>& plane : planes) plane.resize(texels);
+    astc_planes(xy, texels, 0.5f * kOne, planes[0].data(), planes[1].data());
     WorkingVector<Batch> batches;  // exactly one
     batches.reserve(1);
     batches.emplace_back(guide_of(format, effort), spending, std::min(kBatch, all));
