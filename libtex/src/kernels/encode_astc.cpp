@@ -19,9 +19,13 @@
 namespace tex {
 namespace {
 
+// More than any error.
+constexpr float kNone = 1e30f;
+
 // What an effort spends.
 struct Spending {
-    int guesses = 1;  // plans of one partition that a block is fitted to
+    int guesses = 1;       // plans of one partition that a block is fitted to
+    float likely = kNone;  // unless their guesses are above this times the best guess
     AstcSteps steps;
     int patterns[2] = {};  // of two, of three partitions
     AstcReach reach;
@@ -30,11 +34,14 @@ struct Spending {
     AstcSteps polish;
 };
 
-Spending spending_of(Effort effort) {
+Spending spending_of(Format format, Effort effort) {
+    // Many weights make up for endpoints that are not the best to begin with.
+    const int insets = format == Format::astc_4x4_unorm ? 3 : 2;
     switch (effort) {
-        case Effort::fast: return {1, {0, 1, 1, 1, false, 0}, {}, {8, {}, 1}, 0, 0, {}};
-        case Effort::best: return {32, {3, 1, 2, 2, true, 0}, {5, 4}, {8, {12, 4}, 1}, 0, 6, {5, 2, 5, 3, true, 3}};
-        default: return {6, {3, 1, 2, 2, true, 0}, {2, 1}, {8, {3, 2}, 2}, 1.0f, 0, {}};
+        case Effort::fast: return {1, kNone, {0, 1, 1, 1, false, 0}, {}, {8, {}, 1}, 0, 0, {}};
+        case Effort::best:
+            return {32, kNone, {3, 1, 2, 2, true, 0}, {5, 4}, {8, {12, 4}, 1}, 0, 6, {5, 2, 5, 3, true, 3}};
+        default: return {6, 2.0f, {insets, 1, 2, 2, true, 0}, {2, 1}, {8, {3, 2}, 2}, 3.0f, 0, {}};
     }
 }
 
@@ -43,9 +50,6 @@ constexpr int kBatch = 2048;
 
 // A value of 1, 65536 of a decoder's codes, in units of endpoints.
 constexpr float kOne = 65536.0f / 257.0f;
-
-// More than any error.
-constexpr float kNone = 1e30f;
 
 // Floats that begin at a multiple of 64 bytes.
 class Values {
@@ -149,7 +153,9 @@ void Batch::guess() {
         guess_astc(guide_, group(first), guesses_);
         for (int l = 0; l < std::min(lanes_, count - first); ++l) {
             range_[place(first + l)] = guesses_.range[l];
-            if (guesses_.range[l] > 0.0f) add(first + l, l, kNone);
+            // A little more than nothing, for guesses of 0.
+            const float most = std::min(kNone, spending_.likely * (guesses_.error[l] + 1.0f));
+            if (guesses_.range[l] > 0.0f) add(first + l, l, most);
         }
     }
 }
@@ -336,7 +342,7 @@ const AstcGuide& guide_of(Format format, Effort effort) {
     if (const AstcGuide* const made = made_guides[at].load(std::memory_order_acquire)) return *made;
     std::call_once(once[at], [&] {
         const AstcPlans& plans = astc_plans(format_info(format).block);
-        kept[at] = std::make_unique<const AstcGuide>(make_astc_guide(plans, spending_of(effort).reach));
+        kept[at] = std::make_unique<const AstcGuide>(make_astc_guide(plans, spending_of(format, effort).reach));
         made_guides[at].store(kept[at].get(), std::memory_order_release);
     });
     return *kept[at];
@@ -358,7 +364,7 @@ int astc_rows_at_once(Format format, int width) {
 
 std::size_t astc_memory(Format format, Effort effort, int width, int rows) {
     const Extent block = format_info(format).block;
-    const Spending spending = spending_of(effort);
+    const Spending spending = spending_of(format, effort);
     const std::size_t texels = place(width) * place(rows * block.height);
     const std::size_t most = std::min(place(kBatch), place(blocks_across(width, block.width)) * place(rows));
     const std::size_t values = 2 * (most + kAstcLanes) * place(block.width * block.height) + 16;
@@ -371,7 +377,7 @@ void encode_astc(Format format, Effort effort, const float* xy, Extent extent, s
     const Extent block = format_info(format).block;
     const int across = blocks_across(extent.width, block.width);
     const int all = across * blocks_across(extent.height, block.height);
-    const Spending spending = spending_of(effort);
+    const Spending spending = spending_of(format, effort);
     const auto texels = static_cast<std::size_t>(extent.texels());
     WorkingVector<float> planes[2];
     for (WorkingVector<float>& plane : planes) plane.resize(texels);
