@@ -23,9 +23,11 @@ constexpr float kSquareSlack = 48.0f;
 
 // What a cosine must exceed for a cost below the bound (for a pair: the weighted sum of the squares of its cosines).
 struct CopyLimit {
-    std::int16_t fitted;        // if endpoints may change
-    std::int16_t whole;         // if all 8 bytes are copied: then the sizes, too, may differ by
-    std::int16_t mean, length;  // less than this
+    std::int16_t fitted;  // if endpoints may change
+    std::int16_t whole;   // if all 8 bytes are copied: then the sizes, too, may differ
+    std::int16_t size;    // by no more than this, in units of 1/kLengthUnit: 4 means and the length, as two sides of
+    std::int16_t square;  // a right angle; its square, of `size` times 2^shift, in units of 32768
+    int shift;
 };
 struct CopyLimits {
     CopyLimit single[2][2];
@@ -56,10 +58,15 @@ CopyLimit limit_of(const CopySearch& search, float spread, float rest, float roo
         return to_word(is_pair ? kSquare * least - kSquareSlack : kCosine * std::sqrt(least) - kCosineSlack);
     };
     const float whole = square(extra[2]);
-    const float length = std::sqrt(std::max(0.0f, whole));
     constexpr float kSizeSlack = 3.0f;
-    return {cosine(square(extra[search.keeps_slope ? 1 : 0])), cosine(whole),
-            to_word(0.25f * kMeanUnit * length + kSizeSlack), to_word(kLengthUnit * length + kSizeSlack)};
+    constexpr int kSquareRounding = 4;
+    const int size = to_word(kLengthUnit * std::sqrt(std::max(0.0f, whole)) + kSizeSlack);
+    CopyLimit limit{cosine(square(extra[search.keeps_slope ? 1 : 0])), cosine(whole), 16383, 32767, 0};
+    if (size >= 16384) return limit;  // any size
+    while (size << (limit.shift + 1) < 16384) ++limit.shift;
+    limit.size = static_cast<std::int16_t>(size);
+    limit.square = static_cast<std::int16_t>(((size << limit.shift) * (size << limit.shift) >> 15) + kSquareRounding);
+    return limit;
 }
 
 CopyLimits limits_of(const CopySearch& search, const FoundCopies& found, float price) {
@@ -174,9 +181,16 @@ SizeGap size_gap(const CopyTable& table, int i, CopySize size) {
             hn::Abs(hn::SaturatedSub(hn::LoadU(d, table.lengths + i), hn::Set(d, size.length)))};
 }
 
-WordMask is_close(SizeGap gap, const CopyLimit& limit) {
-    const Words d;
-    return hn::And(hn::Lt(gap.mean, hn::Set(d, limit.mean)), hn::Lt(gap.length, hn::Set(d, limit.length)));
+// Their square, as in a limit; what is far beyond its size becomes twice the size.
+WordVector gap_square(SizeGap gap, const CopyLimit& limit) {
+    const WordVector most = hn::Set(Words(), static_cast<std::int16_t>(2 * limit.size));
+    const WordVector mean = hn::ShiftLeftSame(hn::Min(gap.mean, most), limit.shift);
+    const WordVector length = hn::ShiftLeftSame(hn::Min(gap.length, most), limit.shift);
+    return hn::SaturatedAdd(hn::MulFixedPoint15(mean, mean), hn::MulFixedPoint15(length, length));
+}
+
+WordMask is_close(WordVector square, const CopyLimit& limit) {
+    return hn::Not(hn::Gt(square, hn::Set(Words(), limit.square)));
 }
 
 // Whether a cost may be below the bound. `close` is where sizes are.
@@ -233,11 +247,14 @@ void find_copies_target(const CopySearch& search, FoundCopies& found) {
         if (hn::AllFalse(d, any)) continue;
         const SizeGap gap_xx = size_gap(of_x, i, size_x);
         const SizeGap gap_yy = size_gap(of_y, i, size_y);
-        const WordMask close_xx = is_close(gap_xx, limits.single[0][0]);
-        const WordMask close_yy = is_close(gap_yy, limits.single[1][1]);
-        const WordMask close_xy = is_close(size_gap(of_y, i, size_x), limits.single[0][1]);
-        const WordMask close_yx = is_close(size_gap(of_x, i, size_y), limits.single[1][0]);
-        const WordMask close_pair = hn::And(is_close(gap_xx, limits.pair), is_close(gap_yy, limits.pair));
+        const WordMask close_xx = is_close(gap_square(gap_xx, limits.single[0][0]), limits.single[0][0]);
+        const WordMask close_yy = is_close(gap_square(gap_yy, limits.single[1][1]), limits.single[1][1]);
+        const WordMask close_xy =
+            is_close(gap_square(size_gap(of_y, i, size_x), limits.single[0][1]), limits.single[0][1]);
+        const WordMask close_yx =
+            is_close(gap_square(size_gap(of_x, i, size_y), limits.single[1][0]), limits.single[1][0]);
+        const WordMask close_pair =
+            is_close(hn::SaturatedAdd(gap_square(gap_xx, limits.pair), gap_square(gap_yy, limits.pair)), limits.pair);
         any =
             hn::Or(may_gain(most_xx, close_xx, limits.single[0][0]), may_gain(most_yy, close_yy, limits.single[1][1]));
         any = hn::Or(any, may_gain(most_pair, close_pair, limits.pair));
