@@ -114,10 +114,10 @@ struct Normals {
 };
 
 // The unit vectors of all pairs of values: that of a and b at a + 8 b.
-struct Pairs {
+struct AnglePairs {
     HWY_ALIGN float x[64], y[64], z[64];
 };
-void make_pairs(const Palette& px, const Palette& py, Pairs& pairs) {
+void make_pairs(const Palette& px, const Palette& py, AnglePairs& pairs) {
     const hn::CappedTag<float, 8> d;
     const auto one = hn::Set(d, 1.0f);
     for (int b = 0; b < py.count; ++b) {
@@ -142,7 +142,7 @@ float measure(const Normals& n, const Ends& x_ends, const Ends& y_ends, int* pai
     const Floats d;
     const Palette px = palette_of(x_ends);
     const Palette py = palette_of(y_ends);
-    Pairs all;
+    AnglePairs all;
     make_pairs(px, py, all);
     HWY_ALIGN float chords[16];
     HWY_ALIGN float best[16];
