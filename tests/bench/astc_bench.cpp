@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// astc_bench: ASTC beside the other encodings for phones and desktops: bits a texel, speed on one thread, and the angle
-// to the map. The maps are those of encode_bench, but at most 256x256 texels from their middle, because the best
-// efforts are slow. Errors are those of our decoder. (ASTC.md compares with astcenc.)
+// astc_bench [ENCODING | EFFORT] ...: ASTC beside the other encodings for phones and desktops: bits a texel, speed on
+// one thread, and the angle to the map. The maps are those of encode_bench, but at most 256x256 texels from their
+// middle, because the best efforts are slow. Errors are those of our decoder. (ASTC.md compares with astcenc.)
 
 #include <algorithm>
 #include <cstdio>
@@ -62,14 +62,27 @@ bool measure(const tex::MipChain& chain, Row& row) {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
     using enum tex::Encoding;
+    const std::vector<std::string> words(argv + 1, argv + argc);  // all encodings, all efforts, unless some are named
+    const auto is_asked = [&](const auto& names, auto value) {
+        bool any = false, one = false;
+        for (const std::string& word : words) {
+            const auto named = tex::find_by_name(names, word);
+            any = any || named;
+            one = one || (named && *named == value);
+        }
+        return one || !any;
+    };
     std::vector<Map> maps;
     add_usual_maps(maps);
     if (maps.empty()) return 3;
     std::vector<Row> rows;
     for (const tex::Encoding encoding : {dxt5nm, bc5, eac_rg11, astc_4x4, astc_5x5, astc_6x6, astc_8x8}) {
-        for (const auto& effort : tex::kEffortNames) rows.push_back({encoding, effort.value});
+        for (const auto& effort : tex::kEffortNames) {
+            if (is_asked(tex::kEncodingNames, encoding) && is_asked(tex::kEffortNames, effort.value))
+                rows.push_back({encoding, effort.value});
+        }
     }
     std::printf(
         "| encoding | effort | bits a texel | Mtexel/s | mean angle | p99.9 angle |\n|---|---|---|---|---|---|\n");

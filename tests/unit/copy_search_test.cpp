@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <random>
 #include <vector>
 
@@ -77,12 +78,16 @@ TEST(HalfBlock, VariantsKeepWhatIsCopiedAndComeCloseToTheLine) {
     }
 }
 
-// Tables of random halves that kernels may read past their end.
-struct Table {
-    std::vector<float> values[21];
-    LineTable table{};
-    Table(HalfKind kind, int count, std::mt19937& random) {
-        for (std::vector<float>& column : values) column.resize(static_cast<std::size_t>(count) + 16);
+// Random halves, as a table that kernels may read past its end.
+struct Halves {
+    std::vector<CopyHalf> halves;
+    std::vector<std::int16_t> parts[16], means, lengths;
+    CopyTable table{};
+    Halves(HalfKind kind, int count, std::mt19937& random) {
+        const std::size_t slack = 32;
+        for (std::vector<std::int16_t>& column : parts) column.resize(static_cast<std::size_t>(count) + slack);
+        means.resize(parts[0].size());
+        lengths.resize(parts[0].size());
         for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
             std::byte half[kHalfBytes];
             HalfShape shape{};
@@ -90,115 +95,139 @@ struct Table {
                 make_half(random, half);
                 shape = half_shape(kind, half);
             }
-            for (std::size_t k = 0; k < 16; ++k) {
-                values[k][i] = shape.weights[k];
-                values[16][i] += shape.weights[k];
-                values[17][i] += shape.weights[k] * shape.weights[k];
-            }
-            values[18][i] = 1.0f / (16.0f * values[17][i] - values[16][i] * values[16][i]);
-            values[19][i] = shape.line.offset;
-            values[20][i] = shape.line.slope;
+            halves.push_back(copy_half(shape));
+            const CopyDirection direction = copy_direction(shape.weights);
+            for (std::size_t k = 0; k < 16; ++k) parts[k][i] = direction.parts[k];
+            const float mean = halves[i].sum / 16.0f;
+            const float length = std::sqrt(std::max(0.0f, halves[i].squares - halves[i].sum * mean));
+            const CopySize size = copy_size(shape.line.offset + shape.line.slope * mean, shape.line.slope * length);
+            means[i] = size.mean;
+            lengths[i] = size.length;
         }
-        for (std::size_t k = 0; k < 16; ++k) table.weights[k] = values[k].data();
-        table.sum = values[16].data();
-        table.squares = values[17].data();
-        table.inverse = values[18].data();
-        table.offset = values[19].data();
-        table.slope = values[20].data();
-    }
-    // The sum of squares for a line, in double.
-    [[nodiscard]] double error(std::size_t i, const float* v, double offset, double slope) const {
-        double sum = 0.0;
-        for (std::size_t k = 0; k < 16; ++k) {
-            const double d = double{v[k]} - offset - slope * double{values[k][i]};
-            sum += d * d;
-        }
-        return sum;
+        for (std::size_t k = 0; k < 16; ++k) table.parts[k] = parts[k].data();
+        table.means = means.data();
+        table.lengths = lengths.data();
+        table.halves = halves.data();
     }
 };
 
-TEST(CopySearch, ErrorsAreThoseOfLeastSquaresOnEveryTarget) {
+// The sum of squares for a line, in double.
+double line_error(const HalfShape& shape, const float* v, double offset, double slope) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < 16; ++k) {
+        const double d = double{v[k]} - offset - slope * double{shape.weights[k]};
+        sum += d * d;
+    }
+    return sum;
+}
+
+TEST(CopySearch, ErrorsAreThoseOfLeastSquares) {
     for (const HalfKind kind : {HalfKind::bc4_unorm, HalfKind::green, HalfKind::eac_snorm}) {
-        for (const int count : {1, 2, 15, 16, 17, 33, 257}) {
-            std::mt19937 random(static_cast<unsigned>(count));
-            const Table table(kind, count, random);
-            float v[16];
-            for (float& value : v) value = from_minus_one_to_one(random);
-            std::vector<float> wanted[3];
-            on_every_target([&] {
-                std::vector<float> products(static_cast<std::size_t>(count) + 16), least(products.size()), errors[3];
-                const CopyScores scores =
-                    score_copies(table.table, count, v, keeps_slope(kind), products.data(), least.data());
-                for (int i = 0; i < count; ++i) {
-                    const std::array<float, 3> found = copy_errors(scores, i);
-                    for (std::size_t q = 0; q < 3; ++q) errors[q].push_back(found[q]);
-                }
-                for (int q = 0; q < 3; ++q) {
-                    if (wanted[q].empty()) wanted[q] = errors[q];
-                    EXPECT_EQ(errors[q], wanted[q]);
-                }
-            });
-            for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-                double w = 0.0, ww = 0.0, sv = 0.0, wv = 0.0;
-                for (std::size_t k = 0; k < 16; ++k) {
-                    const double weight = table.values[k][i];
-                    w += weight, ww += weight * weight, sv += double{v[k]}, wv += weight * double{v[k]};
-                }
-                const double free_slope = std::max(0.0, (16.0 * wv - w * sv) / (16.0 * ww - w * w));
-                const double offset = table.values[19][i];
-                const double slope = table.values[20][i];
-                const double tolerance = 2e-4 * (1.0 + slope * slope * ww);
-                EXPECT_NEAR(wanted[0][i], table.error(i, v, (sv - free_slope * w) / 16.0, free_slope), tolerance);
-                EXPECT_NEAR(wanted[2][i], table.error(i, v, offset, slope), tolerance);
-                const double own_slope = keeps_slope(kind) ? slope : std::max(0.0, (wv - offset * w) / ww);
-                const double own_offset = keeps_slope(kind) ? (sv - slope * w) / 16.0 : offset;
-                EXPECT_NEAR(wanted[1][i], table.error(i, v, own_offset, own_slope), tolerance);
+        std::mt19937 random(7);
+        const Halves table(kind, 257, random);
+        float v[16];
+        for (float& value : v) value = from_minus_one_to_one(random);
+        for (const CopyHalf& half : table.halves) {
+            const std::array<float, 3> found = copy_errors(half, copy_values(v), keeps_slope(kind));
+            double w = 0.0, ww = 0.0, sv = 0.0, wv = 0.0;
+            for (std::size_t k = 0; k < 16; ++k) {
+                const double weight = half.shape.weights[k];
+                w += weight, ww += weight * weight, sv += double{v[k]}, wv += weight * double{v[k]};
             }
+            const double free_slope = std::max(0.0, (16.0 * wv - w * sv) / (16.0 * ww - w * w));
+            const double offset = half.shape.line.offset;
+            const double slope = half.shape.line.slope;
+            const double tolerance = 2e-4 * (1.0 + slope * slope * ww);
+            EXPECT_NEAR(found[0], line_error(half.shape, v, (sv - free_slope * w) / 16.0, free_slope), tolerance);
+            EXPECT_NEAR(found[2], line_error(half.shape, v, offset, slope), tolerance);
+            const double own_slope = keeps_slope(kind) ? slope : std::max(0.0, (wv - offset * w) / ww);
+            const double own_offset = keeps_slope(kind) ? (sv - slope * w) / 16.0 : offset;
+            EXPECT_NEAR(found[1], line_error(half.shape, v, own_offset, own_slope), tolerance);
         }
     }
 }
 
-TEST(CopySearch, FindsTheCheapestOnEveryTarget) {
-    for (const int count : {0, 1, 2, 15, 16, 17, 33, 257, 1000}) {
-        std::mt19937 random(static_cast<unsigned>(count));
-        const Table table(HalfKind::bc4_unorm, count, random);
-        std::vector<float> prices(static_cast<std::size_t>(count) + 16), products[2], least[2];
-        for (float& value : prices) value = static_cast<float>(random() % 100) / 10.0f;
-        float v[2][16];
-        for (float(&of)[16] : v) {
-            for (float& value : of) value = from_minus_one_to_one(random);
+// All copies by their costs, without any bound.
+std::vector<CheapCopy> all_copies(const CopySearch& search, int to, int from, bool is_pair) {
+    std::vector<CheapCopy> all;
+    for (int at = search.count - 1; at >= 0; --at) {
+        std::array<float, 3> errors =
+            copy_errors(search.tables[from]->halves[at], *search.values[to], search.keeps_slope);
+        if (is_pair) {
+            const std::array<float, 3> more =
+                copy_errors(search.tables[1]->halves[at], *search.values[1], search.keeps_slope);
+            for (std::size_t q = 0; q < 3; ++q) errors[q] += more[q];
         }
+        for (int q = 2; q >= 0; --q) {
+            if (q == 1 && !search.keeps_slope) continue;
+            const float rest = is_pair ? 0.0f : search.rests[to];
+            const float length = search.scale * std::sqrt(errors[static_cast<std::size_t>(q)] + rest);
+            all.push_back({length + search.prices[at] + search.extra[is_pair ? 2 : to][q], at, q});
+        }
+    }
+    std::stable_sort(all.begin(), all.end(), [](auto a, auto b) { return a.cost < b.cost; });
+    return all;
+}
 
-        on_every_target([&] {
-            CopyScores scores[2];
-            for (int c = 0; c < 2; ++c) {
-                products[c].resize(prices.size());
-                least[c].resize(prices.size());
-                scores[c] = score_copies(table.table, count, v[c], false, products[c].data(), least[c].data());
-            }
-            const CopyCosts costs{&scores[0], &scores[1], 0.1f, 2.0f, prices.data(), {2.0f, 1.0f, 0.0f}};
-            std::vector<CheapCopy> all;
-            for (int at = count - 1; at >= 0; --at) {
-                const std::array<float, 3> one = copy_errors(scores[0], at);
-                const std::array<float, 3> two = copy_errors(scores[1], at);
-                for (int q = 2; q >= 0; --q) {
-                    const auto of = static_cast<std::size_t>(q);
-                    const float length = 2.0f * std::sqrt(one[of] + two[of] + 0.1f);
-                    all.push_back({length + prices[static_cast<std::size_t>(at)] + costs.extra[q], at, q});
+void expect_cheapest(const CheapCopies& found, const std::vector<CheapCopy>& all, float limit) {
+    std::size_t count = 0;
+    for (const CheapCopy& copy : found) {
+        ASSERT_LT(count, all.size());
+        EXPECT_EQ(copy.cost, all[count].cost);
+        EXPECT_EQ(copy.at, all[count].at);
+        EXPECT_EQ(copy.copied, all[count].copied);
+        ++count;
+    }
+    std::size_t wanted = 0;
+    while (wanted < std::min<std::size_t>(CheapCopies::kMost, all.size()) && all[wanted].cost < limit) ++wanted;
+    EXPECT_EQ(count, wanted);
+}
+
+// The search dismisses most halves by cosines and sizes; beside all costs, with values that are noise, smooth, or those
+// of a half of the table.
+TEST(CopySearch, FindsTheCheapestOnEveryTarget) {
+    for (const HalfKind kind : {HalfKind::bc4_unorm, HalfKind::eac_unorm}) {
+        for (const int count : {0, 1, 2, 15, 16, 17, 33, 257, 1000}) {
+            std::mt19937 random(static_cast<unsigned>(count));
+            const Halves tables[2] = {{kind, count, random}, {kind, count, random}};
+            std::vector<float> prices(static_cast<std::size_t>(count));
+            for (std::size_t k = 0; k < prices.size(); ++k) prices[k] = 0.1f * static_cast<float>((count - k) / 100);
+            for (int trial = 0; trial < 6; ++trial) {
+                float v[2][16];
+                for (int c = 0; c < 2; ++c) {
+                    for (std::size_t k = 0; k < 16; ++k) {
+                        const float noise = from_minus_one_to_one(random);
+                        const float smooth = 0.03f * static_cast<float>(k % 4 + 2 * (k / 4));
+                        v[c][k] = trial < 2 ? noise : smooth + 0.01f * noise;
+                    }
+                    if (trial < 4 || count == 0) continue;
+                    const HalfShape& shape = tables[c].halves[random() % static_cast<unsigned>(count)].shape;
+                    for (std::size_t k = 0; k < 16; ++k)
+                        v[c][k] = shape.line.offset + shape.line.slope * shape.weights[k];
                 }
+                const CopyValues values[2] = {copy_values(v[0]), copy_values(v[1])};
+                const CopySearch search{{&tables[0].table, &tables[1].table},
+                                        {&values[0], &values[1]},
+                                        true,
+                                        keeps_slope(kind),
+                                        count,
+                                        2.0f,
+                                        {0.1f, 0.02f},
+                                        prices.data(),
+                                        {{0.2f, 0.1f, 0.0f}, {0.3f, 0.1f, 0.0f}, {0.6f, 0.2f, 0.0f}}};
+                const float limit = trial % 2 == 0 ? 3e38f : 3.0f;
+                on_every_target([&] {
+                    const CheapCopies none(limit);
+                    FoundCopies found{{{none, none}, {none, none}}, none};
+                    find_copies(search, found);
+                    for (int to = 0; to < 2; ++to) {
+                        for (int from = 0; from < 2; ++from)
+                            expect_cheapest(found.of[to][from], all_copies(search, to, from, false), limit);
+                    }
+                    expect_cheapest(found.pairs, all_copies(search, 0, 0, true), limit);
+                });
             }
-            std::stable_sort(all.begin(), all.end(), [](auto a, auto b) { return a.cost < b.cost; });
-            CheapCopies cheapest;
-            add_cheapest(costs, count, cheapest);
-            std::size_t found = 0;
-            for (const CheapCopy& copy : cheapest) {
-                EXPECT_EQ(copy.cost, all[found].cost);
-                EXPECT_EQ(copy.at, all[found].at);
-                EXPECT_EQ(copy.copied, all[found].copied);
-                ++found;
-            }
-            EXPECT_EQ(found, static_cast<std::size_t>(std::min(3 * count, CheapCopies::kMost)));
-        });
+        }
     }
 }
 

@@ -230,11 +230,37 @@ void read_astc_ise(const AstcBits& bits, int at, int range, int count, std::uint
     }
 }
 
+namespace {
+
+// Puts values of few bits one behind the other, 32 bits at once.
+class BitQueue {
+public:
+    BitQueue(AstcBits& bits, int at) : bits_(bits), at_(at) {}
+    void add(int count, unsigned value) {
+        word_ |= std::uint64_t{value} << filled_;
+        filled_ += count;
+        if (filled_ < 32) return;
+        bits_.put(at_, 32, static_cast<unsigned>(word_));
+        at_ += 32;
+        word_ >>= 32;
+        filled_ -= 32;
+    }
+    void finish() { bits_.put(at_, filled_, static_cast<unsigned>(word_)); }
+
+private:
+    AstcBits& bits_;
+    std::uint64_t word_ = 0;
+    int at_, filled_ = 0;
+};
+
+}  // namespace
+
 void write_astc_ise(AstcBits& bits, int at, int range, int count, const std::uint8_t* values) {
     const AstcRange r = kAstcRangeTable[range];
+    BitQueue queue(bits, at);
     if (r.upper == 1) {
-        for (int k = 0; k < count; ++k, at += r.bits) bits.put(at, r.bits, values[k]);
-        return;
+        for (int k = 0; k < count; ++k) queue.add(r.bits, values[k]);
+        return queue.finish();
     }
     const Part* const parts = r.upper == 3 ? kTritParts : kQuintParts;
     const int group = r.upper == 3 ? 5 : 3;
@@ -246,10 +272,10 @@ void write_astc_ise(AstcBits& bits, int at, int range, int count, const std::uin
         for (int k = 0; k < n; ++k) {
             const unsigned lower = values[first + k] & ((1u << r.bits) - 1);
             const unsigned upper = shared >> parts[k].at & ((1u << parts[k].count) - 1);
-            bits.put(at, r.bits + parts[k].count, lower | upper << r.bits);
-            at += r.bits + parts[k].count;
+            queue.add(r.bits + parts[k].count, lower | upper << r.bits);
         }
     }
+    queue.finish();
 }
 
 }  // namespace tex

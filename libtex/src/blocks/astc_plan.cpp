@@ -171,8 +171,10 @@ void write_astc(const AstcPlan& plan, const AstcContent& content, std::byte* blo
 
     std::uint8_t stored[kAstcMostWeights];
     const int planes = plan.mode.planes;
-    for (int w = 0; w < planes * plan.grid->weights; ++w)
-        stored[w] = plan.weights->stored[content.weights[w % planes][w / planes]];
+    for (int p = 0; p < planes; ++p) {
+        for (int w = 0; w < plan.grid->weights; ++w)
+            stored[planes * w + p] = plan.weights->stored[content.weights[p][w]];
+    }
     AstcBits weights;
     write_astc_ise(weights, 0, plan.mode.range, planes * plan.grid->weights, stored);
     const AstcBits reversed = weights.reversed();

@@ -113,12 +113,37 @@ struct Normals {
     HWY_ALIGN float x[16], y[16], z[16], weight[16];
 };
 
+// The unit vectors of all pairs of values: that of a and b at a + 8 b.
+struct AnglePairs {
+    HWY_ALIGN float x[64], y[64], z[64];
+};
+void make_pairs(const Palette& px, const Palette& py, AnglePairs& pairs) {
+    const hn::CappedTag<float, 8> d;
+    const auto one = hn::Set(d, 1.0f);
+    for (int b = 0; b < py.count; ++b) {
+        const auto my = hn::Set(d, py.values[b]);
+        for (int a = 0; a < 8; a += static_cast<int>(hn::Lanes(d))) {
+            const auto mx = hn::LoadU(d, px.values + a);
+            const auto flat = hn::Add(hn::Mul(mx, mx), hn::Mul(my, my));
+            // Readers make vectors unit.
+            const auto is_long = hn::Gt(flat, one);
+            auto factor = one;
+            if (!hn::AllFalse(d, is_long)) factor = hn::IfThenElse(is_long, hn::Div(one, hn::Sqrt(flat)), one);
+            hn::Store(hn::Mul(factor, mx), d, pairs.x + 8 * b + a);
+            hn::Store(hn::Mul(factor, my), d, pairs.y + 8 * b + a);
+            hn::Store(hn::Sqrt(hn::Sub(one, hn::Min(one, flat))), d, pairs.z + 8 * b + a);
+        }
+    }
+}
+
 // Returns the sum over the texels. If `pairs` is not null, stores the best pair of indices for each texel there, as
 // index of x + 8 * index of y.
 float measure(const Normals& n, const Ends& x_ends, const Ends& y_ends, int* pairs) {
     const Floats d;
     const Palette px = palette_of(x_ends);
     const Palette py = palette_of(y_ends);
+    AnglePairs all;
+    make_pairs(px, py, all);
     HWY_ALIGN float chords[16];
     HWY_ALIGN float best[16];
     for (int i = 0; i < 16; i += static_cast<int>(hn::Lanes(d))) {
@@ -127,20 +152,14 @@ float measure(const Normals& n, const Ends& x_ends, const Ends& y_ends, int* pai
         const F z = hn::Load(d, n.z + i);
         F least = hn::Set(d, 1e9f);
         F pair = hn::Zero(d);
-        for (int b = 0; b < py.count; ++b) {
-            for (int a = 0; a < px.count; ++a) {
-                const float mx = px.values[a];
-                const float my = py.values[b];
-                const float flat = mx * mx + my * my;
-                const float factor = flat > 1.0f ? 1.0f / std::sqrt(flat) : 1.0f;  // readers make vectors unit
-                const F dx = hn::Sub(x, hn::Set(d, factor * mx));
-                const F dy = hn::Sub(y, hn::Set(d, factor * my));
-                const F dz = hn::Sub(z, hn::Set(d, std::sqrt(1.0f - std::min(1.0f, flat))));
-                const F chord = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
-                if (pairs != nullptr)
-                    pair = hn::IfThenElse(hn::Lt(chord, least), hn::Set(d, static_cast<float>(a + 8 * b)), pair);
-                least = hn::Min(least, chord);
-            }
+        for (int k = 0; k < 8 * py.count; ++k) {
+            if (k % 8 >= px.count) continue;
+            const F dx = hn::Sub(x, hn::Set(d, all.x[k]));
+            const F dy = hn::Sub(y, hn::Set(d, all.y[k]));
+            const F dz = hn::Sub(z, hn::Set(d, all.z[k]));
+            const F chord = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
+            if (pairs != nullptr) pair = hn::IfThenElse(hn::Lt(chord, least), hn::Set(d, static_cast<float>(k)), pair);
+            least = hn::Min(least, chord);
         }
         hn::Store(hn::Mul(least, hn::Load(d, n.weight + i)), d, chords + i);
         hn::Store(pair, d, best + i);
@@ -153,14 +172,14 @@ float measure(const Normals& n, const Ends& x_ends, const Ends& y_ends, int* pai
     return sum;
 }
 
-// Takes the step with the greatest gain among all that change the endpoints of one channel by up to 3 codes. Returns
-// false if no step gains.
-bool take_step(const Normals& n, Ends (&ends)[2], float& sum) {
+// Takes the step with the greatest gain among all that change the endpoints of one channel by up to `reach` codes.
+// Returns false if no step gains.
+bool take_step(const Normals& n, int reach, Ends (&ends)[2], float& sum) {
     constexpr int kMoves[8][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}};
     const Ends before[2] = {ends[0], ends[1]};
     bool gained = false;
     for (int channel = 0; channel < 2; ++channel) {
-        for (int distance = 1; distance <= 3; ++distance) {
+        for (int distance = 1; distance <= reach; ++distance) {
             for (const auto& move : kMoves) {
                 Ends moved[2] = {before[0], before[1]};
                 moved[channel].e[0] += distance * move[0];
@@ -178,7 +197,7 @@ bool take_step(const Normals& n, Ends (&ends)[2], float& sum) {
     return gained;
 }
 
-void improve_angles(const BlockRow& row, Encoding encoding, std::byte* blocks) {
+void improve_angles(const BlockRow& row, Encoding encoding, int reach, std::byte* blocks) {
     const Coding x_coding = encoding == Encoding::bc5_snorm ? Coding::bc4_snorm : Coding::bc4_unorm;
     const Coding y_coding = encoding == Encoding::dxt5nm ? Coding::green : x_coding;
     for (int block = 0; block < blocks_across(row.width); ++block) {
@@ -199,7 +218,7 @@ void improve_angles(const BlockRow& row, Encoding encoding, std::byte* blocks) {
         std::byte* bytes = blocks + 16 * static_cast<std::ptrdiff_t>(block);
         Ends ends[2] = {load_ends(x_coding, bytes), load_ends(y_coding, bytes + 8)};
         float sum = measure(n, ends[0], ends[1], nullptr);
-        while (take_step(n, ends, sum)) {
+        while (take_step(n, reach, ends, sum)) {
         }
         int pairs[16], x_indices[16], y_indices[16];
         measure(n, ends[0], ends[1], pairs);
@@ -221,8 +240,8 @@ namespace tex {
 
 HWY_EXPORT(improve_angles);
 
-void improve_angles(const BlockRow& row, Encoding encoding, std::byte* blocks) {
-    HWY_DYNAMIC_DISPATCH(improve_angles)(row, encoding, blocks);
+void improve_angles(const BlockRow& row, Encoding encoding, int reach, std::byte* blocks) {
+    HWY_DYNAMIC_DISPATCH(improve_angles)(row, encoding, reach, blocks);
 }
 
 }  // namespace tex

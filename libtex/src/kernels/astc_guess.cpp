@@ -2,6 +2,8 @@
 
 #include "kernels/astc_guess.h"
 
+#include <algorithm>
+
 #include <cstdint>
 
 #undef HWY_TARGET_INCLUDE
@@ -176,6 +178,29 @@ HWY_INLINE FloatVec LevelsLeave(const AstcShape& shape, float levels, Extent blo
     return left;
 }
 
+HWY_INLINE FloatVec AstcPlaneValue(FloatVec n, FloatVec scale) {
+    const FloatVec one = AstcNumber(1.0f), minus_one = AstcNumber(-1.0f);
+    const FloatVec low = hn::IfThenElse(hn::Lt(n, minus_one), minus_one, n);
+    return hn::Mul(hn::Add(hn::IfThenElse(hn::Lt(one, low), one, low), one), scale);
+}
+
+void AstcPlanes(const float* xy, std::size_t count, float scale, float* x, float* y) {
+    const FloatTag d;
+    const std::size_t lanes = hn::Lanes(d);
+    const FloatVec by = AstcNumber(scale);
+    std::size_t k = 0;
+    for (; k + lanes <= count; k += lanes) {
+        FloatVec u, v;
+        hn::LoadInterleaved2(d, xy + 2 * k, u, v);
+        hn::StoreU(AstcPlaneValue(u, by), d, x + k);
+        hn::StoreU(AstcPlaneValue(v, by), d, y + k);
+    }
+    for (; k < count; ++k) {
+        x[k] = (std::clamp(xy[2 * k], -1.0f, 1.0f) + 1.0f) * scale;
+        y[k] = (std::clamp(xy[2 * k + 1], -1.0f, 1.0f) + 1.0f) * scale;
+    }
+}
+
 void GuessAstc(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& guesses) {
     const FloatTag d;
     AstcShape shape;
@@ -314,6 +339,11 @@ namespace tex {
 
 HWY_EXPORT(GuessAstc);
 HWY_EXPORT(GuessAstcPatterns);
+HWY_EXPORT(AstcPlanes);
+
+void astc_planes(const float* xy, std::size_t count, float scale, float* x, float* y) {
+    HWY_DYNAMIC_DISPATCH(AstcPlanes)(xy, count, scale, x, y);
+}
 
 void guess_astc(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& guesses) {
     HWY_DYNAMIC_DISPATCH(GuessAstc)(guide, group, guesses);

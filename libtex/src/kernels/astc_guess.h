@@ -7,6 +7,8 @@
 
 #pragma once
 
+#include <cstddef>
+
 #include "kernels/astc_fit.h"
 #include "kernels/astc_guide.h"
 
@@ -22,6 +24,9 @@ struct AstcGuesses {
     alignas(64) float pattern[kAstcMostGuesses * kAstcLanes];
     alignas(64) float range[kAstcLanes];  // of both channels, the sum of the squares; guess_astc() sets it
 };
+
+// Parts `count` pairs of x and y, limits them to [-1, 1], adds 1 and multiplies by `scale`.
+void astc_planes(const float* xy, std::size_t count, float scale, float* x, float* y);
 
 // Of plans with one partition: the `count` best, from the best.
 void guess_astc(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& guesses);

@@ -163,7 +163,7 @@ void encode_blocks(const BlockRow& row, const PackOptions& options, std::byte* b
         default: assert(false && "not an encoding in blocks"); return;
     }
     if (options.effort == Effort::best && options.metric == Metric::angle)
-        improve_angles(row, options.encoding, blocks);
+        improve_angles(row, options.encoding, kAngleReach, blocks);
 }
 
 }  // namespace tex

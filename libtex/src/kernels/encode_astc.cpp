@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -18,9 +19,13 @@
 namespace tex {
 namespace {
 
+// More than any error.
+constexpr float kNone = 1e30f;
+
 // What an effort spends.
 struct Spending {
-    int guesses = 1;  // plans of one partition that a block is fitted to
+    int guesses = 1;       // plans of one partition that a block is fitted to
+    float likely = kNone;  // unless their guesses are above this times the best guess
     AstcSteps steps;
     int patterns[2] = {};  // of two, of three partitions
     AstcReach reach;
@@ -29,11 +34,14 @@ struct Spending {
     AstcSteps polish;
 };
 
-Spending spending_of(Effort effort) {
+Spending spending_of(Format format, Effort effort) {
+    // Many weights make up for endpoints that are not the best to begin with.
+    const int insets = format == Format::astc_4x4_unorm ? 3 : 2;
     switch (effort) {
-        case Effort::fast: return {1, {0, 1, 1, 1, false, 0}, {}, {8, {}, 1}, 0, 0, {}};
-        case Effort::best: return {32, {3, 1, 2, 2, true, 0}, {5, 4}, {8, {12, 4}, 1}, 0, 6, {5, 2, 5, 3, true, 3}};
-        default: return {6, {3, 1, 2, 2, true, 0}, {2, 1}, {8, {3, 2}, 2}, 1.0f, 0, {}};
+        case Effort::fast: return {1, kNone, {0, 1, 1, 1, false, 0}, {}, {8, {}, 1}, 0, 0, {}};
+        case Effort::best:
+            return {32, kNone, {3, 1, 2, 2, true, 0}, {5, 4}, {8, {12, 4}, 1}, 0, 6, {5, 2, 5, 3, true, 3}};
+        default: return {6, 2.0f, {insets, 1, 2, 2, true, 0}, {2, 1}, {8, {3, 2}, 2}, 3.0f, 0, {}};
     }
 }
 
@@ -42,9 +50,6 @@ constexpr int kBatch = 2048;
 
 // A value of 1, 65536 of a decoder's codes, in units of endpoints.
 constexpr float kOne = 65536.0f / 257.0f;
-
-// More than any error.
-constexpr float kNone = 1e30f;
 
 // Floats that begin at a multiple of 64 bytes.
 class Values {
@@ -73,6 +78,7 @@ int most_candidates(const Spending& spending) {
 }
 
 struct Found {
+    Found() {}  // not all of the content is set, which would take time
     float error = kNone;
     int plan = -1;
     AstcContent content;
@@ -147,7 +153,9 @@ void Batch::guess() {
         guess_astc(guide_, group(first), guesses_);
         for (int l = 0; l < std::min(lanes_, count - first); ++l) {
             range_[place(first + l)] = guesses_.range[l];
-            if (guesses_.range[l] > 0.0f) add(first + l, l, kNone);
+            // A little more than nothing, for guesses of 0.
+            const float most = std::min(kNone, spending_.likely * (guesses_.error[l] + 1.0f));
+            if (guesses_.range[l] > 0.0f) add(first + l, l, most);
         }
     }
 }
@@ -173,11 +181,11 @@ void Batch::guess_parts(int partitions, float worth) {
 
 // Puts the blocks of candidates side by side; the last one fills what is left.
 void Batch::gather(const Candidate* candidates, int used) {
-    for (int l = 0; l < lanes_; ++l) {
-        const int block = candidates[std::min(l, used - 1)].block;
-        for (int c = 0; c < 2; ++c) {
-            const float* const from = values(block, c);
-            for (int k = 0; k < texels_ * lanes_; k += lanes_) gathered_[c][k + l] = from[k];
+    for (int c = 0; c < 2; ++c) {
+        const float* from[kAstcLanes];
+        for (int l = 0; l < lanes_; ++l) from[l] = values(candidates[std::min(l, used - 1)].block, c);
+        for (int k = 0; k < texels_ * lanes_; k += lanes_) {
+            for (int l = 0; l < lanes_; ++l) gathered_[c][k + l] = from[l][k];
         }
     }
 }
@@ -255,13 +263,24 @@ void Batch::keep_best_candidates() {
 // What a decoder makes of a code of 16 bits, in units of endpoints.
 float decoded(int code) { return astc_value(code) * kOne; }
 
-// The code of which it makes the value that is nearest.
+// The code of which it makes the value that is nearest. A decoder keeps 11 bits of a code, so that codes which differ
+// in the others are one value: that of `code`, the one before and the one after are what the nearest can be.
 int void_code(float value) {
     const auto code = static_cast<int>(std::clamp(value * 257.0f, 0.0f, 65535.0f));
+    // How many codes are one value.
+    const auto step_of = [](int of) {
+        return 1 << std::max(0, static_cast<int>(std::bit_width(static_cast<unsigned>(of))) - 11);
+    };
+    const auto first_like = [&](int of) { return of & ~(step_of(of) - 1); };
+    const int first = first_like(code);
     int best = code;
-    for (int other = std::max(code - 32, 0); other <= std::min(code + 32, 0xffff); ++other) {
+    const auto take_nearer = [&](int other) {
         if (std::abs(decoded(other) - value) < std::abs(decoded(best) - value)) best = other;
-    }
+    };
+    if (first > 0) take_nearer(std::max(code - 32, first_like(first - 1)));
+    const int after = first + step_of(code);
+    if (after <= 0xffff) take_nearer(after);
+    if (code < 0xffff && code + 32 >= 0xffff) take_nearer(0xffff);
     return best;
 }
 
@@ -288,7 +307,8 @@ void Batch::write(int block, std::byte* bytes) {
 }
 
 void Batch::encode(int count, std::byte* blocks) {
-    found_.assign(place(count), {});
+    found_.resize(place(count));
+    for (Found& found : found_) found.error = kNone;  // the first candidate sets all else
     range_.assign(place(count), 0.0f);
     candidates_.clear();
     guess();
@@ -322,7 +342,7 @@ const AstcGuide& guide_of(Format format, Effort effort) {
     if (const AstcGuide* const made = made_guides[at].load(std::memory_order_acquire)) return *made;
     std::call_once(once[at], [&] {
         const AstcPlans& plans = astc_plans(format_info(format).block);
-        kept[at] = std::make_unique<const AstcGuide>(make_astc_guide(plans, spending_of(effort).reach));
+        kept[at] = std::make_unique<const AstcGuide>(make_astc_guide(plans, spending_of(format, effort).reach));
         made_guides[at].store(kept[at].get(), std::memory_order_release);
     });
     return *kept[at];
@@ -344,7 +364,7 @@ int astc_rows_at_once(Format format, int width) {
 
 std::size_t astc_memory(Format format, Effort effort, int width, int rows) {
     const Extent block = format_info(format).block;
-    const Spending spending = spending_of(effort);
+    const Spending spending = spending_of(format, effort);
     const std::size_t texels = place(width) * place(rows * block.height);
     const std::size_t most = std::min(place(kBatch), place(blocks_across(width, block.width)) * place(rows));
     const std::size_t values = 2 * (most + kAstcLanes) * place(block.width * block.height) + 16;
@@ -357,28 +377,32 @@ void encode_astc(Format format, Effort effort, const float* xy, Extent extent, s
     const Extent block = format_info(format).block;
     const int across = blocks_across(extent.width, block.width);
     const int all = across * blocks_across(extent.height, block.height);
-    const Spending spending = spending_of(effort);
+    const Spending spending = spending_of(format, effort);
     const auto texels = static_cast<std::size_t>(extent.texels());
     WorkingVector<float> planes[2];
-    for (std::size_t c = 0; c < 2; ++c) {
-        planes[c].resize(texels);
-        for (std::size_t k = 0; k < texels; ++k)
-            planes[c][k] = (std::clamp(xy[2 * k + c], -1.0f, 1.0f) + 1.0f) * (0.5f * kOne);
-    }
+    for (WorkingVector<float>& plane : planes) plane.resize(texels);
+    astc_planes(xy, texels, 0.5f * kOne, planes[0].data(), planes[1].data());
     WorkingVector<Batch> batches;  // exactly one
     batches.reserve(1);
     batches.emplace_back(guide_of(format, effort), spending, std::min(kBatch, all));
     Batch* const batch = &batches.front();
+    const int lanes = batch->lanes();
     for (int first = 0; first < all; first += kBatch) {
         const int count = std::min(kBatch, all - first);
         for (int n = 0; n < count; ++n) {
             const int left = (first + n) % across * block.width, top = (first + n) / across * block.height;
             for (int c = 0; c < 2; ++c) {
                 float* to = batch->values(n, c);
+                const bool is_inside = left + block.width <= extent.width;
                 for (int j = top; j < top + block.height; ++j) {
                     const float* const row = planes[c].data() + place(std::min(j, extent.height - 1) * extent.width);
-                    for (int i = left; i < left + block.width; ++i, to += batch->lanes())
-                        *to = row[std::min(i, extent.width - 1)];
+                    if (is_inside) {
+                        for (int i = 0; i < block.width; ++i) to[place(i * lanes)] = row[left + i];
+                    } else {
+                        for (int i = 0; i < block.width; ++i)
+                            to[place(i * lanes)] = row[std::min(left + i, extent.width - 1)];
+                    }
+                    to += block.width * lanes;
                 }
             }
         }

@@ -2,45 +2,38 @@
 
 #include "rows/rdo_halves.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace tex {
 
 RdoHalves::RdoHalves(HalfKind kind, std::size_t most) : kind_(kind) {
-    for (std::vector<float>& column : weights_) column.resize(most + kVectorSlack);
-    for (std::vector<float>* column : {&sum_, &squares_, &inverse_, &offset_, &slope_})
-        column->resize(most + kVectorSlack);
+    constexpr std::size_t kSlack = 32;  // kernels read whole vectors
+    for (std::vector<std::int16_t>& column : parts_) column.resize(most + kSlack);
+    means_.resize(most + kSlack);
+    lengths_.resize(most + kSlack);
+    halves_.reserve(most);
 }
 
 void RdoHalves::add(const std::byte* half) {
     const HalfShape shape = half_shape(kind_, half);
-    float sum = 0.0f;
-    float squares = 0.0f;
-    for (std::size_t k = 0; k < 16; ++k) {
-        weights_[k][count_] = shape.weights[k];
-        sum += shape.weights[k];
-        squares += shape.weights[k] * shape.weights[k];
-    }
-    const float variance = 16.0f * squares - sum * sum;
-    sum_[count_] = sum;
-    squares_[count_] = squares;
-    inverse_[count_] = variance > 1e-3f ? 1.0f / variance : 0.0f;
-    offset_[count_] = shape.line.offset;
-    slope_[count_] = shape.line.slope;
-    if (!shape.is_line) {
-        // The errors of what is not a line must not look small.
-        inverse_[count_] = -1e6f;
-        offset_[count_] = 1e6f;
-    }
-    ++count_;
+    // What is not a line has no direction, so that it is found rarely, and its errors are great.
+    const CopyDirection direction = shape.is_line ? copy_direction(shape.weights) : CopyDirection{};
+    for (std::size_t k = 0; k < 16; ++k) parts_[k][halves_.size()] = direction.parts[k];
+    const CopyHalf& added = halves_.emplace_back(copy_half(shape));
+    const float mean = added.sum * (1.0f / 16.0f);
+    const float length = std::sqrt(std::max(0.0f, added.squares - added.sum * mean));
+    const CopySize size = copy_size(shape.line.offset + shape.line.slope * mean, std::fabs(shape.line.slope) * length);
+    means_[halves_.size() - 1] = size.mean;
+    lengths_[halves_.size() - 1] = size.length;
 }
 
-LineTable RdoHalves::from(std::size_t first) const {
-    LineTable table{};
-    for (std::size_t k = 0; k < 16; ++k) table.weights[k] = weights_[k].data() + first;
-    table.sum = sum_.data() + first;
-    table.squares = squares_.data() + first;
-    table.inverse = inverse_.data() + first;
-    table.offset = offset_.data() + first;
-    table.slope = slope_.data() + first;
+CopyTable RdoHalves::from(std::size_t first) const {
+    CopyTable table{};
+    for (std::size_t k = 0; k < 16; ++k) table.parts[k] = parts_[k].data() + first;
+    table.means = means_.data() + first;
+    table.lengths = lengths_.data() + first;
+    table.halves = halves_.data() + first;
     return table;
 }
 

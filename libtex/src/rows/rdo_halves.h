@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "blocks/half_block.h"
@@ -11,23 +12,20 @@
 
 namespace tex {
 
-// What arrays that kernels read and write by whole vectors have past their end.
-inline constexpr int kVectorSlack = 16;
-
 // Grows by a half at a time.
 class RdoHalves {
 public:
     RdoHalves(HalfKind kind, std::size_t most);
     [[nodiscard]] HalfKind kind() const { return kind_; }
     void add(const std::byte* half);
+    [[nodiscard]] const CopyHalf& operator[](std::size_t index) const { return halves_[index]; }
     // The halves from number `first` on, as a table for the kernels.
-    [[nodiscard]] LineTable from(std::size_t first) const;
+    [[nodiscard]] CopyTable from(std::size_t first) const;
 
 private:
     const HalfKind kind_;
-    std::size_t count_ = 0;
-    std::vector<float> weights_[16];
-    std::vector<float> sum_, squares_, inverse_, offset_, slope_;
+    std::vector<std::int16_t> parts_[16], means_, lengths_;
+    std::vector<CopyHalf> halves_;
 };
 
 }  // namespace tex

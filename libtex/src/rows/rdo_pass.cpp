@@ -28,13 +28,16 @@ struct Choice {
 
 class Pass {
 public:
-    Pass(const RdoBand& band, float lambda, const ByteCounts& literals);
-    RdoResult run();
+    Pass(const RdoBand& band, const ByteCounts& literals);
+    RdoResult run(RdoBudget& budget, bool may_stop);
+    RdoSample sample(float lambda, int stride);
 
 private:
+    void set_lambda(float lambda);
+    void keep_block(int block);
     void start(int block);
     void add_near(int half, int distance);
-    void choose_block(int block);
+    void choose_block(int block, const RdoBudget* budget);
     void find_firsts(int block);
     float choose(int half, const Choice& other, const RdoMatches& matches, Choice& best);
     [[nodiscard]] Choice take(const RdoCandidates& from, int index, const RdoMatches& matches) const;
@@ -49,7 +52,7 @@ private:
     }
 
     const RdoBand& band_;
-    const float lambda_;
+    float lambda_ = 0.0f;
     const std::array<float, 256> literal_bits_;
     RdoSources sources_;
     RdoCandidates candidates_[2];
@@ -59,10 +62,14 @@ private:
     RdoResult result_;
 };
 
-Pass::Pass(const RdoBand& band, float lambda, const ByteCounts& literals)
-    : band_(band), lambda_(lambda), literal_bits_(literal_bits(literals)),
-      sources_(band.encoding, band.window, band.blocks.size(), lambda) {
+Pass::Pass(const RdoBand& band, const ByteCounts& literals)
+    : band_(band), literal_bits_(literal_bits(literals)), sources_(band.encoding, band.window, band.blocks.size()) {
     result_.blocks.resize(band.plain.size());
+}
+
+void Pass::set_lambda(float lambda) {
+    lambda_ = lambda;
+    sources_.set_lambda(lambda);
 }
 
 // The root of the sum of squared errors times this is about the sum of angles, in degrees.
@@ -79,7 +86,7 @@ float angle_scale(const RdoBlock& texels) {
 // Finds candidates for both halves that do not depend on each other.
 void Pass::start(int block) {
     const RdoBlock& texels = band_.blocks[static_cast<std::size_t>(block)];
-    RdoSearcher searcher{block, {texels.x, texels.y}, {}, angle_scale(texels)};
+    RdoSearcher searcher{block, {texels.x, texels.y}, {}, angle_scale(texels), {}};
     for (int to = 0; to < 2; ++to) {
         Choice& choice = plain_[to];
         std::memcpy(choice.candidate.half, plain(2 * block + to), kHalfBytes);
@@ -90,6 +97,8 @@ void Pass::start(int block) {
             const float d = choice.values[k] - searcher.values[to][k];
             searcher.rests[1 - to] += d * d;
         }
+        for (const std::byte byte : choice.candidate.half)
+            searcher.literal_bits[to] += literal_bits_[std::to_integer<std::size_t>(byte)];
     }
     sources_.find(searcher);
     for (int to = 0; to < 2; ++to) {
@@ -155,17 +164,15 @@ void Pass::find_firsts(int block) {
     firsts_.clear();
     Choice best;
     if (choose(x, plain_[1], matches_, best) < kTooLong) firsts_.push_back(best);
-    constexpr std::size_t kPairs = 3;
-    const std::vector<RdoSource>& pairs = sources_.pairs();
-    for (std::size_t k = 0; k < std::min(kPairs, pairs.size()); ++k) {
+    for (const RdoSource& pair : sources_.pairs()) {
         const int count = candidates_[0].count();
-        candidates_[0].add_copies(written(pairs[k].at), kHalfBytes * (x - pairs[k].at), pairs[k].copied, 1);
+        candidates_[0].add_copies(written(pair.at), kHalfBytes * (x - pair.at), pair.copied, 1);
         if (candidates_[0].count() > count) firsts_.push_back(take(candidates_[0], count, matches_));
         candidates_[0].keep(count);
     }
 }
 
-void Pass::choose_block(int block) {
+void Pass::choose_block(int block, const RdoBudget* budget) {
     start(block);
     find_firsts(block);
     const int y = 2 * block + 1;
@@ -191,7 +198,26 @@ void Pass::choose_block(int block) {
         best[0] = first;
         best[1] = second;
     }
+    std::byte bytes[2 * kHalfBytes];
+    for (int to = 0; to < 2; ++to) std::memcpy(bytes + kHalfBytes * to, best[to].candidate.half, kHalfBytes);
+    const auto index = static_cast<std::size_t>(block);
+    const RdoAngles angles = rdo_angles(band_, index, bytes);
+    const double growth = angles.sum - band_.improved_angles[index];
+    if (budget != nullptr && !budget->allows(result_.growth + growth)) return keep_block(block);
+    result_.growth += growth;
+    result_.most_raised = std::max(result_.most_raised, angles.most_raised);
     for (int to = 0; to < 2; ++to) write(2 * block + to, best[to]);
+}
+
+// Writes the improved literals.
+void Pass::keep_block(int block) {
+    for (int half = 2 * block; half < 2 * block + 2; ++half) {
+        Choice kept;
+        std::memcpy(kept.candidate.half, band_.improved.data() + std::ptrdiff_t{kHalfBytes} * half, kHalfBytes);
+        kept.candidate.distance = 0;
+        kept.candidate.literals = kHalfBytes;
+        write(half, kept);
+    }
 }
 
 void Pass::write(int half, const Choice& choice) {
@@ -202,15 +228,46 @@ void Pass::write(int half, const Choice& choice) {
     sources_.add(half, candidate.half);
 }
 
-RdoResult Pass::run() {
-    for (int block = 0; block < static_cast<int>(band_.blocks.size()); ++block) choose_block(block);
+RdoResult Pass::run(RdoBudget& budget, bool may_stop) {
+    for (int block = 0; block < static_cast<int>(band_.blocks.size()); ++block) {
+        if (block % kRdoRun == 0) {
+            set_lambda(budget.next(result_.growth));
+            if (may_stop && budget.has_wandered()) return std::move(result_);
+        }
+        choose_block(block, &budget);
+    }
+    result_.is_whole = true;
     return std::move(result_);
+}
+
+RdoSample Pass::sample(float lambda, int stride) {
+    set_lambda(lambda);
+    const int count = static_cast<int>(band_.blocks.size());
+    RdoSample sample;
+    for (int first = 0; first < count; first += kRdoRun) {
+        const int end = std::min(count, first + kRdoRun);
+        const double before = result_.growth;
+        const ByteCounts literals = result_.literals;
+        const bool is_taken = is_sampled(first / kRdoRun, stride);
+        for (int block = first; block < end; ++block) is_taken ? choose_block(block, nullptr) : keep_block(block);
+        if (is_taken) {
+            sample.growths.push_back(result_.growth - before);
+        } else {
+            result_.literals = literals;  // what optimised runs write is another choice of bytes
+        }
+    }
+    sample.literals = result_.literals;
+    return sample;
 }
 
 }  // namespace
 
-RdoResult rdo_pass(const RdoBand& band, float lambda, const ByteCounts& literals) {
-    return Pass(band, lambda, literals).run();
+RdoResult rdo_pass(const RdoBand& band, RdoBudget& budget, bool may_stop, const ByteCounts& literals) {
+    return Pass(band, literals).run(budget, may_stop);
+}
+
+RdoSample rdo_sample(const RdoBand& band, float lambda, int stride, const ByteCounts& literals) {
+    return Pass(band, literals).sample(lambda, stride);
 }
 
 }  // namespace tex

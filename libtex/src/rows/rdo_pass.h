@@ -20,31 +20,30 @@
 
 #include <tex/pack_options.h>
 
+#include "rows/rdo_band.h"
+#include "rows/rdo_budget.h"
 #include "rows/rdo_rate.h"
 
 namespace tex {
 
-// The normals of a block, as its texels store them: y is negated if the texture's y points down.
-struct RdoBlock {
-    float x[16], y[16], z[16];
-    float most[16];    // the longest chord that is allowed
-    float inside[16];  // 1, or 0 outside the level
-};
-
-struct RdoBand {
-    Encoding encoding;
-    int window;  // bytes
-    std::vector<RdoBlock> blocks;
-    std::vector<std::byte> plain;     // 16 bytes a block
-    std::vector<std::byte> improved;  // the same or better literals
-};
-
 struct RdoResult {
     std::vector<std::byte> blocks;
     ByteCounts literals{};
+    double growth = 0.0;       // of the sum of angles, in degrees, from that of the improved literals
+    double most_raised = 0.0;  // see RdoAngles
+    bool is_whole = false;     // unless the pass stopped early
 };
 
-// `literals` are those of the pass before. `lambda` is in degrees for each bit. Throws std::bad_alloc.
-RdoResult rdo_pass(const RdoBand& band, float lambda, const ByteCounts& literals);
+// Optimises all blocks. Those for which the budget has nothing left become improved literals. `literals` are those of
+// the pass before. If `may_stop` is set, it returns as soon as the budget has wandered. Throws std::bad_alloc.
+RdoResult rdo_pass(const RdoBand& band, RdoBudget& budget, bool may_stop, const ByteCounts& literals);
+
+// Optimises one of `stride` runs of blocks, at one lambda, in degrees for each bit; the others become improved
+// literals.
+struct RdoSample {
+    std::vector<double> growths;  // one for each sampled run
+    ByteCounts literals{};
+};
+RdoSample rdo_sample(const RdoBand& band, float lambda, int stride, const ByteCounts& literals);
 
 }  // namespace tex

@@ -8,10 +8,9 @@
 
 namespace tex {
 
-std::size_t zstd_size(const std::vector<std::byte>& bytes) {
-    constexpr int kLevel = 19;
+std::size_t zstd_size(const std::vector<std::byte>& bytes, int level) {
     std::vector<std::byte> packed(ZSTD_compressBound(bytes.size()));
-    const std::size_t size = ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), kLevel);
+    const std::size_t size = ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), level);
     if (ZSTD_isError(size) != 0) throw std::bad_alloc();  // the bound is met, so that only memory can be missing
     return size;
 }

@@ -8,7 +8,8 @@
 
 namespace tex {
 
-// The number of bytes after zstd -19. Throws std::bad_alloc.
-[[nodiscard]] std::size_t zstd_size(const std::vector<std::byte>& bytes);
+// The number of bytes after zstd, by default zstd -19. Throws std::bad_alloc.
+inline constexpr int kSmallestZstd = 19;
+[[nodiscard]] std::size_t zstd_size(const std::vector<std::byte>& bytes, int level = kSmallestZstd);
 
 }  // namespace tex

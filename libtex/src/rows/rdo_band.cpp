@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "rows/rdo_band.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "blocks/half_block.h"
+#include "kernels/angle_search.h"
+#include "kernels/copy_search.h"
+#include "rows/math.h"
+
+namespace tex {
+namespace {
+
+constexpr std::ptrdiff_t kBandBlockBytes = 16;
+constexpr double kDegreesOfRadian = 180.0 / math::kPi;
+
+double degrees_of(float chord) {
+    const double half = std::min(1.0, 0.5 * static_cast<double>(chord));
+    return half >= 1.0 ? 180.0 : 2.0 * kDegreesOfRadian * math::atan(half / std::sqrt(1.0 - half * half));
+}
+
+// The longest chord whose angle, as degrees_of() computes it, is not above `degrees`.
+float chord_of(float degrees) {
+    constexpr double kJustBelow = 1.0 - 1e-6;
+    if (degrees >= 180.0f) return 2.0f;
+    return static_cast<float>(2.0 * math::sin(0.5 * static_cast<double>(degrees) / kDegreesOfRadian) * kJustBelow);
+}
+
+float within_one(float n) { return std::fmin(std::fmax(n, -1.0f), 1.0f); }
+
+// The chords between the texels of a block and what 16 bytes decode to.
+void chords_of(const RdoBand& band, std::size_t index, const std::byte* bytes, float chords[16]) {
+    const RdoBlock& block = band.blocks[index];
+    const float* const normals[3] = {block.x, block.y, block.z};
+    float x[16], y[16];
+    decode_half(half_kind(band.encoding, 0), bytes, x);
+    decode_half(half_kind(band.encoding, 1), bytes + kHalfBytes, y);
+    block_chords(normals, x, y, chords);
+}
+
+// Adds block `index` of a row.
+void add_block(const BlockRow& row, int index, RdoBand& band) {
+    RdoBlock block;
+    for (int k = 0; k < kBlockTexels; ++k) {
+        const int i = kBlockEdge * index + k % kBlockEdge;
+        const int j = k / kBlockEdge;
+        const int column = std::min(i, row.width - 1);
+        const float x = within_one(row.x[j][column]);
+        const float y = within_one(row.y[j][column]);
+        const float flat = x * x + y * y;
+        const float factor = 1.0f / std::sqrt(std::max(1.0f, flat));
+        block.x[k] = factor * x;
+        block.y[k] = factor * (row.negate_y ? -y : y);
+        block.z[k] = std::sqrt(1.0f - std::min(1.0f, flat));
+        block.inside[k] = i < row.width && j < row.height ? 1.0f : 0.0f;
+        band.texels += static_cast<double>(block.inside[k]);
+    }
+    band.blocks.push_back(block);
+}
+
+// Sets how long the chords of all texels may get: `longest`, or as long as they are without optimisation.
+void set_limits(float longest, RdoBand& band) {
+    for (std::size_t index = 0; index < band.blocks.size(); ++index) {
+        RdoBlock& block = band.blocks[index];
+        for (std::size_t k = 0; k < 16; ++k)
+            block.most[k] = block.inside[k] == 0.0f ? 1e30f : std::max(longest, band.plain_chords[16 * index + k]);
+    }
+}
+
+// Improved blocks that break a limit become plain ones again, so that every block of `improved` may be written.
+void measure_improved(RdoBand& band) {
+    band.improved_angles.resize(band.blocks.size());
+    for (std::size_t index = 0; index < band.blocks.size(); ++index) {
+        std::byte* const bytes = band.improved.data() + kBandBlockBytes * static_cast<std::ptrdiff_t>(index);
+        float chords[16];
+        chords_of(band, index, bytes, chords);
+        for (std::size_t k = 0; k < 16; ++k) {
+            if (chords[k] <= band.blocks[index].most[k]) continue;
+            std::memcpy(bytes, band.plain.data() + kBandBlockBytes * static_cast<std::ptrdiff_t>(index),
+                        kBandBlockBytes);
+            break;
+        }
+        band.improved_angles[index] = rdo_angles(band, index, bytes).sum;
+        band.improved_sum += band.improved_angles[index];
+    }
+}
+
+}  // namespace
+
+RdoAngles rdo_angles(const RdoBand& band, std::size_t index, const std::byte* bytes) {
+    float chords[16];
+    chords_of(band, index, bytes, chords);
+    RdoAngles angles;
+    for (std::size_t k = 0; k < 16; ++k) {
+        if (band.blocks[index].inside[k] == 0.0f) continue;
+        const double angle = degrees_of(chords[k]);
+        angles.sum += angle;
+        if (chords[k] > band.plain_chords[16 * index + k]) angles.most_raised = std::max(angles.most_raised, angle);
+    }
+    return angles;
+}
+
+RdoBand read_band(const std::function<BlockRow(int row)>& rows, int count, const PackOptions& options,
+                  const std::byte* blocks) {
+    constexpr int kReach = 2;  // farther steps gain little
+    RdoBand band{options.encoding, options.rdo.window, {}, {}, {}, {}, 0.0, 0.0, 0.0, {}};
+    for (int r = 0; r < count; ++r) {
+        const BlockRow row = rows(r);
+        const int across = blocks_across(row.width);
+        for (int b = 0; b < across; ++b) add_block(row, b, band);
+        const std::ptrdiff_t pitch = kBandBlockBytes * across;
+        band.plain.insert(band.plain.end(), blocks + r * pitch, blocks + (r + 1) * pitch);
+        band.improved.insert(band.improved.end(), blocks + r * pitch, blocks + (r + 1) * pitch);
+        const bool is_eac = keeps_slope(half_kind(band.encoding, 0));
+        if (!is_eac) improve_angles(row, options.encoding, kReach, band.improved.data() + r * pitch);
+    }
+    band.plain_chords.resize(16 * band.blocks.size());
+    for (std::size_t index = 0; index < band.blocks.size(); ++index) {
+        const std::byte* const bytes = band.plain.data() + kBandBlockBytes * static_cast<std::ptrdiff_t>(index);
+        chords_of(band, index, bytes, band.plain_chords.data() + 16 * index);
+        band.plain_sum += rdo_angles(band, index, bytes).sum;
+    }
+    const double mean = band.plain_sum / band.texels;
+    const auto usual =
+        static_cast<float>(std::min(180.0, kRdoMaxOfMean * (mean + static_cast<double>(options.rdo.mean))));
+    set_limits(chord_of(options.rdo.max > 0.0f ? options.rdo.max : usual), band);
+    measure_improved(band);
+    return band;
+}
+
+}  // namespace tex

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// rdo_band.h: the blocks of a band, and the angles of their texels, for rate-distortion optimisation.
+
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include <tex/pack_options.h>
+
+#include "kernels/encode.h"
+
+namespace tex {
+
+// The normals of a block, as its texels store them: y is negated if the texture's y points down.
+struct RdoBlock {
+    float x[16], y[16], z[16];
+    float most[16];    // the longest chord that is allowed
+    float inside[16];  // 1, or 0 outside the level
+};
+
+// The angles of a block's texels in the level.
+struct RdoAngles {
+    double sum = 0.0;          // degrees
+    double most_raised = 0.0;  // degrees: the greatest of those that are greater than without optimisation
+};
+
+struct RdoBand {
+    Encoding encoding;
+    int window;  // bytes
+    std::vector<RdoBlock> blocks;
+    std::vector<std::byte> plain;         // 16 bytes a block
+    std::vector<std::byte> improved;      // the same or better literals
+    std::vector<float> plain_chords;      // 16 a block
+    double texels = 0.0;                  // in the level
+    double plain_sum = 0.0;               // the sum of the angles of `plain`, in degrees
+    double improved_sum = 0.0;            // the same of `improved`
+    std::vector<double> improved_angles;  // the sum of the angles of each block of `improved`
+};
+
+// Reads `count` rows of blocks, which encode_blocks() has written one after the other. Throws std::bad_alloc.
+RdoBand read_band(const std::function<BlockRow(int row)>& rows, int count, const PackOptions& options,
+                  const std::byte* blocks);
+
+// The angles of 16 bytes as block `index`.
+RdoAngles rdo_angles(const RdoBand& band, std::size_t index, const std::byte* bytes);
+
+}  // namespace tex
